@@ -1,0 +1,151 @@
+"""Elastic operators: the linear map from surface pressure to surface deflection, and the half-space's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
+
+from halfspace.kernel import band_deflection, panel_integrals
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class ElasticOperator:
+    """Elastic half of a contact problem, whatever body or method it comes from.
+
+    The surface is cut into rings, the `cells`; inside each, pressure, deflection and gap are
+    polynomials through the values at the cell's nodes. Dimensionless: lengths in beta, E* = 1.
+
+    Attributes
+    ----------
+    radii : (q,) array
+        Radii of the surface nodes, ascending, in beta.
+    weights : (q,) array
+        Quadrature weights of the area element 2 pi u du: ``weights @ P`` is the load in R dgamma.
+    compliance : (q, q) array
+        Deflection into the body (positive when pressed) at the nodes is ``compliance @ P`` for nodal
+        pressures P, positive in compression.
+    cells : (m + 1,) array
+        Radii between which one interpolation polynomial holds, from 0 outwards.
+    cell_nodes : (m, k) int array
+        The k nodes whose values define the polynomial in each cell.
+    """
+
+    radii: Array
+    weights: Array
+    compliance: Array
+    cells: Array
+    cell_nodes: Index
+
+    @property
+    def extent(self) -> float:
+        """Radius to which the surface law acts, in beta."""
+        return float(self.cells[-1])
+
+    def scaled(self, factor: float) -> ElasticOperator:
+        """Return the operator of the same body blown up by `factor`: compliance is homogeneous of degree one."""
+        return ElasticOperator(
+            self.radii * factor,
+            self.weights * factor**2,
+            self.compliance * factor,
+            self.cells * factor,
+            self.cell_nodes,
+        )
+
+    def cell_of(self, radius: float) -> int:
+        """Index of the cell that holds `radius`."""
+        return int(np.clip(np.searchsorted(self.cells, radius, side="right") - 1, 0, self.cells.size - 2))
+
+    def spacing(self, radius: float) -> float:
+        """Distance between neighbouring nodes around `radius`, in beta."""
+        cell = self.cell_of(radius)
+        return float((self.cells[cell + 1] - self.cells[cell]) / max(self.cell_nodes.shape[1] - 1, 1))
+
+    def interpolation(self, radius: float) -> tuple[Array, Array]:
+        """Row (q,) that interpolates nodal values at `radius`, and the row of its derivative by the radius."""
+        nodes = self.cell_nodes[self.cell_of(radius)]
+        value, slope = lagrange(self.radii[nodes], radius)
+        row, derivative = np.zeros((2, self.radii.size))
+        row[nodes], derivative[nodes] = value, slope
+        return row, derivative
+
+
+def lagrange(nodes: Array, x: float) -> tuple[Array, Array]:
+    """Values and derivatives at x of the Lagrange polynomials through `nodes`, shape (k,) each."""
+    n = nodes.size
+    difference = nodes[:, None] - nodes + np.eye(n)
+    factor = (x - nodes) / difference  # factor[j, m] = (x - x_m)/(x_j - x_m), with the diagonal taken as 1
+    np.fill_diagonal(factor, 1)
+    value = factor.prod(axis=1)
+    slope = np.zeros(n)
+    for m in range(n):
+        others = np.delete(factor, m, axis=1).prod(axis=1) / difference[:, m]
+        slope += np.where(np.arange(n) == m, 0, others)
+    return value, slope
+
+
+def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
+    """Half-space under pressures that are polynomials between the breakpoints, collocated at Gauss's points.
+
+    Parameters
+    ----------
+    breakpoints : (m + 1,) array
+        Panel ends from 0 outwards, in beta.
+    nodes_per_panel : int
+        k, from 1 to 16; the pressure has degree k - 1 in each panel and may jump between them.
+    """
+    if not 1 <= nodes_per_panel <= 16:
+        raise ValueError(f"nodes_per_panel {nodes_per_panel} is outside 1 to 16; use more panels instead")
+    x, w = leggauss(nodes_per_panel)
+    half = np.diff(breakpoints)[:, None] / 2
+    radii = breakpoints[:-1, None] + half * (1 + x)
+    compliance = panel_integrals(radii.ravel(), breakpoints, x).reshape(radii.size, radii.size)
+    weights = 2 * np.pi * radii * half * w
+    return ElasticOperator(
+        radii.ravel(), weights.ravel(), compliance, breakpoints, np.arange(radii.size).reshape(radii.shape)
+    )
+
+
+def triangles(nodes: Array) -> ElasticOperator:
+    """Half-space under overlapping triangles of pressure, [G97] section 2a.
+
+    Parameters
+    ----------
+    nodes : (q,) array
+        Apices of the triangles from 0 outwards, in beta; the pressure is linear between them.
+    """
+    ends = np.array([-1.0, 1.0])
+    halves = panel_integrals(nodes, nodes, ends)
+    compliance = np.zeros((nodes.size, nodes.size))
+    compliance[:, :-1] += halves[:, :, 0]
+    compliance[:, 1:] += halves[:, :, 1]
+    a, b = nodes[:-1], nodes[1:]
+    weights = np.zeros(nodes.size)
+    weights[:-1] += np.pi / 3 * (b - a) * (2 * a + b)
+    weights[1:] += np.pi / 3 * (b - a) * (a + 2 * b)
+    return ElasticOperator(nodes, weights, compliance, nodes, _neighbours(nodes.size))
+
+
+def bands(edges: Array) -> ElasticOperator:
+    """Half-space under bands of uniform pressure, in closed form at their mid-radii, [G97] App. B as corrected.
+
+    Parameters
+    ----------
+    edges : (q + 1,) array
+        Ends of the bands from 0 outwards, in beta.
+    """
+    middle = (edges[1:] + edges[:-1]) / 2
+    compliance = np.diff(band_deflection(middle[:, None], edges), axis=1)
+    weights = np.pi * np.diff(edges**2)
+    cells = np.concatenate([[0], middle[1:-1], edges[-1:]])
+    return ElasticOperator(middle, weights, compliance, cells, _neighbours(middle.size))
+
+
+def _neighbours(count: int) -> Index:
+    """Pairs of neighbouring nodes: linear interpolation."""
+    return np.stack([np.arange(count - 1), np.arange(1, count)], axis=1)

@@ -1,0 +1,234 @@
+"""The whole load-approach curve of one contact, traced over a sequence of charts, and what it carries.
+
+A chart is a discretisation fit for one stretch of the path. The half-space needs two: a grid centred on the axis while
+the surfaces are apart or just touch, and one that follows the edge of the contact. A mesh fine enough everywhere is
+a single chart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from halfspace import newton
+from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.events import EXTREMUM, FOLD, ZERO_LOAD, Condition, Event, Located, locate
+from halfspace.path import Metric, Point, Steps, follow, loaded_to, make_point
+
+Array = NDArray[np.float64]
+
+COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwise
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A discretisation and the contact radius (beta) up to which it serves; infinite for the last one."""
+
+    problem: ContactProblem
+    until: float = np.inf
+
+
+@dataclass(frozen=True)
+class Segment:
+    """Points of the path on one chart."""
+
+    problem: ContactProblem
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number and the estimated bound of its error, in the same unit."""
+
+    value: float
+    error: float
+
+
+@dataclass(frozen=True)
+class EquilibriumPath:
+    """The load-approach curve from far separation to compression, through every fold.
+
+    Attributes
+    ----------
+    tabor : float
+        Tabor parameter.
+    segments : tuple of Segment
+        Converged points in order, with the discretisation they live on.
+    events : mapping of str to Event
+        ``pull_off``, ``zero_load`` and, where the curve folds, ``jump_on`` and ``jump_off``.
+    energy : Estimate
+        Potential energy released from `separated_approach` on the separated branch to zero approach in contact, in
+        R dgamma eps.
+    unknowns : int
+        Unknowns of the finest discretisation used, elastic ones included.
+    seconds : float
+        Wall time of the whole computation.
+    settings : mapping
+        What was asked for and how it was discretised.
+    """
+
+    tabor: float
+    segments: tuple[Segment, ...]
+    events: Mapping[str, Event]
+    energy: Estimate
+    unknowns: int
+    seconds: float
+    settings: Mapping[str, object] = field(default_factory=dict)
+
+    def event(self, name: str) -> Event | None:
+        """Event by name, or None if the curve does not have it."""
+        return self.events.get(name)
+
+    @property
+    def approach(self) -> Array:
+        """Approach alpha* in eps, positive when pressed together, shape (points,)."""
+        return self._observable(APPROACH)
+
+    @property
+    def load(self) -> Array:
+        """Load W in R dgamma, positive in compression, shape (points,)."""
+        return self._observable(LOAD)
+
+    @property
+    def central_gap(self) -> Array:
+        """H(0) in eps, shape (points,)."""
+        return self._observable(CENTRAL_GAP)
+
+    @property
+    def contact_radius(self) -> Array:
+        """Contact radius in beta, nan while the central gap exceeds 3^(1/6) eps, shape (points,)."""
+        return self._observable(CONTACT_RADIUS)
+
+    @property
+    def arclength(self) -> Array:
+        """Arclength from the first point, in the units of `halfspace.path.Metric`, shape (points,)."""
+        return np.array([point.arclength for point in self.points])
+
+    @property
+    def points(self) -> list[Point]:
+        """All points in order."""
+        return [point for segment in self.segments for point in segment.points]
+
+    @cached_property
+    def stable(self) -> NDArray[np.bool_]:
+        """Stability under fixed grips, from the inertia of the tangent, shape (points,)."""
+        return np.concatenate([_stable(segment) for segment in self.segments])
+
+    @cached_property
+    def stable_under_dead_load(self) -> NDArray[np.bool_]:
+        """Stability under a dead load: stable under fixed grips and dW/dalpha positive, shape (points,)."""
+        rates = np.array([point.rates for point in self.points])
+        return np.asarray(self.stable & (rates[:, LOAD] * rates[:, APPROACH] > 0))
+
+    def _observable(self, index: int) -> Array:
+        return np.array([point.observables[index] for point in self.points])
+
+
+def _stable(segment: Segment) -> NDArray[np.bool_]:
+    root = segment.problem.compliance_root()
+    return np.array([segment.problem.negative_directions(point.x, root) == 0 for point in segment.points], dtype=bool)
+
+
+def metric_for(tabor: float) -> Metric:
+    """Unit of approach by which the curve's long branches take about as many steps at every Tabor parameter."""
+    return Metric(approach=2 * (1 + tabor))
+
+
+def separated_approach(tabor: float) -> float:
+    """Approach in eps at which only the separated branch exists; left of jump_off, -1.64 mu in the JKR limit."""
+    return -10 - 2 * tabor
+
+
+def trace_charts(
+    charts: Sequence[Chart],
+    to_load: float = COMPRESSION,
+    steps: Steps | None = None,
+) -> tuple[Segment, ...]:
+    """Trace the curve from far separation to a compressive load over the charts in order.
+
+    Raises
+    ------
+    NotConverged
+        If the continuation gets stuck.
+    """
+    tabor = charts[0].problem.tabor
+    metric = metric_for(tabor)
+    point = _far_separation(charts[0].problem, separated_approach(tabor) - 10, metric)
+    segments: list[Segment] = []
+    for chart in charts:
+        if segments:
+            point = _hand_over(segments[-1], chart.problem, metric)
+        last = loaded_to(to_load)
+        stop = last if np.isinf(chart.until) else _beyond(chart.until)
+        segments.append(Segment(chart.problem, tuple(follow(chart.problem, point, metric, stop, steps=steps))))
+    return tuple(segments)
+
+
+def _beyond(radius: float) -> Callable[[Point], bool]:
+    return lambda point: bool(point.observables[CONTACT_RADIUS] > radius)
+
+
+def _far_separation(problem: ContactProblem, approach: float, metric: Metric) -> Point:
+    """First point of the path, heading towards contact."""
+    solution = newton.solve(problem, problem.undeformed(approach), newton.approach(approach))
+    return make_point(problem, solution, metric, newton.approach(approach).weights, 0.0)
+
+
+def _hand_over(segment: Segment, problem: ContactProblem, metric: Metric) -> Point:
+    """Solve the last state of a segment again on the next chart, at the same contact radius."""
+    last = segment.points[-1]
+    radius = float(last.observables[CONTACT_RADIUS])
+    start = transfer(segment.problem, last.x, problem)
+    solution = newton.solve(problem, start, newton.contact_radius(radius))
+    return make_point(problem, solution, metric, metric.weights * last.rates, last.arclength)
+
+
+def transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array:
+    """Interpolate a state of one problem as a start for another; beyond the grid the load acts as at a point."""
+    H, alpha = x[:-2], x[-2]
+    scale = source.contact_radius(x) if target.follows_contact else 1.0
+    radii = target.operator.radii * scale
+    inside = radii < source.operator.extent * x[-1]
+    gap = np.empty(radii.size)
+    gap[inside] = [source.operator.interpolation(r / x[-1])[0] @ H for r in radii[inside]]
+    outside = radii[~inside]
+    gap[~inside] = -alpha + source.tabor * (outside**2 / 2 + source.load(x) / (np.pi * outside))
+    return np.concatenate([gap, [alpha, scale]])
+
+
+def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
+    """Solve for the events of a traced curve and name them.
+
+    Returns
+    -------
+    dict of Located
+        ``pull_off`` (the deepest minimum of the load), ``jump_on`` (the first fold from separation), ``jump_off`` (the
+        first from compression), ``zero_load``, and the two states between which the energy is taken, ``separated``
+        and ``zero_approach``.
+    """
+    tabor = segments[0].problem.tabor
+    metric = metric_for(tabor)
+
+    def roots(condition: Condition) -> list[Located]:
+        return [e for s in segments for e in locate(s.problem, s.points, metric, condition)]
+
+    folds = roots(FOLD)
+    found = {"pull_off": min(roots(EXTREMUM), key=lambda e: float(e.point.observables[LOAD]))}
+    if folds:
+        found |= {"jump_on": folds[0], "jump_off": folds[-1]}
+    found["zero_load"] = roots(ZERO_LOAD)[-1]
+    found["separated"] = roots(Condition(APPROACH, value=separated_approach(tabor)))[0]
+    found["zero_approach"] = roots(Condition(APPROACH))[-1]
+    return found
+
+
+def energy_released(located: Mapping[str, Located]) -> float:
+    """Energy between the states ``separated`` and ``zero_approach`` of `find_events`, in R dgamma eps."""
+    before, after = located["separated"], located["zero_approach"]
+    assert isinstance(before.problem, ContactProblem)
+    assert isinstance(after.problem, ContactProblem)
+    return before.problem.energy(before.point.x) - after.problem.energy(after.point.x)

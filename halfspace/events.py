@@ -1,0 +1,194 @@
+"""Special points of the load-approach curve, each found by solving for it on the equilibrium path.
+
+A fold in the approach is where d(alpha*)/ds vanishes along the path, an extremum of the load where dW/ds does. The
+corrector runs at every trial of the root finder; nothing is interpolated between samples of the curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from halfspace import newton
+from halfspace.contact import APPROACH, LOAD
+from halfspace.newton import Control, Equilibrium, NotConverged
+from halfspace.path import Metric, Point, correct, make_point
+
+Array = NDArray[np.float64]
+
+EVENTS = ("pull_off", "jump_on", "jump_off", "zero_load")
+ARCLENGTH_TOLERANCE = 1e-12
+SHARED = 0.02  # one event's numbers err together: none counts as better than this fraction of the worst, by luck
+ROUND_OFF = 1e-11  # what Newton's method, the root finder and the matrices leave, relative to 1 + the value
+
+
+@dataclass(frozen=True)
+class Event:
+    """A special point of the curve, with the estimated error of each number.
+
+    Attributes
+    ----------
+    name : str
+        ``pull_off`` (global minimum of the load), ``jump_on``, ``jump_off`` (the folds that a fixed-grips experiment
+        meets coming from separation and from contact), ``zero_load`` (the contact branch where W = 0).
+    approach, approach_error : float
+        In eps.
+    load, load_error : float
+        In R dgamma, positive in compression.
+    central_gap, central_gap_error : float
+        H(0) in eps, zero at the equilibrium spacing.
+    contact_radius, contact_radius_error : float
+        In beta; nan where the central gap exceeds 3^(1/6) eps.
+    """
+
+    name: str
+    approach: float
+    load: float
+    central_gap: float
+    contact_radius: float
+    approach_error: float
+    load_error: float
+    central_gap_error: float
+    contact_radius_error: float
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What vanishes at an event: an observable less a value, or the observable's rate along the path.
+
+    Attributes
+    ----------
+    observable : int
+        One of APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS.
+    stationary : bool
+        If true the rate d(observable)/ds vanishes, else the observable less `value`.
+    value : float
+        Value sought.
+    """
+
+    observable: int
+    stationary: bool = False
+    value: float = 0.0
+
+    def of(self, point: Point) -> float:
+        """Quantity whose root is sought."""
+        return float((point.rates if self.stationary else point.observables - self.value)[self.observable])
+
+
+FOLD = Condition(APPROACH, stationary=True)
+EXTREMUM = Condition(LOAD, stationary=True)
+ZERO_LOAD = Condition(LOAD)
+
+
+@dataclass(frozen=True)
+class Located:
+    """A root of a condition on one discretisation's path.
+
+    Attributes
+    ----------
+    condition : Condition
+        What vanishes.
+    problem : Equilibrium
+        The discretisation.
+    point : Point
+        The converged point.
+    slope : float
+        Derivative along the path of what vanishes, to start a root finder from.
+    """
+
+    condition: Condition
+    problem: Equilibrium
+    point: Point
+    slope: float
+
+
+def locate(problem: Equilibrium, points: Sequence[Point], metric: Metric, condition: Condition) -> list[Located]:
+    """Find every root of a condition between successive points of one discretisation's path."""
+    return [
+        _between(problem, a, b, condition, metric) for a, b in pairwise(points) if condition.of(a) * condition.of(b) < 0
+    ]
+
+
+def _between(problem: Equilibrium, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
+    """Find the root between two points of which the second was reached from the first."""
+    length = b.arclength - a.arclength
+    trials = {0.0: a, length: b}
+
+    def quantity(step: float) -> float:
+        if step not in trials:
+            trials[step] = correct(problem, a, step, _hermite(a, b, step / length), metric, iterations=20)
+        return condition.of(trials[step])
+
+    root = brentq(quantity, 0.0, length, xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
+    quantity(root)
+    return Located(condition, problem, trials[root], (condition.of(b) - condition.of(a)) / length)
+
+
+def _hermite(a: Point, b: Point, t: float) -> Array:
+    """State between two points, from the cubic through both with their tangents; gaps stay positive."""
+    h = b.arclength - a.arclength
+    x = (
+        (1 + 2 * t) * (1 - t) ** 2 * a.x
+        + t**2 * (3 - 2 * t) * b.x
+        + h * t * (1 - t) * ((1 - t) * a.tangent - t * b.tangent)
+    )
+    gaps = slice(0, -2)
+    x[gaps] = np.maximum(x[gaps], np.minimum(a.x[gaps], b.x[gaps]) * 0.75 - 0.25)
+    return x
+
+
+def relocate(event: Located, problem: Equilibrium, start: Array, metric: Metric) -> Located:
+    """Solve for an event again on another discretisation, from a state transferred to it.
+
+    Raises
+    ------
+    NotConverged
+        If the event does not exist near `start` on that discretisation.
+    """
+    condition = event.condition
+    nearby = _same_place(event.point, problem, start, metric)
+    for stretch in (1.5, 6.0, 30.0):
+        step = -stretch * condition.of(nearby) / event.slope
+        if abs(step) < ARCLENGTH_TOLERANCE:
+            return Located(condition, problem, nearby, event.slope)
+        beyond = correct(problem, nearby, step, nearby.x + step * nearby.tangent, metric, iterations=20)
+        if condition.of(beyond) * condition.of(nearby) <= 0:
+            return _between(problem, nearby, beyond, condition, metric)
+    at = event.point.observables
+    raise NotConverged(
+        f"the event at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma is not found again on another grid; "
+        "refine both grids"
+    )
+
+
+def _same_place(point: Point, problem: Equilibrium, start: Array, metric: Metric) -> Point:
+    """Solve on another discretisation in the plane across the path at a given point."""
+    weights = metric.weights * point.rates
+    used = weights != 0
+    control = Control(weights, float(weights[used] @ point.observables[used]))
+    solution = newton.solve(problem, start, control)
+    return make_point(problem, solution, metric, weights, point.arclength)
+
+
+def estimate_event(name: str, best: Located, changes: Sequence[tuple[Located, Located]]) -> Event:
+    """Turn an event into numbers with error estimates.
+
+    Parameters
+    ----------
+    best : Located
+        The event on the finest discretisation.
+    changes : sequence of pairs
+        The event on two discretisations that differ in one respect; the changes of a number add up to its error.
+    """
+    values = best.point.observables
+    size = 1 + np.abs(values)
+    errors = ROUND_OFF * size
+    for a, b in changes:
+        change = np.abs(a.point.observables - b.point.observables)
+        errors = errors + np.maximum(change, SHARED * np.nanmax(change / size) * size)
+    return Event(name, *map(float, values), *map(float, errors))

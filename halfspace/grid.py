@@ -1,0 +1,50 @@
+"""Radial grids: where the rings of pressure begin and end. Radii in beta, or in units of a length scaled later."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def uniform(extent: float, spacing: float) -> Array:
+    """Breakpoints from 0 to `extent`, equally spaced by `spacing` at most."""
+    _require_positive(extent=extent, spacing=spacing)
+    return np.linspace(0, extent, int(np.ceil(extent / spacing - 1e-9)) + 1)
+
+
+def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0) -> Array:
+    """Breakpoints from 0 to `extent`, finest at `radius` and growing geometrically away from it on both sides.
+
+    Parameters
+    ----------
+    radius : float
+        Where the grid is finest, 0 <= radius < extent; 1 for a grid that is scaled with the contact.
+    finest : float
+        Length of the intervals that touch `radius`, or less.
+    extent : float
+        Outer end.
+    growth : float
+        Ratio of the lengths of neighbouring intervals, above 1.
+    """
+    _require_positive(finest=finest, extent=extent)
+    if not 0 <= radius < extent:
+        raise ValueError(f"radius {radius:g} lies outside 0 <= radius < extent = {extent:g}; move it inside the grid")
+    if growth <= 1:
+        raise ValueError(f"growth {growth:g} is not above 1; take about 2")
+    inner = radius - _geometric(radius, finest, growth)[::-1] if radius else np.zeros(1)
+    return np.concatenate([inner, (radius + _geometric(extent - radius, finest, growth))[1:]])
+
+
+def _geometric(length: float, finest: float, growth: float) -> Array:
+    """Breakpoints from 0 to `length`: geometric with at most the given growth, the first at `finest` or less."""
+    count = int(np.ceil(np.log1p((growth - 1) * length / finest) / np.log(growth) - 1e-9))
+    steps = growth ** np.arange(max(count, 1))
+    return np.concatenate([[0.0], np.cumsum(steps) * (length / steps.sum())])
+
+
+def _require_positive(**lengths: float) -> None:
+    for name, value in lengths.items():
+        if not (np.isfinite(value) and value > 0):
+            raise ValueError(f"{name} {value:g} is not a positive length; give it in beta")

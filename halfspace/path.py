@@ -1,0 +1,218 @@
+"""Pseudo-arclength continuation of an equilibrium along its load-approach curve, through every fold.
+
+Arclength is measured in the space of approach, load and central gap, each in a unit of its own (`Metric`): three
+numbers that every discretisation has, so its value does not depend on the grid, nor change where a grid is exchanged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from halfspace import newton
+from halfspace.contact import CENTRAL_GAP, LOAD
+from halfspace.newton import Control, Equilibrium, NotConverged
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Metric:
+    """Units of approach, load and central gap in which the arclength is measured."""
+
+    approach: float
+    load: float = 2 * np.pi
+    central_gap: float = 2.0
+
+    @property
+    def weights(self) -> Array:
+        """Inverse squares of the units; the contact radius, which need not exist, has none."""
+        return np.array([self.approach**-2, self.load**-2, self.central_gap**-2, 0.0])
+
+
+@dataclass(frozen=True)
+class Point:
+    """A converged point of the path with its unit tangent.
+
+    Attributes
+    ----------
+    x, observables : arrays
+        State vector; approach, load, central gap and contact radius.
+    tangent : array
+        dx/ds, s the arclength.
+    rates : (4,) array
+        d(observables)/ds; the contact radius' is 0 where there is none.
+    arclength : float
+        From the start of the path.
+    iterations : int
+        Newton steps that the point took.
+    """
+
+    x: Array
+    observables: Array
+    tangent: Array
+    rates: Array
+    arclength: float
+    iterations: int
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Lengths of the continuation's steps, in arclength, and what they adapt to.
+
+    Attributes
+    ----------
+    first, longest, shortest : float
+        First trial, bounds; a step below `shortest` ends the path with an error.
+    turn : float
+        Largest angle between the tangents at a step's two ends, in radians.
+    iterations : int
+        Newton steps allowed for one continuation step.
+    """
+
+    first: float = 0.05
+    longest: float = 1.0
+    shortest: float = 1e-7
+    turn: float = 0.35
+    iterations: int = 8
+
+
+def make_point(
+    problem: Equilibrium, solution: newton.Solution, metric: Metric, direction: Array, arclength: float
+) -> Point:
+    """Attach the unit tangent to a solution, oriented so that it has a positive component along `direction`.
+
+    Parameters
+    ----------
+    direction : (4,) array
+        Covector on the observables: the arclength's gradient at a point nearby.
+    """
+    row = problem.gradient(solution.x, direction)
+    rhs = np.zeros(solution.x.size)
+    rhs[-1] = 1
+    tangent = problem.bordered_solver(solution.x, row)(rhs)
+    rates = _rates(problem, solution, tangent)
+    length = np.sqrt(metric.weights @ rates**2)
+    return Point(solution.x, solution.observables, tangent / length, rates / length, arclength, solution.iterations)
+
+
+def _rates(problem: Equilibrium, solution: newton.Solution, tangent: Array) -> Array:
+    exists = np.isfinite(solution.observables)
+    return np.array(
+        [problem.gradient(solution.x, row) @ tangent if e else 0.0 for row, e in zip(np.eye(4), exists, strict=True)]
+    )
+
+
+def correct(
+    problem: Equilibrium, point: Point, step: float, guess: Array, metric: Metric, iterations: int = 8
+) -> Point:
+    """Solve for the point of the path at the arclength `step` past `point`, measured along its tangent.
+
+    Raises
+    ------
+    NotConverged
+        If Newton's method does not reach it from `guess`.
+    """
+    weights = metric.weights * point.rates
+    used = weights != 0
+    control = Control(weights, float(weights[used] @ point.observables[used]) + step)
+    solution = newton.solve(problem, guess, control, max_iterations=iterations)
+    return make_point(problem, solution, metric, weights, point.arclength + step)
+
+
+def predict(problem: Equilibrium, point: Point, step: float, before: Point | None = None) -> Array:
+    """Extrapolate along the tangent, to second order where the point before is known (Adams and Bashforth)."""
+    slope = point.tangent
+    if before is not None:
+        slope = slope + (point.tangent - before.tangent) * (step / (2 * (point.arclength - before.arclength)))
+    return np.asarray(point.x + problem.longest_step(point.x, step * slope) * step * slope)
+
+
+def follow(
+    problem: Equilibrium,
+    start: Point,
+    metric: Metric,
+    stop: Callable[[Point], bool],
+    *,
+    steps: Steps | None = None,
+    max_points: int = 2000,
+) -> list[Point]:
+    """Continue the path from a point until `stop` holds, in steps adapted to its curvature.
+
+    Parameters
+    ----------
+    problem : Equilibrium
+        The contact problem.
+    start : Point
+        Where to begin; its tangent says in which direction.
+    metric : Metric
+        What arclength means.
+    stop : callable
+        Says of each new point whether it is the last.
+    steps : Steps, optional
+        Bounds of the step length.
+    max_points : int
+        Points after which to give up.
+
+    Returns
+    -------
+    list of Point
+        From `start` to the first point for which `stop` holds.
+
+    Raises
+    ------
+    NotConverged
+        If the step falls below the shortest allowed, or the points run out.
+    GridTooCoarse
+        If the contact edge comes to a place where the grid is too coarse for the spike of tension there.
+    """
+    steps = steps or Steps()
+    points = [start]
+    step = steps.first
+    while len(points) < max_points:
+        try:
+            new = _advance(problem, points, step, metric, steps)
+        except NotConverged as error:
+            step /= 3
+            if step < steps.shortest:
+                at = points[-1].observables
+                raise NotConverged(
+                    f"the path ends at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma: no step of "
+                    f"{steps.shortest:.0e} or more converges ({error}); refine the grid"
+                ) from error
+            continue
+        problem.require_resolution(new.x)
+        points.append(new)
+        if stop(new):
+            return points
+        step = _next_step(step, points, metric, steps)
+    raise NotConverged(f"the path did not end within {max_points} points; allow more points or longer steps")
+
+
+def _advance(problem: Equilibrium, points: list[Point], step: float, metric: Metric, steps: Steps) -> Point:
+    """One step, refused if the path turns too far in it for its folds to be seen."""
+    point, before = points[-1], points[-2] if len(points) > 1 else None
+    new = correct(problem, point, step, predict(problem, point, step, before), metric, steps.iterations)
+    if _turn(point, new, metric) > 2 * steps.turn:
+        raise NotConverged("the path turns too sharply")
+    return new
+
+
+def _turn(a: Point, b: Point, metric: Metric) -> float:
+    """Angle between two tangents in radians."""
+    return float(np.arccos(np.clip(metric.weights @ (a.rates * b.rates), -1, 1)))
+
+
+def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -> float:
+    """Lengthen the step while Newton's method and the curvature allow, shorten it where they do not."""
+    by_turn = steps.turn / max(_turn(points[-2], points[-1], metric), 1e-6)
+    by_effort = 4 / points[-1].iterations
+    return float(min(step * np.clip(min(by_turn, by_effort), 0.3, 2.0), steps.longest))
+
+
+def loaded_to(load: float) -> Callable[[Point], bool]:
+    """Stop where the contact bears a load, in R dgamma, on its way into compression."""
+    return lambda point: bool(point.observables[LOAD] >= load and point.rates[CENTRAL_GAP] <= 0)
