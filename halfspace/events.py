@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 EVENTS = ("pull_off", "jump_on", "jump_off", "zero_load")
 ARCLENGTH_TOLERANCE = 1e-12
-SHARED = 0.02  # one event's numbers err together: none counts as better than this fraction of the worst, by luck
+SHARED = 0.05  # one event's numbers err together: none counts as better than this fraction of the worst, by luck
 ROUND_OFF = 1e-11  # what Newton's method, the root finder and the matrices leave, relative to 1 + the value
 
 
@@ -121,7 +121,7 @@ def _between(problem: Equilibrium, a: Point, b: Point, condition: Condition, met
 
     def quantity(step: float) -> float:
         if step not in trials:
-            trials[step] = correct(problem, a, step, _hermite(a, b, step / length), metric, iterations=20)
+            trials[step] = correct(problem, a, step, _hermite(problem, a, b, step / length), metric, iterations=20)
         return condition.of(trials[step])
 
     root = brentq(quantity, 0.0, length, xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
@@ -129,7 +129,7 @@ def _between(problem: Equilibrium, a: Point, b: Point, condition: Condition, met
     return Located(condition, problem, trials[root], (condition.of(b) - condition.of(a)) / length)
 
 
-def _hermite(a: Point, b: Point, t: float) -> Array:
+def _hermite(problem: Equilibrium, a: Point, b: Point, t: float) -> Array:
     """State between two points, from the cubic through both with their tangents; gaps stay positive."""
     h = b.arclength - a.arclength
     x = (
@@ -137,9 +137,7 @@ def _hermite(a: Point, b: Point, t: float) -> Array:
         + t**2 * (3 - 2 * t) * b.x
         + h * t * (1 - t) * ((1 - t) * a.tangent - t * b.tangent)
     )
-    gaps = slice(0, -2)
-    x[gaps] = np.maximum(x[gaps], np.minimum(a.x[gaps], b.x[gaps]) * 0.75 - 0.25)
-    return x
+    return np.asarray(a.x + problem.longest_step(a.x, x - a.x) * (x - a.x))
 
 
 def relocate(event: Located, problem: Equilibrium, start: Array, metric: Metric) -> Located:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from halfspace import newton
-from halfspace.contact import CENTRAL_GAP, LOAD
+from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.newton import Control, Equilibrium, NotConverged
 
 Array = NDArray[np.float64]
@@ -198,7 +198,26 @@ def _advance(problem: Equilibrium, points: list[Point], step: float, metric: Met
     new = correct(problem, point, step, predict(problem, point, step, before), metric, steps.iterations)
     if _turn(point, new, metric) > 2 * steps.turn:
         raise NotConverged("the path turns too sharply")
+    if any(_hides_turning_points(point, new, k, metric) for k in (APPROACH, LOAD)):
+        raise NotConverged("the step may leap over a pair of folds")
     return new
+
+
+def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
+    """Whether an observable may rise and fall between two points at whose tangents it only rises, or only falls.
+
+    Judged from the slope q(t) of the cubic through both points: its least value, in the metric's units, must clear zero
+    by a margin that shrinks with the step.
+    """
+    length = b.arclength - a.arclength
+    p, r = a.rates[k], b.rates[k]
+    if p * r <= 0:
+        return False
+    mean = (b.observables[k] - a.observables[k]) / length
+    bend = 6 * (p + r) - 12 * mean
+    t = np.clip((4 * p + 2 * r - 6 * mean) / bend, 0, 1) if bend else 0.5
+    q = p * (1 - 4 * t + 3 * t**2) + r * (3 * t**2 - 2 * t) + 6 * mean * t * (1 - t)
+    return bool(0 < t < 1 and q * np.sign(p) * np.sqrt(metric.weights[k]) < 0.3 * length)
 
 
 def _turn(a: Point, b: Point, metric: Metric) -> float:

@@ -1,0 +1,109 @@
+import numpy as np
+import pytest
+
+from halfspace import compliance, grid
+from halfspace.kernel import band_deflection
+
+
+@pytest.fixture(scope="module")
+def edge():
+    return compliance.panels(grid.graded(1.0, 1e-6, 50.0), 10)
+
+
+def test_uniform_disc(edge):
+    pressure = (edge.radii < 1).astype(float)
+    np.testing.assert_allclose(edge.compliance @ pressure, band_deflection(edge.radii, 1.0), atol=1e-13)
+
+
+def test_hertz(edge):
+    r = edge.radii
+    deflection = edge.compliance @ np.sqrt(np.maximum(1 - r**2, 0))
+    inside = r < 1
+    np.testing.assert_allclose(deflection[inside], np.pi / 4 * (2 - r[inside] ** 2), atol=1e-11)
+    assert edge.weights @ np.sqrt(np.maximum(1 - r**2, 0)) == pytest.approx(2 * np.pi / 3, abs=1e-11)
+
+
+def test_a_far_point_sees_a_point_load(edge):
+    pressure = np.exp(-(edge.radii**2))
+    far = edge.radii > 40
+    deflection = (edge.compliance @ pressure)[far]
+    np.testing.assert_allclose(deflection, edge.weights @ pressure / (np.pi * edge.radii[far]), rtol=1e-3)
+
+
+def test_reciprocity(edge):
+    a, b = np.exp(-(edge.radii**2)), (1 + edge.radii**2) ** -3.0
+    ab = (edge.weights * a) @ edge.compliance @ b
+    assert ab == pytest.approx((edge.weights * b) @ edge.compliance @ a, rel=1e-12)
+
+
+@pytest.mark.parametrize("build", [lambda g: compliance.panels(g, 5), compliance.triangles, compliance.bands])
+def test_homogeneity(build):
+    breakpoints = grid.graded(1.0, 0.1, 10.0)
+    grown, scaled = build(3.7 * breakpoints), build(breakpoints).scaled(3.7)
+    for name in ("radii", "weights", "compliance", "cells"):
+        np.testing.assert_allclose(getattr(grown, name), getattr(scaled, name), rtol=1e-12)
+
+
+@pytest.mark.parametrize(("build", "least"), [(compliance.triangles, 1.8), (compliance.bands, 1.8)])
+def test_observed_order_of_the_low_order_grids(build, least):
+    """A smooth pressure of compact support; the reference is a panel grid resolved to round-off."""
+    fine = compliance.panels(grid.uniform(1.0, 0.125), 16)
+    row, _ = fine.interpolation(0.0)
+    centre = row @ (fine.compliance @ (1 - fine.radii**2) ** 2)
+    errors = []
+    for spacing in (1 / 16, 1 / 32, 1 / 64):
+        operator = build(grid.uniform(1.0, spacing))
+        row, _ = operator.interpolation(0.0)
+        errors.append(abs(row @ (operator.compliance @ (1 - operator.radii**2) ** 2) - centre))
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders.min() > least
+
+
+@pytest.mark.parametrize("build", [lambda g: compliance.panels(g, 5), compliance.triangles, compliance.bands])
+def test_interpolation_is_exact_for_lines_and_slopes(build):
+    operator = build(grid.graded(1.0, 0.1, 10.0))
+    for radius in (0.0, 0.33, 1.0, 9.9):
+        value, slope = operator.interpolation(radius)
+        assert value @ (2 - 3 * operator.radii) == pytest.approx(2 - 3 * radius, abs=1e-12)
+        assert slope @ (2 - 3 * operator.radii) == pytest.approx(-3, abs=1e-11)
+
+
+@pytest.mark.parametrize("build", [lambda g: compliance.panels(g, 5), compliance.triangles, compliance.bands])
+def test_weights_integrate_the_area(build):
+    operator = build(grid.graded(1.0, 0.1, 10.0))
+    assert operator.weights.sum() == pytest.approx(100 * np.pi, rel=1e-12)
+
+
+def test_node_count_is_limited():
+    with pytest.raises(ValueError, match="17 is outside 1 to 16; use more panels"):
+        compliance.panels(grid.uniform(1.0, 0.5), 17)
+
+
+def test_uniform_grid():
+    np.testing.assert_allclose(grid.uniform(1.0, 0.25), [0, 0.25, 0.5, 0.75, 1])
+    assert np.diff(grid.uniform(1.0, 0.3)).max() <= 0.3
+
+
+def test_graded_grid_is_finest_at_its_radius():
+    breakpoints = grid.graded(1.0, 0.01, 100.0, growth=3.0)
+    steps = np.diff(breakpoints)
+    assert breakpoints[0] == 0
+    assert breakpoints[-1] == pytest.approx(100)
+    at = np.flatnonzero(breakpoints == 1.0)[0]
+    assert max(steps[at - 1], steps[at]) <= 0.01
+    assert np.all(np.diff(steps[at:]) > 0)
+    assert np.all(np.diff(steps[:at]) < 0)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: grid.uniform(0.0, 0.1), "extent 0 is not a positive length"),
+        (lambda: grid.uniform(1.0, float("nan")), "spacing nan is not"),
+        (lambda: grid.graded(2.0, 0.1, 1.0), "radius 2 lies outside"),
+        (lambda: grid.graded(0.0, 0.1, 1.0, growth=1.0), "growth 1 is not above 1"),
+    ],
+)
+def test_bad_grids_are_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()

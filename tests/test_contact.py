@@ -1,0 +1,173 @@
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from halfspace import compliance, grid, newton, theories
+from halfspace.contact import ContactProblem, GridTooCoarse, count_negative
+from halfspace.curve import transfer
+from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
+from halfspace.newton import NotConverged
+
+CENTRED = compliance.panels(grid.graded(0.0, 0.3, 400.0), 10)
+EDGE = compliance.panels(grid.graded(1.0, 0.1, 400.0), 10)
+
+
+@pytest.fixture(scope="module")
+def problem():
+    return ContactProblem(CENTRED, tabor=1.0)
+
+
+@pytest.fixture(scope="module")
+def touching(problem):
+    """A state on the unstable branch, with a contact radius of 0.3 beta."""
+    x = problem.undeformed(-5.0)
+    for gap in (4, 3, 2, 1, 0.6, 0.4, 0.2, 0.1):
+        x = newton.solve(problem, x, newton.central_gap(gap)).x
+    return x
+
+
+@pytest.mark.parametrize("law", [LENNARD_JONES, SurfaceLaw(3, 8)])
+def test_surface_law_is_normalised_to_the_work_of_adhesion(law):
+    tension = quad(lambda h: -float(law.pressure(np.array(h - 1), 1.0)), 1, np.inf, epsabs=1e-12)[0]
+    assert tension == pytest.approx(1, abs=1e-9)
+    assert law.pressure(np.zeros(1), 2.0) == 0
+    assert law.slope(np.array([law.edge_gap]), 1.0) == pytest.approx(0, abs=1e-14)
+
+
+def test_largest_tension_of_the_3_9_law():
+    peak = -float(LENNARD_JONES.pressure(np.array(LENNARD_JONES.edge_gap), 1.0))
+    assert peak == pytest.approx(16 / (9 * np.sqrt(3)), rel=1e-14)
+    assert LENNARD_JONES.edge_gap == pytest.approx(3 ** (1 / 6) - 1, rel=1e-14)
+
+
+def test_slope_and_energy_are_derivatives():
+    H, step = np.array([-0.2, 0.1, 1.0, 5.0]), 1e-6
+    law, mu = LENNARD_JONES, 0.7
+    np.testing.assert_allclose(
+        law.slope(H, mu), (law.pressure(H + step, mu) - law.pressure(H - step, mu)) / (2 * step), rtol=1e-7
+    )
+    np.testing.assert_allclose(
+        -law.pressure(H, mu), (law.energy(H + step, mu) - law.energy(H - step, mu)) / (2 * step), rtol=1e-7, atol=1e-9
+    )
+
+
+def test_sign_of_the_pressure_against_the_papers_fig_4():
+    assert LENNARD_JONES.pressure(np.array(2.554), 5.0) == pytest.approx(-0.2968, abs=1e-4)
+    assert LENNARD_JONES.pressure(np.array(-0.0036), 5.0) == pytest.approx(0.2943, abs=5e-3)  # 5e-5 in H
+
+
+@pytest.mark.parametrize("follows", [False, True])
+def test_jacobian_and_gradients_against_finite_differences(problem, touching, follows):
+    if follows:
+        problem = ContactProblem(EDGE, 1.0, follows_contact=True)
+        gap = 0.3 + problem.operator.radii**2 / 2 - 0.3 * np.exp(-(problem.operator.radii**2))
+        x = np.concatenate([gap, [-0.1, 1.0]])
+    else:
+        x = touching
+    rng = np.random.default_rng(1)
+    direction = rng.uniform(0.5, 1, x.size) * (1 + np.abs(x))
+    step = 1e-6
+    change = (problem.residual(x + step * direction) - problem.residual(x - step * direction)) / (2 * step)
+    size = np.append(1 + np.abs(x[:-2]), 1)
+    np.testing.assert_allclose((problem.jacobian(x) @ direction - change) / size, 0, atol=1e-7)
+    for index in range(4):
+        slope = (problem.observables(x + step * direction) - problem.observables(x - step * direction)) / (2 * step)
+        assert problem.gradient(x, np.eye(4)[index]) @ direction == pytest.approx(slope[index], rel=1e-5)
+
+
+def test_every_control_finds_the_same_state(problem, touching):
+    alpha, W, H0, a = problem.observables(touching)
+    nearby = newton.solve(problem, touching, newton.central_gap(0.11)).x
+    for control in (
+        newton.approach(alpha),
+        newton.load(W),
+        newton.central_gap(H0),
+        newton.contact_radius(a),
+        newton.spring(3.0, alpha + W / 3.0),
+    ):
+        np.testing.assert_allclose(
+            newton.solve(problem, nearby, control).observables, [alpha, W, H0, a], rtol=1e-9, atol=1e-9
+        )
+
+
+def test_a_grid_that_follows_the_contact_finds_the_state_of_a_fixed_one():
+    fixed = ContactProblem(compliance.panels(grid.graded(1.0, 0.1, 400.0), 12), 1.0)
+    moving = ContactProblem(compliance.panels(grid.graded(1.0, 0.05, 800.0), 12), 1.0, follows_contact=True)
+    x = fixed.undeformed(-0.5)
+    x[:-2] = np.maximum(x[:-2], 0.0)
+    on_fixed = newton.solve(fixed, x, newton.approach(-0.5))
+    on_moving = newton.solve(moving, transfer(fixed, on_fixed.x, moving), newton.approach(-0.5))
+    np.testing.assert_allclose(on_moving.observables, on_fixed.observables, rtol=1e-6)
+
+
+def test_energy_falls_by_the_work_of_the_load(problem, touching):
+    alpha = problem.observables(touching)[0]
+    step = 1e-4
+    states = [newton.solve(problem, touching, newton.approach(alpha + d)) for d in (-step, step)]
+    slope = (problem.energy(states[1].x) - problem.energy(states[0].x)) / (2 * step)
+    assert slope == pytest.approx(problem.load(touching), rel=1e-6)
+
+
+def test_negative_directions_counts_the_tangents_negative_eigenvalues(problem, touching):
+    J = problem.jacobian(touching)[:-1, :-2]
+    eigenvalues = np.linalg.eigvals(J)
+    assert problem.negative_directions(touching) == np.sum(eigenvalues.real < 0) == 1
+
+
+def test_inertia_of_an_indefinite_matrix():
+    rng = np.random.default_rng(2)
+    matrix = rng.normal(size=(40, 40))
+    matrix = matrix + matrix.T
+    np.fill_diagonal(matrix, 0)  # so that the factorisation meets 2 x 2 blocks
+    assert count_negative(matrix) == np.sum(np.linalg.eigvalsh(matrix) < 0)
+
+
+def test_newton_never_returns_an_unconverged_state(problem, touching):
+    with pytest.raises(NotConverged, match=r"try"):
+        newton.solve(problem, touching, newton.approach(-1.0), max_iterations=2)
+    with pytest.raises(NotConverged, match=r"try"):
+        newton.solve(problem, touching, newton.load(-7.0))  # no state pulls harder than 2 pi
+
+
+def test_no_trial_gap_reaches_zero(problem, touching):
+    """From a state in contact, a jump far into compression: every state on the way has positive gaps."""
+    seen = []
+
+    class Watched(ContactProblem):
+        def residual(self, x):
+            seen.append(x[:-2].min())
+            return super().residual(x)
+
+    watched = Watched(problem.operator, problem.tabor)
+    newton.solve(watched, touching, newton.central_gap(0.01), max_iterations=60)
+    assert min(seen) > -1
+    assert len(seen) > 5
+
+
+def test_a_grid_too_coarse_for_the_spike_is_refused_with_the_numbers():
+    coarse = ContactProblem(compliance.triangles(grid.uniform(10.0, 0.05)), tabor=3.0)
+    x = coarse.undeformed(1.0)
+    x[:-2] = np.maximum(x[:-2], 0.0)
+    with pytest.raises(GridTooCoarse, match=r"spacing 0\.05 beta .* exceeds 0\.0111 beta for tabor 3; refine"):
+        coarse.require_resolution(x)
+
+
+@pytest.mark.parametrize("build", [compliance.triangles, compliance.bands])
+def test_the_papers_discretisations_converge_to_the_same_pull_off(build):
+    """Pull-off at tabor 0.5 by load control from both sides of the minimum, against the converged -5.615543."""
+    problem = ContactProblem(build(grid.graded(0.0, 0.01, 200.0, growth=1.02)), tabor=0.5)
+    x = problem.undeformed(-8.0)
+    for gap in (6, 4, 3, 2, 1.5, 1, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05):
+        x = newton.solve(problem, x, newton.central_gap(gap)).x
+    loads = [newton.solve(problem, x, newton.central_gap(gap)).observables[1] for gap in np.linspace(0.0, -0.04, 21)]
+    assert min(loads) == pytest.approx(-5.615543245, rel=3e-4)
+
+
+def test_rigid_limit_is_bradleys_along_the_whole_path():
+    tabor = 1e-4
+    problem = ContactProblem(compliance.panels(grid.graded(0.0, 0.1 * tabor**-0.5, 400 * tabor**-0.5), 12), tabor)
+    x = problem.undeformed(-3.0)
+    for approach in (-3.0, -2.0, -1.0, -0.5, 0.0, 0.05, 0.1):
+        solution = newton.solve(problem, x, newton.approach(approach))
+        x = solution.x
+        assert solution.observables[1] == pytest.approx(float(theories.bradley_load(approach)), rel=2e-3)

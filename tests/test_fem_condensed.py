@@ -1,0 +1,258 @@
+"""The condensed block against closed forms, itself uncondensed, and the laws of mechanics."""
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import spsolve
+from scipy.special import ellipe, ellipk, j0, kv
+from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
+
+from fem_adhesion import elasticity
+from fem_adhesion.condensed import condense
+from fem_adhesion.elasticity import Space, boundary_basis, cell_stiffness, ring_measure, scatter, trace_matrix
+from fem_adhesion.far_field import boussinesq_displacement, clamped, free, point_load
+from fem_adhesion.mesh import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
+
+NU = 0.3
+
+
+def edge_space(degree, length=1e3, halvings=8):
+    """Quadrilaterals graded about the edge r = 1 of a pressure distribution."""
+    steps = 0.5 ** np.arange(2.0, halvings + 2.0)
+    outside = graded_breaks(0.5, 3.0, length)[3:]
+    r_breaks = np.concatenate([[0.0, 0.25, 0.5], 1.0 - steps[1:], [1.0], 1.0 + steps[::-1], outside])
+    z_breaks = graded_breaks(steps[-1], steps[-1], length)
+    return Space(tensor_grid(np.unique(r_breaks), z_breaks), ElementQuadP(degree))
+
+
+def disc_deflection(r):
+    """Uniform unit pressure on r < 1: (4/pi) E(r) inside, (4 r/pi) [E(1/r) - (1 - 1/r^2) K(1/r)] outside."""
+    inside = 4.0 / np.pi * ellipe(np.minimum(r, 1.0) ** 2)
+    k = np.minimum(1.0 / r, 1.0 - 1e-15)
+    return np.where(r < 1.0, inside, 4.0 / np.pi * r * (ellipe(k**2) - (1.0 - k**2) * ellipk(k**2)))
+
+
+def hertz_deflection(r):
+    """Pressure sqrt(1 - r^2) on r < 1; Johnson (1985), eqs (3.41a) and (3.42a)."""
+    x = np.maximum(r, 1.0)
+    outside = 0.5 * ((2.0 - x**2) * np.arcsin(1.0 / x) + np.sqrt(x**2 - 1.0))
+    return np.where(r < 1.0, 0.25 * np.pi * (2.0 - r**2), outside)
+
+
+def bump(r):
+    """A smooth pressure with a tail like that of adhesion."""
+    return (1.0 + r**2) ** -3.0
+
+
+def bump_deflection(r):
+    """The Hankel transform of the bump is k^2 K_2(k)/8, and each k deflects by 2/k."""
+    x, w = np.polynomial.legendre.leggauss(200)
+    k = 20.0 * (x + 1.0)
+    return (40.0 * w * k**2 * kv(2, k) / 8.0) @ j0(np.outer(k, r))
+
+
+def bump_error(space, far_field, poisson=NU):
+    operator = condense(space, poisson, far_field=far_field).operator
+    near = operator.radii < 2.0
+    return np.max(np.abs(operator.compliance @ bump(operator.radii) - bump_deflection(operator.radii))[near])
+
+
+# --- closed forms ---
+
+
+@pytest.fixture(scope="module")
+def edge_body():
+    return condense(edge_space(6), NU)
+
+
+def test_uniform_disc(edge_body):
+    r = edge_body.operator.radii
+    near = r < 5.0
+    pressure = np.where(r < 1.0, 1.0, 0.0)
+    w = edge_body.operator.compliance @ pressure
+    centre = np.flatnonzero((edge_body.space.mesh.p == 0.0).all(axis=0))  # vertices are numbered first
+    u_z = edge_body.displacement(pressure)[edge_body.space.components[1, centre]]
+    assert -u_z == pytest.approx(2.0, abs=1e-6)
+    np.testing.assert_allclose(w[near], disc_deflection(r)[near], atol=4e-5)  # the edge cell is 1/512 wide
+    np.testing.assert_allclose(w[r < 0.9], disc_deflection(r[r < 0.9]), atol=1e-5)
+
+
+def test_hertz(edge_body):
+    r = edge_body.operator.radii
+    near = r < 5.0
+    pressure = np.sqrt(np.maximum(1.0 - r**2, 0.0))
+    w = edge_body.operator.compliance @ pressure
+    np.testing.assert_allclose(w[near], hertz_deflection(r)[near], atol=2e-6)
+    assert edge_body.operator.weights @ pressure == pytest.approx(2.0 * np.pi / 3.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
+def test_smooth_pressure_to_seven_digits(poisson):
+    assert bump_error(Space(block_grid(0.3, 3.0, 50.0), ElementQuadP(6)), point_load, poisson) < 2e-7
+
+
+@pytest.mark.parametrize(
+    ("element", "accuracy"), [(ElementTriP1(), 2e-2), (ElementTriP2(), 4e-4), (ElementTriP3(), 1e-5)]
+)
+def test_triangles_on_the_quarter_disc(element, accuracy):
+    space = Space(quarter_disc(50.0, graded_size(0.125, 2.0, 0.2)), element)
+    assert bump_error(space, point_load) < accuracy
+
+
+def test_boussinesq_inside_a_large_clamped_block():
+    """Without the point-load boundary, which knows the answer: a load on r < 0.001 felt from 1 to 100."""
+    mesh = block_grid(0.001, 0.001, 1e5)
+    body = condense(Space(mesh, ElementQuadP(6)), NU, far_field=clamped)
+    pressure = np.where(body.operator.radii < 0.001, 1.0, 0.0)
+    load = body.operator.weights @ pressure
+    u = body.displacement(pressure)[body.space.components[:, : mesh.nvertices]]  # vertices are numbered first
+    distance = np.linalg.norm(mesh.p, axis=0)
+    seen = (distance > 1.0) & (distance < 100.0)
+    expected = load * boussinesq_displacement(*mesh.p[:, seen], NU)
+    assert load == pytest.approx(np.pi * 1e-6, rel=1e-12)
+    np.testing.assert_allclose(u[:, seen] / load, expected / load, atol=1e-5)
+
+
+# --- far fields ---
+
+
+@pytest.mark.parametrize(("far_field", "lowest", "highest"), [(clamped, 0.9, 1.1), (point_load, 4.0, 5.5)])
+def test_truncation_order_of_the_far_field(far_field, lowest, highest):
+    """Order 5 with the point load: c carries the load, and the next moment of P meets itself reflected."""
+    errors = [bump_error(Space(block_grid(0.3, 1.5, L), ElementQuadP(6)), far_field) for L in (5.0, 10.0, 20.0)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.all(orders > lowest)
+    assert np.all(orders < highest)
+
+
+def test_truncation_order_of_the_free_block():
+    errors = [bump_error(Space(block_grid(0.3, 1.5, L), ElementQuadP(6)), free) for L in (20.0, 40.0, 80.0)]
+    assert np.all(np.log2(np.array(errors[:-1]) / errors[1:]) > 1.0)
+
+
+def test_point_load_unknown_tends_to_the_load():
+    errors = []
+    for length in (20.0, 40.0):
+        body = condense(Space(block_grid(0.3, 1.5, length), ElementQuadP(5)), NU)
+        pressure = np.where(body.operator.radii < 1.5, 1.0, 0.0)
+        errors.append(abs(body.reduced_displacement(pressure)[-1] / (body.operator.weights @ pressure) - 1.0))
+    assert errors[0] < 3e-3
+    assert np.log2(errors[0] / errors[1]) > 1.8
+
+
+def test_free_block_keeps_its_mean_height():
+    space = Space(block_grid(0.3, 1.5, 10.0), ElementQuadP(4))
+    body = condense(space, NU, far_field=free)
+    basis = boundary_basis(space, "far", 8)
+    far = space.boundary_functions("far")
+    u_z = trace_matrix(basis, far) @ body.displacement(bump(body.operator.radii))[space.components[1, far]]
+    dA = (ring_measure(basis.global_coordinates()[0]) * basis.dx).ravel()
+    assert abs(dA @ u_z) / dA.sum() < 1e-12
+
+
+# --- condensation ---
+
+BODIES = [
+    pytest.param(mesh, element, far_field, id=f"{name}-{far_field.__name__}")
+    for name, mesh, element in [
+        ("P1", quarter_disc(10.0, graded_size(0.3, 1.0, 0.3)), ElementTriP1()),
+        ("P3", quarter_disc(10.0, graded_size(0.5, 1.0, 0.5)), ElementTriP3()),
+        ("Q4", block_grid(0.5, 1.5, 10.0), ElementQuadP(4)),
+    ]
+    for far_field in (clamped, point_load, free)
+]
+
+
+@pytest.mark.parametrize(("mesh", "element", "far_field"), BODIES)
+def test_the_operator_obeys_mechanics(mesh, element, far_field):
+    body = condense(Space(mesh, element), NU, far_field=far_field)
+    operator = body.operator
+    pressure = np.cos(operator.radii) * bump(operator.radii)  # of both signs
+    deflection = operator.compliance @ pressure
+    load = operator.weights @ pressure
+    symmetric = operator.compliance / operator.weights
+    assert np.max(np.abs(symmetric - symmetric.T)) < 1e-12 * np.max(np.abs(symmetric))
+    assert body.far_reaction(pressure) == pytest.approx(load, rel=1e-10)
+    assert body.strain_energy(pressure) == pytest.approx(0.5 * (operator.weights * pressure) @ deflection, rel=1e-10)
+
+
+@pytest.mark.parametrize(("mesh", "element", "far_field"), BODIES)
+def test_the_operator_describes_its_surface(mesh, element, far_field):
+    space = Space(mesh, element)
+    operator = condense(space, NU, far_field=far_field, points=space.degree + 3).operator
+    inside = operator.radii[operator.cell_nodes]
+    assert operator.cell_nodes.shape == (len(operator.cells) - 1, space.degree + 3)
+    assert operator.cells[0] == 0.0
+    assert operator.extent == pytest.approx(10.0)
+    assert np.all(np.diff(operator.radii) > 0.0)
+    assert np.all((inside > operator.cells[:-1, None]) & (inside < operator.cells[1:, None]))
+    assert np.sum(operator.weights) == pytest.approx(np.pi * 10.0**2, rel=1e-12)
+
+
+@pytest.mark.parametrize(("mesh", "element", "far_field"), BODIES)
+def test_the_displacement_inside_deflects_the_surface(mesh, element, far_field):
+    body = condense(Space(mesh, element), NU, far_field=far_field)
+    pressure = bump(body.operator.radii)
+    u = body.displacement(pressure)
+    found = -(body.surface.values @ u[body.surface.unknowns])
+    np.testing.assert_allclose(found, body.operator.compliance @ pressure, atol=1e-12)
+
+
+@pytest.mark.parametrize("element", [ElementTriP2(), ElementTriP3(), ElementQuadP(4)], ids=["P2", "P3", "Q4"])
+def test_eliminating_the_interior_unknowns_is_exact(element):
+    mesh = block_grid(0.5, 1.5, 10.0) if element.refdom.nnodes == 4 else quarter_disc(10.0, graded_size(0.5, 1.0, 0.5))
+    space = Space(mesh, element)
+    body = condense(space, NU, far_field=clamped)
+    pressure = bump(body.operator.radii)
+    K = scatter(cell_stiffness(space, NU), space.cell_dofs, space.unknowns)
+    held = np.union1d(
+        space.components[:, space.boundary_functions("far")], space.components[0, space.boundary_functions("axis")]
+    )
+    kept = np.setdiff1d(np.arange(space.unknowns), held)
+    u = np.zeros(space.unknowns)
+    u[kept] = spsolve(K[kept][:, kept], body.nodal_forces(pressure)[kept])
+    np.testing.assert_allclose(body.displacement(pressure), u, atol=1e-13)
+
+
+def test_a_block_twice_as_large_is_the_operator_scaled():
+    small = condense(Space(block_grid(0.5, 1.5, 10.0), ElementQuadP(4)), NU).operator.scaled(2.0)
+    large = condense(Space(block_grid(1.0, 3.0, 20.0), ElementQuadP(4)), NU).operator
+    for name in ("radii", "weights", "compliance", "cells"):
+        np.testing.assert_allclose(getattr(small, name), getattr(large, name), rtol=1e-10, atol=1e-14)
+
+
+def test_too_few_surface_points_are_refused():
+    with pytest.raises(ValueError, match="points = 4 must exceed the degree p = 4; use 5 or more"):
+        condense(Space(block_grid(0.5, 1.5, 10.0), ElementQuadP(4)), NU, points=4)
+
+
+# --- defects: each goes in by replacing one function, and shows ---
+
+
+def without_hoop(value, grad, r):
+    return strain_displacement(0.0 * value, grad, r)
+
+
+def half_shear(poisson):
+    D = elastic_matrix(poisson)
+    D[3, 3] *= 0.5
+    return D
+
+
+strain_displacement, elastic_matrix = elasticity.strain_displacement, elasticity.elastic_matrix
+
+
+@pytest.mark.parametrize(
+    ("name", "defect"),
+    [
+        ("strain_displacement", without_hoop),
+        ("elastic_matrix", half_shear),
+        ("elastic_matrix", lambda poisson: elastic_matrix(poisson) / (1.0 - poisson**2)),
+        ("ring_measure", np.ones_like),
+    ],
+    ids=["no hoop strain", "half the shear modulus", "E for E*", "no 2 pi r"],
+)
+def test_a_defect_in_the_elasticity_shows_in_the_deflection(monkeypatch, name, defect):
+    space = Space(block_grid(0.5, 1.5, 20.0), ElementQuadP(4))
+    sound = bump_error(space, clamped)
+    monkeypatch.setattr(elasticity, name, defect)
+    assert bump_error(space, clamped) > sound + 0.02

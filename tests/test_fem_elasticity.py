@@ -1,0 +1,329 @@
+"""Meshes, stiffness and convergence of the finite elements, without any contact."""
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import spsolve
+from scipy.special import j0, j1
+from skfem import (
+    Basis,
+    BilinearForm,
+    CellBasis,
+    ElementQuad1,
+    ElementQuad2,
+    ElementQuadP,
+    ElementTriP1,
+    ElementTriP2,
+    ElementTriP3,
+    ElementVector,
+    MeshTri,
+)
+from skfem.helpers import ddot, div, sym_grad
+
+from fem_adhesion.elasticity import (
+    Space,
+    boundary_basis,
+    cell_quadrature,
+    cell_stiffness,
+    elastic_matrix,
+    lame_parameters,
+    ring_measure,
+    scatter,
+    strain_displacement,
+    trace_matrix,
+)
+from fem_adhesion.far_field import boussinesq_displacement, boussinesq_stress, trace_projection
+from fem_adhesion.mesh import (
+    block_grid,
+    graded_breaks,
+    graded_size,
+    quarter_disc,
+    tensor_grid,
+    with_named_boundaries,
+)
+
+NU = 0.3
+
+
+def unit_quads(n):
+    return tensor_grid(np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, n + 1))
+
+
+def unit_triangles(n):
+    line = np.linspace(0.0, 1.0, n + 1)
+    return with_named_boundaries(MeshTri.init_tensor(line, -line[::-1]))
+
+
+# --- meshes ---
+
+
+@pytest.mark.parametrize("mesh", [block_grid(0.3, 3.0, 50.0), quarter_disc(50.0, graded_size(0.3, 3.0, 0.3))])
+def test_boundaries_are_named_and_complete(mesh):
+    middles = {name: mesh.p[:, mesh.facets[:, facets]].mean(axis=1) for name, facets in mesh.boundaries.items()}
+    assert set(middles) == {"axis", "contact", "far"}
+    assert np.all(middles["axis"][0] == 0.0)
+    assert np.all(middles["contact"][1] == 0.0)
+    assert np.all(np.hypot(*middles["far"]) > 45.0)
+    assert sum(m.shape[1] for m in middles.values()) == len(mesh.boundary_facets())
+    assert mesh.p[0].min() == 0.0
+    assert mesh.p[1].max() == 0.0
+
+
+def test_area_of_the_box():
+    space = Space(block_grid(0.3, 3.0, 50.0), ElementQuad1())
+    assert np.sum(CellBasis(space.mesh, space.element).dx) == pytest.approx(2500.0, rel=1e-12)
+
+
+def test_quarter_disc_is_the_polygon_inscribed_in_the_arc():
+    mesh = quarter_disc(50.0, graded_size(0.3, 3.0, 0.1))
+    far = mesh.facets[:, mesh.boundaries["far"]]
+    np.testing.assert_allclose(np.linalg.norm(mesh.p[:, far], axis=0), 50.0, rtol=1e-14)
+    first, second = np.arctan2(mesh.p[1, far], mesh.p[0, far])
+    polygon = 0.5 * 50.0**2 * np.sum(np.sin(np.abs(second - first)))
+    assert np.sum(CellBasis(mesh, ElementTriP1()).dx) == pytest.approx(polygon, rel=1e-12)
+
+
+@pytest.mark.parametrize("fine", [0.4, 0.1, 0.01])
+def test_quarter_disc_respects_the_size_function_with_no_sharp_angle(fine):
+    size = graded_size(fine, 1.0, 0.25)
+    mesh = quarter_disc(50.0, size)
+    corners = mesh.p[:, mesh.t]
+    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=0)
+    assert np.all(edges.max(axis=0) <= size(*corners.mean(axis=1)))
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    _, middle, longest = np.sort(edges, axis=0)
+    smallest_angle = np.arcsin(np.abs(a[0] * b[1] - a[1] * b[0]) / (middle * longest))
+    assert np.degrees(smallest_angle.min()) > 18.0  # 19.6 at any fineness
+
+
+@pytest.mark.parametrize(("fine", "fine_radius", "length"), [(0.3, 3.0, 50.0), (0.3, 0.3, 1e6), (0.4, 1.0, 1.2)])
+def test_breaks_are_uniform_then_geometric_and_end_at_the_length(fine, fine_radius, length):
+    breaks = graded_breaks(fine, fine_radius, length, growth=2.0)
+    steps = np.diff(breaks)
+    ratios = steps[1:] / steps[:-1]
+    assert breaks[0] == 0.0
+    assert breaks[-1] == length
+    assert np.any(np.isclose(breaks, fine_radius, rtol=1e-14))
+    assert steps[0] <= fine * (1.0 + 1e-9)
+    assert np.all(ratios <= 2.0 * (1.0 + 1e-9))
+    geometric = ratios[breaks[1:-1] >= fine_radius * (1.0 - 1e-12)]
+    np.testing.assert_allclose(geometric, geometric[0], rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: graded_breaks(0.3, 3.0, 2.0), "fine_radius = 3.0 must be less than length = 2.0"),
+        (lambda: graded_breaks(0.3, 3.0, 50.0, growth=1.0), "growth = 1.0"),
+        (lambda: graded_breaks(-0.3, 3.0, 50.0), "fine = -0.3"),
+        (lambda: tensor_grid(np.array([0.0, 2.0, 1.0]), np.array([0.0, 1.0])), "r_breaks"),
+        (lambda: quarter_disc(np.nan, graded_size(0.3, 3.0, 0.3)), "radius = nan"),
+        (lambda: lame_parameters(0.5), "poisson = 0.5"),
+    ],
+)
+def test_bad_input_is_named(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+# --- stiffness ---
+
+
+@BilinearForm
+def axisymmetric_elasticity(u, v, w):
+    """Isotropic elasticity with the hoop strain, in scikit-fem's own words."""
+    lam, G = lame_parameters(NU)
+    r = w.x[0]
+    hoop_u, hoop_v = u[0] / r, v[0] / r
+    shear = 2.0 * G * (ddot(sym_grad(u), sym_grad(v)) + hoop_u * hoop_v)
+    return 2.0 * np.pi * r * (shear + lam * (div(u) + hoop_u) * (div(v) + hoop_v))
+
+
+@pytest.mark.parametrize(
+    ("mesh", "element"),
+    [
+        (quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), ElementTriP1()),
+        (quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), ElementTriP2()),
+        (quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), ElementTriP3()),
+        (block_grid(0.7, 1.4, 5.0), ElementQuad1()),
+        (block_grid(0.7, 1.4, 5.0), ElementQuadP(3)),
+    ],
+    ids=["P1", "P2", "P3", "Q1", "Q3"],
+)
+def test_stiffness_equals_scikit_fems_assembly(mesh, element):
+    space = Space(mesh, element)
+    ours = scatter(cell_stiffness(space, NU), space.cell_dofs, space.unknowns)
+    basis = Basis(mesh, ElementVector(element), quadrature=cell_quadrature(space))
+    theirs = axisymmetric_elasticity.assemble(basis)
+    assert abs(ours - theirs).max() < 1e-13 * abs(theirs).max()
+
+
+@pytest.mark.parametrize("element", [ElementTriP1(), ElementTriP2(), ElementTriP3()], ids=["P1", "P2", "P3"])
+def test_raising_the_triangles_stores_no_energy(element):
+    space = Space(unit_triangles(3), element)
+    lift = np.zeros(space.unknowns)
+    lift[space.components[1]] = space.constant
+    K = scatter(cell_stiffness(space, NU), space.cell_dofs, space.unknowns)
+    np.testing.assert_allclose(K @ lift, 0.0, atol=1e-13)
+
+
+def test_uniform_compression_stores_the_textbook_energy():
+    """U = (e_r r, e_z z) on the cylinder of radius 1 and height 1."""
+    space = Space(unit_quads(2), ElementQuad1())
+    e_r, e_z = 0.3, -0.7
+    u = np.empty(space.unknowns)
+    u[space.components] = [[e_r], [e_z]] * space.mesh.p
+    lam, G = lame_parameters(NU)
+    density = 0.5 * lam * (2.0 * e_r + e_z) ** 2 + G * (2.0 * e_r**2 + e_z**2)
+    K = scatter(cell_stiffness(space, NU), space.cell_dofs, space.unknowns)
+    assert 0.5 * u @ K @ u == pytest.approx(np.pi * density, rel=1e-13)
+
+
+# --- a manufactured solution: u_r = J1(kr) g(z), u_z = J0(kr) h(z), with u_r/r = k g/2 on the axis ---
+
+WAVE = 2.0
+
+
+def profiles(z):
+    """g, g', g'' and h, h', h''."""
+    return (np.exp(z),) * 3, (np.sin(2.0 * z), 2.0 * np.cos(2.0 * z), -4.0 * np.sin(2.0 * z))
+
+
+def exact_displacement(r, z):
+    (g, _, _), (h, _, _) = profiles(z)
+    return np.array([j1(WAVE * r) * g, j0(WAVE * r) * h])
+
+
+def exact_strain(r, z):
+    (g, dg, _), (h, dh, _) = profiles(z)
+    hoop = j1(WAVE * r) / r * g
+    return np.array(
+        [WAVE * j0(WAVE * r) * g - hoop, j0(WAVE * r) * dh, hoop, j1(WAVE * r) * dg - WAVE * j1(WAVE * r) * h]
+    )
+
+
+def body_force(r, z):
+    """-(lambda + G) grad div u - G laplace u (Navier): each J is an eigenfunction of its radial operator."""
+    lam, G = lame_parameters(NU)
+    (g, dg, ddg), (h, dh, ddh) = profiles(z)
+    b_r = (lam + G) * -WAVE * (WAVE * g + dh) + G * (ddg - WAVE**2 * g)
+    b_z = (lam + G) * (WAVE * dg + ddh) + G * (ddh - WAVE**2 * h)
+    return np.array([-b_r * j1(WAVE * r), -b_z * j0(WAVE * r)])
+
+
+def loads(space, basis, density):
+    """Nodal forces of a force density, (2, elements, q), by the basis' quadrature."""
+    values = np.array([b[0] for b in basis.basis])
+    r = basis.global_coordinates()[0]
+    parts = np.einsum("icq,dcq,cq->dic", values, density, ring_measure(r) * basis.dx)
+    forces = np.zeros(space.unknowns)
+    np.add.at(forces, space.components[:, basis.element_dofs], parts)
+    return forces
+
+
+def solve_manufactured(space):
+    """Exact displacement on the far sides, exact traction on the surface, body force inside."""
+    K = scatter(cell_stiffness(space, NU), space.cell_dofs, space.unknowns)
+    cells = CellBasis(space.mesh, space.element, intorder=2 * space.degree + 8)
+    surface = boundary_basis(space, "contact", space.degree + 6)
+    _, zz, _, rz = np.tensordot(elastic_matrix(NU), exact_strain(*surface.global_coordinates()), axes=1)
+    f = loads(space, cells, body_force(*cells.global_coordinates())) + loads(space, surface, np.array([rz, zz]))
+    u = np.zeros(space.unknowns)
+    far = space.components[:, space.boundary_functions("far")]
+    u[far] = trace_projection(space, "far", exact_displacement)
+    axis = space.components[0, space.boundary_functions("axis")]
+    u[axis] = 0.0
+    free = np.setdiff1d(np.arange(space.unknowns), np.union1d(far, axis))
+    u[free] = spsolve(K[free][:, free], f[free] - (K @ u)[free])
+    return cells, u
+
+
+def manufactured_errors(space):
+    """Relative errors of displacement in L2 and of strain in the energy norm, over the body of revolution."""
+    basis, u = solve_manufactured(space)
+    value, grad = np.array([b[0] for b in basis.basis]), np.array([b[0].grad for b in basis.basis])
+    r, z = basis.global_coordinates()
+    dV = ring_measure(r) * basis.dx
+    found = np.einsum("icq,dic->dcq", value, u[space.components[:, basis.element_dofs]])
+    strain = np.einsum("ceqi,ic->ecq", strain_displacement(value, grad, r), u[space.cell_dofs])
+
+    def energy(e):
+        return np.einsum("ecq,ef,fcq,cq->", e, elastic_matrix(NU), e, dV)
+
+    difference = np.sum((found - exact_displacement(r, z)) ** 2 * dV)
+    return np.sqrt(
+        [
+            difference / np.sum(exact_displacement(r, z) ** 2 * dV),
+            energy(strain - exact_strain(r, z)) / energy(exact_strain(r, z)),
+        ]
+    )
+
+
+@pytest.mark.parametrize(
+    ("make_mesh", "element", "ladder"),
+    [
+        (unit_triangles, ElementTriP1(), (8, 16, 32)),
+        (unit_triangles, ElementTriP2(), (4, 8, 16)),
+        (unit_triangles, ElementTriP3(), (3, 6, 12)),
+        (unit_quads, ElementQuad2(), (4, 8, 16)),
+        (unit_quads, ElementQuadP(4), (2, 4, 8)),
+    ],
+    ids=["P1", "P2", "P3", "Q2", "Q4"],
+)
+def test_observed_orders_on_a_manufactured_solution(make_mesh, element, ladder):
+    spaces = [Space(make_mesh(n), element) for n in ladder]
+    errors = np.array([manufactured_errors(space) for space in spaces])
+    displacement, energy = np.log2(errors[:-1] / errors[1:])[-1]
+    assert displacement > spaces[0].degree + 1 - 0.2
+    assert energy > spaces[0].degree - 0.2
+
+
+# --- Boussinesq's closed forms and traces ---
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
+def test_boussinesq_stress_belongs_to_the_displacement(poisson):
+    r, z, step = np.array([0.4, 1.3, 2.0]), np.array([-0.2, -1.0, -3.0]), 1e-5
+
+    def u(dr, dz):
+        return boussinesq_displacement(r + dr, z + dz, poisson)
+
+    d_dr = (u(step, 0.0) - u(-step, 0.0)) / (2.0 * step)
+    d_dz = (u(0.0, step) - u(0.0, -step)) / (2.0 * step)
+    strain = np.array([d_dr[0], d_dz[1], u(0.0, 0.0)[0] / r, d_dz[0] + d_dr[1]])
+    np.testing.assert_allclose(elastic_matrix(poisson) @ strain, boussinesq_stress(r, z, poisson), atol=1e-9)
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
+def test_boussinesq_stress_is_in_equilibrium(poisson):
+    r, z, step = np.array([0.4, 1.3, 2.0]), np.array([-0.2, -1.0, -3.0]), 1e-5
+
+    def stress(dr, dz):
+        return boussinesq_stress(r + dr, z + dz, poisson)
+
+    rr, _, hoop, rz = stress(0.0, 0.0)
+    d_dr = (stress(step, 0.0) - stress(-step, 0.0)) / (2.0 * step)
+    d_dz = (stress(0.0, step) - stress(0.0, -step)) / (2.0 * step)
+    np.testing.assert_allclose(d_dr[0] + d_dz[3] + (rr - hoop) / r, 0.0, atol=1e-8)
+    np.testing.assert_allclose(d_dr[3] + d_dz[1] + rz / r, 0.0, atol=1e-8)
+
+
+def test_boussinesq_hemisphere_carries_the_load_and_the_surface_none():
+    x, w = np.polynomial.legendre.leggauss(20)
+    angle = 0.25 * np.pi * (x + 1.0)
+    r, z = 2.0 * np.sin(angle), -2.0 * np.cos(angle)
+    _, zz, _, rz = boussinesq_stress(r, z, NU)
+    upward = (rz * r + zz * z) / 2.0
+    assert np.sum(ring_measure(r) * upward * 2.0 * 0.25 * np.pi * w) == pytest.approx(1.0, rel=1e-12)
+    surface = boussinesq_stress(np.array([0.5, 2.0]), np.zeros(2), NU)
+    np.testing.assert_array_equal(surface[[1, 3]], 0.0)
+    np.testing.assert_allclose(boussinesq_displacement(np.array([2.0]), np.zeros(1), NU)[1], -1.0 / (2.0 * np.pi))
+
+
+@pytest.mark.parametrize("element", [ElementTriP3(), ElementTriP1()])
+def test_trace_projection_reproduces_linear_fields(element):
+    space = Space(quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), element)
+    coefficients = trace_projection(space, "far", lambda r, z: np.array([2.0 * r - z, 1.0 + z]))
+    basis = boundary_basis(space, "far", 3)
+    r, z = (x.ravel() for x in basis.global_coordinates())
+    values = trace_matrix(basis, space.boundary_functions("far")) @ coefficients.T
+    np.testing.assert_allclose(values.T, [2.0 * r - z, 1.0 + z], atol=1e-13)

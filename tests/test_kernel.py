@@ -1,0 +1,85 @@
+import mpmath
+import numpy as np
+import pytest
+from numpy.polynomial.legendre import leggauss
+from scipy.integrate import quad
+
+from halfspace.kernel import band_deflection, panel_integrals, ring_kernel
+
+
+def test_ring_kernel_is_symmetric_and_homogeneous():
+    r, s = np.array([0.3, 1.0, 2.0]), np.array([1.7, 1.0001, 0.1])
+    np.testing.assert_allclose(ring_kernel(r, s), ring_kernel(s, r), rtol=1e-11)
+    np.testing.assert_allclose(ring_kernel(7 * r, 7 * s), ring_kernel(r, s) / 7, rtol=1e-11)
+
+
+def test_ring_kernel_on_the_axis_and_far_away():
+    assert ring_kernel(np.array(0.0), np.array(2.0)) == pytest.approx(1.0, rel=1e-14)  # 2/s
+    assert ring_kernel(np.array(1e6), np.array(1.0)) == pytest.approx(2 / 1e6, rel=1e-11)  # 2 pi s/(pi r) per s
+
+
+def test_band_closed_form_has_the_values_that_correct_the_papers_misprint():
+    assert band_deflection(0.5, 1.0) * np.pi / 4 == pytest.approx(1.4674622093, abs=1e-10)
+    assert band_deflection(1.0, 0.5) * np.pi / 4 == pytest.approx(0.2031494432, abs=1e-10)
+
+
+def test_band_closed_form_does_not_cancel_far_away():
+    r = 1e7
+    assert band_deflection(r, 1.0) == pytest.approx(1 / r, rel=1e-12)  # a point load of pi
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "radius"),
+    [
+        (0, 1, 1e-6),
+        (0, 1, 0.02),
+        (0, 1, 0.99),
+        (0, 1, 1.001),
+        (0, 1, 1.99),
+        (1, 1.3, 0.9),
+        (1, 1.3, 1.0),
+        (1, 1.3, 1.15),
+    ],
+)
+@pytest.mark.parametrize("count", [2, 10, 16])
+def test_panel_integrals_agree_with_thirty_digits(left, right, radius, count):
+    nodes = leggauss(count)[0]
+    ours = panel_integrals(np.array([radius]), np.array([left, right], float), nodes)[0, 0]
+    for j in {0, count // 2}:
+        assert ours[j] == pytest.approx(_by_mpmath(left, right, radius, nodes, j), abs=1e-12)
+
+
+def _by_mpmath(left, right, radius, nodes, j):
+    """Integrate G(r, s) s l_j(s) by mpmath, on intervals that shrink towards the singularity."""
+    with mpmath.workdps(30):
+        a, b, r = (mpmath.mpf(v) for v in (left, right, radius))
+
+        def integrand(s):
+            k = min(min(r, s) / max(r, s), 1 - mpmath.mpf(10) ** -28)
+            x = (2 * s - a - b) / (b - a)
+            others = [mpmath.mpf(float(n)) for i, n in enumerate(nodes) if i != j]
+            lagrange = mpmath.fprod((x - n) / (mpmath.mpf(float(nodes[j])) - n) for n in others)
+            return 4 / (mpmath.pi * max(r, s)) * mpmath.ellipk(k**2) * s * lagrange
+
+        graded = {r + sign * (b - a) * mpmath.mpf(8) ** -i for i in range(1, 16) for sign in (1, -1)} | {r}
+        return float(mpmath.quad(integrand, sorted({a, b} | {p for p in graded if a < p < b})))
+
+
+def test_integrals_over_a_panel_cut_in_two_add_up():
+    nodes, targets = leggauss(6)[0], np.linspace(0, 3, 31)
+    whole = panel_integrals(targets, np.array([0.5, 1.5]), nodes).sum(axis=(1, 2))
+    halves = panel_integrals(targets, np.array([0.5, 0.9, 1.5]), nodes).sum(axis=(1, 2))
+    np.testing.assert_allclose(whole, halves, atol=1e-13)
+
+
+def test_a_triangle_is_the_integral_of_the_bands_it_is_stacked_from():
+    a, b, c = 0.5, 0.8, 1.2
+    for r in (0.1, 0.62, 0.8, 1.1, 2.0):
+
+        def band(t, r=r):
+            return float(band_deflection(r, c - t * (c - b)) - band_deflection(r, a + t * (b - a)))
+
+        kinks = [t for t in ((r - a) / (b - a), (c - r) / (c - b)) if 0 < t < 1]
+        stacked = quad(band, 0, 1, points=kinks or None, epsabs=1e-13, limit=200)[0]
+        halves = panel_integrals(np.array([r]), np.array([a, b, c]), np.array([-1.0, 1.0]))[0]
+        assert halves[0, 1] + halves[1, 0] == pytest.approx(stacked, abs=1e-11)
