@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from scipy import sparse
 from skfem import CellBasis, Dofs, ElementVector, FacetBasis
+from skfem.mapping import MappingIsoparametric
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine, RefTri
 
@@ -21,6 +22,10 @@ from halfspace.compliance import Array, Index
 
 BATCH = 400_000
 """Numbers held in one batch of strain-displacement matrices: 16 MB, small enough for the cache to help."""
+
+
+INVERSION_TOLERANCE = 1e-6
+"""Summed over the points of a facet, in units of the reference cell; a cell of 1e-9 of its radius is still resolved."""
 
 
 @dataclass(frozen=True)
@@ -192,8 +197,26 @@ def boundary_basis(space: Space, name: str, points: int) -> Any:
     quadrature = get_quadrature(RefLine, 2 * points - 1)
     facets = space.mesh.boundaries[name]
     return FacetBasis(
-        space.mesh, space.element, facets=facets, quadrature=quadrature, dofs=space.scalar_dofs, disable_doflocs=True
+        space.mesh,
+        space.element,
+        mapping=_forgiving_mapping(space.mesh),
+        facets=facets,
+        quadrature=quadrature,
+        dofs=space.scalar_dofs,
+        disable_doflocs=True,
     )
+
+
+def _forgiving_mapping(mesh: Any) -> Any:
+    """The mesh's mapping; inverted on quadrilaterals only as far as rounding allows.
+
+    skfem inverts them by Newton's method to 1e-12 of a cell, which the coordinates of thin cells far from the origin
+    cannot resolve. On straight-sided rectangles its first step is exact.
+    """
+    mapping = mesh.mapping()
+    if isinstance(mapping, MappingIsoparametric):
+        mapping.invF = partial(mapping.invF, newton_tol=INVERSION_TOLERANCE)
+    return mapping
 
 
 def trace_matrix(basis: Any, functions: Index) -> sparse.csr_array:

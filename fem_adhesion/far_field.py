@@ -54,6 +54,14 @@ class FarField(Protocol):
         """Return the condition for the far boundary of this space's mesh."""
 
 
+def with_interiors(exterior: Exterior, space: Space) -> Exterior:
+    """Return the condition for a body whose interior unknowns are not eliminated: they lead the reduced ones."""
+    inner = space.interior_dofs
+    T = sparse.csc_array(sparse.hstack([_unit_columns(space, inner), exterior.reduction]))
+    S = sparse.block_diag([sparse.csc_array((len(inner), len(inner))), exterior.stiffness])
+    return Exterior(T, sparse.csc_array(S), exterior.rigid_compliance)
+
+
 def clamped(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (a clamp is one for every material)
     """Hold the far boundary: u = 0. The deflection is too small by O(W/L)."""
     T = _selection(space, dropped=space.components[:, space.boundary_functions("far")].ravel())
@@ -190,5 +198,9 @@ def _selection(space: Space, dropped: Index) -> sparse.csc_array:
     """Return the columns of the identity for all unknowns but those dropped, held by the axis or interior to a cell."""
     kept = np.ones(space.unknowns, dtype=bool)
     kept[np.concatenate([dropped, _axis_unknowns(space), space.interior_dofs])] = False
-    rows = np.flatnonzero(kept)
+    return _unit_columns(space, np.flatnonzero(kept))
+
+
+def _unit_columns(space: Space, rows: Index) -> sparse.csc_array:
+    """Return one column for each of the given unknowns, with a 1 in its row."""
     return sparse.csc_array((np.ones(len(rows)), (rows, np.arange(len(rows)))), shape=(space.unknowns, len(rows)))

@@ -1,14 +1,16 @@
-"""The load-approach curve on the half-space to an accuracy asked for: chooses the grids, estimates the errors.
+"""The load-approach curve to an accuracy asked for: a ladder of discretisations, and the half-space's.
 
-The curve is traced on one level of grids and each event solved for again on a finer one, and if need be on a third.
-An event's error estimate is its change between the last two levels, which is nearly the error of the coarser one of
-them and so a safe bound for the finer's.
+The curve is traced on the lowest rung and each event solved for again on the next, and on more if need be. An event's
+error estimate is its change from the last rung but one to the last: nearly the lower rung's error, and so a safe bound
+for the higher one's.
 """
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -29,8 +31,103 @@ from halfspace.events import EVENTS, ROUND_OFF, Event, Located, estimate_event, 
 from halfspace.limits import require_rtol, require_tabor
 from halfspace.theories import jkr_radius
 
-FINER = 30  # ratio of the tolerances of two successive levels of grids
-MOST_LEVELS = 3
+FINER = 30  # ratio of the tolerances for which two successive rungs are made
+MOST_RUNGS = 3  # above the lowest
+
+Charts = Sequence[Chart]
+State = Mapping[str, Located]
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One step up: chart sets that each differ from the one before in one respect, the last being the finest.
+
+    Attributes
+    ----------
+    stages : tuple of chart sets
+        On each of which every event is solved for; the changes add up to the error.
+    settings : mapping
+        How the last stage is discretised.
+    """
+
+    stages: tuple[Charts, ...]
+    settings: Mapping[str, object]
+
+
+def climb(
+    rtol: float, rung: Callable[[int], Rung], *, to_load: float = COMPRESSION, most_rungs: int = MOST_RUNGS
+) -> EquilibriumPath:
+    """Trace the curve on the lowest rung of a ladder and solve for its events on higher ones until `rtol` is met.
+
+    Parameters
+    ----------
+    rtol : float
+        Relative accuracy asked of loads and approaches.
+    rung : callable
+        Makes the rung of a level: 0 for the curve, 1, 2 ... for the events.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+    most_rungs : int
+        Levels after which the estimates stand as they are.
+
+    Raises
+    ------
+    halfspace.newton.NotConverged
+        If the curve cannot be traced or an event not be found again.
+    GridTooCoarse
+        If a grid cannot carry the spike at the contact edge.
+    """
+    began = time.perf_counter()
+    lowest = rung(0)
+    segments = trace_charts(lowest.stages[-1], to_load)
+    state: State = find_events(segments)
+    for level in range(1, most_rungs + 1):
+        higher = rung(level)
+        states = [state]
+        for charts in higher.stages:
+            states.append({name: _on_charts(event, charts) for name, event in states[-1].items()})
+        state = states[-1]
+        events = _estimate(states)
+        if all(_meets(event, rtol) for event in events.values()):
+            break
+    return EquilibriumPath(
+        segments[0].problem.tabor,
+        segments,
+        events,
+        _energy(states),
+        tuple(states),
+        max(chart.unknowns for chart in higher.stages[-1]),
+        time.perf_counter() - began,
+        {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
+    )
+
+
+def _on_charts(event: Located, charts: Charts) -> Located:
+    """Solve for an event again on the chart of its kind."""
+    source = event.problem
+    assert isinstance(source, ContactProblem)
+    target = charts[-1 if source.follows_contact else 0].problem
+    return relocate(event, target, transfer(source, event.point.x, target), metric_for(target.tabor))
+
+
+def _estimate(states: Sequence[State]) -> dict[str, Event]:
+    """Events of the last state, with their changes from each to the next as errors."""
+    return {
+        name: estimate_event(name, best, [(b[name], a[name]) for a, b in pairwise(states)])
+        for name, best in states[-1].items()
+        if name in EVENTS
+    }
+
+
+def _energy(states: Sequence[State]) -> Estimate:
+    values = [energy_released(state) for state in states]
+    return Estimate(values[-1], float(np.sum(np.abs(np.diff(values)))) + ROUND_OFF * (1 + abs(values[-1])))
+
+
+def _meets(event: Event, rtol: float) -> bool:
+    """Whether the estimates are within the tolerance; approaches count relative to 1 + |alpha*|."""
+    load = event.load_error <= rtol * abs(event.load) or event.name == "zero_load"
+    return load and event.approach_error <= rtol * (1 + abs(event.approach))
 
 
 @dataclass(frozen=True)
@@ -56,25 +153,51 @@ class Resolution:
 
 
 def resolution_for(tabor: float, rtol: float) -> Resolution:
-    """Resolution whose events are right to about `rtol`.
-
-    The load left out beyond the grid, 11 pi/extent^4, is kept below rtol of the load at jump_on, about 2 mu^(-6/7).
-    """
+    """Resolution whose events are right to about `rtol`."""
     nodes = int(np.clip(np.ceil(3.5 - 0.75 * np.log10(rtol)), 5, 16))
-    return Resolution(nodes, finest=0.6, growth=3.0, extent=2.5 * rtol**-0.25 * max(1.0, tabor) ** (6 / 28))
+    return Resolution(nodes, finest=0.6, growth=3.0, extent=extent_for(tabor, rtol))
+
+
+def extent_for(tabor: float, rtol: float) -> float:
+    """Outer end of the surface law, in beta/sqrt(mu).
+
+    The load left out beyond it, 11 pi/extent^4, is kept below rtol of the load at jump_on, about 2 mu^(-6/7).
+    """
+    return float(2.5 * rtol**-0.25 * max(1.0, tabor) ** (6 / 28))
+
+
+@dataclass(frozen=True)
+class Rings:
+    """Breakpoints of two charts: centred on the axis up to a contact radius, then on the edge, whose radius is 1."""
+
+    centred: grid.Array
+    edge: grid.Array
+    until: float
+
+
+def rings(tabor: float, finest: float, growth: float, extent: float, to_load: float = COMPRESSION) -> Rings:
+    """Breakpoints fine enough for the spike of tension at every contact radius up to that under the load `to_load`.
+
+    `finest` is in widths of the spike, `extent` in beta/sqrt(mu), as in `Resolution`.
+    """
+    length = finest * spike_width(tabor) / 2
+    outer = extent / np.sqrt(tabor)
+    widest = float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(tabor)))
+    return Rings(
+        grid.graded(0.0, length, outer, growth=growth),
+        grid.graded(1.0, 2 * length / widest, outer / length, growth=growth),
+        until=length,
+    )
 
 
 def half_space_charts(tabor: float, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:
-    """Grids centred on the axis and on the contact edge, fine enough for the spike of tension at every radius."""
-    finest = resolution.finest * spike_width(tabor)
-    extent = resolution.extent / np.sqrt(tabor)
-    widest = np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(tabor))
-    k, growth = resolution.nodes, resolution.growth
-    centred = compliance.panels(grid.graded(0.0, finest / 2, extent, growth=growth), k)
-    edge = compliance.panels(grid.graded(1.0, finest / widest, 2 * extent / finest, growth=growth), k)
+    """Panel grids centred on the axis and following the contact edge."""
+    lines = rings(tabor, resolution.finest, resolution.growth, resolution.extent, to_load)
+    centred = compliance.panels(lines.centred, resolution.nodes)
+    edge = compliance.panels(lines.edge, resolution.nodes)
     return (
-        Chart(ContactProblem(centred, tabor), until=finest / 2),
-        Chart(ContactProblem(edge, tabor, follows_contact=True)),
+        Chart(ContactProblem(centred, tabor), centred.radii.size, lines.until),
+        Chart(ContactProblem(edge, tabor, follows_contact=True), edge.radii.size),
     )
 
 
@@ -104,51 +227,9 @@ def trace(tabor: float, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
     """
     require_tabor(tabor)
     require_rtol(rtol)
-    began = time.perf_counter()
-    resolution = resolution_for(tabor, rtol)
-    segments = trace_charts(half_space_charts(tabor, resolution, to_load), to_load)
-    levels = [find_events(segments)]
-    for level in range(1, MOST_LEVELS + 1):
-        finer = resolution_for(tabor, rtol / FINER**level)
-        charts = half_space_charts(tabor, finer, to_load)
-        levels.append({name: _on_charts(event, charts) for name, event in levels[-1].items()})
-        events = _estimate(levels)
-        if all(_meets(event, rtol) for event in events.values()):
-            break
-    return EquilibriumPath(
-        tabor,
-        segments,
-        events,
-        _energy(levels),
-        max(chart.problem.operator.radii.size for chart in charts),
-        time.perf_counter() - began,
-        {"rtol": rtol, "curve": asdict(resolution), "events": asdict(finer)},
-    )
 
+    def rung(level: int) -> Rung:
+        resolution = resolution_for(tabor, rtol / FINER**level)
+        return Rung((half_space_charts(tabor, resolution, to_load),), asdict(resolution))
 
-Level = dict[str, Located]
-
-
-def _estimate(levels: list[Level]) -> dict[str, Event]:
-    """Events of the last level, with their changes from the one before as errors."""
-    last, before = levels[-1], levels[-2]
-    return {name: estimate_event(name, last[name], [(last[name], before[name])]) for name in last if name in EVENTS}
-
-
-def _energy(levels: list[Level]) -> Estimate:
-    value, before = energy_released(levels[-1]), energy_released(levels[-2])
-    return Estimate(value, abs(value - before) + ROUND_OFF * (1 + abs(value)))
-
-
-def _meets(event: Event, rtol: float) -> bool:
-    """Whether the estimates are within the tolerance; approaches count relative to 1 + |alpha*|."""
-    load = event.load_error <= rtol * abs(event.load) or event.name == "zero_load"
-    return load and event.approach_error <= rtol * (1 + abs(event.approach))
-
-
-def _on_charts(event: Located, charts: tuple[Chart, Chart]) -> Located:
-    """Solve for an event again on the chart of its kind."""
-    source = event.problem
-    assert isinstance(source, ContactProblem)
-    target = charts[1 if source.follows_contact else 0].problem
-    return relocate(event, target, transfer(source, event.point.x, target), metric_for(target.tabor))
+    return climb(rtol, rung, to_load=to_load)

@@ -29,8 +29,8 @@ APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in th
 
 
 def spike_width(tabor: float) -> float:
-    """Width in beta over which the tension at a contact edge varies: mu^-2, or mu^-1/2 for a nearly rigid contact."""
-    return float(tabor**-2 if tabor > 1 else tabor**-0.5)
+    """Width in beta over which the tension at a contact edge varies: mu^-2, or about mu^-1/2 when nearly rigid."""
+    return float(min(tabor**-2, 0.7 * tabor**-0.5))
 
 
 class GridTooCoarse(ValueError):

@@ -26,9 +26,10 @@ COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwi
 
 @dataclass(frozen=True)
 class Chart:
-    """A discretisation and the contact radius (beta) up to which it serves; infinite for the last one."""
+    """A discretisation, its unknowns, and the contact radius (beta) up to which it serves; infinite for the last."""
 
     problem: ContactProblem
+    unknowns: int
     until: float = np.inf
 
 
@@ -63,6 +64,8 @@ class EquilibriumPath:
     energy : Estimate
         Potential energy released from `separated_approach` on the separated branch to zero approach in contact, in
         R dgamma eps.
+    stages : tuple of mappings of str to Located
+        The events, and the two states of `energy`, on each discretisation from the coarsest to the finest.
     unknowns : int
         Unknowns of the finest discretisation used, elastic ones included.
     seconds : float
@@ -75,6 +78,7 @@ class EquilibriumPath:
     segments: tuple[Segment, ...]
     events: Mapping[str, Event]
     energy: Estimate
+    stages: tuple[Mapping[str, Located], ...]
     unknowns: int
     seconds: float
     settings: Mapping[str, object] = field(default_factory=dict)

@@ -34,6 +34,7 @@ def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0) 
     if growth <= 1:
         raise ValueError(f"growth {growth:g} is not above 1; take about 2")
     inner = radius - _geometric(radius, finest, growth)[::-1] if radius else np.zeros(1)
+    inner[0] = 0.0  # not what rounding leaves of it
     return np.concatenate([inner, (radius + _geometric(extent - radius, finest, growth))[1:]])
 
 

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 
 
 GROWTH = 10.0  # of the relative residual, let through in one step
+ROUND_OFF = 1e-10  # relative size of a step below which the residual may be no more than rounding
 
 
 class Equilibrium(Protocol):
@@ -162,8 +163,8 @@ def solve(
             dx = -problem.bordered_solver(x, row)(F)
         except np.linalg.LinAlgError as error:
             raise NotConverged(f"{error} at Newton step {iteration}; try another control or a nearer start") from error
-        x, F, damping = _damped(problem, x, dx, control)
         update = problem.size(x, dx)
+        x, F, damping = _damped(problem, x, dx, control)
         if damping == 1 and update < tolerance:
             return Solution(x, problem.observables(x), iteration, update)
     raise NotConverged(
@@ -183,7 +184,7 @@ def _damped(problem: Equilibrium, x: Array, dx: Array, control: Control) -> tupl
     while damping > 1e-4:
         trial = x + damping * dx
         F = _equations(problem, trial, control)
-        if _misfit(problem, x, F) <= GROWTH * merit:
+        if _misfit(problem, x, F) <= GROWTH * merit or problem.size(x, dx) < ROUND_OFF:
             return trial, F, damping
         damping /= 2
     raise NotConverged(

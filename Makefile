@@ -1,0 +1,37 @@
+# Two commands do all the set-up themselves: `make compare` and `make test`. They need Python 3.11 or later and make.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+# The systems are small and dense: threads inside LAPACK cost more than they bring.
+export OPENBLAS_NUM_THREADS ?= 1
+
+.PHONY: help compare test check bench clean
+
+help: ## show this list
+	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 10
+
+compare: $(VENV)/installed ## compare both solvers at six Tabor parameters
+	$(BIN)/fem-adhesion compare
+
+test: $(VENV)/installed-dev ## run the test suite
+	$(BIN)/python -m pytest
+
+check: $(VENV)/installed-dev ## check format, style and types
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+bench: $(VENV)/installed-dev ## time the solvers beside a yardstick
+	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-enable --benchmark-columns=min,median,rounds -q
+
+clean: ## remove the environment and all caches
+	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+
+$(VENV)/installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable .
+	@touch $@
+
+$(VENV)/installed-dev: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	@touch $@

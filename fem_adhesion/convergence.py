@@ -1,0 +1,125 @@
+"""The finite-element load-approach curve to an accuracy asked for: a ladder of meshes, degrees and block sizes."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from functools import partial
+
+import numpy as np
+from skfem import ElementQuadP
+
+from fem_adhesion import far_field
+from fem_adhesion.condensed import condense
+from fem_adhesion.elasticity import Space
+from fem_adhesion.mesh import graded_breaks, tensor_grid
+from fem_adhesion.scene import Scene
+from halfspace import grid
+from halfspace.accuracy import MOST_RUNGS, Charts, Rung, climb, extent_for, rings
+from halfspace.contact import ContactProblem, spike_width
+from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.limits import require_rtol
+from halfspace.theories import jkr_radius
+
+FAR_FIELDS = {"point_load": far_field.point_load, "clamped": far_field.clamped, "free": far_field.free}
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How finely the block is discretised.
+
+    Attributes
+    ----------
+    degree : int
+        Of the quadrilateral elements; the error falls about a decade a degree.
+    finest : float
+        Length of the cells at the contact edge, in widths of the spike of tension there.
+    growth : float
+        Ratio of neighbouring cells.
+    radius : float
+        Size of the block in beta.
+    """
+
+    degree: int
+    finest: float
+    growth: float
+    radius: float
+
+
+def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> EquilibriumPath:
+    """Trace the load-approach curve of a scene by finite elements and solve for its events.
+
+    Parameters
+    ----------
+    scene : Scene
+        The contact.
+    rtol : float
+        Relative accuracy asked of loads and approaches, 1e-9 to 1e-1.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+
+    Returns
+    -------
+    EquilibriumPath
+        The curve and its events; their error estimates add the change by a higher degree and by a larger block, that
+        is, they are distances from the half-space, not from the block.
+
+    Raises
+    ------
+    ValueError
+        If an input is out of range.
+    halfspace.newton.NotConverged
+        If the curve cannot be traced.
+    """
+    require_rtol(rtol)
+    most_rungs = MOST_RUNGS if scene.radius is None else 1
+    return climb(rtol, partial(ladder, scene, rtol, to_load), to_load=to_load, most_rungs=most_rungs)
+
+
+def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
+    """Rung of a level: first the degree of the rung below on a larger block, then one degree more."""
+    above, below = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
+    wider = Resolution(below.degree, below.finest, below.growth, above.radius)
+    stages = (wider, above) if level else (above,)
+    return Rung(tuple(block_charts(scene, stage, to_load) for stage in stages), asdict(above))
+
+
+def resolution_for(scene: Scene, rtol: float, level: int) -> Resolution:
+    """Resolution of a level, whose events are right to about `rtol` at level 0 and a decade better at each above it."""
+    degree = int(np.clip(np.ceil(-np.log10(rtol)), 3, 9)) + level
+    if scene.radius is None:
+        radius = extent_for(scene.tabor, rtol / 10**level) / np.sqrt(scene.tabor)
+    else:
+        radius = scene.radius if level else scene.radius / 2
+    return Resolution(degree, finest=0.6, growth=2.5, radius=float(radius))
+
+
+def block_charts(scene: Scene, resolution: Resolution, to_load: float = COMPRESSION) -> Charts:
+    """Charts of the scene's block.
+
+    A block continued by a half-space has no length of its own, so its mesh may follow the contact edge; one that is
+    clamped or free has, and needs a mesh that is fine wherever the edge passes.
+    """
+    if scene.far_field != "point_load":
+        return (_fixed_chart(scene, resolution, to_load),)
+    lines = rings(scene.tabor, resolution.finest, resolution.growth, resolution.radius * np.sqrt(scene.tabor), to_load)
+    return (
+        _chart(scene, lines.centred, resolution, until=lines.until),
+        _chart(scene, lines.edge, resolution, follows_contact=True),
+    )
+
+
+def _fixed_chart(scene: Scene, resolution: Resolution, to_load: float) -> Chart:
+    widest = float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(scene.tabor)))
+    fine = resolution.finest * spike_width(scene.tabor) / 2
+    return _chart(scene, graded_breaks(fine, min(widest, resolution.radius / 2), resolution.radius), resolution)
+
+
+def _chart(
+    scene: Scene, r_breaks: np.ndarray, resolution: Resolution, *, until: float = np.inf, follows_contact: bool = False
+) -> Chart:
+    """Condense the block whose cells have these radii, graded in depth from the finest of them."""
+    depths = grid.graded(0.0, np.diff(r_breaks).min(), r_breaks[-1], growth=resolution.growth)
+    space = Space(tensor_grid(r_breaks, depths), ElementQuadP(resolution.degree))
+    body = condense(space, scene.poisson, far_field=FAR_FIELDS[scene.far_field])
+    problem = ContactProblem(body.operator, scene.tabor, follows_contact=follows_contact)
+    return Chart(problem, body.unknowns, until)

@@ -1,0 +1,1 @@
+"""Output: the leaves that draw and write files."""

@@ -1,0 +1,90 @@
+"""The cross-check as plain data, for machines."""
+
+from __future__ import annotations
+
+import math
+import platform
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import Any
+
+from fem_adhesion.studies.crosscheck import Case, Failure, Row
+from halfspace.curve import EquilibriumPath, Estimate
+from halfspace.events import Event
+
+VERDICTS = ("failed", "disagree", "inconclusive", "agree")  # worst first
+EVENT_KEYS = ("approach", "load", "central_gap", "contact_radius", "approach_error", "load_error")
+EVENT_NAMES = ("pull_off", "jump_on", "jump_off")
+
+
+def versions() -> dict[str, str]:
+    """Versions that decide the numbers."""
+    packages = ("fem-adhesion", "numpy", "scipy", "scikit-fem")
+    return {"python": platform.python_version(), **{name: version(name) for name in packages}}
+
+
+def verdict_of(case: Case | Failure) -> str:
+    """Verdict of a case, ``failed`` if it was not solved."""
+    return "failed" if isinstance(case, Failure) else case.verdict
+
+
+def overall_verdict(cases: Sequence[Case | Failure]) -> str:
+    """The worst verdict of all."""
+    return min(map(verdict_of, cases), key=VERDICTS.index)
+
+
+def crosscheck_record(cases: Sequence[Case | Failure]) -> dict[str, Any]:
+    """All cases with verdict and versions, ready for JSON: no NaN, an event that does not exist is absent."""
+    return {"verdict": overall_verdict(cases), "versions": versions(), "cases": [_case(case) for case in cases]}
+
+
+def _case(case: Case | Failure) -> dict[str, Any]:
+    scene = {"tabor": case.scene.tabor, "poisson": case.scene.poisson, "verdict": verdict_of(case)}
+    if isinstance(case, Failure):
+        return {**scene, "reason": case.reason}
+    return {
+        **scene,
+        "halfspace": _solution(case.halfspace),
+        "finite_element": _solution(case.finite_element),
+        "comparison": [_row(row) for row in case.rows],
+    }
+
+
+def _solution(path: EquilibriumPath) -> dict[str, Any]:
+    return {
+        "events": {name: _event(event) for name, event in path.events.items() if name in EVENT_NAMES},
+        "unknowns": path.unknowns,
+        "seconds": path.seconds,
+        "settings": path.settings,
+    }
+
+
+def _event(event: Event) -> dict[str, float | None]:
+    return {key: _finite(getattr(event, key)) for key in EVENT_KEYS}
+
+
+def _row(row: Row) -> dict[str, Any]:
+    return {
+        "quantity": row.quantity,
+        "unit": row.unit,
+        "halfspace": _value(row.halfspace),
+        "finite_element": _value(row.finite_element),
+        "difference": _finite(row.difference),
+        "halfspace_error": _error(row.halfspace),
+        "finite_element_error": _error(row.finite_element),
+        "error": _finite(row.error),
+        "budget": row.budget,
+        "verdict": row.verdict,
+    }
+
+
+def _value(estimate: Estimate | None) -> float | None:
+    return _finite(estimate.value) if estimate else None
+
+
+def _error(estimate: Estimate | None) -> float | None:
+    return _finite(estimate.error) if estimate else None
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,275 @@
+"""The cross-check of the half-space solver with the finite-element solver.
+
+Three levels. Operators: both compliances under the same pressures, whole fields compared. Cross-residual: the state
+found by one solver put into the equations of the other. Events: pull-off, jumps, the zero-load state, the energy.
+A quantity agrees only if the difference is within the sum of both error estimates and that sum is within the
+budget; the estimates come from refinement and from the size of the block, never from a choice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from skfem import ElementQuadP
+
+import halfspace
+from fem_adhesion import convergence
+from fem_adhesion.condensed import condense
+from fem_adhesion.elasticity import Space
+from fem_adhesion.mesh import tensor_grid
+from fem_adhesion.scene import Scene
+from halfspace import compliance, grid
+from halfspace.compliance import Array, ElasticOperator
+from halfspace.contact import ContactProblem, GridTooCoarse
+from halfspace.curve import EquilibriumPath, Estimate, transfer
+from halfspace.events import ROUND_OFF, Event, Located
+from halfspace.limits import require_rtol
+from halfspace.newton import NotConverged
+
+Verdict = Literal["agree", "disagree", "inconclusive"]
+Solver = Callable[..., EquilibriumPath]
+
+# Budgets in those of loads, approaches and energies, which are averages over the whole contact:
+POINTWISE = 10  # of gaps, radii and deflections
+RESIDUAL = 50  # of residuals, which see every wiggle of the pressure
+
+
+@dataclass(frozen=True)
+class Row:
+    """One quantity from both solvers.
+
+    Attributes
+    ----------
+    quantity, unit : str
+        What it is.
+    halfspace, finite_element : Estimate or None
+        Values with error estimates; None where a solver does not find it.
+    difference : float
+        Magnitude of the difference: of the values, or the largest over a field.
+    budget : float
+        Largest sum of both error estimates with which a comparison means something.
+    """
+
+    quantity: str
+    unit: str
+    halfspace: Estimate | None
+    finite_element: Estimate | None
+    difference: float
+    budget: float
+
+    @property
+    def error(self) -> float:
+        """Sum of both error estimates."""
+        if self.halfspace is None or self.finite_element is None:
+            return float("nan")
+        return self.halfspace.error + self.finite_element.error
+
+    @property
+    def verdict(self) -> Verdict:
+        """Agreement within the estimates, and estimates within the budget."""
+        if not self.difference <= self.error:
+            return "disagree"
+        return "agree" if self.error <= self.budget else "inconclusive"
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A scene that a solver could not solve, with the reason and the level-1 rows; it does not stop the others."""
+
+    scene: Scene
+    reason: str
+    rows: tuple[Row, ...] = ()
+
+
+@dataclass(frozen=True)
+class Case:
+    """Both solutions of one scene and their comparison."""
+
+    scene: Scene
+    halfspace: EquilibriumPath
+    finite_element: EquilibriumPath
+    rows: tuple[Row, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """The worst of the rows' verdicts."""
+        return worst([row.verdict for row in self.rows])
+
+
+def worst(verdicts: Sequence[Verdict]) -> Verdict:
+    """Return ``disagree`` if there is one, else ``inconclusive`` if there is one, else ``agree``."""
+    for bad in ("disagree", "inconclusive"):
+        if bad in verdicts:
+            return bad
+    return "agree"
+
+
+def compare(
+    scene: Scene,
+    *,
+    rtol: float = 1e-5,
+    operators: Sequence[Row] | None = None,
+    solve: Solver = convergence.trace,
+) -> Case:
+    """Solve a scene with both solvers and compare on all three levels.
+
+    Parameters
+    ----------
+    scene : Scene
+        The contact; the half-space solver knows its Tabor parameter only.
+    rtol : float
+        Accuracy of the comparison: budgets are this relative to each quantity.
+    operators : sequence of Row, optional
+        Level-1 rows computed before by `compare_operators` for the same body.
+    solve : callable
+        Finite-element solver, ``solve(scene, rtol=...)``.
+
+    Raises
+    ------
+    ValueError
+        If an input is out of range.
+    halfspace.newton.NotConverged
+        If a solver fails.
+    """
+    require_rtol(rtol)
+    hs = halfspace.trace(scene.tabor, rtol=max(rtol / 10, 1e-9))
+    fe = solve(scene, rtol=0.9 * rtol)
+    level_1 = compare_operators(scene, rtol=rtol) if operators is None else operators
+    return Case(scene, hs, fe, (*level_1, *_cross_residuals(hs, fe, rtol), *_compare_events(hs, fe, rtol)))
+
+
+def run(scenes: Sequence[Scene], *, rtol: float = 1e-5) -> Iterator[Case | Failure]:
+    """Compare scenes of one material one after the other; the level-1 rows, which are the same for all, only once."""
+    operators: Sequence[Row] | None = None
+    for scene in scenes:
+        try:
+            if operators is None:
+                operators = compare_operators(scene, rtol=rtol)
+            yield compare(scene, rtol=rtol, operators=operators)
+        except (NotConverged, GridTooCoarse, np.linalg.LinAlgError) as error:
+            yield Failure(scene, str(error), tuple(operators or ()))
+
+
+# Level 1: operators
+
+
+def compare_operators(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
+    """Compare the deflections under given pressures, on meshes graded towards their edge at radius 1."""
+    degree = convergence.resolution_for(scene, rtol, 0).degree
+    lines = grid.graded(1.0, FINEST, 40.0 if scene.radius is None else scene.radius)
+    wider = grid.graded(1.0, FINEST, 2 * lines[-1])
+    fe = [_block_operator(scene, lines, degree), _block_operator(scene, wider, degree)]
+    fe.append(_block_operator(scene, wider, degree + 1))
+    hs = [compliance.panels(wider, k) for k in (degree + 3, degree + 5)]
+    return [_compare_fields(name, pressure, hs, fe, rtol) for name, pressure in PRESSURES.items()]
+
+
+FINEST = 1e-4  # cells at the edge, where the deflection under a disc has a vertical tangent
+
+PRESSURES: dict[str, Callable[[Array], Array]] = {
+    "uniform disc": lambda r: np.where(r < 1, 1.0, 0.0),
+    "Hertz": lambda r: np.sqrt(np.maximum(1 - r**2, 0)),
+    "spike": lambda r: -1 / (1 + ((r - 1) / 0.05) ** 2) ** 3,
+    "ring": lambda r: r**2 / (1 + r**2) ** 4,
+}
+
+
+def _block_operator(scene: Scene, lines: Array, degree: int) -> ElasticOperator:
+    space = Space(tensor_grid(lines, grid.graded(0.0, FINEST, lines[-1])), ElementQuadP(degree))
+    return condense(space, scene.poisson, far_field=convergence.FAR_FIELDS[scene.far_field]).operator
+
+
+def _compare_fields(
+    name: str,
+    pressure: Callable[[Array], Array],
+    hs: Sequence[ElasticOperator],
+    fe: Sequence[ElasticOperator],
+    rtol: float,
+) -> Row:
+    """Compare deflections at radii up to 3, root mean square over the area."""
+    radii = np.linspace(0.02, 3.0, 150)
+    area = radii / radii.sum()
+    w_hs, w_fe = ([_sample(op, op.compliance @ pressure(op.radii), radii) for op in ops] for ops in (hs, fe))
+
+    def rms(w: Array) -> float:
+        return float(np.sqrt(area @ w**2))
+
+    def estimate(w: Sequence[Array]) -> Estimate:
+        return Estimate(rms(w[-1]), sum(rms(b - a) for a, b in pairwise(w)) + 1e-12 * rms(w[-1]))
+
+    budget = POINTWISE * rtol * rms(w_hs[-1])
+    return Row(f"operator: {name}", "beta", estimate(w_hs), estimate(w_fe), rms(w_fe[-1] - w_hs[-1]), budget)
+
+
+def _sample(operator: ElasticOperator, values: Array, radii: Array) -> Array:
+    return np.array([operator.interpolation(r)[0] @ values for r in radii])
+
+
+# Level 2: cross-residuals
+
+
+def _cross_residuals(hs: EquilibriumPath, fe: EquilibriumPath, rtol: float) -> Iterator[Row]:
+    """Residual, in eps, of each solver's gaps in the other's equations, at every event that both have."""
+    for name in hs.events:
+        if name in fe.events:
+            of_hs = _residual([stage[name] for stage in hs.stages], fe.stages[-1][name])
+            of_fe = _residual([stage[name] for stage in fe.stages], hs.stages[-1][name])
+            largest = max(of_hs.value, of_fe.value)
+            yield Row(f"cross-residual: {name}", "eps", of_hs, of_fe, largest, RESIDUAL * rtol)
+
+
+def _residual(found: Sequence[Located], equations: Located) -> Estimate:
+    """Mean residual of a state in the other solver's equilibrium, weighted by the magnitude of the pressure, in eps.
+
+    The error is the mean change of the residual from stage to stage: what the state itself is uncertain by.
+    """
+    target = equations.problem
+    assert isinstance(target, ContactProblem)
+    states = [_transferred(event, target) for event in found]
+    residuals = [target.residual(x)[:-1] for x in states]
+    weight = target.operator.weights * np.abs(target.pressure(states[-1]))
+    weight /= weight.sum()
+    changes = [weight @ np.abs(b - a) for a, b in pairwise(residuals)]
+    return Estimate(float(weight @ np.abs(residuals[-1])), float(sum(changes)) + ROUND_OFF)
+
+
+def _transferred(event: Located, target: ContactProblem) -> Array:
+    assert isinstance(event.problem, ContactProblem)
+    return transfer(event.problem, event.point.x, target)
+
+
+# Level 3: events
+
+
+def _compare_events(hs: EquilibriumPath, fe: EquilibriumPath, rtol: float) -> Iterator[Row]:
+    for event, quantity, unit, pointwise in EVENT_QUANTITIES:
+        a, b = (_number(path.event(event), quantity) for path in (hs, fe))
+        if a is None and b is None:
+            continue
+        difference = abs(a.value - b.value) if a and b else float("nan")
+        size = abs(a.value) if a and quantity == "load" else 1 + abs(a.value if a else 0.0)
+        budget = (POINTWISE if pointwise else 1) * rtol * size
+        yield Row(f"{event} {quantity}", unit, a, b, difference, budget)
+    difference = abs(hs.energy.value - fe.energy.value)
+    yield Row("energy released", "R dgamma eps", hs.energy, fe.energy, difference, rtol * abs(hs.energy.value))
+
+
+EVENT_QUANTITIES = (
+    ("pull_off", "load", "R dgamma", False),
+    ("jump_on", "approach", "eps", False),
+    ("jump_on", "load", "R dgamma", False),
+    ("jump_on", "central_gap", "eps", True),
+    ("jump_off", "approach", "eps", False),
+    ("jump_off", "load", "R dgamma", False),
+    ("jump_off", "central_gap", "eps", True),
+    ("zero_load", "approach", "eps", False),
+    ("zero_load", "contact_radius", "beta", True),
+)
+
+
+def _number(event: Event | None, quantity: str) -> Estimate | None:
+    return Estimate(getattr(event, quantity), getattr(event, f"{quantity}_error")) if event else None

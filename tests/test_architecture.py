@@ -1,0 +1,59 @@
+"""Every import goes down the floors of the house, and the half-space stands alone."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+FLOORS = [
+    {"fem_adhesion.cli"},
+    {"fem_adhesion.output.tables", "fem_adhesion.output.record", "fem_adhesion.output.files"},
+    {"fem_adhesion.studies.crosscheck"},
+    {"fem_adhesion.convergence"},
+    {"fem_adhesion.monolithic"},
+    {"fem_adhesion.condensed"},
+    {"fem_adhesion.far_field"},
+    {"fem_adhesion.mesh", "fem_adhesion.elasticity", "fem_adhesion.scene"},
+    {"halfspace.accuracy"},
+    {"halfspace.curve"},
+    {"halfspace.events"},
+    {"halfspace.path"},
+    {"halfspace.newton"},
+    {"halfspace.contact"},
+    {"halfspace.compliance"},
+    {"halfspace.kernel", "halfspace.grid", "halfspace.lennard_jones", "halfspace.limits", "halfspace.theories"},
+]
+FLOOR_OF = {module: number for number, modules in enumerate(FLOORS) for module in modules}
+
+
+def _modules():
+    for package in ("halfspace", "fem_adhesion"):
+        for path in (ROOT / package).rglob("*.py"):
+            if path.name != "__init__.py":
+                yield ".".join(path.relative_to(ROOT).with_suffix("").parts)
+
+
+def _imports(module):
+    tree = ast.parse((ROOT / Path(*module.split("."))).with_suffix(".py").read_text())
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+@pytest.mark.parametrize("module", sorted(_modules()))
+def test_imports_go_downwards(module):
+    assert module in FLOOR_OF, "give the new module a floor"
+    for imported in _imports(module):
+        if imported in FLOOR_OF:
+            assert FLOOR_OF[imported] > FLOOR_OF[module], f"{module} imports {imported}"
+
+
+@pytest.mark.parametrize("module", sorted(m for m in _modules() if m.startswith("halfspace")))
+def test_the_half_space_imports_nothing_but_numpy_and_scipy(module):
+    outside = {name.split(".")[0] for name in _imports(module)} & {"skfem", "meshio", "rich", "fem_adhesion"}
+    assert not outside
