@@ -1,0 +1,49 @@
+"""Wall times of what users wait for; `make bench` runs them, the test suite only checks that they run."""
+
+import resource
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy.linalg.lapack import dgesv
+
+import fem_adhesion
+import halfspace
+from fem_adhesion import Scene
+from fem_adhesion.studies import crosscheck
+
+
+def test_yardstick_dgesv_of_200(benchmark):
+    rng = np.random.default_rng(0)
+    matrix, rhs = rng.normal(size=(200, 200)), rng.normal(size=200)
+    *_, info = benchmark(dgesv, matrix, rhs)
+    assert info == 0
+
+
+@pytest.mark.parametrize("tabor", [0.05, 1, 2, 5])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
+def test_halfspace_trace(benchmark, tabor, rtol):
+    path = benchmark.pedantic(halfspace.trace, (tabor,), {"rtol": rtol}, rounds=5, warmup_rounds=1)
+    assert path.event("pull_off").load_error < rtol * 10
+
+
+@pytest.mark.parametrize("tabor", [0.05, 1, 5])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-5, 1e-7])
+def test_finite_element_trace(benchmark, tabor, rtol):
+    path = benchmark.pedantic(fem_adhesion.trace, (Scene(tabor=tabor),), {"rtol": rtol}, rounds=3)
+    assert path.event("pull_off").load_error < rtol * 10
+
+
+def test_comparison(benchmark):
+    case = benchmark.pedantic(crosscheck.compare, (Scene(tabor=1.0),), {"rtol": 1e-5}, rounds=3)
+    assert case.verdict == "agree"
+
+
+def test_peak_memory_of_a_finite_element_trace(benchmark, capsys):
+    code = "from fem_adhesion import Scene, trace; trace(Scene(tabor=1.0), rtol=1e-5)"
+    benchmark.pedantic(subprocess.run, ([sys.executable, "-c", code],), {"check": True}, rounds=1)
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    with capsys.disabled():
+        print(f"\npeak memory of one process: {peak:.0f} MiB")
+    assert peak < 1024

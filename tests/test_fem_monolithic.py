@@ -1,0 +1,205 @@
+"""The whole finite-element problem against its own derivatives, the condensed one, and the laws of mechanics."""
+
+import numpy as np
+import pytest
+from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
+
+from fem_adhesion.condensed import condense
+from fem_adhesion.elasticity import Space, cell_stiffness, scatter
+from fem_adhesion.far_field import clamped, free, point_load
+from fem_adhesion.mesh import block_grid, graded_size, quarter_disc
+from fem_adhesion.monolithic import assemble, block_stiffness
+from halfspace import newton
+from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.curve import Chart, find_events, metric_for, trace_charts
+from halfspace.events import EXTREMUM, FOLD, locate, relocate
+from halfspace.newton import NotConverged
+from halfspace.path import follow, make_point
+
+NU = 0.3
+EVENTS = {0.5: ["pull_off"], 1.0: ["pull_off", "jump_on", "jump_off"], 2.0: ["pull_off", "jump_on", "jump_off"]}
+
+SPACES = {
+    "Q3": Space(block_grid(0.25, 3.0, 1e3), ElementQuadP(3)),
+    "P2": Space(quarter_disc(50.0, graded_size(0.1, 3.0, 0.3)), ElementTriP2()),
+}
+SMALL = Space(block_grid(0.6, 2.0, 20.0), ElementQuadP(4))
+
+
+@pytest.fixture(scope="module", params=SPACES)
+def body(request):
+    return condense(SPACES[request.param], NU)
+
+
+@pytest.fixture(scope="module")
+def small():
+    return assemble(SMALL, NU, 1.3)
+
+
+@pytest.fixture(scope="module")
+def in_contact(small):
+    return solved(small, newton.approach(-0.5)).x
+
+
+def solved(problem, control, gaps=(3.0, 2.0, 1.0, 0.5, 0.2, 0.0)):
+    """Solve under a control, entering the curve with prescribed central gaps."""
+    x = newton.solve(problem, problem.undeformed(-6.0), newton.approach(-6.0)).x
+    for gap in gaps:
+        x = newton.solve(problem, x, newton.central_gap(gap)).x
+    return newton.solve(problem, x, control)
+
+
+def transferred(condensed, x, problem):
+    """A start for the whole problem, disturbed lest it be the solution."""
+    return problem.state_from(x[-2], 1.01 * condensed.pressure(x))
+
+
+def central_difference(function, x, direction, step=1e-5):
+    """Fourth-order difference quotient of a function along a direction."""
+    near, far = (function(x + k * step * direction) - function(x - k * step * direction) for k in (1, 2))
+    return (8 * near - far) / (12 * step)
+
+
+# --- what is assembled ---
+
+
+@pytest.mark.parametrize("element", [ElementTriP1(), ElementTriP3(), ElementQuadP(4)], ids=["P1", "P3", "Q4"])
+def test_the_form_of_elasticity_is_the_cell_stiffness(element):
+    mesh = block_grid(0.5, 1.5, 10.0) if element.refdom.nnodes == 4 else quarter_disc(10.0, graded_size(0.5, 1.0, 0.5))
+    space = Space(mesh, element)
+    K = block_stiffness(space, NU)
+    difference = abs(K - scatter(cell_stiffness(space, NU), space.cell_dofs, space.unknowns))
+    assert difference.max() < 1e-13 * abs(K).max()
+
+
+def test_the_tangent_is_the_derivative_of_the_residual(small, in_contact):
+    J = small.jacobian(in_contact)
+    rng = np.random.default_rng(1)
+    for dx in (rng.normal(size=in_contact.size), np.eye(in_contact.size)[-1]):
+        np.testing.assert_allclose(J @ dx, central_difference(small.residual, in_contact, dx), atol=1e-8)
+    by_displacement = J[:, :-1]
+    assert abs(by_displacement - by_displacement.T).max() < 1e-13 * abs(by_displacement).max()
+
+
+@pytest.mark.parametrize("observable", [APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS])
+def test_the_gradients_of_the_observables(small, in_contact, observable):
+    dx = np.random.default_rng(2).normal(size=in_contact.size)
+    found = small.gradient(in_contact, np.eye(4)[observable]) @ dx
+    quotient = central_difference(lambda x: small.observables(x)[observable], in_contact, dx)
+    assert found == pytest.approx(quotient, rel=1e-8)
+
+
+def test_the_residual_is_the_gradient_of_the_energy(small, in_contact):
+    """Out of equilibrium too; by the approach the energy also counts the undeformed surfaces beyond the block."""
+    rng = np.random.default_rng(3)
+    x = in_contact + 0.01 * rng.normal(size=in_contact.size)
+    dy = np.append(rng.normal(size=x.size - 1), 0.0)
+    work = small.tabor * small.residual(x) @ dy[:-1]
+    assert work == pytest.approx(central_difference(small.energy, x, dy), rel=1e-8)
+    by_approach = central_difference(small.energy, x, np.eye(x.size)[-1])
+    U, mu = small.interface.operator.extent, small.tabor
+    tail = 2 * np.pi * -4 / 3 * (1 - x[-1] + mu * U**2 / 2) ** -2.0  # -2 pi int (8/3) mu h^-3 u du
+    assert by_approach == pytest.approx(small.load(x) + tail, rel=1e-8)
+
+
+def test_no_step_closes_the_gap(small, in_contact):
+    closing = np.append(np.zeros(in_contact.size - 1), 50.0)
+    h = [small.surface_state(x)[:-2] + 1 for x in (in_contact, in_contact + closing)]
+    assert h[1].min() < 0
+    short = in_contact + small.longest_step(in_contact, closing) * closing
+    assert np.min((small.surface_state(short)[:-2] + 1) / h[0]) == pytest.approx(0.25)
+
+
+# --- against the condensed problem ---
+
+
+@pytest.mark.parametrize("tabor", EVENTS)
+def test_the_events_of_the_condensed_problem(body, tabor):
+    problem = assemble(body.space, NU, tabor)
+    metric = metric_for(tabor)
+    located = find_events(trace_charts([Chart(ContactProblem(body.operator, tabor), body.unknowns)]))
+    for name in EVENTS[tabor]:
+        condensed = located[name]
+        start = transferred(condensed.problem, condensed.point.x, problem)
+        found = relocate(condensed, problem, start, metric).point.observables
+        expected = condensed.point.observables
+        assert found[LOAD] == pytest.approx(expected[LOAD], abs=1e-9)
+        assert found[CENTRAL_GAP] == pytest.approx(expected[CENTRAL_GAP], abs=1e-9)
+        # The approach of an extremum of the load is as well determined as the rate dW/ds, which is what vanishes.
+        assert found[APPROACH] == pytest.approx(expected[APPROACH], abs=1e-9)
+
+
+@pytest.mark.parametrize(("far_field", "points"), [(clamped, 5), (point_load, 7)])
+def test_every_far_field_and_quadrature_condenses_exactly(far_field, points):
+    condensed = ContactProblem(condense(SMALL, NU, far_field=far_field, points=points).operator, 1.3)
+    whole = assemble(SMALL, NU, 1.3, far_field=far_field, points=points)
+    for control in (newton.approach(-0.5), newton.load(-3.0), newton.central_gap(-0.01)):
+        a = solved(condensed, control)
+        b = newton.solve(whole, transferred(condensed, a.x, whole), control)
+        np.testing.assert_allclose(b.observables, a.observables, rtol=1e-11, atol=1e-11)
+
+
+def test_newton_takes_the_same_steps(body):
+    """Eliminating linear equations does not change Newton's iterates, damped ones included."""
+    condensed, whole = ContactProblem(body.operator, 1.0), assemble(body.space, NU, 1.0)
+    for control in (newton.approach(1.0), newton.central_gap(0.0)):
+        a, b = (newton.solve(problem, problem.undeformed(-4.0), control) for problem in (condensed, whole))
+        assert a.iterations == b.iterations > 8
+        np.testing.assert_allclose(b.observables, a.observables, rtol=1e-11, atol=1e-11)
+
+
+# --- the laws of mechanics ---
+
+
+@pytest.mark.parametrize(
+    ("approach", "gaps"),
+    [(-3.0, ()), (-1.68, (1.0, 0.3)), (-0.5, (0.5, 0.0))],
+    ids=["apart", "unstable", "in contact"],
+)
+def test_three_routes_to_the_load(approach, gaps):
+    """The derivative of the energy is a difference of energies, each right to 1e-13, over 0.01: hence 1e-9 at best."""
+    problem = assemble(SPACES["Q3"], NU, 1.0)
+    condensed = ContactProblem(condense(SPACES["Q3"], NU).operator, 1.0)
+    start = transferred(condensed, solved(condensed, newton.approach(approach), gaps).x, problem)
+    solution = newton.solve(problem, start, newton.approach(approach))
+
+    def energy(value):
+        return problem.energy(newton.solve(problem, solution.x, newton.approach(value)).x)
+
+    load = problem.load(solution.x)
+    assert solution.observables[[APPROACH, LOAD]] == pytest.approx([approach, load], abs=1e-12)
+    assert problem.far_reaction(solution.x) == pytest.approx(load, rel=1e-9)  # forces summed over a distant boundary
+    assert central_difference(energy, approach, 1.0, step=0.003) == pytest.approx(load, rel=1e-7)
+
+
+def test_arclength_carries_the_whole_problem_through_a_fold():
+    space = SPACES["P2"]
+    problem, metric = assemble(space, NU, 1.0), metric_for(1.0)
+    start = solved(problem, newton.central_gap(0.8), gaps=(2.0,))
+    first = make_point(problem, start, metric, -newton.central_gap(0.0).weights, 0.0)
+    points = follow(problem, first, metric, lambda point: point.observables[CENTRAL_GAP] < 0.55)
+    jump_on = locate(problem, points, metric, FOLD)
+    assert len(jump_on) == 1
+    assert not locate(problem, points, metric, EXTREMUM)
+    at = jump_on[0].point
+    assert problem.misfit(at.x, problem.residual(at.x)) < 1e-10
+    assert np.linalg.norm(problem.jacobian(at.x) @ at.tangent) < 1e-10
+    # An element's error from the half-space: tests/data/reference_events.csv.
+    assert at.observables[[APPROACH, LOAD]] == pytest.approx([-1.629216712, -2.139717925], abs=2e-4)
+
+
+# --- failures ---
+
+
+def test_a_failure_says_how_it_ended(small, in_contact):
+    with pytest.raises(NotConverged, match=r"no convergence in 2 Newton steps .* try a nearer start"):
+        newton.solve(small, in_contact, newton.approach(1.0), max_iterations=2)
+    with pytest.raises(NotConverged, match="singular at Newton step 1; try another control"):
+        newton.solve(small, in_contact, newton.Control(np.zeros(4), 1.0))
+
+
+def test_a_far_field_that_cannot_be_served_is_refused(small):
+    with pytest.raises(ValueError, match="use point_load or clamped"):
+        assemble(small.space, NU, 1.0, far_field=free)
+    with pytest.raises(ValueError, match=r"poisson = 0\.5 must lie"):
+        assemble(small.space, 0.5, 1.0)
