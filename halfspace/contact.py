@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cholesky
+from scipy.linalg import eigh
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 from scipy.optimize import brentq
 
@@ -210,14 +210,19 @@ class ContactProblem:
         made symmetric by the square roots of the weights.
         """
         L = self.compliance_root() if half is None else half
-        hessian = np.eye(L.shape[0]) - L.T @ (L * (self.tabor * x[-1] * self.law.slope(x[:-2], self.tabor))[:, None])
+        hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * x[-1] * self.law.slope(x[:-2], self.tabor))[:, None])
         return count_negative(hessian)
 
     def compliance_root(self) -> Array:
-        """L with L L^T = w^(1/2) C w^(-1/2), its symmetric part."""
+        """L, (q, m), with L L^T the symmetric part of w^(1/2) C w^(-1/2).
+
+        The rank m falls short of q where the nodes outnumber the freedoms of the surface.
+        """
         root = np.sqrt(self.operator.weights)
         balanced = self.operator.compliance * (root[:, None] / root)
-        return np.asarray(cholesky((balanced + balanced.T) / 2, lower=True))
+        values, vectors = eigh((balanced + balanced.T) / 2)
+        kept = values > 1e-13 * values[-1]
+        return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
 
 
 def count_negative(matrix: Array) -> int:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import fem_adhesion
+import halfspace
 from fem_adhesion import Scene, convergence, elasticity
 from fem_adhesion.studies import crosscheck
 from fem_adhesion.studies.crosscheck import Case, Failure, Row
@@ -29,6 +30,16 @@ def test_the_solvers_agree(tabor, poisson, limit):
     for row in case.rows:
         if row.quantity in ("pull_off load", "jump_on approach", "jump_off approach"):
             assert row.difference <= limit * abs(row.halfspace.value)
+
+
+def test_the_solvers_agree_on_which_states_are_stable():
+    paths = halfspace.trace(2.0, rtol=1e-4), fem_adhesion.trace(Scene(tabor=2.0), rtol=1e-3)
+    for path in paths:
+        unstable = path.approach[~path.stable]
+        on, off = path.event("jump_on"), path.event("jump_off")
+        assert unstable.size > 5
+        assert unstable.max() <= on.approach
+        assert unstable.min() >= off.approach
 
 
 def test_the_solvers_agree_for_a_nearly_rigid_contact():
