@@ -169,6 +169,10 @@ class MonolithicProblem:
         """Approach, load, central gap and contact radius (nan without contact), shape (4,)."""
         return self.interface.observables(self.surface_state(x))
 
+    def weighted_observables(self, x: Array, weights: Array) -> float:
+        """Sum of the observables by the given weights."""
+        return self.interface.weighted_observables(self.surface_state(x), weights)
+
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative by x of the weighted sum of the observables, shape (n + 1,)."""
         row = self.interface.gradient(self.surface_state(x), weights)

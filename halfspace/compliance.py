@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -59,7 +60,7 @@ class ElasticOperator:
 
     def cell_of(self, radius: float) -> int:
         """Index of the cell that holds `radius`."""
-        return int(np.clip(np.searchsorted(self.cells, radius, side="right") - 1, 0, self.cells.size - 2))
+        return min(max(int(self.cells.searchsorted(radius, side="right")) - 1, 0), self.cells.size - 2)
 
     def spacing(self, radius: float) -> float:
         """Distance between neighbouring nodes around `radius`, in beta."""
@@ -68,25 +69,61 @@ class ElasticOperator:
 
     def interpolation(self, radius: float) -> tuple[Array, Array]:
         """Row (q,) that interpolates nodal values at `radius`, and the row of its derivative by the radius."""
-        nodes = self.cell_nodes[self.cell_of(radius)]
-        value, slope = lagrange(self.radii[nodes], radius)
+        cell = self.cell_of(radius)
+        nodes = self.cell_nodes[cell]
         row, derivative = np.zeros((2, self.radii.size))
-        row[nodes], derivative[nodes] = value, slope
+        row[nodes], derivative[nodes] = lagrange(self.radii[nodes], self._barycentric[cell], radius)
         return row, derivative
 
+    def values_at(self, radii: Array, values: Array) -> Array:
+        """Interpolate nodal values (q,) at many radii (n,) within the extent."""
+        cells = np.clip(np.searchsorted(self.cells, radii, side="right") - 1, 0, self.cells.size - 2)
+        nodes = self.cell_nodes[cells]
+        offset = np.asarray(radii)[:, None] - self.radii[nodes]
+        hit = offset == 0
+        weights = np.where(hit.any(axis=1, keepdims=True), hit, self._barycentric[cells] / np.where(hit, 1.0, offset))
+        return np.asarray(np.einsum("nk,nk->n", weights, values[nodes]) / weights.sum(axis=1))
 
-def lagrange(nodes: Array, x: float) -> tuple[Array, Array]:
-    """Values and derivatives at x of the Lagrange polynomials through `nodes`, shape (k,) each."""
-    n = nodes.size
-    difference = nodes[:, None] - nodes + np.eye(n)
-    factor = (x - nodes) / difference  # factor[j, m] = (x - x_m)/(x_j - x_m), with the diagonal taken as 1
-    np.fill_diagonal(factor, 1)
-    value = factor.prod(axis=1)
-    slope = np.zeros(n)
-    for m in range(n):
-        others = np.delete(factor, m, axis=1).prod(axis=1) / difference[:, m]
-        slope += np.where(np.arange(n) == m, 0, others)
-    return value, slope
+    @cached_property
+    def axis_row(self) -> Array:
+        """Row (q,) that interpolates nodal values on the axis."""
+        return self.interpolation(0.0)[0]
+
+    @cached_property
+    def unit_row(self) -> Array:
+        """Row (q,) that interpolates nodal values at radius 1, the edge on a grid that follows the contact."""
+        return self.interpolation(1.0)[0]
+
+    @cached_property
+    def _barycentric(self) -> Array:
+        """Weights 1/prod (u_j - u_m) of the nodes of each cell, (m, k)."""
+        nodes = self.radii[self.cell_nodes]
+        differences = nodes[:, :, None] - nodes[:, None, :] + np.eye(nodes.shape[1])
+        return np.asarray(1 / differences.prod(axis=2))
+
+
+def lagrange(nodes: Array, barycentric: Array, x: float) -> tuple[list[float], list[float]]:
+    """Values and derivatives at x of the Lagrange polynomials through k nodes.
+
+    Each is the product of all x - x_m but one: the products of those before it and of those after it, so that no
+    factor is divided out and x may be a node.
+    """
+    factors = [x - node for node in nodes.tolist()]
+    before = _running_products(factors)
+    after = _running_products(factors[::-1])[::-1]
+    weights = barycentric.tolist()
+    values = [b * p * s for b, (p, _), (s, _) in zip(weights, before, after, strict=True)]
+    slopes = [b * (dp * s + p * ds) for b, (p, dp), (s, ds) in zip(weights, before, after, strict=True)]
+    return values, slopes
+
+
+def _running_products(factors: list[float]) -> list[tuple[float, float]]:
+    """Product, and its derivative by x, of the factors before each."""
+    product, slope, running = 1.0, 0.0, []
+    for factor in factors:
+        running.append((product, slope))
+        product, slope = product * factor, slope * factor + product
+    return running
 
 
 def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:

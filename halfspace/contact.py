@@ -71,10 +71,7 @@ class ContactProblem:
         return np.append(H + alpha - mu * (s * u) ** 2 / 2 - w, self._scale_equation(H, s))
 
     def _scale_equation(self, H: Array, s: float) -> float:
-        return float(self._edge_row() @ H - self.law.edge_gap) if self.follows_contact else s - 1
-
-    def _edge_row(self) -> Array:
-        return self.operator.interpolation(1.0)[0]
+        return float(self.operator.unit_row @ H - self.law.edge_gap) if self.follows_contact else s - 1
 
     def jacobian(self, x: Array) -> Array:
         """Derivative of the residual, shape (q + 1, q + 2)."""
@@ -87,7 +84,7 @@ class ContactProblem:
         J[:-1, -1] = -mu * s * u**2 - mu * (C @ self.law.pressure(H, mu))
         J[-1] = 0
         if self.follows_contact:
-            J[-1, :-2] = self._edge_row()
+            J[-1, :-2] = self.operator.unit_row
         else:
             J[-1, -1] = 1
         return J
@@ -101,7 +98,20 @@ class ContactProblem:
 
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap and contact radius (nan without contact), shape (4,)."""
-        return np.array([x[-2], self.load(x), self._axis_row() @ x[:-2], self.contact_radius(x)])
+        return np.array([self._observable(x, index) for index in range(4)])
+
+    def weighted_observables(self, x: Array, weights: Array) -> float:
+        """Sum of the observables by the given weights; one of weight zero is not computed and need not exist."""
+        return float(sum(weights[index] * self._observable(x, index) for index in range(4) if weights[index]))
+
+    def _observable(self, x: Array, index: int) -> float:
+        if index == APPROACH:
+            return float(x[-2])
+        if index == LOAD:
+            return self.load(x)
+        if index == CENTRAL_GAP:
+            return float(self.operator.axis_row @ x[:-2])
+        return self.contact_radius(x)
 
     def load(self, x: Array) -> float:
         """W in R dgamma, positive in compression."""
@@ -115,16 +125,13 @@ class ContactProblem:
         """Nodal radii in beta, shape (q,)."""
         return np.asarray(x[-1] * self.operator.radii)
 
-    def _axis_row(self) -> Array:
-        return self.operator.interpolation(0.0)[0]
-
     def contact_radius(self, x: Array) -> float:
         """Largest radius in beta at which the gap is 3^(1/6) eps, or nan where the surfaces are further apart."""
         H, edge = x[:-2], self.law.edge_gap
         inside = np.flatnonzero(edge > H)
         if self.follows_contact:
             return float(x[-1])
-        if inside.size == 0 and self._axis_row() @ H > edge:
+        if inside.size == 0 and self.operator.axis_row @ H > edge:
             return float("nan")
         radii = np.append(self.operator.radii, self.operator.extent)
         below, above = (radii[inside[-1]], radii[inside[-1] + 1]) if inside.size else (0.0, radii[0])
@@ -139,7 +146,7 @@ class ContactProblem:
             row[:-2] += weights[LOAD] * s**2 * self.operator.weights * self.law.slope(H, self.tabor)
             row[-1] += weights[LOAD] * 2 * self.load(x) / s
         if weights[CENTRAL_GAP]:
-            row[:-2] += weights[CENTRAL_GAP] * self._axis_row()
+            row[:-2] += weights[CENTRAL_GAP] * self.operator.axis_row
         if weights[CONTACT_RADIUS]:
             row += weights[CONTACT_RADIUS] * self._radius_gradient(x)
         return row

@@ -198,7 +198,7 @@ def transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array:
     radii = target.operator.radii * scale
     inside = radii < source.operator.extent * x[-1]
     gap = np.empty(radii.size)
-    gap[inside] = [source.operator.interpolation(r / x[-1])[0] @ H for r in radii[inside]]
+    gap[inside] = source.operator.values_at(radii[inside] / x[-1], H)
     outside = radii[~inside]
     gap[~inside] = -alpha + source.tabor * (outside**2 / 2 + source.load(x) / (np.pi * outside))
     return np.concatenate([gap, [alpha, scale]])

@@ -33,6 +33,10 @@ class Equilibrium(Protocol):
         """Approach, load, central gap, contact radius."""
         ...
 
+    def weighted_observables(self, x: Array, weights: Array) -> float:
+        """Weighted sum of the observables."""
+        ...
+
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative of a weighted sum of the observables."""
         ...
@@ -72,11 +76,6 @@ class Control:
 
     weights: Array
     target: float
-
-    def excess(self, observables: Array) -> float:
-        """Weighted sum less the target; an observable of weight zero need not exist."""
-        used = self.weights != 0
-        return float(self.weights[used] @ observables[used] - self.target)
 
 
 def approach(value: float) -> Control:
@@ -164,7 +163,7 @@ def solve(
         except np.linalg.LinAlgError as error:
             raise NotConverged(f"{error} at Newton step {iteration}; try another control or a nearer start") from error
         update = problem.size(x, dx)
-        x, F, damping = _damped(problem, x, dx, control)
+        x, F, damping = _damped(problem, x, F, dx, control)
         if damping == 1 and update < tolerance:
             return Solution(x, problem.observables(x), iteration, update)
     raise NotConverged(
@@ -173,13 +172,13 @@ def solve(
     )
 
 
-def _damped(problem: Equilibrium, x: Array, dx: Array, control: Control) -> tuple[Array, Array, float]:
+def _damped(problem: Equilibrium, x: Array, F: Array, dx: Array, control: Control) -> tuple[Array, Array, float]:
     """Take the longest of the steps f dx, f/2 dx ... that keeps gaps positive and the residual in bounds.
 
     Where the surfaces repel, the law is steep and convex: a step that overshoots raises the residual once and then
     converges from one side. A line search that insists on descent would crawl there, so some growth is let through.
     """
-    merit = _misfit(problem, x, _equations(problem, x, control))
+    merit = _misfit(problem, x, F)
     damping = problem.longest_step(x, dx)
     while damping > 1e-4:
         trial = x + damping * dx
@@ -193,7 +192,7 @@ def _damped(problem: Equilibrium, x: Array, dx: Array, control: Control) -> tupl
 
 
 def _equations(problem: Equilibrium, x: Array, control: Control) -> Array:
-    return np.append(problem.residual(x), control.excess(problem.observables(x)))
+    return np.append(problem.residual(x), problem.weighted_observables(x, control.weights) - control.target)
 
 
 def _misfit(problem: Equilibrium, x: Array, F: Array) -> float:
