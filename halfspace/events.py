@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 EVENTS = ("pull_off", "jump_on", "jump_off", "zero_load")
 ARCLENGTH_TOLERANCE = 1e-12
-SHARED = 0.05  # one event's numbers err together: none counts as better than this fraction of the worst, by luck
+REMAINING = 0.5  # of a change between two discretisations: what is left if each errs at most a third of the one before
 ROUND_OFF = 1e-11  # what Newton's method, the root finder and the matrices leave, relative to 1 + the value
 
 
@@ -173,20 +173,20 @@ def _same_place(point: Point, problem: Equilibrium, start: Array, metric: Metric
     return make_point(problem, solution, metric, weights, point.arclength)
 
 
-def estimate_event(name: str, best: Located, changes: Sequence[tuple[Located, Located]]) -> Event:
+def estimate_event(name: str, chains: Sequence[Sequence[Located]]) -> Event:
     """Turn an event into numbers with error estimates.
 
     Parameters
     ----------
-    best : Located
-        The event on the finest discretisation.
-    changes : sequence of pairs
-        The event on two discretisations that differ in one respect; the changes of a number add up to its error.
+    chains : sequence of sequences of Located
+        The event on discretisations that differ in one respect from one to the next, all chains ending with the best.
+        Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
+        share by accident is not taken for exact.
     """
-    values = best.point.observables
-    size = 1 + np.abs(values)
-    errors = ROUND_OFF * size
-    for a, b in changes:
-        change = np.abs(a.point.observables - b.point.observables)
-        errors = errors + np.maximum(change, SHARED * np.nanmax(change / size) * size)
+    values = chains[0][-1].point.observables
+    changes = [
+        sum((np.abs(b.point.observables - a.point.observables) for a, b in pairwise(chain)), np.zeros(4))
+        for chain in chains
+    ]
+    errors = REMAINING * np.max(changes, axis=0) + ROUND_OFF * (1 + np.abs(values))
     return Event(name, *map(float, values), *map(float, errors))
