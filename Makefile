@@ -5,7 +5,7 @@ BIN    := $(VENV)/bin
 # The systems are small and dense: threads inside LAPACK cost more than they bring.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help compare test check bench clean
+.PHONY: help compare test check bench honesty clean
 
 help: ## show this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 10
@@ -23,6 +23,9 @@ check: $(VENV)/installed-dev ## check format, style and types
 
 bench: $(VENV)/installed-dev ## time the solvers beside a yardstick
 	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-enable --benchmark-columns=min,median,rounds -q
+
+honesty: $(VENV)/installed-dev ## check all error estimates against tighter solutions, over a fine net (five minutes)
+	HONESTY=1 $(BIN)/python -m pytest tests/test_honesty.py -k estimates -s
 
 clean: ## remove the environment and all caches
 	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

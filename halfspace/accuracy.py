@@ -1,8 +1,8 @@
 """The load-approach curve to an accuracy asked for: a ladder of discretisations, and the half-space's.
 
 The curve is traced on the lowest rung and each event solved for again on the next, and on more if need be. An event's
-error estimate is half its change from the last rung but one to the last: the change is nearly the lower rung's error,
-of which the higher rung is made to leave a tenth or less.
+error estimate is two thirds of its change from the last rung but one to the last: the change is nearly the lower
+rung's error, of which the higher rung is made to leave a tenth or less.
 """
 
 from __future__ import annotations
@@ -187,9 +187,10 @@ def resolution_for(tabor: float, rtol: float, level: int = 0) -> Resolution:
 def extent_for(tabor: float, rtol: float) -> float:
     """Outer end of the surface law, in beta/sqrt(mu).
 
-    The load left out beyond it, 11 pi/extent^4, is kept below rtol of the load at jump_on, about 2 mu^(-6/7).
+    The load left out beyond it, 11 pi/extent^4, is kept below rtol of the load at jump_on, about 2 mu^(-6/7), and
+    below a per cent of it for any rtol, lest it decide whether the curve folds.
     """
-    return float(2.5 * rtol**-0.25 * max(1.0, tabor) ** (6 / 28))
+    return float(2.5 * min(rtol, 0.01) ** -0.25 * max(1.0, tabor) ** (6 / 28))
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 EVENTS = ("pull_off", "jump_on", "jump_off", "zero_load")
 ARCLENGTH_TOLERANCE = 1e-12
-REMAINING = 0.5  # of a change between two discretisations: what is left if each errs at most a third of the one before
+REMAINING = 2 / 3  # of a change between two discretisations: what is left if each errs at most 2/5 of the one before
 ROUND_OFF = 1e-11  # what Newton's method, the root finder and the matrices leave, relative to 1 + the value
 
 

@@ -21,7 +21,7 @@ def test_yardstick_dgesv_of_200(benchmark):
     assert info == 0
 
 
-@pytest.mark.parametrize("tabor", [0.05, 1, 2, 5])
+@pytest.mark.parametrize("tabor", [0.05, 1, 2, 5, 100])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8])
 def test_halfspace_trace(benchmark, tabor, rtol):
     path = benchmark.pedantic(halfspace.trace, (tabor,), {"rtol": rtol}, rounds=5, warmup_rounds=1)
@@ -29,10 +29,20 @@ def test_halfspace_trace(benchmark, tabor, rtol):
 
 
 @pytest.mark.parametrize("tabor", [0.05, 1, 5])
-@pytest.mark.parametrize("rtol", [1e-4, 1e-5, 1e-7])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-5, 1e-7, 1e-8])
 def test_finite_element_trace(benchmark, tabor, rtol):
     path = benchmark.pedantic(fem_adhesion.trace, (Scene(tabor=tabor),), {"rtol": rtol}, rounds=3)
     assert path.event("pull_off").load_error < rtol * 10
+
+
+def test_pull_off_curve_of_60_tabor_parameters(benchmark):
+    """The curve of [G97] Fig. 7 to 1e-6, on one core."""
+
+    def curve():
+        return [halfspace.trace(tabor, rtol=1e-6).event("pull_off").load for tabor in np.geomspace(0.02, 10, 60)]
+
+    loads = benchmark.pedantic(curve, rounds=1)
+    assert np.all(np.diff(loads) > 0)
 
 
 def test_comparison(benchmark):
