@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 from skfem import MeshQuad, MeshTri
 
 from halfspace.compliance import Array, Index
+from halfspace.grid import geometric
 
 SizeFunction = Callable[[Array, Array], Array]
 """Largest edge wanted at (r, z), in beta."""
@@ -105,7 +105,8 @@ def graded_breaks(fine: float, fine_radius: float, length: float, *, growth: flo
     length : float
         Last break point, in beta.
     growth : float
-        Largest ratio of one cell to the one before, above 1; it is lowered so that a cell ends at `length`.
+        Ratio of one cell to the one before outside the uniform part, above 1; less for the first of them, so that a
+        cell ends at `length`.
 
     Returns
     -------
@@ -124,7 +125,8 @@ def graded_breaks(fine: float, fine_radius: float, length: float, *, growth: flo
     if not growth > 1.0:
         raise ValueError(f"growth = {growth} must be above 1; use a value between 1.2 and 3")
     uniform = np.linspace(0.0, fine_radius, int(np.ceil(fine_radius / fine - 1e-9)) + 1)
-    return np.append(uniform, fine_radius + _geometric_sums(uniform[1], length - fine_radius, growth))
+    outside = fine_radius + geometric(length - fine_radius, uniform[1], growth)[1:]
+    return np.concatenate([uniform, outside[:-1], [length]])
 
 
 def block_grid(fine: float, fine_radius: float, length: float, *, growth: float = 2.0) -> Any:
@@ -139,23 +141,6 @@ def block_grid(fine: float, fine_radius: float, length: float, *, growth: float 
 def with_named_boundaries(mesh: Any) -> Any:
     """Return the mesh with its boundaries named "axis" (r = 0), "contact" (z = 0) and "far" (the rest)."""
     return mesh.with_boundaries({"axis": lambda x: x[0] == 0.0, "contact": lambda x: x[1] == 0.0, "far": _far})
-
-
-def _geometric_sums(first: float, total: float, growth: float) -> Array:
-    """Return partial sums up to `total` of cells first*q, first*q^2, ... with the largest fitting q <= growth."""
-    if total <= first:
-        return np.array([total])
-    number = int(np.ceil(np.log1p(total / first * (growth - 1.0) / growth) / np.log(growth)))
-    powers = np.arange(1, number + 1)
-
-    def excess(ratio: float) -> float:
-        return float(first * np.sum(ratio**powers) - total)
-
-    # Below ratio 1 only when a few cells more than fill the rest.
-    ratio = brentq(excess, 0.0, growth * (1.0 + 1e-12), xtol=1e-15, rtol=1e-14)
-    sums = first * np.cumsum(ratio**powers)
-    sums[-1] = total
-    return sums
 
 
 def _too_large(mesh: Any, size: SizeFunction) -> Index:

@@ -33,12 +33,12 @@ def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0) 
         raise ValueError(f"radius {radius:g} lies outside 0 <= radius < extent = {extent:g}; move it inside the grid")
     if growth <= 1:
         raise ValueError(f"growth {growth:g} is not above 1; take about 2")
-    inner = radius - _geometric(radius, finest, growth)[::-1] if radius else np.zeros(1)
+    inner = radius - geometric(radius, finest, growth)[::-1] if radius else np.zeros(1)
     inner[0] = 0.0  # not what rounding leaves of it
-    return np.concatenate([inner, (radius + _geometric(extent - radius, finest, growth))[1:]])
+    return np.concatenate([inner, (radius + geometric(extent - radius, finest, growth))[1:]])
 
 
-def _geometric(length: float, finest: float, growth: float) -> Array:
+def geometric(length: float, finest: float, growth: float) -> Array:
     """Breakpoints from 0 to `length`: geometric with at most the given growth, the first at `finest` or less."""
     count = int(np.ceil(np.log1p((growth - 1) * length / finest) / np.log(growth) - 1e-9))
     steps = growth ** np.arange(max(count, 1))

@@ -105,8 +105,8 @@ def test_breaks_are_uniform_then_geometric_and_end_at_the_length(fine, fine_radi
     assert np.any(np.isclose(breaks, fine_radius, rtol=1e-14))
     assert steps[0] <= fine * (1.0 + 1e-9)
     assert np.all(ratios <= 2.0 * (1.0 + 1e-9))
-    geometric = ratios[breaks[1:-1] >= fine_radius * (1.0 - 1e-12)]
-    np.testing.assert_allclose(geometric, geometric[0], rtol=1e-6)
+    outside = ratios[breaks[1:-1] > fine_radius * (1.0 + 1e-12)]
+    np.testing.assert_allclose(outside, 2.0, rtol=1e-6)
 
 
 @pytest.mark.parametrize(
