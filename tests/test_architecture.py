@@ -22,8 +22,8 @@ FLOORS = [
     {"halfspace.path"},
     {"halfspace.newton"},
     {"halfspace.contact"},
-    {"halfspace.compliance"},
-    {"halfspace.kernel", "halfspace.grid", "halfspace.lennard_jones", "halfspace.limits", "halfspace.theories"},
+    {"halfspace.compliance", "halfspace.dmt", "halfspace.maugis", "halfspace.criteria"},
+    {"halfspace.kernel", "halfspace.grid", "halfspace.lennard_jones", "halfspace.limits", "halfspace.theories", "halfspace.scaling"},
 ]
 FLOOR_OF = {module: number for number, modules in enumerate(FLOORS) for module in modules}
 

@@ -1,0 +1,142 @@
+"""SI units to the dimensionless ones of the project and back, and the parameters that others use for Tabor's.
+
+This is the one place where SI units enter and leave: divide by a unit on the way in, multiply by it on the way out.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Units:
+    """Units of a contact, in SI.
+
+    Parameters
+    ----------
+    radius : float
+        Equivalent radius R of the spheres in m, see `equivalent_radius`.
+    modulus : float
+        Contact modulus E* in Pa, see `contact_modulus`.
+    work_of_adhesion : float
+        Work of adhesion dgamma in J/m^2.
+    spacing : float
+        Equilibrium spacing eps of the surface law in m.
+
+    Examples
+    --------
+    A pull-off force in newtons is ``-pull_off.load * units.load``.
+    """
+
+    radius: float
+    modulus: float
+    work_of_adhesion: float
+    spacing: float
+
+    def __post_init__(self) -> None:
+        """Refuse what is not finite and positive."""
+        for field, unit in zip(fields(self), ("m", "Pa", "J/m^2", "m"), strict=True):
+            _require_positive(getattr(self, field.name), field.name, unit)
+
+    @property
+    def tabor(self) -> float:
+        """Tabor parameter, mu^3 = R dgamma^2/(E*^2 eps^3)."""
+        return math.cbrt(self.radius * (self.work_of_adhesion / self.modulus) ** 2) / self.spacing
+
+    @property
+    def radius_ratio(self) -> float:
+        """Ratio rho = R/eps of a finite sphere."""
+        return self.radius / self.spacing
+
+    @property
+    def length(self) -> float:
+        """Unit beta of radii along the surface, beta^3 = R^2 dgamma/E*, in m."""
+        return math.cbrt(self.radius**2 * self.work_of_adhesion / self.modulus)
+
+    @property
+    def approach(self) -> float:
+        """Unit eps of gaps and approach in m."""
+        return self.spacing
+
+    @property
+    def load(self) -> float:
+        """Unit R dgamma of loads in N."""
+        return self.radius * self.work_of_adhesion
+
+    @property
+    def pressure(self) -> float:
+        """Unit dgamma/(mu eps) of pressures in Pa."""
+        return self.work_of_adhesion / (self.tabor * self.spacing)
+
+    @property
+    def stiffness(self) -> float:
+        """Unit R dgamma/eps of stiffness, of the contact and of the apparatus, in N/m."""
+        return self.load / self.approach
+
+    @property
+    def energy(self) -> float:
+        """Unit R dgamma eps of energies in J."""
+        return self.load * self.approach
+
+
+def contact_modulus(young: float, poisson: float, other_young: float = math.inf, other_poisson: float = 0.0) -> float:
+    """Contact modulus E* in Pa of two bodies: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; the other is rigid by default."""
+    compliance = _plane_strain_compliance(young, poisson) + _plane_strain_compliance(other_young, other_poisson)
+    if compliance == 0:
+        raise ValueError("young = inf for both bodies is outside young < inf for one; give the modulus of the softer")
+    return 1 / compliance
+
+
+def equivalent_radius(radius: float, other_radius: float = math.inf) -> float:
+    """Equivalent radius R in m of two spheres: 1/R = 1/R1 + 1/R2; flat if infinite, a socket if negative."""
+    curvature = 1 / radius + 1 / other_radius if radius and other_radius else math.nan
+    if not 0 < curvature < math.inf:
+        raise ValueError(
+            f"radius = {radius:g} m and {other_radius:g} m have a curvature 1/R1 + 1/R2 outside 0 < 1/R; "
+            "let a socket (negative) be wider than its ball, and a flat infinite"
+        )
+    return 1 / curvature
+
+
+def _plane_strain_compliance(young: float, poisson: float) -> float:
+    if young != math.inf:
+        _require_positive(young, "young", "Pa")
+    if not -1 < poisson <= 0.5:
+        raise ValueError(f"poisson = {poisson:g} is outside -1 < poisson <= 0.5; take 0.5 for rubber")
+    return (1 - poisson**2) / young
+
+
+def _require_positive(value: float, name: str, unit: str) -> None:
+    if not 0 < value < math.inf:
+        raise ValueError(f"{name} = {value:g} {unit} is outside 0 < {name} < inf; give it in {unit}")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter in use for the Tabor parameter mu, [G97] App. A: factor mu^power.
+
+    Pass from one to another by way of mu: ``MAUGIS.of(ATTARD_PARKER.tabor(0.5))``.
+    """
+
+    factor: float
+    power: float = 1.0
+
+    def of(self, tabor: ArrayLike) -> Array:
+        """Value at a Tabor parameter."""
+        return np.asarray(self.factor * np.asarray(tabor, float) ** self.power)
+
+    def tabor(self, value: ArrayLike) -> Array:
+        """Tabor parameter at a value."""
+        return np.asarray((np.asarray(value, float) / self.factor) ** (1 / self.power))
+
+
+MYD_AMPLIFICATION = Parameter(math.cbrt(6 * math.pi**2))  # mu_T = 3.898 mu, Muller, Yushchenko & Derjaguin
+MYD = Parameter(32 / (3 * math.pi) * math.cbrt(2 / math.pi))  # mu_D = 2.9208 mu, the same (1980), Pashley (1984)
+MAUGIS = Parameter(16 / (9 * math.sqrt(3)) * math.cbrt(9 / (2 * math.pi)))  # lambda = 1.1570 mu at the same tension
+ATTARD_PARKER = Parameter(0.5, 1.5)  # sigma_AP = mu^(3/2)/2

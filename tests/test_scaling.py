@@ -1,0 +1,104 @@
+"""SI units and other people's parameters, there and back."""
+
+import math
+
+import numpy as np
+import pytest
+
+from halfspace import scaling, theories
+from halfspace.maugis import MaugisDugdale
+from halfspace.scaling import Units
+
+SILICA = {"radius": 1e-6, "modulus": 40e9, "work_of_adhesion": 0.05, "spacing": 0.3e-9}
+
+
+def test_units_of_a_silica_bead():
+    units = Units(**SILICA)
+    assert units.tabor == pytest.approx((1e-6 * 0.05**2 / (40e9**2 * 0.3e-9**3)) ** (1 / 3))
+    assert units.load == pytest.approx(50e-9)
+    assert units.length**3 == pytest.approx(1e-12 * 0.05 / 40e9)
+    assert units.length**2 / units.radius == pytest.approx(units.tabor * units.approach)  # beta^2/R = mu eps
+    assert units.pressure * units.length**2 == pytest.approx(units.load)
+    assert units.stiffness * units.approach**2 == pytest.approx(units.energy)
+    assert units.radius_ratio == pytest.approx(1e-6 / 0.3e-9)
+
+
+def test_hertz_in_si():
+    """W = 4/3 E* sqrt(R) alpha^(3/2) in newtons, by way of the dimensionless theory."""
+    units = Units(**SILICA)
+    alpha = 2e-9
+    W = theories.hertz_load(theories.hertz_radius_at(alpha / units.approach, units.tabor)) * units.load
+    assert float(W) == pytest.approx(4 / 3 * 40e9 * math.sqrt(1e-6) * alpha**1.5)
+
+
+def test_jkr_in_si():
+    """4 E* a^3/(3 R) = W + 3 pi R dgamma + sqrt(6 pi R dgamma W + (3 pi R dgamma)^2), [G97] (1.5)."""
+    units = Units(**SILICA)
+    W, g = 80e-9, 1e-6 * 0.05
+    a = float(theories.jkr_radius(W / units.load)) * units.length
+    right = W + 3 * math.pi * g + math.sqrt(6 * math.pi * g * W + (3 * math.pi * g) ** 2)
+    assert 4 * 40e9 * a**3 / (3 * 1e-6) == pytest.approx(right)
+
+
+@pytest.mark.parametrize("name", SILICA)
+@pytest.mark.parametrize("value", [0.0, -1.0, math.inf, math.nan])
+def test_units_out_of_range_are_refused_in_one_line(name, value):
+    with pytest.raises(ValueError, match=rf"^{name} = \S+ \S+ is outside 0 < {name} < inf; give it in \S+$"):
+        Units(**SILICA | {name: value})
+
+
+def test_contact_modulus():
+    assert scaling.contact_modulus(70e9, 0.2) == pytest.approx(70e9 / 0.96)
+    assert scaling.contact_modulus(70e9, 0.2, 70e9, 0.2) == pytest.approx(70e9 / 1.92)
+    soft_on_hard = scaling.contact_modulus(1e6, 0.5, 200e9, 0.3)
+    assert soft_on_hard == pytest.approx(1e6 / 0.75, rel=1e-5)
+    assert soft_on_hard == scaling.contact_modulus(200e9, 0.3, 1e6, 0.5)
+
+
+def test_equivalent_radius():
+    assert scaling.equivalent_radius(2.0) == 2.0
+    assert scaling.equivalent_radius(2.0, 2.0) == 1.0
+    assert scaling.equivalent_radius(1.0, -2.0) == 2.0
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        (lambda: scaling.contact_modulus(-1.0, 0.3), r"young = -1 Pa is outside 0 < young < inf; give it in Pa"),
+        (lambda: scaling.contact_modulus(1e9, 0.6), r"poisson = 0.6 is outside -1 < poisson <= 0.5; take"),
+        (lambda: scaling.contact_modulus(math.inf, 0.3), r"young = inf for both bodies is outside .*; give"),
+        (lambda: scaling.equivalent_radius(1.0, -0.5), r"radius = 1 m and -0.5 m .* outside 0 < 1/R; let"),
+        (lambda: scaling.equivalent_radius(0.0), r"radius = 0 m"),
+        (lambda: scaling.equivalent_radius(math.nan), r"radius = nan m"),
+        (lambda: scaling.equivalent_radius(math.inf), r"radius = inf m"),
+    ],
+)
+def test_bad_bodies_are_refused(bad, message):
+    with pytest.raises(ValueError, match=message):
+        bad()
+
+
+@pytest.mark.parametrize(
+    ("parameter", "at_one"),
+    [
+        (scaling.MYD_AMPLIFICATION, 3.898),
+        (scaling.MYD, 2.9208),
+        (scaling.MAUGIS, 1.1570),
+        (scaling.ATTARD_PARKER, 0.5),
+    ],
+)
+def test_parameters_of_appendix_a_there_and_back(parameter, at_one):
+    assert parameter.of(1.0) == pytest.approx(at_one, rel=1e-4)
+    tabor = np.geomspace(1e-3, 1e2, 20)
+    np.testing.assert_allclose(parameter.tabor(parameter.of(tabor)), tabor, rtol=1e-14)
+
+
+def test_from_one_parameter_to_another_and_back():
+    value = np.array([0.01, 0.5, 40.0])
+    lam = scaling.MAUGIS.of(scaling.ATTARD_PARKER.tabor(value))
+    np.testing.assert_allclose(lam, 1.1570116 * (2 * value) ** (2 / 3), rtol=1e-7)
+    np.testing.assert_allclose(scaling.ATTARD_PARKER.of(scaling.MAUGIS.tabor(lam)), value, rtol=1e-14)
+
+
+def test_lambda_is_that_of_the_theory_matched_to_the_largest_tension():
+    assert MaugisDugdale.matched(3.0).maugis == pytest.approx(float(scaling.MAUGIS.of(3.0)), rel=1e-14)
