@@ -8,12 +8,14 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:
+    Commands = argparse._SubParsersAction["Parser"]
+
     from rich.console import Console
 
     from fem_adhesion.scene import Scene
@@ -53,6 +55,13 @@ def make_parser() -> Parser:
     """Parser of all commands."""
     parser = Parser(prog="fem-adhesion", description="Adhesive contact of elastic spheres by two solvers.")
     commands = parser.add_subparsers(required=True, metavar="command", parser_class=Parser)
+    _add_compare(commands)
+    _add_speed(commands)
+    _add_hard(commands)
+    return parser
+
+
+def _add_compare(commands: Commands) -> None:
     compare = commands.add_parser(
         "compare",
         help="check that the half-space and the finite-element solver agree",
@@ -61,19 +70,41 @@ def make_parser() -> Parser:
         "Exit code 0: all agree, 1: some do not, 2: bad input.",
         epilog="example: fem-adhesion compare --tabor 0.5 2 --rtol 1e-4",
     )
-    compare.add_argument(
-        "--tabor",
-        nargs="+",
-        type=float,
-        default=[0.05, 0.5, 1, 2, 3, 5],
-        help="Tabor parameters, positive",
-        metavar="MU",
-    )
+    tabors = [0.05, 0.5, 1, 2, 3, 5]
+    compare.add_argument("--tabor", nargs="+", type=float, default=tabors, help="Tabor parameters", metavar="MU")
     compare.add_argument("--poisson", type=float, default=0.3, help="Poisson's ratio, 0 <= nu < 0.5", metavar="NU")
     compare.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy of the comparison, 1e-9 to 1e-1")
     compare.add_argument("--json", type=Path, help="also write the result to this file", metavar="FILE")
     compare.set_defaults(run=run_compare)
-    return parser
+
+
+def _add_speed(commands: Commands) -> None:
+    speed = commands.add_parser(
+        "speed",
+        help="measure what each digit costs, by every method in the house",
+        description="Time every method on a ladder of resolutions and plot error against wall time.",
+        epilog="example: fem-adhesion speed --out speed --quick",
+    )
+    speed.add_argument("--tabor", type=float, default=1.0, help="Tabor parameter, 0.05 to 2", metavar="MU")
+    speed.add_argument("--quick", action="store_true", help="finish in half a minute, at lower accuracies")
+    _add_output(speed)
+    speed.set_defaults(run=run_speed)
+
+
+def _add_hard(commands: Commands) -> None:
+    hard = commands.add_parser(
+        "hard",
+        help="run the hard cases: a number within its estimate, or a clear refusal",
+        description="Run the cases that are hard for the solvers. Exit code 1 if one ends in a wrong number.",
+        epilog="example: fem-adhesion hard --out hard",
+    )
+    _add_output(hard)
+    hard.set_defaults(run=run_hard)
+
+
+def _add_output(command: Parser) -> None:
+    command.add_argument("--out", type=Path, required=True, help="directory for the results", metavar="DIR")
+    command.add_argument("--force", action="store_true", help="replace files in a directory that is not empty")
 
 
 def run_compare(options: argparse.Namespace) -> int:
@@ -98,24 +129,19 @@ def run_compare(options: argparse.Namespace) -> int:
 def _compare_with_progress(scenes: Sequence[Scene], rtol: float) -> list[Case | Failure]:
     """Run the cases with a bar on standard error and tables on standard output."""
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
     from fem_adhesion.studies import crosscheck
 
     console = Console(width=None if sys.stdout.isatty() else 150)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    names = [f"tabor {scene.tabor:g}" for scene in scenes] + ["done"]
     cases: list[Case | Failure] = []
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(_at_work(scenes, 0), total=len(scenes))
+    with _progress_bar() as step:
+        step(names[0], 0, len(scenes))
         for case in crosscheck.run(scenes, rtol=rtol):
             cases.append(case)
             _show(case, console)
-            progress.update(task, advance=1, description=_at_work(scenes, len(cases)))
+            step(names[len(cases)], len(cases), len(scenes))
     return cases
-
-
-def _at_work(scenes: Sequence[Scene], number: int) -> str:
-    return f"tabor {scenes[number].tabor:g}" if number < len(scenes) else "done"
 
 
 def _show(case: Case | Failure, console: Console) -> None:
@@ -129,6 +155,56 @@ def _show(case: Case | Failure, console: Console) -> None:
         for row in case.rows:
             console.print(f"  {row.quantity}: {row.verdict}")
     console.print()
+
+
+def run_speed(options: argparse.Namespace) -> int:
+    """Measure, draw and write the speed study."""
+    from fem_adhesion.output import speed_report
+    from fem_adhesion.output.files import directory_written_aside
+    from fem_adhesion.studies import speed
+
+    speed.require_tabor(options.tabor)
+    with directory_written_aside(options.out, force=options.force) as aside, _progress_bar() as step:
+        study = speed.measure(options.tabor, quick=options.quick, progress=step)
+        speed_report.write(study, aside)
+    print((options.out / "speed.md").read_text(), end="")
+    return AGREE
+
+
+def run_hard(options: argparse.Namespace) -> int:
+    """Run the hard cases, print their tables and write them."""
+    from rich.console import Console
+
+    from fem_adhesion.output import hard_report
+    from fem_adhesion.output.files import directory_written_aside
+    from fem_adhesion.studies import hard_bodies, hard_cases
+
+    cases = hard_cases.cases()
+    names = [*(case.name for case in cases), "locking"]
+    rows: list[hard_cases.Row] = []
+    with directory_written_aside(options.out, force=options.force) as aside:
+        with _progress_bar() as step:
+            step(names[0], 0, len(names))
+            for row in hard_cases.run(cases):
+                rows.append(row)
+                step(names[len(rows)], len(rows), len(names))
+            locking = list(hard_bodies.locking())
+        hard_report.write_hard(aside, rows, locking)
+    console = Console(width=None if sys.stdout.isatty() else 150)
+    console.print(hard_report.cases_table(rows), hard_report.locking_table(locking))
+    return DISAGREE if any(row.outcome == "wrong" for row in rows) else AGREE
+
+
+@contextmanager
+def _progress_bar() -> Iterator[Callable[[str, int, int], None]]:
+    """Bar on standard error; the function it gives says what is under way, how much is done and of how much."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("", total=None)
+        yield lambda name, done, total: progress.update(task, description=name, completed=done, total=total)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from fem_adhesion.elasticity import (
+    CellStiffness,
     Space,
     boundary_basis,
     cell_stiffness,
@@ -90,6 +91,8 @@ class CondensedBody:
         Mesh and element.
     poisson : float
         Poisson's ratio.
+    stiffness : callable
+        Stiffness of its cells.
     skeleton, exterior, surface
         The parts it was made of.
     factors : scipy.sparse.linalg.SuperLU
@@ -99,6 +102,7 @@ class CondensedBody:
     operator: ElasticOperator
     space: Space
     poisson: float
+    stiffness: CellStiffness
     skeleton: Skeleton
     exterior: Exterior
     surface: Surface
@@ -143,14 +147,19 @@ class CondensedBody:
         """Return the elastic energy of block and exterior, in E* beta^3, summed over the cells."""
         x, u = self.reduced_displacement(pressure), self.displacement(pressure)
         cells = u[self.space.cell_dofs].T
-        inside = np.einsum("ci,cij,cj->", cells, cell_stiffness(self.space, self.poisson), cells, optimize=True)
+        inside = np.einsum("ci,cij,cj->", cells, self.stiffness(self.space, self.poisson), cells, optimize=True)
         outside = x @ (self.exterior.stiffness @ x)
         spring = self.exterior.rigid_compliance * (self.operator.weights @ pressure) ** 2
         return 0.5 * float(inside + outside - spring)
 
 
 def condense(
-    space: Space, poisson: float, *, far_field: FarField = point_load, points: int | None = None
+    space: Space,
+    poisson: float,
+    *,
+    far_field: FarField = point_load,
+    points: int | None = None,
+    stiffness: CellStiffness = cell_stiffness,
 ) -> CondensedBody:
     """Factorise the block once and condense it to its contact surface.
 
@@ -167,6 +176,8 @@ def condense(
         `point_load`, `clamped` or `free`, see `fem_adhesion.far_field`.
     points : int, optional
         Gauss points per contact facet, more than the degree p of the element; p + 2 unless given.
+    stiffness : callable
+        Stiffness of the cells; `fem_adhesion.incompressible.projected_stiffness` does not lock.
 
     Returns
     -------
@@ -183,10 +194,10 @@ def condense(
         raise ValueError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
     surface = contact_surface(space, points)
     exterior = far_field(space, poisson)
-    skeleton = eliminate_interiors(space, cell_stiffness(space, poisson))
+    skeleton = eliminate_interiors(space, stiffness(space, poisson))
     factors = factorise(skeleton, exterior)
     operator = surface_operator(surface, exterior, factors)
-    return CondensedBody(operator, space, poisson, skeleton, exterior, surface, factors)
+    return CondensedBody(operator, space, poisson, stiffness, skeleton, exterior, surface, factors)
 
 
 def contact_surface(space: Space, points: int) -> Surface:

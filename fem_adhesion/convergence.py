@@ -11,16 +11,21 @@ from skfem import ElementQuadP
 from fem_adhesion import far_field
 from fem_adhesion.condensed import condense
 from fem_adhesion.elasticity import Space
+from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.mesh import graded_breaks, tensor_grid
 from fem_adhesion.scene import Scene
 from halfspace import grid
 from halfspace.accuracy import MOST_RUNGS, Charts, Rung, climb, extent_for, rings
 from halfspace.contact import ContactProblem, spike_width
 from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
-from halfspace.limits import require_rtol
+from halfspace.limits import require_load, require_rtol
 from halfspace.theories import jkr_radius
 
 FAR_FIELDS = {"point_load": far_field.point_load, "clamped": far_field.clamped, "free": far_field.free}
+
+# Ratio of the block's radii on two successive rungs. The load left out beyond a block that goes on as a half-space
+# falls as L^-4: a decade. Held blocks err by O(1/L): half the change from L/3 to L exceeds the error at L.
+LARGER = {"point_load": 10**0.25, "clamped": 3.2, "free": 3.2}
 
 
 @dataclass(frozen=True)
@@ -71,6 +76,7 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
         If the curve cannot be traced.
     """
     require_rtol(rtol)
+    require_load(to_load)
     most_rungs = MOST_RUNGS if scene.radius is None else 1
     return climb(rtol, partial(ladder, scene, rtol, to_load), to_load=to_load, most_rungs=most_rungs)
 
@@ -80,16 +86,19 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     above, below = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
     wider = Resolution(below.degree, below.finest, below.growth, above.radius)
     stages = (wider, above) if level else (above,)
-    return Rung(tuple(block_charts(scene, stage, to_load) for stage in stages), asdict(above))
+    charts = tuple(block_charts(scene, stage, to_load) for stage in stages)
+    # A block of given size is compared with one other size only, and if both are small most of the error is left.
+    return Rung(charts, asdict(above), remaining=1.0 if scene.radius is None else 2.0)
 
 
 def resolution_for(scene: Scene, rtol: float, level: int) -> Resolution:
     """Resolution of a level, whose events are right to about `rtol` at level 0 and a decade better at each above it."""
     degree = int(np.clip(np.ceil(-np.log10(rtol)), 3, 9)) + level
+    larger = LARGER[scene.far_field]
     if scene.radius is None:
-        radius = extent_for(scene.tabor, rtol / 10**level) / np.sqrt(scene.tabor)
+        radius = extent_for(scene.tabor, rtol) / np.sqrt(scene.tabor) * larger**level
     else:
-        radius = scene.radius if level else scene.radius / 2
+        radius = scene.radius if level else scene.radius / larger
     return Resolution(degree, finest=0.6, growth=2.5, radius=float(radius))
 
 
@@ -120,6 +129,7 @@ def _chart(
     """Condense the block whose cells have these radii, graded in depth from the finest of them."""
     depths = grid.graded(0.0, np.diff(r_breaks).min(), r_breaks[-1], growth=resolution.growth)
     space = Space(tensor_grid(r_breaks, depths), ElementQuadP(resolution.degree))
-    body = condense(space, scene.poisson, far_field=FAR_FIELDS[scene.far_field])
+    stiffness = stiffness_for(scene.poisson)
+    body = condense(space, scene.poisson, far_field=FAR_FIELDS[scene.far_field], stiffness=stiffness)
     problem = ContactProblem(body.operator, scene.tabor, follows_contact=follows_contact)
     return Chart(problem, body.unknowns, until)

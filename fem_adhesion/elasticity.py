@@ -6,7 +6,7 @@ Lengths in beta and E* = 1, so Young's modulus is E = 1 - nu^2. Strains and stre
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
@@ -97,6 +97,10 @@ class Space:
         return int(self.element.facet_dofs) + 1
 
 
+CellStiffness = Callable[[Space, float], Array]
+"""Stiffness matrices of all cells of a space at a Poisson's ratio, as `cell_stiffness` returns them."""
+
+
 def lame_parameters(poisson: float) -> tuple[float, float]:
     """Return Lamé's (lambda, G) of the material with E* = E/(1 - nu^2) = 1.
 
@@ -111,11 +115,16 @@ def lame_parameters(poisson: float) -> tuple[float, float]:
     return E * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), E / (2.0 * (1.0 + poisson))
 
 
+def shear_matrix(poisson: float) -> Array:
+    """Return the (4, 4) part of the elastic matrix that goes with G, in units of E*."""
+    _, G = lame_parameters(poisson)
+    return np.diag([2.0 * G, 2.0 * G, 2.0 * G, G])
+
+
 def elastic_matrix(poisson: float) -> Array:
     """Return the (4, 4) matrix D of stress = D strain, in units of E*."""
-    lam, G = lame_parameters(poisson)
-    D = np.diag([2.0 * G, 2.0 * G, 2.0 * G, G])
-    D[:3, :3] += lam
+    D = shear_matrix(poisson)
+    D[:3, :3] += lame_parameters(poisson)[0]
     return D
 
 
@@ -181,15 +190,25 @@ def cell_stiffness(space: Space, poisson: float) -> Array:
     """
     D = elastic_matrix(poisson)
     K = np.empty((space.mesh.nelements, *2 * [len(space.cell_dofs)]))
+    for cells, B, dA in cell_strains(space):
+        K[cells] = strain_products(D, B, dA)
+    return K
+
+
+def strain_products(D: Array, B: Array, dA: Array) -> Array:
+    """Return int B' D B dA of every cell, (cells, 2 n, 2 n), from `cell_strains`."""
+    stress = (D @ B.reshape(*B.shape[:2], -1)).reshape(B.shape) * dA[:, None, :, None]
+    rows = (len(B), -1, B.shape[-1])
+    products: Array = B.reshape(rows).transpose(0, 2, 1) @ stress.reshape(rows)
+    return products
+
+
+def cell_strains(space: Space) -> Iterator[tuple[Index, Array, Array]]:
+    """Cut the cells into batches: their numbers, their strains B, (cells, 4, q, 2 n), and 2 pi r dr dz, (cells, q)."""
     for cells, basis in _batches(space):
         value, grad = np.array([b[0] for b in basis.basis]), np.array([b[0].grad for b in basis.basis])
         r = basis.global_coordinates()[0]
-        B = strain_displacement(value, grad, r)
-        dA = (ring_measure(r) * basis.dx)[:, :, None]
-        stress = (D @ B.reshape(*B.shape[:2], -1)).reshape(B.shape) * dA[:, None]
-        rows = (len(B), -1, B.shape[-1])
-        K[cells] = B.reshape(rows).transpose(0, 2, 1) @ stress.reshape(rows)
-    return K
+        yield cells, strain_displacement(value, grad, r), ring_measure(r) * basis.dx
 
 
 def boundary_basis(space: Space, name: str, points: int) -> Any:
@@ -245,9 +264,14 @@ def trace_matrix(basis: Any, functions: Index) -> sparse.csr_array:
 
 def scatter(blocks: Array, dofs: Index, size: int) -> sparse.csc_array:
     """Add up the (cells, n, n) blocks of the (n, cells) unknowns in a sparse matrix of the given size."""
-    rows = np.broadcast_to(dofs.T[:, :, None], blocks.shape).ravel()
-    columns = np.broadcast_to(dofs.T[:, None, :], blocks.shape).ravel()
-    return sparse.csc_array((blocks.ravel(), (rows, columns)), shape=(size, size))
+    return scatter_pairs(blocks, dofs, dofs, (size, size))
+
+
+def scatter_pairs(blocks: Array, row_dofs: Index, column_dofs: Index, shape: tuple[int, int]) -> sparse.csc_array:
+    """Add up (cells, m, n) blocks that couple the (m, cells) unknowns of one space with the (n, cells) of another."""
+    rows = np.broadcast_to(row_dofs.T[:, :, None], blocks.shape).ravel()
+    columns = np.broadcast_to(column_dofs.T[:, None, :], blocks.shape).ravel()
+    return sparse.csc_array((blocks.ravel(), (rows, columns)), shape=shape)
 
 
 def _batches(space: Space) -> Iterator[tuple[Index, Any]]:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from halfspace.limits import require_poisson, require_tabor
+from halfspace.limits import require_fixed_mesh, require_poisson, require_radius, require_tabor
 
 FarFieldName = Literal["point_load", "clamped", "free"]
 
@@ -41,8 +40,10 @@ class Scene:
     def __post_init__(self) -> None:
         require_tabor(self.tabor)
         require_poisson(self.poisson)
-        if self.radius is not None and not (math.isfinite(self.radius) and self.radius > 5):
-            raise ValueError(f"radius = {self.radius:g} is outside 5 < radius; a contact is 2 to 3 beta wide, take 50")
+        if self.radius is not None:
+            require_radius(self.radius, self.tabor)
         if self.far_field not in get_args(FarFieldName):
             names = ", ".join(get_args(FarFieldName))
             raise ValueError(f"far_field = {self.far_field!r} is not one of {names}; take point_load")
+        if self.far_field != "point_load":
+            require_fixed_mesh(self.tabor)

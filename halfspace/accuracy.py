@@ -1,7 +1,7 @@
 """The load-approach curve to an accuracy asked for: a ladder of discretisations, and the half-space's.
 
 The curve is traced on the lowest rung and each event solved for again on the next, and on more if need be. An event's
-error estimate is two thirds of its change from the last rung but one to the last: the change is nearly the lower
+error estimate is half its change from the last rung but one to the last: the change is nearly the lower
 rung's error, of which the higher rung is made to leave a tenth or less.
 """
 
@@ -27,13 +27,13 @@ from halfspace.curve import (
     transfer,
 )
 from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event, relocate
-from halfspace.limits import require_rtol, require_tabor
+from halfspace.limits import require_load, require_rtol, require_tabor
 from halfspace.newton import NotConverged
 from halfspace.theories import jkr_radius
 
 FINER = 30  # ratio of the errors of two successive rungs
 MOST_RUNGS = 3  # above the lowest
-TWIN = 0.75  # length of a twin's finest cells in those of its sibling
+TWIN = (0.75, 0.87)  # finest cells and growth of a twin, in those of its sibling: no cell of the two is the same
 
 Charts = Sequence[Chart]
 State = Mapping[str, Located]
@@ -51,11 +51,14 @@ class Rung:
         How the last stage is discretised.
     twin : chart set or None
         As fine as the rung below, with other cells: it errs as much, but not by the same accident of sign.
+    remaining : float
+        Part of the changes that may be left as error; above 1 where the error falls slowly from stage to stage.
     """
 
     stages: tuple[Charts, ...]
     settings: Mapping[str, object]
     twin: Charts | None = None
+    remaining: float = REMAINING
 
 
 def climb(
@@ -102,14 +105,14 @@ def _climb_from(
         higher = rung(level)
         chains = _step_up(state, higher)
         state = chains[0][-1]
-        events = _estimate(chains)
+        events = _estimate(chains, higher.remaining)
         if all(_meets(event, rtol) for event in events.values()):
             break
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,
         events,
-        _energy(chains),
+        _energy(chains, higher.remaining),
         tuple(chains[0]),
         max(chart.unknowns for chart in higher.stages[-1]),
         time.perf_counter() - began,
@@ -137,17 +140,19 @@ def _on_all(state: State, charts: Charts) -> State:
     return {name: _on_charts(event, charts) for name, event in state.items()}
 
 
-def _estimate(chains: Sequence[Sequence[State]]) -> dict[str, Event]:
+def _estimate(chains: Sequence[Sequence[State]], remaining: float) -> dict[str, Event]:
     """Events of the last state, with their changes along the chains as errors."""
     names = [name for name in EVENTS if name in chains[0][-1]]
-    return {name: estimate_event(name, [[state[name] for state in chain] for chain in chains]) for name in names}
+    return {
+        name: estimate_event(name, [[state[name] for state in chain] for chain in chains], remaining) for name in names
+    }
 
 
-def _energy(chains: Sequence[Sequence[State]]) -> Estimate:
+def _energy(chains: Sequence[Sequence[State]], remaining: float) -> Estimate:
     values = [[energy_released(state) for state in chain] for chain in chains]
     best = values[0][-1]
     change = max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
-    return Estimate(best, REMAINING * change + ROUND_OFF * (1 + abs(best)))
+    return Estimate(best, remaining * change + ROUND_OFF * (1 + abs(best)))
 
 
 def _meets(event: Event, rtol: float) -> bool:
@@ -181,7 +186,7 @@ class Resolution:
 def resolution_for(tabor: float, rtol: float, level: int = 0) -> Resolution:
     """Resolution whose events are right to about `rtol` at level 0, and some 30 times better at each level above it."""
     nodes = int(np.clip(np.ceil(3.5 - 0.75 * np.log10(rtol)) + 2 * level, 5, 16))
-    return Resolution(nodes, finest=0.6, growth=3.0, extent=extent_for(tabor, rtol / FINER**level))
+    return Resolution(nodes, finest=0.6, growth=3.0, extent=extent_for(tabor, rtol) * FINER ** (level / 4))
 
 
 def extent_for(tabor: float, rtol: float) -> float:
@@ -254,14 +259,15 @@ def trace(tabor: float, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
     """
     require_tabor(tabor)
     require_rtol(rtol)
+    require_load(to_load)
 
     def rung(level: int) -> Rung:
         resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
-        twin = replace(below, finest=TWIN * below.finest)
-        return Rung(
-            (half_space_charts(tabor, resolution, to_load),),
-            asdict(resolution),
-            half_space_charts(tabor, twin, to_load) if level else None,
-        )
+        if not level:
+            return Rung((half_space_charts(tabor, resolution, to_load),), asdict(resolution))
+        wider = replace(below, extent=resolution.extent)
+        twin = replace(wider, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
+        charts = [half_space_charts(tabor, r, to_load) for r in (wider, resolution, twin)]
+        return Rung((charts[0], charts[1]), asdict(resolution), charts[2])
 
     return climb(rtol, rung, to_load=to_load)

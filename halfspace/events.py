@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 EVENTS = ("pull_off", "jump_on", "jump_off", "zero_load")
 ARCLENGTH_TOLERANCE = 1e-12
-REMAINING = 2 / 3  # of a change between two discretisations: what is left if each errs at most 2/5 of the one before
+REMAINING = 0.5  # of a change between two discretisations: what is left if each errs at most a third of the one before
 ROUND_OFF = 1e-11  # what Newton's method, the root finder and the matrices leave, relative to 1 + the value
 
 
@@ -173,7 +173,7 @@ def _same_place(point: Point, problem: Equilibrium, start: Array, metric: Metric
     return make_point(problem, solution, metric, weights, point.arclength)
 
 
-def estimate_event(name: str, chains: Sequence[Sequence[Located]]) -> Event:
+def estimate_event(name: str, chains: Sequence[Sequence[Located]], remaining: float = REMAINING) -> Event:
     """Turn an event into numbers with error estimates.
 
     Parameters
@@ -182,11 +182,13 @@ def estimate_event(name: str, chains: Sequence[Sequence[Located]]) -> Event:
         The event on discretisations that differ in one respect from one to the next, all chains ending with the best.
         Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
         share by accident is not taken for exact.
+    remaining : float
+        Part of that change that may be left.
     """
     values = chains[0][-1].point.observables
     changes = [
         sum((np.abs(b.point.observables - a.point.observables) for a, b in pairwise(chain)), np.zeros(4))
         for chain in chains
     ]
-    errors = REMAINING * np.max(changes, axis=0) + ROUND_OFF * (1 + np.abs(values))
+    errors = remaining * np.max(changes, axis=0) + ROUND_OFF * (1 + np.abs(values))
     return Event(name, *map(float, values), *map(float, errors))

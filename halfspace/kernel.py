@@ -21,6 +21,7 @@ GRADING = 5  # q of the substitution; with NEAR_POINTS it leaves 1e-13 for panel
 NEAR_POINTS = 64
 FAR_POINTS = 24
 FAR_DISTANCE = 1.0  # in panel lengths
+BATCH = 2_000_000  # points at which the kernel is evaluated at a time: 16 MB an array
 
 
 def ring_kernel(r: Array, s: Array) -> Array:
@@ -83,17 +84,23 @@ def panel_integrals(targets: Array, breakpoints: Array, nodes: Array) -> Array:
     (n, m, k) array
         Deflection at r_i (E* = 1) by the pressure l_k on panel j, absolute accuracy 1e-12 of the panel's scale.
     """
+    targets = np.asarray(targets, float)
+    batches = -(-targets.size * (breakpoints.size - 1) * FAR_POINTS // BATCH)
+    moments = [_moments(some, breakpoints, nodes.size) for some in np.array_split(targets, batches)]
+    return np.concatenate(moments) @ np.linalg.inv(legvander(nodes, nodes.size - 1))
+
+
+def _moments(targets: Array, breakpoints: Array, k: int) -> Array:
+    """Integrals of G(r_i, s) s against the first k Legendre polynomials of each panel, (n, m, k)."""
     left, right = breakpoints[:-1], breakpoints[1:]
-    r = np.asarray(targets, float)[:, None]
+    r = targets[:, None]
     nearest = np.clip(r, left, right)
     near = np.abs(r - nearest) < FAR_DISTANCE * (right - left)
-    moments = np.empty((r.size, left.size, nodes.size))
-    moments[~near] = _far_moments(r, left, right, ~near, nodes.size)
+    moments = np.empty((r.size, left.size, k))
+    moments[~near] = _far_moments(r, left, right, ~near, k)
     i, j = np.nonzero(near)
-    moments[i, j] = sum(
-        _near_moments(r[i, 0], left[j], right[j], nearest[i, j], end[j], nodes.size) for end in (left, right)
-    )
-    return moments @ np.linalg.inv(legvander(nodes, nodes.size - 1))
+    moments[i, j] = sum(_near_moments(r[i, 0], left[j], right[j], nearest[i, j], end[j], k) for end in (left, right))
+    return moments
 
 
 def _far_moments(r: Array, left: Array, right: Array, far: NDArray[np.bool_], k: int) -> Array:

@@ -6,13 +6,20 @@ import math
 
 
 def require_tabor(tabor: float) -> float:
-    """Return the Tabor parameter, or raise ValueError unless it is finite and positive."""
-    return _require(tabor, "tabor", 0 < tabor < math.inf, "0 < tabor", "give the Tabor parameter of the contact")
+    """Return the Tabor parameter, or raise ValueError unless 1e-12 <= tabor <= 300: beyond, a closed form will do."""
+    _require(tabor, "tabor", 0 < tabor < math.inf, "0 < tabor", "give the Tabor parameter of the contact")
+    _require(tabor, "tabor", tabor >= 1e-12, "1e-12 <= tabor", "the body is rigid: use halfspace.theories.bradley_load")
+    return _require(tabor, "tabor", tabor <= 300, "tabor <= 300", "JKR's theory holds: use halfspace.theories.jkr_load")
 
 
 def require_poisson(poisson: float) -> float:
-    """Return Poisson's ratio, or raise ValueError unless 0 <= poisson < 0.5."""
-    return _require(poisson, "poisson", 0 <= poisson < 0.5, "0 <= poisson < 0.5", "take 0.49 for rubber")
+    """Return Poisson's ratio, or raise ValueError unless 0 <= poisson <= 0.499999.
+
+    A digit is lost to rounding for each further 9 of 0.4999...; the limit leaves nine.
+    """
+    remedy = "take 0.4999 for rubber"
+    _require(poisson, "poisson", 0 <= poisson < 0.5, "0 <= poisson < 0.5", remedy)
+    return _require(poisson, "poisson", poisson <= 0.499999, "poisson <= 0.499999", remedy)
 
 
 def require_rtol(rtol: float) -> float:
@@ -20,7 +27,32 @@ def require_rtol(rtol: float) -> float:
     return _require(rtol, "rtol", 1e-9 <= rtol <= 1e-1, "1e-9 <= rtol <= 1e-1", "take 1e-5 if in doubt")
 
 
+def require_load(to_load: float) -> float:
+    """Return the compressive load at which a curve ends, or raise ValueError unless 0 < to_load <= 1000."""
+    remedy = "the curve must pass zero load, and Hertz's theory serves above: take 5"
+    return _require(to_load, "to_load", 0 < to_load <= 1000, "0 < to_load <= 1000", remedy)
+
+
+def require_radius(radius: float, tabor: float) -> float:
+    """Return the size of a block, or raise ValueError unless the contact and its attraction fit in, and it in floats.
+
+    A contact is 2 to 3 beta wide and a nearly rigid sphere attracts over some beta/sqrt(tabor); half a block must do,
+    since the error is estimated from one half as large.
+    """
+    least = 5 * max(1.0, tabor**-0.5)
+    remedy = "a contact is 2 to 3 beta wide, take 50 or more, or none to have it chosen"
+    return _require(radius, "radius", least < radius <= 1e9, f"{least:.3g} < radius <= 1e9", remedy)
+
+
+def require_fixed_mesh(tabor: float) -> float:
+    """Return the Tabor parameter, or raise ValueError if a mesh that does not follow the contact edge is too dear.
+
+    It must be fine wherever the edge passes: 8 mu^2 cells, at 10 s a curve for tabor 3 and minutes for 5.
+    """
+    return _require(tabor, "tabor", tabor <= 3, "tabor <= 3 for a fixed mesh", 'take far_field = "point_load"')
+
+
 def _require(value: float, name: str, holds: bool, limit: str, remedy: str) -> float:
     if not holds or not math.isfinite(value):
-        raise ValueError(f"{name} = {value:g} is outside {limit}; {remedy}")
+        raise ValueError(f"{name} = {value:.9g} is outside {limit}; {remedy}")
     return float(value)

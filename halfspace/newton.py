@@ -136,6 +136,8 @@ def solve(
 ) -> Solution:
     """Solve the equilibrium under a control, from a start whose gaps are positive.
 
+    Whether the grid can carry the state found is another question: ask ``problem.require_resolution``.
+
     Parameters
     ----------
     problem : Equilibrium
@@ -156,6 +158,8 @@ def solve(
     """
     x = start.copy()
     F = _equations(problem, x, control)
+    if np.isnan(F[-1]):
+        raise NotConverged("the start has no contact radius to be prescribed; start from a state in contact")
     for iteration in range(1, max_iterations + 1):
         row = problem.gradient(x, control.weights)
         try:

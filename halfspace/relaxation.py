@@ -1,4 +1,4 @@
-"""The iterations of 1997, kept as baselines for Newton's method: simple relaxation and Greenwood's local Newton-Raphson.
+"""The iterations of 1997, kept as baselines: simple relaxation and Greenwood's local Newton-Raphson.
 
 Both correct one state under fixed grips or a given central gap, sweep after sweep. Neither can pass a fold, nor follow
 the curve where the contact is unstable under the control; `halfspace.newton` and `halfspace.path` do.
@@ -204,8 +204,8 @@ def _iterate(
             return sweeps, misfit
         if not misfit < HOPELESS * (1 + first):
             raise NotConverged(
-                f"{name} ran away within {sweeps} sweeps at relaxation {relaxation:g} (relative residual {misfit:.1e}); "
-                "take a smaller relaxation, a nearer start or halfspace.newton.solve"
+                f"{name} ran away within {sweeps} sweeps at relaxation {relaxation:g} (relative residual "
+                f"{misfit:.1e}); take a smaller relaxation, a nearer start or halfspace.newton.solve"
             )
     raise NotConverged(
         f"{name} did not converge in {most_sweeps} sweeps at relaxation {relaxation:g} (relative residual "

@@ -20,6 +20,7 @@ import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.condensed import condense
 from fem_adhesion.elasticity import Space
+from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.mesh import tensor_grid
 from fem_adhesion.scene import Scene
 from halfspace import compliance, grid
@@ -180,7 +181,8 @@ PRESSURES: dict[str, Callable[[Array], Array]] = {
 
 def _block_operator(scene: Scene, lines: Array, degree: int) -> ElasticOperator:
     space = Space(tensor_grid(lines, grid.graded(0.0, FINEST, lines[-1])), ElementQuadP(degree))
-    return condense(space, scene.poisson, far_field=convergence.FAR_FIELDS[scene.far_field]).operator
+    far_field, stiffness = convergence.FAR_FIELDS[scene.far_field], stiffness_for(scene.poisson)
+    return condense(space, scene.poisson, far_field=far_field, stiffness=stiffness).operator
 
 
 def _compare_fields(

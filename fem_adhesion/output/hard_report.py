@@ -1,0 +1,90 @@
+"""The hard cases: tables for the terminal, and both tables as files."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+from rich.markup import escape
+from rich.table import Table
+
+from fem_adhesion.output.files import written_aside
+from fem_adhesion.output.record import versions
+from fem_adhesion.studies.hard_bodies import Locking
+from fem_adhesion.studies.hard_cases import Row
+
+STYLES = {"converged": "green", "refused": "cyan", "wrong": "bold red"}
+
+
+def cases_table(rows: Sequence[Row]) -> Table:
+    """One line for each case; a refusal in its own words."""
+    table = Table(title=summary(rows), title_justify="left")
+    table.add_column("case", min_width=30)
+    table.add_column("outcome", no_wrap=True)
+    for name in ("error", "estimate", "Newton steps", "seconds"):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("compared, or refused because", overflow="fold")
+    for row in rows:
+        style = STYLES[row.outcome]
+        cells = (_small(row.error), _small(row.estimate), _steps(row), f"{row.seconds:.2f}", escape(row.message))
+        table.add_row(escape(row.name), f"[{style}]{row.outcome}[/]", *cells)
+    return table
+
+
+def summary(rows: Sequence[Row]) -> str:
+    """How many cases ended how."""
+    counts = {outcome: sum(row.outcome == outcome for row in rows) for outcome in STYLES}
+    return ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
+
+
+def locking_table(rows: Sequence[Locking]) -> Table:
+    """One line for each Poisson's ratio and element."""
+    table = Table(title="locking: largest error of the deflection under a smooth pressure", title_justify="left")
+    for name in ("poisson", "element", "error", "with the remedy", "remedy"):
+        table.add_column(name, no_wrap=True)
+    for row in rows:
+        table.add_row(f"{row.poisson:g}", row.element, _small(row.error), _small(row.remedied), row.remedy)
+    return table
+
+
+def write_hard(directory: Path, rows: Sequence[Row], locking: Sequence[Locking]) -> None:
+    """Write hard.csv, locking.csv and hard.json, which holds both, into an existing directory."""
+    write_csv(directory / "hard.csv", rows)
+    write_csv(directory / "locking.csv", locking)
+    with written_aside(directory / "hard.json") as file:
+        json.dump(hard_record(rows, locking), file, indent=1, allow_nan=False)
+
+
+def hard_record(rows: Sequence[Row], locking: Sequence[Locking]) -> dict[str, Any]:
+    """Both tables as plain data, ready for JSON: null where a refused case has no number."""
+    return {
+        "summary": summary(rows),
+        "versions": versions(),
+        "cases": [_plain(row) for row in rows],
+        "locking": [_plain(row) for row in locking],
+    }
+
+
+def write_csv(path: Path, rows: Sequence[Row] | Sequence[Locking]) -> None:
+    """Write rows of one kind under their fields' names; empty where there is no number."""
+    with written_aside(path) as file:
+        writer = csv.DictWriter(file, [field.name for field in fields(rows[0])], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(_plain(row) for row in rows)
+
+
+def _plain(row: Row | Locking) -> dict[str, Any]:
+    return {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in asdict(row).items()}
+
+
+def _small(value: float) -> str:
+    return f"{value:.1e}" if math.isfinite(value) else "-"
+
+
+def _steps(row: Row) -> str:
+    return str(row.newton_steps) if row.newton_steps else "-"

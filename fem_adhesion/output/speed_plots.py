@@ -1,0 +1,100 @@
+"""Error against wall time on log-log axes: a figure for each quantity, half-space and finite elements side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from fem_adhesion.studies.methods import Family, Method
+from fem_adhesion.studies.speed_result import Rung, SpeedStudy, pareto_front
+
+FAMILIES: tuple[Family, ...] = ("half-space", "finite elements")
+TITLES = {
+    "pull_off": "Pull-off load",
+    "jump_on": "Approach at which the surfaces jump on",
+    "hysteresis": "Energy lost in a cycle of approach and separation",
+}
+ERRORS = {
+    "pull_off": "relative error of the pull-off load",
+    "jump_on": "error of the jump-on approach, over $1 + |\\alpha^*|$",
+    "hysteresis": "relative error of the energy lost",
+}
+# Okabe and Ito's colours, which colour-blind eyes tell apart, without the yellow, too pale on white; black is adaptive.
+STYLES = (("#E69F00", "X"), ("#56B4E9", "P"), ("#009E73", "s"), ("#0072B2", "^"), ("#D55E00", "v"), ("#CC79A7", "D"))
+ADAPTIVE = {"adaptive": ("#000000", "o"), "hp": ("#000000", "o")}
+LINES = {"": "-", "clamped": "--", "monolithic": ":"}
+FRONT: dict[str, Any] = {
+    "color": "0.85",
+    "linewidth": 9,
+    "solid_capstyle": "round",
+    "solid_joinstyle": "round",
+    "zorder": 0,
+}
+FLOOR: dict[str, Any] = {"color": "0.4", "linewidth": 1, "dashes": (1, 3)}
+LOOK: dict[Any, Any] = {"svg.fonttype": "none", "font.size": 11, "axes.spines.top": False, "axes.spines.right": False}
+
+
+def draw(study: SpeedStudy, directory: Path) -> None:
+    """Write a figure for each quantity that the study has, as SVG and PNG."""
+    with rc_context(LOOK):
+        for quantity in study.truth:
+            figure = error_against_time(study, quantity)
+            for suffix in ("svg", "png"):
+                figure.savefig(directory / f"{quantity}.{suffix}", dpi=160)
+
+
+def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
+    """Figure of one quantity: a panel for each family, with the Pareto front of both families behind."""
+    figure = Figure(figsize=(11.5, 7.2), layout="constrained")
+    figure.suptitle(f"{TITLES[quantity]}: error against wall time at Tabor parameter {study.tabor:g}")
+    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    for axes, family in zip(panels, FAMILIES, strict=True):
+        _draw_front(axes, pareto_front(study.rungs, quantity), quantity)
+        axes.axhline(study.uncertainty(quantity), label="uncertainty of the truth", **FLOOR)
+        for method in study.methods:
+            if method.family == family:
+                _draw_method(axes, study, method, quantity)
+        _dress(axes, family)
+    panels[0].set_ylabel(ERRORS[quantity])
+    return figure
+
+
+def _draw_front(axes: Any, front: Sequence[Rung], quantity: str) -> None:
+    """A broad grey line behind the points that no other beats in both time and error."""
+    seconds, errors = [rung.seconds for rung in front], [rung.error(quantity) for rung in front]
+    axes.loglog(seconds, errors, label="Pareto front, all methods", drawstyle="steps-post", **FRONT)
+
+
+def _draw_method(axes: Any, study: SpeedStudy, method: Method, quantity: str) -> None:
+    """One method's ladder; markers of what departs from the family's usual are hollow."""
+    rungs = [rung for rung in study.of(method.name) if quantity in rung.errors]
+    colour, marker = _style(study, method)
+    axes.loglog(
+        [rung.seconds for rung in rungs],
+        [rung.error(quantity) for rung in rungs],
+        LINES[method.variant],
+        color=colour,
+        marker=marker,
+        markersize=7,
+        markerfacecolor="white" if method.variant else colour,
+        label=method.name if rungs else f"{method.name} (gives none)",
+    )
+
+
+def _style(study: SpeedStudy, method: Method) -> tuple[str, str]:
+    """Colour and marker, the same for all variants of a basis."""
+    bases = dict.fromkeys(m.basis for m in study.methods if m.family == method.family and m.basis not in ADAPTIVE)
+    return ADAPTIVE.get(method.basis) or STYLES[list(bases).index(method.basis)]
+
+
+def _dress(axes: Any, family: str) -> None:
+    axes.set_title(family)
+    axes.set_xlabel("wall time from set-up to events, s")
+    axes.grid(True, which="major", color="0.92", linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.tick_params(labelleft=True)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, frameon=False, fontsize=10, handlelength=3)

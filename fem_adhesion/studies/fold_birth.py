@@ -1,0 +1,81 @@
+"""Where the load-approach curve gains a pair of folds as the Tabor parameter grows: the cusps of the fold lines.
+
+With the central gap prescribed the approach is a smooth function of it there. A pair of folds is born where the least
+magnitude of its slope reaches zero, so slope and curvature vanish together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from halfspace import newton
+from halfspace.accuracy import half_space_charts, resolution_for
+from halfspace.compliance import Array
+from halfspace.contact import APPROACH, CENTRAL_GAP, ContactProblem
+from halfspace.curve import EquilibriumPath, metric_for
+from halfspace.path import Point, make_point
+
+
+@dataclass(frozen=True)
+class Birth:
+    """Where to look for the birth of a pair of folds.
+
+    Attributes
+    ----------
+    tabors : (2,) tuple
+        Tabor parameters below and above it.
+    gaps : (2,) tuple
+        Central gaps, in eps, between which the pair appears.
+    falling : bool
+        Whether the approach falls with growing gap on both sides of the pair.
+    """
+
+    tabors: tuple[float, float]
+    gaps: tuple[float, float]
+    falling: bool
+
+
+FIRST = Birth((0.69, 0.71), (0.15, 0.6), falling=True)
+SECOND = Birth((3.8, 4.1), (0.3, 0.6), falling=False)
+
+
+def tabor_of(birth: Birth, *, rtol: float = 1e-7) -> float:
+    """Tabor parameter at which the pair is born, on the half-space discretised for `rtol`."""
+    return float(brentq(lambda tabor: _least_slope(birth, tabor, rtol), *birth.tabors, xtol=1e-11))
+
+
+def _least_slope(birth: Birth, tabor: float, rtol: float) -> float:
+    """Least slope of the approach over the gap, positive before the birth and negative after it."""
+    problem = half_space_charts(tabor, resolution_for(tabor, rtol))[0].problem
+    x = approached(problem, birth.gaps[1])
+    sign = -1 if birth.falling else 1
+
+    def slope(gap: float) -> float:
+        rates = at_gap(problem, x, gap).rates
+        return float(sign * rates[APPROACH] / rates[CENTRAL_GAP])
+
+    return float(minimize_scalar(slope, bounds=birth.gaps, method="bounded", options={"xatol": 1e-5}).fun)
+
+
+def approached(problem: ContactProblem, gap: float) -> Array:
+    """State at a central gap below 3 eps, reached from far separation in a dozen steps of it."""
+    far = -5 - problem.tabor
+    x = newton.solve(problem, problem.undeformed(far), newton.approach(far)).x
+    for value in np.geomspace(3 + problem.tabor, gap, 12):
+        x = newton.solve(problem, x, newton.central_gap(value)).x
+    return x
+
+
+def at_gap(problem: ContactProblem, start: Array, gap: float) -> Point:
+    """Point of the curve at a central gap, its tangent towards larger gaps."""
+    solution = newton.solve(problem, start, newton.central_gap(gap))
+    return make_point(problem, solution, metric_for(problem.tabor), newton.central_gap(gap).weights, 0.0)
+
+
+def count_folds(path: EquilibriumPath) -> int:
+    """Number of folds in the approach along a curve."""
+    rates = np.array([point.rates[APPROACH] for point in path.points])
+    return int(np.sum(rates[:-1] * rates[1:] < 0))

@@ -1,0 +1,190 @@
+"""The elements that do not lock: exact where they should be, stable on any mesh, right up to Poisson's ratio 1/2."""
+
+import numpy as np
+import pytest
+from numpy.polynomial.legendre import legvander2d
+from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
+
+import fem_adhesion
+import halfspace
+from fem_adhesion import Scene
+from fem_adhesion.condensed import condense
+from fem_adhesion.elasticity import (
+    Space,
+    cell_quadrature,
+    cell_stiffness,
+    cell_strains,
+    scatter,
+    scatter_pairs,
+    shear_matrix,
+    strain_products,
+)
+from fem_adhesion.far_field import clamped, free, point_load, with_interiors
+from fem_adhesion.incompressible import (
+    REMEDY_FROM,
+    dilatation,
+    pressure_modes,
+    projected_stiffness,
+    stiffness_for,
+    taylor_hood,
+)
+from fem_adhesion.mesh import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
+from fem_adhesion.studies.hard_bodies import smooth_deflection, smooth_pressure
+
+
+def deflection_error(operator):
+    near = operator.radii < 2.0
+    w = operator.compliance @ smooth_pressure(operator.radii)
+    return np.max(np.abs(w - smooth_deflection(operator.radii))[near])
+
+
+def quads(degree, fine=0.3):
+    return Space(block_grid(fine, 3.0, 50.0), ElementQuadP(degree))
+
+
+def inf_sup(space, modes):
+    """Smallest over pressures p of the largest over displacements v of int p div v/(|p| |v|), |v| that of strain."""
+    blocks = []
+    for _, B, dA in cell_strains(space):
+        root = np.sqrt(dA)[:, :, None]
+        q = np.linalg.qr(root * modes)[0]
+        blocks.append((strain_products(shear_matrix(0.0), B, dA), q.transpose(0, 2, 1) @ (root * dilatation(B))))
+    K, coupling = (np.concatenate(part) for part in zip(*blocks, strict=True))
+    T = with_interiors(clamped(space, 0.3), space).reduction
+    numbers = np.arange(coupling.shape[0] * coupling.shape[1]).reshape(coupling.shape[:2]).T
+    A = (T.T @ scatter(K, space.cell_dofs, space.unknowns) @ T).toarray()
+    C = (scatter_pairs(coupling, numbers, space.cell_dofs, (numbers.size, space.unknowns)) @ T).toarray()
+    return np.sqrt(max(np.linalg.eigvalsh(C @ np.linalg.solve(A, C.T))[0], 0.0))
+
+
+# --- the projection ---
+
+
+@pytest.mark.parametrize("degree", [2, 3, 4])
+def test_the_pressures_are_stable_however_fine_the_mesh(degree):
+    meshes = [tensor_grid(np.linspace(0, 1, n + 1), np.linspace(0, 1, n + 1)) for n in (2, 5)]
+    coarse, fine = (Space(mesh, ElementQuadP(degree)) for mesh in meshes)
+    assert inf_sup(fine, pressure_modes(fine)) > 0.95 * inf_sup(coarse, pressure_modes(coarse))
+    x, y = 2 * cell_quadrature(fine)[0] - 1
+    full = legvander2d(x, y, [degree - 1, degree - 1])  # with the product of the two highest
+    assert inf_sup(fine, full) < 0.6 * inf_sup(coarse, full)
+
+
+def test_the_pressures_are_stable_however_flat_the_cells():
+    flat = [Space(tensor_grid(np.linspace(0, 1, 3), graded_breaks(f, f, 1.0)), ElementQuadP(3)) for f in (1e-2, 1e-6)]
+    moderate, extreme = (inf_sup(space, pressure_modes(space)) for space in flat)
+    assert extreme > 0.95 * moderate
+
+
+def test_linear_displacements_keep_their_energy():
+    space = quads(3)
+    r, z, one = (_field(space, f) for f in (lambda x: x[0], lambda x: x[1], lambda x: 1 + 0 * x[0]))
+    for u_r, u_z in ((r, 0 * z), (0 * r, z), (r, z), (0 * r, r), (0 * r, one)):
+        u = np.concatenate([u_r, u_z])
+        plain, projected = (
+            np.einsum("ic,cij,jc->", u, stiffness(space, 0.49), u)
+            for stiffness in (cell_stiffness, projected_stiffness)
+        )
+        assert projected == pytest.approx(plain, rel=1e-10, abs=1e-6)
+
+
+def _field(space, function):
+    """Coefficients of a polynomial in every cell, (n, cells), by least squares at the quadrature points."""
+    X, _ = cell_quadrature(space)
+    n = len(space.scalar_dofs.element_dofs)
+    values = np.array([space.element.lbasis(X, i)[0] for i in range(n)])
+    return np.linalg.lstsq(values.T, function(space.mesh.mapping().F(X)).T)[0]
+
+
+def test_the_projection_only_softens():
+    K = cell_stiffness(quads(3), 0.45) - projected_stiffness(quads(3), 0.45)
+    values = np.linalg.eigvalsh((K + K.transpose(0, 2, 1)) / 2)
+    assert np.all(values[:, 0] > -1e-10 * values[:, -1])
+
+
+@pytest.mark.parametrize(("degree", "accuracy"), [(3, 8e-4), (4, 1.5e-5), (6, 1e-7)])
+@pytest.mark.parametrize("poisson", [0.3, 0.49, 0.4999, 0.499999])
+def test_quadrilaterals_do_not_lock(degree, accuracy, poisson):
+    assert deflection_error(condense(quads(degree), poisson, stiffness=projected_stiffness).operator) < accuracy
+
+
+def test_quadrilaterals_of_displacements_alone_lock():
+    assert deflection_error(condense(quads(4), 0.4999).operator) > 10 * deflection_error(
+        condense(quads(4), 0.3).operator
+    )
+
+
+@pytest.mark.parametrize("far_field", [clamped, point_load, free])
+def test_the_operator_obeys_mechanics(far_field):
+    body = condense(
+        Space(block_grid(0.5, 1.5, 10.0), ElementQuadP(4)), 0.499, far_field=far_field, stiffness=projected_stiffness
+    )
+    operator = body.operator
+    pressure = np.cos(operator.radii) * smooth_pressure(operator.radii)
+    symmetric = operator.compliance / operator.weights
+    assert np.max(np.abs(symmetric - symmetric.T)) < 1e-10 * np.max(np.abs(symmetric))
+    assert body.far_reaction(pressure) == pytest.approx(operator.weights @ pressure, rel=1e-8)
+    work = 0.5 * (operator.weights * pressure) @ (operator.compliance @ pressure)
+    assert body.strain_energy(pressure) == pytest.approx(work, rel=1e-8)
+
+
+# --- Taylor and Hood ---
+
+
+@pytest.mark.parametrize(
+    ("element", "pressure", "accuracy"),
+    [(ElementTriP2(), ElementTriP1(), 2e-4), (ElementTriP3(), ElementTriP2(), 6e-6)],
+)
+@pytest.mark.parametrize("poisson", [0.3, 0.49, 0.4999])
+def test_triangles_with_continuous_pressure_do_not_lock(element, pressure, accuracy, poisson):
+    space = Space(quarter_disc(50.0, graded_size(0.125, 2.0, 0.2)), element)
+    assert deflection_error(taylor_hood(space, poisson, pressure)) < accuracy
+
+
+def test_triangles_of_displacements_alone_lock():
+    space = Space(quarter_disc(50.0, graded_size(0.125, 2.0, 0.2)), ElementTriP2())
+    assert deflection_error(condense(space, 0.4999).operator) > 3e-3
+
+
+def test_both_remedies_agree():
+    space = quads(6)
+    pressure = smooth_pressure(condense(space, 0.3).operator.radii)
+    mixed = taylor_hood(space, 0.4999, ElementQuadP(5))
+    projected = condense(space, 0.4999, stiffness=projected_stiffness).operator
+    near = mixed.radii < 2.0
+    np.testing.assert_allclose((mixed.compliance @ pressure)[near], (projected.compliance @ pressure)[near], atol=3e-7)
+
+
+def test_misuse_is_refused():
+    triangles = Space(quarter_disc(10.0, graded_size(0.5, 1.0, 0.5)), ElementTriP2())
+    with pytest.raises(ValueError, match="ElementTriP2 has no projected dilatation; use ElementQuadP"):
+        projected_stiffness(triangles, 0.49)
+    with pytest.raises(ValueError, match="poisson = 0 leaves the pressure undetermined; use condense"):
+        taylor_hood(triangles, 0.0, ElementTriP1())
+
+
+# --- where it is used ---
+
+
+def test_the_remedy_is_taken_from_a_threshold_on():
+    assert stiffness_for(0.3) is cell_stiffness
+    assert stiffness_for(np.nextafter(REMEDY_FROM, 0)) is cell_stiffness
+    assert stiffness_for(REMEDY_FROM) is projected_stiffness
+
+
+@pytest.mark.parametrize("degree", [3, 4, 5, 6])
+def test_at_the_threshold_the_remedy_is_no_worse(degree):
+    edge = Space(
+        tensor_grid(graded_breaks(0.2, 3.0, 50.0), graded_breaks(0.2, 0.2, 50.0, growth=2.5)), ElementQuadP(degree)
+    )
+    plain = deflection_error(condense(edge, REMEDY_FROM).operator)
+    assert deflection_error(condense(edge, REMEDY_FROM, stiffness=projected_stiffness).operator) < 2 * plain
+
+
+@pytest.mark.parametrize("poisson", [0.4, 0.49, 0.4999])
+def test_a_rubber_block_answers_as_the_half_space(poisson):
+    path, truth = fem_adhesion.trace(Scene(1.0, poisson=poisson), rtol=1e-4), halfspace.trace(1.0)
+    for name, event in path.events.items():
+        assert abs(event.load - truth.event(name).load) <= event.load_error + 1e-9
+        assert abs(event.approach - truth.event(name).approach) <= event.approach_error + 1e-9
+        assert event.approach_error < 1e-4 * (1 + abs(event.approach))

@@ -1,0 +1,157 @@
+"""Over the whole space of inputs: finite results or a documented refusal, balance, energy, bounds and monotony."""
+
+import math
+
+import numpy as np
+from hypothesis import Phase, assume, example, given, settings
+from hypothesis import strategies as st
+from skfem import ElementQuadP
+
+import fem_adhesion
+import halfspace
+from fem_adhesion import Scene
+from fem_adhesion.condensed import condense
+from fem_adhesion.elasticity import Space
+from fem_adhesion.incompressible import stiffness_for
+from fem_adhesion.mesh import block_grid
+from halfspace.contact import APPROACH, LOAD, ContactProblem
+from halfspace.curve import metric_for
+from halfspace.newton import NotConverged
+from halfspace.path import correct, predict
+from halfspace.theories import BRADLEY_PULL_OFF, JKR_PULL_OFF
+
+tabors = st.floats(-12, math.log10(200)).map(lambda x: 10.0**x) | st.floats(0.05, 10)
+poissons = st.floats(0, 0.499999)
+rtols = st.floats(-3, -1).map(lambda x: 10.0**x)
+loads = st.floats(-2, 2).map(lambda x: 10.0**x)
+any_float = st.floats()  # NaN and infinities among them
+
+
+def over_inputs(examples):
+    """The same examples at every run, as many as are worth their time; none is shrunk, which takes minutes."""
+    phases = (Phase.explicit, Phase.generate)
+    return settings(max_examples=examples, derandomize=True, deadline=None, database=None, phases=phases)
+
+
+def answer(solve):
+    """The curve, or None after a refusal; any other exception, and a refusal without remedy, fails the test."""
+    try:
+        return solve()
+    except (ValueError, NotConverged) as refusal:
+        message = str(refusal)
+    assert ";" in message
+    return None
+
+
+def require_finite(path):
+    assert np.all(np.isfinite([path.approach, path.load, path.central_gap]))
+    assert np.isfinite([path.energy.value, path.energy.error]).all()
+    for event in path.events.values():
+        numbers = (event.approach, event.load, event.central_gap)
+        errors = (event.approach_error, event.load_error, event.central_gap_error)
+        assert np.all(np.isfinite(numbers))
+        assert np.all(np.isfinite(errors))
+        assert min(errors) >= 0
+
+
+def require_bounds(path):
+    """The pull-off load lies between those of the rigid and of the soft limit."""
+    pull_off = path.event("pull_off")
+    assert BRADLEY_PULL_OFF - pull_off.load_error <= pull_off.load <= JKR_PULL_OFF + pull_off.load_error
+    assert path.event("zero_load").approach > pull_off.approach
+    if path.event("jump_on"):
+        assert path.event("jump_on").approach >= path.event("jump_off").approach
+
+
+def require_balance_and_energy(path):
+    """At the finest states the equations hold, and the energy changes by the load's work, roughly on coarse grids."""
+    metric = metric_for(path.tabor)
+    for located in path.stages[-1].values():
+        problem, point = located.problem, located.point
+        assert isinstance(problem, ContactProblem)
+        assert problem.misfit(point.x, problem.residual(point.x)) < 1e-7
+        assert problem.operator.weights @ problem.pressure(point.x) * point.x[-1] ** 2 == point.observables[LOAD]
+        h = 1e-3
+        before, after = (correct(problem, point, s, predict(problem, point, s), metric, 20) for s in (-h, h))
+        mean_load = (before.observables[LOAD] + after.observables[LOAD]) / 2
+        work = mean_load * (after.observables[APPROACH] - before.observables[APPROACH])
+        change = problem.energy(after.x) - problem.energy(before.x)
+        assert abs(change - work) <= 0.05 * h * (1 + path.tabor)
+
+
+# --- the half-space ---
+
+
+@over_inputs(40)
+@given(tabor=any_float, rtol=any_float, to_load=any_float)
+@example(tabor=1e-300, rtol=1e-3, to_load=5.0)
+@example(tabor=5e-324, rtol=1e-3, to_load=5.0)
+@example(tabor=1.7e308, rtol=1e-3, to_load=5.0)
+@example(tabor=1.0, rtol=1e-3, to_load=math.nan)
+@example(tabor=1.0, rtol=1e-3, to_load=1.7e308)
+def test_any_input_is_answered_or_refused(tabor, rtol, to_load):
+    path = answer(lambda: halfspace.trace(tabor, rtol=rtol, to_load=to_load))
+    if path is not None:
+        require_finite(path)
+
+
+@over_inputs(80)
+@given(tabor=tabors, rtol=rtols, to_load=loads)
+@example(tabor=0.6972, rtol=1e-2, to_load=5.0)  # about the critical value
+@example(tabor=0.6973, rtol=1e-2, to_load=5.0)
+@example(tabor=3.9743, rtol=1e-2, to_load=5.0)  # where a second pair of folds is born
+@example(tabor=300.0, rtol=1e-1, to_load=5.0)
+def test_every_contact_on_the_half_space_is_solved(tabor, rtol, to_load):
+    path = halfspace.trace(tabor, rtol=rtol, to_load=to_load)
+    require_finite(path)
+    require_bounds(path)
+    require_balance_and_energy(path)
+    assert path.load[-1] >= to_load
+
+
+@over_inputs(40)
+@given(tabor=tabors, factor=st.floats(1.001, 3), rtol=rtols)
+def test_the_pull_off_force_falls_as_the_tabor_parameter_grows(tabor, factor, rtol):
+    assume(tabor * factor <= 200)
+    hard, soft = (halfspace.trace(value, rtol=rtol).event("pull_off") for value in (tabor, tabor * factor))
+    assert soft.load >= hard.load - hard.load_error - soft.load_error
+
+
+# --- finite elements ---
+
+
+@over_inputs(40)
+@given(tabor=any_float, poisson=any_float, radius=st.none() | any_float, far_field=st.text(max_size=3))
+@example(tabor=1.0, poisson=math.nan, radius=None, far_field="point_load")
+@example(tabor=1.0, poisson=0.3, radius=1e300, far_field="point_load")
+@example(tabor=1e-12, poisson=0.3, radius=50.0, far_field="free")
+@example(tabor=300.0, poisson=0.3, radius=50.0, far_field="clamped")
+def test_a_scene_that_makes_no_sense_is_refused(tabor, poisson, radius, far_field):
+    assert answer(lambda: Scene(tabor, poisson, radius, far_field)) is None
+
+
+@over_inputs(20)
+@given(tabor=tabors, poisson=poissons, rtol=st.floats(-2, -1).map(lambda x: 10.0**x), to_load=st.floats(0.1, 20))
+@example(tabor=1.0, poisson=0.499999, rtol=1e-2, to_load=5.0)
+@example(tabor=1e-12, poisson=0.0, rtol=1e-2, to_load=5.0)
+def test_every_contact_with_a_body_is_solved(tabor, poisson, rtol, to_load):
+    assume(tabor <= 50)
+    path = fem_adhesion.trace(Scene(tabor, poisson), rtol=rtol, to_load=to_load)
+    require_finite(path)
+    require_bounds(path)
+    require_balance_and_energy(path)
+
+
+@over_inputs(40)
+@given(poisson=poissons, radii=st.lists(st.floats(0.1, 8), min_size=1, max_size=4), degree=st.integers(3, 5))
+def test_a_block_holds_any_load_and_stores_its_work(poisson, radii, degree):
+    space = Space(block_grid(0.5, 1.5, 10.0), ElementQuadP(degree))
+    body = condense(space, poisson, stiffness=stiffness_for(poisson))
+    r = body.operator.radii
+    pressure = sum(np.where(r < edge, (-1.0) ** i, 0.0) for i, edge in enumerate(radii)) + 1e-3
+    load, deflection = body.operator.weights @ pressure, body.operator.compliance @ pressure
+    scale = body.operator.weights @ np.abs(pressure)
+    assert abs(body.far_reaction(pressure) - load) <= 1e-7 * scale
+    work = 0.5 * (body.operator.weights * pressure) @ deflection
+    assert abs(body.strain_energy(pressure) - work) <= 1e-7 * scale * np.max(np.abs(deflection))
+    assert work > 0
