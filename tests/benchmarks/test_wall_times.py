@@ -1,4 +1,4 @@
-"""Wall times of what users wait for; `make bench` runs them, the test suite only checks that they run."""
+"""Wall times of what users wait for, run by `make bench`."""
 
 import resource
 import subprocess
