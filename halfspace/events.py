@@ -61,6 +61,9 @@ class Event:
 class Condition:
     """What vanishes at an event: an observable less a value, or the observable's rate along the path.
 
+    With a compliance the observable is taken at the far end of a spring that bears the load: the approach and a
+    compliance 1/k make the base of an apparatus of stiffness k.
+
     Attributes
     ----------
     observable : int
@@ -69,15 +72,20 @@ class Condition:
         If true the rate d(observable)/ds vanishes, else the observable less `value`.
     value : float
         Value sought.
+    compliance : float
+        Of the spring, in eps/(R dgamma) for the approach.
     """
 
     observable: int
     stationary: bool = False
     value: float = 0.0
+    compliance: float = 0.0
 
     def of(self, point: Point) -> float:
         """Quantity whose root is sought."""
-        return float((point.rates if self.stationary else point.observables - self.value)[self.observable])
+        numbers = point.rates if self.stationary else point.observables
+        quantity = numbers[self.observable] + self.compliance * numbers[LOAD]
+        return float(quantity if self.stationary else quantity - self.value)
 
 
 FOLD = Condition(APPROACH, stationary=True)

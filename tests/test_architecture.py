@@ -31,7 +31,7 @@ FLOORS = [
     {"fem_adhesion.condensed"},
     {"fem_adhesion.far_field"},
     {"fem_adhesion.mesh", "fem_adhesion.elasticity", "fem_adhesion.scene"},
-    {"halfspace.accuracy", "halfspace.hysteresis"},
+    {"halfspace.accuracy", "halfspace.devices"},
     {"halfspace.curve"},
     {"halfspace.events"},
     {"halfspace.path", "halfspace.relaxation"},

@@ -20,7 +20,7 @@ from fem_adhesion.studies.speed import measure
 from fem_adhesion.studies.speed_result import CONVERGED, Rung, best, cheapest, pareto_front, slope
 from halfspace import newton
 from halfspace.curve import transfer
-from halfspace.hysteresis import hysteresis
+from halfspace.devices import cycle
 
 METHODS = [*halfspace_methods(), *element_methods()]
 SLOW = {"Greenwood's iteration", "FE P2, monolithic", "FE hp, monolithic"}
@@ -70,11 +70,11 @@ def test_the_energy_lost_is_the_integral_of_the_load_round_the_loop(tabor):
     a_on, a_off = on.point.observables[0], off.point.observables[0]
     approaching = work_along(path, on, a_off, path.stages[-1]["separated"].problem)
     separating = work_along(path, off, a_on, path.stages[-1]["zero_approach"].problem)
-    assert approaching + separating == pytest.approx(hysteresis(path).value, rel=1e-6)
+    assert approaching + separating == pytest.approx(cycle(path).energy_lost.value, rel=1e-6)
 
 
 def test_no_energy_is_lost_without_jumps():
-    assert hysteresis(halfspace.trace(0.5, rtol=1e-3)) is None
+    assert cycle(halfspace.trace(0.5, rtol=1e-3)) is None
 
 
 # --- the study ---

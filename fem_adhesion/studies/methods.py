@@ -14,7 +14,7 @@ import numpy as np
 
 from halfspace.contact import APPROACH, LOAD, ContactProblem
 from halfspace.curve import COMPRESSION, Chart, EquilibriumPath, find_events, trace_charts
-from halfspace.hysteresis import energy_lost, hysteresis
+from halfspace.devices import cycle, energy_lost
 from halfspace.theories import jkr_radius
 
 QUANTITIES = ("pull_off", "jump_on", "hysteresis")
@@ -78,9 +78,9 @@ class Method:
 def from_path(path: EquilibriumPath) -> Solved:
     """Quantities of an adaptive solver's path."""
     values = {"pull_off": path.events["pull_off"].load}
-    loss = hysteresis(path)
-    if loss is not None:
-        values |= {"jump_on": path.events["jump_on"].approach, "hysteresis": loss.value}
+    grips = cycle(path)
+    if grips is not None:
+        values |= {"jump_on": grips.jump_on.take_off.approach, "hysteresis": grips.energy_lost.value}
     return Solved(path.unknowns, values)
 
 

@@ -21,7 +21,7 @@ from fem_adhesion.studies.methods import Method, Solved, Step
 from fem_adhesion.studies.speed_result import CONVERGED, Rung, SpeedStudy, size_of
 from halfspace.contact import GridTooCoarse
 from halfspace.curve import Estimate
-from halfspace.hysteresis import hysteresis
+from halfspace.devices import cycle
 from halfspace.newton import NotConverged
 
 TABOR_RANGE = (0.05, 2.0)  # beyond it fixed grids need too many nodes, or rigid surfaces leave nothing to compare
@@ -80,10 +80,10 @@ def require_tabor(tabor: float) -> float:
 def find_truth(tabor: float) -> dict[str, Estimate]:
     """Quantities by the half-space solver at its tightest tolerance, with their uncertainties."""
     path = halfspace.trace(tabor, rtol=1e-9)
-    pull_off, jump_on, loss = path.events["pull_off"], path.event("jump_on"), hysteresis(path)
+    pull_off, jump_on, grips = path.events["pull_off"], path.event("jump_on"), cycle(path)
     truth = {"pull_off": Estimate(pull_off.load, pull_off.load_error)}
-    if jump_on and loss:
-        truth |= {"jump_on": Estimate(jump_on.approach, jump_on.approach_error), "hysteresis": loss}
+    if jump_on and grips:
+        truth |= {"jump_on": Estimate(jump_on.approach, jump_on.approach_error), "hysteresis": grips.energy_lost}
     return truth
 
 

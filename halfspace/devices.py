@@ -1,0 +1,205 @@
+"""Loading devices: where an apparatus of given stiffness jumps on and off, where it lands, and what energy is lost.
+
+The contact hangs on a spring whose other end, the base, is moved: b = alpha* + W/k. Fixed grips are the spring of
+infinite stiffness. The contact jumps at the folds of the base along the path, where it is tangent to a load line of
+slope -k, and lands on the other stable state at the same base. With E the energy of the contact, a jump sets free
+
+    E + W^2/(2k) at take-off  -  E + W^2/(2k) at landing,
+
+and a cycle loses what its two jumps set free: it equals the work of the base round the loop, as d(E + W^2/2k) = W db.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from halfspace import newton
+from halfspace.contact import APPROACH, LOAD, ContactProblem
+from halfspace.curve import EquilibriumPath, Estimate, Segment, metric_for, transfer
+from halfspace.events import ROUND_OFF, Condition, Event, Located, estimate_event, locate, relocate
+from halfspace.newton import Control, Equilibrium
+from halfspace.path import make_point
+
+Array = NDArray[np.float64]
+
+
+@runtime_checkable
+class Energetic(Protocol):
+    """An equilibrium with a potential energy and a state to start from."""
+
+    def energy(self, x: Array) -> float:
+        """Total potential energy in R dgamma eps."""
+        ...
+
+    def undeformed(self, approach: float) -> Array:
+        """State without deformation."""
+        ...
+
+    @property
+    def tabor(self) -> float:
+        """Tabor parameter."""
+        ...
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A jump of the contact at a fixed base.
+
+    Attributes
+    ----------
+    take_off, landing : Event
+        States before and after, with error estimates.
+    energy : Estimate
+        Set free, in R dgamma eps.
+    """
+
+    take_off: Event
+    landing: Event
+    energy: Estimate
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """One approach and separation by an apparatus.
+
+    Attributes
+    ----------
+    stiffness : float
+        Of the apparatus, in R dgamma/eps; infinite for fixed grips.
+    jump_on, jump_off : Jump
+        From separation into contact, A to B in [G97] Fig. 2a, and back, C to D.
+    energy_lost : Estimate
+        In the whole cycle, in R dgamma eps.
+    """
+
+    stiffness: float
+    jump_on: Jump
+    jump_off: Jump
+    energy_lost: Estimate
+
+
+@dataclass(frozen=True)
+class _States:
+    """Take-off and landing of one jump on one discretisation."""
+
+    take_off: Located
+    landing: Located
+
+    def energy(self, compliance: float) -> float:
+        """Energy set free, that of the spring included."""
+        return _energy(self.take_off, compliance) - _energy(self.landing, compliance)
+
+
+def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
+    """Both jumps of a cycle with an apparatus of given stiffness, or None where the contact follows it smoothly.
+
+    Parameters
+    ----------
+    path : EquilibriumPath
+        A traced curve, of either solver.
+    stiffness : float
+        In R dgamma/eps, positive. A dead load is the limit of none: it jumps off at ``pull_off``, never to land.
+
+    Raises
+    ------
+    ValueError
+        If the stiffness is not positive.
+    halfspace.newton.NotConverged
+        If a landing cannot be solved for.
+    """
+    if not stiffness > 0:
+        raise ValueError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
+    rough = jumps(path.segments, 1 / stiffness)
+    if rough is None:
+        return None
+    finest = path.stages[-1]
+    centred, edge = finest["separated"].problem, finest["zero_approach"].problem
+    fine = tuple(_refined(states, centred, edge, 1 / stiffness) for states in rough)
+    on, off = (_jump(a, b, 1 / stiffness) for a, b in zip(rough, fine, strict=True))
+    lost = Estimate(on.energy.value + off.energy.value, on.energy.error + off.energy.error)
+    return Cycle(stiffness, on, off, lost)
+
+
+def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> float | None:
+    """Energy lost in a cycle under fixed grips on one discretisation, or None if the curve does not fold.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+        The traced curve.
+    found : mapping of str to Located
+        Its events, from `halfspace.curve.find_events`.
+    """
+    if "jump_on" not in found:
+        return None
+    states = jumps(segments, 0.0)
+    return None if states is None else sum(jump.energy(0.0) for jump in states)
+
+
+def jumps(segments: Sequence[Segment], compliance: float) -> tuple[_States, _States] | None:
+    """Jump on and jump off with an apparatus of compliance 1/k, on the discretisation of the curve itself."""
+    folds = _roots(segments, Condition(APPROACH, stationary=True, compliance=compliance))
+    if not folds:
+        return None
+    on, off = folds[0], folds[-1]
+    contact = _roots(segments, Condition(APPROACH, value=_base(on, compliance), compliance=compliance))[-1]
+    separated = segments[0].problem
+    assert isinstance(separated, Energetic)
+    start = separated.undeformed(_base(off, compliance))
+    return _States(on, contact), _States(off, _landing(separated, start, off, compliance))
+
+
+def _roots(segments: Sequence[Segment], condition: Condition) -> list[Located]:
+    metric = metric_for(segments[0].problem.tabor)
+    return [e for s in segments for e in locate(s.problem, s.points, metric, condition)]
+
+
+def _base(state: Located, compliance: float) -> float:
+    """B = alpha* + W/k."""
+    return float(state.point.observables[APPROACH] + compliance * state.point.observables[LOAD])
+
+
+def _landing(problem: Equilibrium, start: Array, take_off: Located, compliance: float) -> Located:
+    """State on a discretisation at the base of a take-off."""
+    base, weights = _base(take_off, compliance), np.array([1.0, compliance, 0.0, 0.0])
+    solution = newton.solve(problem, start, Control(weights, base))
+    assert isinstance(problem, Energetic)
+    point = make_point(problem, solution, metric_for(problem.tabor), weights, 0.0)
+    return Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
+
+
+def _refined(states: _States, centred: Equilibrium, edge: Equilibrium, compliance: float) -> _States:
+    """Both states of a jump on the finest discretisation."""
+    problem, start = _moved(states.take_off, centred, edge)
+    fold = relocate(states.take_off, problem, start, metric_for(problem.tabor))
+    return _States(fold, _landing(*_moved(states.landing, centred, edge), fold, compliance))
+
+
+def _moved(state: Located, centred: Equilibrium, edge: Equilibrium) -> tuple[ContactProblem, Array]:
+    """Finer problem of the same kind and the state transferred to it."""
+    source = state.problem
+    assert isinstance(source, ContactProblem)
+    target = edge if source.follows_contact else centred
+    assert isinstance(target, ContactProblem)
+    return target, transfer(source, state.point.x, target)
+
+
+def _jump(rough: _States, fine: _States, compliance: float) -> Jump:
+    values = [states.energy(compliance) for states in (rough, fine)]
+    return Jump(
+        estimate_event("take_off", [[rough.take_off, fine.take_off]]),
+        estimate_event("landing", [[rough.landing, fine.landing]]),
+        Estimate(values[1], abs(values[1] - values[0]) + ROUND_OFF * (1 + abs(values[1]))),
+    )
+
+
+def _energy(state: Located, compliance: float) -> float:
+    """E + W^2/(2k)."""
+    assert isinstance(state.problem, Energetic)
+    return state.problem.energy(state.point.x) + float(compliance * state.point.observables[LOAD] ** 2 / 2)

@@ -1,0 +1,96 @@
+"""Apparatus of any stiffness: where it jumps, where it lands, what it loses."""
+
+import numpy as np
+import pytest
+from numpy.polynomial.legendre import leggauss
+
+import halfspace
+from halfspace import newton
+from halfspace.contact import LOAD
+from halfspace.devices import cycle
+
+
+@pytest.fixture(scope="module")
+def path():
+    return halfspace.trace(2.0, rtol=1e-6)
+
+
+def _base(event, stiffness):
+    return event.approach + event.load / stiffness
+
+
+@pytest.mark.parametrize("stiffness", [np.inf, 10.0, 1.0])
+def test_a_jump_lands_at_the_base_it_took_off_from(path, stiffness):
+    found = cycle(path, stiffness)
+    for jump in (found.jump_on, found.jump_off):
+        assert _base(jump.landing, stiffness) == pytest.approx(_base(jump.take_off, stiffness), abs=1e-9)
+        assert jump.energy.value > 0
+    assert found.jump_on.landing.contact_radius > found.jump_off.take_off.contact_radius
+    assert np.isnan(found.jump_off.landing.contact_radius)
+
+
+def test_stiff_and_soft_limits(path):
+    grips = cycle(path)
+    assert grips.jump_on.take_off.approach == pytest.approx(path.event("jump_on").approach, abs=1e-9)
+    assert grips.jump_off.take_off.load == pytest.approx(path.event("jump_off").load, abs=1e-8)
+    assert cycle(path, 1e9).energy_lost.value == pytest.approx(grips.energy_lost.value, rel=1e-6)
+    soft = cycle(path, 1e-3)
+    assert soft.jump_off.take_off.load == pytest.approx(path.event("pull_off").load, rel=1e-5)
+
+
+def test_a_softer_apparatus_loses_more(path):
+    losses = [cycle(path, stiffness).energy_lost.value for stiffness in (0.1, 1.0, 10.0, np.inf)]
+    assert np.all(np.diff(losses) < 0)
+
+
+def test_a_soft_apparatus_jumps_where_fixed_grips_do_not():
+    path = halfspace.trace(0.5)
+    assert cycle(path) is None
+    assert cycle(path, 1.0).energy_lost.value > 0
+
+
+@pytest.mark.parametrize("stiffness", [3.0, 0.5])
+def test_the_work_of_the_base_round_the_loop_is_the_energy_its_jumps_set_free(path, stiffness):
+    found = cycle(path, stiffness)
+    low, high = (_base(jump.take_off, stiffness) for jump in (found.jump_off, found.jump_on))
+    # The load has a square root at the fold where each branch ends, so the nodes are graded towards it.
+    approaching = _work(path, stiffness, low, high, contact=False)
+    separating = _work(path, stiffness, low, high, contact=True)
+    assert approaching - separating == pytest.approx(found.energy_lost.value, rel=1e-6)
+
+
+def _work(path, stiffness, low, high, *, contact):
+    """Integral of W db along one stable branch, b from low to high."""
+    x, w = leggauss(40)
+    t = (1 + x) / 2
+    distance, weights = (high - low) * t**2, (high - low) * t * w
+    bases = low + distance if contact else high - distance
+    stage = path.stages[-1]
+    state = stage["zero_approach" if contact else "separated"]
+    problem, start = state.problem, state.point.x
+    total = 0.0
+    for i in np.argsort(bases)[:: -1 if contact else 1]:
+        start = newton.solve(problem, start, newton.spring(stiffness, bases[i]), max_iterations=60).x
+        total += weights[i] * problem.observables(start)[LOAD]
+    return total
+
+
+def test_errors_are_small_and_positive(path):
+    found = cycle(path, 2.0)
+    assert 0 < found.energy_lost.error < 1e-5 * found.energy_lost.value
+    assert 0 < found.jump_on.take_off.approach_error < 1e-5
+
+
+@pytest.mark.parametrize("stiffness", [0.0, -1.0, float("nan")])
+def test_an_apparatus_has_a_positive_stiffness(path, stiffness):
+    with pytest.raises(ValueError, match="outside 0 < stiffness; a dead load jumps off at pull_off"):
+        cycle(path, stiffness)
+
+
+def test_the_finite_element_path_has_its_cycle_too():
+    import fem_adhesion
+
+    path = fem_adhesion.trace(fem_adhesion.Scene(tabor=2.0), rtol=1e-4)
+    other = cycle(halfspace.trace(2.0), 1.0)
+    ours = cycle(path, 1.0)
+    assert ours.energy_lost.value == pytest.approx(other.energy_lost.value, abs=2 * ours.energy_lost.error)
