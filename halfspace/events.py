@@ -7,7 +7,7 @@ corrector runs at every trial of the root finder; nothing is interpolated betwee
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD
 from halfspace.newton import Control, Equilibrium, NotConverged
-from halfspace.path import Metric, Point, correct, make_point
+from halfspace.path import Metric, Point, correct, least_slope, make_point
 
 Array = NDArray[np.float64]
 
@@ -83,9 +83,13 @@ class Condition:
 
     def of(self, point: Point) -> float:
         """Quantity whose root is sought."""
-        numbers = point.rates if self.stationary else point.observables
-        quantity = numbers[self.observable] + self.compliance * numbers[LOAD]
-        return float(quantity if self.stationary else quantity - self.value)
+        if self.stationary:
+            return float(point.rates[self.observable] + self.compliance * point.rates[LOAD])
+        return self.level(point) - self.value
+
+    def level(self, point: Point) -> float:
+        """Observable at the far end of the spring."""
+        return float(point.observables[self.observable] + self.compliance * point.observables[LOAD])
 
 
 FOLD = Condition(APPROACH, stationary=True)
@@ -118,8 +122,39 @@ class Located:
 def locate(problem: Equilibrium, points: Sequence[Point], metric: Metric, condition: Condition) -> list[Located]:
     """Find every root of a condition between successive points of one discretisation's path."""
     return [
-        _between(problem, a, b, condition, metric) for a, b in pairwise(points) if condition.of(a) * condition.of(b) < 0
+        _between(problem, c, d, condition, metric)
+        for a, b in pairwise(points)
+        for c, d in _watched(problem, a, b, condition, metric)
+        if condition.of(c) * condition.of(d) < 0
     ]
+
+
+def _watched(
+    problem: Equilibrium, a: Point, b: Point, condition: Condition, metric: Metric, depth: int = 8
+) -> list[tuple[Point, Point]]:
+    """Halve the interval between two points as long as a pair of roots may hide in it, unseen at its ends."""
+    if not depth or not _may_hide(a, b, condition):
+        return [(a, b)]
+    length = b.arclength - a.arclength
+    middle = correct(problem, a, length / 2, _hermite(problem, a, b, 0.5), metric, iterations=20)
+    rest = float((metric.weights * middle.rates)[:3] @ (b.observables - middle.observables)[:3])
+    onward = replace(b, arclength=middle.arclength + rest)  # as `correct` measures it, along the first point's tangent
+    halves = ((a, middle), (middle, onward))
+    return [pair for c, d in halves for pair in _watched(problem, c, d, condition, metric, depth - 1)]
+
+
+def _may_hide(a: Point, b: Point, condition: Condition) -> bool:
+    """Whether a rate nearly vanishes at an end of a long interval, or inside it by the cubic through both points."""
+    first, last, length = condition.of(a), condition.of(b), b.arclength - a.arclength
+    if not condition.stationary or first * last <= 0:
+        return False
+    little = NEARLY * max(abs(first), abs(last))
+    inside = least_slope(first, last, (condition.level(b) - condition.level(a)) / length)
+    return inside < little or (length > LONG and min(abs(first), abs(last)) < little)
+
+
+NEARLY = 0.2  # of the larger rate at the two ends
+LONG = 0.05  # arclength
 
 
 def _between(problem: Equilibrium, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:

@@ -206,18 +206,31 @@ def _advance(problem: Equilibrium, points: list[Point], step: float, metric: Met
 def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
     """Whether an observable may rise and fall between two points at whose tangents it only rises, or only falls.
 
-    Judged from the slope q(t) of the cubic through both points: its least value, in the metric's units, must clear zero
-    by a margin that shrinks with the step.
+    Its least slope between them, in the metric's units, must clear zero by a margin that shrinks with the step.
     """
     length = b.arclength - a.arclength
-    p, r = a.rates[k], b.rates[k]
-    if p * r <= 0:
-        return False
-    mean = (b.observables[k] - a.observables[k]) / length
-    bend = 6 * (p + r) - 12 * mean
-    t = np.clip((4 * p + 2 * r - 6 * mean) / bend, 0, 1) if bend else 0.5
-    q = p * (1 - 4 * t + 3 * t**2) + r * (3 * t**2 - 2 * t) + 6 * mean * t * (1 - t)
-    return bool(0 < t < 1 and q * np.sign(p) * np.sqrt(metric.weights[k]) < 0.3 * length)
+    unit = np.sqrt(metric.weights[k])
+    change = unit * (b.observables[k] - a.observables[k])
+    return least_slope(unit * a.rates[k], unit * b.rates[k], change / length) < TURNING_MARGIN * length
+
+
+TURNING_MARGIN = 0.3  # of the step's length
+
+
+def least_slope(first: float, last: float, mean: float) -> float:
+    """Least slope inside an interval of the cubic with given end slopes of one sign and mean slope.
+
+    Positive as long as the cubic goes on in the direction of its ends; infinite if it has no least slope inside, or
+    the end slopes differ in sign.
+    """
+    if first * last <= 0:
+        return float("inf")
+    bend = 6 * (first + last) - 12 * mean
+    t = (4 * first + 2 * last - 6 * mean) / bend if bend else 0.0
+    if not 0 < t < 1:
+        return float("inf")
+    slope = first * (1 - 4 * t + 3 * t**2) + last * (3 * t**2 - 2 * t) + 6 * mean * t * (1 - t)
+    return float(slope * np.sign(first))
 
 
 def _turn(a: Point, b: Point, metric: Metric) -> float:

@@ -5,6 +5,7 @@ import pytest
 from numpy.polynomial.legendre import leggauss
 
 import halfspace
+from fem_adhesion.studies.fold_birth import critical_stiffness
 from halfspace import newton
 from halfspace.contact import LOAD
 from halfspace.devices import cycle
@@ -73,6 +74,19 @@ def _work(path, stiffness, low, high, *, contact):
         start = newton.solve(problem, start, newton.spring(stiffness, bases[i]), max_iterations=60).x
         total += weights[i] * problem.observables(start)[LOAD]
     return total
+
+
+@pytest.mark.parametrize("tabor", [0.05, 0.3, 0.65])
+def test_below_its_critical_stiffness_an_apparatus_jumps(tabor):
+    path, stiffness = halfspace.trace(tabor, rtol=1e-5), critical_stiffness(tabor)
+    assert cycle(path, 1.001 * stiffness) is None
+    assert cycle(path, 0.999 * stiffness).energy_lost.value > 0
+
+
+def test_critical_stiffness_of_a_rigid_contact_is_the_steepest_fall_of_bradleys_curve():
+    h = 3 ** (1 / 6)  # where the third derivative of the energy vanishes
+    assert critical_stiffness(1e-4) == pytest.approx(16 * np.pi / 3 * (h**-3 - h**-9), rel=1e-4)
+    assert critical_stiffness(0.697) > 5000
 
 
 def test_errors_are_small_and_positive(path):

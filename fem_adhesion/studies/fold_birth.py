@@ -14,7 +14,7 @@ from scipy.optimize import brentq, minimize_scalar
 from halfspace import newton
 from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.compliance import Array
-from halfspace.contact import APPROACH, CENTRAL_GAP, ContactProblem
+from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD, ContactProblem
 from halfspace.curve import EquilibriumPath, metric_for
 from halfspace.path import Point, make_point
 
@@ -39,6 +39,7 @@ class Birth:
 
 
 FIRST = Birth((0.69, 0.71), (0.15, 0.6), falling=True)
+STEEPEST = (0.1, 0.6)  # central gaps in eps between which the curve of a stiff contact falls most steeply
 SECOND = Birth((3.8, 4.1), (0.3, 0.6), falling=False)
 
 
@@ -58,6 +59,27 @@ def _least_slope(birth: Birth, tabor: float, rtol: float) -> float:
         return float(sign * rates[APPROACH] / rates[CENTRAL_GAP])
 
     return float(minimize_scalar(slope, bounds=birth.gaps, method="bounded", options={"xatol": 1e-5}).fun)
+
+
+def critical_stiffness(tabor: float, *, rtol: float = 1e-7) -> float:
+    """Stiffness of the apparatus below which the contact jumps, in R dgamma/eps: the steepest fall of the curve.
+
+    It grows from 32 pi/(9 sqrt 3) * 2/sqrt 3 = 6.45 for a rigid contact ([G97] 1.3) to infinity at the critical Tabor
+    parameter, where fixed grips begin to jump as well.
+
+    Parameters
+    ----------
+    tabor : float
+        Below the critical value `tabor_of` (FIRST).
+    """
+    problem = half_space_charts(tabor, resolution_for(tabor, rtol))[0].problem
+    x = approached(problem, STEEPEST[1])
+
+    def slope(gap: float) -> float:
+        rates = at_gap(problem, x, gap).rates
+        return float(rates[LOAD] / rates[APPROACH])
+
+    return -float(minimize_scalar(slope, bounds=STEEPEST, method="bounded", options={"xatol": 1e-7}).fun)
 
 
 def approached(problem: ContactProblem, gap: float) -> Array:
