@@ -92,13 +92,13 @@ def _best(rung: Rung | None, quantity: str | None) -> str:
 
 
 def _exponents(study: SpeedStudy) -> Iterator[str]:
-    title = "How the cost grows: exponents b fitted to cost ~ x^b; time against 1/error is that of pull_off"
-    yield from _heading(title, ["method", "time, x = unknowns", "peak memory, x = unknowns", "time, x = 1/error"])
+    title = "How the cost grows: exponents b fitted to cost ~ x^b; the error is that of pull_off"
+    costs = [f"{cost}, x = {x}" for x in ("unknowns", "1/error") for cost in ("time", "peak memory")]
+    yield from _heading(title, ["method", *costs])
     for method in study.methods:
         b = study.exponents(method.name)
-        yield _line(
-            [method.name, *(_number(value, "{:.2f}") or "-" for value in (b.time, b.memory, b.time_by_accuracy))]
-        )
+        fitted = (b.time, b.memory, b.time_by_accuracy, b.memory_by_accuracy)
+        yield _line([method.name, *(_number(value, "{:.2f}") or "-" for value in fitted)])
 
 
 def _failures(study: SpeedStudy) -> Iterator[str]:

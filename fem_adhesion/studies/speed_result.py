@@ -66,13 +66,14 @@ class Exponents:
     ----------
     time, memory : float
         Against unknowns.
-    time_by_accuracy : float
-        Of the time against 1/error, error that of the pull-off load.
+    time_by_accuracy, memory_by_accuracy : float
+        Against 1/error, error that of the pull-off load.
     """
 
     time: float
     memory: float
     time_by_accuracy: float
+    memory_by_accuracy: float
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,7 @@ class SpeedStudy:
         n, t, m = (np.array([getattr(r, key) for r in rungs], float) for key in ("unknowns", "seconds", "memory"))
         m[m < VISIBLE] = np.nan
         accuracy = 1 / np.array([rung.error("pull_off") for rung in rungs])
-        return Exponents(slope(n, t), slope(n, m), slope(accuracy, t))
+        return Exponents(slope(n, t), slope(n, m), slope(accuracy, t), slope(accuracy, m))
 
 
 def size_of(quantity: str, value: float) -> float:
