@@ -6,6 +6,7 @@ What computes is imported inside the commands, so that ``--help`` answers at onc
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -58,6 +59,7 @@ def make_parser() -> Parser:
     _add_compare(commands)
     _add_speed(commands)
     _add_hard(commands)
+    _add_greenwood(commands)
     return parser
 
 
@@ -100,6 +102,18 @@ def _add_hard(commands: Commands) -> None:
     )
     _add_output(hard)
     hard.set_defaults(run=run_hard)
+
+
+def _add_greenwood(commands: Commands) -> None:
+    greenwood = commands.add_parser(
+        "greenwood",
+        help="recompute Greenwood (1997): every figure and table beside the printed values",
+        description="Recompute the figures and tables of the paper, with finite elements drawn over the half-space.",
+        epilog="example: fem-adhesion greenwood --out greenwood --quick",
+    )
+    greenwood.add_argument("--quick", action="store_true", help="fewer points and lower accuracies")
+    _add_output(greenwood)
+    greenwood.set_defaults(run=run_greenwood)
 
 
 def _add_output(command: Parser) -> None:
@@ -193,6 +207,26 @@ def run_hard(options: argparse.Namespace) -> int:
     console = Console(width=None if sys.stdout.isatty() else 150)
     console.print(hard_report.cases_table(rows), hard_report.locking_table(locking))
     return DISAGREE if any(row.outcome == "wrong" for row in rows) else AGREE
+
+
+def run_greenwood(options: argparse.Namespace) -> int:
+    """Compute, draw and write the figures and tables of the paper."""
+    from fem_adhesion.output import greenwood_report
+    from fem_adhesion.output.files import directory_written_aside
+    from fem_adhesion.output.greenwood_plots import PLOTS
+    from fem_adhesion.studies import greenwood1997
+
+    total = len(greenwood1997.SUBJECTS) + len(PLOTS)
+    done = itertools.count()
+    with directory_written_aside(options.out, force=options.force) as aside, _progress_bar() as step:
+
+        def begin(part: str) -> None:
+            step(part, next(done), total)
+
+        study = greenwood1997.compute(quick=options.quick, progress=begin)
+        greenwood_report.write(study, aside, begin)
+    print(f"written: {options.out / 'index.html'}")
+    return AGREE
 
 
 @contextmanager

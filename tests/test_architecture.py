@@ -9,14 +9,39 @@ ROOT = Path(__file__).parents[1]
 
 FLOORS = [
     {"fem_adhesion.cli"},
-    {"fem_adhesion.output.speed_report", "fem_adhesion.output.hard_report"},
-    {"fem_adhesion.output.tables", "fem_adhesion.output.record", "fem_adhesion.output.speed_plots"},
-    {"fem_adhesion.output.files", "fem_adhesion.studies.speed", "fem_adhesion.studies.hard_cases"},
+    {
+        "fem_adhesion.output.speed_report",
+        "fem_adhesion.output.hard_report",
+        "fem_adhesion.output.greenwood_report",
+    },
+    {
+        "fem_adhesion.output.tables",
+        "fem_adhesion.output.record",
+        "fem_adhesion.output.speed_plots",
+        "fem_adhesion.output.greenwood_plots",
+    },
+    {
+        "fem_adhesion.output.files",
+        "fem_adhesion.output.greenwood_load_plots",
+        "fem_adhesion.output.greenwood_state_plots",
+        "fem_adhesion.output.greenwood_trend_plots",
+        "fem_adhesion.output.greenwood_tables",
+    },
+    {"fem_adhesion.output.greenwood_style"},
+    {
+        "fem_adhesion.studies.speed",
+        "fem_adhesion.studies.hard_cases",
+        "fem_adhesion.studies.greenwood1997",
+    },
+    {"fem_adhesion.studies.greenwood_tables"},
     {
         "fem_adhesion.studies.crosscheck",
         "fem_adhesion.studies.speed_result",
         "fem_adhesion.studies.element_methods",
         "fem_adhesion.studies.halfspace_methods",
+        "fem_adhesion.studies.greenwood_curves",
+        "fem_adhesion.studies.greenwood_criteria",
+        "fem_adhesion.studies.greenwood_ripple",
         "fem_adhesion.studies.hard_bodies",
         "fem_adhesion.studies.hard_contacts",
     },

@@ -1,0 +1,94 @@
+"""The Greenwood study as a directory: figures, tables, and a page that shows them all."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from fem_adhesion.output.greenwood_plots import PLOTS, draw
+from fem_adhesion.output.greenwood_style import Plot
+from fem_adhesion.output.greenwood_tables import Table, html, tables, typeset, with_error, write_csv
+from fem_adhesion.output.record import versions
+from fem_adhesion.studies.greenwood1997 import Greenwood1997
+from fem_adhesion.studies.machine import machine
+
+PAPER = "J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1277-1297"
+DOI = "10.1098/rspa.1997.0070"
+STYLE = """
+:root { color-scheme: light dark; }
+body { font: 1rem/1.5 system-ui, sans-serif; max-width: 62rem; margin: 0 auto; padding: 1rem; }
+figure { margin: 2rem 0; }
+figure img { display: block; width: 100%; height: auto; background: white; border-radius: 6px; }
+figcaption, .wide { margin-top: .5rem; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: .85rem; }
+th, td { padding: .2rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid #8886; }
+td { white-space: nowrap; }
+.number { text-align: right; font-variant-numeric: tabular-nums; }
+"""
+
+
+def write(study: Greenwood1997, directory: Path, progress: Callable[[str], None] | None = None) -> None:
+    """Write every figure as SVG and PNG, every table as CSV, and ``index.html``, into a directory that exists.
+
+    Give it one made by `fem_adhesion.output.files.directory_written_aside`, so that all files appear or none.
+
+    Parameters
+    ----------
+    study : Greenwood1997
+        What was computed.
+    directory : Path
+        Where to write.
+    progress : callable, optional
+        Told what is drawn next, once for each of `fem_adhesion.output.greenwood_plots.PLOTS`.
+    """
+    draw(study, directory, progress)
+    written = tables(study)
+    for table in written:
+        write_csv(table, directory)
+    (directory / "index.html").write_text("\n".join(_page(study, written, directory)) + "\n", encoding="utf-8")
+
+
+def _page(study: Greenwood1997, written: Sequence[Table], directory: Path) -> Iterator[str]:
+    yield '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">'
+    yield '<meta name="viewport" content="width=device-width, initial-scale=1">'
+    yield f"<title>Greenwood (1997), computed again</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<main>"
+    yield from _head(study, written)
+    for plot in PLOTS:
+        yield from _figure(plot, directory)
+    for table in written:
+        yield from html(table)
+    yield from _foot(study)
+    yield "</main>\n</body>\n</html>"
+
+
+def _head(study: Greenwood1997, written: Sequence[Table]) -> Iterator[str]:
+    yield f"<h1>Greenwood (1997), computed again{', quick' if study.quick else ''}</h1>"
+    yield f'<p>Figures and tables after {PAPER}, doi <a href="https://doi.org/{DOI}">{DOI}</a>.</p>'
+    yield typeset(
+        "Loads in R dgamma, positive in compression; gaps and approach in eps, the approach positive when pressed "
+        "together; radii in beta; pressures P in dgamma/(mu eps). Errors are estimated by refinement."
+    ).join(("<p>", "</p>"))
+    critical = typeset(f"mu = {with_error(study.critical_tabor)}")
+    yield f"<p>The curve under fixed grips first has a vertical tangent at <strong>{critical}</strong>; "
+    yield "the paper says about 1.</p>"
+    links = [f'<a href="#{plot.stem}">{plot.number}</a>' for plot in PLOTS]
+    yield f"<nav><p>Figures: {', '.join(links)}</p><ul>"
+    yield from (f'<li><a href="#{table.stem}">{typeset(table.title)}</a></li>' for table in written)
+    yield "</ul></nav>"
+
+
+def _figure(plot: Plot, directory: Path) -> Iterator[str]:
+    """A figure with its caption; the image is part of the page, which can be sent alone."""
+    image = base64.b64encode((directory / f"{plot.stem}.svg").read_bytes()).decode()
+    files = " ".join(f'<a href="{plot.stem}.{suffix}">{suffix.upper()}</a>' for suffix in ("svg", "png"))
+    yield f'<figure id="{plot.stem}">'
+    yield f'<img alt="{typeset(f"{plot.title}. {plot.see}")}" src="data:image/svg+xml;base64,{image}">'
+    yield f"<figcaption><strong>After Fig. {plot.number}.</strong> {typeset(plot.title)}. {typeset(plot.see)} {files}"
+    yield "</figcaption></figure>"
+
+
+def _foot(study: Greenwood1997) -> Iterator[str]:
+    facts = {**machine(), **versions(), "computed in": f"{study.seconds:.1f} s, drawing apart"}
+    yield f"<footer><p>{'; '.join(typeset(f'{key} {value}') for key, value in facts.items())}</p></footer>"

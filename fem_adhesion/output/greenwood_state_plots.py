@@ -1,0 +1,164 @@
+"""Central gap, profiles and contact radius: figures after [G97] 3a to 5."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from fem_adhesion.output import greenwood_style as style
+from fem_adhesion.output.greenwood_style import Plot, branches, curve, dress, note, panels, theory
+from fem_adhesion.studies.greenwood1997 import WINDING_AT, Greenwood1997
+from halfspace.compliance import Array
+from halfspace.maugis import MaugisDugdale, carpick_radius
+from halfspace.scaling import MAUGIS
+from halfspace.theories import hertz_load, jkr_load
+
+GAPS_AT = (0.5, 1.0, 2.0, 5.0)
+RADII_AT = (0.5, 2.0, 5.0)
+THEORIES_AT = (0.5, 2.0)
+PROFILE_STYLES = (
+    (style.SKY, "-"),
+    (style.BLUE, style.DASHED),
+    (style.GREEN, style.CHAIN),
+    (style.PINK, style.LONG),
+    (style.ORANGE, style.DOTTED),
+    (style.RED, style.DASHED),
+    ("black", "-"),
+)
+
+
+def _figure_3a(study: Greenwood1997) -> Figure:
+    figure, (axes,) = panels()
+    for mu, place in zip(GAPS_AT, ((-0.75, 0.6), (-2.45, 0.4), (-3.45, 0.9), (-5.3, 1.2)), strict=True):
+        path = study.curves[mu]
+        branches(axes, path, path.approach, path.central_gap)
+        _name(axes, mu, place)
+    style.stability_key(axes)
+    dress(axes, style.APPROACH, style.CENTRAL_GAP, legend="upper right", xlim=(-9, 2), ylim=(-0.4, 6))
+    return figure
+
+
+def _name(axes: Any, tabor: float, at: tuple[float, float]) -> None:
+    """Name a curve in its colour."""
+    axes.text(*at, rf"$\mu = {tabor:g}$", color=style.OF_TABOR[tabor], fontsize=11, weight="bold")
+
+
+def _figure_3b(study: Greenwood1997) -> Figure:
+    figure, (axes,) = panels()
+    for mu, place in zip(GAPS_AT, ((-3.9, 0.45), (-2.15, 0.33), (-1.3, 0.55), (-0.5, 1.5)), strict=True):
+        path = study.curves[mu]
+        branches(axes, path, path.load, path.central_gap)
+        _name(axes, mu, place)
+        if fe := study.elements.get(mu):
+            style.elements(axes, fe, fe.load, fe.central_gap, rf"finite elements, $\mu = {mu:g}$")
+    style.stability_key(axes)
+    dress(axes, style.LOAD, style.CENTRAL_GAP, legend="upper left", xlim=(-6, 1), ylim=(-0.2, 4.5))
+    return figure
+
+
+def _figure_3c(study: Greenwood1997) -> Figure:
+    path, folds = study.curves[WINDING_AT], study.states.folds
+    figure, (whole, close) = panels(2)
+    for axes in (whole, close):
+        branches(axes, path, path.approach, path.central_gap)
+        axes.plot(folds[:, 0], folds[:, 2], "o", color="black", markersize=5, label="folds")
+    style.stability_key(whole)
+    for number, (axes, offset) in enumerate(((whole, (8, 0)), (close, (-16, -3)), (close, (8, -3)), (whole, (-4, 9)))):
+        note(axes, str(number + 1), (folds[number, 0], folds[number, 2]), offset)
+    dress(whole, style.APPROACH, style.CENTRAL_GAP, legend="upper right", xlim=(-9, 0), ylim=(-0.3, 6))
+    dress(close, style.APPROACH, style.CENTRAL_GAP, legend=None, xlim=(-4.56, -4.42), ylim=(-0.05, 1.3))
+    whole.set_title(rf"$\mu = {WINDING_AT:g}$")
+    close.set_title("enlarged around the folds 2 and 3")
+    return figure
+
+
+def _figure_4(study: Greenwood1997, quantity: str, label: str, ylim: tuple[float, float]) -> Figure:
+    figure, (axes,) = panels(height=5.8)
+    for profile, (colour, dashes) in zip(study.states.profiles, PROFILE_STYLES, strict=True):
+        values = getattr(profile, quantity)
+        text = f"$H(0) = {profile.central_gap:.4g}$" if abs(profile.central_gap) > 1e-9 else "$H(0) = 0$"
+        axes.plot(profile.radii, values, color=colour, linestyle=dashes, linewidth=1.8, label=text)
+    dress(axes, style.RADIUS, label, legend="below", xlim=(0, 3), ylim=ylim)
+    axes.set_title(rf"$\mu = {WINDING_AT:g}$")
+    return figure
+
+
+def _figure_4a(study: Greenwood1997) -> Figure:
+    return _figure_4(study, "gap", "gap $H$", (-0.3, 8))
+
+
+def _figure_4b(study: Greenwood1997) -> Figure:
+    return _figure_4(study, "pressure", "pressure $P$", (-5.6, 1.4))
+
+
+def _figure_5(study: Greenwood1997) -> Figure:
+    figure, (axes,) = panels(height=6.4)
+    radius = np.linspace(1e-3, 2.9, 400)
+    for mu in RADII_AT:
+        path = study.curves[mu]
+        curve(axes, mu, path.load, path.contact_radius)
+        if fe := study.elements.get(mu):
+            style.elements(axes, fe, fe.load, fe.contact_radius, rf"finite elements, $\mu = {mu:g}$")
+    theory(axes, "JKR", jkr_load(radius), radius)
+    theory(axes, "Hertz", hertz_load(radius), radius)
+    for mu in THEORIES_AT:
+        _maugis(axes, mu, radius)
+    dress(axes, style.LOAD, r"contact radius $a^* = a/\beta$", legend="below", xlim=(-6.5, 5), ylim=(0, 2.8))
+    return figure
+
+
+def _maugis(axes: Any, tabor: float, radius: Array) -> None:
+    """Maugis-Dugdale of the same largest tension, and the interpolation of it by Carpick and others, as thin lines."""
+    theory = MaugisDugdale.matched(tabor)
+    load = np.linspace(theory.pull_off().load, 5, 400)
+    thin = {"color": style.OF_TABOR[tabor], "linewidth": 1.0}
+    axes.plot(theory.load(radius), radius, label=rf"Maugis-Dugdale, $\mu = {tabor:g}$", **thin)
+    label = rf"Carpick et al., $\mu = {tabor:g}$"
+    axes.plot(load, carpick_radius(load, MAUGIS.of(tabor)), linestyle=style.DOTTED, label=label, **thin)
+
+
+STATE_PLOTS = (
+    Plot(
+        "3a",
+        "Central gap against approach",
+        "At mu = 0.5 every approach has one gap, from about mu = 0.7 on the curve bends back and the surfaces jump.",
+        _figure_3a,
+    ),
+    Plot(
+        "3b",
+        "Central gap against load",
+        "Prescribing the central gap leads through the unstable branch, as the finite-element points show; the least "
+        "load, pull-off, comes where the gap is already negative.",
+        _figure_3b,
+    ),
+    Plot(
+        "3c",
+        "The winding curve at mu = 5",
+        "Four folds: on the unstable branch the approach turns twice more, at 2 and 3; only the central gap falls "
+        "all along the curve.",
+        _figure_3c,
+    ),
+    Plot(
+        "4a",
+        "Gap profiles along the curve at mu = 5",
+        "From separation (2.554) a neck rises on the axis until the centres meet; from there on the contact spreads "
+        "with a nearly flat gap inside a sharp edge.",
+        _figure_4a,
+    ),
+    Plot(
+        "4b",
+        "Pressure profiles of the same states",
+        "In contact the tension is concentrated in a spike at the edge whose height, 1.03 mu, is the strength of the "
+        "surface law; the spike only moves outwards as the contact grows.",
+        _figure_4b,
+    ),
+    Plot(
+        "5",
+        "Contact radius against load",
+        "The radius, where the tension is largest, closes in on JKR's as mu grows; Maugis-Dugdale's, the inner edge of "
+        "its ring of tension, is smaller at small mu.",
+        _figure_5,
+    ),
+)

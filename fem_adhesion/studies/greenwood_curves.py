@@ -1,0 +1,132 @@
+"""Curves of Greenwood's figures: finely stepped paths, where jumps under fixed grips land, states along a path."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import halfspace
+from halfspace.accuracy import half_space_charts, resolution_for
+from halfspace.compliance import Array
+from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD, ContactProblem
+from halfspace.curve import COMPRESSION, EquilibriumPath, Estimate, metric_for, trace_charts
+from halfspace.events import FOLD, ROUND_OFF, Condition, Located, locate
+from halfspace.path import Steps
+
+FINE = Steps(first=0.02, longest=0.08, turn=0.06)  # a polygon through the points looks smooth
+FINEST = Steps(first=0.02, longest=0.03, turn=0.02)  # even enlarged
+SEEN = 1e-4  # relative accuracy of what is only drawn
+
+# States of [G97] Fig. 4 at mu = 5: the central gap, and whether it is met first or last along the path.
+PROFILES = ((2.554, 0), (1.0, 0), (0.3, 0), (0.02, 0), (0.0, -1), (-0.0036, -1), (-0.01, -1))
+PROFILE_RADII = np.concatenate([[0.0], np.geomspace(1e-3, 0.05, 30), np.linspace(0.052, 4.0, 1200)])
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A jump under fixed grips.
+
+    Attributes
+    ----------
+    take_off, landing : str
+        Letters of [G97] Fig. 2a.
+    approach : Estimate
+        In eps, the same before and after.
+    load, landing_load : Estimate
+        Before and after, in R dgamma.
+    """
+
+    take_off: str
+    landing: str
+    approach: Estimate
+    load: Estimate
+    landing_load: Estimate
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Shape and pressure of one state.
+
+    Attributes
+    ----------
+    central_gap, approach, load : float
+        In eps, eps and R dgamma.
+    contact_radius : float
+        In beta, nan where the central gap exceeds 3^(1/6) eps.
+    radii, gap, pressure : (n,) arrays
+        In beta, eps and dgamma/(mu eps).
+    """
+
+    central_gap: float
+    approach: float
+    load: float
+    contact_radius: float
+    radii: Array
+    gap: Array
+    pressure: Array
+
+
+def fine_path(
+    tabor: float, *, rtol: float = SEEN, to_load: float = COMPRESSION, steps: Steps = FINE
+) -> EquilibriumPath:
+    """Trace a curve and put points on it that are close enough to be drawn; its events are the trace's."""
+    charts = half_space_charts(tabor, resolution_for(tabor, rtol), to_load)
+    path = halfspace.trace(tabor, rtol=rtol, to_load=to_load)
+    return replace(path, segments=trace_charts(charts, to_load, steps))
+
+
+def folds(path: EquilibriumPath) -> list[Located]:
+    """Every fold in the approach, in order along the path."""
+    return states(path, FOLD)
+
+
+def states(path: EquilibriumPath, condition: Condition) -> list[Located]:
+    """Every state of the path that meets a condition, in order."""
+    metric = metric_for(path.tabor)
+    return [e for s in path.segments for e in locate(s.problem, s.points, metric, condition)]
+
+
+def jumps(tabor: float, *, rtol: float = 1e-6) -> tuple[Jump, ...]:
+    """Jumps A to B, into contact, and C to D, out of it; a landing's error is its change from a coarser grid.
+
+    Empty where the curve does not fold.
+    """
+    coarse, fine = (halfspace.trace(tabor, rtol=r) for r in (100 * rtol, rtol))
+    if fine.event("jump_on") is None:
+        return ()
+    return (
+        _jump((coarse, fine), "jump_on", ("A", "B"), -1),  # the last state of the same approach is in contact
+        _jump((coarse, fine), "jump_off", ("C", "D"), 0),  # the first is separated
+    )
+
+
+def _jump(paths: Sequence[EquilibriumPath], name: str, letters: tuple[str, str], which: int) -> Jump:
+    event = paths[-1].events[name]
+    landings = [_load_at(path, event.approach, which) for path in paths]
+    change = abs(landings[1] - landings[0]) + ROUND_OFF
+    approach = Estimate(event.approach, event.approach_error)
+    return Jump(*letters, approach, Estimate(event.load, event.load_error), Estimate(landings[-1], change))
+
+
+def _load_at(path: EquilibriumPath, approach: float, which: int) -> float:
+    return float(states(path, Condition(APPROACH, value=approach))[which].point.observables[LOAD])
+
+
+def profiles(path: EquilibriumPath) -> Iterator[Profile]:
+    """States of Fig. 4 on a path, in order along it."""
+    for gap, which in PROFILES:
+        found = states(path, Condition(CENTRAL_GAP, value=gap))
+        if found:
+            yield _profile(found[which])
+
+
+def _profile(state: Located) -> Profile:
+    """State as a field; the gap is interpolated, the pressure is what the law gives for it."""
+    problem, x = state.problem, state.point.x
+    assert isinstance(problem, ContactProblem)
+    gap = problem.operator.values_at(PROFILE_RADII / x[-1], x[:-2])
+    approach, load, central_gap, radius = state.point.observables
+    pressure = problem.law.pressure(gap, problem.tabor)
+    return Profile(central_gap, approach, load, radius, PROFILE_RADII, gap, pressure)
