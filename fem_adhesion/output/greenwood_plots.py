@@ -7,13 +7,14 @@ from pathlib import Path
 
 from matplotlib import rc_context
 
+from fem_adhesion.output.greenwood_device_plots import DEVICE_PLOTS
 from fem_adhesion.output.greenwood_load_plots import LOAD_PLOTS
 from fem_adhesion.output.greenwood_state_plots import STATE_PLOTS
 from fem_adhesion.output.greenwood_style import LOOK
 from fem_adhesion.output.greenwood_trend_plots import TREND_PLOTS
 from fem_adhesion.studies.greenwood1997 import Greenwood1997
 
-PLOTS = (*LOAD_PLOTS, *STATE_PLOTS, *TREND_PLOTS)  # in the paper's order
+PLOTS = (*LOAD_PLOTS, *STATE_PLOTS, *TREND_PLOTS, *DEVICE_PLOTS)  # in the paper's order
 DOTS_PER_INCH = 160
 
 

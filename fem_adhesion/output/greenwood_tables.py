@@ -12,6 +12,7 @@ from pathlib import Path
 
 from fem_adhesion.studies.greenwood1997 import Greenwood1997
 from fem_adhesion.studies.greenwood_criteria import CriteriaStudy
+from fem_adhesion.studies.greenwood_devices import DeviceStudy
 from fem_adhesion.studies.greenwood_tables import Printed
 from halfspace.curve import Estimate
 
@@ -52,6 +53,7 @@ def tables(study: Greenwood1997) -> list[Table]:
     return [
         *_printed_tables(study),
         _jumps(study),
+        _cycles(study.devices),
         _pull_offs(study),
         _true_jumps(study.criteria),
         _constants(study.criteria),
@@ -105,6 +107,23 @@ def _jumps(study: Greenwood1997) -> Table:
     return Table(
         "jumps", "Jumps of Fig. 2a, mu = 2, fixed grips", "Where each jump takes off and lands.", columns, rows
     )
+
+
+def _cycles(devices: DeviceStudy) -> Table:
+    """Both jumps and the loss of every apparatus."""
+    ends = ("jump on", "lands", "jump off", "lands")
+    columns = ("stiffness, R dgamma/eps", *(f"{end}: alpha*, eps | W, R dgamma" for end in ends))
+    rows = tuple(
+        (
+            "fixed grips" if math.isinf(c.stiffness) else f"{c.stiffness:g}",
+            *(f"{e.approach:.6f} | {e.load:.6f}" for j in (c.jump_on, c.jump_off) for e in (j.take_off, j.landing)),
+            *_cells(c.energy_lost),
+        )
+        for c in devices.cycles
+    )
+    see = "The softer the apparatus, the more energy a cycle loses; the loss is the work of the base round the loop."
+    title = f"Cycles of an apparatus, mu = {devices.tabor:g}"
+    return Table("devices", title, see, (*columns, "energy lost, R dgamma eps", "error"), rows)
 
 
 def _pull_offs(study: Greenwood1997) -> Table:

@@ -19,6 +19,7 @@ from fem_adhesion.studies import greenwood_tables as tables
 from fem_adhesion.studies.fold_birth import FIRST, tabor_of
 from fem_adhesion.studies.greenwood_criteria import CriteriaStudy, fit, jump_on
 from fem_adhesion.studies.greenwood_curves import Jump, Profile, fine_path
+from fem_adhesion.studies.greenwood_devices import DeviceStudy, devices
 from fem_adhesion.studies.greenwood_ripple import Ripple, false_rise, ripple
 from fem_adhesion.studies.greenwood_tables import Printed
 from halfspace.compliance import Array
@@ -100,6 +101,8 @@ class Greenwood1997:
         Of jumping on.
     tables : Tables
         Printed beside computed.
+    devices : DeviceStudy
+        Apparatus of finite stiffness, at mu = 2.
     critical_tabor : Estimate
         Where the curve first has a vertical tangent.
     seconds : float
@@ -116,6 +119,7 @@ class Greenwood1997:
     rises: Mapping[float, tuple[Ripple, ...]]
     criteria: CriteriaStudy
     tables: Tables
+    devices: DeviceStudy
     critical_tabor: Estimate
     seconds: float
     quick: bool
@@ -163,7 +167,16 @@ QUICK = Extent(
     rises=RISES[:2],
     rtol=1e-5,
 )
-SUBJECTS = ("curves", "finite elements", "criteria", "pull-off", "false rise", "tables", "critical Tabor parameter")
+SUBJECTS = (
+    "curves",
+    "finite elements",
+    "criteria",
+    "pull-off",
+    "false rise",
+    "tables",
+    "devices",
+    "critical Tabor parameter",
+)
 
 
 def compute(*, quick: bool = False, progress: Callable[[str], None] | None = None) -> Greenwood1997:
@@ -196,12 +209,14 @@ def compute(*, quick: bool = False, progress: Callable[[str], None] | None = Non
     rises = _rises(extent)
     begin("tables")
     printed = _printed(extent)
+    begin("devices")
+    apparatus = devices(halfspace.trace(JUMPS_AT, rtol=extent.rtol))
     begin("critical Tabor parameter")
     critical_tabor = _critical_tabor()
     states = _states(drawn[WINDING_AT])
     seconds = time.perf_counter() - began
     return Greenwood1997(
-        drawn, elements, states, pull_offs, ripples, rises, criteria, printed, critical_tabor, seconds, quick
+        drawn, elements, states, pull_offs, ripples, rises, criteria, printed, apparatus, critical_tabor, seconds, quick
     )
 
 
