@@ -43,6 +43,7 @@ FLOORS = [
         "fem_adhesion.studies.greenwood_curves",
         "fem_adhesion.studies.greenwood_criteria",
         "fem_adhesion.studies.greenwood_devices",
+        "fem_adhesion.studies.greenwood_relaxation",
         "fem_adhesion.studies.greenwood_ripple",
         "fem_adhesion.studies.hard_bodies",
         "fem_adhesion.studies.hard_contacts",

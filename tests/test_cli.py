@@ -79,6 +79,17 @@ def test_bad_input_is_refused_in_one_line_before_any_work(arguments, message):
     assert done.stdout == ""
 
 
+@pytest.mark.parametrize("command", ["speed", "hard", "greenwood"])
+def test_an_output_that_is_in_use_or_cannot_be_written_is_refused_before_any_work(command, tmp_path):
+    (tmp_path / "precious").write_text("kept")
+    for out, message in ((tmp_path, "use --force"), ("/no/such/place", "cannot be written")):
+        done = run(command, "--out", str(out))
+        assert done.returncode == 2
+        assert message in done.stderr
+        assert done.stderr.count("\n") == 1
+    assert [file.name for file in tmp_path.iterdir()] == ["precious"]
+
+
 def test_no_command_is_refused():
     done = run()
     assert done.returncode == 2

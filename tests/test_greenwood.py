@@ -19,7 +19,17 @@ from halfspace.curve import Estimate
 
 DATA = Path(__file__).parent / "data"
 FIGURES = ("1a", "1b", "1c", "2a", "2b", "3a", "3b", "3c", "4a", "4b", "5", "6a", "6b", "7", "8")
-TABLES = ("table_1", "table_2", "fig_4_checks", "jumps", "devices", "pull_off", "criteria", "criteria_constants")
+TABLES = (
+    "table_1",
+    "table_2",
+    "fig_4_checks",
+    "jumps",
+    "devices",
+    "relaxation",
+    "pull_off",
+    "criteria",
+    "criteria_constants",
+)
 
 
 @pytest.fixture(scope="module")

@@ -129,6 +129,17 @@ def test_jkr_limit():
     assert zero.approach == pytest.approx(float(theories.jkr_approach(zero.contact_radius, 50)), rel=0.02)
 
 
+def test_the_neck_outside_a_soft_contact_is_jkrs():
+    """Gap outside the contact: Hertz's and that of a flat punch pulled by sqrt(2 pi a dgamma/E*)."""
+    mu = 100.0
+    state = halfspace.trace(mu, rtol=1e-4).stages[-1]["zero_load"]
+    a = float(theories.jkr_radius(0.0))
+    r = np.linspace(1.1, 2.0, 10) * a
+    gap = state.problem.operator.values_at(r / state.point.x[-1], state.point.x[:-2])
+    jkr = theories.hertz_gap(r, a, mu) + mu * np.sqrt(2 * np.pi * a) * 2 / np.pi * np.arccos(a / r)
+    np.testing.assert_allclose(gap, jkr, rtol=0.02)
+
+
 def test_jkr_forms_agree_with_each_other():
     radius = theories.jkr_radius(np.array([-4.0, 0.0, 10.0]))
     np.testing.assert_allclose(theories.jkr_load(radius), [-4.0, 0.0, 10.0], atol=1e-12)

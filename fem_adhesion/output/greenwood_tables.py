@@ -13,6 +13,7 @@ from pathlib import Path
 from fem_adhesion.studies.greenwood1997 import Greenwood1997
 from fem_adhesion.studies.greenwood_criteria import CriteriaStudy
 from fem_adhesion.studies.greenwood_devices import DeviceStudy
+from fem_adhesion.studies.greenwood_relaxation import Attempt
 from fem_adhesion.studies.greenwood_tables import Printed
 from halfspace.curve import Estimate
 
@@ -54,6 +55,7 @@ def tables(study: Greenwood1997) -> list[Table]:
         *_printed_tables(study),
         _jumps(study),
         _cycles(study.devices),
+        _relaxations(study.relaxations),
         _pull_offs(study),
         _true_jumps(study.criteria),
         _constants(study.criteria),
@@ -124,6 +126,27 @@ def _cycles(devices: DeviceStudy) -> Table:
     see = "The softer the apparatus, the more energy a cycle loses; the loss is the work of the base round the loop."
     title = f"Cycles of an apparatus, mu = {devices.tabor:g}"
     return Table("devices", title, see, (*columns, "energy lost, R dgamma eps", "error"), rows)
+
+
+def _relaxations(attempts: Sequence[Attempt]) -> Table:
+    """Sweeps and times of the iterations of 1997."""
+    columns = ("mu", "iteration", "sweeps", "seconds", "Newton, seconds", "outcome")
+    rows = tuple(
+        (
+            f"{a.tabor:g}",
+            a.method,
+            "not converged" if a.sweeps is None else str(a.sweeps),
+            f"{a.seconds:.3f}",
+            f"{a.newton_seconds:.3f}",
+            a.outcome,
+        )
+        for a in attempts
+    )
+    see = (
+        "Simple relaxation reaches H(0) = 0 in sweeps that grow with mu and as 1/c, until c must shrink; Greenwood's "
+        "changes conserve the sum of the pressures, so what is smooth on the grid fades slowly."
+    )
+    return Table("relaxation", "The iterations of 1997 on 200 uniform nodes", see, columns, rows)
 
 
 def _pull_offs(study: Greenwood1997) -> Table:

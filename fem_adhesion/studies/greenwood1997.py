@@ -20,6 +20,7 @@ from fem_adhesion.studies.fold_birth import FIRST, tabor_of
 from fem_adhesion.studies.greenwood_criteria import CriteriaStudy, fit, jump_on
 from fem_adhesion.studies.greenwood_curves import Jump, Profile, fine_path
 from fem_adhesion.studies.greenwood_devices import DeviceStudy, devices
+from fem_adhesion.studies.greenwood_relaxation import Attempt, attempts
 from fem_adhesion.studies.greenwood_ripple import Ripple, false_rise, ripple
 from fem_adhesion.studies.greenwood_tables import Printed
 from halfspace.compliance import Array
@@ -101,6 +102,8 @@ class Greenwood1997:
         Of jumping on.
     tables : Tables
         Printed beside computed.
+    relaxations : tuple of Attempt
+        The iterations of 1997 on 200 nodes.
     devices : DeviceStudy
         Apparatus of finite stiffness, at mu = 2.
     critical_tabor : Estimate
@@ -119,6 +122,7 @@ class Greenwood1997:
     rises: Mapping[float, tuple[Ripple, ...]]
     criteria: CriteriaStudy
     tables: Tables
+    relaxations: tuple[Attempt, ...]
     devices: DeviceStudy
     critical_tabor: Estimate
     seconds: float
@@ -136,6 +140,8 @@ class Extent:
         true jumps, of the false rise.
     rises : tuple
         Spacings of the false rise.
+    sweeps : int
+        Allowed to Greenwood's iteration.
     rtol : float
         Relative accuracy of the tables.
     """
@@ -146,6 +152,7 @@ class Extent:
     jumps: tuple[float, ...]
     rising: tuple[float, ...]
     rises: tuple[float, ...]
+    sweeps: int
     rtol: float
 
 
@@ -156,6 +163,7 @@ FULL = Extent(
     jumps=tuple(float(mu) for mu in np.geomspace(1, 100, 21)),
     rising=tuple(float(mu) for mu in np.geomspace(1, 6, 19)),
     rises=RISES,
+    sweeps=4000,
     rtol=1e-7,
 )
 QUICK = Extent(
@@ -165,6 +173,7 @@ QUICK = Extent(
     jumps=tuple(float(mu) for mu in np.geomspace(1, 30, 7)),
     rising=tuple(float(mu) for mu in np.geomspace(1, 3, 6)),
     rises=RISES[:2],
+    sweeps=200,
     rtol=1e-5,
 )
 SUBJECTS = (
@@ -174,6 +183,7 @@ SUBJECTS = (
     "pull-off",
     "false rise",
     "tables",
+    "relaxations",
     "devices",
     "critical Tabor parameter",
 )
@@ -209,6 +219,8 @@ def compute(*, quick: bool = False, progress: Callable[[str], None] | None = Non
     rises = _rises(extent)
     begin("tables")
     printed = _printed(extent)
+    begin("relaxations")
+    relaxations = tuple(attempts(extent.sweeps))
     begin("devices")
     apparatus = devices(halfspace.trace(JUMPS_AT, rtol=extent.rtol))
     begin("critical Tabor parameter")
@@ -216,7 +228,19 @@ def compute(*, quick: bool = False, progress: Callable[[str], None] | None = Non
     states = _states(drawn[WINDING_AT])
     seconds = time.perf_counter() - began
     return Greenwood1997(
-        drawn, elements, states, pull_offs, ripples, rises, criteria, printed, apparatus, critical_tabor, seconds, quick
+        drawn,
+        elements,
+        states,
+        pull_offs,
+        ripples,
+        rises,
+        criteria,
+        printed,
+        relaxations,
+        apparatus,
+        critical_tabor,
+        seconds,
+        quick,
     )
 
 
