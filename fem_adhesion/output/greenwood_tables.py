@@ -144,7 +144,7 @@ def _relaxations(attempts: Sequence[Attempt]) -> Table:
     )
     see = (
         "Simple relaxation reaches H(0) = 0 in sweeps that grow with mu and as 1/c, until c must shrink; Greenwood's "
-        "changes conserve the sum of the pressures, so what is smooth on the grid fades slowly."
+        "needs some ten thousand at any mu, since its changes conserve the sum of the pressures."
     )
     return Table("relaxation", "The iterations of 1997 on 200 uniform nodes", see, columns, rows)
 

@@ -163,7 +163,7 @@ FULL = Extent(
     jumps=tuple(float(mu) for mu in np.geomspace(1, 100, 21)),
     rising=tuple(float(mu) for mu in np.geomspace(1, 6, 19)),
     rises=RISES,
-    sweeps=4000,
+    sweeps=20_000,
     rtol=1e-7,
 )
 QUICK = Extent(

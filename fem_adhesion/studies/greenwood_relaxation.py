@@ -18,6 +18,8 @@ from halfspace.newton import NotConverged
 
 NODES, OUTER = 200, 6.0  # uniform triangles, to this radius in beta, or in beta/sqrt(mu) below mu = 1
 TABORS = (0.05, 0.2, 0.5, 1.0, 2.0, 3.0)
+GREENWOOD_TABORS = (0.05, 1.0, 3.0)  # five seconds each
+GREENWOOD_TOLERANCE = 1e-5  # relative misfit of the pressure
 CONTACT = newton.central_gap(0.0)
 
 Iteration = Callable[[ContactProblem, Array], relaxation.Relaxed]
@@ -50,15 +52,19 @@ class Attempt:
 
 
 def attempts(most_sweeps: int) -> Iterator[Attempt]:
-    """Every iteration at every Tabor parameter; Greenwood's may take this many sweeps."""
-    methods: dict[str, Iteration] = {
-        "simple relaxation, c = 0.05": lambda p, x: relaxation.simple(p, x, CONTACT, relaxation=0.05),
-        "simple relaxation, c = 0.005": lambda p, x: relaxation.simple(p, x, CONTACT, relaxation=0.005),
-        f"Greenwood's, at most {most_sweeps} sweeps": lambda p, x: relaxation.greenwood(
-            p, x, CONTACT, most_sweeps=most_sweeps
-        ),
-    }
+    """Each iteration at several Tabor parameters; Greenwood's may take `most_sweeps`."""
+
+    def simple(c: float) -> Iteration:
+        return lambda problem, x: relaxation.simple(problem, x, CONTACT, relaxation=c)
+
+    def greenwood(problem: ContactProblem, x: Array) -> relaxation.Relaxed:
+        return relaxation.greenwood(
+            problem, x, CONTACT, relaxation=1.5, tolerance=GREENWOOD_TOLERANCE, most_sweeps=most_sweeps
+        )
+
+    every: dict[str, Iteration] = {f"simple relaxation, c = {c:g}": simple(c) for c in (0.05, 0.005)}
     for tabor in TABORS:
+        methods = every | ({"Greenwood's, relaxation 1.5": greenwood} if tabor in GREENWOOD_TABORS else {})
         outer = OUTER / np.sqrt(min(tabor, 1.0))
         problem = ContactProblem(compliance.triangles(grid.uniform(outer, outer / (NODES - 1))), tabor)
         began = time.perf_counter()
