@@ -15,11 +15,10 @@ from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.mesh import graded_breaks, tensor_grid
 from fem_adhesion.scene import Scene
 from halfspace import grid
-from halfspace.accuracy import MOST_RUNGS, Charts, Rung, climb, extent_for, rings
+from halfspace.accuracy import MOST_RUNGS, Charts, Rung, climb, extent_for, rings, widest_radius
 from halfspace.contact import ContactProblem, spike_width
 from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
 from halfspace.limits import require_load, require_rtol
-from halfspace.theories import jkr_radius
 
 FAR_FIELDS = {"point_load": far_field.point_load, "clamped": far_field.clamped, "free": far_field.free}
 
@@ -118,7 +117,7 @@ def block_charts(scene: Scene, resolution: Resolution, to_load: float = COMPRESS
 
 
 def _fixed_chart(scene: Scene, resolution: Resolution, to_load: float) -> Chart:
-    widest = float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(scene.tabor)))
+    widest = widest_radius(scene.tabor, to_load)
     fine = resolution.finest * spike_width(scene.tabor) / 2
     return _chart(scene, graded_breaks(fine, min(widest, resolution.radius / 2), resolution.radius), resolution)
 

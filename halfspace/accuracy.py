@@ -214,12 +214,17 @@ def rings(tabor: float, finest: float, growth: float, extent: float, to_load: fl
     """
     length = finest * spike_width(tabor) / 2
     outer = extent / np.sqrt(tabor)
-    widest = float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(tabor)))
+    widest = widest_radius(tabor, to_load)
     return Rings(
         grid.graded(0.0, length, outer, growth=growth),
         grid.graded(1.0, 2 * length / widest, outer / length, growth=growth),
         until=length,
     )
+
+
+def widest_radius(tabor: float, to_load: float) -> float:
+    """Contact radius in beta that a curve up to a load hardly exceeds: a soft and a rigid contact's together."""
+    return float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(tabor)))
 
 
 def half_space_charts(tabor: float, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:

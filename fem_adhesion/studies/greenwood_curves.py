@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 import halfspace
+from halfspace import devices
 from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.compliance import Array
-from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD, ContactProblem
+from halfspace.contact import CENTRAL_GAP, ContactProblem
 from halfspace.curve import COMPRESSION, EquilibriumPath, Estimate, metric_for, trace_charts
-from halfspace.events import FOLD, ROUND_OFF, Condition, Located, locate
+from halfspace.devices import cycle
+from halfspace.events import FOLD, Condition, Located, locate
 from halfspace.path import Steps
 
 FINE = Steps(first=0.02, longest=0.08, turn=0.06)  # a polygon through the points looks smooth
@@ -89,29 +91,16 @@ def states(path: EquilibriumPath, condition: Condition) -> list[Located]:
 
 
 def jumps(tabor: float, *, rtol: float = 1e-6) -> tuple[Jump, ...]:
-    """Jumps A to B, into contact, and C to D, out of it; a landing's error is its change from a coarser grid.
-
-    Empty where the curve does not fold.
-    """
-    coarse, fine = (halfspace.trace(tabor, rtol=r) for r in (100 * rtol, rtol))
-    if fine.event("jump_on") is None:
-        return ()
-    return (
-        _jump((coarse, fine), "jump_on", ("A", "B"), -1),  # the last state of the same approach is in contact
-        _jump((coarse, fine), "jump_off", ("C", "D"), 0),  # the first is separated
-    )
+    """Jumps A to B, into contact, and C to D, out of it; empty where the curve does not fold."""
+    grips = cycle(halfspace.trace(tabor, rtol=rtol))
+    return (_lettered("AB", grips.jump_on), _lettered("CD", grips.jump_off)) if grips else ()
 
 
-def _jump(paths: Sequence[EquilibriumPath], name: str, letters: tuple[str, str], which: int) -> Jump:
-    event = paths[-1].events[name]
-    landings = [_load_at(path, event.approach, which) for path in paths]
-    change = abs(landings[1] - landings[0]) + ROUND_OFF
-    approach = Estimate(event.approach, event.approach_error)
-    return Jump(*letters, approach, Estimate(event.load, event.load_error), Estimate(landings[-1], change))
-
-
-def _load_at(path: EquilibriumPath, approach: float, which: int) -> float:
-    return float(states(path, Condition(APPROACH, value=approach))[which].point.observables[LOAD])
+def _lettered(letters: str, jump: devices.Jump) -> Jump:
+    before, after = jump.take_off, jump.landing
+    approach = Estimate(before.approach, before.approach_error)
+    load, landing_load = (Estimate(event.load, event.load_error) for event in (before, after))
+    return Jump(letters[0], letters[1], approach, load, landing_load)
 
 
 def profiles(path: EquilibriumPath) -> Iterator[Profile]:
