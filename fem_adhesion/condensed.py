@@ -160,6 +160,7 @@ def condense(
     far_field: FarField = point_load,
     points: int | None = None,
     stiffness: CellStiffness = cell_stiffness,
+    traction: str = "projected",
 ) -> CondensedBody:
     """Factorise the block once and condense it to its contact surface.
 
@@ -178,6 +179,8 @@ def condense(
         Gauss points per contact facet, more than the degree p of the element; p + 2 unless given.
     stiffness : callable
         Stiffness of the cells; `fem_adhesion.incompressible.projected_stiffness` does not lock.
+    traction : {"projected", "surface"}
+        Area on which the pressure acts, vertically: projected on the plane of the contact, or that of the surface.
 
     Returns
     -------
@@ -192,7 +195,7 @@ def condense(
     points = space.degree + 2 if points is None else points
     if points <= space.degree:
         raise ValueError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
-    surface = contact_surface(space, points)
+    surface = contact_surface(space, points, traction)
     exterior = far_field(space, poisson)
     skeleton = eliminate_interiors(space, stiffness(space, poisson))
     factors = factorise(skeleton, exterior)
@@ -200,13 +203,14 @@ def condense(
     return CondensedBody(operator, space, poisson, stiffness, skeleton, exterior, surface, factors)
 
 
-def contact_surface(space: Space, points: int) -> Surface:
-    """Return the Gauss points of the contact facets, sorted by radius."""
+def contact_surface(space: Space, points: int, traction: str = "projected") -> Surface:
+    """Return the Gauss points of the contact facets, sorted by radius, with the weights of the area asked for."""
     basis = boundary_basis(space, "contact", points)
     functions = space.boundary_functions("contact")
     radii = basis.global_coordinates()[0].ravel()
     order = np.argsort(radii)
-    weights = (ring_measure(radii) * basis.dx.ravel())[order]
+    lengths = basis.dx if traction == "surface" else np.asarray(basis.normals)[1] * basis.dx
+    weights = (ring_measure(radii) * lengths.ravel())[order]
     ends = space.mesh.p[0, np.unique(space.mesh.facets[:, space.mesh.boundaries["contact"]])]
     values = trace_matrix(basis, functions)[order]
     return Surface(radii[order], weights, space.components[1, functions], values, np.sort(ends))

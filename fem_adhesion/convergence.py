@@ -8,16 +8,18 @@ from functools import partial
 import numpy as np
 from skfem import ElementQuadP
 
-from fem_adhesion import far_field
+from fem_adhesion import far_field, sized
 from fem_adhesion.condensed import condense
 from fem_adhesion.elasticity import Space
 from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.mesh import graded_breaks, tensor_grid
 from fem_adhesion.scene import Scene
 from halfspace import grid
-from halfspace.accuracy import MOST_RUNGS, Charts, Rung, climb, extent_for, rings, widest_radius
+from halfspace.accuracy import extent_for, rings, widest_radius
+from halfspace.breathing import Homogeneous
 from halfspace.contact import ContactProblem, spike_width
 from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.ladder import MOST_RUNGS, Charted, Charts, Rung, climb
 from halfspace.limits import require_load, require_rtol
 
 FAR_FIELDS = {"point_load": far_field.point_load, "clamped": far_field.clamped, "free": far_field.free}
@@ -76,6 +78,8 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     """
     require_rtol(rtol)
     require_load(to_load)
+    if scene.sized:
+        return climb(rtol, partial(sized.ladder, scene, rtol, to_load), to_load=to_load)
     most_rungs = MOST_RUNGS if scene.radius is None else 1
     return climb(rtol, partial(ladder, scene, rtol, to_load), to_load=to_load, most_rungs=most_rungs)
 
@@ -84,10 +88,11 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: first the degree of the rung below on a larger block, then one degree more."""
     above, below = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
     wider = Resolution(below.degree, below.finest, below.growth, above.radius)
-    stages = (wider, above) if level else (above,)
-    charts = tuple(block_charts(scene, stage, to_load) for stage in stages)
+    stages = (wider, above) if level else ()
+    charted = tuple(Charted(block_charts(scene, stage, to_load)) for stage in stages)
+    curve = partial(block_charts, scene, above, to_load)
     # A block of given size is compared with one other size only, and if both are small most of the error is left.
-    return Rung(charts, asdict(above), remaining=1.0 if scene.radius is None else 2.0)
+    return Rung(curve, charted, asdict(above), remaining=1.0 if scene.radius is None else 2.0)
 
 
 def resolution_for(scene: Scene, rtol: float, level: int) -> Resolution:
@@ -130,5 +135,5 @@ def _chart(
     space = Space(tensor_grid(r_breaks, depths), ElementQuadP(resolution.degree))
     stiffness = stiffness_for(scene.poisson)
     body = condense(space, scene.poisson, far_field=FAR_FIELDS[scene.far_field], stiffness=stiffness)
-    problem = ContactProblem(body.operator, scene.tabor, follows_contact=follows_contact)
+    problem = ContactProblem(Homogeneous(body.operator) if follows_contact else body.operator, scene.tabor)
     return Chart(problem, body.unknowns, until)

@@ -1,4 +1,4 @@
-"""What lies beyond the far boundary of the block: a clamp, Boussinesq's point load, or nothing.
+"""What holds the far boundary of a body: a clamp, a plane without friction, Boussinesq's point load, or nothing.
 
 Each is a linear map u = T x from the reduced unknowns x to all of them and a stiffness S on x, so that the
 body's stiffness K becomes T' K T + S. T also imposes u_r = 0 on the axis, and leaves out the unknowns
@@ -48,7 +48,7 @@ class Exterior:
 
 
 class FarField(Protocol):
-    """A kind of far boundary: `clamped`, `point_load` or `free`."""
+    """A kind of far boundary: `clamped`, `sliding`, `point_load` or `free`."""
 
     def __call__(self, space: Space, poisson: float) -> Exterior:
         """Return the condition for the far boundary of this space's mesh."""
@@ -65,6 +65,15 @@ def with_interiors(exterior: Exterior, space: Space) -> Exterior:
 def clamped(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (a clamp is one for every material)
     """Hold the far boundary: u = 0. The deflection is too small by O(W/L)."""
     T = _selection(space, dropped=space.components[:, space.boundary_functions("far")].ravel())
+    return Exterior(T, sparse.csc_array((T.shape[1], T.shape[1])))
+
+
+def sliding(space: Space, poisson: float) -> Exterior:  # noqa: ARG001
+    """Hold the far boundary, a horizontal plane, by its vertical displacement alone: u_z = 0, no friction.
+
+    By symmetry a hemisphere held so is also half of a sphere that is squeezed between two equal walls.
+    """
+    T = _selection(space, dropped=space.components[1, space.boundary_functions("far")])
     return Exterior(T, sparse.csc_array((T.shape[1], T.shape[1])))
 
 

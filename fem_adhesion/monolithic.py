@@ -120,7 +120,7 @@ class MonolithicProblem:
 
     def state_from(self, approach: float, pressure: Array) -> Array:
         """State of the body at an approach (eps) under a pressure, shape (q,), such as that of a condensed state."""
-        forces = self.deflection_rows.T @ (self.interface.operator.weights * pressure)
+        forces = self.deflection_rows.T @ (self.interface.operator.at(1.0).weights * pressure)
         return np.append(self._factors.solve(forces), approach)
 
     def residual(self, x: Array) -> Array:
@@ -212,7 +212,7 @@ class MonolithicProblem:
         Its gradient by y is mu times the residual; along the equilibria its derivative by the approach is the load.
         """
         y, state = x[:-1], self.surface_state(x)
-        forces = self.interface.operator.weights * self.interface.pressure(state)
+        forces = self.interface.operator_at(state).weights * self.interface.pressure(state)
         elastic, work = y @ (self.stiffness @ y) / 2, forces @ (self.deflection_rows @ y)
         # The interface takes half the work of the pressure for the elastic energy, which holds in equilibrium only.
         return self.interface.energy(state) + self.tabor * float(elastic - work / 2)

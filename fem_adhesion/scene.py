@@ -2,17 +2,60 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Literal, get_args
+from pathlib import Path
+from typing import Any, Literal, get_args
 
-from halfspace.limits import require_fixed_mesh, require_poisson, require_radius, require_tabor
+from halfspace.limits import (
+    require_cap_angle,
+    require_fixed_mesh,
+    require_poisson,
+    require_radius,
+    require_radius_ratio,
+    require_share,
+    require_tabor,
+)
 
 FarFieldName = Literal["point_load", "clamped", "free"]
+BodyName = Literal["block", "hemisphere", "sphere"]
+ProfileName = Literal["paraboloid", "sphere"]
+GripName = Literal["sliding", "bonded"]
+TractionName = Literal["projected", "surface"]
+StrainName = Literal["small", "finite"]
+
+
+@dataclass(frozen=True)
+class Counter:
+    """An elastic counter-body in the place of the rigid wall.
+
+    Parameters
+    ----------
+    share : float
+        Its part of the pair's compliance, (1 - nu2^2) E*/E2, between 0 and 1; 1/2 for equal materials.
+    poisson : float
+        Its Poisson's ratio.
+    radius : float
+        Ratio of its radius to that of the first body; infinite for a half-space.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    share: float
+    poisson: float = 0.3
+    radius: float = math.inf
+
+    def __post_init__(self) -> None:
+        require_share(self.share, self.radius)
+        require_poisson(self.poisson)
 
 
 @dataclass(frozen=True)
 class Scene:
-    """An elastic block under a rigid paraboloid that attracts it.
+    """An elastic body under a rigid wall, or another body, that attracts it.
 
     Parameters
     ----------
@@ -21,29 +64,113 @@ class Scene:
     poisson : float
         Poisson's ratio, 0 <= poisson < 0.5.
     radius : float, optional
-        Size L of the block in beta; chosen from the tolerance unless given.
+        Size L of a block in beta; chosen from the tolerance unless given.
     far_field : {"point_load", "clamped", "free"}
-        What holds the block at its far boundary: a half-space beyond it that moves as under a point load, a clamp,
+        What holds a block at its far boundary: a half-space beyond it that moves as under a point load, a clamp,
         or nothing but the uniform traction that balances the load.
+    body : {"block", "hemisphere", "sphere"} or path
+        What is elastic: the half-space as a block of finite elements, a hemisphere held at its mid-plane, a sphere held
+        over a cap, or the body meshed in a file, see `fem_adhesion.mesh_file`.
+    profile : {"paraboloid", "sphere"}
+        Undeformed gap: r^2/2R or R - sqrt(R^2 - r^2). The body of a file has the profile of its own surface.
+    radius_ratio : float, optional
+        rho = R/eps; asked for by everything but a block under a paraboloid. R/beta = sqrt(rho/tabor).
+    grip : {"sliding", "bonded"}
+        Whether the held surface of a body may slide without friction, u_z = 0, or not at all, u = 0.
+    cap_angle : float
+        Half-angle in degrees of the cap over which a sphere is held.
+    traction : {"projected", "surface"}
+        Whether the law's traction acts on the projected area, exact for rigid shapes, or on that of the surface itself.
+    counter : Counter, optional
+        An elastic counter-body; the wall is rigid unless given. R and E* are then those of the pair.
+    strain : {"small", "finite"}
+        Linear elasticity or neo-Hookean.
 
     Raises
     ------
     ValueError
-        If a value is out of range.
+        If a value is out of range, or does not go with the others.
     """
 
     tabor: float
     poisson: float = 0.3
     radius: float | None = None
     far_field: FarFieldName = "point_load"
+    body: BodyName | Path = "block"
+    profile: ProfileName = "paraboloid"
+    radius_ratio: float | None = None
+    grip: GripName = "sliding"
+    cap_angle: float = 30.0
+    traction: TractionName = "projected"
+    counter: Counter | None = None
+    strain: StrainName = "small"
 
     def __post_init__(self) -> None:
         require_tabor(self.tabor)
         require_poisson(self.poisson)
+        for name, names in CHOICES.items():
+            _require_one_of(name, getattr(self, name), names)
         if self.radius is not None:
             require_radius(self.radius, self.tabor)
-        if self.far_field not in get_args(FarFieldName):
-            names = ", ".join(get_args(FarFieldName))
-            raise ValueError(f"far_field = {self.far_field!r} is not one of {names}; take point_load")
         if self.far_field != "point_load":
             require_fixed_mesh(self.tabor)
+        require_cap_angle(self.cap_angle)
+        self._require_radius_ratio()
+        self._require_fitting()
+
+    @property
+    def sized(self) -> bool:
+        """Whether the scene has a length R of its own beside beta."""
+        return self.body != "block" or self.profile == "sphere"
+
+    @property
+    def sphere_radius(self) -> float:
+        """R/beta, infinite for a paraboloid on a half-space."""
+        return math.sqrt(self.radius_ratio / self.tabor) if self.radius_ratio else math.inf
+
+    def _require_radius_ratio(self) -> None:
+        if self.sized and self.radius_ratio is None:
+            raise ValueError(f"radius_ratio = None for {self._what()}, limit: a number; give R/eps")
+        if not self.sized and self.radius_ratio is not None:
+            raise ValueError(
+                f"radius_ratio = {self.radius_ratio:g} means nothing to a block under a paraboloid; leave it out, or "
+                'take body = "hemisphere" or profile = "sphere"'
+            )
+        if self.radius_ratio is not None:
+            require_radius_ratio(self.radius_ratio, self.tabor)
+
+    def _require_fitting(self) -> None:
+        """Refuse options that the scene would not heed."""
+        sphere = self.body in ("hemisphere", "sphere")
+        unheeded = {
+            "radius": (self.radius is not None and self.sized, "only a block under a paraboloid has a size L"),
+            "far_field": (
+                self.far_field != "point_load" and self.sized,
+                "only a block under a paraboloid has a choice",
+            ),
+            "counter": (self.counter is not None and self.body != "hemisphere", "it meets a hemisphere only"),
+            "strain": (self.strain == "finite" and not sphere, "finite strain is for hemisphere and sphere"),
+            "traction": (self.traction == "surface" and not sphere, "it differs on a curved surface only"),
+        }
+        for name, (ignored, why) in unheeded.items():
+            if ignored:
+                raise ValueError(f"{name} = {getattr(self, name)} does not go with {self._what()}; {why}")
+
+    def _what(self) -> str:
+        return f'body = "{self.body}" and profile = "{self.profile}"'
+
+
+CHOICES: dict[str, Any] = {
+    "far_field": get_args(FarFieldName),
+    "body": get_args(BodyName),
+    "profile": get_args(ProfileName),
+    "grip": get_args(GripName),
+    "traction": get_args(TractionName),
+    "strain": get_args(StrainName),
+}
+
+
+def _require_one_of(name: str, value: object, names: tuple[str, ...]) -> None:
+    if value not in names and not (name == "body" and isinstance(value, Path)):
+        remedy = "a mesh is given as a pathlib.Path; " if name == "body" else ""
+        raise ValueError(f"{name} = {value!r} is not one of {', '.join(names)}; {remedy}take {names[0]}")

@@ -1,164 +1,28 @@
-"""The load-approach curve to an accuracy asked for: a ladder of discretisations, and the half-space's.
+"""The half-space's load-approach curve to an accuracy asked for.
 
-The curve is traced on the lowest rung and each event solved for again on the next, and on more if need be. An event's
-error estimate is half its change from the last rung but one to the last: the change is nearly the lower
-rung's error, of which the higher rung is made to leave a tenth or less.
+See `halfspace.ladder` for how the error is estimated.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Mapping, Sequence
+import math
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from halfspace import compliance, grid
+from halfspace.breathing import FlatCoordinate, Homogeneous
 from halfspace.contact import ContactProblem, spike_width
-from halfspace.curve import (
-    COMPRESSION,
-    Chart,
-    EquilibriumPath,
-    Estimate,
-    energy_released,
-    find_events,
-    metric_for,
-    trace_charts,
-    transfer,
-)
-from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event, relocate
-from halfspace.limits import require_load, require_rtol, require_tabor
-from halfspace.newton import NotConverged
+from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.ladder import Charted, Rung, climb
+from halfspace.limits import require_load, require_radius_ratio, require_rtol, require_tabor
+from halfspace.profiles import Sphere
+from halfspace.sized import AroundEvents, Made, SizedBody, to_equator
 from halfspace.theories import jkr_radius
 
 FINER = 30  # ratio of the errors of two successive rungs
-MOST_RUNGS = 3  # above the lowest
 TWIN = (0.75, 0.87)  # finest cells and growth of a twin, in those of its sibling: no cell of the two is the same
-
-Charts = Sequence[Chart]
-State = Mapping[str, Located]
-
-
-@dataclass(frozen=True)
-class Rung:
-    """One step up: chart sets that each differ from the one before in one respect, the last being the finest.
-
-    Attributes
-    ----------
-    stages : tuple of chart sets
-        On each of which every event is solved for; the changes add up to the error.
-    settings : mapping
-        How the last stage is discretised.
-    twin : chart set or None
-        As fine as the rung below, with other cells: it errs as much, but not by the same accident of sign.
-    remaining : float
-        Part of the changes that may be left as error; above 1 where the error falls slowly from stage to stage.
-    """
-
-    stages: tuple[Charts, ...]
-    settings: Mapping[str, object]
-    twin: Charts | None = None
-    remaining: float = REMAINING
-
-
-def climb(
-    rtol: float, rung: Callable[[int], Rung], *, to_load: float = COMPRESSION, most_rungs: int = MOST_RUNGS
-) -> EquilibriumPath:
-    """Trace the curve on the lowest rung of a ladder and solve for its events on higher ones until `rtol` is met.
-
-    Parameters
-    ----------
-    rtol : float
-        Relative accuracy asked of loads and approaches.
-    rung : callable
-        Makes the rung of a level: 0 for the curve, 1, 2 ... for the events.
-    to_load : float
-        Compressive load at which the curve ends, in R dgamma.
-    most_rungs : int
-        Levels after which the estimates stand as they are.
-
-    Raises
-    ------
-    halfspace.newton.NotConverged
-        If the curve cannot be traced or an event not be found again.
-    GridTooCoarse
-        If a grid cannot carry the spike at the contact edge.
-    """
-    for start in range(most_rungs):
-        try:
-            return _climb_from(start, rtol, rung, to_load, most_rungs)
-        except NotConverged:  # as where two folds about to merge exist on one grid but not on the next
-            if start == most_rungs - 1:
-                raise
-    raise ValueError(f"most_rungs = {most_rungs} leaves nothing to climb; allow 1 or more")
-
-
-def _climb_from(
-    start: int, rtol: float, rung: Callable[[int], Rung], to_load: float, most_rungs: int
-) -> EquilibriumPath:
-    """Trace the curve on the rung `start` and climb from there."""
-    began = time.perf_counter()
-    lowest = rung(start)
-    segments = trace_charts(lowest.stages[-1], to_load)
-    state: State = find_events(segments)
-    for level in range(start + 1, start + most_rungs + 1):
-        higher = rung(level)
-        chains = _step_up(state, higher)
-        state = chains[0][-1]
-        events = _estimate(chains, higher.remaining)
-        if all(_meets(event, rtol) for event in events.values()):
-            break
-    return EquilibriumPath(
-        segments[0].problem.tabor,
-        segments,
-        events,
-        _energy(chains, higher.remaining),
-        tuple(chains[0]),
-        max(chart.unknowns for chart in higher.stages[-1]),
-        time.perf_counter() - began,
-        {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
-    )
-
-
-def _step_up(state: State, higher: Rung) -> list[list[State]]:
-    """Chains of states from the rung below, and from its twin, to the last stage of a rung."""
-    chain = [state]
-    for charts in higher.stages:
-        chain.append(_on_all(chain[-1], charts))
-    return [chain, [_on_all(chain[-1], higher.twin), chain[-1]]] if higher.twin else [chain]
-
-
-def _on_charts(event: Located, charts: Charts) -> Located:
-    """Solve for an event again on the chart of its kind."""
-    source = event.problem
-    assert isinstance(source, ContactProblem)
-    target = charts[-1 if source.follows_contact else 0].problem
-    return relocate(event, target, transfer(source, event.point.x, target), metric_for(target.tabor))
-
-
-def _on_all(state: State, charts: Charts) -> State:
-    return {name: _on_charts(event, charts) for name, event in state.items()}
-
-
-def _estimate(chains: Sequence[Sequence[State]], remaining: float) -> dict[str, Event]:
-    """Events of the last state, with their changes along the chains as errors."""
-    names = [name for name in EVENTS if name in chains[0][-1]]
-    return {
-        name: estimate_event(name, [[state[name] for state in chain] for chain in chains], remaining) for name in names
-    }
-
-
-def _energy(chains: Sequence[Sequence[State]], remaining: float) -> Estimate:
-    values = [[energy_released(state) for state in chain] for chain in chains]
-    best = values[0][-1]
-    change = max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
-    return Estimate(best, remaining * change + ROUND_OFF * (1 + abs(best)))
-
-
-def _meets(event: Event, rtol: float) -> bool:
-    """Whether the estimates are within the tolerance; approaches count relative to 1 + |alpha*|."""
-    load = event.load_error <= rtol * abs(event.load) or event.name == "zero_load"
-    return load and event.approach_error <= rtol * (1 + abs(event.approach))
 
 
 @dataclass(frozen=True)
@@ -234,12 +98,14 @@ def half_space_charts(tabor: float, resolution: Resolution, to_load: float = COM
     edge = compliance.panels(lines.edge, resolution.nodes)
     return (
         Chart(ContactProblem(centred, tabor), centred.radii.size, lines.until),
-        Chart(ContactProblem(edge, tabor, follows_contact=True), edge.radii.size),
+        Chart(ContactProblem(Homogeneous(edge), tabor), edge.radii.size),
     )
 
 
-def trace(tabor: float, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> EquilibriumPath:
-    """Trace the load-approach curve of a rigid paraboloid on the adhesive half-space and solve for its events.
+def trace(
+    tabor: float, *, rtol: float = 1e-6, to_load: float = COMPRESSION, radius_ratio: float | None = None
+) -> EquilibriumPath:
+    """Trace the load-approach curve of a rigid paraboloid or sphere on the adhesive half-space and solve for events.
 
     Parameters
     ----------
@@ -249,6 +115,8 @@ def trace(tabor: float, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
         Relative accuracy asked of loads and approaches, 1e-9 to 1e-1.
     to_load : float
         Compressive load at which the curve ends, in R dgamma.
+    radius_ratio : float, optional
+        rho = R/eps of a true sphere, R/beta = sqrt(rho/tabor); a paraboloid unless given.
 
     Returns
     -------
@@ -265,14 +133,34 @@ def trace(tabor: float, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
     require_tabor(tabor)
     require_rtol(rtol)
     require_load(to_load)
+    if radius_ratio is not None:
+        sphere = math.sqrt(require_radius_ratio(radius_ratio, tabor) / tabor)
+        return climb(rtol, partial(_sphere_rung, tabor, sphere, rtol, to_load), to_load=to_load)
 
     def rung(level: int) -> Rung:
         resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
+        curve = partial(half_space_charts, tabor, resolution, to_load)
         if not level:
-            return Rung((half_space_charts(tabor, resolution, to_load),), asdict(resolution))
+            return Rung(curve, (), asdict(resolution))
         wider = replace(below, extent=resolution.extent)
         twin = replace(wider, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
-        charts = [half_space_charts(tabor, r, to_load) for r in (wider, resolution, twin)]
-        return Rung((charts[0], charts[1]), asdict(resolution), charts[2])
+        stages = [Charted(half_space_charts(tabor, r, to_load)) for r in (wider, resolution, twin)]
+        return Rung(curve, (stages[0], stages[1]), asdict(resolution), stages[2])
 
     return climb(rtol, rung, to_load=to_load)
+
+
+def _sphere_rung(tabor: float, R: float, rtol: float, to_load: float, level: int) -> Rung:
+    """Rung of a level for a sphere of radius R (beta), whose surface ends at its equator."""
+    resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
+    twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
+    fine, other = (_under_sphere(tabor, R, r) for r in (resolution, twin))
+    settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
+    return Rung(partial(fine.curve, to_load), (AroundEvents(fine),), settings, AroundEvents(other) if level else None)
+
+
+def _under_sphere(tabor: float, R: float, resolution: Resolution) -> SizedBody:
+    def make(lines: compliance.Array) -> Made:
+        return compliance.panels(lines, resolution.nodes), resolution.nodes * (lines.size - 1)
+
+    return SizedBody(tabor, Sphere(R), make, resolution.finest, resolution.growth, to_equator(R), FlatCoordinate())

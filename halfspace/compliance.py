@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
+from scipy.linalg import eigh
 
 from halfspace.kernel import band_deflection, panel_integrals
 
@@ -47,6 +48,38 @@ class ElasticOperator:
     def extent(self) -> float:
         """Radius to which the surface law acts, in beta."""
         return float(self.cells[-1])
+
+    @property
+    def follows_contact(self) -> bool:
+        """False: this grid stands still; see `halfspace.breathing` for those that do not."""
+        return False
+
+    @property
+    def edge_row(self) -> Array:
+        """Row that interpolates at the contact edge, which a grid that stands still has nowhere in particular."""
+        raise AttributeError("the grid does not follow the contact; use interpolation at its radius")
+
+    def at(self, scale: float) -> ElasticOperator:  # noqa: ARG002 (the same at every contact radius)
+        """Return the operator itself, whatever the contact radius."""
+        return self
+
+    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:  # noqa: ARG002
+        """Derivatives by the scale of radii, weights and deflection: zero."""
+        zero = np.zeros(self.radii.size)
+        return zero, zero, zero
+
+    def root(self, scale: float) -> Array:  # noqa: ARG002
+        """L, (q, m), with L L^T the symmetric part of w^(1/2) C w^(-1/2)."""
+        return self.compliance_root
+
+    @cached_property
+    def compliance_root(self) -> Array:
+        """L of `root`; the rank m falls short of q where the nodes outnumber the freedoms of the surface."""
+        root = np.sqrt(self.weights)
+        balanced = self.compliance * (root[:, None] / root)
+        values, vectors = eigh((balanced + balanced.T) / 2)
+        kept = values > 1e-13 * values[-1]
+        return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
 
     def scaled(self, factor: float) -> ElasticOperator:
         """Return the operator of the same body blown up by `factor`: compliance is homogeneous of degree one."""

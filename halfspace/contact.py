@@ -1,12 +1,13 @@
-"""The contact problem: an elastic operator under a rigid paraboloid that acts through a surface law.
+"""The contact problem: an elastic operator under a rigid profile that acts through a surface law.
 
 Unknowns x = (H_1 ... H_q, alpha*, s): nodal gaps in eps, approach in eps, and the scale s of the grid. Equations
-[G97] (2.8), and one for the scale, which is either fixed or follows the contact edge:
+[G97] (2.8), and one for the scale, which is either fixed or is the radius of the contact edge:
 
-    H + alpha* - mu (s u)^2/2 - mu s C P(H) = 0,        s = 1   or   H(u = 1) = H_edge.
+    H + alpha* - mu z(u) - mu C P(H) = 0,        s = 1   or   H(u = s) = H_edge,
 
-The elastic operator is homogeneous, so a grid that breathes with the contact costs one unknown and keeps
-the spike of tension at its edge on the same nodes all along the path.
+z the height of the undeformed surface over its pole, u^2/2 for a paraboloid. Radii u, weights and compliance C depend
+on s where the grid breathes with the contact (`halfspace.breathing`). That costs one unknown and keeps the spike of
+tension at the contact edge on the same nodes all along the path.
 """
 
 from __future__ import annotations
@@ -16,16 +17,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 from scipy.optimize import brentq
 
+from halfspace.breathing import Operator
 from halfspace.compliance import ElasticOperator
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
+from halfspace.profiles import PARABOLOID, Profile
 
 Array = NDArray[np.float64]
 
 APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
+
+WIDEST = 0.95  # of the radius of a body, that a contact may reach
 
 
 def spike_width(tabor: float) -> float:
@@ -39,6 +43,10 @@ def widest_interval(nodes: int) -> float:
     return max(0.1, min(0.1 * k, 0.021 * k**2))
 
 
+class ContactTooWide(ValueError):
+    """The contact spreads over so much of the body that its elasticity is no longer that of small slopes."""
+
+
 class GridTooCoarse(ValueError):
     """The grid cannot carry the spike of tension at the contact edge; the message says where and by how much."""
 
@@ -49,49 +57,59 @@ class ContactProblem:
 
     Parameters
     ----------
-    operator : ElasticOperator
-        Any body's surface compliance, from any discretisation.
+    operator : Operator
+        Any body's surface compliance, from any discretisation, on a grid that stands still or follows the contact.
     tabor : float
         Tabor parameter mu.
     law : SurfaceLaw
         Pressure against gap.
-    follows_contact : bool
-        If true, the operator's unit of length is the contact radius, which joins the unknowns.
+    profile : Profile
+        Of the undeformed surface.
     """
 
-    operator: ElasticOperator
+    operator: Operator
     tabor: float
     law: SurfaceLaw = LENNARD_JONES
-    follows_contact: bool = False
+    profile: Profile = PARABOLOID
+
+    @property
+    def follows_contact(self) -> bool:
+        """Whether the grid follows the contact, whose radius then joins the unknowns."""
+        return self.operator.follows_contact
+
+    def operator_at(self, x: Array) -> ElasticOperator:
+        """Operator of a state."""
+        return self.operator.at(float(x[-1]))
 
     def undeformed(self, approach: float, scale: float = 1.0) -> Array:
-        """State with the gaps of the undeformed surfaces, H = -alpha* + mu u^2/2, as a start for Newton's method."""
-        gap = -approach + self.tabor * (scale * self.operator.radii) ** 2 / 2
+        """State with the gaps of the undeformed surfaces, H = -alpha* + mu z(u), as a start for Newton's method."""
+        gap = -approach + self.tabor * self.profile.height(self.operator.at(scale).radii)
         return np.concatenate([gap, [approach, scale]])
 
     def residual(self, x: Array) -> Array:
         """Left-hand sides of the equilibrium (in eps) and scale equations, shape (q + 1,)."""
         H, alpha, s = x[:-2], x[-2], x[-1]
-        mu, u = self.tabor, self.operator.radii
-        w = mu * s * (self.operator.compliance @ self.law.pressure(H, mu))
-        return np.append(H + alpha - mu * (s * u) ** 2 / 2 - w, self._scale_equation(H, s))
+        mu, body = self.tabor, self.operator_at(x)
+        w = body.compliance @ self.law.pressure(H, mu)
+        return np.append(H + alpha - mu * (self.profile.height(body.radii) + w), self._scale_equation(H, s))
 
     def _scale_equation(self, H: Array, s: float) -> float:
-        return float(self.operator.unit_row @ H - self.law.edge_gap) if self.follows_contact else s - 1
+        return float(self.operator.edge_row @ H - self.law.edge_gap) if self.follows_contact else s - 1
 
     def jacobian(self, x: Array) -> Array:
         """Derivative of the residual, shape (q + 1, q + 2)."""
-        H, s = x[:-2], x[-1]
-        mu, u, C = self.tabor, self.operator.radii, self.operator.compliance
+        H, mu, body = x[:-2], self.tabor, self.operator_at(x)
         J = np.empty((x.size - 1, x.size))
-        J[:-1, :-2] = C * (-mu * s * self.law.slope(H, mu))
+        J[:-1, :-2] = body.compliance * (-mu * self.law.slope(H, mu))
         J[:-1, :-2].flat[:: x.size - 1] += 1
         J[:-1, -2] = 1
-        J[:-1, -1] = -mu * s * u**2 - mu * (C @ self.law.pressure(H, mu))
         J[-1] = 0
         if self.follows_contact:
-            J[-1, :-2] = self.operator.unit_row
+            d_radii, _, d_deflection = self.operator.rates(float(x[-1]), self.law.pressure(H, mu))
+            J[:-1, -1] = -mu * (self.profile.slope(body.radii) * d_radii + d_deflection)
+            J[-1, :-2] = self.operator.edge_row
         else:
+            J[:-1, -1] = 0
             J[-1, -1] = 1
         return J
 
@@ -121,7 +139,7 @@ class ContactProblem:
 
     def load(self, x: Array) -> float:
         """W in R dgamma, positive in compression."""
-        return float(x[-1] ** 2 * (self.operator.weights @ self.pressure(x)))
+        return float(self.operator_at(x).weights @ self.pressure(x))
 
     def pressure(self, x: Array) -> Array:
         """Nodal pressures P, shape (q,)."""
@@ -129,28 +147,28 @@ class ContactProblem:
 
     def radii(self, x: Array) -> Array:
         """Nodal radii in beta, shape (q,)."""
-        return np.asarray(x[-1] * self.operator.radii)
+        return self.operator_at(x).radii
 
     def contact_radius(self, x: Array) -> float:
         """Largest radius in beta at which the gap is 3^(1/6) eps, or nan where the surfaces are further apart."""
-        H, edge = x[:-2], self.law.edge_gap
-        inside = np.flatnonzero(edge > H)
         if self.follows_contact:
             return float(x[-1])
-        if inside.size == 0 and self.operator.axis_row @ H > edge:
+        H, edge, body = x[:-2], self.law.edge_gap, self.operator_at(x)
+        inside = np.flatnonzero(edge > H)
+        if inside.size == 0 and body.axis_row @ H > edge:
             return float("nan")
-        radii = np.append(self.operator.radii, self.operator.extent)
+        radii = np.append(body.radii, body.extent)
         below, above = (radii[inside[-1]], radii[inside[-1] + 1]) if inside.size else (0.0, radii[0])
-        return float(brentq(lambda r: float(self.operator.interpolation(r)[0] @ H - edge), below, above, xtol=1e-14))
+        return float(brentq(lambda r: float(body.interpolation(r)[0] @ H - edge), below, above, xtol=1e-14))
 
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative by x of the weighted sum of the observables, shape (q + 2,)."""
         row = np.zeros(x.size)
         row[-2] = weights[APPROACH]
         if weights[LOAD]:
-            H, s = x[:-2], x[-1]
-            row[:-2] += weights[LOAD] * s**2 * self.operator.weights * self.law.slope(H, self.tabor)
-            row[-1] += weights[LOAD] * 2 * self.load(x) / s
+            P = self.pressure(x)
+            row[:-2] += weights[LOAD] * self.operator_at(x).weights * self.law.slope(x[:-2], self.tabor)
+            row[-1] += weights[LOAD] * float(self.operator.rates(float(x[-1]), P)[1] @ P)
         if weights[CENTRAL_GAP]:
             row[:-2] += weights[CENTRAL_GAP] * self.operator.axis_row
         if weights[CONTACT_RADIUS]:
@@ -160,7 +178,7 @@ class ContactProblem:
     def _radius_gradient(self, x: Array) -> Array:
         if self.follows_contact:
             return np.asarray(np.eye(1, x.size, x.size - 1)[0])
-        value, slope = self.operator.interpolation(self.contact_radius(x))
+        value, slope = self.operator_at(x).interpolation(self.contact_radius(x))
         return np.append(-value / (slope @ x[:-2]), [0.0, 0.0])
 
     def require_resolution(self, x: Array) -> None:
@@ -174,11 +192,11 @@ class ContactProblem:
         GridTooCoarse
             With the spacing, its place and the limit.
         """
-        radius, scale = self.contact_radius(x), x[-1]
+        radius, body = self.contact_radius(x), self.operator_at(x)
         if np.isnan(radius):
             return
-        spacing = scale * self.operator.spacing(radius / scale)
-        limit = spike_width(self.tabor) * widest_interval(self.operator.cell_nodes.shape[1])
+        spacing = body.spacing(radius)
+        limit = spike_width(self.tabor) * widest_interval(body.cell_nodes.shape[1])
         if spacing > limit * (1 + 1e-9):
             raise GridTooCoarse(
                 f"grid spacing {spacing:.3g} beta at the contact edge, radius {radius:.3g} beta, "
@@ -203,39 +221,29 @@ class ContactProblem:
     def energy(self, x: Array) -> float:
         """Total potential energy in R dgamma eps, elastic and surface; its derivative by the approach is the load.
 
-        Beyond the grid the surfaces are taken as undeformed: the energy's tail falls only as U^-2.
+        Beyond the grid the surfaces go on as undeformed paraboloids, if they do: the energy's tail falls only as U^-2.
         """
-        H, alpha, s = x[:-2], x[-2], x[-1]
-        mu, u = self.tabor, self.operator.radii * s
-        deflection = H + alpha - mu * u**2 / 2
+        H, alpha, mu, body = x[:-2], x[-2], self.tabor, self.operator_at(x)
+        deflection = H + alpha - mu * self.profile.height(body.radii)
         density = self.law.energy(H, mu) + self.pressure(x) * deflection / 2
-        return float(s**2 * (self.operator.weights @ density)) + self._energy_beyond(alpha, s * self.operator.extent)
+        return float(body.weights @ density) + self._energy_beyond(alpha, body.extent)
 
     def _energy_beyond(self, alpha: float, U: float) -> float:
+        if np.isfinite(self.profile.end):
+            return 0.0
         h, (n, m) = 1 - alpha + self.tabor * U**2 / 2, (self.law.attraction, self.law.repulsion)
         tail = h ** -(m - 2) / ((m - 1) * (m - 2)) - h ** -(n - 2) / ((n - 1) * (n - 2))
         return float(2 * np.pi * self.law.amplitude * tail)
 
-    def negative_directions(self, x: Array, half: Array | None = None) -> int:
+    def negative_directions(self, x: Array) -> int:
         """Number of directions in which the energy falls at fixed approach; 0 means stable under fixed grips.
 
         The Hessian A^-1 - mu w P'(H), A = C/w, has the inertia of I - mu L^T P'(H) L, where L L^T is the compliance
         made symmetric by the square roots of the weights.
         """
-        L = self.compliance_root() if half is None else half
-        hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * x[-1] * self.law.slope(x[:-2], self.tabor))[:, None])
+        L = self.operator.root(float(x[-1]))
+        hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * self.law.slope(x[:-2], self.tabor))[:, None])
         return count_negative(hessian)
-
-    def compliance_root(self) -> Array:
-        """L, (q, m), with L L^T the symmetric part of w^(1/2) C w^(-1/2).
-
-        The rank m falls short of q where the nodes outnumber the freedoms of the surface.
-        """
-        root = np.sqrt(self.operator.weights)
-        balanced = self.operator.compliance * (root[:, None] / root)
-        values, vectors = eigh((balanced + balanced.T) / 2)
-        kept = values > 1e-13 * values[-1]
-        return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
 
 
 def count_negative(matrix: Array) -> int:

@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from halfspace import newton
-from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.events import EXTREMUM, FOLD, ZERO_LOAD, Condition, Event, Located, locate
+from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST, ContactProblem, ContactTooWide
+from halfspace.events import EXTREMUM, FOLD, ZERO_LOAD, Condition, Event, Located, locate, relocate
 from halfspace.path import Metric, Point, Steps, follow, loaded_to, make_point
 
 Array = NDArray[np.float64]
@@ -49,6 +50,19 @@ class Estimate:
     error: float
 
 
+class Finest(Protocol):
+    """The finest discretisation that a path was computed on."""
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event."""
+        ...
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of its largest chart."""
+        ...
+
+
 @dataclass(frozen=True)
 class EquilibriumPath:
     """The load-approach curve from far separation to compression, through every fold.
@@ -66,8 +80,8 @@ class EquilibriumPath:
         R dgamma eps.
     stages : tuple of mappings of str to Located
         The events, and the two states of `energy`, on each discretisation from the coarsest to the finest.
-    unknowns : int
-        Unknowns of the finest discretisation used, elastic ones included.
+    finest : callable
+        Chart of the finest discretisation for an event, found on any.
     seconds : float
         Wall time of the whole computation.
     settings : mapping
@@ -79,9 +93,14 @@ class EquilibriumPath:
     events: Mapping[str, Event]
     energy: Estimate
     stages: tuple[Mapping[str, Located], ...]
-    unknowns: int
+    finest: Finest
     seconds: float
     settings: Mapping[str, object] = field(default_factory=dict)
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the finest discretisation used, elastic ones included."""
+        return self.finest.unknowns
 
     def event(self, name: str) -> Event | None:
         """Event by name, or None if the curve does not have it."""
@@ -133,8 +152,7 @@ class EquilibriumPath:
 
 
 def _stable(segment: Segment) -> NDArray[np.bool_]:
-    root = segment.problem.compliance_root()
-    return np.array([segment.problem.negative_directions(point.x, root) == 0 for point in segment.points], dtype=bool)
+    return np.array([segment.problem.negative_directions(point.x) == 0 for point in segment.points], dtype=bool)
 
 
 def metric_for(tabor: float) -> Metric:
@@ -166,10 +184,16 @@ def trace_charts(
     for chart in charts:
         if segments:
             point = _hand_over(segments[-1], chart.problem, metric)
-        last = loaded_to(to_load)
+        last = _ended(to_load, chart.problem.profile.end)
         stop = last if np.isinf(chart.until) else _beyond(chart.until)
         segments.append(Segment(chart.problem, tuple(follow(chart.problem, point, metric, stop, steps=steps))))
     return tuple(segments)
+
+
+def _ended(to_load: float, end: float) -> Callable[[Point], bool]:
+    """Stop under a compressive load, or where the contact fills as much of the body as is allowed."""
+    loaded, filled = loaded_to(to_load), _beyond(WIDEST * end)
+    return lambda point: loaded(point) or filled(point)
 
 
 def _beyond(radius: float) -> Callable[[Point], bool]:
@@ -195,13 +219,21 @@ def transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array:
     """Interpolate a state of one problem as a start for another; beyond the grid the load acts as at a point."""
     H, alpha = x[:-2], x[-2]
     scale = source.contact_radius(x) if target.follows_contact else 1.0
-    radii = target.operator.radii * scale
-    inside = radii < source.operator.extent * x[-1]
+    body, radii = source.operator_at(x), target.operator.at(scale).radii
+    inside = radii < body.extent
     gap = np.empty(radii.size)
-    gap[inside] = source.operator.values_at(radii[inside] / x[-1], H)
+    gap[inside] = body.values_at(radii[inside], H)
     outside = radii[~inside]
-    gap[~inside] = -alpha + source.tabor * (outside**2 / 2 + source.load(x) / (np.pi * outside))
+    point_load = source.load(x) / (np.pi * outside)
+    gap[~inside] = -alpha + source.tabor * (source.profile.height(outside) + point_load)
     return np.concatenate([gap, [alpha, scale]])
+
+
+def moved(event: Located, problem: ContactProblem) -> Located:
+    """Solve for an event again on another discretisation."""
+    source = event.problem
+    assert isinstance(source, ContactProblem)
+    return relocate(event, problem, transfer(source, event.point.x, problem), metric_for(problem.tabor))
 
 
 def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
@@ -213,6 +245,11 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
         ``pull_off`` (the deepest minimum of the load), ``jump_on`` (the first fold from separation), ``jump_off`` (the
         first from compression), ``zero_load``, and the two states between which the energy is taken, ``separated``
         and ``zero_approach``.
+
+    Raises
+    ------
+    ContactTooWide
+        If the curve ends, for want of body, before the last two.
     """
     tabor = segments[0].problem.tabor
     metric = metric_for(tabor)
@@ -224,10 +261,21 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     found = {"pull_off": min(roots(EXTREMUM), key=lambda e: float(e.point.observables[LOAD]))}
     if folds:
         found |= {"jump_on": folds[0], "jump_off": folds[-1]}
-    found["zero_load"] = roots(ZERO_LOAD)[-1]
     found["separated"] = roots(Condition(APPROACH, value=separated_approach(tabor)))[0]
-    found["zero_approach"] = roots(Condition(APPROACH))[-1]
+    for name, condition in (("zero_load", ZERO_LOAD), ("zero_approach", Condition(APPROACH))):
+        places = roots(condition)
+        if not places:
+            raise _too_wide(segments[-1], name)
+        found[name] = places[-1]
     return found
+
+
+def _too_wide(segment: Segment, event: str) -> ContactTooWide:
+    radius, body = segment.points[-1].observables[CONTACT_RADIUS], segment.problem.profile.end
+    return ContactTooWide(
+        f"contact radius {radius:.3g} beta exceeds {WIDEST:g} of the body's radius, {body:.3g} beta, before {event} is "
+        "reached; take a larger radius_ratio or a smaller tabor"
+    )
 
 
 def energy_released(located: Mapping[str, Located]) -> float:

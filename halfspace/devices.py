@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD, ContactProblem
-from halfspace.curve import EquilibriumPath, Estimate, Segment, metric_for, transfer
-from halfspace.events import ROUND_OFF, Condition, Event, Located, estimate_event, locate, relocate
+from halfspace.curve import EquilibriumPath, Estimate, Finest, Segment, metric_for, moved, transfer
+from halfspace.events import ROUND_OFF, Condition, Event, Located, estimate_event, locate
 from halfspace.newton import Control, Equilibrium
 from halfspace.path import make_point
 
@@ -118,9 +118,7 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     rough = jumps(path.segments, 1 / stiffness)
     if rough is None:
         return None
-    finest = path.stages[-1]
-    centred, edge = finest["separated"].problem, finest["zero_approach"].problem
-    fine = tuple(_refined(states, centred, edge, 1 / stiffness) for states in rough)
+    fine = tuple(_refined(states, path.finest, 1 / stiffness) for states in rough)
     on, off = (_jump(a, b, 1 / stiffness) for a, b in zip(rough, fine, strict=True))
     lost = Estimate(on.energy.value + off.energy.value, on.energy.error + off.energy.error)
     return Cycle(stiffness, on, off, lost)
@@ -174,20 +172,13 @@ def _landing(problem: Equilibrium, start: Array, take_off: Located, compliance: 
     return Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
 
 
-def _refined(states: _States, centred: Equilibrium, edge: Equilibrium, compliance: float) -> _States:
+def _refined(states: _States, finest: Finest, compliance: float) -> _States:
     """Both states of a jump on the finest discretisation."""
-    problem, start = _moved(states.take_off, centred, edge)
-    fold = relocate(states.take_off, problem, start, metric_for(problem.tabor))
-    return _States(fold, _landing(*_moved(states.landing, centred, edge), fold, compliance))
-
-
-def _moved(state: Located, centred: Equilibrium, edge: Equilibrium) -> tuple[ContactProblem, Array]:
-    """Finer problem of the same kind and the state transferred to it."""
-    source = state.problem
+    fold = moved(states.take_off, finest(states.take_off).problem)
+    source, target = states.landing.problem, finest(states.landing).problem
     assert isinstance(source, ContactProblem)
-    target = edge if source.follows_contact else centred
-    assert isinstance(target, ContactProblem)
-    return target, transfer(source, state.point.x, target)
+    start = transfer(source, states.landing.point.x, target)
+    return _States(fold, _landing(target, start, fold, compliance))
 
 
 def _jump(rough: _States, fine: _States, compliance: float) -> Jump:

@@ -52,6 +52,33 @@ def require_fixed_mesh(tabor: float) -> float:
     return _require(tabor, "tabor", tabor <= 3, "tabor <= 3 for a fixed mesh", 'take far_field = "point_load"')
 
 
+def require_radius_ratio(radius_ratio: float, tabor: float) -> float:
+    """Return R/eps, or raise ValueError unless it is 2 to 1e12 and R/beta = sqrt(radius_ratio/tabor) at least 1.5.
+
+    A contact is 1 to 2 beta wide where it is lost: a smaller sphere is deformed as a whole, and past its equator.
+    """
+    _require(radius_ratio, "radius_ratio", 2 <= radius_ratio <= 1e12, "2 <= radius_ratio <= 1e12", "give R/eps")
+    least = 1.5**2 * tabor
+    remedy = "the sphere is as small as its contact, R < 1.5 beta: take a stiffer or larger one"
+    return _require(radius_ratio, "radius_ratio", radius_ratio >= least, f"2.25 tabor = {least:.3g} or more", remedy)
+
+
+def require_cap_angle(cap_angle: float) -> float:
+    """Return the half-angle of a cap in degrees, or raise ValueError unless 1 <= cap_angle <= 90."""
+    return _require(cap_angle, "cap_angle", 1 <= cap_angle <= 90, "1 <= cap_angle <= 90", "give degrees, say 30")
+
+
+def require_share(share: float, radius: float) -> float:
+    """Return a counter-body's part of the compliance, or raise ValueError unless 0 < share < 1 and its radius is."""
+    remedy = "a rigid one is no counter-body: leave it out"
+    _require(share, "share", 0 < share < 1, "0 < share < 1", remedy)
+    if not radius >= 1:
+        raise ValueError(
+            f"radius = {radius:g} of the counter-body is outside 1 <= radius; let the smaller body be first"
+        )
+    return share
+
+
 def _require(value: float, name: str, holds: bool, limit: str, remedy: str) -> float:
     if not holds or not math.isfinite(value):
         raise ValueError(f"{name} = {value:.9g} is outside {limit}; {remedy}")

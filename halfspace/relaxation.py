@@ -154,11 +154,12 @@ def _gaps_under(problem: ContactProblem, control: Control) -> _Gaps:
     """Eliminate the approach: it is given, or follows from the gap given on the axis."""
     if problem.follows_contact:
         raise ValueError("the grid follows the contact; the 1997 iterations need a fixed one")
-    C, undeformed = problem.tabor * problem.operator.compliance, problem.undeformed(0.0)[:-2]
+    body, undeformed = problem.operator.at(1.0), problem.undeformed(0.0)[:-2]
+    C = problem.tabor * body.compliance
     if np.array_equal(control.weights, np.eye(4)[APPROACH]):
         return _Gaps(undeformed - control.target, C)
     if np.array_equal(control.weights, np.eye(4)[CENTRAL_GAP]):
-        axis = problem.operator.interpolation(0.0)[0]
+        axis = body.axis_row
         return _Gaps(undeformed - axis @ undeformed + control.target, C - axis @ C)
     raise ValueError("the 1997 iterations work under newton.approach or newton.central_gap only; take newton.solve")
 
@@ -215,7 +216,7 @@ def _iterate(
 
 def _relaxed(problem: ContactProblem, H: Array, P: Array, sweeps: int, residual: float) -> Relaxed:
     """Complete the state by the approach at which these pressures leave these gaps."""
-    deflection = problem.tabor * problem.operator.compliance[0] @ P
+    deflection = problem.tabor * problem.operator.at(1.0).compliance[0] @ P
     approach = problem.undeformed(0.0)[0] + deflection - H[0]
     x = np.concatenate([H, [approach, 1.0]])
     return Relaxed(x, problem.observables(x), sweeps, residual)

@@ -3,6 +3,7 @@ import pytest
 from scipy.integrate import quad
 
 from halfspace import compliance, grid, newton, theories
+from halfspace.breathing import Homogeneous
 from halfspace.contact import ContactProblem, GridTooCoarse, count_negative
 from halfspace.curve import transfer
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
@@ -59,8 +60,8 @@ def test_sign_of_the_pressure_against_the_papers_fig_4():
 @pytest.mark.parametrize("follows", [False, True])
 def test_jacobian_and_gradients_against_finite_differences(problem, touching, follows):
     if follows:
-        problem = ContactProblem(EDGE, 1.0, follows_contact=True)
-        gap = 0.3 + problem.operator.radii**2 / 2 - 0.3 * np.exp(-(problem.operator.radii**2))
+        problem = ContactProblem(Homogeneous(EDGE), 1.0)
+        gap = 0.3 + problem.operator.at(1.0).radii ** 2 / 2 - 0.3 * np.exp(-(problem.operator.at(1.0).radii ** 2))
         x = np.concatenate([gap, [-0.1, 1.0]])
     else:
         x = touching
@@ -92,7 +93,7 @@ def test_every_control_finds_the_same_state(problem, touching):
 
 def test_a_grid_that_follows_the_contact_finds_the_state_of_a_fixed_one():
     fixed = ContactProblem(compliance.panels(grid.graded(1.0, 0.1, 400.0), 12), 1.0)
-    moving = ContactProblem(compliance.panels(grid.graded(1.0, 0.05, 800.0), 12), 1.0, follows_contact=True)
+    moving = ContactProblem(Homogeneous(compliance.panels(grid.graded(1.0, 0.05, 800.0), 12)), 1.0)
     x = fixed.undeformed(-0.5)
     x[:-2] = np.maximum(x[:-2], 0.0)
     on_fixed = newton.solve(fixed, x, newton.approach(-0.5))

@@ -10,7 +10,8 @@ import pytest
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
-from halfspace.accuracy import Resolution, Rung, climb, half_space_charts, resolution_for
+from halfspace.accuracy import Resolution, half_space_charts, resolution_for
+from halfspace.ladder import charted_rung, climb
 
 FULL = "HONESTY" in os.environ
 TABORS = (0.02, 0.1, 0.3, 0.5, 0.65, 0.75, 1, 1.5, 2, 3, 5, 8, 20, 50)
@@ -55,7 +56,7 @@ def _truth(tabor, truths):
         def rung(level):
             usual = resolution_for(tabor, 1e-10, level)
             finer = Resolution(min(usual.nodes + 1, 16), 0.4, 2.5, usual.extent)
-            return Rung((half_space_charts(tabor, finer),), {})
+            return charted_rung(half_space_charts(tabor, finer))
 
         truths[tabor] = climb(1e-10, rung, most_rungs=1).events
     return truths[tabor]

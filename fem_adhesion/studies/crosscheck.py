@@ -229,7 +229,7 @@ def _residual(found: Sequence[Located], equations: Located) -> Estimate:
     assert isinstance(target, ContactProblem)
     states = [_transferred(event, target) for event in found]
     residuals = [target.residual(x)[:-1] for x in states]
-    weight = target.operator.weights * np.abs(target.pressure(states[-1]))
+    weight = target.operator_at(states[-1]).weights * np.abs(target.pressure(states[-1]))
     weight /= weight.sum()
     changes = [weight @ np.abs(b - a) for a, b in pairwise(residuals)]
     return Estimate(float(weight @ np.abs(residuals[-1])), float(sum(changes)) + ROUND_OFF)

@@ -115,7 +115,7 @@ def _profile(state: Located) -> Profile:
     """State as a field; the gap is interpolated, the pressure is what the law gives for it."""
     problem, x = state.problem, state.point.x
     assert isinstance(problem, ContactProblem)
-    gap = problem.operator.values_at(PROFILE_RADII / x[-1], x[:-2])
+    gap = problem.operator_at(x).values_at(PROFILE_RADII, x[:-2])
     approach, load, central_gap, radius = state.point.observables
     pressure = problem.law.pressure(gap, problem.tabor)
     return Profile(central_gap, approach, load, radius, PROFILE_RADII, gap, pressure)

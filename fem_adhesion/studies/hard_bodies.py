@@ -19,10 +19,10 @@ from fem_adhesion.incompressible import projected_stiffness, taylor_hood
 from fem_adhesion.mesh import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid, with_named_boundaries
 from fem_adhesion.scene import Scene
 from fem_adhesion.studies.measured import Measured, compare_events
-from halfspace.accuracy import Charts, Rung, climb
 from halfspace.compliance import Array, ElasticOperator
 from halfspace.contact import ContactProblem
 from halfspace.curve import COMPRESSION, Chart, EquilibriumPath, trace_charts
+from halfspace.ladder import Charts, Rung, charted_rung, climb
 
 INDEPENDENT = "half-space"
 POISSON = 0.3
@@ -93,8 +93,8 @@ def _on_meshes(mesh: Callable[[float], Any], elements: tuple[Any, Any], tabor: f
 
     def rung(level: int) -> Rung:
         if level == 0:
-            return Rung((charts(20.0, elements[0]),), {})
-        return Rung((charts(40.0, elements[0]), charts(40.0, elements[1])), {})
+            return charted_rung(charts(20.0, elements[0]))
+        return charted_rung(charts(40.0, elements[0]), charts(40.0, elements[1]))
 
     return _compare(climb(rtol, rung, most_rungs=1), tabor, rtol)
 

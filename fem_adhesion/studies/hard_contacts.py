@@ -11,11 +11,12 @@ import halfspace
 from fem_adhesion.studies.fold_birth import Birth, approached, at_gap, count_folds, tabor_of
 from fem_adhesion.studies.measured import Measured, compare_events, newton_steps, worst
 from halfspace import newton
-from halfspace.accuracy import Rung, climb, half_space_charts, resolution_for
+from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.compliance import Array
 from halfspace.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.curve import COMPRESSION, Segment, find_events, metric_for, trace_charts, transfer
 from halfspace.events import ROUND_OFF, Condition, Located, locate
+from halfspace.ladder import Rung, charted_rung, climb
 from halfspace.path import Metric, Point, Steps
 
 TIGHTER = "half-space, two decades tighter"
@@ -27,7 +28,7 @@ def traced(tabor: float, *, rtol: float = 1e-6, to_load: float = COMPRESSION) ->
     path = halfspace.trace(tabor, rtol=rtol, to_load=to_load)
 
     def rung(level: int) -> Rung:
-        return Rung((half_space_charts(tabor, resolution_for(tabor, rtol / 100, level), to_load),), {})
+        return charted_rung(half_space_charts(tabor, resolution_for(tabor, rtol / 100, level), to_load))
 
     return compare_events(path, climb(rtol, rung, to_load=to_load, most_rungs=1), TIGHTER)
 

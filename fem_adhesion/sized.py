@@ -1,0 +1,103 @@
+"""Finite-element bodies with a length of their own, from a scene: hemisphere, sphere, and the block under a sphere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from skfem import ElementQuadP
+
+from fem_adhesion import bodies
+from fem_adhesion.condensed import condense
+from fem_adhesion.elasticity import Space
+from fem_adhesion.far_field import clamped, point_load, sliding
+from fem_adhesion.incompressible import stiffness_for
+from fem_adhesion.mesh import tensor_grid
+from fem_adhesion.scene import Scene
+from halfspace import grid
+from halfspace.breathing import FlatCoordinate
+from halfspace.compliance import Array
+from halfspace.ladder import Rung
+from halfspace.profiles import Paraboloid, Profile, Sphere
+from halfspace.sized import CROWDED, AroundEvents, Made, SizedBody, to_equator
+
+GRIPS = {"sliding": sliding, "bonded": clamped}
+
+FINEST, GROWTH = 0.6, 2.5  # of the cells: at the contact edge in widths of the spike of tension, and of their lengths
+CURVE_DEGREE = 4  # of the elements for the curve, whose operator is interpolated to some 1e-4
+BEYOND = 1e3  # size of the block under a sphere, in R: nothing acts on it beyond R, and its far field errs by O(L^-5)
+
+
+@dataclass(frozen=True)
+class Discretisation:
+    """How finely a body is discretised.
+
+    Attributes
+    ----------
+    degree : int
+        Of the quadrilateral elements; the error falls by an order of magnitude a degree.
+    finest : float
+        Length of the cells at the contact edge, in widths of the spike of tension there.
+    growth : float
+        Ratio of neighbouring cells.
+    """
+
+    degree: int
+    finest: float = FINEST
+    growth: float = GROWTH
+
+
+def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
+    """Rung of a level: the events on elements of a degree that suits the tolerance, one more on each level."""
+    degree = int(np.clip(np.ceil(-np.log10(rtol)) - 1, 4, 8)) + level
+    fine, coarse = (sized_body(scene, Discretisation(d)) for d in (degree, CURVE_DEGREE + level))
+    settings = {"degree": degree, "finest": FINEST, "growth": GROWTH}
+    return Rung(partial(coarse.curve, to_load), (AroundEvents(fine),), settings)
+
+
+def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
+    """Body of a scene, to be discretised on any grid of its surface."""
+    R = scene.sphere_radius
+    profile: Profile = Sphere(R) if scene.profile == "sphere" else Paraboloid(R)
+    if scene.body == "block":
+        return SizedBody(
+            scene.tabor, profile, partial(_block, scene, how), how.finest, how.growth, to_equator(R), FlatCoordinate()
+        )
+    return _hemisphere(scene, how, R, profile)
+
+
+def _hemisphere(scene: Scene, how: Discretisation, R: float, profile: Profile) -> SizedBody:
+    coordinate = bodies.Stereographic(R, scene.traction)
+    outer = R * np.linspace(bodies.CORE, 2.0, bodies.LAYERS + 1)
+
+    def make(lines: Array) -> Made:
+        core = lines[: -bodies.LAYERS]
+        depths = grid.graded(0.0, np.diff(core).min(), bodies.DEPTH * R, growth=how.growth)
+        return _condensed(scene, how, bodies.hemisphere(R, core, depths))
+
+    return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, coordinate)
+
+
+def _block(scene: Scene, how: Discretisation, lines: Array) -> Made:
+    """Block whose surface the law acts on as far as the sphere reaches."""
+    R = float(lines[-1])
+    finest = float(np.diff(lines[:-CROWDED]).min())
+    beyond = grid.geometric((BEYOND - 1) * R, R - float(lines[-CROWDED - 1]), how.growth)[1:]
+    depths = grid.graded(0.0, finest, BEYOND * R, growth=how.growth)
+    mesh = tensor_grid(np.concatenate([lines, R + beyond]), depths)
+    space = Space(bodies.with_contact_to(mesh, R), ElementQuadP(how.degree))
+    body = condense(space, scene.poisson, far_field=point_load, stiffness=stiffness_for(scene.poisson))
+    return body.operator, body.unknowns
+
+
+def _condensed(scene: Scene, how: Discretisation, mesh: object) -> Made:
+    space = Space(mesh, ElementQuadP(how.degree))
+    body = condense(
+        space,
+        scene.poisson,
+        far_field=GRIPS[scene.grip],
+        stiffness=stiffness_for(scene.poisson),
+        traction=scene.traction,
+    )
+    return body.operator, body.unknowns

@@ -1,0 +1,195 @@
+"""The load-approach curve to an accuracy asked for: a ladder of discretisations of any body.
+
+The curve is traced on the lowest rung and each event solved for again on the next, and on more if need be. An event's
+error estimate is half its change from the last rung but one to the last: the change is nearly the lower
+rung's error, of which the higher rung is made to leave a tenth or less.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from halfspace.contact import ContactProblem
+from halfspace.curve import (
+    COMPRESSION,
+    Chart,
+    EquilibriumPath,
+    Estimate,
+    energy_released,
+    find_events,
+    moved,
+    trace_charts,
+)
+from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event
+from halfspace.newton import NotConverged
+
+MOST_RUNGS = 3  # above the lowest
+
+Charts = Sequence[Chart]
+State = Mapping[str, Located]
+
+
+class Stage(Protocol):
+    """One discretisation on which events are solved for again."""
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event found on another discretisation."""
+        ...
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the largest chart."""
+        ...
+
+
+@dataclass(frozen=True)
+class Charted:
+    """The same charts for every event, one for those on a grid that stands still, one for those on one that follows.
+
+    Attributes
+    ----------
+    charts : sequence of Chart
+        That for the grid that follows the contact is the last.
+    """
+
+    charts: Charts
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart of the event's kind."""
+        source = event.problem
+        return self.charts[-1 if isinstance(source, ContactProblem) and source.follows_contact else 0]
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the largest chart."""
+        return max(chart.unknowns for chart in self.charts)
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One step of a ladder of discretisations.
+
+    Attributes
+    ----------
+    curve : callable
+        Makes the charts for tracing the curve on this rung.
+    stages : tuple of Stage
+        On each of which every event is solved for; each differs from the one before in one respect, the last is the
+        finest. The changes add up to the error. On the lowest rung they only prepare, and there may be none.
+    settings : mapping
+        How the last stage is discretised.
+    twin : Stage or None
+        As fine as the rung below, with other cells: it errs as much, but not by the same accident of sign.
+    remaining : float
+        Part of the changes that may be left as error; above 1 where the error falls slowly from stage to stage.
+    """
+
+    curve: Callable[[], Charts]
+    stages: tuple[Stage, ...]
+    settings: Mapping[str, object]
+    twin: Stage | None = None
+    remaining: float = REMAINING
+
+
+def charted_rung(*stages: Charts) -> Rung:
+    """Rung of given charts, the last of which also serve for the curve."""
+    return Rung(lambda: stages[-1], tuple(Charted(charts) for charts in stages), {})
+
+
+def climb(
+    rtol: float, rung: Callable[[int], Rung], *, to_load: float = COMPRESSION, most_rungs: int = MOST_RUNGS
+) -> EquilibriumPath:
+    """Trace the curve on the lowest rung of a ladder and solve for its events on higher ones until `rtol` is met.
+
+    Parameters
+    ----------
+    rtol : float
+        Relative accuracy asked of loads and approaches.
+    rung : callable
+        Makes the rung of a level: 0 for the curve, 1, 2 ... for the events.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+    most_rungs : int
+        Levels after which the estimates stand as they are.
+
+    Raises
+    ------
+    halfspace.newton.NotConverged
+        If the curve cannot be traced or an event not be found again.
+    GridTooCoarse
+        If a grid cannot carry the spike at the contact edge.
+    """
+    for start in range(most_rungs):
+        try:
+            return _climb_from(start, rtol, rung, to_load, most_rungs)
+        except NotConverged:  # as where two folds about to merge exist on one grid but not on the next
+            if start == most_rungs - 1:
+                raise
+    raise ValueError(f"most_rungs = {most_rungs} leaves nothing to climb; allow 1 or more")
+
+
+def _climb_from(
+    start: int, rtol: float, rung: Callable[[int], Rung], to_load: float, most_rungs: int
+) -> EquilibriumPath:
+    """Trace the curve on the rung `start` and climb from there."""
+    began = time.perf_counter()
+    lowest = rung(start)
+    segments = trace_charts(lowest.curve(), to_load)
+    state: State = find_events(segments)
+    for stage in lowest.stages:
+        state = _on_all(state, stage)
+    for level in range(start + 1, start + most_rungs + 1):
+        higher = rung(level)
+        chains = _step_up(state, higher)
+        state = chains[0][-1]
+        events = _estimate(chains, higher.remaining)
+        if all(_meets(event, rtol) for event in events.values()):
+            break
+    return EquilibriumPath(
+        segments[0].problem.tabor,
+        segments,
+        events,
+        _energy(chains, higher.remaining),
+        tuple(chains[0]),
+        higher.stages[-1],
+        time.perf_counter() - began,
+        {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
+    )
+
+
+def _step_up(state: State, higher: Rung) -> list[list[State]]:
+    """Chains of states from the rung below, and from its twin, to the last stage of a rung."""
+    chain = [state]
+    for stage in higher.stages:
+        chain.append(_on_all(chain[-1], stage))
+    return [chain, [_on_all(chain[-1], higher.twin), chain[-1]]] if higher.twin else [chain]
+
+
+def _on_all(state: State, stage: Stage) -> State:
+    return {name: moved(event, stage(event).problem) for name, event in state.items()}
+
+
+def _estimate(chains: Sequence[Sequence[State]], remaining: float) -> dict[str, Event]:
+    """Events of the last state, with their changes along the chains as errors."""
+    names = [name for name in EVENTS if name in chains[0][-1]]
+    return {
+        name: estimate_event(name, [[state[name] for state in chain] for chain in chains], remaining) for name in names
+    }
+
+
+def _energy(chains: Sequence[Sequence[State]], remaining: float) -> Estimate:
+    values = [[energy_released(state) for state in chain] for chain in chains]
+    best = values[0][-1]
+    change = max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
+    return Estimate(best, remaining * change + ROUND_OFF * (1 + abs(best)))
+
+
+def _meets(event: Event, rtol: float) -> bool:
+    """Whether the estimates are within the tolerance; approaches count relative to 1 + |alpha*|."""
+    load = event.load_error <= rtol * abs(event.load) or event.name == "zero_load"
+    return load and event.approach_error <= rtol * (1 + abs(event.approach))

@@ -1,0 +1,92 @@
+"""Undeformed gap profiles: the height of the sphere's surface over its pole, in beta^2/R = mu eps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+Array = NDArray[np.float64]
+
+
+class Profile(Protocol):
+    """Height of the undeformed surface over its pole as a function of the radius."""
+
+    @property
+    def end(self) -> float:
+        """Radius in beta at which the surface ends; infinite if it does not."""
+        ...
+
+    def height(self, radii: Array) -> Array:
+        """Height in beta^2/R at radii in beta."""
+        ...
+
+    def slope(self, radii: Array) -> Array:
+        """Derivative of the height by the radius."""
+        ...
+
+
+@dataclass(frozen=True)
+class Paraboloid:
+    """r^2/2R, up to the radius `end` in beta."""
+
+    end: float = np.inf
+
+    def height(self, radii: Array) -> Array:
+        """Return u^2/2."""
+        return np.asarray(radii**2 / 2)
+
+    def slope(self, radii: Array) -> Array:
+        """Return u."""
+        return np.asarray(radii)
+
+
+PARABOLOID = Paraboloid()
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """R - sqrt(R^2 - r^2), up to its equator, the radius `end` = R/beta."""
+
+    end: float
+
+    def height(self, radii: Array) -> Array:
+        """Return u^2/(1 + cos theta), sin theta = r/R, without cancellation."""
+        return np.asarray(radii**2 / (1 + self._cosine(radii)))
+
+    def slope(self, radii: Array) -> Array:
+        """Return u/cos theta: infinite at the equator."""
+        return np.asarray(radii / self._cosine(radii))
+
+    def _cosine(self, radii: Array) -> Array:
+        sine = radii / self.end
+        return np.asarray(np.sqrt((1 - sine) * (1 + sine)))
+
+
+@dataclass(frozen=True)
+class Tabulated:
+    """Heights (n,) at ascending radii (n,), with their slopes: the surface of a body that is given as a mesh."""
+
+    radii: Array
+    heights: Array
+    slopes: Array
+
+    @property
+    def end(self) -> float:
+        """Radius in beta at which the surface ends."""
+        return float(self.radii[-1])
+
+    def height(self, radii: Array) -> Array:
+        """Cubic between the points."""
+        return np.asarray(self._spline(radii))
+
+    def slope(self, radii: Array) -> Array:
+        """Its derivative."""
+        return np.asarray(self._spline(radii, 1))
+
+    @property
+    def _spline(self) -> CubicHermiteSpline:
+        return CubicHermiteSpline(self.radii, self.heights, self.slopes)

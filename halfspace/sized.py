@@ -1,0 +1,139 @@
+"""Bodies with a length of their own: charts for their load-approach curve, and operators around its events.
+
+No single compliance serves all contact radii of such a body. The curve is traced on an operator interpolated between a
+few radii (`halfspace.breathing.Interpolated`). Each event is then solved for on a grid and an operator of its own, made
+for radii close to that of the event, where the interpolation is as good as exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from halfspace import grid
+from halfspace.breathing import Interpolated, MovingGrid, SurfaceCoordinate, chebyshev_radii
+from halfspace.compliance import Array, ElasticOperator
+from halfspace.contact import CONTACT_RADIUS, WIDEST, ContactProblem, spike_width
+from halfspace.curve import Chart
+from halfspace.events import Located
+from halfspace.profiles import Profile
+from halfspace.theories import jkr_radius
+
+LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the least that the other one knows
+LEAVE = 0.5  # of the first cell: the radius at which the chart centred on the axis is left
+WINDOW = 0.03  # half the logarithmic width of the radii around an event
+AROUND = 3  # operators in it
+CROWDED = 5  # cells next to the equator
+APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
+
+Made = tuple[ElasticOperator, int]
+
+
+@dataclass(frozen=True)
+class SizedBody:
+    """A body that is discretised anew on any grid of its surface.
+
+    Parameters
+    ----------
+    tabor : float
+        Tabor parameter.
+    profile : Profile
+        Of the undeformed surface.
+    make : callable
+        From the ends of all cells, in the surface's coordinate, the operator and its number of unknowns.
+    finest : float
+        Length of the cells at the contact edge, in widths of the spike of tension there.
+    growth : float
+        Ratio of neighbouring cells.
+    outer : (k,) array
+        The last cells' ends, ascending, which do not move with the contact: their first is where the others end.
+    coordinate : SurfaceCoordinate
+        Along the surface.
+    """
+
+    tabor: float
+    profile: Profile
+    make: Callable[[Array], Made]
+    finest: float
+    growth: float
+    outer: Array
+    coordinate: SurfaceCoordinate
+
+    @property
+    def length(self) -> float:
+        """Length of the cells at the contact edge in beta, and the contact radius up to which they do at the centre."""
+        return self.finest * spike_width(self.tabor) / 2
+
+    def centred(self) -> Chart:
+        """Chart fine on the axis."""
+        lines = grid.graded(0.0, self.length, float(self.outer[0]), growth=self.growth)
+        operator, unknowns = self.make(np.concatenate([lines, self.outer[1:]]))
+        return Chart(ContactProblem(operator, self.tabor, profile=self.profile), unknowns, LEAVE * self.length)
+
+    def following(self, moving: MovingGrid, scales: Array) -> Chart:
+        """Chart that follows the contact edge, from operators at some contact radii."""
+        made = [self.make(moving.lines(float(a))) for a in scales]
+        operator = Interpolated(scales, [operator for operator, _ in made], moving)
+        return Chart(ContactProblem(operator, self.tabor, profile=self.profile), made[0][1])
+
+    def curve(self, to_load: float) -> tuple[Chart, Chart]:
+        """Charts for the whole curve: the second from operators at radii some 1.7 times one the other."""
+        widest = min(float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(self.tabor))), WIDEST * self.profile.end)
+        least = min(LEAST * LEAVE * self.length, widest / 2)
+        count = 2 + int(np.ceil(np.log(widest / least) / np.log(APART)))
+        end, edge = float(self.outer[0]), self.coordinate.of(widest)
+        inner = grid.geometric(1.0, 2 * self.length / edge, self.growth)
+        moving = self._moving(1 - inner[::-1], grid.geometric(end, self.length, self.growth) / end)
+        return self.centred(), self.following(moving, chebyshev_radii(least, widest, count))
+
+    def around(self, radius: float) -> Chart:
+        """Chart for contact radii near the given one."""
+        end, edge = float(self.outer[0]), self.coordinate.of(radius)
+        lines = grid.graded(edge, self.length, end, growth=self.growth)
+        inner = lines < edge * (1 + 1e-12)
+        moving = self._moving(lines[inner] / edge, np.append(0, (lines[~inner] - edge) / (end - edge)))
+        return self.following(moving, chebyshev_radii(radius * np.exp(-WINDOW), radius * np.exp(WINDOW), AROUND))
+
+    def _moving(self, inner: Array, outside: Array) -> MovingGrid:
+        """Grid from the ends of cells inside the edge, as parts of x_a, and outside, as parts of the rest."""
+        inner[0], inner[-1], end = 0.0, 1.0, float(self.outer[0])
+        fixed = np.concatenate([0 * inner, end * outside[1:], self.outer[1:]])
+        moving = np.concatenate([inner, 1 - outside[1:], 0 * self.outer[1:]])
+        return MovingGrid(fixed, moving, self.coordinate)
+
+
+def to_equator(R: float) -> Array:
+    """Ends of cells that crowd to the equator, r = R, where the profile of a sphere has a vertical tangent."""
+    return np.append(R * (1 - 0.02 * 0.3 ** np.arange(float(CROWDED))), R)
+
+
+@dataclass(frozen=True)
+class AroundEvents:
+    """Stage of a ladder on which every event has an operator made for its own contact radius.
+
+    Parameters
+    ----------
+    body : SizedBody
+        The body.
+    """
+
+    body: SizedBody
+    charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event, made unless one made before will do."""
+        follows = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
+        radius = float(event.point.observables[CONTACT_RADIUS]) if follows else 0.0
+        for made_for, chart in self.charts:
+            if abs(radius - made_for) <= WINDOW * radius / 2:
+                return chart
+        chart = self.body.around(radius) if follows else self.body.centred()
+        self.charts.append((radius, chart))
+        return chart
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a chart made so far."""
+        return max(chart.unknowns for _, chart in self.charts)
