@@ -1,0 +1,364 @@
+"""The body at finite strain: its material, its equations, the linear limit, and its energy."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2
+
+from fem_adhesion import neo_hookean as material
+from fem_adhesion.condensed import condense
+from fem_adhesion.elasticity import Space, lame_parameters
+from fem_adhesion.far_field import clamped, free, point_load, sliding, with_interiors
+from fem_adhesion.finite_strain import finite_strain_problem
+from fem_adhesion.finite_strain_bodies import displacement_body
+from fem_adhesion.finite_strain_events import correct_events, trace_finite
+from fem_adhesion.finite_strain_mixed import mixed_body
+from fem_adhesion.incompressible import taylor_hood
+from fem_adhesion.mesh import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
+from fem_adhesion.monolithic import assemble
+from halfspace import newton
+from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD, ContactProblem
+from halfspace.curve import Chart, find_events, trace_charts
+from halfspace.events import EVENTS
+from halfspace.profiles import Sphere
+
+LAM, G = 0.7, 0.4
+STRETCHES = [0.0, 1e-8, 0.5]
+RNG = np.random.default_rng(7)
+
+
+def block(degree=3, fine=0.4):
+    return Space(block_grid(fine, 1.5, 20.0), ElementQuadP(degree) if degree > 2 else ElementQuad2())
+
+
+def problem_of(space, stretch, poisson=0.3, surface_stress=0.0, pressure=None, tabor=1.0, far_field=clamped):
+    exterior = with_interiors(far_field(space, poisson), space)
+    body = mixed_body(space, poisson, stretch, pressure) if pressure else displacement_body(space, poisson, stretch)
+    return finite_strain_problem(body, exterior, tabor, surface_stress=surface_stress)
+
+
+def hemisphere(R, fine=0.6, flat=2.4):
+    """Quadratic cells: a square bent to the quarter disc |Z| < 2R, and by Z/(1 + i Z/2R) to the hemisphere."""
+    near, depths = graded_breaks(fine, flat, 0.8 * R, growth=2.0), graded_breaks(fine, fine, 0.8 * R, growth=2.0)
+    rim = np.linspace(0.8 * R, 2 * R, 7)[1:]
+    flat_mesh = MeshQuad2.from_mesh(MeshQuad.init_tensor(np.append(near, rim), np.append(depths, rim)))
+    a, d = flat_mesh.doflocs
+    longer, t = np.maximum(a, d), (np.maximum(a, d) / (2 * R)) ** 2
+    Z = (a - 1j * d) * (1 - t + t * longer / np.hypot(a, d).clip(1e-300))
+    image = Z / (1 + 0.5j * Z / R)
+    mesh = MeshQuad2(np.array([image.real, image.imag]), flat_mesh.t)
+    facets = mesh.boundary_facets()
+    r, z = mesh.p[:, mesh.facets[:, facets]]
+    axis, far = np.all(r < 1e-9 * R, axis=0), np.all(np.abs(z + R) < 1e-9 * R, axis=0)
+    return mesh.with_boundaries({"axis": facets[axis], "far": facets[far], "contact": facets[~axis & ~far]})
+
+
+def entered(problem, gaps=(2.0, 1.0, 0.5, 0.2, 0.0)):
+    """A state in contact, on the unstable branch or beyond."""
+    x = newton.solve(problem, problem.undeformed(-6.0), newton.approach(-6.0)).x
+    for gap in gaps:
+        x = newton.solve(problem, x, newton.central_gap(gap)).x
+    return x
+
+
+def directions(problem, x):
+    """A direction in which nothing vanishes, smooth enough for difference quotients."""
+    dx = problem.bordered_solver(x, np.eye(1, x.size, x.size - 1)[0])(RNG.normal(size=x.size))
+    return dx / np.abs(dx).max()
+
+
+def central_difference(function, x, direction, step=2e-4):
+    """Fourth-order difference quotient of a function along a direction."""
+    near, far = (function(x + k * step * direction) - function(x - k * step * direction) for k in (1, 2))
+    return (8 * near - far) / (12 * step)
+
+
+# The material
+
+
+@pytest.mark.parametrize("stretch", STRETCHES)
+def test_stress_and_moduli_are_the_derivatives_of_the_energy(stretch):
+    A, dA = RNG.normal(size=(2, 5, 6)) * 0.3
+
+    def along(function):
+        return central_difference(lambda t: function(material.Deformation(A + t * dA, stretch), LAM, G), 0.0, 1.0)
+
+    state = material.Deformation(A, stretch)
+    np.testing.assert_allclose(np.sum(material.stress(state, LAM, G) * dA, axis=0), along(material.energy), atol=1e-10)
+    moduli = material.tangent(state, LAM, G)
+    np.testing.assert_allclose(np.einsum("abq,bq->aq", moduli, dA), along(material.stress), atol=1e-10)
+    np.testing.assert_allclose(moduli, moduli.transpose(1, 0, 2), rtol=0, atol=1e-14)
+
+
+def test_energy_is_that_of_the_formula_far_from_the_undeformed_state():
+    A, delta = RNG.normal(size=(5, 200)) * 0.4, 0.6
+    F = np.zeros((200, 3, 3))
+    F[:, 0, 0], F[:, 0, 2], F[:, 2, 0], F[:, 2, 2] = 1 + delta * A[1], delta * A[2], delta * A[3], 1 + delta * A[4]
+    F[:, 1, 1] = 1 + delta * A[0]
+    J = np.linalg.det(F)
+    assert J.min() > 0.1
+    assert J.max() > 1.9  # on both sides of where ln(1 + x) is integrated
+    invariant = np.einsum("qij,qij->q", F, F)
+    expected = (G / 2 * (invariant - 3 - 2 * np.log(J)) + LAM / 2 * np.log(J) ** 2) / delta**2
+    np.testing.assert_allclose(material.energy(material.Deformation(A, delta), LAM, G), expected, rtol=1e-12)
+
+
+def test_no_digit_is_lost_as_the_strains_vanish():
+    A = RNG.normal(size=(5, 50))
+    linear, tiny = (material.Deformation(A, delta) for delta in (0.0, 1e-8))
+    for quantity in (material.energy, material.stress, material.tangent):
+        np.testing.assert_allclose(quantity(tiny, LAM, G), quantity(linear, LAM, G), rtol=0, atol=3e-7)
+    hoop, rr, rz, zr, zz = A
+    by_hooke = LAM * (hoop + rr + zz) + 2 * G * np.array([hoop, rr, zz])
+    np.testing.assert_allclose(material.stress(linear, LAM, G)[[0, 1, 4]], by_hooke, atol=1e-14)
+    np.testing.assert_allclose(material.stress(linear, LAM, G)[[2, 3]], [G * (rz + zr)] * 2, atol=1e-14)
+
+
+def test_a_rigid_rotation_turns_the_stress_and_stores_nothing():
+    delta, angle = 0.5, 0.8
+    Q = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    A = RNG.normal(size=5) * 0.3
+    turned = A.copy()
+    turned[1:] = ((Q @ (np.eye(2) + delta * A[1:].reshape(2, 2)) - np.eye(2)) / delta).ravel()
+    before, after = material.Deformation(A, delta), material.Deformation(turned, delta)
+    assert material.energy(after, LAM, G) == pytest.approx(material.energy(before, LAM, G), rel=1e-13)
+    expected = (Q @ material.stress(before, LAM, G)[1:].reshape(2, 2)).ravel()
+    np.testing.assert_allclose(material.stress(after, LAM, G)[1:], expected, atol=1e-14)
+
+
+# Bodies
+
+
+@pytest.mark.parametrize("mixed", [False, True])
+@pytest.mark.parametrize("lateral", ["free", "equal"])
+def test_homogeneous_stretch_of_a_cylinder_has_the_closed_form_stress(mixed, lateral):
+    delta, nu, axial = 0.4, 0.3, 1.5
+    lam, shear = lame_parameters(nu)
+
+    def principal(own, J):
+        return shear * (own - 1 / own) + lam * np.log(J) / own
+
+    uniaxial = brentq(lambda s: principal(s, s**2 * axial), 0.5, 1.5, xtol=1e-15)
+    across = uniaxial if lateral == "free" else axial
+    space = Space(tensor_grid(np.array([0, 0.7, 2.0]), np.array([0, 0.4, 1.0])), ElementQuadP(3))
+    body = mixed_body(space, nu, delta, ElementQuad2()) if mixed else displacement_body(space, nu, delta)
+    u = np.zeros(space.unknowns)
+    u[space.components] = interpolated(space, (across - 1) / delta, (axial - 1) / delta)
+    forces = body.forces(body.lifted(u))
+    J, area = across**2 * axial, np.pi * 2.0**2
+    top, side = space.boundary_functions("contact"), space.boundary_functions("far")
+    pull = space.constant[top] @ forces[space.components[1, top]]
+    assert pull == pytest.approx(principal(axial, J) / delta * area, rel=1e-12)
+    work = u[: space.unknowns] @ forces[: space.unknowns]  # of both principal stresses, over the volume
+    stress_work = 2 * principal(across, J) * (across - 1) + principal(axial, J) * (axial - 1)
+    assert work == pytest.approx(stress_work / delta**2 * area, rel=1e-12)
+    inside = np.setdiff1d(np.arange(space.scalar_dofs.N), np.concatenate([top, side]))
+    np.testing.assert_allclose(forces[space.components[1, inside]], 0, atol=1e-12)
+    assert body.least_volume_ratio(u) == pytest.approx(J, rel=1e-12)
+
+
+def interpolated(space, across, axial):
+    """Coefficients of the displacement (across r, axial z)."""
+    full = Basis(space.mesh, space.element)
+    return np.array([full.project(lambda x: across * x[0]), full.project(lambda x: axial * x[1])])
+
+
+def test_a_translation_along_the_axis_costs_no_force():
+    space = block()
+    body, u = displacement_body(space, 0.3, 0.3), np.zeros(space.unknowns)
+    u[space.components] = interpolated(space, 0.2, -0.3)
+    moved = u.copy()
+    moved[space.components[1]] += 5.0 * space.constant
+    np.testing.assert_allclose(body.forces(moved), body.forces(u), atol=1e-10 * np.abs(body.forces(u)).max())
+    assert body.energy(moved) == pytest.approx(body.energy(u), rel=1e-12)
+
+
+# The contact problem
+
+
+@pytest.fixture(scope="module", params=[(False, 0.0), (False, 1.0), (True, 0.0), (True, 0.6)])
+def contact(request):
+    mixed, surface_stress = request.param
+    problem = problem_of(block(), 0.2, surface_stress=surface_stress, pressure=ElementQuad2() if mixed else None)
+    return problem, entered(problem)
+
+
+def test_tangent_is_the_derivative_of_the_residual(contact):
+    problem, x = contact
+    dx = directions(problem, x)
+    expected = central_difference(problem.residual, x, dx)
+    np.testing.assert_allclose(problem.jacobian(x) @ dx, expected, atol=1e-6 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("observable", range(4))
+def test_gradients_are_the_derivatives_of_the_observables(contact, observable):
+    problem, x = contact
+    dx, weights = directions(problem, x), np.eye(4)[observable]
+    expected = central_difference(lambda y: problem.weighted_observables(y, weights), x, dx)
+    assert problem.gradient(x, weights) @ dx == pytest.approx(expected, rel=1e-6)
+
+
+def test_contact_radius_is_that_of_the_deformed_surface():
+    problem = problem_of(block(), 0.2)
+    x = entered(problem)
+    radius = problem.observables(x)[3]
+    r_d = problem.surface.deformed_radii(x[:-1], 0.2)
+    inside = problem.gaps(x) < problem.interface.law.edge_gap
+    assert r_d[inside].max() < radius < r_d[~inside].min()
+
+
+def test_a_normal_traction_has_a_symmetric_tangent_and_a_vertical_one_has_not():
+    for surface_stress, symmetric in ((1.0, True), (0.0, False)):
+        problem = problem_of(block(), 0.2, surface_stress=surface_stress)
+        J = problem.jacobian(entered(problem))[:, :-1]
+        asymmetry = abs(J - J.T).max() / abs(J).max()
+        assert asymmetry < 1e-14 if symmetric else asymmetry > 1e-5
+
+
+def test_at_zero_stretch_the_mixed_form_is_that_of_taylor_and_hood():
+    space, nu = block(), 0.4
+    linear = ContactProblem(taylor_hood(space, nu, ElementQuad2(), far_field=clamped), 1.0)
+    problem = problem_of(space, 0.0, nu, pressure=ElementQuad2())
+    np.testing.assert_allclose(problem.observables(entered(problem)), linear.observables(entered(linear)), atol=1e-9)
+
+
+def test_at_zero_stretch_the_residual_is_the_linear_one():
+    space = block()
+    linear = assemble(space, 0.3, 1.0, far_field=point_load)
+    x = entered(linear)
+    problem = problem_of(space, 0.0, far_field=point_load)
+    state = problem.state_from(x[-1], linear.exterior.reduction @ x[:-1])
+    np.testing.assert_allclose(problem.residual(state), linear.residual(x), atol=1e-11)
+    np.testing.assert_allclose(problem.observables(state), linear.observables(x), atol=1e-11)
+
+
+def events_of(problem, unknowns):
+    return find_events(trace_charts((Chart(problem, unknowns),)))
+
+
+@pytest.fixture(scope="module")
+def sphere():
+    """Linear events of a hemisphere, condensed, with their displacements; and the problem at finite strain."""
+    R, tabor, nu = 10.0, 1.0, 0.3
+    space = Space(hemisphere(R), ElementQuadP(3))
+    condensed = condense(space, nu, far_field=sliding)
+    linear = ContactProblem(condensed.operator, tabor, profile=Sphere(R))
+    events = events_of(linear, condensed.unknowns)
+    displacements = {name: condensed.displacement(linear.pressure(e.point.x)) for name, e in events.items()}
+    body, exterior = displacement_body(space, nu, 1 / R), with_interiors(sliding(space, nu), space)
+    return finite_strain_problem(body, exterior, tabor, profile=Sphere(R)), events, displacements
+
+
+def test_events_of_a_hemisphere_tend_to_the_linear_ones_in_proportion_to_the_stretch(sphere):
+    problem, events, displacements = sphere
+    chosen = {name: events[name] for name in ("pull_off", "jump_on")}
+
+    def shifts(stretch):
+        found = correct_events(problem.stretched(stretch), chosen, displacements)
+        return np.array([found[n].point.observables[:3] - chosen[n].point.observables[:3] for n in chosen])
+
+    np.testing.assert_allclose(shifts(0.0), 0, atol=1e-9)
+    np.testing.assert_allclose(shifts(1e-8), 0, atol=1e-7)
+    fine, coarse = shifts(1e-3), shifts(2e-3)
+    np.testing.assert_allclose(coarse / fine, 2, rtol=0.05)
+    assert np.abs(fine).max() > 1e-5
+
+
+def test_corrected_events_are_those_of_the_traced_curve(sphere):
+    problem, events, displacements = sphere
+    chosen = {name: events[name] for name in EVENTS}
+    corrected = correct_events(problem, chosen, displacements)
+    _, traced = trace_finite(problem, to_load=0.05)
+    for name, linear in chosen.items():
+        found = corrected[name].point.observables
+        np.testing.assert_allclose(found, traced[name].point.observables, rtol=1e-8, atol=1e-8, equal_nan=True)
+        assert np.abs(found - linear.point.observables)[[APPROACH, LOAD, CENTRAL_GAP]].max() > 1e-3
+
+
+# Energy
+
+
+def along_approach(problem, x, first, last, rate):
+    """Integrate a rate by the approach along the equilibria, by eight Gauss points; and the two end states."""
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    alphas = first + (last - first) * np.concatenate([[0], (1 + nodes) / 2, [1]])
+    states = []
+    for alpha in alphas:
+        x = newton.solve(problem, x, newton.approach(alpha)).x
+        states.append(x)
+    total = (last - first) / 2 * sum(w * rate(y) for w, y in zip(weights, states[1:-1], strict=True))
+    return total, states[0], states[-1]
+
+
+@pytest.fixture(scope="module", params=[None, ElementQuad2()])
+def stable(request):
+    problem = problem_of(block(), 0.3, surface_stress=1.0, pressure=request.param)
+    x = entered(problem, (2.0, 1.0, 0.5, 0.2, 0.0, -0.02, -0.035))
+    return problem, newton.solve(problem, x, newton.approach(1.0)).x
+
+
+def test_total_energy_grows_by_the_load_times_the_approach(stable):
+    problem, x = stable
+    work, start, end = along_approach(problem, x, 1.0, 1.2, problem.load)
+    assert abs(work) > 0.05
+    assert problem.energy(end) - problem.energy(start) == pytest.approx(work, rel=1e-6)
+
+
+def test_elastic_energy_grows_by_the_work_of_a_vertical_traction(stable):
+    problem, x = replace(stable[0], surface_stress=0.0), stable[1]
+
+    def power(y):
+        tangent = problem.bordered_solver(y, np.eye(1, y.size, y.size - 1)[0])(np.eye(1, y.size, y.size - 1)[0])
+        pressure = problem.areas(y) * problem.pressure(y)
+        return -problem.tabor * pressure @ (problem.surface.vertical @ tangent[:-1])
+
+    work, start, end = along_approach(problem, x, 1.0, 1.2, power)
+    assert abs(work) > 0.05
+    assert problem.elastic_energy(end) - problem.elastic_energy(start) == pytest.approx(work, rel=1e-8)
+
+
+# Near-incompressible
+
+
+def pull_of(space, poisson, stretch, pressure=None, gaps=(2.0, 1.0, 0.5, 0.2, 0.0)):
+    """Load at the last of some central gaps; at zero it is near the pull-off force."""
+    problem = problem_of(space, stretch, poisson, pressure=pressure)
+    return problem.load(entered(problem, gaps))
+
+
+@pytest.mark.parametrize("triangles", [False, True])
+def test_mixed_form_agrees_with_displacements_at_small_poisson(triangles):
+    space = Space(quarter_disc(20.0, graded_size(0.15, 1.8, 0.4)), ElementTriP2()) if triangles else block(fine=0.3)
+    pressure = ElementTriP1() if triangles else ElementQuad2()
+    assert pull_of(space, 0.3, 0.2, pressure) == pytest.approx(pull_of(space, 0.3, 0.2), rel=5e-4)
+
+
+def test_mixed_form_does_not_lock():
+    nu, stretch, gaps = 0.4999, 0.2, (2.0, 1.0)
+    reference = pull_of(block(4, 0.5), nu, stretch, ElementQuadP(3), gaps)
+    space = block(2)
+    locked = abs(pull_of(space, nu, stretch, None, gaps) / reference - 1)
+    mixed = abs(pull_of(space, nu, stretch, ElementQuad1(), gaps) / reference - 1)
+    assert mixed < 2e-3
+    assert locked > 5 * mixed
+
+
+# Refusals
+
+
+@pytest.mark.parametrize("stretch", [-0.1, 3.0, np.nan])
+def test_impossible_stretch_is_refused(stretch):
+    with pytest.raises(ValueError, match="is outside 0 <= stretch <= 2"):
+        displacement_body(block(), 0.3, stretch)
+
+
+def test_mixed_form_without_a_pressure_is_refused():
+    with pytest.raises(ValueError, match="poisson = 0 leaves the pressure undetermined"):
+        mixed_body(block(), 0.0, 0.1, ElementQuad2())
+
+
+def test_a_body_on_a_spring_is_refused():
+    with pytest.raises(ValueError, match="rigid_compliance"):
+        problem_of(block(), 0.1, far_field=free)
