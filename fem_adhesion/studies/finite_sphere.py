@@ -1,0 +1,215 @@
+"""The finite sphere: how far the half-space under a paraboloid is from it, and which assumption makes the difference.
+
+Every point of the plan is solved under several sets of assumptions (`finite_sphere_cases`), in parallel, each result
+stored as it comes; `finite_sphere_table` sets them beside each other.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
+from dataclasses import asdict, dataclass, replace
+from itertools import product
+
+from fem_adhesion.studies.finite_sphere_cases import (
+    MODELS,
+    Case,
+    Record,
+    case_of,
+    compute,
+    from_plain,
+    to_plain,
+)
+from fem_adhesion.studies.parallel import Died, stream
+from fem_adhesion.studies.store import Store
+from halfspace.limits import require_poisson, require_tabor
+
+TABORS = (0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0)
+RADIUS_RATIOS = (5.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5)
+POISSON = 0.3
+POISSONS = (0.0, 0.17, 0.45, 0.499)  # besides, at fewer points
+SPARSE = ("surface_traction",)  # models solved at fewer points
+RTOL, QUICK_RTOL = 1e-5, 1e-4
+
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """All combinations of these inputs, under these models."""
+
+    tabors: Sequence[float]
+    radius_ratios: Sequence[float]
+    poissons: Sequence[float]
+    models: Sequence[str] = tuple(MODELS)
+
+
+def plan(
+    tabors: Sequence[float] | None = None,
+    radius_ratios: Sequence[float] | None = None,
+    poissons: Sequence[float] | None = None,
+    *,
+    quick: bool = False,
+) -> tuple[Case, ...]:
+    """Cases of the study, each once.
+
+    Parameters
+    ----------
+    tabors, radius_ratios, poissons : sequence of float, optional
+        All combinations of these, Poisson's ratio being 0.3 unless given. If none of the three is given, it is varied
+        besides, at some points.
+    quick : bool
+        Three by three points unless given, at a lower accuracy.
+
+    Raises
+    ------
+    ValueError
+        If an input is out of range.
+    """
+    asked = any(values is not None for values in (tabors, radius_ratios, poissons))
+    main = _main_sweep(tabors, radius_ratios, poissons, quick)
+    _require_inputs(main)
+    sweeps = [main] if asked else _usual_sweeps(main, quick)
+    rtol = QUICK_RTOL if quick else RTOL
+    return tuple(dict.fromkeys(case for sweep in sweeps for case in _cases(sweep, rtol)))
+
+
+def _main_sweep(
+    tabors: Sequence[float] | None,
+    radius_ratios: Sequence[float] | None,
+    poissons: Sequence[float] | None,
+    quick: bool,
+) -> Sweep:
+    usual = ((0.3, 1.0, 3.0), (30.0, 300.0, 3e3)) if quick else (TABORS, RADIUS_RATIOS)
+    return Sweep(tabors or usual[0], radius_ratios or usual[1], poissons or (POISSON,))
+
+
+def _usual_sweeps(main: Sweep, quick: bool) -> list[Sweep]:
+    """All of a study that nothing particular is asked of: some 700 s of work on two cores, or 30 s if quick."""
+    dense = tuple(name for name in MODELS if name not in SPARSE)
+    sweeps = [replace(main, models=dense)]
+    if not quick:
+        few = (0.3, 1.0, 3.0)
+        sweeps += [Sweep(few, RADIUS_RATIOS, (POISSON,), SPARSE), Sweep(few, (30.0, 1e3), POISSONS, dense)]
+    return sweeps
+
+
+def _require_inputs(sweep: Sweep) -> None:
+    for tabor in sweep.tabors:
+        require_tabor(tabor)
+    for poisson in sweep.poissons:
+        require_poisson(poisson)
+    for ratio in sweep.radius_ratios:
+        if not 1 <= ratio <= 1e9:
+            raise ValueError(f"radius_ratio = {ratio:g} is outside 1 <= radius_ratio <= 1e9; give R/eps")
+
+
+def _cases(sweep: Sweep, rtol: float) -> Iterator[Case]:
+    points = product(sweep.tabors, sweep.radius_ratios, sweep.poissons)
+    return (case_of(model, *point, rtol) for point in points for model in sweep.models)
+
+
+def run(
+    cases: Sequence[Case],
+    store: Store,
+    *,
+    jobs: int | None = None,
+    dask: str | None = None,
+    progress: Progress | None = None,
+    fresh: bool = False,
+    work: Callable[[Case], Record] = compute,
+) -> tuple[Record, ...]:
+    """Compute the cases that the store does not hold, and store each at once.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        From `plan`.
+    store : Store
+        From `fem_adhesion.studies.store.open_store`.
+    jobs, dask : int and str, optional
+        Local processes, or the address of a cluster: see `fem_adhesion.studies.parallel.stream`.
+    progress : callable, optional
+        Called with the last case and the time left, how many cases are done, and of how many.
+    fresh : bool
+        Compute all, whatever the store holds.
+    work : callable
+        Computes a case; a function of a module.
+
+    Returns
+    -------
+    tuple of Record
+        In the order of the cases. A case whose worker died is among them but not in the store: it is tried again when
+        the study is resumed.
+
+    Raises
+    ------
+    ValueError
+        Before any work, if jobs is not positive or the cluster does not answer.
+    """
+    records = {} if fresh else dict(_stored(cases, store))
+    todo = [case for case in cases if case not in records]
+    began = time.perf_counter()
+    new: list[Record] = []
+    with closing(stream(work, todo, jobs=jobs, dask=dask)) as results:
+        _report(progress, "starting", len(records), len(cases))
+        for case, result in results:
+            record = Record(case, "died", {}, result.reason) if isinstance(result, Died) else result
+            if record.status != "died":
+                store.put(asdict(case), to_plain(record))
+            records[case] = record
+            new.append(record)
+            left = seconds_left(time.perf_counter() - began, new, [c for c in todo if c not in records])
+            _report(progress, f"{case.name}; {_duration(left)} left", len(records), len(cases))
+    return tuple(records[case] for case in cases)
+
+
+def _stored(cases: Sequence[Case], store: Store) -> Iterator[tuple[Case, Record]]:
+    """Cases that the store holds."""
+    for case in cases:
+        if (plain := store.get(asdict(case))) is None:
+            continue
+        try:
+            yield case, from_plain(case, plain)
+        except ValueError as error:
+            store.notes.append(str(error))
+
+
+def _report(progress: Progress | None, name: str, done: int, total: int) -> None:
+    if progress:
+        progress(name, done, total)
+
+
+def seconds_left(elapsed: float, done: Sequence[Record], remaining: Sequence[Case]) -> float:
+    """Estimated wall time until the remaining cases are done.
+
+    Parameters
+    ----------
+    elapsed : float
+        Wall time in which the cases of `done` were computed, in s.
+    done : sequence of Record
+        At least one.
+    remaining : sequence of Case
+        Each expected to take as long as the mean of its model, or of all if none of its model is done.
+    """
+    means = {model: _mean([r for r in done if r.case.model == model]) for model in {r.case.model for r in done}}
+    spent = sum(record.seconds for record in done)
+    ahead = sum(means.get(case.model, _mean(done)) for case in remaining)
+    return elapsed * ahead / spent if spent else 0.0
+
+
+def _mean(records: Sequence[Record]) -> float:
+    return sum(record.seconds for record in records) / len(records)
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
+
+
+if __name__ == "__main__":
+    # The command line stands above the studies, and is not imported by them: it is only asked to run this one.
+    sys.exit(importlib.import_module("fem_adhesion.cli").main(["finite-sphere", *sys.argv[1:]]))

@@ -1,0 +1,145 @@
+"""The results of the finite sphere as a table: each quantity of each case beside the same without one cause."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from fem_adhesion.studies.finite_sphere_cases import (
+    CAUSES,
+    MODELS,
+    QUANTITIES,
+    Case,
+    Record,
+    Values,
+    case_of,
+)
+from halfspace.curve import Estimate
+
+BulkCompliance = Callable[[str, float], float]
+"""Of grip and Poisson's ratio: what a body yields more than the half-space under a load, in 1/(E* R)."""
+
+LESS_BULK = {f"{name}_less_bulk": name.removesuffix("_approach") for name in QUANTITIES if name.endswith("_approach")}
+"""Approaches with the linear yield of the body taken out, and the event that each is of."""
+
+UNITS = QUANTITIES | dict.fromkeys(LESS_BULK, "eps")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One quantity of one case beside the case without its cause.
+
+    Attributes
+    ----------
+    tabor, radius_ratio, poisson : float or None
+        Inputs; None for one on which the case does not depend.
+    cause : str
+        Key of `fem_adhesion.studies.finite_sphere_cases.CAUSES`.
+    quantity, unit : str
+        Key of `UNITS`, and the unit of values and errors.
+    value, baseline, half_space : Estimate or None
+        With the cause, without it, and on the half-space under a paraboloid.
+    deviation : Estimate or None
+        (value - baseline)/half_space, its error bounded by those of all three.
+    status : str
+        ``solved``; ``absent`` where one of the three contacts does not have the quantity; else what ended the case.
+    reason : str
+        Why there is no deviation, or empty.
+    seconds : float
+        Wall time of the case.
+    """
+
+    tabor: float
+    radius_ratio: float | None
+    poisson: float | None
+    cause: str
+    quantity: str
+    unit: str
+    value: Estimate | None
+    baseline: Estimate | None
+    half_space: Estimate | None
+    deviation: Estimate | None
+    status: str
+    reason: str
+    seconds: float
+
+
+def rows(records: Sequence[Record], bulk: BulkCompliance | None = None) -> tuple[Row, ...]:
+    """Lines of the table.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Of a study, in any order.
+    bulk : callable, optional
+        If given, the approaches of the jumps are listed also less the linear yield of the body.
+    """
+    found = {record.case: record for record in records}
+    quantities = [name for name in UNITS if bulk or name not in LESS_BULK]
+    return tuple(
+        row
+        for record in records
+        for cause in CAUSES
+        if CAUSES[cause].model == record.case.model
+        for row in _rows_of(record, cause, found, quantities, bulk)
+    )
+
+
+def _rows_of(
+    record: Record, cause: str, found: Mapping[Case, Record], quantities: Sequence[str], bulk: BulkCompliance | None
+) -> Iterator[Row]:
+    case = record.case
+    others = [_partner(case, model, found) for model in (CAUSES[cause].baseline, "half_space")]
+    tables = [_values(one, bulk) if one else {} for one in (record, *others)]
+    for name in quantities:
+        value, baseline, scale = three = [table.get(name) for table in tables]
+        deviation = relative(value, baseline, scale) if value and baseline and scale else None
+        head = (case.tabor, case.radius_ratio, case.poisson, cause, name, UNITS[name])
+        yield Row(*head, value, baseline, scale, deviation, *_ending(record, others, three), record.seconds)
+
+
+def _partner(case: Case, model: str, found: Mapping[Case, Record]) -> Record | None:
+    """Record of another model at the same point."""
+    return found.get(case_of(model, case.tabor, case.radius_ratio, case.poisson, case.rtol))
+
+
+def _values(record: Record, bulk: BulkCompliance | None) -> Values:
+    """Stored quantities of a record, and those that follow from them."""
+    return {**record.values, **less_bulk(record, bulk)} if bulk else record.values
+
+
+def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
+    """Approaches of the jumps without the linear yield of the body, alpha* - kappa mu W/(R/beta)."""
+    case, values = record.case, record.values
+    grip = MODELS[case.model].grip
+    yielding = 0.0
+    if grip and case.radius_ratio and case.poisson is not None:
+        yielding = bulk(grip, case.poisson) * case.tabor * (case.tabor / case.radius_ratio) ** 0.5
+    return {
+        name: _less(values[f"{event}_approach"], yielding, values[f"{event}_load"])
+        for name, event in LESS_BULK.items()
+        if f"{event}_approach" in values
+    }
+
+
+def _less(approach: Estimate, compliance: float, load: Estimate) -> Estimate:
+    return Estimate(approach.value - compliance * load.value, approach.error + abs(compliance) * load.error)
+
+
+def relative(value: Estimate, baseline: Estimate, scale: Estimate) -> Estimate:
+    """(value - baseline)/scale, with the errors of all three added."""
+    deviation = (value.value - baseline.value) / scale.value
+    error = value.error + baseline.error + abs(deviation) * scale.error
+    return Estimate(deviation, error / abs(scale.value))
+
+
+def _ending(record: Record, others: Sequence[Record | None], three: Sequence[Estimate | None]) -> tuple[str, str]:
+    """Status of a line and why it has no deviation."""
+    if record.status != "solved":
+        return record.status, record.reason
+    for one, number, role in zip((record, *others), three, ("case", "baseline", "half-space"), strict=True):
+        if one is None or one.status != "solved":
+            return "absent", f"the {role} was not solved"
+        if number is None:
+            return "absent", f"the {role} does not jump under fixed grips"
+    return "solved", ""

@@ -1,0 +1,197 @@
+"""The same work on many items at once: in local processes by joblib, or on a Dask cluster that is already there.
+
+Results come as they are ready. A worker that dies takes no other item with it: locally the pool is made anew, and each
+item that was handed out and not finished runs in a pool of its own, so that one that kills its worker is known for
+certain; the scheduler of Dask does as much by itself.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import socket
+import threading
+import time
+import warnings
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from types import ModuleType
+from typing import Any, TypeVar, cast
+from urllib.parse import urlsplit
+
+import joblib
+from joblib.externals.loky.process_executor import TerminatedWorkerError
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+ATTEMPTS = 3  # at an item whose worker dies
+CONNECTION_SECONDS = 5
+WATCH_SECONDS = 1  # between two looks of a local worker at whether its study is still alive
+
+
+@dataclass(frozen=True)
+class Died:
+    """The end of an item whose worker died at every attempt, and why it is thought to have."""
+
+    reason: str
+
+
+def stream(
+    work: Callable[[Item], Result], items: Sequence[Item], *, jobs: int | None = None, dask: str | None = None
+) -> Generator[tuple[Item, Result | Died], None, None]:
+    """Do the work on all items and give each with its result, in the order in which they end.
+
+    Parameters
+    ----------
+    work : callable
+        A function of a module: it is sent to other processes by name. What it raises ends the stream.
+    items : sequence
+        What it is done on; picklable.
+    jobs : int, optional
+        Local processes, as many as there are cores unless given. One works without any process but this, in which a
+        crash is not survived.
+    dask : str, optional
+        Address of the scheduler of a Dask cluster, whose workers must have this package; then `jobs` is unused.
+
+    Returns
+    -------
+    generator
+        Close it to stop the workers before their time.
+
+    Raises
+    ------
+    ValueError
+        At once, if jobs is not positive, distributed is not installed, or the scheduler does not answer.
+    """
+    if dask is not None:
+        return _on_cluster(work, items, *_connected(dask))
+    return _on_cores(work, items, workers(jobs))
+
+
+def workers(jobs: int | None) -> int:
+    """Number of local processes, or ValueError unless it is positive."""
+    if jobs is not None and jobs < 1:
+        raise ValueError(f"jobs = {jobs} is outside 1 <= jobs; leave it out to use all cores")
+    return jobs or int(joblib.cpu_count())
+
+
+def _on_cores(
+    work: Callable[[Item], Result], items: Sequence[Item], jobs: int
+) -> Generator[tuple[Item, Result | Died], None, None]:
+    todo = dict(enumerate(items))
+    while todo:
+        given: set[int] = set()
+        try:
+            with _stopped_early(_pool(work, _handed_out(todo, given), jobs)) as results:
+                for number, result in results:
+                    yield todo.pop(number), result
+        except TerminatedWorkerError:
+            for number in sorted(given & todo.keys()):
+                yield todo[number], _alone(work, todo.pop(number))
+
+
+def _handed_out(todo: Mapping[int, Item], given: set[int]) -> Iterator[tuple[int, Item]]:
+    """Items one by one, noting which have been asked for."""
+    for number, item in list(todo.items()):
+        given.add(number)
+        yield number, item
+
+
+def _alone(work: Callable[[Item], Result], item: Item) -> Result | Died:
+    """Result of an item in a pool that holds nothing else, tried again while the worker dies."""
+    for _ in range(ATTEMPTS - 1):
+        try:
+            with _stopped_early(_pool(work, [(0, item)], 2)) as results:  # joblib starts no process for a pool of one
+                _, result = next(results)
+                return cast(Result, result)
+        except TerminatedWorkerError as error:
+            last = error
+    return Died(f"its worker died {ATTEMPTS} times: {_one_line(last)}")
+
+
+def _pool(work: Callable[[Item], Result], numbered: Iterable[tuple[int, Item]], jobs: int) -> Any:
+    """Generator of the results with their numbers, as they come."""
+    # Each process keeps to one thread of BLAS: the cores are taken by the others.
+    settings: dict[str, Any] = {"backend": "loky", "inner_max_num_threads": 1} if jobs > 1 else {}
+    with joblib.parallel_config(**settings):
+        pool = joblib.Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
+    return pool(joblib.delayed(_numbered)(work, number, item, os.getpid()) for number, item in numbered)
+
+
+@contextmanager
+def _stopped_early(results: Any) -> Iterator[Any]:
+    """Close a generator of results at the end, without joblib's warning that what was under way is lost."""
+    try:
+        yield results
+    finally:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message=".*tasks", category=UserWarning)
+            results.close()
+
+
+def _numbered(work: Callable[[Item], Result], number: int, item: Item, study: int) -> tuple[int, Result]:
+    """Result with its number, in a worker that ends when the process of the study is killed."""
+    if os.getpid() != study:
+        _watch(study)
+    return number, work(item)
+
+
+@cache
+def _watch(study: int) -> None:
+    """Start to look for the process of the study, once in each worker: an orphan would wait for work for minutes."""
+
+    def watch() -> None:
+        while os.getppid() == study:
+            time.sleep(WATCH_SECONDS)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+def _connected(address: str) -> tuple[ModuleType, Any]:
+    """The library `distributed` and a client of the scheduler at an address."""
+    try:
+        distributed = importlib.import_module("distributed")
+    except ModuleNotFoundError as error:
+        raise ValueError(f"dask = {address} needs the extra cluster; pip install fem-adhesion[cluster]") from error
+    try:
+        _knock(address)
+        return distributed, distributed.Client(address, timeout=CONNECTION_SECONDS, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise ValueError(
+            f"dask = {address} does not answer within {CONNECTION_SECONDS} s; give the scheduler's, as tcp://host:8786"
+        ) from error
+
+
+def _knock(address: str) -> None:
+    """Raise OSError or ValueError unless somebody listens: a client that fails to connect does not die quietly."""
+    parts = urlsplit(address)
+    if not parts.hostname or not parts.port:
+        raise ValueError("no host or no port")
+    socket.create_connection((parts.hostname, parts.port), timeout=CONNECTION_SECONDS).close()
+
+
+def _on_cluster(
+    work: Callable[[Item], Result], items: Sequence[Item], distributed: ModuleType, client: Any
+) -> Generator[tuple[Item, Result | Died], None, None]:
+    with client:
+        futures = {client.submit(work, item, pure=False): item for item in items}
+        try:
+            for future in distributed.as_completed(futures, loop=client.loop):
+                yield futures[future], _result(future, distributed.KilledWorker)
+        finally:
+            client.cancel(list(futures))
+
+
+def _result(future: Any, killed: type[Exception]) -> Any:
+    try:
+        return future.result()
+    except killed as error:
+        return Died(f"its worker died: {_one_line(error)}")
+
+
+def _one_line(error: Exception) -> str:
+    return str(error).strip().partition("\n")[0]

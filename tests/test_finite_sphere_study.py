@@ -1,0 +1,463 @@
+"""The study of the finite sphere: its plan, what survives a kill, its table, its fits, and the materials."""
+
+import csv
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import halfspace
+from fem_adhesion.output.finite_sphere_tables import COLUMNS, NO_PARQUET, TEXTS, write_tables
+from fem_adhesion.studies import finite_sphere, finite_sphere_cases, finite_sphere_fit, store
+from fem_adhesion.studies.finite_sphere import plan, run, seconds_left
+from fem_adhesion.studies.finite_sphere_cases import (
+    CAUSES,
+    MODELS,
+    QUANTITIES,
+    Case,
+    Record,
+    case_of,
+    from_plain,
+    quantities_of,
+    to_plain,
+)
+from fem_adhesion.studies.finite_sphere_fit import SOFT_PULL_OFF, Samples, fit
+from fem_adhesion.studies.finite_sphere_table import Row, rows
+from fem_adhesion.studies.materials import materials
+from fem_adhesion.studies.store import open_store
+from halfspace.curve import Estimate
+from halfspace.newton import NotConverged
+from halfspace.sphere_theories import JKRSphere
+from halfspace.theories import JKR_PULL_OFF
+
+CASES = [Case("half_space", tabor, rtol=1e-2) for tabor in (0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0)]
+
+
+def cheap(case):
+    """Half-space at a low accuracy; notes in the directory STUDY_LOG that it was computed, and takes its time."""
+    if log := os.environ.get("STUDY_LOG"):
+        (Path(log) / f"{case.tabor:g}-{time.monotonic_ns()}").touch()
+        time.sleep(float(os.environ.get("STUDY_SLEEP", "0")))
+    return finite_sphere_cases.compute(case)
+
+
+def deadly(case):
+    if case.tabor == 0.4:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return cheap(case)
+
+
+def solved(case, **values):
+    return Record(case, "solved", {name: Estimate(*pair) for name, pair in values.items()}, "", 2.0)
+
+
+# --- the plan ---
+
+
+def test_each_case_is_solved_once_though_many_points_need_it():
+    cases = plan()
+    assert len(set(cases)) == len(cases)
+    assert {case.tabor for case in cases if case.model == "half_space"} == set(finite_sphere.TABORS)
+    assert sum(case.model == "half_space" for case in cases) == len(finite_sphere.TABORS)
+
+
+def test_every_cause_finds_its_baseline_in_the_plan():
+    cases = set(plan())
+    for case in cases:
+        for cause in CAUSES.values():
+            if cause.model == case.model:
+                assert case_of(cause.baseline, case.tabor, case.radius_ratio, case.poisson, case.rtol) in cases
+
+
+def test_the_inputs_asked_for_are_the_full_product():
+    points = {(c.tabor, c.radius_ratio, c.poisson) for c in plan([1.0, 2.0], [10.0], [0.1, 0.2]) if c.model == "sphere"}
+    assert points == {(mu, 10.0, nu) for mu in (1.0, 2.0) for nu in (0.1, 0.2)}
+
+
+@pytest.mark.parametrize(
+    ("inputs", "message"),
+    [
+        (([-1.0],), "tabor = -1 "),
+        ((None, [0.5]), "radius_ratio = 0.5 is outside 1 <= radius_ratio <= 1e9; "),
+        ((None, [math.nan]), "radius_ratio = nan "),
+        ((None, None, [0.5]), "poisson = 0.5 is outside 0 <= poisson < 0.5; "),
+    ],
+)
+def test_inputs_out_of_range_are_refused(inputs, message):
+    with pytest.raises(ValueError, match=message):
+        plan(*inputs)
+
+
+# --- running, killing and resuming ---
+
+
+def start_study(directory, log):
+    """Process that computes CASES slowly on two workers."""
+    code = (
+        "from pathlib import Path; import test_finite_sphere_study as t; "
+        f"t.run(t.CASES, t.open_store(Path({str(directory)!r})), jobs=2, work=t.cheap)"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent), "STUDY_LOG": str(log), "STUDY_SLEEP": "0.4"}
+    return subprocess.Popen(
+        [sys.executable, "-c", code],
+        env=environment,
+        start_new_session=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+
+
+def stored_cases(directory):
+    return {json.loads(f.read_text())["inputs"]["tabor"]: f for f in directory.glob("cases/[!.]*.json")}
+
+
+def killed_study(directory, log, *, after):
+    """Cases on disk after a study was killed as it had stored some."""
+    study = start_study(directory, log)
+    try:
+        assert soon(lambda: len(stored_cases(directory)) >= after)
+        study.kill()
+        study.wait()
+        begun = len(list(log.iterdir()))
+        assert begun - len(stored_cases(directory)) <= 2, "only what was under way is lost"
+        assert soon(lambda: not alive(study.pid)), "the workers end by themselves"
+    finally:
+        if alive(study.pid):
+            os.killpg(study.pid, signal.SIGKILL)
+            study.wait()
+    return stored_cases(directory)
+
+
+def soon(condition, seconds=30):
+    deadline = time.monotonic() + seconds
+    while not (holds := condition()) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    return holds
+
+
+def alive(group):
+    """Whether any process of a group is there."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def test_a_study_killed_under_way_goes_on_without_computing_anything_twice(tmp_path, monkeypatch):
+    log, directory = tmp_path / "log", tmp_path / "study"
+    log.mkdir()
+    kept = killed_study(directory, log, after=3)
+    assert 3 <= len(kept) < len(CASES)
+    begun = len(list(log.iterdir()))
+    times = {tabor: file.stat().st_mtime_ns for tabor, file in kept.items()}
+    monkeypatch.setenv("STUDY_LOG", str(log))
+    records = run(CASES, open_store(directory, resume=True), jobs=1, work=cheap)
+    assert [record.case for record in records] == CASES
+    assert all(record.status == "solved" for record in records)
+    assert len(list(log.iterdir())) - begun == len(CASES) - len(kept)
+    assert {tabor: stored_cases(directory)[tabor].stat().st_mtime_ns for tabor in times} == times
+
+
+def test_a_study_that_is_complete_computes_nothing(tmp_path):
+    first = run(CASES[:3], open_store(tmp_path), jobs=1, work=cheap)
+    again = run(CASES[:3], open_store(tmp_path, resume=True), jobs=1, work=deadly)
+    assert again == first
+
+
+def test_a_case_whose_worker_dies_is_recorded_and_tried_again_when_resumed(tmp_path):
+    records = run(CASES[:4], open_store(tmp_path), jobs=2, work=deadly)
+    died = records[1]
+    assert (died.status, died.values) == ("died", {})
+    assert "worker died" in died.reason
+    assert [record.status for record in records].count("solved") == 3
+    assert run(CASES[:4], open_store(tmp_path, resume=True), jobs=1, work=cheap)[1].status == "solved"
+
+
+def test_a_case_that_is_refused_is_recorded_with_its_reason(tmp_path):
+    def refused(case):
+        raise NotConverged(f"tabor {case.tabor:g} is stuck; try another")
+
+    def out_of_range(case):
+        raise ValueError(f"contact radius of tabor {case.tabor:g} exceeds the sphere; take more")
+
+    for solve, message in ((refused, "tabor 1 is stuck; try another"), (out_of_range, "exceeds the sphere")):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setitem(MODELS, "half_space", replace(MODELS["half_space"], solve=solve))
+            (record,) = run([Case("half_space", 1.0)], open_store(tmp_path, force=True), jobs=1, fresh=True)
+        assert record.status == "refused"
+        assert message in record.reason
+        assert run([record.case], open_store(tmp_path, resume=True), jobs=1) == (record,)
+
+
+def test_progress_counts_to_the_end_and_tells_the_time_left(tmp_path):
+    seen = []
+    run(CASES[:3], open_store(tmp_path), jobs=1, work=cheap, progress=lambda *args: seen.append(args))
+    assert [(done, total) for _, done, total in seen] == [(0, 3), (1, 3), (2, 3), (3, 3)]
+    assert seen[-1][0].endswith("; 0 s left")
+
+
+def test_the_time_left_follows_the_cost_of_each_model():
+    done = [replace(solved(Case("half_space", mu)), seconds=0.1) for mu in (1.0, 2.0)]
+    done += [replace(solved(Case("sphere", 1.0, 10.0, 0.3)), seconds=3.0)]
+    ahead = [Case("sphere", mu, 10.0, 0.3) for mu in (2.0, 3.0)] + [Case("half_space", 3.0)]
+    assert seconds_left(1.6, done, ahead) == pytest.approx(6.1 * 1.6 / 3.2)
+    assert seconds_left(1.6, done, []) == 0
+
+
+# --- the store ---
+
+
+def test_a_record_survives_the_disk_to_the_last_bit(tmp_path):
+    record = run(CASES[4:5], open_store(tmp_path), jobs=1)[0]
+    assert QUANTITIES.keys() == record.values.keys()
+    case = record.case
+    plain = open_store(tmp_path, resume=True).get(asdict(case))
+    assert from_plain(case, plain) == record
+    assert to_plain(from_plain(case, plain)) == to_plain(record)
+
+
+@pytest.mark.parametrize("damage", ["", "{", "[1]", "{}", '{"result": {}}', "\x00\xff", "other case", "other version"])
+def test_a_damaged_or_foreign_file_is_computed_again_with_a_note(tmp_path, damage):
+    (first,) = run(CASES[:1], open_store(tmp_path), jobs=1)
+    (file,) = stored_cases(tmp_path).values()
+    content = json.loads(file.read_text())
+    if damage == "other case":
+        damage = json.dumps(content | {"inputs": asdict(CASES[1])})
+    elif damage == "other version":
+        damage = json.dumps(content | {"version": "0.0.0"})
+    file.write_text(damage, encoding="latin-1")
+    study = open_store(tmp_path, resume=True)
+    (again,) = run(CASES[:1], study, jobs=1)
+    assert again.values == first.values
+    assert len(study.notes) == 1
+    assert "computed again" in study.notes[0]
+    assert json.loads(file.read_text())["inputs"] == asdict(CASES[0])
+
+
+def test_a_file_whose_result_is_no_record_is_computed_again(tmp_path):
+    study = open_store(tmp_path)
+    study.put(asdict(CASES[0]), {"values": {"pull_off_load": 3}})
+    (record,) = run(CASES[:1], study, jobs=1)
+    assert record.status == "solved"
+    assert len(study.notes) == 1
+
+
+def test_another_version_or_format_finds_nothing(tmp_path, monkeypatch):
+    run(CASES[:1], open_store(tmp_path), jobs=1)
+    inputs = asdict(CASES[0])
+    assert open_store(tmp_path, resume=True).get(inputs)
+    assert replace(open_store(tmp_path, resume=True), version="99").get(inputs) is None
+    monkeypatch.setattr(store, "SCHEMA", store.SCHEMA + 1)
+    assert open_store(tmp_path, resume=True).get(inputs) is None
+
+
+def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
+    study = open_store(tmp_path)
+    study.put({"a": 1}, {"b": 2})
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        study.put({"a": 1}, {"b": math.nan})
+    assert study.get({"a": 1}) == {"b": 2}
+    monkeypatch.setattr(os, "fsync", lambda _: (_ for _ in ()).throw(OSError("disk full")))
+    with pytest.raises(OSError, match="disk full"):
+        study.put({"a": 1}, {"b": 3})
+    assert study.get({"a": 1}) == {"b": 2}
+
+
+def test_a_directory_that_is_not_empty_is_refused_and_left_alone(tmp_path):
+    (tmp_path / "thesis.tex").touch()
+    with pytest.raises(ValueError, match=r"holds 1 files, limit 0; choose another or use --resume or --force"):
+        open_store(tmp_path)
+    with pytest.raises(
+        ValueError, match=r"holds 1 files, limit 0; it is no study to resume, choose another or --force"
+    ):
+        open_store(tmp_path, resume=True)
+    with pytest.raises(ValueError, match="is a file; give the name of a directory"):
+        open_store(tmp_path / "thesis.tex")
+    with pytest.raises(ValueError, match="cannot be written; choose a folder that exists"):
+        open_store(tmp_path / "a" / "b")
+    assert open_store(tmp_path, force=True).get({}) is None
+    assert [file.name for file in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+# --- the table ---
+
+
+def study_records():
+    at = (1.0, 100.0, 0.3)
+    return [
+        solved(case_of("half_space", *at, 1e-5), pull_off_load=(-5.0, 1e-4), jump_on_load=(-2.0, 1e-4)),
+        solved(case_of("true_profile", *at, 1e-5), pull_off_load=(-4.9, 2e-4)),
+        solved(case_of("sphere", *at, 1e-5), pull_off_load=(-4.8, 1e-4), jump_on_load=(-2.1, 1e-4)),
+        solved(case_of("bonded", *at, 1e-5), pull_off_load=(-4.7, 3e-4), jump_on_load=(-2.2, 1e-4)),
+        Record(case_of("finite_body", *at, 1e-5), "refused", {}, 'it is "stuck", so try;\nanother'),
+    ]
+
+
+def row_of(table, cause, quantity):
+    (row,) = (row for row in table if (row.cause, row.quantity) == (cause, quantity))
+    return row
+
+
+def test_a_cause_is_the_difference_it_makes_relative_to_the_half_space():
+    table = rows(study_records())
+    assert row_of(table, "all", "pull_off_load").deviation.value == pytest.approx(-4.8 / -5.0 - 1)
+    grip = row_of(table, "grip", "pull_off_load")
+    assert grip.deviation.value == pytest.approx((-4.7 + 4.8) / -5.0)
+    assert grip.deviation.error == pytest.approx((3e-4 + 1e-4 + 0.02 * 1e-4) / 5)
+    assert (grip.tabor, grip.radius_ratio, grip.poisson) == (1.0, 100.0, 0.3)
+    assert row_of(table, "profile", "pull_off_load").poisson is None
+
+
+def test_a_line_without_a_deviation_says_why():
+    table = rows(study_records())
+    refused, absent = row_of(table, "body", "pull_off_load"), row_of(table, "profile", "jump_on_load")
+    assert (refused.status, refused.reason) == ("refused", 'it is "stuck", so try;\nanother')
+    assert (absent.status, absent.reason) == ("absent", "the case does not jump under fixed grips")
+    for row in table:
+        assert (row.deviation is None) == bool(row.reason) == (row.status != "solved")
+
+
+def test_the_yield_of_the_body_is_taken_out_of_the_jumps():
+    at = (4.0, 100.0, 0.3)
+    numbers = {"jump_on_approach": (-3.0, 1e-3), "jump_on_load": (-0.5, 1e-2)}
+    records = [solved(case_of(model, *at, 1e-5), **numbers) for model in ("half_space", "sphere")]
+    row = row_of(
+        rows(records, lambda grip, poisson: {"sliding": 1 + poisson}[grip]), "all", "jump_on_approach_less_bulk"
+    )
+    compliance = 1.3 * 4.0 / math.sqrt(100 / 4)
+    assert row.value.value == pytest.approx(-3 + 0.5 * compliance)
+    assert row.value.error == pytest.approx(1e-3 + 1e-2 * compliance)
+    assert row.half_space.value == -3
+
+
+def test_csv_and_parquet_hold_the_same_table(tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    assert write_tables(rows(study_records()), tmp_path) == ""
+    with (tmp_path / "finite_sphere.csv").open(newline="") as file:
+        text = list(csv.DictReader(file))
+    for line in text:
+        for name in COLUMNS:
+            if name not in TEXTS:
+                line[name] = float(line[name]) if line[name] else None
+    assert parquet.read_table(tmp_path / "finite_sphere.parquet").to_pylist() == text
+    assert len(text) == 4 * len(QUANTITIES)
+
+
+def test_without_the_library_the_csv_alone_is_written(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    assert write_tables(rows(study_records()), tmp_path) == NO_PARQUET
+    assert [file.name for file in tmp_path.iterdir()] == ["finite_sphere.csv"]
+
+
+# --- the fits ---
+
+
+def synthetic(law, noise=0.0, tabors=(0.1, 0.3, 1.0, 3.0, 10.0)):
+    mu, rho = (grid.ravel() for grid in np.meshgrid(tabors, np.geomspace(5, 1e5, 10)))
+    exact = law(mu, rho)
+    rng = np.random.default_rng(7)
+    return Samples(mu, rho, exact + noise * np.abs(exact) * rng.uniform(-1, 1, mu.size), noise * np.abs(exact) + 1e-12)
+
+
+def test_the_fit_recovers_known_coefficients_from_noisy_data():
+    truth = {"beta/R": 0.3, "(beta/R)^2": -0.9, "eps/R": -9 / 7}
+    found = fit(synthetic(lambda mu, rho: 0.3 * np.sqrt(mu / rho) - 0.9 * mu / rho - 9 / 7 / rho, noise=0.01))
+    for name, value in truth.items():
+        assert abs(found.coefficients[name].value - value) <= found.coefficients[name].error
+        assert found.coefficients[name].error < 0.2 * abs(value)
+    assert found.points == 50
+    assert found.holds_to == pytest.approx(math.sqrt(2))
+
+
+def test_the_fit_says_up_to_where_it_holds():
+    found = fit(synthetic(lambda mu, rho: 0.5 * np.sqrt(mu / rho) + 20 * (mu / rho) ** 2))
+    assert 0.02 < found.holds_to < 0.5
+    assert found.coefficients["beta/R"].value == pytest.approx(0.5, rel=0.02)
+
+
+def test_what_the_terms_cannot_fit_is_refused():
+    with pytest.raises(ValueError, match=r"50 points leave no 6 or more within tolerance = 0.1 of a fit; "):
+        fit(synthetic(lambda mu, rho: np.cos(37 * np.log(mu)) * np.cos(41 * np.log(rho))))
+
+
+def made_rows(law, tabors=(0.1, 10.0)):
+    data = synthetic(law, tabors=tabors)
+    columns = zip(data.tabor, data.radius_ratio, data.deviation, data.error, strict=True)
+    blank = (None, "profile", "pull_off_load", "R dgamma", None, None, None)
+    return [
+        Row(mu, rho, *blank, Estimate(float(value), float(error)), "solved", "", 1.0)
+        for mu, rho, value, error in columns
+    ]
+
+
+def test_the_pull_off_is_compared_with_the_rigid_sphere_and_with_maugis():
+    def law(mu, rho):
+        return np.where(mu < 1, -9 / 7 / rho, maugis_deviation(mu, rho)) * (1 + 0.3 / rho)
+
+    hard, soft = finite_sphere_fit.compare(made_rows(law))
+    assert (hard.tabor, soft.tabor) == (0.1, 10.0)
+    assert hard.fitted.value == pytest.approx(-9 / 7, rel=1e-3)
+    assert soft.fitted.value == pytest.approx(soft.expected, rel=1e-2)
+    assert abs(soft.fitted.value - soft.expected) <= soft.fitted.error
+
+
+def maugis_deviation(mu, rho):
+    return np.array(
+        [JKRSphere(m, max(r, 1.01 * m)).pull_off().load / JKR_PULL_OFF - 1 for m, r in zip(mu, rho, strict=True)]
+    )
+
+
+def test_maugis_coefficient_is_that_of_his_theory():
+    deviation = JKRSphere(1.0, 1e5).pull_off().load / JKR_PULL_OFF - 1
+    assert deviation * 1e5 == pytest.approx(SOFT_PULL_OFF, rel=1e-3)
+
+
+def test_findings_cover_all_and_each_tabor_parameter():
+    found = finite_sphere_fit.findings(made_rows(lambda mu, rho: 0.2 * np.sqrt(mu / rho) + mu / rho))
+    assert [finding.tabor for finding in found] == [None, 0.1, 10.0]
+    for finding in found:
+        assert finding.fit.coefficients["beta/R"].value == pytest.approx(0.2, rel=1e-2)
+
+
+# --- what a case computes ---
+
+
+def test_quantities_are_those_of_the_curve():
+    path = halfspace.trace(2.0, rtol=1e-4, to_load=finite_sphere_cases.TO_LOAD)
+    values = quantities_of(path)
+    assert values.keys() == QUANTITIES.keys()
+    assert values["pull_off_load"].value == min(path.load.min(), path.events["pull_off"].load)
+    assert values["jump_off_approach"].value == path.events["jump_off"].approach
+    # Fig. 2a: the energy lost is what is released less what is won back, and positive.
+    assert 0 < values["hysteresis"].value < path.energy.value
+
+
+def test_a_hard_contact_has_no_jumps():
+    values = quantities_of(halfspace.trace(0.3, rtol=1e-4))
+    assert values.keys() == {"pull_off_load", "zero_load_radius"}
+
+
+# --- materials ---
+
+
+def test_materials_are_real_and_sourced():
+    listed = materials()
+    for word in ("silica", "gold", "mica", "PDMS", "polystyrene", "toner"):
+        assert any(material.name.startswith(word) for material in listed)
+    for material in listed:
+        assert material.source
+        assert "typical" in material.note
+        assert 0 < material.poisson < 0.5
+        assert material.units.radius_ratio == pytest.approx(material.units.radius / material.units.spacing)
+    silica = listed[0]
+    assert silica.units.tabor == pytest.approx(np.cbrt(1e-8 * (0.063 * (1 - 0.17**2) / 7.2e10) ** 2) / 3e-10)

@@ -1,0 +1,168 @@
+"""Work on many items: streamed, on processes that die, and on a real Dask cluster."""
+
+import importlib.util
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from fem_adhesion.studies.parallel import ATTEMPTS, Died, stream
+
+
+def square(x):
+    return x * x
+
+
+def slow_first(x):
+    time.sleep(1.0 if x == 0 else 0.0)
+    return x
+
+
+def kill_own_process():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def deadly(item):
+    """Square; the item 3 kills its worker while fewer than `deaths` are on record, each a file in `directory`."""
+    x, deaths, directory = item
+    if x == 3 and len(records := list(Path(directory).iterdir())) < deaths:
+        (Path(directory) / str(len(records))).touch()
+        kill_own_process()
+    return x * x
+
+
+def failing(x):
+    raise ZeroDivisionError(f"item {x}")
+
+
+def threads(_):
+    return os.environ["OPENBLAS_NUM_THREADS"]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_every_item_comes_once_with_its_result(jobs):
+    assert sorted(stream(square, range(20), jobs=jobs)) == [(x, x * x) for x in range(20)]
+
+
+def test_results_come_as_they_are_ready():
+    list(stream(square, range(2), jobs=2))  # so that both processes are there
+    assert [x for x, _ in stream(slow_first, range(4), jobs=2)][-1] == 0
+
+
+def test_an_item_whose_worker_dies_is_tried_again(tmp_path):
+    items = [(x, 1, str(tmp_path)) for x in range(8)]
+    assert sorted(result for _, result in stream(deadly, items, jobs=2)) == [x * x for x in range(8)]
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_an_item_that_always_kills_its_worker_is_given_up_and_no_other(tmp_path):
+    items = [(x, 99, str(tmp_path)) for x in range(8)]
+    results = {item[0]: result for item, result in stream(deadly, items, jobs=2)}
+    died = results.pop(3)
+    assert isinstance(died, Died)
+    assert f"died {ATTEMPTS} times" in died.reason
+    assert results == {x: x * x for x in range(8) if x != 3}
+    assert len(list(tmp_path.iterdir())) == ATTEMPTS
+
+
+def test_an_unforeseen_error_is_not_hidden():
+    with pytest.raises(ZeroDivisionError, match="item"):
+        list(stream(failing, range(4), jobs=2))
+
+
+def test_a_stream_can_be_closed_early_and_another_opened():
+    first = stream(slow_first, range(1, 50), jobs=2)
+    next(first)
+    first.close()
+    assert len(list(stream(square, range(3), jobs=2))) == 3
+
+
+def test_workers_keep_to_one_thread_of_blas():
+    assert {result for _, result in stream(threads, range(4), jobs=2)} == {"1"}
+
+
+@pytest.mark.parametrize("jobs", [0, -1])
+def test_a_number_of_jobs_out_of_range_is_refused_at_once(jobs):
+    with pytest.raises(ValueError, match=rf"jobs = {jobs} is outside 1 <= jobs; "):
+        stream(square, [1], jobs=jobs)
+
+
+needs_cluster = pytest.mark.skipif(importlib.util.find_spec("distributed") is None, reason="needs the extra cluster")
+
+
+@needs_cluster
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
+def test_a_scheduler_that_does_not_answer_is_refused_at_once(address):
+    with pytest.raises(ValueError, match=f"dask = {address} does not answer within 5 s; "):
+        stream(square, [1], dask=address)
+
+
+def free_port():
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """Address of a scheduler on loopback with two workers that can import this module."""
+    scratch = tmp_path_factory.mktemp("dask")
+    address = f"tcp://127.0.0.1:{free_port()}"
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
+    worker = ["dask_worker", address, "--nthreads", "1", "--no-dashboard", "--local-directory", str(scratch)]
+    scheduler = ["dask_scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2], "--no-dashboard"]
+    with (scratch / "log").open("w") as log:
+        processes = [
+            subprocess.Popen(
+                [sys.executable, "-m", f"distributed.cli.{program}", *options],
+                env=environment,
+                stdout=log,
+                stderr=log,
+                start_new_session=True,
+            )
+            for program, *options in (scheduler, worker, worker)
+        ]
+        try:
+            yield wait_for(address)
+        finally:
+            for process in processes:  # with what each has started
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+
+
+def wait_for(address):
+    from distributed import Client
+
+    for _ in range(100):
+        try:
+            stream(square, [], dask=address).close()
+            break
+        except ValueError:
+            time.sleep(0.1)
+    with Client(address, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=20)
+    return address
+
+
+@needs_cluster
+def test_a_dask_cluster_does_the_work(cluster):
+    assert sorted(stream(square, range(20), dask=cluster)) == [(x, x * x) for x in range(20)]
+
+
+@needs_cluster
+def test_a_worker_of_the_cluster_that_dies_is_replaced_and_its_item_done(cluster, tmp_path):
+    items = [(x, 1, str(tmp_path)) for x in range(6)]
+    assert sorted(result for _, result in stream(deadly, items, dask=cluster)) == [x * x for x in range(6)]
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+@needs_cluster
+def test_an_item_that_kills_every_worker_of_the_cluster_is_given_up(cluster, tmp_path):
+    results = {item[0]: r for item, r in stream(deadly, [(x, 99, str(tmp_path)) for x in (2, 3)], dask=cluster)}
+    assert results[2] == 4
+    assert "its worker died" in results[3].reason
