@@ -8,6 +8,7 @@ for a flat block are so for the sphere, and is the identity near the pole.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -56,22 +57,25 @@ class Stereographic:
         return np.asarray(x * (1 - t) / (1 + t) ** 3), np.asarray((1 - 8 * t + 3 * t**2) / (1 + t) ** 4)
 
 
-def hemisphere(R: float, x_lines: Array, depths: Array) -> Any:
+def hemisphere(R: float, lines: Array, depths: Array, along: Callable[[Array], Array] | None = None) -> Any:
     """Mesh the hemisphere z >= -R of the sphere that touches z = 0 from below.
 
     Parameters
     ----------
     R : float
         Radius in beta.
-    x_lines, depths : (m + 1,) and (n + 1,) array
+    lines, depths : (m + 1,) and (n + 1,) array
         Lines of the core, a tensor grid on the flat plane, from 0 to CORE R and DEPTH R, in beta.
+    along : callable, optional
+        The coordinate x as a function of another one in which the lines and the cells between them are given instead.
 
     Returns
     -------
     CurvedQuads
         With the boundaries "axis", "contact" (the sphere) and "far" (the mid-plane).
     """
-    m, n = len(x_lines), len(depths)
+    along = along or (lambda x: x)
+    m, n = len(lines), len(depths)
     core = np.arange(m * n).reshape(m, n)
     beside = m * n + np.arange(n * LAYERS).reshape(n, LAYERS)
     below = m * n + n * LAYERS + np.arange((m - 1) * LAYERS).reshape(m - 1, LAYERS)
@@ -83,9 +87,9 @@ def hemisphere(R: float, x_lines: Array, depths: Array) -> Any:
     # Neighbours run along their common side in the same direction, as elements of degree 3 and more must.
     layers = np.linspace(0, 1, LAYERS + 1)
     blocks = [
-        Block(x_lines, depths, lambda x, d: stereographic(x - 1j * d, R)),
-        Block(depths, layers, lambda d, t: stereographic(_outwards(x_lines[-1] - 1j * d, t, R), R)),
-        Block(x_lines, layers, lambda x, t: stereographic(_outwards(x - 1j * depths[-1], t, R), R)),
+        Block(lines, depths, lambda s, d: stereographic(along(s) - 1j * d, R)),
+        Block(depths, layers, lambda d, t: stereographic(_outwards(along(lines[-1]) - 1j * d, t, R), R)),
+        Block(lines, layers, lambda s, t: stereographic(_outwards(along(s) - 1j * depths[-1], t, R), R)),
     ]
     return _named(
         joined(blocks, vertices),
@@ -107,8 +111,18 @@ def _outwards(Z: Array, t: Array, R: float) -> Array:
 
 
 def with_contact_to(mesh: Any, radius: float) -> Any:
-    """Return a block's mesh with its boundary "contact" cut off at a radius; the rest of its surface is free."""
-    return mesh.with_boundaries({"contact": lambda x: (x[1] == 0.0) & (x[0] < radius)})
+    """Return a mesh with its boundary "contact" cut off at a radius where cells end; beyond, its surface is free."""
+    facets = mesh.boundaries["contact"]
+    inside = np.all(mesh.p[0, mesh.facets[:, facets]] <= radius * (1 + 1e-9), axis=0)
+    return mesh.with_boundaries({"contact": facets[inside]})
+
+
+def named_block(mesh: Any) -> Any:
+    """Name the boundaries of a block under z = 0: "axis", "contact" and "far"."""
+    p, facets = mesh.p, mesh.boundary_facets()
+    ends = mesh.facets[:, facets]
+    axis, contact = (np.all(p[k, ends] == 0.0, axis=0) for k in (0, 1))
+    return mesh.with_boundaries({"axis": facets[axis], "contact": facets[contact], "far": facets[~(axis | contact)]})
 
 
 def _named(mesh: Any, **vertices: list[Index]) -> Any:

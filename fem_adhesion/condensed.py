@@ -63,6 +63,8 @@ class Surface:
         Their functions at the points.
     cells : (facets + 1,) array
         End radii of the facets, from 0.
+    depths, slopes : (q,) array
+        Depth of the undeformed surface under z = 0, in beta, and its derivative by the radius.
     """
 
     radii: Array
@@ -70,6 +72,8 @@ class Surface:
     unknowns: Index
     values: sparse.csr_array
     cells: Array
+    depths: Array
+    slopes: Array
 
     @property
     def cell_nodes(self) -> Index:
@@ -207,13 +211,15 @@ def contact_surface(space: Space, points: int, traction: str = "projected") -> S
     """Return the Gauss points of the contact facets, sorted by radius, with the weights of the area asked for."""
     basis = boundary_basis(space, "contact", points)
     functions = space.boundary_functions("contact")
-    radii = basis.global_coordinates()[0].ravel()
+    radii, heights = (x.ravel() for x in np.asarray(basis.global_coordinates()))
     order = np.argsort(radii)
-    lengths = basis.dx if traction == "surface" else np.asarray(basis.normals)[1] * basis.dx
+    n_r, n_z = np.asarray(basis.normals)
+    lengths = basis.dx if traction == "surface" else n_z * basis.dx
     weights = (ring_measure(radii) * lengths.ravel())[order]
     ends = space.mesh.p[0, np.unique(space.mesh.facets[:, space.mesh.boundaries["contact"]])]
     values = trace_matrix(basis, functions)[order]
-    return Surface(radii[order], weights, space.components[1, functions], values, np.sort(ends))
+    vertical, slopes = space.components[1, functions], (n_r / n_z).ravel()[order]
+    return Surface(radii[order], weights, vertical, values, np.sort(ends), -heights[order], slopes)
 
 
 def eliminate_interiors(space: Space, K: Array) -> Skeleton:

@@ -62,6 +62,7 @@ class CurvedMapping(MappingIsoparametric):  # type: ignore[misc]
     def __init__(self, mesh: Any, points: Array) -> None:
         super().__init__(mesh, mesh.elem())
         self.points = points
+        self._latest = (np.empty(0), np.empty(0))  # points of facets and their reference places
         self.nodes = chebyshev_points(round(np.sqrt(points.shape[2])) - 1)
 
     def Fmap(self, i: int, X: Array, tind: Any = None) -> Array:
@@ -85,6 +86,17 @@ class CurvedMapping(MappingIsoparametric):  # type: ignore[misc]
             return (f[:, None] * g[None]).reshape(-1, *f.shape[1:])
 
         return product(a, b), (product(da, b), product(a, db))
+
+    def G(self, X: Array, find: Any = None) -> Array:
+        """Points of facets."""
+        Y, cells = self._on_cell(X, find)
+        self._latest = self.F(Y, cells), Y
+        return self._latest[0]
+
+    def invF(self, x: Array, tind: Any = None, **options: Any) -> Array:
+        """Reference places of points; those of facets are known, and need not be found to the last digit again."""
+        points, places = self._latest
+        return places if x is points else np.asarray(super().invF(x, tind, **options))
 
     def bndmap(self, i: int, X: Array, find: Any = None) -> Array:
         """Coordinate i of points of facets, which run from their first vertex to their second."""

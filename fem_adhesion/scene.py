@@ -150,6 +150,7 @@ class Scene:
             ),
             "counter": (self.counter is not None and self.body != "hemisphere", "it meets a hemisphere only"),
             "strain": (self.strain == "finite" and not sphere, "finite strain is for hemisphere and sphere"),
+            "profile": (self.profile == "sphere" and isinstance(self.body, Path), "the mesh has a surface of its own"),
             "traction": (self.traction == "surface" and not sphere, "it differs on a curved surface only"),
         }
         for name, (ignored, why) in unheeded.items():

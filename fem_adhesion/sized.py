@@ -14,7 +14,8 @@ from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import clamped, point_load, sliding
 from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.mesh import tensor_grid
-from fem_adhesion.scene import Scene
+from fem_adhesion.pairs import gap_of, pair_operator, radii_of
+from fem_adhesion.scene import Counter, Scene
 from halfspace import grid
 from halfspace.breathing import FlatCoordinate
 from halfspace.compliance import Array
@@ -64,7 +65,20 @@ def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
         return SizedBody(
             scene.tabor, profile, partial(_block, scene, how), how.finest, how.growth, to_equator(R), FlatCoordinate()
         )
-    return _hemisphere(scene, how, R, profile)
+    return _pair(scene, how, R, scene.counter) if scene.counter else _hemisphere(scene, how, R, profile)
+
+
+def _pair(scene: Scene, how: Discretisation, R: float, counter: Counter) -> SizedBody:
+    """Hemisphere and counter-body; the law acts out to the end of the smaller one's core, 0.987 of its radius."""
+    R1, _ = radii_of(R, counter)
+
+    def make(lines: Array) -> Made:
+        depths = partial(grid.graded, 0.0, np.diff(lines).min(), growth=how.growth)
+        return pair_operator(lines, depths, R, counter, scene.poisson, how.degree, GRIPS[scene.grip])
+
+    profile = gap_of(R, counter, scene.profile)
+    outer = np.array([bodies.CORE * R1])
+    return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, bodies.Stereographic(R1))
 
 
 def _hemisphere(scene: Scene, how: Discretisation, R: float, profile: Profile) -> SizedBody:

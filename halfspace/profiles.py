@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -67,6 +68,36 @@ class Sphere:
 
 
 @dataclass(frozen=True)
+class Pair:
+    """Gap between two surfaces of radii R1 and R2, 1/R = 1/R1 + 1/R2: their heights add.
+
+    Parameters
+    ----------
+    first, second : Profile
+        In their own units, beta^2/R1 and beta^2/R2.
+    parts : pair of float
+        R/R1 and R/R2.
+    """
+
+    first: Profile
+    second: Profile
+    parts: tuple[float, float]
+
+    @property
+    def end(self) -> float:
+        """Radius in beta at which the smaller surface ends."""
+        return min(self.first.end, self.second.end)
+
+    def height(self, radii: Array) -> Array:
+        """Sum of the heights."""
+        return self.parts[0] * self.first.height(radii) + self.parts[1] * self.second.height(radii)
+
+    def slope(self, radii: Array) -> Array:
+        """Sum of the slopes."""
+        return self.parts[0] * self.first.slope(radii) + self.parts[1] * self.second.slope(radii)
+
+
+@dataclass(frozen=True)
 class Tabulated:
     """Heights (n,) at ascending radii (n,), with their slopes: the surface of a body that is given as a mesh."""
 
@@ -87,6 +118,6 @@ class Tabulated:
         """Its derivative."""
         return np.asarray(self._spline(radii, 1))
 
-    @property
+    @cached_property
     def _spline(self) -> CubicHermiteSpline:
         return CubicHermiteSpline(self.radii, self.heights, self.slopes)
