@@ -25,6 +25,7 @@ from halfspace.curve import EquilibriumPath, Estimate, Finest, Segment, metric_f
 from halfspace.events import ROUND_OFF, Condition, Event, Located, estimate_event, locate
 from halfspace.newton import Control, Equilibrium
 from halfspace.path import make_point
+from halfspace.reach import reaching
 
 Array = NDArray[np.float64]
 
@@ -115,7 +116,7 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     """
     if not stiffness > 0:
         raise ValueError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
-    rough = jumps(path.segments, 1 / stiffness)
+    rough = jumps(reaching(path, stiffness).segments, 1 / stiffness)
     if rough is None:
         return None
     fine = tuple(_refined(states, path.finest, 1 / stiffness) for states in rough)

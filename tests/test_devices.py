@@ -1,14 +1,18 @@
 """Apparatus of any stiffness: where it jumps, where it lands, what it loses."""
 
+import math
+
 import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
+from scipy.optimize import brentq
 
 import halfspace
 from fem_adhesion.studies.fold_birth import critical_stiffness
-from halfspace import newton
+from halfspace import newton, theories
 from halfspace.contact import LOAD
-from halfspace.devices import cycle
+from halfspace.devices import cycle, jumps
+from halfspace.reach import reaching, rigid_jump_on
 
 
 @pytest.fixture(scope="module")
@@ -108,3 +112,39 @@ def test_the_finite_element_path_has_its_cycle_too():
     other = cycle(halfspace.trace(2.0), 1.0)
     ours = cycle(path, 1.0)
     assert ours.energy_lost.value == pytest.approx(other.energy_lost.value, abs=2 * ours.energy_lost.error)
+
+
+@pytest.fixture(scope="module")
+def stiff_path():
+    return halfspace.trace(0.3, rtol=1e-6)
+
+
+def test_a_soft_cantilever_jumps_on_from_beyond_the_traced_curve():
+    path = halfspace.trace(1e-3, rtol=1e-6)
+    stiffness = 1e-4
+    found = cycle(path, stiffness)
+    gap = brentq(lambda h: 16 * np.pi / 3 * (h**-3 - h**-9) - stiffness, 2, 200)
+    assert 1 - gap < path.approach[0]
+    on = found.jump_on.take_off
+    assert on.approach == pytest.approx(1 - gap, rel=1e-5)
+    assert on.load == pytest.approx(float(theories.bradley_load(1 - gap)), rel=1e-4)
+    assert abs(on.approach - (1 - gap)) < on.approach_error + 1e-6 * gap
+    assert abs(on.load - float(theories.bradley_load(1 - gap))) < on.load_error + 1e-6 * abs(on.load)
+    assert rigid_jump_on(stiffness) == pytest.approx(1 - gap, rel=1e-6)
+
+
+def test_an_extended_curve_has_the_same_cycle(stiff_path):
+    """A stiffness whose jump lies on the curve, but so near its beginning that the curve is extended all the same."""
+    near = stiff_path.approach[0]
+    stiffness = 16 * np.pi / 3 / (1 - 0.95 * near) ** 3
+    longer = reaching(stiff_path, stiffness).segments
+    assert len(longer) > len(stiff_path.segments)
+    ours, theirs = (jumps(segments, 1 / stiffness) for segments in (longer, stiff_path.segments))
+    for a, b in zip(ours, theirs, strict=True):
+        assert a.take_off.point.observables[0] == pytest.approx(b.take_off.point.observables[0], abs=1e-9)
+        assert a.energy(1 / stiffness) == pytest.approx(b.energy(1 / stiffness), rel=1e-9)
+
+
+def test_a_curve_that_reaches_far_enough_is_left_alone(stiff_path):
+    assert reaching(stiff_path, 1.0) is stiff_path
+    assert reaching(stiff_path, math.inf) is stiff_path

@@ -1,0 +1,88 @@
+"""``fem-adhesion compare``: whether the two solvers agree."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_adhesion.commands.common import AGREE, DISAGREE, progress_bar
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from fem_adhesion.commands.common import Commands
+    from fem_adhesion.scene import Scene
+    from fem_adhesion.studies.crosscheck import Case, Failure
+
+
+def add(commands: Commands) -> None:
+    """Add the command."""
+    compare = commands.add_parser(
+        "compare",
+        help="check that the half-space and the finite-element solver agree",
+        description="Solve the adhesive contact of a paraboloid with a half-space by an integral equation and by "
+        "finite elements, and compare operators, residuals and events. "
+        "Exit code 0: all agree, 1: some do not, 2: bad input.",
+        epilog="example: fem-adhesion compare --tabor 0.5 2 --rtol 1e-4",
+    )
+    tabors = [0.05, 0.5, 1, 2, 3, 5]
+    compare.add_argument("--tabor", nargs="+", type=float, default=tabors, help="Tabor parameters", metavar="MU")
+    compare.add_argument("--poisson", type=float, default=0.3, help="Poisson's ratio, 0 <= nu < 0.5", metavar="NU")
+    compare.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy of the comparison, 1e-9 to 1e-1")
+    compare.add_argument("--json", type=Path, help="also write the result to this file", metavar="FILE")
+    compare.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Compare all scenes asked for, print a table each, and write the record."""
+    from fem_adhesion.output.files import written_aside
+    from fem_adhesion.scene import Scene
+    from halfspace.limits import require_rtol
+
+    require_rtol(options.rtol)
+    scenes = [Scene(tabor=tabor, poisson=options.poisson) for tabor in options.tabor]
+    with written_aside(options.json) if options.json else nullcontext() as file:
+        cases = _compare_with_progress(scenes, options.rtol)
+        from fem_adhesion.output.record import crosscheck_record
+
+        record = crosscheck_record(cases)
+        if file:
+            json.dump(record, file, indent=1, allow_nan=False)
+    print(f"verdict: {record['verdict']}")
+    return AGREE if record["verdict"] == "agree" else DISAGREE
+
+
+def _compare_with_progress(scenes: Sequence[Scene], rtol: float) -> list[Case | Failure]:
+    """Run the cases with a bar on standard error and tables on standard output."""
+    from rich.console import Console
+
+    from fem_adhesion.studies import crosscheck
+
+    console = Console(width=None if sys.stdout.isatty() else 150)
+    names = [f"tabor {scene.tabor:g}" for scene in scenes] + ["done"]
+    cases: list[Case | Failure] = []
+    with progress_bar() as step:
+        step(names[0], 0, len(scenes))
+        for case in crosscheck.run(scenes, rtol=rtol):
+            cases.append(case)
+            _show(case, console)
+            step(names[len(cases)], len(cases), len(scenes))
+    return cases
+
+
+def _show(case: Case | Failure, console: Console) -> None:
+    from fem_adhesion.output.tables import crosscheck_table
+    from fem_adhesion.studies.crosscheck import Case
+
+    if isinstance(case, Case):
+        console.print(crosscheck_table(case))
+    else:
+        console.print(f"tabor {case.scene.tabor:g}, poisson {case.scene.poisson:g}: failed: {case.reason}")
+        for row in case.rows:
+            console.print(f"  {row.quantity}: {row.verdict}")
+    console.print()

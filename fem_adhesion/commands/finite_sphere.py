@@ -1,0 +1,58 @@
+"""``fem-adhesion finite-sphere``: whether the half-space is good enough."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from fem_adhesion.commands.common import AGREE, INTERRUPTED, add_output, progress_bar
+
+if TYPE_CHECKING:
+    from fem_adhesion.commands.common import Commands
+
+
+def add(commands: Commands) -> None:
+    """Add the command."""
+    study = commands.add_parser(
+        "finite-sphere",
+        help="measure how far the half-space is from a finite sphere, and why",
+        description="Solve the contact under one assumption less at a time, over Tabor parameters, R/eps and Poisson's "
+        "ratios. Each case is stored at once: what is interrupted goes on with --resume.",
+        epilog="example: fem-adhesion finite-sphere --out sphere --quick",
+    )
+    study.add_argument("--tabor", nargs="+", type=float, help="Tabor parameters", metavar="MU")
+    study.add_argument("--radius-ratio", nargs="+", type=float, help="R/eps, 2 or more", metavar="RHO")
+    study.add_argument("--poisson", nargs="+", type=float, help="Poisson's ratios, 0 <= nu < 0.5", metavar="NU")
+    study.add_argument("--quick", action="store_true", help="finish in a minute: three by three points, less accurate")
+    study.add_argument("--resume", action="store_true", help="go on with the cases that the directory holds")
+    study.add_argument("--jobs", type=int, help="processes; as many as cores unless given", metavar="N")
+    study.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
+    add_output(study)
+    study.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the study of the finite sphere or what is left of it, and write its table."""
+    from fem_adhesion.output.files import directory_written_aside
+    from fem_adhesion.output.finite_sphere_tables import write_tables
+    from fem_adhesion.studies import finite_sphere
+    from fem_adhesion.studies.finite_sphere_table import rows
+    from fem_adhesion.studies.store import open_store
+
+    cases = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
+    store = open_store(options.out, resume=options.resume, force=options.force)
+    fresh = options.force and not options.resume
+    try:
+        with progress_bar() as step:
+            records = finite_sphere.run(cases, store, jobs=options.jobs, dask=options.dask, progress=step, fresh=fresh)
+    except KeyboardInterrupt:
+        print(f"fem-adhesion: interrupted; what is done is kept in {options.out}, --resume goes on", file=sys.stderr)
+        return INTERRUPTED
+    with directory_written_aside(options.out, force=True) as aside:
+        note = write_tables(rows(records), aside)
+    for line in filter(None, (*store.notes, note)):
+        print(f"fem-adhesion: {line}", file=sys.stderr)
+    unsolved = sum(record.status != "solved" for record in records)
+    print(f"written: {options.out / 'finite_sphere.csv'}; {len(records)} cases, {unsolved} without a solution")
+    return AGREE

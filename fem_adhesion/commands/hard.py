@@ -1,0 +1,48 @@
+"""``fem-adhesion hard``: the hard cases."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from fem_adhesion.commands.common import AGREE, DISAGREE, add_output, progress_bar
+
+if TYPE_CHECKING:
+    from fem_adhesion.commands.common import Commands
+
+
+def add(commands: Commands) -> None:
+    """Add the command."""
+    hard = commands.add_parser(
+        "hard",
+        help="run the hard cases: a number within its estimate, or a clear refusal",
+        description="Run the cases that are hard for the solvers. Exit code 1 if one ends in a wrong number.",
+        epilog="example: fem-adhesion hard --out hard",
+    )
+    add_output(hard)
+    hard.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the hard cases, print their tables and write them."""
+    from rich.console import Console
+
+    from fem_adhesion.output import hard_report
+    from fem_adhesion.output.files import directory_written_aside
+    from fem_adhesion.studies import hard_bodies, hard_cases
+
+    cases = hard_cases.cases()
+    names = [*(case.name for case in cases), "locking"]
+    rows: list[hard_cases.Row] = []
+    with directory_written_aside(options.out, force=options.force) as aside:
+        with progress_bar() as step:
+            step(names[0], 0, len(names))
+            for row in hard_cases.run(cases):
+                rows.append(row)
+                step(names[len(rows)], len(rows), len(names))
+            locking = list(hard_bodies.locking())
+        hard_report.write_hard(aside, rows, locking)
+    console = Console(width=None if sys.stdout.isatty() else 150)
+    console.print(hard_report.cases_table(rows), hard_report.locking_table(locking))
+    return DISAGREE if any(row.outcome == "wrong" for row in rows) else AGREE

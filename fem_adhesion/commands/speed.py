@@ -1,0 +1,39 @@
+"""``fem-adhesion speed``: what a digit costs."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from fem_adhesion.commands.common import AGREE, add_output, progress_bar
+
+if TYPE_CHECKING:
+    from fem_adhesion.commands.common import Commands
+
+
+def add(commands: Commands) -> None:
+    """Add the command."""
+    speed = commands.add_parser(
+        "speed",
+        help="measure what each digit costs, by every method in the house",
+        description="Time every method on a ladder of resolutions and plot error against wall time.",
+        epilog="example: fem-adhesion speed --out speed --quick",
+    )
+    speed.add_argument("--tabor", type=float, default=1.0, help="Tabor parameter, 0.05 to 2", metavar="MU")
+    speed.add_argument("--quick", action="store_true", help="finish in half a minute, at lower accuracies")
+    add_output(speed)
+    speed.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Measure, draw and write the speed study."""
+    from fem_adhesion.output import speed_report
+    from fem_adhesion.output.files import directory_written_aside
+    from fem_adhesion.studies import speed
+
+    speed.require_tabor(options.tabor)
+    with directory_written_aside(options.out, force=options.force) as aside, progress_bar() as step:
+        study = speed.measure(options.tabor, quick=options.quick, progress=step)
+        speed_report.write(study, aside)
+    print((options.out / "speed.md").read_text(), end="")
+    return AGREE
