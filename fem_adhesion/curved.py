@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebder, chebvander
 from skfem import MeshQuad
 from skfem.mapping import MappingIsoparametric
 
@@ -165,13 +166,9 @@ def chebyshev_points(degree: int) -> Array:
 
 
 def lagrange_values(nodes: Array, x: Array) -> tuple[Array, Array]:
-    """Values and derivatives at x (...) of the Lagrange polynomials through n nodes, each (n, ...)."""
-    n = len(nodes)
-    values = np.ones((n, *x.shape))
-    slopes = np.zeros((n, *x.shape))
-    for i in range(n):
-        for j in range(n):
-            if i != j:
-                slopes[i] = (slopes[i] * (x - nodes[j]) + values[i]) / (nodes[i] - nodes[j])
-                values[i] = values[i] * (x - nodes[j]) / (nodes[i] - nodes[j])
-    return values, slopes
+    """Values and derivatives at x (...) of the Lagrange polynomials through n nodes of [0, 1], each (n, ...)."""
+    degree = len(nodes) - 1
+    series = np.asarray(np.linalg.inv(chebvander(2 * nodes - 1, degree)), dtype=np.float64)
+    powers = chebvander(2 * x - 1, degree)
+    values, slopes = powers @ series, powers[..., :-1] @ chebder(series, scl=2)
+    return np.asarray(np.moveaxis(values, -1, 0)), np.asarray(np.moveaxis(slopes, -1, 0))

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from scipy import sparse
-from skfem import CellBasis, Dofs, ElementVector, FacetBasis
+from skfem import Dofs, ElementVector, FacetBasis
 from skfem.mapping import MappingIsoparametric
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine, RefTri
@@ -205,10 +205,24 @@ def strain_products(D: Array, B: Array, dA: Array) -> Array:
 
 def cell_strains(space: Space) -> Iterator[tuple[Index, Array, Array]]:
     """Cut the cells into batches: their numbers, their strains B, (cells, 4, q, 2 n), and 2 pi r dr dz, (cells, q)."""
-    for cells, basis in _batches(space):
-        value, grad = np.array([b[0] for b in basis.basis]), np.array([b[0].grad for b in basis.basis])
-        r = basis.global_coordinates()[0]
-        yield cells, strain_displacement(value, grad, r), ring_measure(r) * basis.dx
+    points, weights = cell_quadrature(space)
+    value, slopes = reference_functions(space.element, points)
+    mapping = space.mesh.mapping()
+    for cells in _batches(space, len(weights)):
+        r = mapping.F(points, tind=cells)[0]
+        grad = np.einsum("ijcq,niq->njcq", mapping.invDF(points, tind=cells), slopes, optimize=True)
+        dA = ring_measure(r) * np.abs(mapping.detDF(points, tind=cells)) * weights
+        yield cells, strain_displacement(np.broadcast_to(value[:, None], (len(value), *r.shape)), grad, r), dA
+
+
+def reference_functions(element: Any, points: Array) -> tuple[Array, Array]:
+    """Values (n, q) and derivatives (n, 2, q) of an element's functions at points (2, q) of the reference cell."""
+    count = (
+        element.refdom.nnodes * element.nodal_dofs + element.refdom.nfacets * element.facet_dofs + element.interior_dofs
+    )
+    found = [element.lbasis(points, i) for i in range(count)]
+    values = np.array([np.broadcast_to(value, points.shape[1:]) for value, _ in found])
+    return values, np.array([np.broadcast_to(slope, points.shape) for _, slope in found])
 
 
 def boundary_basis(space: Space, name: str, points: int) -> Any:
@@ -274,19 +288,7 @@ def scatter_pairs(blocks: Array, row_dofs: Index, column_dofs: Index, shape: tup
     return sparse.csc_array((blocks.ravel(), (rows, columns)), shape=shape)
 
 
-def _batches(space: Space) -> Iterator[tuple[Index, Any]]:
-    """Cut the cells into batches, each with skfem's basis of the scalar element on it."""
-    quadrature = cell_quadrature(space)
-    per_cell = 4 * len(quadrature[1]) * len(space.cell_dofs)
-    for cells in np.array_split(np.arange(space.mesh.nelements), -(-space.mesh.nelements * per_cell // BATCH)):
-        yield (
-            cells,
-            CellBasis(
-                space.mesh,
-                space.element,
-                elements=cells,
-                quadrature=quadrature,
-                dofs=space.scalar_dofs,
-                disable_doflocs=True,
-            ),
-        )
+def _batches(space: Space, points: int) -> list[Index]:
+    """Cut the cells into batches, given their quadrature points."""
+    per_cell = 4 * points * len(space.cell_dofs)
+    return np.array_split(np.arange(space.mesh.nelements), -(-space.mesh.nelements * per_cell // BATCH))

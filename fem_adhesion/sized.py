@@ -27,6 +27,7 @@ GRIPS = {"sliding": sliding, "bonded": clamped}
 
 FINEST, GROWTH = 0.6, 2.5  # of the cells: at the contact edge in widths of the spike of tension, and of their lengths
 CURVE_DEGREE = 4  # of the elements for the curve, whose operator is interpolated to some 1e-4
+REMAINING = 0.25  # of the change by one degree: a degree leaves a tenth or less
 BEYOND = 1e3  # size of the block under a sphere, in R: nothing acts on it beyond R, and its far field errs by O(L^-5)
 
 
@@ -54,7 +55,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     degree = int(np.clip(np.ceil(-np.log10(rtol)) - 1, 4, 8)) + level
     fine, coarse = (sized_body(scene, Discretisation(d)) for d in (degree, CURVE_DEGREE + level))
     settings = {"degree": degree, "finest": FINEST, "growth": GROWTH}
-    return Rung(partial(coarse.curve, to_load), (AroundEvents(fine),), settings)
+    return Rung(partial(coarse.curve, to_load), (AroundEvents(fine),), settings, remaining=REMAINING)
 
 
 def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
