@@ -21,7 +21,7 @@ from halfspace.breathing import FlatCoordinate
 from halfspace.compliance import Array
 from halfspace.ladder import Rung
 from halfspace.profiles import Paraboloid, Profile, Sphere
-from halfspace.sized import CROWDED, AroundEvents, Made, SizedBody, to_equator
+from halfspace.sized import CROWDED, WINDOW, AroundEvents, Made, SizedBody, to_equator
 
 GRIPS = {"sliding": sliding, "bonded": clamped}
 
@@ -55,7 +55,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     degree = int(np.clip(np.ceil(-np.log10(rtol)) - 1, 4, 8)) + level
     fine, coarse = (sized_body(scene, Discretisation(d)) for d in (degree, CURVE_DEGREE + level))
     settings = {"degree": degree, "finest": FINEST, "growth": GROWTH}
-    return Rung(partial(coarse.curve, to_load), (AroundEvents(fine),), settings, remaining=REMAINING)
+    return Rung(partial(coarse.curve, to_load), (AroundEvents(fine, WINDOW / 2**level),), settings, remaining=REMAINING)
 
 
 def sized_body(scene: Scene, how: Discretisation) -> SizedBody:

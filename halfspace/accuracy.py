@@ -18,7 +18,7 @@ from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
 from halfspace.ladder import Charted, Rung, climb
 from halfspace.limits import require_load, require_radius_ratio, require_rtol, require_tabor
 from halfspace.profiles import Sphere
-from halfspace.sized import AroundEvents, Made, SizedBody, to_equator
+from halfspace.sized import WINDOW, AroundEvents, Made, SizedBody, to_equator
 from halfspace.theories import jkr_radius
 
 FINER = 30  # ratio of the errors of two successive rungs
@@ -155,8 +155,14 @@ def _sphere_rung(tabor: float, R: float, rtol: float, to_load: float, level: int
     resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
     fine, other = (_under_sphere(tabor, R, r) for r in (resolution, twin))
+    window = WINDOW / 2**level
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
-    return Rung(partial(fine.curve, to_load), (AroundEvents(fine),), settings, AroundEvents(other) if level else None)
+    return Rung(
+        partial(fine.curve, to_load),
+        (AroundEvents(fine, window),),
+        settings,
+        AroundEvents(other, 2 * window) if level else None,
+    )
 
 
 def _under_sphere(tabor: float, R: float, resolution: Resolution) -> SizedBody:

@@ -171,7 +171,14 @@ def _step_up(state: State, higher: Rung) -> list[list[State]]:
 
 
 def _on_all(state: State, stage: Stage) -> State:
-    return {name: moved(event, stage(event).problem) for name, event in state.items()}
+    return {name: _moved_to(event, stage) for name, event in state.items()}
+
+
+def _moved_to(event: Located, stage: Stage) -> Located:
+    """Solve for an event again, and once more where it comes to lie in the reach of another chart."""
+    found = moved(event, stage(event).problem)
+    better = stage(found).problem
+    return found if better is found.problem else moved(found, better)
 
 
 def _estimate(chains: Sequence[Sequence[State]], remaining: float) -> dict[str, Event]:

@@ -23,8 +23,10 @@ from halfspace.theories import jkr_radius
 
 LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the least that the other one knows
 LEAVE = 0.5  # of the first cell: the radius at which the chart centred on the axis is left
-WINDOW = 0.03  # half the logarithmic width of the radii around an event
-AROUND = 3  # operators in it
+WINDOW = 2e-3  # half the logarithmic width of the radii around an event on the lowest rung, halved on each above it
+AROUND = (
+    3  # operators in it: the operator is as good as exact in the middle, its derivative right to the window's square
+)
 CROWDED = 5  # cells next to the equator
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 
@@ -88,13 +90,13 @@ class SizedBody:
         moving = self._moving(1 - inner[::-1], grid.geometric(end, self.length, self.growth) / end)
         return self.centred(), self.following(moving, chebyshev_radii(least, widest, count))
 
-    def around(self, radius: float) -> Chart:
+    def around(self, radius: float, window: float = WINDOW) -> Chart:
         """Chart for contact radii near the given one."""
         end, edge = float(self.outer[0]), self.coordinate.of(radius)
         lines = grid.graded(edge, self.length, end, growth=self.growth)
         inner = lines < edge * (1 + 1e-12)
         moving = self._moving(lines[inner] / edge, np.append(0, (lines[~inner] - edge) / (end - edge)))
-        return self.following(moving, chebyshev_radii(radius * np.exp(-WINDOW), radius * np.exp(WINDOW), AROUND))
+        return self.following(moving, chebyshev_radii(radius * np.exp(-window), radius * np.exp(window), AROUND))
 
     def _moving(self, inner: Array, outside: Array) -> MovingGrid:
         """Grid from the ends of cells inside the edge, as parts of x_a, and outside, as parts of the rest."""
@@ -117,9 +119,13 @@ class AroundEvents:
     ----------
     body : SizedBody
         The body.
+    window : float
+        Half the logarithmic width of the contact radii that a chart serves. A fold is where a derivative vanishes,
+        which errs by the window's square: windows that differ from rung to rung let the error estimate see it.
     """
 
     body: SizedBody
+    window: float = WINDOW
     charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
 
     def __call__(self, event: Located) -> Chart:
@@ -127,9 +133,9 @@ class AroundEvents:
         follows = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
         radius = float(event.point.observables[CONTACT_RADIUS]) if follows else 0.0
         for made_for, chart in self.charts:
-            if abs(radius - made_for) <= WINDOW * radius / 2:
+            if abs(radius - made_for) <= self.window * radius:
                 return chart
-        chart = self.body.around(radius) if follows else self.body.centred()
+        chart = self.body.around(radius, self.window) if follows else self.body.centred()
         self.charts.append((radius, chart))
         return chart
 
