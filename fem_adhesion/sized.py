@@ -27,7 +27,7 @@ GRIPS = {"sliding": sliding, "bonded": clamped}
 
 FINEST, GROWTH = 0.6, 2.5  # of the cells: at the contact edge in widths of the spike of tension, and of their lengths
 CURVE_DEGREE = 4  # of the elements for the curve, whose operator is interpolated to some 1e-4
-REMAINING = 0.25  # of the change by one degree: a degree leaves a tenth or less
+REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
 BEYOND = 1e3  # size of the block under a sphere, in R: nothing acts on it beyond R, and its far field errs by O(L^-5)
 
 

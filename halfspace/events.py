@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from halfspace import newton
-from halfspace.contact import APPROACH, LOAD
+from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.newton import Control, Equilibrium, NotConverged
 from halfspace.path import Metric, Point, correct, least_slope, make_point
 
@@ -216,7 +216,9 @@ def _same_place(point: Point, problem: Equilibrium, start: Array, metric: Metric
     return make_point(problem, solution, metric, weights, point.arclength)
 
 
-def estimate_event(name: str, chains: Sequence[Sequence[Located]], remaining: float = REMAINING) -> Event:
+def estimate_event(
+    name: str, chains: Sequence[Sequence[Located]], remaining: float = REMAINING, along: bool = False
+) -> Event:
     """Turn an event into numbers with error estimates.
 
     Parameters
@@ -227,11 +229,28 @@ def estimate_event(name: str, chains: Sequence[Sequence[Located]], remaining: fl
         share by accident is not taken for exact.
     remaining : float
         Part of that change that may be left.
+    along : bool
+        If true, an observable's change is taken to be no less than what the event's shift along the path makes of it:
+        on a single chain, one number may stand still by accident while the event moves.
     """
     values = chains[0][-1].point.observables
     changes = [
         sum((np.abs(b.point.observables - a.point.observables) for a, b in pairwise(chain)), np.zeros(4))
         for chain in chains
     ]
+    if along:
+        changes += [_shifted(chains[0][-1], change) for change in changes]
     errors = remaining * np.max(changes, axis=0) + ROUND_OFF * (1 + np.abs(values))
     return Event(name, *map(float, values), *map(float, errors))
+
+
+def _shifted(event: Located, change: Array) -> Array:
+    """Changes of the observables by a shift along the path; none of what the event prescribes.
+
+    The shift is read off the contact radius, or off the central gap where there is no contact.
+    """
+    rates, tell = event.point.rates, CONTACT_RADIUS if np.isfinite(change[CONTACT_RADIUS]) else CENTRAL_GAP
+    shifted = np.abs(rates) * (change[tell] / np.abs(rates[tell]))
+    if not event.condition.stationary:
+        shifted[event.condition.observable] = 0.0
+    return np.asarray(shifted)

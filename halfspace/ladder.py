@@ -184,9 +184,8 @@ def _moved_to(event: Located, stage: Stage) -> Located:
 def _estimate(chains: Sequence[Sequence[State]], remaining: float) -> dict[str, Event]:
     """Events of the last state, with their changes along the chains as errors."""
     names = [name for name in EVENTS if name in chains[0][-1]]
-    return {
-        name: estimate_event(name, [[state[name] for state in chain] for chain in chains], remaining) for name in names
-    }
+    by_name = {name: [[state[name] for state in chain] for chain in chains] for name in names}
+    return {name: estimate_event(name, own, remaining, along=len(chains) == 1) for name, own in by_name.items()}
 
 
 def _energy(chains: Sequence[Sequence[State]], remaining: float) -> Estimate:

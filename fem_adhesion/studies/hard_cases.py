@@ -22,6 +22,7 @@ from fem_adhesion.studies.hard_contacts import (
     tangent_spring,
     traced,
 )
+from fem_adhesion.studies.hard_spheres import against_half_space, against_integral, against_tighter
 from fem_adhesion.studies.measured import Measured
 from halfspace.newton import NotConverged
 
@@ -98,7 +99,7 @@ def _measured_row(case: Case, found: Measured, seconds: float) -> Row:
 
 def cases() -> tuple[Case, ...]:
     """All hard cases."""
-    groups = (_extremes(), _folds(), _starts(), _bodies(), _limits())
+    groups = (_extremes(), _folds(), _starts(), _bodies(), _spheres(), _limits())
     return tuple(Case(name, attempt) for group in groups for name, attempt in group.items())
 
 
@@ -158,8 +159,23 @@ def _bodies() -> dict[str, Attempt]:
     }
 
 
+def _spheres() -> dict[str, Attempt]:
+    return {
+        "sphere of R/eps 1e12": partial(against_half_space, 1e12),
+        "half-space under a sphere of R/eps 3": partial(against_integral, 3.0),
+        "sphere as small as its contact, R = 1.5 beta": partial(against_tighter, radius_ratio=2.25),
+        "rubber sphere, poisson 0.4999": partial(against_tighter, poisson=0.4999),
+        "sphere at tabor 15": partial(against_tighter, tabor=15.0),
+        "rigid sphere, tabor 1e-9": partial(against_tighter, tabor=1e-9),
+    }
+
+
 def _limits() -> dict[str, Attempt]:
     return {
+        "sphere of R/eps 1e13": partial(against_tighter, radius_ratio=1e13),
+        "sphere of R/eps 1": partial(against_tighter, radius_ratio=1.0),
+        "sphere smaller than its contact": partial(against_tighter, tabor=50.0),
+        "sphere of R/eps nan": partial(against_tighter, radius_ratio=math.nan),
         "tabor 1e-12": partial(traced, 1e-12),
         "tabor 1e-300": partial(traced, 1e-300),
         "tabor 300": partial(traced, 300.0),

@@ -1,0 +1,180 @@
+"""Operators that follow the contact: against operators made afresh, their rates against finite differences."""
+
+import numpy as np
+import pytest
+from skfem import ElementQuadP
+
+from fem_adhesion import bodies
+from fem_adhesion.condensed import condense
+from fem_adhesion.elasticity import Space
+from fem_adhesion.far_field import sliding
+from halfspace import compliance, grid
+from halfspace.accuracy import half_space_charts, resolution_for
+from halfspace.breathing import FlatCoordinate, Homogeneous, Interpolated, MovingGrid, chebyshev_radii
+from halfspace.contact import ContactProblem
+from halfspace.curve import Chart, find_events, trace_charts
+from halfspace.profiles import Sphere
+
+R = 4.0
+EDGE = 1.5  # contact radius at which operators are compared, between those that are known
+
+
+def half_space_grid():
+    """Cells that follow the edge and end at R, fixed: so that the kernel on them is not homogeneous."""
+    inner, outer = np.array([0.0, 0.6, 0.9, 1.0]), np.array([0.1, 0.3, 1.0])
+    return MovingGrid(np.concatenate([0 * inner, R * outer]), np.concatenate([inner, 1 - outer]), FlatCoordinate())
+
+
+def half_space(lines):
+    return compliance.panels(lines, 5)
+
+
+def hemisphere_grid(area):
+    core, outer = bodies.CORE * R, R * np.linspace(bodies.CORE, 2, bodies.LAYERS + 1)[1:]
+    inner, beyond = np.array([0.0, 0.6, 1.0]), np.array([0.1, 0.25, 0.5, 1.0])
+    fixed = np.concatenate([0 * inner, core * beyond, outer])
+    moving = np.concatenate([inner, 1 - beyond, 0 * outer])
+    return MovingGrid(fixed, moving, bodies.Stereographic(R, area))
+
+
+def hemisphere(area):
+    depths = grid.graded(0.0, 0.5, bodies.DEPTH * R, growth=2.5)
+
+    def make(lines):
+        mesh = bodies.hemisphere(R, lines[: -bodies.LAYERS], depths)
+        return condense(Space(mesh, ElementQuadP(4)), 0.3, far_field=sliding, traction=area).operator
+
+    return make
+
+
+BODIES = {
+    "half-space": lambda: (half_space_grid(), half_space),
+    "hemisphere": lambda: (hemisphere_grid("projected"), hemisphere("projected")),
+    "hemisphere, surface area": lambda: (hemisphere_grid("surface"), hemisphere("surface")),
+}
+
+
+@pytest.fixture(scope="module", params=BODIES)
+def body(request):
+    return BODIES[request.param]()
+
+
+def interpolated(body, count, ratio=1.7):
+    moving, make = body
+    scales = chebyshev_radii(1.4 / np.sqrt(ratio), 1.4 * np.sqrt(ratio), count)
+    return Interpolated(scales, [make(moving.lines(float(a))) for a in scales], moving)
+
+
+def pressure(radii):
+    return np.cos(radii) * np.exp(-radii / 3)
+
+
+def test_radii_and_weights_are_those_of_an_operator_made_afresh(body):
+    """As far as the cells of degree 8 are the sphere."""
+    moving, make = body
+    fresh, at = make(moving.lines(EDGE)), interpolated(body, 2).at(EDGE)
+    np.testing.assert_allclose(at.radii, fresh.radii, rtol=1e-7)
+    np.testing.assert_allclose(at.weights, fresh.weights, rtol=1e-7)
+    np.testing.assert_allclose(at.cells, fresh.cells, atol=1e-12)
+
+
+def test_the_error_of_interpolation_falls_geometrically_with_the_number_of_radii(body):
+    moving, make = body
+    fresh = make(moving.lines(EDGE))
+    P = pressure(fresh.radii)
+    errors = [np.max(np.abs((interpolated(body, m).at(EDGE).compliance - fresh.compliance) @ P)) for m in (2, 4, 6)]
+    assert errors[1] < errors[0] / 10
+    assert errors[2] < errors[1] / 10
+    assert errors[2] < 1e-4 * np.max(fresh.compliance @ P)
+
+
+def test_the_interpolation_is_exact_at_the_radii_themselves(body):
+    moving, make = body
+    operator = interpolated(body, 3)
+    scale = float(operator.scales[1])
+    at, fresh = operator.at(scale), make(moving.lines(scale))
+    np.testing.assert_allclose(at.compliance / at.weights, fresh.compliance / fresh.weights, rtol=1e-7)
+
+
+def test_rates_against_finite_differences(body):
+    operator, h = interpolated(body, 4), 1e-5
+    P = pressure(operator.at(EDGE).radii)
+    above, below = operator.at(EDGE + h), operator.at(EDGE - h)
+    rates = operator.rates(EDGE, P)
+    for rate, quantity in zip(rates, ("radii", "weights"), strict=False):
+        np.testing.assert_allclose(rate, (getattr(above, quantity) - getattr(below, quantity)) / (2 * h), atol=1e-8)
+    slope = (above.compliance - below.compliance) @ P / (2 * h)
+    np.testing.assert_allclose(rates[2], slope, atol=1e-8 * np.max(np.abs(above.compliance @ P)))
+
+
+def test_rates_of_a_homogeneous_body_against_finite_differences():
+    operator, h = Homogeneous(compliance.panels(grid.graded(1.0, 0.2, 5.0), 5)), 1e-5
+    P = pressure(operator.unit.radii)
+    above, below = operator.at(EDGE + h), operator.at(EDGE - h)
+    rates = operator.rates(EDGE, P)
+    np.testing.assert_allclose(rates[0], (above.radii - below.radii) / (2 * h), rtol=1e-8)
+    np.testing.assert_allclose(rates[1], (above.weights - below.weights) / (2 * h), rtol=1e-8)
+    np.testing.assert_allclose(rates[2], (above.compliance - below.compliance) @ P / (2 * h), rtol=1e-7, atol=1e-9)
+
+
+def test_the_edge_row_interpolates_at_the_contact_edge(body):
+    """As a polynomial in the coordinate of the surface, which keeps the nodes' places within the cells, does."""
+    operator = interpolated(body, 3)
+    known = operator.operators[0].interpolation(float(operator.scales[0]))[0]
+    np.testing.assert_array_equal(operator.edge_row, known)
+    assert operator.edge_row @ operator.at(EDGE).radii == pytest.approx(EDGE, rel=1e-4)
+
+
+@pytest.mark.parametrize(("name", "area"), [("half-space", 1), ("hemisphere", 1), ("hemisphere, surface area", 2)])
+def test_the_weights_add_up_to_the_area(name, area):
+    moving, make = BODIES[name]()
+    scales = chebyshev_radii(1.0, 2.0, 2)
+    at = Interpolated(scales, [make(moving.lines(float(a))) for a in scales], moving).at(EDGE)
+    assert np.sum(at.weights) == pytest.approx(area * np.pi * R**2, rel=1e-6)
+
+
+def test_the_root_squares_to_the_balanced_compliance():
+    operator = interpolated(BODIES["half-space"](), 3)
+    at, root = operator.at(EDGE), operator.root(EDGE)
+    balanced = at.compliance * (np.sqrt(at.weights)[:, None] / np.sqrt(at.weights))
+    np.testing.assert_allclose(root @ root.T, (balanced + balanced.T) / 2, atol=1e-10 * np.max(balanced))
+
+
+def test_the_jacobian_against_finite_differences_on_a_grid_that_follows_a_sphere(body):
+    problem = ContactProblem(interpolated(body, 3), 0.5, profile=Sphere(R))
+    x = problem.undeformed(-0.2, EDGE)
+    x[:-2] += 0.3 * np.cos(np.arange(x.size - 2))
+    J, h = problem.jacobian(x), 1e-6
+    steps = h * np.eye(x.size)
+    differences = np.array([(problem.residual(x + dx) - problem.residual(x - dx)) / (2 * h) for dx in steps]).T
+    np.testing.assert_allclose(J, differences, atol=1e-6 * (1 + np.max(np.abs(J[:, -1]))), rtol=1e-6)
+
+
+def test_the_load_gradient_against_finite_differences_on_a_grid_that_follows_a_sphere(body):
+    problem = ContactProblem(interpolated(body, 3), 0.5, profile=Sphere(R))
+    x, h = problem.undeformed(-0.2, EDGE), 1e-6
+    steps = h * np.eye(x.size)
+    differences = [(problem.load(x + dx) - problem.load(x - dx)) / (2 * h) for dx in steps]
+    np.testing.assert_allclose(problem.gradient(x, np.array([0.0, 1.0, 0.0, 0.0])), differences, atol=1e-7, rtol=1e-6)
+
+
+def test_a_half_space_has_the_same_events_whether_homogeneous_or_interpolated():
+    """On a grid with no length of its own, interpolation between any two radii is exact."""
+    charts = half_space_charts(1.0, resolution_for(1.0, 1e-4))
+    operator = charts[1].problem.operator
+    lines = operator.unit.cells
+    moving = MovingGrid(0 * lines, lines, FlatCoordinate())
+    scales = np.array([2.0, 0.5])
+    made = [compliance.panels(a * lines, operator.unit.cell_nodes.shape[1]) for a in scales]
+    other = Chart(ContactProblem(Interpolated(scales, made, moving), 1.0), charts[1].unknowns)
+    first, second = (find_events(trace_charts(c)) for c in (charts, (charts[0], other)))
+    for name in ("pull_off", "jump_on", "jump_off", "zero_load"):
+        a, b = (found[name].point.observables[:3] for found in (first, second))
+        np.testing.assert_allclose(a, b, atol=1e-8)
+
+
+def test_chebyshev_radii_lie_between_their_limits():
+    radii = chebyshev_radii(0.1, 3.0, 7)
+    assert np.all(np.diff(radii) < 0)
+    assert np.all((radii > 0.1) & (radii < 3.0))
+    np.testing.assert_allclose(radii * radii[::-1], 0.3)

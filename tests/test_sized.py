@@ -1,0 +1,146 @@
+"""Scenes of bodies with a length: what they refuse, and a sphere over the half-space by both solvers."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fem_adhesion
+import halfspace
+from fem_adhesion import Scene
+from fem_adhesion.scene import Counter
+from fem_adhesion.sized import Discretisation, sized_body
+from halfspace.curve import moved
+from halfspace.sized import AroundEvents
+
+HEMISPHERE = {"tabor": 1.0, "body": "hemisphere", "profile": "sphere", "radius_ratio": 30.0}
+
+REFUSED = [
+    ({"tabor": 0.0}, "tabor = 0 is outside 0 < tabor"),
+    ({"tabor": 301.0}, "tabor = 301 is outside tabor <= 300"),
+    ({"tabor": float("nan")}, "tabor = nan"),
+    ({"poisson": 0.5}, "poisson = 0.5 is outside 0 <= poisson < 0.5"),
+    ({"poisson": -0.1}, "poisson = -0.1"),
+    ({"body": "cube"}, "body = 'cube' is not one of block, hemisphere, sphere"),
+    ({"body": "body.msh"}, "pathlib.Path"),
+    ({"profile": "cone"}, "profile = 'cone' is not one of paraboloid, sphere"),
+    ({"grip": "glued"}, "grip = 'glued' is not one of sliding, bonded"),
+    ({"body": Path("any.msh")}, "profile = sphere does not go with"),
+    ({"traction": "normal"}, "traction = 'normal' is not one of projected, surface"),
+    ({"strain": "large"}, "strain = 'large' is not one of small, finite"),
+    ({"far_field": "hinged"}, "far_field = 'hinged' is not one of point_load, clamped, free"),
+    ({"radius_ratio": None}, 'radius_ratio = None for body = "hemisphere" and profile = "sphere", limit: a number'),
+    ({"body": "block", "radius_ratio": None}, 'radius_ratio = None for body = "block" and profile = "sphere"'),
+    ({"body": "block", "profile": "paraboloid"}, "radius_ratio = 30 means nothing to a block under a paraboloid"),
+    ({"radius_ratio": 1.9}, "radius_ratio = 1.9 is outside 2 <= radius_ratio"),
+    ({"radius_ratio": 1e13}, "outside 2 <= radius_ratio <= 1e12"),
+    ({"radius_ratio": float("nan")}, "radius_ratio = nan"),
+    ({"radius_ratio": float("inf")}, "radius_ratio = inf"),
+    ({"tabor": 10.0, "radius_ratio": 22.0}, "radius_ratio = 22 is outside 2.25 tabor = 22.5 or more"),
+    ({"cap_angle": 0.5}, "cap_angle = 0.5 is outside 1 <= cap_angle <= 90"),
+    ({"cap_angle": 91.0}, "cap_angle = 91"),
+    ({"radius": 50.0}, "radius = 50.0 does not go with"),
+    ({"far_field": "clamped"}, "far_field = clamped does not go with"),
+    ({"body": "sphere", "counter": Counter(0.5)}, "does not go with"),
+    ({"body": "block", "counter": Counter(0.5)}, "does not go with"),
+    ({"body": "block", "strain": "finite"}, "strain = finite does not go with"),
+    ({"body": "block", "traction": "surface"}, "traction = surface does not go with"),
+]
+
+
+@pytest.mark.parametrize(("options", "message"), REFUSED, ids=lambda x: x if isinstance(x, str) else "")
+def test_a_scene_that_cannot_be_is_refused_with_value_limit_and_remedy(options, message):
+    with pytest.raises(ValueError, match=re.escape(message)) as refusal:
+        Scene(**(HEMISPHERE | options))
+    text = str(refusal.value)
+    assert "\n" not in text
+    assert ";" in text  # after it, the remedy or the reason
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"share": 0.0}, "share = 0 is outside 0 < share < 1"),
+        ({"share": 1.0}, "share = 1 is outside 0 < share < 1"),
+        ({"share": 0.5, "radius": 0.5}, "radius = 0.5 of the counter-body is outside 1 <= radius"),
+        ({"share": 0.5, "poisson": 0.5}, "poisson = 0.5"),
+    ],
+)
+def test_a_counter_body_that_cannot_be_is_refused(options, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        Counter(**options)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"profile": "paraboloid"},
+        {"grip": "bonded", "traction": "surface"},
+        {"body": "sphere", "cap_angle": 90.0},
+        {"body": "block"},
+        {"body": Path("any.msh"), "profile": "paraboloid"},
+        {"counter": Counter(0.5)},
+        {"strain": "finite"},
+        {"tabor": 10.0, "radius_ratio": 22.5},
+    ],
+)
+def test_a_scene_that_can_be_is_not_refused(options):
+    scene = Scene(**(HEMISPHERE | options))
+    assert scene.sized
+    assert scene.sphere_radius == pytest.approx(np.sqrt(scene.radius_ratio / scene.tabor))
+
+
+def test_the_half_space_under_a_paraboloid_has_no_length():
+    assert not Scene(1.0).sized
+    assert Scene(1.0).sphere_radius == np.inf
+
+
+@pytest.mark.parametrize("rtol", [0.0, 1.0, float("nan")])
+def test_a_tolerance_out_of_range_is_refused_before_any_work(rtol):
+    with pytest.raises(ValueError, match="rtol"):
+        fem_adhesion.trace(Scene(**HEMISPHERE), rtol=rtol)
+
+
+@pytest.mark.parametrize("radius_ratio", [1.0, 2.0, float("nan")])
+def test_the_half_space_refuses_a_sphere_too_small(radius_ratio):
+    with pytest.raises(ValueError, match="radius_ratio"):
+        halfspace.trace(1.0, radius_ratio=radius_ratio)
+
+
+@pytest.fixture(scope="module")
+def spheres():
+    """The half-space under true spheres, by R/eps; None is the paraboloid."""
+    return {rho: halfspace.trace(1.0, rtol=1e-5, radius_ratio=rho) for rho in (None, 10.0, 100.0)}
+
+
+@pytest.mark.parametrize("name", ["pull_off", "jump_on", "jump_off"])
+def test_the_half_space_under_a_sphere_has_the_events_of_finite_elements(spheres, block, name):
+    """Both solve the same equations for each event, on grids and by operators of their own."""
+    event = spheres[10.0].event(name)
+    approach, load = block[name]
+    assert abs(event.approach - approach) <= event.approach_error + 3e-6 * (1 + abs(approach))
+    assert abs(event.load - load) <= event.load_error + 3e-6 * abs(load)
+
+
+@pytest.fixture(scope="module")
+def block(spheres):
+    scene = Scene(1.0, profile="sphere", radius_ratio=10.0)
+    stage = AroundEvents(sized_body(scene, Discretisation(6)))
+    found = spheres[10.0].stages[-1]
+    names = ("pull_off", "jump_on", "jump_off")
+    states = {name: moved(found[name], stage(found[name]).problem) for name in names}
+    return {name: state.point.observables[:2] for name, state in states.items()}
+
+
+def test_the_sphere_tends_to_the_paraboloid_as_one_over_rho(spheres):
+    for name in ("pull_off", "jump_on", "jump_off"):
+        far, near = (from_paraboloid(spheres, rho, name) for rho in (10.0, 100.0))
+        assert np.log10(np.abs(far / near)) == pytest.approx([1.0, 1.0], abs=0.1)
+
+
+def from_paraboloid(spheres, rho, name):
+    """Approach and load of an event less those of the paraboloid."""
+    sphere, paraboloid = spheres[rho].event(name), spheres[None].event(name)
+    return np.array([sphere.approach - paraboloid.approach, sphere.load - paraboloid.load])
