@@ -152,11 +152,14 @@ def joined(blocks: list[Block], corners: list[Index]) -> CurvedQuads:
     """
     points = np.concatenate([block.points() for block in blocks], axis=1)
     cells = [np.array([v[:-1, :-1], v[1:, :-1], v[1:, 1:], v[:-1, 1:]]).reshape(4, -1) for v in corners]
-    t = np.concatenate(cells, axis=1)
+    return of_cells(np.concatenate(cells, axis=1), points)
+
+
+def of_cells(t: Index, points: Array) -> CurvedQuads:
+    """Mesh of cells with the vertices t (4, cells) and the shape of points (2, cells, (DEGREE + 1)^2)."""
     p = np.empty((2, t.max() + 1))
-    for local, X in enumerate(CORNERS.T):
-        first, second = (X * DEGREE).astype(int)
-        p[:, t[local]] = points[:, :, first * (DEGREE + 1) + second]
+    for local, (s, u) in enumerate(CORNERS.T.astype(int) * DEGREE):
+        p[:, t[local]] = points[:, :, s * (DEGREE + 1) + u]
     return CurvedQuads(p, t, points=points)
 
 

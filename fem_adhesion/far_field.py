@@ -69,7 +69,7 @@ def clamped(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (a clamp 
 
 
 def sliding(space: Space, poisson: float) -> Exterior:  # noqa: ARG001
-    """Hold the far boundary, a horizontal plane, by its vertical displacement alone: u_z = 0, no friction.
+    """Hold the far boundary by its vertical displacement alone: u_z = 0, u_r free; on a plane, without friction.
 
     By symmetry a hemisphere held so is also half of a sphere that is squeezed between two equal walls.
     """

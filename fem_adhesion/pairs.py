@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 from skfem import ElementQuadP
 
 from fem_adhesion import bodies
@@ -56,7 +57,7 @@ def pair_operator(
     Parameters
     ----------
     lines : (m + 1,) array
-        Ends of the cells in the first sphere's coordinate, from 0 to CORE R1; the law acts as far.
+        Ends of the cells in the first sphere's coordinate, from 0 to CORE R1; the compliance is known as far.
     depths : callable
         From a size in beta, the lines below the surface.
     R : float
@@ -88,11 +89,43 @@ def pair_operator(
     return ElasticOperator(a.radii, a.weights, compliance, a.cells, a.cell_nodes), one.unknowns + other.unknowns
 
 
+def with_rigid_rim(operator: ElasticOperator, lines: Array, coordinate: bodies.Stereographic) -> ElasticOperator:
+    """Extend an operator by nodes that attract and do not yield.
+
+    Parameters
+    ----------
+    operator : ElasticOperator
+        Of q nodes.
+    lines : (m + 1,) array
+        Ends of m more cells in the coordinate, the first where the operator's end.
+    coordinate : Stereographic
+        Of the surface.
+    """
+    k = operator.cell_nodes.shape[1]
+    t, w = leggauss(k)
+    half = np.diff(lines)[:, None] / 2
+    x = (lines[:-1, None] + half * (1 + t)).ravel()
+    q, more = operator.radii.size, x.size
+    compliance = np.zeros((q + more, q + more))
+    compliance[:q, :q] = operator.compliance
+    return ElasticOperator(
+        np.concatenate([operator.radii, coordinate.radius(x)[0]]),
+        np.concatenate([operator.weights, 2 * np.pi * coordinate.ring(x)[0] * (half * w).ravel()]),
+        compliance,
+        np.concatenate([operator.cells, coordinate.radius(lines[1:])[0]]),
+        np.arange(q + more).reshape(-1, k),
+    )
+
+
 def _larger(lines: Array, R1: float, R2: float, depths: Callable[[float], Array]) -> Any:
     """Hemisphere of radius R2 whose cells end where those of R1 do, and beyond at its own core's end."""
     along = partial(_along, coordinate=_coordinate_on(R1, R2), last=float(lines[-1]))
     rest = bodies.CORE * R2 - float(along(lines[-1:])[0])
-    beyond = float(lines[-1]) + grid.geometric(rest, float(lines[-1] - lines[-2]), 2.5)[1:] if rest > 1e-9 * R2 else lines[:0]
+    beyond = (
+        float(lines[-1]) + grid.geometric(rest, float(lines[-1] - lines[-2]), 2.5)[1:]
+        if rest > 1e-9 * R2
+        else lines[:0]
+    )
     return bodies.hemisphere(R2, np.concatenate([lines, beyond]), depths(bodies.DEPTH * R2), along)
 
 

@@ -12,9 +12,10 @@ from fem_adhesion import bodies
 from fem_adhesion.condensed import condense
 from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import clamped, point_load, sliding
+from fem_adhesion.held_sphere import contact_ends, held_sphere
 from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.mesh import tensor_grid
-from fem_adhesion.pairs import gap_of, pair_operator, radii_of
+from fem_adhesion.pairs import gap_of, pair_operator, radii_of, with_rigid_rim
 from fem_adhesion.scene import Counter, Scene
 from halfspace import grid
 from halfspace.breathing import FlatCoordinate
@@ -55,7 +56,8 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     degree = int(np.clip(np.ceil(-np.log10(rtol)) - 1, 4, 8)) + level
     fine, coarse = (sized_body(scene, Discretisation(d)) for d in (degree, CURVE_DEGREE + level))
     settings = {"degree": degree, "finest": FINEST, "growth": GROWTH}
-    return Rung(partial(coarse.curve, to_load), (AroundEvents(fine, WINDOW / 2**level),), settings, remaining=REMAINING)
+    stages = (AroundEvents(fine, WINDOW / 2**level),)
+    return Rung(partial(coarse.curve, to_load), stages, settings, remaining=REMAINING, along=True)
 
 
 def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
@@ -66,32 +68,36 @@ def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
         return SizedBody(
             scene.tabor, profile, partial(_block, scene, how), how.finest, how.growth, to_equator(R), FlatCoordinate()
         )
-    return _pair(scene, how, R, scene.counter) if scene.counter else _hemisphere(scene, how, R, profile)
+    return _pair(scene, how, R, scene.counter) if scene.counter else _sphere(scene, how, R, profile)
 
 
 def _pair(scene: Scene, how: Discretisation, R: float, counter: Counter) -> SizedBody:
-    """Hemisphere and counter-body; the law acts out to the end of the smaller one's core, 0.987 of its radius."""
+    """Hemisphere and counter-body; beyond the smaller one's core, 0.987 of its radius, both are taken as rigid."""
     R1, _ = radii_of(R, counter)
 
     def make(lines: Array) -> Made:
-        depths = partial(grid.graded, 0.0, np.diff(lines).min(), growth=how.growth)
-        return pair_operator(lines, depths, R, counter, scene.poisson, how.degree, GRIPS[scene.grip])
+        core = lines[: -bodies.LAYERS]
+        depths = partial(grid.graded, 0.0, np.diff(core).min(), growth=how.growth)
+        operator, unknowns = pair_operator(core, depths, R, counter, scene.poisson, how.degree, GRIPS[scene.grip])
+        return with_rigid_rim(operator, lines[-bodies.LAYERS - 1 :], bodies.Stereographic(R1)), unknowns
 
     profile = gap_of(R, counter, scene.profile)
-    outer = np.array([bodies.CORE * R1])
+    outer = R1 * np.linspace(bodies.CORE, 2.0, bodies.LAYERS + 1)
     return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, bodies.Stereographic(R1))
 
 
-def _hemisphere(scene: Scene, how: Discretisation, R: float, profile: Profile) -> SizedBody:
-    coordinate = bodies.Stereographic(R, scene.traction)
-    outer = R * np.linspace(bodies.CORE, 2.0, bodies.LAYERS + 1)
+def _sphere(scene: Scene, how: Discretisation, R: float, profile: Profile) -> SizedBody:
+    """Hemisphere held at its mid-plane, or sphere held over a cap."""
+    whole = scene.body == "sphere"
+    outer = contact_ends(R, scene.cap_angle) if whole else R * np.linspace(bodies.CORE, 2.0, bodies.LAYERS + 1)
 
     def make(lines: Array) -> Made:
-        core = lines[: -bodies.LAYERS]
+        core = lines[: len(lines) - len(outer) + 1]
         depths = grid.graded(0.0, np.diff(core).min(), bodies.DEPTH * R, growth=how.growth)
-        return _condensed(scene, how, bodies.hemisphere(R, core, depths))
+        mesh = held_sphere(R, core, depths, scene.cap_angle) if whole else bodies.hemisphere(R, core, depths)
+        return _condensed(scene, how, mesh)
 
-    return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, coordinate)
+    return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, bodies.Stereographic(R, scene.traction))
 
 
 def _block(scene: Scene, how: Discretisation, lines: Array) -> Made:

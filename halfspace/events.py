@@ -231,26 +231,23 @@ def estimate_event(
         Part of that change that may be left.
     along : bool
         If true, an observable's change is taken to be no less than what the event's shift along the path makes of it:
-        on a single chain, one number may stand still by accident while the event moves.
+        on a single chain, one number may stand still by accident while the event moves. For stationary conditions only.
     """
     values = chains[0][-1].point.observables
     changes = [
         sum((np.abs(b.point.observables - a.point.observables) for a, b in pairwise(chain)), np.zeros(4))
         for chain in chains
     ]
-    if along:
+    if along and chains[0][-1].condition.stationary:
         changes += [_shifted(chains[0][-1], change) for change in changes]
     errors = remaining * np.max(changes, axis=0) + ROUND_OFF * (1 + np.abs(values))
     return Event(name, *map(float, values), *map(float, errors))
 
 
 def _shifted(event: Located, change: Array) -> Array:
-    """Changes of the observables by a shift along the path; none of what the event prescribes.
+    """Changes of the observables by a shift along the path, to which an event is sensitive where a rate must vanish.
 
     The shift is read off the contact radius, or off the central gap where there is no contact.
     """
     rates, tell = event.point.rates, CONTACT_RADIUS if np.isfinite(change[CONTACT_RADIUS]) else CENTRAL_GAP
-    shifted = np.abs(rates) * (change[tell] / np.abs(rates[tell]))
-    if not event.condition.stationary:
-        shifted[event.condition.observable] = 0.0
-    return np.asarray(shifted)
+    return np.asarray(np.abs(rates) * (change[tell] / np.abs(rates[tell])))

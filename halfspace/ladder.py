@@ -87,6 +87,9 @@ class Rung:
         As fine as the rung below, with other cells: it errs as much, but not by the same accident of sign.
     remaining : float
         Part of the changes that may be left as error; above 1 where the error falls slowly from stage to stage.
+    along : bool
+        Whether the shift of an event along the path counts, see `halfspace.events.estimate_event`: on grids that follow
+        the contact, whose radius tells it precisely, and where there is no twin to guard against chance.
     """
 
     curve: Callable[[], Charts]
@@ -94,6 +97,7 @@ class Rung:
     settings: Mapping[str, object]
     twin: Stage | None = None
     remaining: float = REMAINING
+    along: bool = False
 
 
 def charted_rung(*stages: Charts) -> Rung:
@@ -147,7 +151,7 @@ def _climb_from(
         higher = rung(level)
         chains = _step_up(state, higher)
         state = chains[0][-1]
-        events = _estimate(chains, higher.remaining)
+        events = _estimate(chains, higher.remaining, along=higher.along)
         if all(_meets(event, rtol) for event in events.values()):
             break
     return EquilibriumPath(
@@ -181,11 +185,11 @@ def _moved_to(event: Located, stage: Stage) -> Located:
     return found if better is found.problem else moved(found, better)
 
 
-def _estimate(chains: Sequence[Sequence[State]], remaining: float) -> dict[str, Event]:
+def _estimate(chains: Sequence[Sequence[State]], remaining: float, *, along: bool) -> dict[str, Event]:
     """Events of the last state, with their changes along the chains as errors."""
     names = [name for name in EVENTS if name in chains[0][-1]]
     by_name = {name: [[state[name] for state in chain] for chain in chains] for name in names}
-    return {name: estimate_event(name, own, remaining, along=len(chains) == 1) for name, own in by_name.items()}
+    return {name: estimate_event(name, own, remaining, along=along) for name, own in by_name.items()}
 
 
 def _energy(chains: Sequence[Sequence[State]], remaining: float) -> Estimate:

@@ -64,8 +64,12 @@ def require_radius_ratio(radius_ratio: float, tabor: float) -> float:
 
 
 def require_cap_angle(cap_angle: float) -> float:
-    """Return the half-angle of a cap in degrees, or raise ValueError unless 1 <= cap_angle <= 90."""
-    return _require(cap_angle, "cap_angle", 1 <= cap_angle <= 90, "1 <= cap_angle <= 90", "give degrees, say 30")
+    """Return the half-angle of a cap in degrees, or raise ValueError unless it is 1 to 89.99, or 90.
+
+    Between the last two the free ring beside the equator is lost to rounding.
+    """
+    holds = 1 <= cap_angle <= 89.99 or cap_angle == 90
+    return _require(cap_angle, "cap_angle", holds, "1 <= cap_angle <= 89.99 and is not 90", "give degrees, say 30")
 
 
 def require_share(share: float, radius: float) -> float:
