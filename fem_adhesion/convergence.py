@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from skfem import ElementQuadP
 
-from fem_adhesion import far_field, meshed, sized
+from fem_adhesion import far_field, finite_strain_scene, meshed, sized
 from fem_adhesion.condensed import condense
 from fem_adhesion.elasticity import Space
 from fem_adhesion.incompressible import stiffness_for
@@ -79,6 +79,8 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     """
     require_rtol(rtol)
     require_load(to_load)
+    if scene.strain == "finite":
+        return finite_strain_scene.trace(scene, rtol, to_load)
     if isinstance(scene.body, Path):
         return climb(rtol, partial(meshed.ladder, scene), to_load=to_load, most_rungs=1)
     if scene.sized:

@@ -7,13 +7,9 @@ height of the undeformed surface in beta^2/R and r_d = r + delta u_r, the work i
 
     -int [P(H) v_z dA + c Phi(H)/mu d(dA)],    H = -alpha* + mu (z - u_z),    dA = 2 pi r_d dr_d,
 
-d(dA) the change of the horizontal area by delta v_r. The vertical force P per horizontal area is that of a pairwise
-attraction summed over the matter beneath: a vertical force -d sigma/dh on unit volume, in all sigma on a column.
-What the column does sideways depends on its own elasticity, since its stress falls to zero towards the surface: held
-sideways by the body, it is under a surface stress c Phi, c = nu/(1 - nu). That is the second term; c = 1, an
-incompressible column, makes the whole traction a pressure, normal to the deformed surface. Its effect is of the first
-order in delta, as is that of the finite strains. The default c = 0 is the vertical traction of the linear body; it has
-no energy and its tangent is not symmetric, both by terms of the order of delta. c = 1 has the energy int Phi(H) dA.
+d(dA) the change of the horizontal area by delta v_r. The first term is the force, the second that of a surface stress
+c Phi; `fem_adhesion.finite_strain_traction` says what is known of c and of the area. The default, c = 0, is a vertical
+traction per deformed area.
 """
 
 from __future__ import annotations
@@ -21,7 +17,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -29,13 +24,12 @@ from scipy.sparse.linalg import splu
 
 from fem_adhesion.far_field import Exterior
 from fem_adhesion.finite_strain_bodies import Body
-from fem_adhesion.finite_strain_surface import ContactSurface, contact_surface, rigid_operator, scaled
+from fem_adhesion.finite_strain_solve import Elimination, Step, elimination
+from fem_adhesion.finite_strain_surface import ContactSurface
+from fem_adhesion.finite_strain_traction import Convention, Traction
 from halfspace.compliance import Array
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
-from halfspace.profiles import Paraboloid, Profile
-
-PARABOLOID = Paraboloid()
+from halfspace.profiles import Profile
 
 LEAST_VOLUME = 0.1
 """J below which no step may take a cell in one go, unless it was there already: before it is turned inside out."""
@@ -55,15 +49,15 @@ class FiniteStrainProblem:
         Where the surface law acts.
     interface : ContactProblem
         The surface law, and what can be said of a contact from the gaps alone, on a rigid body's operator.
-    surface_stress : float
-        c, surface stress over the attraction's energy.
+    convention : Convention
+        What the law's traction is counted per, and its direction.
     """
 
     body: Body
     exterior: Exterior
     surface: ContactSurface
     interface: ContactProblem
-    surface_stress: float
+    convention: Convention
 
     @property
     def tabor(self) -> float:
@@ -79,6 +73,12 @@ class FiniteStrainProblem:
     def stretch(self) -> float:
         """Stretch parameter delta = beta/R, zero for the linear body."""
         return self.body.stretch
+
+    @property
+    def traction(self) -> Traction:
+        """Forces of the surface law."""
+        stretch = self.stretch if self.convention.deformed_area else 0.0
+        return Traction(self.surface, self.tabor, stretch, self.convention.surface_stress)
 
     def stretched(self, stretch: float) -> FiniteStrainProblem:
         """Return the same problem at another delta, the undeformed shape unchanged."""
@@ -103,8 +103,8 @@ class FiniteStrainProblem:
         return np.asarray(self.interface.undeformed(x[-1])[:-2] - self.tabor * (self.surface.vertical @ x[:-1]))
 
     def areas(self, x: Array) -> Array:
-        """Weights of the deformed horizontal area 2 pi r_d dr_d, (q,), in beta^2."""
-        return self.surface.areas(x[:-1], self.stretch)
+        """Weights of the horizontal area that the law's traction acts on, (q,), in beta^2."""
+        return self.traction.areas(x[:-1])
 
     def pressure(self, x: Array) -> Array:
         """P at the surface's points, (q,)."""
@@ -117,55 +117,58 @@ class FiniteStrainProblem:
     def residual(self, x: Array) -> Array:
         """Forces on the reduced unknowns that are out of balance, in R dgamma, shape (n,)."""
         T, S, y = self.exterior.reduction, self.exterior.stiffness, x[:-1]
-        P, Phi = self.pressure(x), self.interface.law.energy(self.gaps(x), self.tabor)
-        return np.asarray(T.T @ self.body.forces(T @ y) + S @ y + self._forces(y, P, Phi))
-
-    def _forces(self, y: Array, P: Array, Phi: Array) -> Array:
-        """Less the forces of the surface law on the reduced unknowns, (n,): upwards where the pressure is downwards."""
-        s, delta = self.surface, self.stretch
-        spreading = s.area_gradient(y, delta, self.surface_stress / self.tabor * Phi)
-        return np.asarray(s.vertical.T @ (P * s.areas(y, delta)) + spreading)
+        return np.asarray(T.T @ self.body.forces(T @ y) + S @ y + self.traction.forces(y, *self._law(x)))
 
     def jacobian(self, x: Array) -> sparse.csc_array:
         """Derivative of the residual, (n, n + 1)."""
-        return sparse.csc_array(sparse.hstack(self._derivatives(x)))
+        T = self.exterior.reduction
+        body = T.T @ self.body.tangent(T @ x[:-1]) @ T
+        return sparse.csc_array(
+            sparse.hstack([body + self._outer_tangent(x), sparse.csc_array(self._by_approach(x)[:, None])])
+        )
 
-    def _derivatives(self, x: Array) -> tuple[sparse.csc_array, sparse.csc_array]:
-        """Derivatives of the residual by y, (n, n), and by the approach, (n, 1)."""
-        T, y = self.exterior.reduction, x[:-1]
-        body = T.T @ self.body.tangent(T @ y) @ T + self.exterior.stiffness
-        # As the approach grows by one, H falls by one: P by its slope, and Phi rises by P.
+    def _law(self, x: Array) -> tuple[Array, Array]:
+        """P and Phi at the surface's points."""
+        gaps, mu = self.gaps(x), self.tabor
+        return self.interface.law.pressure(gaps, mu), self.interface.law.energy(gaps, mu)
+
+    def _by_approach(self, x: Array) -> Array:
+        """Derivative of the residual by the approach, (n,): H falls by one, P by its slope, and Phi rises by P."""
         slope = self.interface.law.slope(self.gaps(x), self.tabor)
-        by_approach = self._forces(y, -slope, self.pressure(x))
-        return sparse.csc_array(body + self._contact_tangent(x, slope)), sparse.csc_array(by_approach[:, None])
+        return self.traction.forces(x[:-1], -slope, self.pressure(x))
 
-    def _contact_tangent(self, x: Array, slope: Array) -> sparse.csr_array:
-        """Derivative of `_forces` by y, (n, n), for the law's slope dP/dH."""
-        s, mu, delta, c, y = self.surface, self.tabor, self.stretch, self.surface_stress, x[:-1]
-        P, Phi, rates = self.pressure(x), self.interface.law.energy(self.gaps(x), self.tabor), s.area_rates(y, delta)
-        tangent = s.vertical.T @ (scaled(-mu * slope * s.areas(y, delta), s.vertical) + scaled(P, rates))
-        if c:
-            tangent = tangent + c * (rates.T @ scaled(P, s.vertical)) + s.area_curvature(delta, c / mu * Phi)
-        return sparse.csr_array(tangent)
+    def _outer_tangent(self, x: Array) -> sparse.csr_array:
+        """Derivative by y of the forces of surface law and exterior, (n, n)."""
+        slope = self.interface.law.slope(self.gaps(x), self.tabor)
+        return sparse.csr_array(self.traction.tangent(x[:-1], *self._law(x), slope) + self.exterior.stiffness)
+
+    @cached_property
+    def _elimination(self) -> Elimination:
+        return elimination(self.body, self.exterior, self.surface.unknowns)
 
     def bordered_solver(self, x: Array, row: Array) -> Callable[[Array], Array]:
         """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
-        border = [sparse.csc_array(row[None, :-1]), sparse.csc_array(row[None, -1:])]
-        J = sparse.csc_array(sparse.block_array([[*self._derivatives(x)], border], format="csc"))
-        try:
-            # A symmetric pattern but for the border, indefinite on the unstable branch: ordered as such, yet pivoted.
-            factors = splu(J, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options={"SymmetricMode": True})
-        except RuntimeError as error:  # SuperLU's way of saying so
-            raise np.linalg.LinAlgError("the bordered Jacobian is singular") from error
-        return lambda rhs: np.asarray(factors.solve(rhs))
+        cells = self.body.cell_tangents(self.exterior.reduction @ x[:-1])
+        return self._elimination.factorise(cells, self._outer_tangent(x), self._by_approach(x), row).solve
+
+    def negative_directions(self, x: Array) -> int:
+        """Number of directions in which the body moves on by itself at fixed approach; 0 means stable.
+
+        Counted as the negative pivots of the tangent's triangular factors, without exchanges, but for one of each
+        pressure unknown. Where there is an energy that is the number of directions in which it falls, by Sylvester's
+        law of inertia. The tangent of the vertical traction per deformed area is not symmetric, but is so up to terms
+        of the order of delta; then the number changes where the determinant does its sign, that is at the folds.
+        """
+        cells = self.body.cell_tangents(self.exterior.reduction @ x[:-1])
+        apart = np.zeros(x.size - 1), np.eye(1, x.size, x.size - 1)[0]
+        step = self._elimination.factorise(cells, self._outer_tangent(x), *apart, pivoting=0.0)
+        return step.negative_pivots() - (self.body.unknowns - self.body.space.unknowns)
 
     @cached_property
-    def _factors(self) -> Any:
+    def _undeformed(self) -> Step:
         """Factors of the undeformed body's tangent, positive definite or a saddle point; for norms."""
-        T = self.exterior.reduction
-        K = T.T @ self.body.tangent(np.zeros(self.body.unknowns)) @ T + self.exterior.stiffness
-        options = {"SymmetricMode": True}
-        return splu(sparse.csc_array(K), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        cells, n = self.body.cell_tangents(np.zeros(self.body.unknowns)), self.exterior.reduction.shape[1]
+        return self._elimination.factorise(cells, self.exterior.stiffness.tocsr(), np.zeros(n), np.eye(1, n + 1, n)[0])
 
     def _surface_state(self, x: Array) -> Array:
         """State as the interface knows it: H, alpha*, and the radii's fixed scale 1."""
@@ -198,7 +201,7 @@ class FiniteStrainProblem:
         by_gap, row = weights[CENTRAL_GAP] * self.interface.operator.axis_row, np.zeros(x.size)
         if weights[LOAD]:
             by_gap = by_gap + weights[LOAD] * self.areas(x) * self.interface.law.slope(self.gaps(x), self.tabor)
-            row[:-1] += weights[LOAD] * self.surface.area_gradient(x[:-1], self.stretch, self.pressure(x))
+            row[:-1] += weights[LOAD] * self.traction.area_gradient(x[:-1], self.pressure(x))
         if weights[CONTACT_RADIUS]:
             by_gap = by_gap + weights[CONTACT_RADIUS] * self._radius_by_gap(x)
             at_edge, _ = self._edge_rows(x)
@@ -233,7 +236,7 @@ class FiniteStrainProblem:
 
     def misfit(self, x: Array, residual: Array) -> float:
         """Norm, relative to the gaps, of the undeformed body's deflection due to the forces out of balance."""
-        dH = -self.tabor * (self.surface.vertical @ self._factors.solve(residual))
+        dH = -self.tabor * (self.surface.vertical @ self._undeformed.solve(np.append(residual, 0.0))[:-1])
         return self.interface.misfit(self._surface_state(x), np.append(dH, 0.0))
 
     def require_resolution(self, x: Array) -> None:
@@ -247,60 +250,9 @@ class FiniteStrainProblem:
         return self.tabor * (self.body.energy(self.exterior.reduction @ y) + float(outside))
 
     def energy(self, x: Array) -> float:
-        """Elastic and surface energy in R dgamma eps, the latter int Phi(H) 2 pi r_d dr_d.
+        """Elastic and surface energy in R dgamma eps, the latter int Phi(H) dA.
 
-        If c = 1 its gradient by y is mu times the residual and its derivative by the approach along the equilibria is
-        the load; else neither.
+        If the convention is conservative its gradient by y is mu times the residual and its derivative by the approach
+        along the equilibria is the load; else neither.
         """
         return self.elastic_energy(x) + float(self.areas(x) @ self.interface.law.energy(self.gaps(x), self.tabor))
-
-
-def finite_strain_problem(
-    body: Body,
-    exterior: Exterior,
-    tabor: float,
-    *,
-    profile: Profile = PARABOLOID,
-    surface_stress: float = 0.0,
-    points: int | None = None,
-    law: SurfaceLaw = LENNARD_JONES,
-) -> FiniteStrainProblem:
-    """Put a body under a rigid flat wall that attracts it.
-
-    Parameters
-    ----------
-    body : Body
-        From `finite_strain_bodies.displacement_body` or `finite_strain_mixed.mixed_body`.
-    exterior : Exterior
-        Of all displacement unknowns of its space, interior ones included: see `far_field.with_interiors`.
-    tabor, law
-        As in `halfspace.contact.ContactProblem`.
-    profile : Profile
-        Height of the body's undeformed surface over its pole, carried along by its points. That of a block is a
-        perturbation of its flat surface, as in the linear body.
-    surface_stress : float
-        c, surface stress over the attraction's energy: 0 for a vertical traction, 1 for one normal to the deformed
-        surface, poisson/(1 - poisson) for that of a thin attracted layer.
-    points : int, optional
-        Gauss points per contact facet; p + 2 unless given.
-
-    Raises
-    ------
-    ValueError
-        If the exterior holds the body by a spring that has to be taken off again (`free`).
-    """
-    if exterior.rigid_compliance:
-        raise ValueError("a far field with a rigid_compliance is known to `condense` only; use point_load or clamped")
-    whole = _with_pressures(exterior, body)
-    space = body.space
-    surface = contact_surface(space, whole, space.degree + 2 if points is None else points)
-    rigid = rigid_operator(space, surface)
-    return FiniteStrainProblem(body, whole, surface, ContactProblem(rigid, tabor, law, profile), surface_stress)
-
-
-def _with_pressures(exterior: Exterior, body: Body) -> Exterior:
-    """Let the unknowns beyond the displacements be reduced unknowns themselves."""
-    more = body.unknowns - body.space.unknowns
-    T = sparse.block_diag([exterior.reduction, sparse.eye_array(more)])
-    S = sparse.block_diag([exterior.stiffness, sparse.csc_array((more, more))])
-    return Exterior(sparse.csc_array(T), sparse.csc_array(S))

@@ -8,6 +8,7 @@ does not.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol, Self
 
 import numpy as np
@@ -20,11 +21,12 @@ from fem_adhesion.finite_strain_cells import (
     Pattern,
     cells_of,
     displacement_pattern,
+    interior_positions,
     least_volume_ratio,
     states,
     summed,
 )
-from halfspace.compliance import Array
+from halfspace.compliance import Array, Index
 
 
 class Body(Protocol):
@@ -53,12 +55,26 @@ class Body(Protocol):
         """Return all unknowns from the N displacements."""
         ...
 
+    @property
+    def cell_dofs(self) -> Index:
+        """Unknowns of each cell, (cells, k)."""
+        ...
+
+    @property
+    def inside(self) -> Index:
+        """Positions among the k of displacements interior to a cell, in the order of the space's `interior_dofs`."""
+        ...
+
     def forces(self, u: Array) -> Array:
         """Forces with which the body resists, in R dgamma."""
         ...
 
+    def cell_tangents(self, u: Array) -> Array:
+        """Their derivative, symmetric, cell by cell, (cells, k, k)."""
+        ...
+
     def tangent(self, u: Array) -> sparse.csc_array:
-        """Their derivative, symmetric."""
+        """Sum of these."""
         ...
 
     def energy(self, u: Array) -> float:
@@ -116,12 +132,24 @@ class DisplacementBody:
         cells = states(self.cells, u, self.stretch)
         return summed(((c.dofs, c.forces(material.stress(state, *self._lame))) for c, state in cells), self.unknowns)
 
+    @cached_property
+    def cell_dofs(self) -> Index:
+        """Unknowns of each cell, (cells, k)."""
+        return np.concatenate([cells.dofs for cells in self.cells])
+
+    @property
+    def inside(self) -> Index:
+        """Positions among the k of displacements interior to a cell."""
+        return interior_positions(self.space)
+
+    def cell_tangents(self, u: Array) -> Array:
+        """Derivative of the forces, cell by cell, (cells, k, k)."""
+        cells = states(self.cells, u, self.stretch)
+        return np.concatenate([c.products(material.tangent(state, *self._lame)) for c, state in cells])
+
     def tangent(self, u: Array) -> sparse.csc_array:
         """Derivative of the forces, (N, N), symmetric."""
-        blocks = [
-            cells.products(material.tangent(state, *self._lame)) for cells, state in states(self.cells, u, self.stretch)
-        ]
-        return self.pattern.assemble(np.concatenate(blocks))
+        return self.pattern.assemble(self.cell_tangents(u))
 
     def energy(self, u: Array) -> float:
         """Elastic energy in R dgamma mu eps."""

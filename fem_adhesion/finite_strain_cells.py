@@ -121,6 +121,12 @@ def _batches(space: Space) -> Iterator[Cells]:
         yield Cells(space.cell_dofs[:, cells].T, np.stack([hoop, rr, zz], axis=2), np.stack([rr, zz], axis=2), measure)
 
 
+def interior_positions(space: Space) -> Index:
+    """Positions, among a cell's 2 n displacement unknowns, of those that no other cell shares."""
+    n, own = len(space.cell_dofs) // 2, space.element.interior_dofs
+    return np.concatenate([np.arange(n - own, n), np.arange(2 * n - own, 2 * n)])
+
+
 def displacement_pattern(space: Space, batches: tuple[Cells, ...]) -> Pattern:
     """Pattern of the (N, N) matrix of the displacements."""
     dofs = np.concatenate([cells.dofs for cells in batches]).T

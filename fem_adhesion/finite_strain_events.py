@@ -1,95 +1,121 @@
-"""Path and events at finite strain: traced from far separation, or corrected from those of the linear body."""
+"""Events at finite strain, from states of the linear body or of another discretisation at the same contact radius."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import cast
+import numpy as np
 
 from fem_adhesion.finite_strain import FiniteStrainProblem
+from halfspace import newton
 from halfspace.compliance import Array
-from halfspace.contact import APPROACH, ContactProblem
-from halfspace.curve import COMPRESSION, Chart, Segment, find_events, metric_for, trace_charts
-from halfspace.events import Located, relocate
-from halfspace.newton import NotConverged
-from halfspace.path import Metric, Steps
+from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
+from halfspace.events import Located
+from halfspace.newton import Control, NotConverged
+from halfspace.path import Metric, Point, make_point
 
-SMALLEST_PART = 1 / 64
+SMALLEST_PART = 1 / 32
 """Of delta, in which it is raised from zero where the linear body's events are too far away."""
 
+STEP_TOLERANCE = 1e-8  # of arclength: the next step of the secant would be smaller by as much again
+FARTHEST = 1.0  # of arclength, that an event may lie from where it is looked for
+MOST_SECANTS, MOST_ITERATIONS = 20, 15
+UPDATE = 1e-6  # last step of Newton's method, relative: what is left is of the order of its square
 
-def trace_finite(
-    problem: FiniteStrainProblem, *, to_load: float = COMPRESSION, steps: Steps | None = None
-) -> tuple[Segment, dict[str, Located]]:
-    """Trace the load-approach curve on one mesh and solve for its events.
+
+def corrected(event: Located, problem: FiniteStrainProblem, start: Array, metric: Metric) -> Located:
+    """Solve for an event, from a state at its contact radius or central gap.
 
     Parameters
     ----------
+    event : Located
+        On any discretisation, of the linear body or not.
     problem : FiniteStrainProblem
-        On a mesh that is fine wherever the contact edge passes.
-    to_load : float
-        Compressive load at which the curve ends, in R dgamma.
-    steps : Steps, optional
-        Of the continuation.
-
-    Returns
-    -------
-    Segment, dict of Located
-        The points, and the events as `halfspace.curve.find_events` names them. They carry no error estimates, which
-        take a second mesh: see `halfspace.events.estimate_event`.
+        On which it is sought.
+    start : array
+        State vector, of the linear body or not.
+    metric : Metric
+        What arclength means.
 
     Raises
     ------
     NotConverged
-        If the continuation gets stuck.
-    GridTooCoarse
-        If the contact edge comes to a place where the mesh is too coarse for the spike of tension there.
+        If the event is lost on the way.
     """
-    # The curve asks of a problem what both kinds have: the equilibrium, the Tabor parameter and the undeformed state.
-    chart = Chart(cast(ContactProblem, problem), problem.body.unknowns)
-    segments = trace_charts((chart,), to_load, steps)
-    return segments[0], find_events(segments)
+    try:
+        solution = raised(problem, start, same_contact(event.point.observables))
+        origin = make_point(problem, solution, metric, metric.weights * event.point.rates, event.point.arclength)
+        return _by_secants(event, problem, origin, metric)
+    except NotConverged as error:
+        approach, load = event.point.observables[[APPROACH, LOAD]]
+        raise NotConverged(
+            f"the event at approach {approach:.6g} eps, load {load:.6g} R dgamma is lost at beta/R = "
+            f"{problem.stretch:.3g} ({error}); take a larger radius_ratio"
+        ) from error
 
 
-def correct_events(
-    problem: FiniteStrainProblem, events: Mapping[str, Located], displacements: Mapping[str, Array]
-) -> dict[str, Located]:
-    """Solve for the events of the linear body again at finite strain.
+def same_contact(observables: Array) -> Control:
+    """Control of the contact radius of a state, or of its central gap while there is none."""
+    if np.isfinite(observables[CONTACT_RADIUS]):
+        return newton.contact_radius(float(observables[CONTACT_RADIUS]))
+    return newton.central_gap(float(observables[CENTRAL_GAP]))
 
-    Parameters
-    ----------
-    problem : FiniteStrainProblem
-        On the same mesh as the linear body, and with the same profile and exterior.
-    events : mapping of str to Located
-        Events of the linear body.
-    displacements : mapping of str to (N,) arrays
-        All displacements of the linear body at each of them, in beta^2/R: `CondensedBody.displacement` of the pressure.
 
-    Returns
-    -------
-    dict of Located
-        Under the same names.
+def raised(problem: FiniteStrainProblem, start: Array, control: Control) -> newton.Solution:
+    """Solve under a control that the path does not turn back from, raising delta from zero if it cannot be at once.
 
     Raises
     ------
     NotConverged
-        If an event is lost on the way from infinitesimal to finite strains.
+        If a small part of delta is too much.
     """
-    metric = metric_for(problem.tabor)
-    return {name: _corrected(event, problem, displacements[name], metric) for name, event in events.items()}
-
-
-def _corrected(event: Located, problem: FiniteStrainProblem, displacement: Array, metric: Metric) -> Located:
-    """Raise delta from zero, at once if Newton's method can, otherwise in parts."""
-    found = event
-    x = problem.stretched(0.0).state_from(float(event.point.observables[APPROACH]), displacement)
-    done, part = 0.0, 1.0
-    while done < 1:
+    x, done, part = start, 0.0, 1.0
+    while True:
+        at = problem.stretched((done + part) * problem.stretch) if done + part < 1 else problem
         try:
-            found = relocate(found, problem.stretched((done + part) * problem.stretch), x, metric)
+            _require_volume(at, x)
+            solution = newton.solve(at, x, control, tolerance=UPDATE, max_iterations=MOST_ITERATIONS)
         except NotConverged:
             part /= 2
             if part < SMALLEST_PART:
                 raise
             continue
-        x, done = found.point.x, done + part
-    return found
+        x, done = solution.x, done + part
+        if done >= 1:
+            return solution
+
+
+def _require_volume(problem: FiniteStrainProblem, x: Array) -> None:
+    """Refuse a start at which the material is turned inside out, as a linear body's may be."""
+    least = problem.body.least_volume_ratio(problem.exterior.reduction @ x[:-1])
+    if least <= 0:
+        raise NotConverged(f"the start is turned inside out, volume ratio {least:.2g}; start from a smaller stretch")
+
+
+def _by_secants(event: Located, problem: FiniteStrainProblem, origin: Point, metric: Metric) -> Located:
+    """Find the root of an event's condition by secants along the path, shortened where Newton's method fails."""
+    point, slope, part = origin, event.slope, 1.0
+    for _ in range(MOST_SECANTS):
+        step = -part * event.condition.of(point) / slope
+        place = point.arclength - origin.arclength + step
+        if abs(step) < STEP_TOLERANCE * part:
+            return Located(event.condition, problem, point, slope)
+        if not abs(place) < FARTHEST:
+            break
+        try:
+            last, point = point, _onwards(origin, problem, point, step, place, metric)
+        except NotConverged:
+            part /= 4
+            continue
+        slope, part = (event.condition.of(point) - event.condition.of(last)) / step, 1.0
+    raise NotConverged("no root of its condition is near")
+
+
+def _onwards(
+    origin: Point, problem: FiniteStrainProblem, last: Point, step: float, place: float, metric: Metric
+) -> Point:
+    """Solve in the plane across the path at a distance `place` from the origin, a step after the last point."""
+    weights = metric.weights * origin.rates
+    used = weights != 0
+    control = Control(weights, float(weights[used] @ origin.observables[used]) + place)
+    guess = last.x + problem.longest_step(last.x, step * last.tangent) * step * last.tangent
+    solution = newton.solve(problem, guess, control, tolerance=UPDATE, max_iterations=MOST_ITERATIONS)
+    return make_point(problem, solution, metric, weights, origin.arclength + place)

@@ -13,6 +13,7 @@ E* beta/R and positive in tension. J. Bonet and R. D. Wood, Nonlinear Continuum 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from fem_adhesion.finite_strain_cells import (
     Cells,
     Pattern,
     cells_of,
-    displacement_pattern,
+    interior_positions,
     least_volume_ratio,
     states,
     summed,
@@ -53,8 +54,8 @@ class MixedBody:
         The pressure's m functions at a cell's quadrature points, the same in every cell.
     pressures : tuple of (cells, m) int arrays
         Pressure unknowns of each batch, from 0.
-    patterns : (Pattern, Pattern)
-        Of the (N, N) block of the displacements and the (N, M) one that couples them to the pressures.
+    pattern : Pattern
+        Of the tangent.
     products : (M, M) sparse array
         Products of pressures, integrated over the body.
     """
@@ -65,7 +66,7 @@ class MixedBody:
     cells: tuple[Cells, ...]
     functions: Array
     pressures: tuple[Index, ...]
-    patterns: tuple[Pattern, Pattern]
+    pattern: Pattern
     products: sparse.csc_array
 
     @property
@@ -75,7 +76,7 @@ class MixedBody:
 
     def stretched(self, stretch: float) -> MixedBody:
         """Return the same body at another delta."""
-        parts = (self.cells, self.functions, self.pressures, self.patterns, self.products)
+        parts = (self.cells, self.functions, self.pressures, self.pattern, self.products)
         return MixedBody(self.space, self.poisson, stretch, *parts)
 
     def lifted(self, displacement: Array) -> Array:
@@ -93,14 +94,31 @@ class MixedBody:
         residue = self._log_volumes(u) - self.products @ u[self.space.unknowns :] / lam
         return np.append(summed(parts, self.space.unknowns), residue)
 
-    def tangent(self, u: Array) -> sparse.csc_array:
-        """Derivative of the forces, (N + M, N + M): symmetric, a saddle point."""
-        blocks = []
+    @cached_property
+    def cell_dofs(self) -> Index:
+        """Unknowns of each cell, (cells, k): displacements, then pressures."""
+        displacements, pressures = np.concatenate([c.dofs for c in self.cells]), np.concatenate(self.pressures)
+        return np.concatenate([displacements, self.space.unknowns + pressures], axis=1)
+
+    @property
+    def inside(self) -> Index:
+        """Positions among the k of displacements interior to a cell."""
+        return interior_positions(self.space)
+
+    def cell_tangents(self, u: Array) -> Array:
+        """Derivative of the forces, cell by cell, (cells, k, k): each a saddle point."""
+        n, blocks = self.cells[0].dofs.shape[1], np.empty((len(self.cell_dofs), *2 * [self.cell_dofs.shape[1]]))
+        parts = np.split(blocks, np.cumsum([len(c.dofs) for c in self.cells])[:-1])
         for batch, (cells, state) in enumerate(states(self.cells, u, self.stretch)):
             D = material.moduli(state, self._lame[1], self._pressure(u, batch))
-            blocks.append((cells.products(D), cells.works(state.inverse_transpose, self.functions)))
-        K, B = (p.assemble(np.concatenate(b)) for p, b in zip(self.patterns, zip(*blocks, strict=True), strict=True))
-        return sparse.csc_array(sparse.block_array([[K, B], [B.T, -self.products / self._lame[0]]], format="csc"))
+            coupling, part = cells.works(state.inverse_transpose, self.functions), parts[batch]
+            part[:, :n, :n], part[:, :n, n:], part[:, n:, :n] = cells.products(D), coupling, coupling.transpose(0, 2, 1)
+            part[:, n:, n:] = (cells.measure[:, None] * self.functions) @ self.functions.T / -self._lame[0]
+        return blocks
+
+    def tangent(self, u: Array) -> sparse.csc_array:
+        """Derivative of the forces, (N + M, N + M): symmetric, a saddle point."""
+        return self.pattern.assemble(self.cell_tangents(u))
 
     def energy(self, u: Array) -> float:
         """Elastic energy in R dgamma mu eps."""
@@ -149,12 +167,11 @@ def mixed_body(space: Space, poisson: float, stretch: float, pressure: Any) -> M
     by_cell = np.asarray(dofs.element_dofs, dtype=np.intp)
     pressures = tuple(np.split(by_cell.T, np.cumsum([len(c.dofs) for c in cells])[:-1]))
     values = _reference_values(pressure, cell_quadrature(space)[0], len(by_cell))
-    displacements = np.concatenate([c.dofs for c in cells]).T
-    coupling = Pattern.of(displacements, by_cell, (space.unknowns, dofs.N))
+    together = np.concatenate([np.concatenate([c.dofs for c in cells]).T, space.unknowns + by_cell])
+    pattern = Pattern.of(together, together, (space.unknowns + dofs.N, space.unknowns + dofs.N))
     blocks = np.concatenate([(c.measure[:, None] * values) @ values.T for c in cells])
     products = Pattern.of(by_cell, by_cell, (dofs.N, dofs.N)).assemble(blocks)
-    patterns = (displacement_pattern(space, cells), coupling)
-    return MixedBody(space, poisson, require_stretch(stretch), cells, values, pressures, patterns, products)
+    return MixedBody(space, poisson, require_stretch(stretch), cells, values, pressures, pattern, products)
 
 
 def _reference_values(element: Any, points: Array, count: int) -> Array:

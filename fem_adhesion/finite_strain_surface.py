@@ -10,7 +10,7 @@ from scipy import sparse
 
 from fem_adhesion.elasticity import Space, boundary_basis
 from fem_adhesion.far_field import Exterior
-from halfspace.compliance import Array, ElasticOperator
+from halfspace.compliance import Array, ElasticOperator, Index
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,11 @@ class ContactSurface:
         half = self.radial.T @ scaled(stretch**2 * self.measure * amounts, self.radial_rate)
         return sparse.csr_array(half + half.T)
 
+    @property
+    def unknowns(self) -> Index:
+        """The reduced unknowns that move the surface, ascending."""
+        return np.unique(np.concatenate([field.indices for field in (self.radial, self.vertical, self.radial_rate)]))
+
     def _radii_rate(self, y: Array, stretch: float) -> Array:
         return np.asarray(self.radii_rate + stretch * (self.radial_rate @ y))
 
@@ -82,9 +87,19 @@ def contact_surface(space: Space, exterior: Exterior, points: int) -> ContactSur
     rates = np.array([b[0].grad[0] * basis.normals[1] - b[0].grad[1] * basis.normals[0] for b in basis.basis])
     radial, vertical = (T[components] for components in space.components)
     at_points, along = (_rows(basis, v)[order] for v in (values, rates))
+    # On a facet only its own functions count; the others of its cell vanish there but for rounding.
+    own = np.zeros(basis.N)
+    own[space.boundary_functions("contact")] = 1.0
+    radial, vertical = (sparse.diags_array(own) @ part for part in (radial, vertical))
     fields = (at_points @ radial, at_points @ vertical, along @ radial)
     measure = 2 * np.pi * basis.dx.ravel()[order]
-    return ContactSurface(r[order], n_z, measure, *(sparse.csr_array(field) for field in fields))
+    return ContactSurface(r[order], n_z, measure, *(_without_zeros(field) for field in fields))
+
+
+def _without_zeros(field: sparse.csr_array) -> sparse.csr_array:
+    rows = sparse.csr_array(field)
+    rows.eliminate_zeros()
+    return rows
 
 
 def _rows(basis: Any, values: Array) -> sparse.csr_array:

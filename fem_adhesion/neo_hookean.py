@@ -65,9 +65,10 @@ class Deformation:
 
     @property
     def log_volume(self) -> Array:
-        """ln(J)/delta, which tends to the trace of A as delta -> 0."""
+        """ln(J)/delta, which tends to the trace of A as delta -> 0; nan where the material is turned inside out."""
         v = self.dilatation
-        return np.asarray(np.log1p(self.stretch * v) / self.stretch if self.stretch else v)
+        with np.errstate(invalid="ignore", divide="ignore"):  # a trial of Newton's method, refused for being nan
+            return np.asarray(np.log1p(self.stretch * v) / self.stretch if self.stretch else v)
 
     @property
     def inverse_transpose(self) -> Array:

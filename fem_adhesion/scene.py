@@ -141,15 +141,15 @@ class Scene:
 
     def _require_fitting(self) -> None:
         """Refuse options that the scene would not heed."""
-        sphere = self.body in ("hemisphere", "sphere")
+        sphere, hemisphere = self.body in ("hemisphere", "sphere"), self.body == "hemisphere"
         unheeded = {
             "radius": (self.radius is not None and self.sized, "only a block under a paraboloid has a size L"),
             "far_field": (
                 self.far_field != "point_load" and self.sized,
                 "only a block under a paraboloid has a choice",
             ),
-            "counter": (self.counter is not None and self.body != "hemisphere", "it meets a hemisphere only"),
-            "strain": (self.strain == "finite" and not sphere, "finite strain is for hemisphere and sphere"),
+            "counter": (self.counter is not None and not hemisphere, "it meets a hemisphere only"),
+            "strain": (self.strain == "finite" and not hemisphere, "finite strain is for the hemisphere"),
             "profile": (self.profile == "sphere" and isinstance(self.body, Path), "the mesh has a surface of its own"),
             "traction": (self.traction == "surface" and not sphere, "it differs on a curved surface only"),
         }

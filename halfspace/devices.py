@@ -116,6 +116,8 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     """
     if not stiffness > 0:
         raise ValueError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
+    if not isinstance(path.segments[0].problem, ContactProblem):
+        raise ValueError("strain = finite, limit: small strain, for the landings of jumps; use the events of the path")
     rough = jumps(reaching(path, stiffness).segments, 1 / stiffness)
     if rough is None:
         return None

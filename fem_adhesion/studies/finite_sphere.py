@@ -31,7 +31,8 @@ TABORS = (0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0)
 RADIUS_RATIOS = (5.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5)
 POISSON = 0.3
 POISSONS = (0.0, 0.17, 0.45, 0.499)  # besides, at fewer points
-SPARSE = ("surface_traction",)  # models solved at fewer points
+FINITE_STRAIN = ("finite_strain", "finite_strain_normal", "finite_strain_reference")
+SPARSE = ("surface_traction", *FINITE_STRAIN)  # models solved at fewer points
 RTOL, QUICK_RTOL = 1e-5, 1e-4
 
 Progress = Callable[[str, int, int], None]
@@ -93,7 +94,11 @@ def _usual_sweeps(main: Sweep, quick: bool) -> list[Sweep]:
     sweeps = [replace(main, models=dense)]
     if not quick:
         few = (0.3, 1.0, 3.0)
-        sweeps += [Sweep(few, RADIUS_RATIOS, (POISSON,), SPARSE), Sweep(few, (30.0, 1e3), POISSONS, dense)]
+        sweeps += [
+            Sweep(few, RADIUS_RATIOS, (POISSON,), ("surface_traction",)),
+            Sweep(few, (30.0, 100.0, 1e3, 1e4), (POISSON,), FINITE_STRAIN),
+            Sweep(few, (30.0, 1e3), POISSONS, dense),
+        ]
     return sweeps
 
 

@@ -14,10 +14,14 @@ from typing import Literal, cast
 
 import halfspace
 from fem_adhesion import Scene, trace
+from fem_adhesion.finite_strain_scene import find_jumps
+from fem_adhesion.finite_strain_traction import ConventionName
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.devices import cycle
+from halfspace.events import Event
 from halfspace.newton import NotConverged
 
+FINITE_STRAIN_RTOL = 1e-4  # the tightest: a finer one is dear, and the effect is of the order of beta/R
 TO_LOAD = 0.5  # R dgamma: past every event, and little, since a sphere is no wider than it is
 
 Status = Literal["solved", "refused", "died"]
@@ -149,12 +153,19 @@ def quantities_of(path: EquilibriumPath) -> dict[str, Estimate]:
         "pull_off_load": Estimate(pull_off.load, pull_off.load_error),
         "zero_load_radius": Estimate(zero_load.contact_radius, zero_load.contact_radius_error),
     }
-    for name in ("jump_on", "jump_off"):
-        if jump := path.event(name):
-            values[f"{name}_approach"] = Estimate(jump.approach, jump.approach_error)
-            values[f"{name}_load"] = Estimate(jump.load, jump.load_error)
+    values |= _jumps(path.events)
     if grips := cycle(path):
         values["hysteresis"] = grips.energy_lost
+    return values
+
+
+def _jumps(events: Mapping[str, Event]) -> dict[str, Estimate]:
+    """Approach and load of the jumps that there are."""
+    values = {}
+    for name in ("jump_on", "jump_off"):
+        if jump := events.get(name):
+            values[f"{name}_approach"] = Estimate(jump.approach, jump.approach_error)
+            values[f"{name}_load"] = Estimate(jump.load, jump.load_error)
     return values
 
 
@@ -186,6 +197,18 @@ def _hemisphere(
     return quantities_of(trace(scene, rtol=case.rtol, to_load=TO_LOAD))
 
 
+def _finite_strain(case: Case, convention: ConventionName) -> dict[str, Estimate]:
+    """A neo-Hookean hemisphere: pull-off and jumps only, to a tolerance of 1e-4 or more."""
+    assert case.poisson is not None
+    ratio = case.radius_ratio
+    scene = Scene(
+        case.tabor, poisson=case.poisson, body="hemisphere", profile="sphere", radius_ratio=ratio, strain="finite"
+    )
+    events = find_jumps(scene, max(case.rtol, FINITE_STRAIN_RTOL), convention=convention)
+    pull_off = events["pull_off"]
+    return {"pull_off_load": Estimate(pull_off.load, pull_off.load_error)} | _jumps(events)
+
+
 BOTH = ("radius_ratio", "poisson")
 
 MODELS = {
@@ -195,6 +218,9 @@ MODELS = {
     "sphere": Model(_hemisphere, BOTH, "sliding"),
     "bonded": Model(partial(_hemisphere, grip="bonded"), BOTH, "bonded"),
     "surface_traction": Model(partial(_hemisphere, traction="surface"), BOTH, "sliding"),
+    "finite_strain": Model(partial(_finite_strain, convention="vertical"), BOTH, "sliding"),
+    "finite_strain_normal": Model(partial(_finite_strain, convention="normal"), BOTH, "sliding"),
+    "finite_strain_reference": Model(partial(_finite_strain, convention="reference"), BOTH, "sliding"),
 }
 
 CAUSES = {
@@ -203,6 +229,9 @@ CAUSES = {
     "all": Cause("sphere", "half_space", "hemisphere on a sliding mid-plane, with the sphere's profile"),
     "grip": Cause("bonded", "sphere", "bonded for sliding mid-plane"),
     "traction": Cause("surface_traction", "sphere", "surface law per true for per projected area"),
+    "strain": Cause("finite_strain", "sphere", "neo-Hookean for linear, traction vertical per deformed area"),
+    "direction": Cause("finite_strain_normal", "finite_strain", "traction normal to the deformed surface for vertical"),
+    "area": Cause("finite_strain_reference", "finite_strain", "vertical traction per undeformed for per deformed area"),
 }
 
 

@@ -1,0 +1,226 @@
+"""The load-approach curve of a sphere at finite strain, to an accuracy asked for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+
+import numpy as np
+
+from fem_adhesion import sized
+from fem_adhesion.finite_strain import FiniteStrainProblem
+from fem_adhesion.finite_strain_events import corrected
+from fem_adhesion.finite_strain_meshes import Discretised, ScenesBody, enriched
+from fem_adhesion.finite_strain_traction import CONVENTIONS, ConventionName
+from fem_adhesion.finite_strain_windows import trace_windows
+from fem_adhesion.scene import Scene
+from halfspace.contact import APPROACH, CONTACT_RADIUS
+from halfspace.curve import (
+    COMPRESSION,
+    Chart,
+    EquilibriumPath,
+    Estimate,
+    Segment,
+    find_events,
+    metric_for,
+    trace_charts,
+)
+from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event
+from halfspace.limits import require_load, require_rtol
+
+WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a minute's work at 3
+TIGHTEST = 1e-6  # relative tolerance
+MOST_LEVELS = 2
+NEARBY = 0.01  # relative difference of contact radii that one mesh serves
+LITTLE = 0.5  # R dgamma: a load past every event
+JUMPS = ("pull_off", "jump_on", "jump_off")
+
+State = Mapping[str, Located]
+
+
+@dataclass(frozen=True)
+class AroundEvents:
+    """A discretisation on which every event has a mesh made for its own contact radius.
+
+    Parameters
+    ----------
+    body : ScenesBody
+        The body, and how it is meshed.
+    linear : sequence of Segment
+        Curve of the linear body, where starts are taken from.
+    below : AroundEvents, optional
+        With elements of a lower degree, whose meshes are shared.
+    """
+
+    body: ScenesBody
+    linear: Sequence[Segment]
+    below: AroundEvents | None = None
+    made: list[tuple[float, Discretised]] = field(default_factory=list, compare=False, repr=False)
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event."""
+        return self.mesh(event)[1].chart
+
+    def mesh(self, event: Located) -> tuple[float, Discretised]:
+        """Mesh for an event and the contact radius that it is made for, unless one made before will do."""
+        radius = float(np.nan_to_num(event.point.observables[CONTACT_RADIUS]))
+        radius = self.below.mesh(event)[0] if self.below else radius
+        for made in self.made:
+            if abs(radius - made[0]) <= NEARBY * radius:
+                return made
+        self.made.append((radius, self.body.meshed(radius, radius)))
+        return self.made[-1]
+
+    def located(self, found: State) -> State:
+        """Solve for events again that were found on the discretisation below, or if there is none on any."""
+        return {name: self._located(event) for name, event in found.items()}
+
+    def _located(self, event: Located) -> Located:
+        on = self.mesh(event)[1]
+        if self.below and isinstance(event.problem, FiniteStrainProblem):
+            u = enriched(event.problem.displacement(event.point.x), event.problem.body.space, on.problem.body.space)
+            x = on.problem.state_from(float(event.point.observables[APPROACH]), u)
+        else:
+            x = on.near(self.linear, event.point.observables)
+        return corrected(event, on.problem, x, metric_for(self.body.scene.tabor))
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a mesh made so far."""
+        return max(mesh.problem.body.unknowns for _, mesh in self.made)
+
+
+def trace(
+    scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION, *, convention: ConventionName = "vertical"
+) -> EquilibriumPath:
+    """Trace the load-approach curve of a scene at finite strain and solve for its events.
+
+    Parameters
+    ----------
+    scene : Scene
+        A hemisphere of Tabor parameter 3 or less.
+    rtol : float
+        Relative accuracy asked of loads and approaches, 1e-6 to 1e-1.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+    convention : {"vertical", "normal", "reference"}
+        What the traction of the surface law is counted per: see `fem_adhesion.finite_strain_traction`.
+
+    Returns
+    -------
+    EquilibriumPath
+        Each event has a mesh of its own; its error estimate is half the larger of the changes from elements one degree
+        lower, on the same mesh and on that of the curve. The energy is nan with the vertical traction, which has none;
+        stability is as said at `FiniteStrainProblem.negative_directions`. `halfspace.curve.moved` and
+        `halfspace.devices` do not apply: the finest charts are for reference.
+
+    Raises
+    ------
+    ValueError
+        If an input is out of range, or does not go with finite strain.
+    halfspace.newton.NotConverged
+        If the curve or an event is lost, as where the material is squeezed or torn beyond what Newton's method follows.
+    """
+    _require(scene, rtol, to_load)
+    if scene.tabor > WIDEST_TABOR:
+        raise ValueError(
+            f"tabor = {scene.tabor:g} is outside tabor <= {WIDEST_TABOR:g} for a curve at finite strain; "
+            'take strain = "small"'
+        )
+    began = time.perf_counter()
+    lowest = _lowest(scene, rtol, convention, _linear_curve(scene, to_load))
+    segments = trace_windows(lowest.body, lowest.linear, to_load)
+    found: State = find_events(segments)
+    if not lowest.body.convention.conservative:
+        found = {name: found[name] for name in EVENTS if name in found}
+    climbed = _climb(rtol, lowest, found, compare=True)
+    curve, events = (asdict(rung.body.how) for rung in (lowest, climbed.finest))
+    settings = {"rtol": rtol, "convention": convention, "curve": curve, "events": events}
+    seconds = time.perf_counter() - began
+    return EquilibriumPath(
+        scene.tabor, segments, climbed.events, _energy(climbed), climbed.states, climbed.finest, seconds, settings
+    )
+
+
+def find_jumps(scene: Scene, rtol: float = 1e-4, *, convention: ConventionName = "vertical") -> dict[str, Event]:
+    """Solve for pull-off and jumps alone, without the curve between: corrected from those of the linear body.
+
+    Parameters and errors as of `trace`, without the limit of the Tabor parameter. The error estimates are half the
+    changes from elements one degree lower.
+    """
+    _require(scene, rtol, COMPRESSION)
+    linear = _linear_curve(scene, LITTLE)
+    found = {name: event for name, event in find_events(linear).items() if name in JUMPS}
+    return dict(_climb(rtol, _lowest(scene, rtol, convention, linear), found).events)
+
+
+@dataclass(frozen=True)
+class _Climbed:
+    """Events on the finest discretisation, with those on the others before it."""
+
+    events: Mapping[str, Event]
+    states: tuple[State, ...]
+    finest: AroundEvents
+
+
+def _lowest(scene: Scene, rtol: float, convention: ConventionName, linear: Sequence[Segment]) -> AroundEvents:
+    """Discretisation by elements of a degree that suits the tolerance."""
+    degree = int(np.clip(np.ceil(-np.log10(rtol)), 4, 6))
+    return AroundEvents(ScenesBody(scene, sized.Discretisation(degree), CONVENTIONS[convention]), linear)
+
+
+def _climb(rtol: float, rung: AroundEvents, found: State, *, compare: bool = False) -> _Climbed:
+    """Solve for events on ever higher degrees until the tolerance is met."""
+    states = [rung.located(found)]
+    for level in range(MOST_LEVELS):
+        rung = AroundEvents(rung.body.richer(), rung.linear, rung)
+        states.append(rung.located(states[-1]))
+        chains = [states[-2:], [found, states[-1]]] if compare and not level else [states[-2:]]
+        events = {n: estimate_event(n, [[s[n] for s in c] for c in chains]) for n in EVENTS if n in found}
+        if all(_meets(event, rtol) for event in events.values()):
+            break
+    return _Climbed(events, tuple(states), rung)
+
+
+def _meets(event: Event, rtol: float) -> bool:
+    """Whether the estimates are within the tolerance; approaches count relative to 1 + |alpha*|."""
+    load = event.load_error <= rtol * abs(event.load) or event.name == "zero_load"
+    return load and event.approach_error <= rtol * (1 + abs(event.approach))
+
+
+def _energy(climbed: _Climbed) -> Estimate:
+    """Potential energy between the states ``separated`` and ``zero_approach``, or nan where there is none."""
+    values = [_energy_released(state) for state in climbed.states[-2:]]
+    change = abs(values[1] - values[0])
+    return Estimate(values[1], REMAINING * change + ROUND_OFF * (1 + abs(values[1])))
+
+
+def _energy_released(state: State) -> float:
+    if "separated" not in state:
+        return float("nan")
+    before, after = state["separated"], state["zero_approach"]
+    assert isinstance(before.problem, FiniteStrainProblem)
+    assert isinstance(after.problem, FiniteStrainProblem)
+    return before.problem.energy(before.point.x) - after.problem.energy(after.point.x)
+
+
+def _linear_curve(scene: Scene, to_load: float) -> tuple[Segment, ...]:
+    """Curve of the linear body."""
+    body = sized.sized_body(replace(scene, strain="small"), sized.Discretisation(sized.CURVE_DEGREE))
+    return trace_charts(body.curve(to_load), to_load)
+
+
+def _require(scene: Scene, rtol: float, to_load: float) -> None:
+    """Refuse what is out of range or has no meaning at finite strain."""
+    require_rtol(rtol)
+    require_load(to_load)
+    if rtol < TIGHTEST:
+        raise ValueError(f"rtol = {rtol:g} is outside {TIGHTEST:g} <= rtol for finite strain; take 1e-4")
+    for name, value, wanted in (
+        ("body", scene.body, "hemisphere"),
+        ("traction", scene.traction, "projected"),
+        ("counter", scene.counter, None),
+    ):
+        if value != wanted:
+            raise ValueError(f"{name} = {value!r} does not go with finite strain; take {name} = {wanted!r}")

@@ -1,0 +1,191 @@
+"""Scenes at finite strain: the curve, its events and their error estimates, and what the traction is counted per."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from skfem import ElementQuadP
+
+from fem_adhesion import convergence
+from fem_adhesion.elasticity import Space
+from fem_adhesion.finite_strain_events import corrected
+from fem_adhesion.finite_strain_meshes import enriched, fine_between
+from fem_adhesion.finite_strain_scene import LITTLE, find_jumps, trace
+from fem_adhesion.finite_strain_traction import CONVENTIONS
+from fem_adhesion.mesh import block_grid
+from fem_adhesion.scene import Scene
+from halfspace import newton
+from halfspace.contact import APPROACH, LOAD
+from halfspace.newton import NotConverged
+from halfspace.path import Metric
+
+
+def scene(tabor=1.0, radius_ratio=100.0, strain="finite", **options):
+    return Scene(tabor, body="hemisphere", profile="sphere", radius_ratio=radius_ratio, strain=strain, **options)
+
+
+def linear(tabor, radius_ratio, **options):
+    return convergence.trace(scene(tabor, radius_ratio, "small", **options), rtol=1e-5, to_load=LITTLE)
+
+
+@pytest.fixture(scope="module")
+def path():
+    return trace(scene(), 1e-4, LITTLE)
+
+
+@pytest.fixture(scope="module")
+def jumps():
+    return find_jumps(scene(), 1e-4)
+
+
+# --- the curve ---
+
+
+def test_curve_runs_from_far_separation_into_compression_over_all_meshes(path):
+    assert path.approach[0] < -20
+    assert path.load[-1] >= LITTLE > path.load[-2]
+    assert np.all(np.diff(path.arclength) >= 0)
+    touching = path.contact_radius[np.isfinite(path.contact_radius)]
+    assert np.all(np.diff(touching) >= -1e-9)
+    assert len(path.segments) > 1
+
+
+def test_each_mesh_takes_over_where_the_last_one_ends(path):
+    for before, after in pairwise(path.segments):
+        gap = after.points[0].observables - before.points[-1].observables
+        np.testing.assert_allclose(gap[[APPROACH, LOAD]], 0, atol=3e-4)
+
+
+def test_curve_is_unstable_between_the_jumps_alone(path):
+    on, off = (path.stages[-1][name].point.observables for name in ("jump_on", "jump_off"))
+    before = path.central_gap > on[2]
+    after = np.nan_to_num(path.contact_radius) > off[3]
+    np.testing.assert_array_equal(path.stable, before | after)
+    assert not path.stable.all()
+
+
+def test_curve_and_linear_body_lead_to_the_same_events(path, jumps):
+    for name, jump in jumps.items():
+        event = path.events[name]
+        numbers = [event.approach, event.load, event.central_gap, event.contact_radius]
+        expected = [jump.approach, jump.load, jump.central_gap, jump.contact_radius]
+        np.testing.assert_allclose(numbers, expected, rtol=0, atol=1e-6, equal_nan=True)
+
+
+def test_events_are_where_the_curve_says(path):
+    assert path.events["pull_off"].load == pytest.approx(path.load.min(), abs=5e-2)
+    assert path.events["pull_off"].load <= path.load.min() + 1e-4
+    assert path.events["zero_load"].load == pytest.approx(0, abs=1e-9)
+    assert path.settings["convention"] == "vertical"
+    assert path.settings["events"]["degree"] > path.settings["curve"]["degree"]
+
+
+def test_a_vertical_traction_has_no_energy_to_report(path):
+    assert np.isnan(path.energy.value)
+    assert np.isnan(path.energy.error)
+
+
+def test_energy_released_is_the_work_of_the_load():
+    path = trace(scene(0.3, 30.0), 1e-4, LITTLE, convention="reference")
+    problem = path.stages[0]["zero_approach"].problem
+    first = path.stages[-1]["separated"].point.observables[APPROACH]
+    x, released = problem.undeformed(first), 0.0
+    nodes, weights = np.polynomial.legendre.leggauss(5)
+    for start, end in pairwise([first, -5.0, -2.0, -0.8, -0.3, 0.0]):
+        for node, weight in zip(nodes, weights, strict=True):
+            alpha = start + (end - start) * (1 + node) / 2
+            x = newton.solve(problem, x, newton.approach(alpha)).x
+            released -= weight * (end - start) / 2 * problem.load(x)
+    assert path.energy.value == pytest.approx(released, rel=2e-5)
+    assert path.energy.error < 1e-4
+
+
+# --- its accuracy ---
+
+FINER = {
+    # Approach and load of find_jumps at rtol 1e-6, elements of degree 7, whose estimates are below 1e-6.
+    "pull_off": (-0.73934829, -5.27492422),
+    "jump_on": (-1.57247052, -2.14531233),
+    "jump_off": (-1.66868453, -3.14030170),
+}
+
+
+def test_estimates_hold_against_a_finer_computation(jumps, path):
+    for name, (approach, load) in FINER.items():
+        for event in (jumps[name], path.events[name]):
+            assert abs(event.approach - approach) <= event.approach_error + 1e-8
+            assert abs(event.load - load) <= event.load_error + 1e-8
+            assert event.load_error <= 1e-4 * abs(event.load)
+
+
+def test_as_the_stretch_vanishes_pull_off_is_that_of_the_linear_body():
+    expected = linear(0.3, 1e8, grip="bonded").events["pull_off"]
+    event = find_jumps(scene(0.3, 1e8, grip="bonded"), 1e-4, convention="reference")["pull_off"]
+    assert abs(event.approach - expected.approach) <= event.approach_error + expected.approach_error
+    assert abs(event.load - expected.load) <= event.load_error + expected.load_error
+
+
+# --- what the traction is counted per ---
+
+
+def test_attraction_per_deformed_area_grows_with_the_area_that_it_stretches():
+    radius_ratio, nu = 1e3, 0.3
+    pulls = {name: find_jumps(scene(0.3, radius_ratio), 1e-4, convention=name)["pull_off"].load for name in CONVENTIONS}
+    state = linear(0.3, radius_ratio).stages[-1]["pull_off"]
+    problem, x = state.problem, state.point.x
+    tension = problem.pressure(x)
+    delta = np.sqrt(0.3 / radius_ratio)
+    more = delta * (1 - 2 * nu) / (1 - nu) * np.sum(problem.operator_at(x).weights * tension**2)
+    assert pulls["reference"] - pulls["vertical"] == pytest.approx(more, rel=0.2)
+    assert abs(pulls["normal"] - pulls["reference"]) < 0.1 * more
+
+
+# --- meshes ---
+
+
+def test_a_richer_element_has_the_same_displacements():
+    lower, higher = (Space(block_grid(0.5, 1.0, 5.0), ElementQuadP(p)) for p in (3, 4))
+    u = np.random.default_rng(3).normal(size=lower.unknowns)
+    v = enriched(u, lower, higher)
+    point = np.array([[0.3, 0.81], [0.77, 0.13]])
+    for old, new in zip(lower.components, higher.components, strict=True):
+        fields = []
+        for space, values in ((lower, u[old]), (higher, v[new])):
+            dofs = space.scalar_dofs.element_dofs
+            shapes = np.array([space.element.lbasis(point, i)[0] for i in range(len(dofs))])
+            fields.append(shapes.T @ values[dofs])
+        np.testing.assert_allclose(fields[0], fields[1], atol=1e-12)
+
+
+@pytest.mark.parametrize(("inner", "outer"), [(0.0, 0.0), (0.0, 1.0), (1.2, 1.2), (1.2, 2.5)])
+def test_cells_are_fine_where_the_edge_passes_and_grow_beyond(inner, outer):
+    lines = fine_between(inner, outer, 0.1, 20.0, 2.0)
+    lengths, middles = np.diff(lines), (lines[1:] + lines[:-1]) / 2
+    assert lines[0] == 0.0
+    assert lines[-1] == pytest.approx(20.0)
+    touching = (lines[1:] >= inner - 1e-12) & (lines[:-1] <= outer + 1e-12)
+    assert np.all(lengths[touching] <= 0.1 + 1e-12)
+    assert np.all(lengths[middles > outer][1:] / lengths[middles > outer][:-1] <= 2.0 + 1e-9)
+
+
+# --- refusals ---
+
+
+@pytest.mark.parametrize(
+    ("options", "rtol", "message"),
+    [
+        ({"tabor": 4.0}, 1e-4, "tabor = 4 is outside tabor <= 3"),
+        ({}, 1e-7, "rtol = 1e-07 is outside 1e-06 <= rtol"),
+        ({"traction": "surface"}, 1e-4, "traction = 'surface' does not go with finite strain"),
+    ],
+)
+def test_what_finite_strain_cannot_do_is_refused(options, rtol, message):
+    with pytest.raises(ValueError, match=message):
+        trace(scene(**options), rtol)
+
+
+def test_an_event_that_is_lost_says_where(path):
+    found = path.stages[0]["pull_off"]
+    far = found.problem.undeformed(-50.0)
+    with pytest.raises(NotConverged, match=r"is lost at beta/R = 0\.1 "):
+        corrected(found, found.problem, far, Metric(1.0))
