@@ -33,11 +33,10 @@ def add(commands: Commands) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the study of the finite sphere or what is left of it, and write its table."""
+    """Run the study of the finite sphere or what is left of it, and write its table, its pictures and its page."""
+    from fem_adhesion.output import finite_sphere_report
     from fem_adhesion.output.files import directory_written_aside
-    from fem_adhesion.output.finite_sphere_tables import write_tables
     from fem_adhesion.studies import finite_sphere
-    from fem_adhesion.studies.finite_sphere_table import rows
     from fem_adhesion.studies.store import open_store
 
     cases = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
@@ -49,10 +48,11 @@ def run(options: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         print(f"fem-adhesion: interrupted; what is done is kept in {options.out}, --resume goes on", file=sys.stderr)
         return INTERRUPTED
-    with directory_written_aside(options.out, force=True) as aside:
-        note = write_tables(rows(records), aside)
+    parts = finite_sphere_report.PARTS
+    with directory_written_aside(options.out, force=True) as aside, progress_bar() as step:
+        note = finite_sphere_report.write(records, aside, lambda part: step(part, parts.index(part), len(parts)))
     for line in filter(None, (*store.notes, note)):
         print(f"fem-adhesion: {line}", file=sys.stderr)
     unsolved = sum(record.status != "solved" for record in records)
-    print(f"written: {options.out / 'finite_sphere.csv'}; {len(records)} cases, {unsolved} without a solution")
+    print(f"written: {options.out / 'index.html'}; {len(records)} cases, {unsolved} without a solution")
     return AGREE

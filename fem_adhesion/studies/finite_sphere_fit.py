@@ -1,32 +1,21 @@
 """What the deviations of the finite sphere are governed by: their leading terms in beta/R = sqrt(mu/rho) and 1/rho.
 
 A deviation is fitted by weighted least squares on all points up to the largest beta/R at which the fit is within its
-tolerance: at all Tabor parameters together with the terms beta/R, (beta/R)^2 = mu/rho and eps/R = 1/rho, and at each
-alone, where the last two are one, with two powers of beta/R. Two coefficients are known, for the profile's part in the
-pull-off: -9/7 of 1/rho for a rigid sphere, and that of mu/rho by JKR's theory on the exact sphere (Maugis 1995).
+tolerance: at all Tabor parameters together, and at each alone. Two coefficients are known, for the profile's part in
+the pull-off: -9/7 of 1/rho for a rigid sphere, and that of mu/rho by JKR's theory on the exact sphere (Maugis 1995).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fem_adhesion.studies.finite_sphere_table import Row
+from fem_adhesion.studies.finite_sphere_terms import TERMS, Array, Term, leading_terms
 from halfspace.curve import Estimate
-
-Array = NDArray[np.float64]
-Term = Callable[[Array, Array], Array]
-
-TERMS: Mapping[str, Term] = {
-    "beta/R": lambda mu, rho: np.sqrt(mu / rho),
-    "(beta/R)^2": lambda mu, rho: mu / rho,
-    "eps/R": lambda mu, rho: 1 / rho,  # noqa: ARG005 - every term is a function of both
-}
-POWERS: Mapping[str, Term] = {name: TERMS[name] for name in ("beta/R", "(beta/R)^2")}
-"""Terms at one Tabor parameter."""
 
 TOLERANCE = 0.1  # of the sum of the terms' sizes
 DEVIATIONS = 2.0  # standard deviations that bound an error
@@ -140,9 +129,10 @@ def findings(rows: Sequence[Row], poisson: float = 0.3) -> tuple[Finding, ...]:
 
 
 def _findings(cause: str, quantity: str, data: Samples) -> Iterator[Finding]:
-    yield _finding(cause, quantity, None, data, TERMS)
+    yield _finding(cause, quantity, None, data, leading_terms(cause, quantity))
     for tabor in np.unique(data.tabor):
-        yield _finding(cause, quantity, float(tabor), data.where(data.tabor == tabor), POWERS)
+        terms = leading_terms(cause, quantity, one_tabor=True)
+        yield _finding(cause, quantity, float(tabor), data.where(data.tabor == tabor), terms)
 
 
 def _finding(cause: str, quantity: str, tabor: float | None, data: Samples, terms: Mapping[str, Term]) -> Finding:

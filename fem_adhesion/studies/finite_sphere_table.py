@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 from fem_adhesion.studies.finite_sphere_cases import (
     CAUSES,
     MODELS,
     QUANTITIES,
     Case,
+    GripName,
     Record,
     Values,
     case_of,
 )
 from halfspace.curve import Estimate
 
-BulkCompliance = Callable[[str, float], float]
-"""Of grip and Poisson's ratio: what a body yields more than the half-space under a load, in 1/(E* R)."""
+BulkCompliance = Callable[[GripName, float, float], Estimate]
+"""Of grip, Poisson's ratio and R/beta: what a body yields more than the half-space under a load, in 1/(E* R)."""
 
 LESS_BULK = {f"{name}_less_bulk": name.removesuffix("_approach") for name in QUANTITIES if name.endswith("_approach")}
 """Approaches with the linear yield of the body taken out, and the event that each is of."""
@@ -110,11 +112,7 @@ def _values(record: Record, bulk: BulkCompliance | None) -> Values:
 
 def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
     """Approaches of the jumps without the linear yield of the body, alpha* - kappa mu W/(R/beta)."""
-    case, values = record.case, record.values
-    grip = MODELS[case.model].grip
-    yielding = 0.0
-    if grip and case.radius_ratio and case.poisson is not None:
-        yielding = bulk(grip, case.poisson) * case.tabor * (case.tabor / case.radius_ratio) ** 0.5
+    values, yielding = record.values, _yielding(record.case, bulk)
     return {
         name: _less(values[f"{event}_approach"], yielding, values[f"{event}_load"])
         for name, event in LESS_BULK.items()
@@ -122,8 +120,19 @@ def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
     }
 
 
-def _less(approach: Estimate, compliance: float, load: Estimate) -> Estimate:
-    return Estimate(approach.value - compliance * load.value, approach.error + abs(compliance) * load.error)
+def _yielding(case: Case, bulk: BulkCompliance) -> Estimate:
+    """Approach per load, kappa mu/(R/beta), of a body that is held; none of the half-space."""
+    grip = MODELS[case.model].grip
+    if not (grip and case.radius_ratio and case.poisson is not None):
+        return Estimate(0.0, 0.0)
+    R = (case.radius_ratio / case.tabor) ** 0.5
+    kappa = bulk(cast(GripName, grip), case.poisson, R)
+    return Estimate(kappa.value * case.tabor / R, kappa.error * case.tabor / R)
+
+
+def _less(approach: Estimate, compliance: Estimate, load: Estimate) -> Estimate:
+    error = abs(compliance.value) * load.error + compliance.error * abs(load.value)
+    return Estimate(approach.value - compliance.value * load.value, approach.error + error)
 
 
 def relative(value: Estimate, baseline: Estimate, scale: Estimate) -> Estimate:
@@ -141,5 +150,5 @@ def _ending(record: Record, others: Sequence[Record | None], three: Sequence[Est
         if one is None or one.status != "solved":
             return "absent", f"the {role} was not solved"
         if number is None:
-            return "absent", f"the {role} does not jump under fixed grips"
+            return "absent", f"the {role} has none: it does not jump, or was solved for pull-off and jumps alone"
     return "solved", ""

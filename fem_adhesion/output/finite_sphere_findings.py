@@ -1,0 +1,127 @@
+"""The tables on the page of the finite sphere: rules, fits, theories, the body's yield, and what was not solved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from fem_adhesion.output.finite_sphere_plots import reference_poisson
+from fem_adhesion.output.greenwood_tables import Table, with_error
+from fem_adhesion.studies import finite_sphere_fit
+from fem_adhesion.studies.bulk import coefficients
+from fem_adhesion.studies.finite_sphere_cases import Record
+from fem_adhesion.studies.finite_sphere_chart import LEVELS, Rule, field_of, rule
+from fem_adhesion.studies.finite_sphere_fit import Finding, Fit
+from fem_adhesion.studies.finite_sphere_table import Row
+
+QUANTITIES = {
+    "pull_off_load": "pull-off force",
+    "zero_load_radius": "contact radius under no load",
+    "jump_on_approach": "approach at jump-on",
+    "jump_on_approach_less_bulk": "approach at jump-on, bulk yield taken out",
+    "jump_off_approach": "approach at jump-off",
+    "jump_off_approach_less_bulk": "approach at jump-off, bulk yield taken out",
+    "hysteresis": "energy lost in a cycle",
+}
+"""Quantities on the page; the files have the others besides."""
+
+
+def tables(records: Sequence[Record], rows: Sequence[Row]) -> list[Table]:
+    """All tables in the order of the page.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Of the study.
+    rows : sequence of Row
+        Its table, with the approaches less the bulk yield.
+    """
+    found = finite_sphere_fit.findings(rows, reference_poisson(rows) or 0.0)
+    return [_rules(rows), _fits(found), _theories(rows), _bulk(records), _failures(records)]
+
+
+def _rules(rows: Sequence[Row]) -> Table:
+    poisson = reference_poisson(rows)
+    lines = (_rule(rows, quantity, level, poisson) for quantity in QUANTITIES for level in LEVELS)
+    columns = ("quantity", "half-space errs less than", "if R/eps >", "rule fits contour within", "mu", "why no rule")
+    see = (
+        "Lines a + b mu through the contours of the chart; within the range of mu, R/eps above them is safe but for "
+        "the misfit of the line."
+    )
+    return Table("rules", "Rules of thumb", see, columns, tuple(lines))
+
+
+def line(found: Rule) -> str:
+    """Right-hand side of a rule, to two digits."""
+    constant, slope = (float(f"{value:.2g}") for value in (found.constant, abs(found.slope)))
+    return f"{constant:g} {'-' if found.slope < 0 else '+'} {slope:g} mu"
+
+
+def _rule(rows: Sequence[Row], quantity: str, level: float, poisson: float | None) -> tuple[str, ...]:
+    head = (QUANTITIES[quantity], f"{100 * level:g} %")
+    try:
+        found = rule(field_of(rows, quantity, poisson), level)
+    except ValueError as error:
+        return (*head, "", "", "", str(error))
+    return (*head, line(found), f"{100 * found.misfit:.2g} %", f"{found.tabor[0]:g} to {found.tabor[1]:g}", "")
+
+
+def _fits(found: Sequence[Finding]) -> Table:
+    columns = ("quantity", "cause", "mu", "leading terms", "up to beta/R", "points", "largest residual", "why no fit")
+    see = (
+        "Errors are two standard deviations and the change when the points farther than half-way are left out; up to "
+        "the beta/R stated, every point is within 10 % of the terms."
+    )
+    shown = [f for f in found if f.quantity in QUANTITIES and (f.cause == "all" or f.quantity == "pull_off_load")]
+    return Table("fits", "Leading terms of the relative deviations", see, columns, tuple(map(_finding, shown)))
+
+
+def _finding(finding: Finding) -> tuple[str, ...]:
+    tabor = "all" if finding.tabor is None else f"{finding.tabor:g}"
+    head = (QUANTITIES[finding.quantity], finding.cause, tabor)
+    return (*head, *(_fit(finding.fit) if finding.fit else ("", "", "", "")), finding.reason)
+
+
+def _fit(fit: Fit) -> tuple[str, ...]:
+    terms = "; ".join(f"({with_error(c)}) {name}" for name, c in fit.coefficients.items())
+    return (terms, f"{fit.holds_to:.2g}", str(fit.points), f"{fit.worst:.1e}")
+
+
+def _theories(rows: Sequence[Row]) -> Table:
+    columns = ("theory and term", "expected", "fitted", "error", "at mu", "why not")
+    see = (
+        "The profile's part of the pull-off alone, on a half-space. The theories are of the limits mu = 0 and "
+        "infinity: what is left of the difference belongs to the Tabor parameter, not to the fit."
+    )
+    try:
+        lines = tuple(
+            (c.theory, f"{c.expected:.4f}", f"{c.fitted.value:.4f}", f"{c.fitted.error:.1e}", f"{c.tabor:g}", "")
+            for c in finite_sphere_fit.compare(rows)
+        )
+    except ValueError as error:
+        lines = (("", "", "", "", "", str(error)),)
+    return Table("theories", "Leading coefficients beside theories", see, columns, lines)
+
+
+def _bulk(records: Sequence[Record]) -> Table:
+    known = sorted({r.case.poisson for r in records if r.case.poisson is not None})
+    columns = ("grip", "Poisson's ratio", "kappa_0", "error", "kappa_1", "size of the term in beta/R")
+    see = (
+        "The body approaches by W/(E* R) (kappa_0 + kappa_1 ln(beta/R)) more than the half-space, in eps by mu beta/R "
+        "times as much. kappa_1 = -(1 - 2 nu)^2/(2 pi (1 - nu)) is exact, kappa_0 is measured under Hertz's pressure "
+        "on r < beta; the term in beta/R is not taken out, but counted as error."
+    )
+    return Table("bulk", "The body's linear yield, in 1/(E* R)", see, columns, tuple(_yields(known)))
+
+
+def _yields(poissons: Sequence[float]) -> Iterator[tuple[str, ...]]:
+    for grip in ("sliding", "bonded"):
+        for poisson in poissons:
+            found = coefficients(grip, poisson)
+            constant = (f"{found.constant.value:.4f}", f"{found.constant.error:.1e}")
+            yield (grip, f"{poisson:g}", *constant, f"{found.logarithm:.5f}", f"{found.linear:.2g}")
+
+
+def _failures(records: Sequence[Record]) -> Table:
+    lines = tuple((r.case.name, r.status, r.reason) for r in records if r.status != "solved")
+    see = f"{len(lines)} of {len(records)} cases."
+    return Table("failures", "What was not solved, and why", see, ("case", "status", "reason"), lines)

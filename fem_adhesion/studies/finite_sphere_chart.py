@@ -1,0 +1,160 @@
+"""The chart of the finite sphere: where in the plane of Tabor parameter and R/eps the half-space errs by how much.
+
+Along R/eps at each Tabor parameter the deviation is a power law between neighbouring points, or where its sign changes
+linear in ln(R/eps). A contour is the largest R/eps at which the deviation has a given size, above which it is smaller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_adhesion.studies.finite_sphere_table import Row
+
+Array = NDArray[np.float64]
+
+LEVELS = (0.1, 0.01, 0.001)
+"""Relative deviations of the contours."""
+
+MISFIT = 0.25  # largest relative difference of a rule from its contour
+
+
+@dataclass(frozen=True)
+class Field:
+    """A deviation over the plane.
+
+    Attributes
+    ----------
+    tabor : (m,) array
+        Tabor parameters, ascending.
+    radius_ratio : (n,) array
+        R/eps, ascending.
+    deviation : (m, n) array
+        Of the sphere from the half-space, relative to it; nan where there is none.
+    refused : (m, n) bool array
+        Where a contact on the sphere was not solved.
+    """
+
+    tabor: Array
+    radius_ratio: Array
+    deviation: Array
+    refused: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """The half-space errs by less than a level if R/eps > constant + slope mu.
+
+    Attributes
+    ----------
+    level : float
+        Relative deviation.
+    constant, slope : float
+        Fitted to the contour.
+    misfit : float
+        Largest relative difference between the contour and the rule.
+    tabor : tuple of float
+        Least and largest Tabor parameter of the contour.
+    """
+
+    level: float
+    constant: float
+    slope: float
+    misfit: float
+    tabor: tuple[float, float]
+
+
+def field_of(rows: Sequence[Row], quantity: str, poisson: float | None, cause: str = "all") -> Field:
+    """Collect a deviation from the table.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        The table.
+    quantity, poisson, cause
+        Which of its rows.
+    """
+    chosen = [r for r in rows if (r.cause, r.quantity, r.poisson) == (cause, quantity, poisson) and r.radius_ratio]
+    tabor = np.unique([row.tabor for row in chosen])
+    ratio = np.unique([float(row.radius_ratio or 0) for row in chosen])
+    deviation = np.full((tabor.size, ratio.size), np.nan)
+    refused = np.zeros(deviation.shape, bool)
+    for row in chosen:
+        at = np.searchsorted(tabor, row.tabor), np.searchsorted(ratio, float(row.radius_ratio or 0))
+        deviation[at] = row.deviation.value if row.deviation else np.nan
+        refused[at] = row.status in ("refused", "died")
+    return Field(tabor, ratio, deviation, refused)
+
+
+def contour(field: Field, level: float) -> Array:
+    """R/eps of a contour at each Tabor parameter.
+
+    Parameters
+    ----------
+    field : Field
+        The deviation.
+    level : float
+        Its size on the contour.
+
+    Returns
+    -------
+    (m,) array
+        Nan where no two neighbours among the points have the contour between them.
+    """
+    return np.array([_last_crossing(field.radius_ratio, deviation, level) for deviation in field.deviation])
+
+
+def _last_crossing(ratio: Array, deviation: Array, level: float) -> float:
+    known = np.isfinite(deviation)
+    x, y = np.log(ratio[known]), deviation[known]
+    size = np.abs(y)
+    crossed = np.flatnonzero((size[:-1] >= level) & (size[1:] < level))
+    if not crossed.size or size[-1] >= level:
+        return np.nan
+    i = crossed[-1]
+    a, b, goal = (y[i], y[i + 1], np.sign(y[i]) * level) if y[i] * y[i + 1] <= 0 else np.log([*size[i : i + 2], level])
+    return float(np.exp(x[i] + (x[i + 1] - x[i]) * (goal - a) / (b - a)))
+
+
+def refused_below(field: Field) -> Array:
+    """R/eps, (m,), up to which no contact was solved, midway to the next point; nan where all were."""
+    limits = np.append(field.radius_ratio, np.nan)
+    last = np.array([np.flatnonzero(row)[-1] if row.any() else -1 for row in field.refused])
+    return np.where(last >= 0, np.sqrt(limits[last] * limits[last + 1]), np.nan)
+
+
+def safe_from(field: Field, level: float) -> float:
+    """Least R/eps of the points from which on all deviations are below a level; nan if the last are not."""
+    size = np.nan_to_num(np.abs(field.deviation)).max(axis=0, initial=0.0)
+    above = np.flatnonzero(size >= level)
+    first = above[-1] + 1 if above.size else 0
+    return float(field.radius_ratio[first]) if first < field.radius_ratio.size else np.nan
+
+
+def rule(field: Field, level: float) -> Rule:
+    """Rule in words for a contour, R/eps = a + b mu, by least squares of its relative differences from the contour.
+
+    Raises
+    ------
+    ValueError
+        If the contour passes fewer than three Tabor parameters, or is no line.
+    """
+    ratio = contour(field, level)
+    known = np.isfinite(ratio)
+    if known.sum() < 3:
+        raise ValueError(
+            f"the contour of {level:g} passes {known.sum()} Tabor parameters, limit 3; "
+            "take more of tabor or radius_ratio"
+        )
+    mu, ratio = field.tabor[known], ratio[known]
+    a, b = np.linalg.lstsq(np.column_stack([1 / ratio, mu / ratio]), np.ones_like(mu), rcond=None)[0]
+    fitted = (a + b * mu) / ratio
+    misfit = float(np.abs(fitted - 1).max())
+    if misfit > MISFIT:
+        raise ValueError(
+            f"the contour of {level:g} is {100 * misfit:.0f} % off a line, limit {100 * MISFIT:.0f} %; read the chart"
+        )
+    return Rule(level, float(a), float(b), misfit, (float(mu[0]), float(mu[-1])))
