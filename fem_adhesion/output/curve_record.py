@@ -1,0 +1,166 @@
+"""A curve as plain data for machines: JSON with everything, CSV with the points and events."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
+from typing import IO, Any
+
+from fem_adhesion.output.curve_scales import si_sizes
+from fem_adhesion.output.record import versions
+from fem_adhesion.studies.curves import Curves
+from halfspace.curve import EquilibriumPath, Estimate
+from halfspace.devices import Cycle, Jump
+from halfspace.events import Event
+
+OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
+UNITS: Mapping[str, str] = {
+    "arclength": "1",
+    "approach": "eps",
+    "load": "R dgamma",
+    "central_gap": "eps",
+    "contact_radius": "beta",
+    "energy": "R dgamma eps",
+    "stiffness": "R dgamma/eps",
+}
+COLUMNS = ("arclength", *OBSERVABLES)
+
+
+def record(curves: Curves) -> dict[str, Any]:
+    """Everything, ready for JSON: no NaN, and None for the contact radius without contact.
+
+    Returns
+    -------
+    dict
+        ``units`` names the units of all numbers in ``solutions`` and ``jumps``; where the material is known ``si`` has
+        the factor that takes each into SI, and the SI unit.
+    """
+    question = curves.question
+    scene = {name: value if _is_plain(value) else str(value) for name, value in asdict(question.scene).items()}
+    return {
+        "scene": scene,
+        "rtol": question.rtol,
+        "to_load": question.to_load,
+        "units": dict(UNITS),
+        "si": _si(curves),
+        "solutions": {name: _solution(path) for name, path in curves.paths.items()},
+        "jumps": {"fixed_grips": _cycle(curves.grips), "apparatus": _cycle(curves.apparatus)},
+        "versions": versions(),
+    }
+
+
+def _is_plain(value: object) -> bool:
+    return value is None or isinstance(value, (str, int, float, dict))
+
+
+def _si(curves: Curves) -> dict[str, Any] | None:
+    units = curves.question.units
+    if units is None:
+        return None
+    sizes = {name: {"factor": size, "unit": unit} for name, (size, unit) in si_sizes(units).items() if name in UNITS}
+    return {"material": asdict(units), "units": sizes}
+
+
+def _solution(path: EquilibriumPath) -> dict[str, Any]:
+    points = {name: [finite(value) for value in getattr(path, name)] for name in COLUMNS}
+    stability = {
+        "stable_under_fixed_grips": path.stable.tolist(),
+        "stable_under_dead_load": path.stable_under_dead_load.tolist(),
+    }
+    return {
+        "events": {name: event_record(event) for name, event in path.events.items()},
+        "curve": points | stability,
+        "energy_released": _estimate(path.energy),
+        "unknowns": path.unknowns,
+        "seconds": path.seconds,
+        "settings": dict(path.settings),
+    }
+
+
+def event_record(event: Event) -> dict[str, float | None]:
+    """Numbers of an event with their errors."""
+    return {key: finite(getattr(event, key)) for name in OBSERVABLES for key in (name, f"{name}_error")}
+
+
+def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
+    if cycle is None:
+        return None
+    return {
+        "stiffness": finite(cycle.stiffness),
+        "jump_on": _jump(cycle.jump_on),
+        "jump_off": _jump(cycle.jump_off),
+        "energy_lost": _estimate(cycle.energy_lost),
+    }
+
+
+def _jump(jump: Jump) -> dict[str, Any]:
+    states = {"take_off": event_record(jump.take_off), "landing": event_record(jump.landing)}
+    return {**states, "energy": _estimate(jump.energy)}
+
+
+def _estimate(estimate: Estimate) -> dict[str, float | None]:
+    return {"value": finite(estimate.value), "error": finite(estimate.error)}
+
+
+def finite(value: float) -> float | None:
+    """Number for JSON, None for what is not finite."""
+    return float(value) if math.isfinite(value) else None
+
+
+def write_csv(curves: Curves, file: IO[str]) -> None:
+    """Write the points of each solver's curve and, in their places by arclength, its events with errors.
+
+    The unit is part of a column's name; where the material is known each quantity comes in SI too. Stability is left
+    out at events, which are where it changes, and errors at points.
+    """
+    writer = csv.DictWriter(file, _columns(curves), lineterminator="\n", restval="")
+    writer.writeheader()
+    for solver, path in curves.paths.items():
+        rows = sorted([*_points(path), *_events(path)], key=lambda row: row["arclength"])
+        writer.writerows(_with_units(curves, {"solver": solver, **row}) for row in rows)
+
+
+def _points(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
+    stable = path.stable, path.stable_under_dead_load
+    for point, grips, dead in zip(path.points, *stable, strict=True):
+        values = dict(zip(OBSERVABLES, point.observables.tolist(), strict=True))
+        flags = {"stable_under_fixed_grips": int(grips), "stable_under_dead_load": int(dead)}
+        yield {"event": "", "arclength": point.arclength, **values, **flags}
+
+
+def _events(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
+    for name, event in path.events.items():
+        numbers = {key: getattr(event, key) for key in event_record(event)}
+        yield {"event": name, "arclength": path.stages[-1][name].point.arclength, **numbers}
+
+
+def _columns(curves: Curves) -> list[str]:
+    names = [
+        column
+        for quantity in (*OBSERVABLES, *(f"{name}_error" for name in OBSERVABLES))
+        for column in _named(curves, quantity)
+    ]
+    return ["solver", "event", "arclength", *names, "stable_under_fixed_grips", "stable_under_dead_load"]
+
+
+def _named(curves: Curves, quantity: str) -> dict[str, float]:
+    """Columns of a quantity, unit included, and what its values are multiplied by in them."""
+    name = quantity.removesuffix("_error")
+    columns = {f"{quantity}_{UNITS[name].replace(' ', '_')}": 1.0}
+    if units := curves.question.units:
+        size, unit = si_sizes(units)[name]
+        columns[f"{quantity}_{unit}"] = size
+    return columns
+
+
+def _with_units(curves: Curves, row: Mapping[str, Any]) -> dict[str, Any]:
+    """Row under the names of the columns; without contact the contact radius is left empty."""
+    named: dict[str, Any] = {}
+    for key, value in row.items():
+        if key.removesuffix("_error") not in OBSERVABLES:
+            named[key] = value
+        elif math.isfinite(value):
+            named |= {column: repr(float(value * factor)) for column, factor in _named(curves, key).items()}
+    return named

@@ -1,0 +1,138 @@
+"""A curve for the terminal: its events with units and errors, and a small plot in characters."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from fem_adhesion.output import curve_lines as lines
+from fem_adhesion.output.assess_report import engineering, with_error
+from fem_adhesion.output.braille import Canvas
+from fem_adhesion.output.curve_scales import Scale, scales
+from fem_adhesion.studies.curves import Curves
+from fem_adhesion.studies.quantities import Quantity
+from halfspace.devices import Cycle
+from halfspace.events import Event
+from halfspace.reach import reaching
+
+DIGITS = 8  # significant, at most
+WIDTH, HEIGHT = 76, 18  # of the plot, in characters
+EVENTS: Mapping[str, str] = {
+    "pull_off": "pull-off",
+    "jump_on": "jump on",
+    "jump_off": "jump off",
+    "zero_load": "zero load",
+}
+LETTERS: Mapping[str, str] = {"pull_off": "P", "jump_on": "A", "jump_off": "C", "zero_load": "Z"}
+COLOURS = {lines.STABLE: "bright_blue", lines.GRIPS_ONLY: "cyan", lines.UNSTABLE: "yellow"}
+COLUMNS = ("approach", "load", "central_gap", "contact_radius")
+
+
+def show(curves: Curves) -> None:
+    """Print everything; the plot only in a terminal."""
+    console = Console(width=None if sys.stdout.isatty() else 150)
+    console.print(table(curves))
+    for line in notes(curves):
+        console.print(line, highlight=False, markup=False)
+    if console.is_terminal:
+        console.print(plot(curves))
+
+
+def table(curves: Curves) -> Table:
+    """A line for each event of each solver, and for where each jump lands."""
+    units = scales(curves)
+    made = Table(title=_title(curves), title_justify="left")
+    made.add_column("state", no_wrap=True)
+    made.add_column("solver", no_wrap=True)
+    for name in COLUMNS:
+        made.add_column(f"{name.replace('_', ' ')}\n{units[name].unit}", justify="right", no_wrap=True)
+    for solver, path in curves.paths.items():
+        for name, words in EVENTS.items():
+            if event := path.event(name):
+                made.add_row(words, solver, *cells(event, units))
+    for device, cycle in (("fixed grips", curves.grips), ("apparatus", curves.apparatus)):
+        for words, state in _landings(cycle, with_take_off=device == "apparatus"):
+            made.add_row(f"{words}, {device}", curves.solver, *cells(state, units))
+    return made
+
+
+def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str, Event]]:
+    """Where jumps land; where they take off too, unless that is an event of the curve."""
+    for words, jump in (("jump on", cycle.jump_on), ("jump off", cycle.jump_off)) if cycle else ():
+        if with_take_off:
+            yield words, jump.take_off
+        yield f"{words} lands", jump.landing
+
+
+def cells(event: Event, units: Mapping[str, Scale]) -> Iterator[str]:
+    """Numbers of an event, each with the error of its last digit in brackets."""
+    for name in COLUMNS:
+        value, error = getattr(event, name), getattr(event, f"{name}_error")
+        if np.isnan(value):
+            yield "-"
+        elif abs(value) <= error:
+            yield "0"
+        else:
+            yield with_error(Quantity(value, error, ""), units[name].size, DIGITS)
+
+
+def _title(curves: Curves) -> str:
+    scene, units = curves.question.scene, curves.question.units
+    parts = [f"tabor {scene.tabor:.6g}, poisson {scene.poisson:g}, {scene.body}"]
+    if scene.radius_ratio:
+        parts.append(f"R/eps {scene.radius_ratio:.4g}")
+    if units:
+        sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
+        parts += [f"{name} = {engineering(value, unit)}" for name, value, unit in sizes]
+    return "; ".join(parts)
+
+
+def notes(curves: Curves) -> Iterator[str]:
+    """Energies lost, how the curve is told to be smooth, cost, and how to read the table."""
+    energy = scales(curves)["energy"]
+    for device, cycle in (("fixed grips", curves.grips), (_apparatus(curves), curves.apparatus)):
+        if cycle:
+            lost = with_error(Quantity(cycle.energy_lost.value, cycle.energy_lost.error, ""), energy.size, DIGITS)
+            yield f"energy lost in a cycle, {device}: {lost} {energy.unit}"
+        elif device == "fixed grips" or not np.isinf(curves.question.stiffness):
+            yield f"no jumps, {device}: the contact follows smoothly"
+    for solver, path in curves.paths.items():
+        yield f"{solver}: {path.unknowns} unknowns, {len(path.points)} points, {path.seconds:.2f} s"
+    yield "In brackets: error of the last digit. Compression and approach are positive; -: no contact."
+
+
+def _apparatus(curves: Curves) -> str:
+    k, units = curves.question.stiffness, curves.question.units
+    return f"k = {engineering(k * units.stiffness, 'N/m')}" if units else f"k = {k:g} R dgamma/eps"
+
+
+def plot(curves: Curves) -> Text:
+    """Load against approach around the events, unstable stretches thinned, events and landings as letters."""
+    units, path = scales(curves), curves.path
+    frame = lines.around_events(path)
+    canvas = Canvas(WIDTH, HEIGHT, frame.approach, frame.load)
+    line = lines.smooth(reaching(path, curves.question.stiffness))
+    for kind, load in line.parts(line.load):
+        canvas.line(line.approach, load, COLOURS[kind], thinned=kind == lines.UNSTABLE)
+    for name, letter in LETTERS.items():
+        if event := path.event(name):
+            canvas.letter(letter, event.approach, event.load)
+    for letter, jump in (("B", curves.grips.jump_on), ("D", curves.grips.jump_off)) if curves.grips else ():
+        canvas.letter(letter, jump.landing.approach, jump.landing.load)
+    x, y = units["approach"], units["load"]
+    text = Text(f"load, {y.unit}\n")
+    text.append_text(canvas.text(_ticks(frame.load, y)))
+    low, high = _ticks(frame.approach, x)
+    text.append(f"{low:>9} {f'approach, {x.unit}':^{WIDTH - 12}}{high:>11}\n")
+    text.append(" ".join(f"{LETTERS[name]} {words}," for name, words in EVENTS.items() if path.event(name)))
+    text.append(" B, D where the jumps from A and C land, dots thinned: unstable" if curves.grips else "")
+    return text
+
+
+def _ticks(span: Sequence[float], scale: Scale) -> tuple[str, str]:
+    return f"{span[0] * scale.size:.3g}", f"{span[1] * scale.size:.3g}"

@@ -1,0 +1,52 @@
+"""One page about a curve: load against approach with its jumps, and the states at its events."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import IO, Any
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from fem_adhesion.output import greenwood_style as style
+from fem_adhesion.output.load_plots import draw_central_gap, draw_load
+from fem_adhesion.output.mesh_plots import draw_mesh, is_drawn
+from fem_adhesion.output.profile_plots import draw_gap, draw_pressure, draw_spike
+from fem_adhesion.studies.curves import FINITE_ELEMENTS, Curves
+
+SUFFIXES = (".png", ".svg", ".pdf")
+LOOK = {**style.LOOK, "font.size": 9.5, "svg.hashsalt": "fem-adhesion"}
+SIZE = (7.3, 10.0)  # inches
+
+
+def require_suffix(path: Path) -> str:
+    """Return the format of a figure file, or raise ValueError if it is none of png, svg and pdf."""
+    if path.suffix not in SUFFIXES:
+        raise ValueError(f"{path} ends in {path.suffix!r}, limit: one of {', '.join(SUFFIXES)}; rename it")
+    return path.suffix[1:]
+
+
+def write(curves: Curves, file: IO[str], form: str) -> None:
+    """Write the page, in a format of `require_suffix`, to a file from `fem_adhesion.output.files.written_aside`."""
+    with os.fdopen(os.dup(file.fileno()), "wb") as binary, rc_context(LOOK):
+        draw(curves).savefig(binary, format=form, dpi=200, metadata={"Date": None} if form == "svg" else None)
+
+
+def draw(curves: Curves) -> Figure:
+    """Page with the curve on top, the profiles of its states, the edge spike, and the mesh or the central gap."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    rows = [["load", "load"], ["pressure", "gap"], ["spike", "body"]]
+    areas: dict[str, Any] = figure.subplot_mosaic(rows, height_ratios=[1.6, 1, 1])  # type: ignore[arg-type]
+    in_body = curves.solver == FINITE_ELEMENTS and is_drawn(curves.question.scene)
+    painters = {
+        "load": draw_load,
+        "pressure": draw_pressure,
+        "gap": draw_gap,
+        "spike": draw_spike,
+        "body": draw_mesh if in_body else draw_central_gap,
+    }
+    for letter, (name, paint) in zip("abcde", painters.items(), strict=True):
+        words = paint(areas[name], curves)
+        areas[name].set_title(f"({letter}) {words}", loc="left", fontsize=9.5)
+    return figure

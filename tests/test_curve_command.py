@@ -1,0 +1,252 @@
+"""``fem-adhesion curve``: what it prints and writes is what was computed, and nothing is left of what goes wrong."""
+
+import csv
+import io
+import json
+import re
+import shlex
+
+import numpy as np
+import pytest
+
+from fem_adhesion.commands import curve
+from fem_adhesion.commands.common import Parser
+from fem_adhesion.output import curve_record, curve_terminal
+from fem_adhesion.scene import Scene
+from fem_adhesion.studies import curves as study
+from halfspace.curve import EquilibriumPath
+from halfspace.newton import NotConverged
+from halfspace.scaling import Units
+
+UNITS = Units(100e-9, 1.1e9, 0.05, 0.3e-9)
+NUMBERS = ("approach", "load", "central_gap", "contact_radius")
+
+
+def _run(*arguments):
+    parser = Parser(prog="fem-adhesion")
+    curve.add(parser.add_subparsers(required=True, parser_class=Parser))
+    options = parser.parse_args(["curve", *map(str, arguments)])
+    return options.run(options)
+
+
+@pytest.fixture(scope="module")
+def both():
+    return study.solve(study.Question(Scene(2.0), solver="both", rtol=1e-4, stiffness=1.0))
+
+
+@pytest.fixture(scope="module")
+def real():
+    return study.solve(study.Question(Scene(UNITS.tabor), rtol=1e-4, units=UNITS, stiffness=0.2 / UNITS.stiffness))
+
+
+def _printed(cell):
+    """Value and error of a number like 1.234(5)."""
+    value, last = re.fullmatch(r"(-?[\d.]+)\((\d+)\)", cell).groups()
+    return float(value), int(last) * 10.0 ** -len(value.partition(".")[2])
+
+
+def _rows(curves):
+    table = curve_terminal.table(curves)
+    return list(zip(*(column._cells for column in table.columns), strict=True))
+
+
+def test_the_table_has_the_events_of_both_solvers_within_their_errors(both):
+    rows = _rows(both)
+    for solver, path in both.paths.items():
+        printed = {row[0]: row[2:] for row in rows if row[1] == solver}
+        for name, event in path.events.items():
+            for quantity, cell in zip(NUMBERS, printed[curve_terminal.EVENTS[name]], strict=True):
+                value, error = getattr(event, quantity), getattr(event, f"{quantity}_error")
+                if np.isnan(value):
+                    assert cell == "-"
+                elif (name, quantity) == ("zero_load", "load"):
+                    assert cell == "0"
+                else:
+                    shown, bound = _printed(cell)
+                    assert abs(shown - value) <= bound
+                    assert error <= bound * (1 + 1e-9)
+
+
+def test_the_table_has_where_the_jumps_land_and_the_notes_what_they_lose(both):
+    rows = {row[0]: row for row in _rows(both)}
+    for device, cycle in (("fixed grips", both.grips), ("apparatus", both.apparatus)):
+        shown, bound = _printed(rows[f"jump on lands, {device}"][3])
+        assert abs(shown - cycle.jump_on.landing.load) <= bound
+    lost = next(line for line in curve_terminal.notes(both) if "fixed grips" in line)
+    shown, bound = _printed(lost.split()[-4])
+    assert abs(shown - both.grips.energy_lost.value) <= bound
+
+
+def test_a_material_gives_si(real):
+    table = curve_terminal.table(real)
+    assert [str(column.header).split("\n")[1] for column in table.columns[2:]] == ["nm", "nN", "nm", "nm"]
+    pull_off = next(row for row in _rows(real) if row[0] == "pull-off")
+    shown, bound = _printed(pull_off[3])
+    assert abs(shown - real.path.event("pull_off").load * 100e-9 * 0.05 * 1e9) <= bound
+    assert "k = 200 mN/m" in "".join(curve_terminal.notes(real))
+
+
+def test_the_record_survives_json_and_holds_the_path(both):
+    record = json.loads(json.dumps(curve_record.record(both), allow_nan=False))
+    assert record["si"] is None
+    assert record["units"]["load"] == "R dgamma"
+    assert {"python", "numpy", "scipy", "scikit-fem"} <= set(record["versions"])
+    assert record["scene"]["tabor"] == 2.0
+    for solver, path in both.paths.items():
+        found = record["solutions"][solver]
+        assert found["curve"]["load"] == path.load.tolist()
+        assert found["curve"]["arclength"] == path.arclength.tolist()
+        assert found["curve"]["stable_under_fixed_grips"] == path.stable.tolist()
+        assert found["curve"]["stable_under_dead_load"] == path.stable_under_dead_load.tolist()
+        radii = [np.nan if a is None else a for a in found["curve"]["contact_radius"]]
+        np.testing.assert_array_equal(radii, path.contact_radius)
+        for name, event in path.events.items():
+            assert found["events"][name]["approach"] == event.approach
+            assert found["events"][name]["load_error"] == event.load_error
+    assert record["jumps"]["fixed_grips"]["stiffness"] is None
+    assert record["jumps"]["apparatus"]["energy_lost"]["value"] == both.apparatus.energy_lost.value
+
+
+def test_the_table_for_machines_has_points_and_events_in_order_in_both_units(real):
+    file = io.StringIO()
+    curve_record.write_csv(real, file)
+    rows = list(csv.DictReader(io.StringIO(file.getvalue())))
+    points = [row for row in rows if not row["event"]]
+    np.testing.assert_array_equal([float(row["load_R_dgamma"]) for row in points], real.path.load)
+    np.testing.assert_allclose([float(row["load_N"]) for row in points], real.path.load * 5e-9, rtol=1e-12)
+    np.testing.assert_array_equal([row["stable_under_fixed_grips"] == "1" for row in points], real.path.stable)
+    assert np.all(np.diff([float(row["arclength"]) for row in rows]) >= 0)
+    jump_on = next(row for row in rows if row["event"] == "jump_on")
+    event = real.path.event("jump_on")
+    assert float(jump_on["approach_m"]) == pytest.approx(event.approach * 0.3e-9, rel=1e-12)
+    assert float(jump_on["approach_error_eps"]) == event.approach_error
+    assert jump_on["contact_radius_beta"] == ""
+    assert float(rows[rows.index(jump_on) - 1]["approach_eps"]) < event.approach
+
+
+def test_a_pipe_gets_no_plot_and_a_terminal_does(both, capsys, monkeypatch):
+    curve_terminal.show(both)
+    piped = capsys.readouterr().out
+    assert "pull-off" in piped
+    assert "⠁" not in piped
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    curve_terminal.show(both)
+    assert "approach, eps" in capsys.readouterr().out.split("In brackets")[1]
+
+
+def test_the_plot_in_characters_has_the_events_where_they_are(both):
+    drawn = curve_terminal.plot(both).plain.split("\n")[1 : curve_terminal.HEIGHT + 1]
+    place = {letter: (drawn.index(line), line.index(letter)) for line in drawn for letter in "APCZBD" if letter in line}
+    assert set(place) == set("APCZBD")
+    assert place["A"][1] == place["B"][1]
+    assert place["C"][1] == place["D"][1]
+    assert place["Z"][0] < place["A"][0] < place["C"][0] < place["P"][0]
+    assert place["C"][1] < place["A"][1] < place["P"][1] < place["Z"][1]
+
+
+def test_all_files_are_written_and_nothing_else(tmp_path, capsys):
+    files = [tmp_path / name for name in ("a.json", "a.csv", "a.svg")]
+    assert _run("--tabor", 0.3, "--rtol", 1e-3, "--json", files[0], "--csv", files[1], "--plot", files[2]) == 0
+    assert sorted(tmp_path.iterdir()) == sorted(files)
+    assert files[2].read_text().startswith("<?xml")
+    assert json.loads(files[0].read_text())["jumps"]["fixed_grips"] is None
+    assert "no jumps, fixed grips" in capsys.readouterr().out
+
+
+def test_the_example_of_the_help_runs(tmp_path, monkeypatch):
+    commands = Parser(prog="fem-adhesion").add_subparsers(parser_class=Parser)
+    curve.add(commands)
+    program, command, *arguments = shlex.split(commands.choices["curve"].epilog.removeprefix("example: "))
+    assert (program, command) == ("fem-adhesion", "curve")
+    monkeypatch.chdir(tmp_path)
+    assert _run(*arguments) == 0
+    assert {file.name for file in tmp_path.iterdir()} == {"curve.svg", "curve.json"}
+
+
+def test_fields_inside_are_written_for_every_event(tmp_path):
+    pytest.importorskip("pyvista")
+    assert _run("--tabor", 0.3, "--rtol", 1e-2, "--vtk", tmp_path / "fields", "--points", 0) == 0
+    assert len(list((tmp_path / "fields").glob("body_*.vtu"))) == 2  # pull-off and zero load
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "tabor = None and no material"),
+        (["--tabor", "0"], "tabor = 0 is outside 0 < tabor"),
+        (["--tabor", "2", "--radius", "100nm"], "leave out --tabor"),
+        (["--radius", "100nm", "--modulus", "1GPa"], "--work-of-adhesion, --spacing missing"),
+        (["--tabor", "2", "--stiffness", "1N/m"], "not a plain number in R dgamma/eps"),
+        (["--tabor", "2", "--stiffness", "-1"], "outside 0 < stiffness"),
+        (["--tabor", "2", "--plot", "a.gif"], "ends in '.gif', limit: one of .png, .svg, .pdf"),
+        (["--tabor", "2", "--body", "hemisphere"], "radius_ratio = None"),
+        (
+            ["--tabor", "2", "--solver", "half-space", "--body", "hemisphere", "--radius-ratio", "99"],
+            "take fem or both",
+        ),
+        (["--tabor", "2", "--body", "hemisphere", "--mesh", "a.msh"], "leave out --body"),
+        (["--tabor", "2", "--to-load", "0"], "to_load = 0"),
+        (["--tabor", "2", "--json", "/no/such/folder/a.json"], "cannot be written"),
+        (["--tabor", "2", "--vtk", "fields", "--solver", "half-space"], "take --solver fem"),
+        (["--tabor", "2", "--vtk", "fields", "--points", "-1"], "points = -1"),
+        (["--tabor", "2", "--vtk", "."], "--force"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line_before_any_work(arguments, message, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "precious").write_text("kept")
+    monkeypatch.setattr(study, "_trace", lambda *_: pytest.fail("work was begun"))
+    with pytest.raises(ValueError, match=re.escape(message)) as refusal:
+        _run(*arguments)
+    assert "\n" not in str(refusal.value)
+    assert [file.name for file in tmp_path.iterdir()] == ["precious"]
+
+
+def test_a_material_with_a_size_of_its_own_is_not_given_another():
+    material = ("--radius", "100nm", "--modulus", "1GPa", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm")
+    with pytest.raises(ValueError, match="leave out --radius-ratio"):
+        _run(*material, "--body", "hemisphere", "--radius-ratio", 100)
+
+
+@pytest.mark.parametrize(("error", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (NotConverged("no"), SystemExit)])
+def test_what_ends_early_leaves_no_file(error, seen, monkeypatch, tmp_path):
+    def fail(*_):
+        raise error
+
+    monkeypatch.setattr(study, "_trace", fail)
+    with pytest.raises(seen):
+        _run("--tabor", 2, "--json", tmp_path / "a.json", "--csv", tmp_path / "a.csv", "--plot", tmp_path / "a.svg")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_question_takes_the_size_of_the_sphere_from_the_material(monkeypatch):
+    asked = []
+    monkeypatch.setattr(study, "solve", lambda question, _: asked.append(question) or pytest.skip.Exception)
+    with pytest.raises(AttributeError):
+        _run(
+            *("--radius", "100nm", "--modulus", "1GPa", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm"),
+            *("--body", "hemisphere", "--profile", "sphere", "--stiffness", "0.2N/m"),
+        )
+    (question,) = asked
+    assert question.solver == "fem"
+    assert question.scene.radius_ratio == pytest.approx(100 / 0.3)
+    assert question.scene.tabor == pytest.approx(question.units.tabor)
+    assert question.stiffness == pytest.approx(0.2 / question.units.stiffness)
+
+
+def test_the_other_solver_of_a_true_sphere_has_its_profile(monkeypatch):
+    asked = {}
+    monkeypatch.setattr(study.halfspace, "trace", lambda _, **options: asked.update(options))
+    scene = Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=100)
+    study._trace(study.Question(scene, solver="both"), study.HALF_SPACE)
+    assert asked["radius_ratio"] == 100
+    study._trace(study.Question(Scene(2.0, body="hemisphere", radius_ratio=100), solver="both"), study.HALF_SPACE)
+    assert asked["radius_ratio"] is None
+
+
+def test_the_two_solvers_agree(both):
+    assert all(isinstance(path, EquilibriumPath) for path in both.paths.values())
+    assert both.solver == study.FINITE_ELEMENTS
+    for name, event in both.path.events.items():
+        other = both.other.event(name)
+        assert abs(event.approach - other.approach) <= event.approach_error + other.approach_error

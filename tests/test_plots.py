@@ -1,0 +1,224 @@
+"""The page about a curve shows what was computed, told apart by more than colour."""
+
+import itertools
+
+import numpy as np
+import pytest
+from matplotlib import rc_context
+
+from fem_adhesion.fields import state_at
+from fem_adhesion.output import curve_lines, load_plots, mesh_plots, plots, profile_plots
+from fem_adhesion.scene import Scene
+from fem_adhesion.studies.curves import Question, solve
+from halfspace.accuracy import half_space_charts, resolution_for
+from halfspace.contact import LOAD
+from halfspace.curve import trace_charts
+from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.path import Steps
+from halfspace.scaling import Units
+
+UNITS = Units(100e-9, 1.1e9, 0.05, 0.3e-9)
+
+
+@pytest.fixture(scope="module")
+def curves():
+    asked = {tabor: Question(Scene(tabor), rtol=1e-4) for tabor in (0.3, 2.0, 5.0)}
+    return {tabor: solve(question) for tabor, question in asked.items()}
+
+
+@pytest.fixture(scope="module")
+def elements():
+    return solve(Question(Scene(2.0), solver="both", rtol=1e-3))
+
+
+@pytest.fixture(scope="module")
+def real():
+    question = Question(Scene(UNITS.tabor), rtol=1e-3, units=UNITS, stiffness=5 / UNITS.stiffness)
+    return solve(question)
+
+
+def _drawn(curves):
+    with rc_context(plots.LOOK):
+        figure = plots.draw(curves)
+        figure.canvas.draw()
+    return figure
+
+
+def _panel(figure, name):
+    return dict(zip(("load", "pressure", "gap", "spike", "body"), figure.axes, strict=False))[name]
+
+
+def _lines(axes):
+    return {line.get_label(): line for line in axes.lines}
+
+
+def _arrows(axes):
+    return [note for note in axes.texts if getattr(note, "arrow_patch", None)]
+
+
+@pytest.mark.parametrize(("tabor", "jumps", "folds"), [(0.3, 0, 0), (2.0, 2, 2), (5.0, 2, 4)])
+def test_arrows_are_the_jumps_and_marks_the_folds(curves, tabor, jumps, folds):
+    axes = _panel(_drawn(curves[tabor]), "load")
+    arrows = _arrows(axes)
+    assert len(arrows) == jumps
+    if jumps:
+        cycle = curves[tabor].grips
+        for arrow, jump in zip(arrows, (cycle.jump_on, cycle.jump_off), strict=True):
+            assert arrow.xyann == pytest.approx((jump.take_off.approach, jump.take_off.load))
+            assert arrow.xy == pytest.approx((jump.landing.approach, jump.landing.load))
+    marked = _lines(axes)["fold"].get_xdata().size if folds else 0
+    assert marked == folds
+    assert ("fold" in _lines(axes)) == bool(folds)
+
+
+@pytest.mark.parametrize("tabor", [0.3, 2.0, 5.0])
+def test_branches_and_theories_differ_in_dashes_and_in_colour(curves, tabor):
+    lines = _lines(_panel(_drawn(curves[tabor]), "load"))
+    branches = set(curve_lines.KINDS.values()) if tabor > 1 else set(list(curve_lines.KINDS.values())[:2])
+    assert branches <= set(lines)
+    assert {"JKR", "Bradley", "Maugis-Dugdale"} <= set(lines)
+    shown = [lines[name] for name in branches]
+    for looks in (
+        [line._unscaled_dash_pattern for line in shown],
+        [line.get_color() for line in shown],
+    ):
+        assert all(a != b for a, b in itertools.combinations(looks, 2))
+
+
+def test_the_drawn_line_is_the_curve_between_the_computed_points(curves):
+    """Against points ten times closer, each solved for."""
+    charts = half_space_charts(2.0, resolution_for(2.0, 1e-4))
+    close = [p.observables for s in trace_charts(charts, steps=Steps(longest=0.1)) for p in s.points]
+    line = curve_lines.smooth(curves[2.0].path)
+    drawn = np.stack([line.approach, line.load])
+    nearest = [_distance(drawn, point[: LOAD + 1]) for point in close if point[LOAD] <= line.load[-1]]
+    assert len(close) > 3 * len(curves[2.0].path.points)
+    assert max(nearest) < 0.01
+
+
+def _distance(line, point):
+    """Distance of a point from a polygon."""
+    a, d = line[:, :-1], np.diff(line)
+    length = np.maximum(np.sum(d**2, axis=0), 1e-30)
+    t = np.clip(np.sum((point[:, None] - a) * d, axis=0) / length, 0, 1)
+    return np.hypot(*(a + t * d - point[:, None])).min()
+
+
+@pytest.mark.parametrize("tabor", [2.0, 5.0])
+def test_stability_changes_at_the_folds_and_under_dead_load_at_pull_off(curves, tabor):
+    path, line = curves[tabor].path, curve_lines.smooth(curves[tabor].path)
+    unstable = np.flatnonzero(line.kind == curve_lines.UNSTABLE)
+    for name, at in (("jump_on", unstable[0]), ("jump_off", unstable[-1])):
+        event = path.event(name)
+        assert line.approach[at] == pytest.approx(event.approach, abs=0.02 * (1 + tabor))
+        assert line.load[at] == pytest.approx(event.load, abs=0.15)
+    stable = np.flatnonzero(line.kind == curve_lines.STABLE)
+    assert line.load[stable[0]] == pytest.approx(path.event("pull_off").load, abs=0.02)
+    assert np.all(np.diff(stable) == 1)
+
+
+def test_axes_carry_the_symbols_of_the_paper_or_si(curves, real):
+    paper, si = _drawn(curves[2.0]), _drawn(real)
+    assert _panel(paper, "load").get_xlabel() == r"approach $\alpha^* = \alpha/\epsilon$"
+    assert _panel(paper, "load").get_ylabel() == r"load $W/R\Delta\gamma$"
+    assert _panel(paper, "pressure").get_ylabel() == r"pressure $P = \mu\epsilon p/\Delta\gamma$"
+    assert [_panel(si, "load").get_xlabel(), _panel(si, "load").get_ylabel()] == [
+        r"approach $\alpha$, nm",
+        "load $W$, nN",
+    ]
+    assert _panel(si, "pressure").get_ylabel() == "pressure $p$, MPa"
+    pull_off = _lines(_panel(si, "load"))["pull-off"]
+    assert pull_off.get_ydata()[0] == pytest.approx(real.path.event("pull_off").load * 5)
+    assert pull_off.get_xdata()[0] == pytest.approx(real.path.event("pull_off").approach * 0.3)
+
+
+def test_an_apparatus_adds_two_arrows_along_its_load_lines(real):
+    axes = _panel(_drawn(real), "load")
+    assert len(_arrows(axes)) == 4
+    for arrow in _arrows(axes)[2:]:
+        (x, y), (x_end, y_end) = arrow.xyann, arrow.xy
+        assert (y_end - y) / (x_end - x) == pytest.approx(-5, rel=1e-5)  # N/m are nN/nm
+    assert sum(line.get_label().startswith("jumps, $k$ = 5 N/m") for line in axes.lines) == 1
+
+
+def test_an_arrow_is_cut_at_the_frame():
+    frame = curve_lines.Frame((-1.0, 1.0), (-2.0, 2.0))
+    assert load_plots._clipped((-3, 0), (3, 0), frame) == ((-1, 0), (1, 0))
+    assert load_plots._clipped((0, 0), (0, 8), frame) == ((0, 0), (0, 2))
+    assert load_plots._clipped((0, 0), (0.5, 1), frame) == ((0, 0), (0.5, 1))
+    assert load_plots._clipped((-3, 0), (-2, 1), frame) is None
+
+
+def test_profiles_meet_the_surface_law_and_the_nodes_lie_on_them(curves):
+    figure = _drawn(curves[5.0])
+    for panel, count in (("pressure", 5), ("gap", 5)):
+        assert len(_panel(figure, panel).lines) == count  # four events and a level
+    spike = _lines(_panel(figure, "spike"))["nodes of the grid"]
+    r, p = spike.get_xdata(), spike.get_ydata()
+    assert r.size > 30
+    np.testing.assert_allclose(profile_plots.profile(curves[5.0].path, "jump_off", r).pressure, p, atol=1e-9)
+    assert p.min() == pytest.approx(-16 / (9 * np.sqrt(3)) * 5, rel=1e-3)
+
+
+def test_the_mesh_is_drawn_with_the_deformation_of_its_surface(elements):
+    """On the surface gap, deflection and the height of the sphere add up."""
+    found = elements.path.stages[-1]["pull_off"]
+    state = state_at(Scene(2.0), found.problem, found.point, how=mesh_plots.MESH)
+    places, moved = (a.reshape(-1, 2) for a in mesh_plots.outlines(state, 3.0))
+    top = (places[:, 1] == 0) & (places[:, 0] < 3)
+    r, u_z = places[top, 0], moved[top, 1]
+    gap = state.problem.operator.at(1.0).values_at(r, state.gap)
+    np.testing.assert_allclose(mesh_plots._sphere(state, r) - u_z, (gap + 1) / 2, atol=2e-3)
+    assert gap.min() > -1
+    assert np.abs(LENNARD_JONES.pressure(gap, 2.0)).max() > 1.9
+    body = _panel(_drawn(elements), "body")
+    assert len(body.collections[0].get_paths()) > 50
+    assert "rigid sphere" in _lines(body)
+
+
+def test_both_solvers_are_in_one_picture(elements):
+    lines = _lines(_panel(_drawn(elements), "load"))
+    dots = lines["half-space"]
+    assert dots.get_marker() == "o"
+    assert set(dots.get_ydata()) <= set(elements.other.load)
+
+
+def test_nothing_is_smaller_than_can_be_read(elements):
+    figure = _drawn(elements)
+    sizes = {text.get_fontsize() for text in figure.findobj(lambda artist: hasattr(artist, "get_fontsize"))}
+    assert min(sizes) >= 7.5
+
+
+def test_every_panel_stays_inside_the_page(real):
+    figure = _drawn(real)
+    page = figure.bbox
+    for axes in figure.axes:
+        box = axes.get_tightbbox()
+        assert page.x0 <= box.x0
+        assert box.x1 <= page.x1
+        assert page.y0 <= box.y0
+        assert box.y1 <= page.y1
+
+
+def test_events_that_would_be_too_small_are_enlarged():
+    figure = _drawn(solve(Question(Scene(2.0), rtol=1e-3, to_load=100.0)))
+    (inset,) = _panel(figure, "load").child_axes
+    assert inset.get_ylim()[1] < 5
+    assert len(_arrows(inset)) == 2
+
+
+@pytest.mark.parametrize("tabor", [1e-8, 0.01, 50.0])
+def test_extreme_parameters_are_drawn(tabor):
+    figure = _drawn(solve(Question(Scene(tabor), rtol=1e-3)))
+    assert len(figure.axes) == 5
+
+
+@pytest.mark.parametrize("form", ["svg", "png", "pdf"])
+def test_each_format_is_written_the_same_twice(curves, form, tmp_path):
+    files = [tmp_path / f"{n}.{form}" for n in (1, 2)]
+    for file in files:
+        with file.open("w") as opened:
+            plots.write(curves[2.0], opened, form)
+    assert files[0].stat().st_size > 10_000
+    if form != "pdf":  # which has the time in it
+        assert files[0].read_bytes() == files[1].read_bytes()
