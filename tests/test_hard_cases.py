@@ -33,6 +33,10 @@ REFUSALS = {
     "poisson 0.49999999": "poisson = 0.49999999 is outside poisson <= 0.499999; take 0.4999",
     "load nan": "to_load = nan is outside 0 < to_load <= 1000",
     "load 1e9": r"to_load = 1e\+09 is outside 0 < to_load <= 1000",
+    "sphere of R/eps 1e13": r"radius_ratio = 1e\+13 is outside 2 <= radius_ratio <= 1e12",
+    "sphere of R/eps 1": "radius_ratio = 1 is outside 2 <= radius_ratio",
+    "sphere smaller than its contact": "radius_ratio = 100 is outside 2.25 tabor = 112 or more; .*R < 1.5 beta",
+    "sphere of R/eps nan": "radius_ratio = nan is outside",
     "block of 1e300 beta": r"radius = 1e\+300 is outside 5 < radius <= 1e9",
 }
 EITHER = (
