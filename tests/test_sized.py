@@ -38,7 +38,7 @@ REFUSED = [
     ({"radius_ratio": float("nan")}, "radius_ratio = nan"),
     ({"radius_ratio": float("inf")}, "radius_ratio = inf"),
     ({"tabor": 10.0, "radius_ratio": 22.0}, "radius_ratio = 22 is outside 2.25 tabor = 22.5 or more"),
-    ({"cap_angle": 0.5}, "cap_angle = 0.5 is outside 1 <= cap_angle <= 90"),
+    ({"cap_angle": 0.5}, "cap_angle = 0.5 is outside 1 <= cap_angle <= 89.99 and is not 90"),
     ({"cap_angle": 91.0}, "cap_angle = 91"),
     ({"radius": 50.0}, "radius = 50.0 does not go with"),
     ({"far_field": "clamped"}, "far_field = clamped does not go with"),

@@ -1,0 +1,63 @@
+"""The half-space at the state of another body: same profile, same cells, at the same contact radius or central gap."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_adhesion.fields import State
+from fem_adhesion.scene import Scene
+from halfspace import compliance, newton
+from halfspace.compliance import Array
+from halfspace.contact import CENTRAL_GAP, CONTACT_RADIUS, ContactProblem
+
+MOST_NODES = 16
+"""Of a ring of the half-space."""
+
+
+@dataclass(frozen=True)
+class Beside:
+    """The half-space beside a state.
+
+    Attributes
+    ----------
+    pressure, gap : (q,) array
+        P and H at the radii of the state.
+    observables : (4,) array
+        Approach, load, central gap, contact radius of the half-space.
+    """
+
+    pressure: Array
+    gap: Array
+    observables: Array
+
+
+def half_space_beside(state: State) -> Beside:
+    """Solve for the half-space by the integral equation where a body of finite elements was solved for.
+
+    Its rings end where the elements do, but its compliance is that of the ring kernel. The contact radius is
+    prescribed, or the central gap if there is no contact; approach and load are its own.
+
+    Raises
+    ------
+    halfspace.newton.NotConverged
+        If the half-space has no such state.
+    """
+    source, tabor = state.problem.operator.at(1.0), state.scene.tabor
+    operator = compliance.panels(source.cells, min(source.cell_nodes.shape[1], MOST_NODES))
+    problem = ContactProblem(operator, tabor, profile=state.problem.profile)
+    start = np.append(source.values_at(operator.radii, state.gap), state.point.x[-2:])
+    solution = newton.solve(problem, start, _same(state.observables))
+    P, H = problem.pressure(solution.x), solution.x[:-2]
+    return Beside(operator.values_at(state.radii, P), operator.values_at(state.radii, H), solution.observables)
+
+
+def is_same_contact(scene: Scene) -> bool:
+    """Whether the half-space is the scene's body, so that the two solutions differ by their errors alone."""
+    return scene.body == "block" and scene.far_field == "point_load"
+
+
+def _same(observables: Array) -> newton.Control:
+    radius = float(observables[CONTACT_RADIUS])
+    return newton.central_gap(float(observables[CENTRAL_GAP])) if np.isnan(radius) else newton.contact_radius(radius)

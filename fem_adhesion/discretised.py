@@ -1,0 +1,159 @@
+"""Bodies of scenes on meshes graded about one contact radius, with all that is needed for the fields inside them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from skfem import ElementQuad2, ElementQuadP, ElementTriP2, MeshTri
+
+from fem_adhesion import bodies
+from fem_adhesion.condensed import CondensedBody, condense
+from fem_adhesion.convergence import FAR_FIELDS
+from fem_adhesion.elasticity import Space
+from fem_adhesion.far_field import FarField, point_load
+from fem_adhesion.incompressible import stiffness_for
+from fem_adhesion.mesh import tensor_grid
+from fem_adhesion.mesh_file import read_body
+from fem_adhesion.pairs import radii_of
+from fem_adhesion.refinement import refined
+from fem_adhesion.scene import Scene
+from fem_adhesion.sized import GRIPS, Discretisation, sized_body
+from halfspace import grid
+from halfspace.accuracy import extent_for
+from halfspace.compliance import Array, ElasticOperator
+from halfspace.contact import ContactProblem, spike_width
+from halfspace.profiles import PARABOLOID, Profile, Tabulated
+from halfspace.sized import CROWDED
+
+RTOL = 1e-5
+"""Of the load left out beyond a block that goes on as a half-space: it is then 15 to 80 beta wide."""
+
+BEYOND = 10.0
+"""Size of the block under a sphere, in R: its far field errs by O(L^-5)."""
+
+
+@dataclass(frozen=True)
+class Discretised:
+    """A body and the contact problem on its surface.
+
+    Attributes
+    ----------
+    body : CondensedBody
+        The body, the first of two, as if it had the whole compliance 1/E*; see `share_of`.
+    problem : ContactProblem
+        With the compliance of both bodies; its first nodes are those of the body, any more are on a rim that is rigid.
+    """
+
+    body: CondensedBody
+    problem: ContactProblem
+
+
+def share_of(scene: Scene) -> float:
+    """Part of the compliance 1/E* that is the body's: its displacement is that of a body of modulus E* times this."""
+    return 1.0 if scene.counter is None else 1.0 - scene.counter.share
+
+
+def discretised(scene: Scene, source: ContactProblem, contact_radius: float, how: Discretisation) -> Discretised:
+    """Discretise the body of a scene finest about a contact radius.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of small strain: a block, a hemisphere or a mesh.
+    source : ContactProblem
+        Another discretisation of the scene, whose size a block held at its far boundary takes over.
+    contact_radius : float
+        In beta; nan without contact, the mesh is then finest on the axis.
+    how : Discretisation
+        How finely; without meaning for a user's mesh.
+    """
+    radius = 0.0 if np.isnan(contact_radius) else contact_radius
+    if isinstance(scene.body, Path):
+        return _meshed(scene, source)
+    if not scene.sized:
+        lines = _graded(radius, _finest(scene, how), _size_of_block(scene, source), how.growth)
+        return _block(scene, how, lines, FAR_FIELDS[scene.far_field])
+    body = sized_body(scene, how)
+    inner = _graded(body.coordinate.of(radius), body.length, float(body.outer[0]), how.growth)
+    lines = np.concatenate([inner, body.outer[1:]])
+    if scene.body == "block":
+        return _block_under_sphere(scene, how, lines, body.profile)
+    if scene.counter is None:
+        return _of(scene, _hemisphere(scene, how, scene.sphere_radius, lines[: -bodies.LAYERS]), body.profile)
+    return _first_of_pair(scene, how, lines, body.make(lines)[0], body.profile)
+
+
+def _finest(scene: Scene, how: Discretisation) -> float:
+    return how.finest * spike_width(scene.tabor) / 2
+
+
+def _graded(edge: float, finest: float, end: float, growth: float) -> Array:
+    """Lines finest at an edge, or on the axis unless it is further from it than a cell is long."""
+    return grid.graded(edge if edge > finest else 0.0, finest, end, growth=growth)
+
+
+def _size_of_block(scene: Scene, source: ContactProblem) -> float:
+    """Size L of a block in beta: its own, or what the load left out allows."""
+    if scene.radius is not None:
+        return scene.radius
+    if scene.far_field != "point_load":
+        return source.operator.at(1.0).extent
+    return extent_for(scene.tabor, RTOL) / float(np.sqrt(scene.tabor))
+
+
+def _block(scene: Scene, how: Discretisation, lines: Array, far_field: FarField) -> Discretised:
+    depths = grid.graded(0.0, np.diff(lines).min(), float(lines[-1]), growth=how.growth)
+    return _of(scene, _condensed(scene, how, tensor_grid(lines, depths), far_field), PARABOLOID)
+
+
+def _block_under_sphere(scene: Scene, how: Discretisation, lines: Array, profile: Profile) -> Discretised:
+    """Block whose surface the law acts on as far as the sphere reaches."""
+    R = float(lines[-1])
+    beyond = R + grid.geometric((BEYOND - 1) * R, R - float(lines[-CROWDED - 1]), how.growth)[1:]
+    depths = grid.graded(0.0, float(np.diff(lines[:-CROWDED]).min()), BEYOND * R, growth=how.growth)
+    mesh = bodies.with_contact_to(tensor_grid(np.concatenate([lines, beyond]), depths), R)
+    return _of(scene, _condensed(scene, how, mesh, point_load), profile)
+
+
+def _hemisphere(scene: Scene, how: Discretisation, R: float, core: Array) -> CondensedBody:
+    depths = grid.graded(0.0, np.diff(core).min(), bodies.DEPTH * R, growth=how.growth)
+    mesh = bodies.hemisphere(R, core, depths)
+    if scene.counter is not None:
+        mesh = bodies.with_contact_to(mesh, float(bodies.Stereographic(R).radius(core[-1:])[0][0]))
+    return _condensed(scene, how, mesh, GRIPS[scene.grip])
+
+
+def _first_of_pair(
+    scene: Scene, how: Discretisation, lines: Array, operator: ElasticOperator, profile: Profile
+) -> Discretised:
+    assert scene.counter is not None
+    R1, _ = radii_of(scene.sphere_radius, scene.counter)
+    body = _hemisphere(scene, how, R1, lines[: -bodies.LAYERS])
+    return Discretised(body, ContactProblem(operator, scene.tabor, profile=profile))
+
+
+def _meshed(scene: Scene, source: ContactProblem) -> Discretised:
+    """The mesh of a file, cut as often as that of the source."""
+    R, facets = scene.sphere_radius, len(source.operator.at(1.0).cells) - 1
+    mesh = read_body(str(scene.body)).scaled(R)
+    while len(mesh.boundaries["contact"]) < facets:
+        mesh = refined(mesh)
+    triangles = isinstance(mesh, MeshTri)
+    space = Space(mesh, ElementTriP2() if triangles else ElementQuad2())
+    stiffness = stiffness_for(0.0 if triangles else scene.poisson)
+    body = condense(space, scene.poisson, far_field=GRIPS[scene.grip], stiffness=stiffness)
+    surface = body.surface
+    return _of(scene, body, Tabulated(surface.radii, R * surface.depths, R * surface.slopes))
+
+
+def _condensed(scene: Scene, how: Discretisation, mesh: Any, far_field: FarField) -> CondensedBody:
+    space = Space(mesh, ElementQuadP(how.degree))
+    stiffness = stiffness_for(scene.poisson)
+    return condense(space, scene.poisson, far_field=far_field, stiffness=stiffness, traction=scene.traction)
+
+
+def _of(scene: Scene, body: CondensedBody, profile: Profile) -> Discretised:
+    return Discretised(body, ContactProblem(body.operator, scene.tabor, profile=profile))

@@ -1,0 +1,168 @@
+"""Files for ParaView: the fields inside the body, its contact surface, and the curve's states as a time series.
+
+Names have no spaces. Units, signs, the scene and the state are in the field data of each file. Section and surface lie
+in the plane y = 0 with the axis z, so that the solid of revolution passes through them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from fem_adhesion.beside import half_space_beside
+from fem_adhesion.fields import State
+from fem_adhesion.output.files import directory_written_aside
+from fem_adhesion.output.lattice import cut_for
+from fem_adhesion.output.revolve import require_angle, revolved
+from fem_adhesion.output.vtk_arrays import (
+    COMPONENTS,
+    Named,
+    half_space_notes,
+    inside,
+    magnification_for,
+    notes,
+    on_surface,
+    require_same_scene,
+    turned,
+)
+from halfspace.compliance import Array, Index
+from halfspace.scaling import Units
+
+TOLERANCE = 1e-4
+"""Largest error of the displacement as drawn, of its maximum, in the section."""
+
+SOLID_TOLERANCE = 1e-2
+"""The same in the solid of revolution, which has fifty times as many points."""
+
+QUADRATIC = {6: 22, 9: 28}
+"""VTK's types of cells of the section by their nodes: quadratic triangle, biquadratic quadrilateral."""
+
+
+def write_path(
+    states: Iterable[State],
+    directory: Path,
+    *,
+    units: Units | None = None,
+    revolve: float | None = None,
+    force: bool = False,
+) -> list[Path]:
+    """Write states of a curve for ParaView, all or none.
+
+    ``body.pvd`` and ``contact.pvd``, and ``solid.pvd`` if revolved, are the time series: their time is the arclength.
+    ``body_0000.vtu`` has the meridian section in second-order cells, ``contact_0000.vtp`` the contact surface with the
+    values of both solvers, ``solid_0000.vtu`` the solid.
+
+    Parameters
+    ----------
+    states : iterable of State
+        Of one scene, in order, from `fem_adhesion.fields.states_along`.
+    directory : Path
+        Where to; made unless it exists.
+    units : Units, optional
+        Of a material, of which the SI values are then in the field data too.
+    revolve : float, optional
+        Angle of the solid in degrees, 360 for all round; no solid unless given.
+    force : bool
+        Accept a directory that is not empty.
+
+    Returns
+    -------
+    list of Path
+        The files, the time series first.
+
+    Raises
+    ------
+    ValueError
+        If there are no states, units or angle do not fit, the directory cannot be written, or pyvista is missing.
+    """
+    if revolve is not None:
+        require_angle(revolve)
+    pyvista = require_pyvista()
+    with directory_written_aside(directory, force=force) as aside:
+        held = list(states)
+        require_same_scene(held, units)
+        scale = magnification_for(held)
+        files = [_write_state(pyvista, aside, k, state, scale, units, revolve) for k, state in enumerate(held)]
+        series = [_write_series(aside, kind, files, held) for kind in files[0]]
+        names = [*series, *(name for each in files for name in each.values())]
+    return [directory / name for name in names]
+
+
+def require_pyvista() -> Any:
+    """Return pyvista, or raise ValueError where it is not installed."""
+    try:
+        import pyvista
+    except ImportError as error:
+        raise ValueError(
+            "pyvista is not installed, which writes VTK files; pip install 'fem-adhesion[view]'"
+        ) from error
+    return pyvista
+
+
+def _write_state(
+    pyvista: Any, folder: Path, number: int, state: State, scale: float, units: Units | None, revolve: float | None
+) -> dict[str, str]:
+    """Write a state's files and return their names by kind."""
+    files = {}
+    for kind, suffix, grid in _grids(pyvista, state, scale, revolve):
+        _annotate(grid, notes(state, scale, units))
+        files[kind] = f"{kind}_{number:04d}.{suffix}"
+        grid.save(str(folder / files[kind]))
+    return files
+
+
+def _grids(pyvista: Any, state: State, scale: float, revolve: float | None) -> Iterator[tuple[str, str, Any]]:
+    """Kind, suffix and grid of each file of a state."""
+    cut = cut_for(state.space, state.components, TOLERANCE)
+    cells, (r, z) = cut.cells, cut.points
+    section = {QUADRATIC[cells.shape[1]]: cells}
+    yield "body", "vtu", _grid(pyvista, section, np.stack([r, 0 * r, z], axis=1), inside(state, cut, scale))
+    yield "contact", "vtp", _surface(pyvista, state, scale)
+    if revolve is not None:
+        coarse = cut_for(state.space, state.components, SOLID_TOLERANCE)
+        solid = revolved(coarse.points, coarse.cells, revolve)
+        yield "solid", "vtu", _grid(pyvista, solid.cells, solid.points, turned(inside(state, coarse, scale), solid))
+
+
+def _grid(pyvista: Any, cells: dict[int, Index], points: Array, arrays: Named) -> Any:
+    grid = pyvista.UnstructuredGrid({kind: nodes for kind, nodes in cells.items() if len(nodes)}, points)
+    return _with_arrays(grid, arrays)
+
+
+def _surface(pyvista: Any, state: State, scale: float) -> Any:
+    """Contact surface as one line through its nodes."""
+    r, z = state.surface.radii, -state.surface.depths
+    line = np.append(r.size, np.arange(r.size))
+    beside = half_space_beside(state)
+    grid = pyvista.PolyData(np.stack([r, 0 * r, z], axis=1), lines=line)
+    _annotate(grid, half_space_notes(state.scene, beside))
+    return _with_arrays(grid, on_surface(state, beside, scale))
+
+
+def _annotate(grid: Any, notes: dict[str, float | str]) -> None:
+    for name, value in notes.items():
+        grid.field_data[name] = np.atleast_1d(value)
+
+
+def _with_arrays(grid: Any, arrays: Named) -> Any:
+    for name, values in arrays.items():
+        grid.point_data[name] = values
+        for number, component in enumerate(COMPONENTS.get(name, ())):
+            grid.GetPointData().GetArray(name).SetComponentName(number, component)
+    return grid
+
+
+def _write_series(folder: Path, kind: str, files: Sequence[dict[str, str]], states: Sequence[State]) -> str:
+    """Write the .pvd collection of a kind of file, whose paths are relative, and return its name."""
+    root = ElementTree.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
+    collection = ElementTree.SubElement(root, "Collection")
+    for names, state in zip(files, states, strict=True):
+        time = repr(float(state.arclength))
+        ElementTree.SubElement(collection, "DataSet", timestep=time, group="", part="0", file=names[kind])
+    ElementTree.indent(root)
+    ElementTree.ElementTree(root).write(folder / f"{kind}.pvd", encoding="utf-8", xml_declaration=True)
+    return f"{kind}.pvd"
