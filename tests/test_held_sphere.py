@@ -13,8 +13,8 @@ from fem_adhesion.condensed import condense, contact_surface, eliminate_interior
 from fem_adhesion.elasticity import Space, boundary_basis, cell_stiffness, cell_strains, ring_measure, trace_matrix
 from fem_adhesion.far_field import Exterior, clamped, sliding
 from fem_adhesion.held_sphere import contact_ends, held_sphere
-from fem_adhesion.nested import refined_towards
 from fem_adhesion.mesh_file import read_body
+from fem_adhesion.nested import refined_towards
 from halfspace import grid
 
 NU, R = 0.3, 30.0
