@@ -57,3 +57,12 @@ def test_peak_memory_of_a_finite_element_trace(benchmark, capsys):
     with capsys.disabled():
         print(f"\npeak memory of one process: {peak:.0f} MiB")
     assert peak < 1024
+
+
+@pytest.mark.parametrize("tabor", [0.2, 1, 3])
+@pytest.mark.parametrize("radius_ratio", [10, 30, 100, 1000, 10000])
+def test_finite_sphere_trace(benchmark, tabor, radius_ratio):
+    """Hemisphere on a sliding mid-plane, true profile, poisson 0.3."""
+    scene = Scene(tabor, body="hemisphere", profile="sphere", radius_ratio=radius_ratio)
+    path = benchmark.pedantic(fem_adhesion.trace, (scene,), {"rtol": 1e-5}, rounds=1)
+    assert path.event("pull_off").load_error < 1e-5 * abs(path.event("pull_off").load)
