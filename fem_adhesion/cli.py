@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from fem_adhesion.commands import assess, compare, curve, finite_sphere, greenwood, hard, speed
+from fem_adhesion.commands import assess, compare, curve, finite_sphere, greenwood, hard, report, speed
 from fem_adhesion.commands.common import BAD_INPUT, INTERRUPTED, Parser
 
-COMMANDS = (compare, curve, assess, finite_sphere, speed, hard, greenwood)
+COMMANDS = (compare, curve, assess, finite_sphere, speed, hard, greenwood, report)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
