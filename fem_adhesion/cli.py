@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 
 from fem_adhesion.commands import assess, compare, curve, finite_sphere, greenwood, hard, report, speed
-from fem_adhesion.commands.common import BAD_INPUT, INTERRUPTED, Parser
+from fem_adhesion.commands.common import BAD_INPUT, DISAGREE, INTERRUPTED, Parser
 
 COMMANDS = (compare, curve, assess, finite_sphere, speed, hard, greenwood, report)
 
@@ -25,6 +25,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ValueError as error:
         print(f"fem-adhesion: {error}", file=sys.stderr)
         return BAD_INPUT
+    except RuntimeError as error:
+        from halfspace.newton import NotConverged
+
+        if not isinstance(error, NotConverged):
+            raise
+        print(f"fem-adhesion: {error}; nothing was written", file=sys.stderr)
+        return DISAGREE
     except KeyboardInterrupt:
         print("fem-adhesion: interrupted; nothing was written", file=sys.stderr)
         return INTERRUPTED

@@ -20,7 +20,10 @@ FLOORS = [
         "fem_adhesion.commands.speed",
     },
     {"fem_adhesion.commands.common"},
-    {"fem_adhesion.output.report"},
+    {"fem_adhesion.output.report", "fem_adhesion.output.movie"},
+    {"fem_adhesion.output.render"},
+    {"fem_adhesion.output.solid_view"},
+    {"fem_adhesion.output.cutaway"},
     {"fem_adhesion.output.plots", "fem_adhesion.output.vtk", "fem_adhesion.output.report_sections"},
     {"fem_adhesion.output.load_plots", "fem_adhesion.output.mesh_plots", "fem_adhesion.output.vtk_arrays"},
     {

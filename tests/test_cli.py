@@ -7,6 +7,7 @@ import pytest
 
 from fem_adhesion import cli
 from fem_adhesion.output.files import written_aside
+from halfspace.newton import NotConverged
 
 
 def run(*arguments):
@@ -162,3 +163,22 @@ def test_help_does_not_load_the_solvers():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "compare" in done.stdout
     assert done.stderr.strip() == "[]"
+
+
+def test_a_device_is_never_replaced_by_a_file(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with pytest.raises(ValueError, match=r"is a device or a pipe, limit: a file; "), written_aside(pipe):
+        raise AssertionError
+    assert pipe.is_fifo()
+
+
+def test_what_does_not_converge_is_one_line_and_exit_code_1(monkeypatch, capsys):
+    def fail(*_, **__):
+        raise NotConverged("no convergence in 40 Newton steps; try a nearer start")
+
+    monkeypatch.setattr("fem_adhesion.studies.curves.solve", fail)
+    assert cli.main(["curve", "--tabor", "1"]) == 1
+    assert capsys.readouterr().err == (
+        "fem-adhesion: no convergence in 40 Newton steps; try a nearer start; nothing was written\n"
+    )

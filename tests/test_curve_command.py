@@ -208,7 +208,7 @@ def test_a_material_with_a_size_of_its_own_is_not_given_another():
         _run(*material, "--body", "hemisphere", "--radius-ratio", 100)
 
 
-@pytest.mark.parametrize(("error", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (NotConverged("no"), SystemExit)])
+@pytest.mark.parametrize(("error", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (NotConverged("no"), NotConverged)])
 def test_what_ends_early_leaves_no_file(error, seen, monkeypatch, tmp_path):
     def fail(*_):
         raise error

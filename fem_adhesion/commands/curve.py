@@ -5,12 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import sys
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
-from fem_adhesion.commands.common import AGREE, DISAGREE, progress_bar
+from fem_adhesion.commands.common import AGREE, progress_bar
 
 if TYPE_CHECKING:
     from fem_adhesion.commands.common import Commands, Parser
@@ -66,6 +65,10 @@ def _add_results(curve: Parser) -> None:
     curve.add_argument("--vtk", type=Path, help="write the fields inside the body for ParaView", metavar="DIR")
     curve.add_argument("--points", type=int, default=20, help="of the curve in DIR, beside its events", metavar="N")
     curve.add_argument("--revolve", type=float, help="write the solid of revolution too, degrees", metavar="ANGLE")
+    curve.add_argument("--render", type=Path, help="draw the body cut open, with its stress: png", metavar="FILE")
+    events = ("pull_off", "jump_on", "jump_off", "zero_load")
+    curve.add_argument("--at", choices=events, help="event that is drawn; pull_off unless given")
+    curve.add_argument("--movie", type=Path, help="draw it up to the wall, onto it and off again: gif", metavar="FILE")
     curve.add_argument("--force", action="store_true", help="replace files in a DIR that is not empty")
 
 
@@ -74,21 +77,16 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.output import curve_record, curve_terminal
     from fem_adhesion.output.files import written_aside
     from fem_adhesion.studies.curves import solve
-    from halfspace.newton import NotConverged
 
     question = _question(options)
     form = _form_of(options.plot)
     with ExitStack() as stack:
-        data, points, figure = (
+        data, points, figure, picture, movie = (
             stack.enter_context(written_aside(path)) if path else None
-            for path in (options.json, options.csv, options.plot)
+            for path in (options.json, options.csv, options.plot, options.render, options.movie)
         )
-        try:
-            with progress_bar() as step:
-                curves = solve(question, step)
-        except NotConverged as error:
-            print(f"fem-adhesion: {error}; nothing was written", file=sys.stderr)
-            raise SystemExit(DISAGREE) from error
+        with progress_bar() as step:
+            curves = solve(question, step)
         if data:
             json.dump(curve_record.record(curves), data, indent=1, allow_nan=False)
         if points:
@@ -99,6 +97,7 @@ def run(options: argparse.Namespace) -> int:
             plots.write(curves, figure, form)
         if options.vtk:
             _write_vtk(options, curves)
+        _draw_body(curves, picture, options.at or "pull_off", movie)
     curve_terminal.show(curves)
     return AGREE
 
@@ -110,6 +109,37 @@ def _write_vtk(options: argparse.Namespace, curves: Curves) -> None:
     question = curves.question
     states = states_along(question.scene, curves.path, points=options.points)
     write_path(states, options.vtk, units=question.units, revolve=options.revolve, force=options.force)
+
+
+def _draw_body(curves: Curves, picture: IO[str] | None, at: str, movie: IO[str] | None) -> None:
+    if picture:
+        from fem_adhesion.output import render
+
+        render.write_picture(curves, picture, at)
+    if movie:
+        from fem_adhesion.output.movie import write_movie
+
+        write_movie(curves, movie)
+
+
+def _require_drawing(options: argparse.Namespace, scene: Scene, solver: SolverName) -> None:
+    """Refuse what cannot be drawn of the body before any work."""
+    for path, suffix in ((options.render, ".png"), (options.movie, ".gif")):
+        if path and path.suffix != suffix:
+            raise ValueError(f"{path} ends in {path.suffix!r}, limit: {suffix}; rename it")
+    if options.at and not options.render:
+        raise ValueError(f"at = {options.at} without a picture, limit: with --render; give --render FILE.png too")
+    if not (options.render or options.movie):
+        return
+    if solver == "half-space":
+        raise ValueError(
+            "picture with solver = half-space, which has no fields inside, limit: fem or both; take --solver fem"
+        )
+    from fem_adhesion.fields import require_fields
+    from fem_adhesion.output.solid_view import require_drawing
+
+    require_fields(scene)
+    require_drawing()
 
 
 def _require_vtk(options: argparse.Namespace, scene: Scene, solver: SolverName) -> None:
@@ -156,9 +186,11 @@ def _question(options: argparse.Namespace) -> Question:
 
     units = _units(options)
     scene = _scene(options, units)
-    solver: SolverName = options.solver or ("half-space" if scene.body == "block" and not options.vtk else "fem")
+    inside = options.vtk or options.render or options.movie
+    solver: SolverName = options.solver or ("half-space" if scene.body == "block" and not inside else "fem")
     if options.vtk:
         _require_vtk(options, scene, solver)
+    _require_drawing(options, scene, solver)
     return Question(scene, solver, options.rtol, options.to_load, units, _stiffness(options, units))
 
 

@@ -108,6 +108,8 @@ def notes(curves: Curves) -> Iterator[str]:
 
 def _apparatus(curves: Curves) -> str:
     k, units = curves.question.stiffness, curves.question.units
+    if np.isinf(k):
+        return "fixed grips"
     return f"k = {engineering(k * units.stiffness, 'N/m')}" if units else f"k = {k:g} R dgamma/eps"
 
 

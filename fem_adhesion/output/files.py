@@ -22,6 +22,8 @@ def written_aside(path: Path) -> Iterator[IO[str]]:
     """
     if path.is_dir():
         raise ValueError(f"{path} is a directory; give the name of a file")
+    if path.exists() and not path.is_file():
+        raise ValueError(f"{path} is a device or a pipe, limit: a file; give the name of one")
     try:
         descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", text=True)
     except OSError as error:

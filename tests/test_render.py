@@ -1,0 +1,202 @@
+"""Pictures and movies of the body show its shape, its stress and its wall as they are, and every state its own."""
+
+import numpy as np
+import pytest
+from PIL import Image
+from scipy.interpolate import CubicSpline
+
+from fem_adhesion.commands import curve
+from fem_adhesion.commands.common import Parser
+from fem_adhesion.output import movie, render, solid_view
+from fem_adhesion.output.cutaway import section, surfaces, view_of
+from fem_adhesion.output.files import written_aside
+from fem_adhesion.scene import Scene
+from fem_adhesion.studies.curves import Question, solve
+from halfspace.contact import APPROACH, LOAD
+
+SMALL = (240, 150)
+HEMISPHERE = Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=200.0)
+
+
+def _solved(scene):
+    return solve(Question(scene, solver="fem", rtol=1e-3))
+
+
+@pytest.fixture(scope="module")
+def block():
+    return _solved(Scene(2.0))
+
+
+@pytest.fixture(scope="module")
+def sphere():
+    return _solved(HEMISPHERE)
+
+
+@pytest.fixture(scope="module")
+def states(block):
+    return render.event_states(block)
+
+
+@pytest.fixture(scope="module")
+def pictures(block, tmp_path_factory):
+    folder, drawn = tmp_path_factory.mktemp("pictures"), {}
+    for event in ("jump_on", "pull_off", "zero_load"):
+        path = folder / f"{event}.png"
+        with written_aside(path) as file:
+            render.write_picture(block, file, event, (480, 300))
+        with Image.open(path) as image:
+            drawn[event] = np.asarray(image.convert("RGB")).astype(int)
+    return drawn
+
+
+def _run(*arguments):
+    parser = Parser(prog="fem-adhesion")
+    curve.add(parser.add_subparsers(required=True, parser_class=Parser))
+    options = parser.parse_args(["curve", *map(str, arguments)])
+    return options.run(options)
+
+
+def _approach(frame):
+    return frame.state.point.observables[APPROACH]
+
+
+@pytest.mark.parametrize("name", ["jump_on", "jump_off", "pull_off", "zero_load"])
+def test_the_rigid_sphere_over_a_half_space_is_drawn_round(states, name):
+    state, view = states[name], view_of(list(states.values()))
+    r, z = surfaces(state, view.reach, view.heights).wall[:, 1:-1]
+    rigid = r**2 / 2 + (1 - state.observables[APPROACH]) / state.scene.tabor
+    assert z == pytest.approx(view.heights * rigid, abs=1e-6 * view.reach)
+
+
+def test_the_wall_over_a_sphere_is_drawn_flat_and_the_sphere_flattened_where_it_touches(sphere):
+    states = render.event_states(sphere)
+    state, view = states["zero_load"], view_of(list(states.values()))
+    shown = surfaces(state, view.reach, view.heights)
+    wall = view.heights * (1 - state.observables[APPROACH]) / 2.0
+    assert shown.wall[1, 1:] == pytest.approx(wall, abs=1e-6 * view.reach)
+    touching = shown.deformed[0] < 0.9 * state.observables[3]
+    spacing = view.heights / 2.0
+    assert np.all(np.abs(wall - shown.deformed[1, touching] - spacing) < 0.1 * spacing)
+    assert np.ptp(shown.undeformed[1, touching]) > 3 * spacing
+
+
+def test_a_small_sphere_is_drawn_to_scale():
+    curves = _solved(Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=30.0))
+    state = render.event_states(curves)["pull_off"]
+    view, R = view_of([state]), np.sqrt(30.0 / 2.0)
+    assert view.heights == pytest.approx(1 / R)
+    r, z = surfaces(state, view.reach, view.heights).undeformed[:, 1:-1]
+    assert np.hypot(r, z + R) == pytest.approx(R, rel=1e-4)
+
+
+def test_the_section_meets_the_surface_with_the_stress_of_the_law(states):
+    state, view = states["zero_load"], view_of(list(states.values()))
+    shown = section(state, view)
+    r, z = shown.points
+    order = np.lexsort((z, np.round(r, 9)))
+    highest = order[np.append(np.diff(np.round(r, 9)[order]) > 0, True)]
+    highest = highest[r[highest] < view.reach]
+    assert len(highest) > 30
+    line = CubicSpline(*surfaces(state, view.reach, view.heights).deformed[:, 1:])
+    assert z[highest] == pytest.approx(line(r[highest]), abs=1e-4)
+    pressure = CubicSpline(state.radii, state.pressure)(r[highest])
+    assert shown.stress[highest] == pytest.approx(-pressure, abs=0.02)
+    assert shown.stress.max() == pytest.approx(16 / (9 * np.sqrt(3)) * 2.0, rel=0.02)
+
+
+def test_a_picture_has_the_size_and_the_colours_of_its_state(pictures):
+    red, blue = {}, {}
+    for event, image in pictures.items():
+        assert image.shape == (300, 480, 3)
+        assert len(np.unique(image.reshape(-1, 3), axis=0)) > 1000
+        solid = image[60:240, 140:410]
+        red[event] = np.sum((solid[..., 0] - solid[..., 2]) > 60)
+        blue[event] = np.sum((solid[..., 2] - solid[..., 0]) > 60)
+    assert 0 < red["jump_on"] < red["pull_off"] / 2
+    assert blue["jump_on"] + blue["pull_off"] < blue["zero_load"] / 4
+
+
+def test_a_movie_passes_stable_states_only_and_jumps_at_a_fixed_wall(block):
+    frames = movie.experiment(block.path)
+    alpha = np.array([_approach(frame) for frame in frames])
+    words = [frame.words for frame in frames]
+    assert 40 <= len(frames) <= 60
+    for take_off, landing in (("about to jump on", "jumped on"), ("about to jump off", "jumped off")):
+        jump = words.index(take_off)
+        assert words[jump + 1] == landing
+        assert alpha[jump + 1] == pytest.approx(alpha[jump], abs=1e-4)
+        loads = [frames[k].state.point.observables[LOAD] for k in (jump, jump + 1)]
+        assert abs(loads[1] - loads[0]) > 1
+    top = words.index("turning back")
+    assert np.all(np.diff(alpha[: top + 1]) > -1e-4)
+    assert np.all(np.diff(alpha[top:]) < 1e-4)
+    resting = [frame.state for frame in frames if frame.words not in ("about to jump on", "about to jump off")]
+    assert all(state.problem.negative_directions(state.point.x) == 0 for state in resting)
+
+
+def test_a_movie_without_jumps_goes_and_comes_by_the_same_states():
+    frames = movie.experiment(_solved(Scene(0.5)).path)
+    alpha = [_approach(frame) for frame in frames]
+    assert not any("jump" in frame.words for frame in frames)
+    assert alpha == alpha[::-1]
+    assert sum(frame.words == "pull-off" for frame in frames) == 1
+
+
+def test_a_movie_has_every_frame_and_lingers_at_the_jumps(block, tmp_path, monkeypatch):
+    monkeypatch.setattr(movie, "FRAMES", 10)
+    frames, path = movie.experiment(block.path), tmp_path / "jump.gif"
+    with written_aside(path) as file:
+        movie.write_movie(block, file, SMALL)
+    with Image.open(path) as shown:
+        assert (shown.n_frames, shown.size) == (len(frames), SMALL)
+        seen = []
+        for number, frame in enumerate(frames):
+            shown.seek(number)
+            assert shown.info["duration"] == round(1000 * frame.seconds)
+            seen.append(np.asarray(shown.convert("RGB")).astype(int))
+    assert all(tuple(image[0, 120]) == (255, 255, 255) for image in seen)
+    jump = [frame.words for frame in frames].index("jumped on")
+    before, after = (np.sum((image[:, 70:205, 0] - image[:, 70:205, 2]) > 60) for image in seen[jump - 1 : jump + 1])
+    assert after > 2 * before
+
+
+def test_the_command_draws_and_prints(tmp_path, capsys):
+    path = tmp_path / "neck.png"
+    assert _run("--tabor", 2, "--rtol", 1e-2, "--render", path, "--at", "jump_off") == 0
+    with Image.open(path) as image:
+        assert image.size == render.SIZE
+    assert "finite elements" in capsys.readouterr().out
+    assert [file.name for file in tmp_path.iterdir()] == ["neck.png"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--at", "jump_on"), "--render FILE.png"),
+        (("--render", "a.jpg"), "limit: .png"),
+        (("--movie", "a.mp4"), "limit: .gif"),
+        (("--movie", "a.gif", "--solver", "half-space"), "--solver fem"),
+        (("--render", "a.png", "--body", "sphere", "--radius-ratio", 1000), "hemisphere"),
+        (("--render", "missing/a.png"), "missing/a.png cannot be written"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_in_one_line_before_any_work(tmp_path, monkeypatch, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("fem_adhesion.studies.curves.solve", lambda *_: pytest.fail("worked"))
+    with pytest.raises(ValueError, match=words) as refused:
+        _run("--tabor", 2, *arguments)
+    assert "\n" not in str(refused.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_event_that_the_curve_has_not_is_refused_and_leaves_no_file(tmp_path):
+    with pytest.raises(ValueError, match="does not fold; take pull_off"):
+        _run("--tabor", 0.5, "--rtol", 1e-2, "--render", tmp_path / "a.png", "--at", "jump_on")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_machine_that_cannot_draw_is_told_what_to_install_before_vtk_crashes(monkeypatch):
+    monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
+    monkeypatch.setattr(solid_view, "OSMESA", ("libOfNoName.so",))
+    with pytest.raises(ValueError, match="apt-get install libegl1 libgl1-mesa-dri"):
+        solid_view.require_drawing()
