@@ -24,7 +24,13 @@ FLOORS = [
     {"fem_adhesion.output.render"},
     {"fem_adhesion.output.solid_view"},
     {"fem_adhesion.output.cutaway"},
-    {"fem_adhesion.output.plots", "fem_adhesion.output.vtk", "fem_adhesion.output.report_sections"},
+    {
+        "fem_adhesion.output.plots",
+        "fem_adhesion.output.vtk",
+        "fem_adhesion.output.report_levels",
+        "fem_adhesion.output.report_sections",
+    },
+    {"fem_adhesion.output.report_parts"},
     {"fem_adhesion.output.load_plots", "fem_adhesion.output.mesh_plots", "fem_adhesion.output.vtk_arrays"},
     {
         "fem_adhesion.output.assess_plot",
@@ -53,6 +59,7 @@ FLOORS = [
     },
     {
         "fem_adhesion.output.files",
+        "fem_adhesion.output.report_figures",
         "fem_adhesion.output.lattice",
         "fem_adhesion.output.revolve",
         "fem_adhesion.output.greenwood_load_plots",

@@ -202,13 +202,23 @@ def test_bad_input_is_refused_in_one_line_before_any_work(arguments, message, mo
     assert [file.name for file in tmp_path.iterdir()] == ["precious"]
 
 
+def test_a_material_without_a_spring_is_held_by_fixed_grips(capsys):
+    material = ("--radius", "100nm", "--modulus", "1GPa", "--poisson", 0.3)
+    _run(*material, "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm", "--rtol", 1e-3)
+    shown = capsys.readouterr().out
+    assert "energy lost in a cycle, fixed grips" in shown
+    assert "no jumps" not in shown
+
+
 def test_a_material_with_a_size_of_its_own_is_not_given_another():
     material = ("--radius", "100nm", "--modulus", "1GPa", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm")
     with pytest.raises(ValueError, match="leave out --radius-ratio"):
         _run(*material, "--body", "hemisphere", "--radius-ratio", 100)
 
 
-@pytest.mark.parametrize(("error", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (NotConverged("no"), NotConverged)])
+@pytest.mark.parametrize(
+    ("error", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (NotConverged("no"), NotConverged)]
+)
 def test_what_ends_early_leaves_no_file(error, seen, monkeypatch, tmp_path):
     def fail(*_):
         raise error

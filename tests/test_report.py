@@ -1,5 +1,6 @@
 """The report: everything in one page, what is missing named, bad input refused before any work."""
 
+import csv
 import json
 import re
 
@@ -7,6 +8,8 @@ import pytest
 
 from fem_adhesion import Scene, cli
 from fem_adhesion.output.report import Contents, page, walk_data
+from fem_adhesion.output.report_figures import figure
+from fem_adhesion.output.report_parts import MOST_LINES, cell, read_table
 from fem_adhesion.studies import crosscheck
 from fem_adhesion.studies.curves import Question, solve
 from fem_adhesion.studies.walk import walk
@@ -31,9 +34,53 @@ def data_of(html):
 def test_the_page_holds_verdict_tables_and_figures_and_needs_no_network(html):
     assert "The two solvers agree." in html
     assert "pull_off load" in html
-    assert html.count('src="data:image/svg+xml;base64,') == html.count("<img ") >= 1
+    assert "<img" not in html
+    assert html.count('role="img" aria-label="Load against approach at Tabor parameter 2 by finite elements') == 1
     assert not re.search(r"(src|href)=\"(https?:)?//", html)
     assert len(html.encode()) < 5 * 2**20
+
+
+def test_the_levels_hold_every_quantity_with_its_verdict(contents, html):
+    (case,) = contents.cases
+    levels = html[html.index('id="levels"') : html.index('id="speed"')]
+    assert levels.count("<td>agree</td>") == len(case.rows)
+    summary = re.search(r"<td>The events</td><td>(\d+)</td><td>(\d+)</td><td>([\d.e-]+)</td>", levels)
+    events = [row for row in case.rows if ":" not in row.quantity]
+    assert int(summary[1]) == int(summary[2]) == len(events)
+    assert float(summary[3]) == pytest.approx(max(row.difference / row.error for row in events), rel=0.05)
+
+
+def test_pictures_keep_to_themselves():
+    svg = b"""<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" height="9pt">
+    <metadata>by</metadata><defs><style>*{color:red}</style><path id="p" d="M0 0"/></defs><script>1</script>
+    <use xlink:href="#p" clip-path="url(#c)"/></svg>"""
+    markup = figure(svg, "one", 'see "this" & that').markup
+    assert 'id="one-p"' in markup
+    assert 'xlink:href="#one-p"' in markup
+    assert 'clip-path="url(#one-c)"' in markup
+    assert 'role="img" aria-label="see &quot;this&quot; &amp; that"' in markup
+    assert not re.search("style|script|metadata|height", markup)
+    with pytest.raises(ValueError, match="the picture one is not SVG"):
+        figure(b"<html/>", "one", "")
+
+
+@pytest.mark.parametrize(
+    ("written", "shown"),
+    [("3.8573291370920526e-11", "3.857e-11"), ("1.6118266845", "1.6118266845"), ("mu = 2", "μ = 2"), ("", "")],
+)
+def test_numbers_of_the_machine_are_rounded_and_others_left(written, shown):
+    assert cell(written) == shown
+
+
+def test_lines_left_out_are_owned_to(tmp_path):
+    with (tmp_path / "long.csv").open("w", newline="") as stream:
+        csv.writer(stream).writerows([["n"], *([k] for k in range(MOST_LINES + 1))])
+    table = read_table(tmp_path / "long.csv", "Long")
+    assert len(table.lines) == MOST_LINES
+    assert table.title == f"Long (first {MOST_LINES} of {MOST_LINES + 1} lines; all are in long.csv)"
+    (tmp_path / "long.csv").write_text("")
+    with pytest.raises(ValueError, match=r"long\.csv is empty"):
+        read_table(tmp_path / "long.csv", "Long")
 
 
 def test_sections_not_computed_say_how_to(html):
@@ -84,4 +131,5 @@ def test_the_command_writes_the_page_with_what_other_commands_left(tmp_path, cap
     assert "verdict: agree" in capsys.readouterr().out
     html = file.read_text()
     assert "<td>tabor &lt;50&gt;</td>" in html
+    assert "Of 1 cases: 1 converged." in html
     assert "fem-adhesion hard --out hard" not in html

@@ -95,11 +95,14 @@ def _title(curves: Curves) -> str:
 def notes(curves: Curves) -> Iterator[str]:
     """Energies lost, how the curve is told to be smooth, cost, and how to read the table."""
     energy = scales(curves)["energy"]
-    for device, cycle in (("fixed grips", curves.grips), (_apparatus(curves), curves.apparatus)):
+    devices = [("fixed grips", curves.grips)]
+    if not np.isinf(curves.question.stiffness):
+        devices.append((_apparatus(curves), curves.apparatus))
+    for device, cycle in devices:
         if cycle:
             lost = with_error(Quantity(cycle.energy_lost.value, cycle.energy_lost.error, ""), energy.size, DIGITS)
             yield f"energy lost in a cycle, {device}: {lost} {energy.unit}"
-        elif device == "fixed grips" or not np.isinf(curves.question.stiffness):
+        else:
             yield f"no jumps, {device}: the contact follows smoothly"
     for solver, path in curves.paths.items():
         yield f"{solver}: {path.unknowns} unknowns, {len(path.points)} points, {path.seconds:.2f} s"
@@ -108,8 +111,6 @@ def notes(curves: Curves) -> Iterator[str]:
 
 def _apparatus(curves: Curves) -> str:
     k, units = curves.question.stiffness, curves.question.units
-    if np.isinf(k):
-        return "fixed grips"
     return f"k = {engineering(k * units.stiffness, 'N/m')}" if units else f"k = {k:g} R dgamma/eps"
 
 

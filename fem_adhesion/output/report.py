@@ -16,16 +16,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from fem_adhesion.output import plots
 from fem_adhesion.output.curve_lines import UNSTABLE, Line, smooth
-from fem_adhesion.output.record import crosscheck_record
-from fem_adhesion.output.report_sections import (
-    SOURCES,
-    Figure,
-    Section,
-    crosscheck_section,
-    data_uri,
-    section_of,
-    settings_section,
-)
+from fem_adhesion.output.record import overall_verdict
+from fem_adhesion.output.report_figures import figure
+from fem_adhesion.output.report_levels import crosscheck_section, settings_section
+from fem_adhesion.output.report_parts import Section
+from fem_adhesion.output.report_sections import SOURCES, section_of
 from fem_adhesion.studies.crosscheck import Case, Failure
 from fem_adhesion.studies.curves import Curves
 from fem_adhesion.studies.machine import machine
@@ -74,21 +69,21 @@ def page(contents: Contents) -> str:
     ValueError
         If a directory does not hold what its command writes.
     """
-    record = crosscheck_record(contents.cases)
+    verdict = overall_verdict(contents.cases)
     others = [section_of(source, contents.directories.get(source.command)) for source in SOURCES]
     environment = Environment(
         loader=PackageLoader("fem_adhesion", TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
     return environment.get_template("report.html.j2").render(
-        verdict=record["verdict"],
-        words=VERDICTS[record["verdict"]],
-        cases=record["cases"],
-        counts=_counts(record),
+        verdict=verdict,
+        words=VERDICTS[verdict],
+        cases=contents.cases,
+        counts=_counts(contents.cases),
         curves=_curves_section(contents.curves),
         walk=walk_data(contents.walk, contents.curves),
-        levels=crosscheck_section(record),
+        levels=crosscheck_section(contents.cases),
         others=others,
-        settings=settings_section(record, machine()),
+        settings=settings_section(contents.cases, machine()),
         style=_text("report.css"),
         script=_text("walk.js"),
     )
@@ -98,8 +93,8 @@ def _text(name: str) -> str:
     return (resources.files("fem_adhesion") / TEMPLATES / name).read_text(encoding="utf-8")
 
 
-def _counts(record: Mapping[str, Any]) -> dict[str, int]:
-    verdicts = [row["verdict"] for case in record["cases"] for row in case.get("comparison", ())]
+def _counts(cases: Sequence[Case | Failure]) -> dict[str, int]:
+    verdicts = [row.verdict for case in cases if not isinstance(case, Failure) for row in case.rows]
     return {verdict: verdicts.count(verdict) for verdict in VERDICTS if verdict in verdicts}
 
 
@@ -112,7 +107,7 @@ def _curves_section(curves: Curves) -> Section:
         "unstable branches, the jumps under fixed grips, and JKR, Bradley and Maugis-Dugdale behind; pressure and gap "
         "at the events; the spike of tension at the contact edge with the points of the grid; the deformed mesh."
     )
-    return Section("curves", "Curves with both solvers", figures=(Figure(data_uri(stream.getvalue()), text),))
+    return Section("curves", "Curves with both solvers", figures=(figure(stream.getvalue(), "curves", text),))
 
 
 def walk_data(walk: Walk, curves: Curves) -> str:

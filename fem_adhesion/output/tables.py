@@ -9,6 +9,18 @@ from rich.table import Table
 from fem_adhesion.studies.crosscheck import Case, Row
 from halfspace.curve import EquilibriumPath, Estimate
 
+COLUMNS = (
+    "quantity",
+    "unit",
+    "half-space",
+    "finite elements",
+    "difference",
+    "error (hs)",
+    "error (fe)",
+    "budget",
+    "verdict",
+)
+WORDS = ("quantity", "unit", "verdict")  # columns without numbers
 STYLES = {"agree": "green", "disagree": "bold red", "inconclusive": "yellow"}
 
 
@@ -21,17 +33,15 @@ def crosscheck_table(case: Case) -> Table:
         title_justify="left",
         caption_justify="left",
     )
-    table.add_column("quantity", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
-    for name in ("half-space", "finite elements", "difference", "error (hs)", "error (fe)", "budget"):
-        table.add_column(name, justify="right", no_wrap=True)
-    table.add_column("verdict", no_wrap=True)
+    for name in COLUMNS:
+        table.add_column(name, justify="left" if name in WORDS else "right", no_wrap=True)
     for row in case.rows:
-        table.add_row(*_cells(row), style=None if row.verdict == "agree" else STYLES[row.verdict])
+        table.add_row(*cells(row), style=None if row.verdict == "agree" else STYLES[row.verdict])
     return table
 
 
-def _cells(row: Row) -> tuple[str, ...]:
+def cells(row: Row) -> tuple[str, ...]:
+    """What stands in `COLUMNS`: values with digits down to the first uncertain one, errors with two."""
     hs, fe = row.halfspace, row.finite_element
     return (
         row.quantity,

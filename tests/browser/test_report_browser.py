@@ -89,18 +89,24 @@ def test_the_slider_walks_the_curve_by_key_and_by_value(open_page, stations):
 
 def test_pointing_at_the_curve_chooses_a_state(open_page, stations):
     shown = open_page()
-    number = next(k for k, station in enumerate(stations) if station["name"] == "zero load")
-    shown.locator("#curve circle.station").nth(number).hover(force=True)
-    assert numbers(shown.locator("#readout").inner_text())[1] == pytest.approx(0.0, abs=0.5)
-    assert shown.locator("#state").input_value() != str(
-        next(k for k, s in enumerate(stations) if s["name"] == "pull off")
-    )
+    before, last = shown.locator("#state").input_value(), len(stations) - 1
+    assert before != str(last)
+    shown.locator("#curve circle.station").nth(last).hover(force=True)  # far from all others
+    assert shown.locator("#state").input_value() == str(last)
+    assert numbers(shown.locator("#readout").inner_text())[1] == pytest.approx(stations[last]["load"], abs=1e-4)
 
 
 def test_it_opens_fast_and_alone(open_page, report):
     shown = open_page()
     assert [url for url in shown.requests if not url.startswith(("data:", report.as_uri()))] == []
     assert shown.evaluate("performance.timing.loadEventEnd - performance.timing.navigationStart") < 2000
+
+
+def test_no_identifier_is_used_twice(open_page):
+    shown = open_page()
+    assert shown.evaluate("[...document.querySelectorAll('[id]')].map((found) => found.id).length") > 50
+    twice = "[...document.querySelectorAll('[id]')].map((e) => e.id).filter((id, k, all) => all.indexOf(id) !== k)"
+    assert shown.evaluate(twice) == []
 
 
 def test_it_fits_a_narrow_screen(open_page):

@@ -76,15 +76,13 @@
     curve.line("unstable", drawn.approach, drawn.load.map((load, k) => (drawn.unstable[k] ? load : null)));
   }
   const dots = element(curve.drawing, "g", {});
-  states.forEach((state, k) => {
-    const dot = element(dots, "circle", { class: "station", cx: curve.x(state.approach), cy: curve.y(state.load), r: state.name ? 4 : 2.5 });
+  states.forEach((state) => {
+    const dot = element(dots, "circle", { class: state.stable ? "station" : "station passing", cx: curve.x(state.approach), cy: curve.y(state.load), r: state.name ? 4 : 2.5 });
     element(dot, "title", {}, `${state.name || "state"}: α* ${state.approach}, W ${state.load}`);
-    dot.addEventListener("pointerenter", () => choose(k));
-    dot.addEventListener("click", () => choose(k));
   });
   const here = element(curve.drawing, "circle", { class: "here", r: 6, "pointer-events": "none" });
-  curve.svg.addEventListener("pointermove", (event) => {
-    const scale = WIDTH / curve.svg.getBoundingClientRect().width, box = curve.svg.getBoundingClientRect();
+  const point = (event) => {
+    const box = curve.svg.getBoundingClientRect(), scale = WIDTH / box.width;
     const px = (event.clientX - box.left) * scale, py = (event.clientY - box.top) * scale;
     let best = 0, least = Infinity;
     states.forEach((state, k) => {
@@ -92,7 +90,8 @@
       if (away < least) { least = away; best = k; }
     });
     if (least < 25) choose(best);
-  });
+  };
+  for (const kind of ["pointermove", "pointerdown"]) curve.svg.addEventListener(kind, point);
 
   const number = (value, digits = 4) => (value === null ? "none" : value.toFixed(digits));
 
@@ -109,7 +108,7 @@
     body.clear();
     const sphere = data.radii.map((r) => `L${body.x(r).toFixed(1)} ${body.y(1 - state.approach + data.tabor * r * r / 2).toFixed(1)}`);
     element(body.drawing, "path", { class: "wall", d: `M${body.x(0)} -9999${sphere.join("")}V-9999Z` });
-    data.depths.forEach((depth, line) => body.line("fe", data.places, state.lines[line].map((rise) => rise - between * depth)));
+    data.depths.forEach((depth, line) => body.line(line ? "fe inner" : "fe", data.places, state.lines[line].map((rise) => rise - between * depth)));
     readout.textContent = `${state.name ? state.name + ": " : ""}state ${k + 1} of ${states.length}, `
       + `${state.stable ? "stable" : "unstable"} under fixed grips. α* = ${number(state.approach)} ε, W = ${number(state.load)} R Δγ, `
       + `H(0) = ${number(state.central_gap)} ε, contact radius ${number(state.contact_radius)}${state.contact_radius === null ? "" : " β"}.`;

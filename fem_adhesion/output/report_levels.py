@@ -1,0 +1,93 @@
+"""The cross-check in the report: its three levels, and what the solvers chose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from fem_adhesion.output.record import verdict_of, versions
+from fem_adhesion.output.report_parts import Section, Table, symbols
+from fem_adhesion.output.tables import COLUMNS, cells
+from fem_adhesion.studies.crosscheck import Case, Failure, Row
+
+LEVELS = {
+    "operator:": "Both elastic operators under the same pressures",
+    "cross-residual:": "The state found by one solver in the equations of the other",
+    "": "The events",
+}
+SUMMARY = ("level", "quantities", "agree", "largest difference / error", "largest error / budget")
+
+Cases = Sequence[Case | Failure]
+
+
+def crosscheck_section(cases: Cases) -> Section:
+    """The comparison: a summary, and a table for each of its three levels."""
+    solved = [case for case in cases if isinstance(case, Case)]
+    failures = [(f"{case.scene.tabor:g}", case.reason) for case in cases if isinstance(case, Failure)]
+    lost = (Table("Not solved", ("Tabor parameter", "reason"), failures, open=True),) if failures else ()
+    return Section(
+        "levels",
+        "The three levels",
+        paragraphs=(
+            "A quantity agrees only if the difference is within the sum of both error estimates and that sum within "
+            "the budget. Loads in R Δγ, approaches in ε, energies in R Δγ ε.",
+            f"Poisson's ratio {', '.join(sorted({f'{case.scene.poisson:g}' for case in cases}))}. "
+            + "; ".join(f"Tabor parameter {case.scene.tabor:g}: {verdict_of(case)}" for case in cases)
+            + ".",
+        ),
+        tables=(_summary(solved), *lost, *(_level_table(solved, level) for level in LEVELS)),
+    )
+
+
+def _rows(cases: Sequence[Case], level: str) -> Iterator[tuple[float, Row]]:
+    """Tabor parameters and rows of a level."""
+    for case in cases:
+        yield from ((case.scene.tabor, row) for row in case.rows if _level(row) == level)
+
+
+def _level(row: Row) -> str:
+    return next(level for level in LEVELS if row.quantity.startswith(level))
+
+
+def _summary(cases: Sequence[Case]) -> Table:
+    lines = [_summary_line(LEVELS[level], [row for _, row in _rows(cases, level)]) for level in LEVELS]
+    return Table("Summary", SUMMARY, lines, open=True)
+
+
+def _summary_line(title: str, rows: Sequence[Row]) -> list[str]:
+    agree = sum(row.verdict == "agree" for row in rows)
+    known = [row for row in rows if row.error > 0]
+    ratios = [(row.difference / row.error, row.error / row.budget) for row in known]
+    largest = [f"{max(column):.2g}" for column in zip(*ratios, strict=True)] or ["none", "none"]
+    return [title, str(len(rows)), str(agree), *largest]
+
+
+def _level_table(cases: Sequence[Case], level: str) -> Table:
+    lines = [[f"{tabor:g}", *map(symbols, cells(row))] for tabor, row in _rows(cases, level)]
+    return Table(LEVELS[level], ("Tabor parameter", *COLUMNS), lines)
+
+
+def settings_section(cases: Cases, machine: Mapping[str, str]) -> Section:
+    """Versions, machine and what the solvers chose."""
+    facts = {**versions(), **machine}
+    lines = [
+        [f"{case.scene.tabor:g}", name, _settings(path.settings), str(path.unknowns), f"{path.seconds:.2f}"]
+        for case in cases
+        if isinstance(case, Case)
+        for name, path in (("half-space", case.halfspace), ("finite elements", case.finite_element))
+    ]
+    return Section(
+        "settings",
+        "Versions and settings",
+        tables=(
+            Table("Versions", ("what", "which"), list(map(list, facts.items())), open=True),
+            Table("Settings", ("Tabor parameter", "solver", "settings", "unknowns", "seconds"), lines),
+        ),
+    )
+
+
+def _settings(value: object) -> str:
+    """Settings in words; those of a part in brackets."""
+    if isinstance(value, Mapping):
+        parts = ((name, _settings(part), isinstance(part, Mapping)) for name, part in value.items())
+        return ", ".join(f"{name} ({text})" if nested else f"{name} {text}" for name, text, nested in parts)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
