@@ -9,15 +9,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from fem_adhesion.elasticity import (
-    CellStiffness,
-    Space,
-    boundary_basis,
-    cell_stiffness,
-    ring_measure,
-    scatter,
-    trace_matrix,
-)
+from fem_adhesion.boundary import boundary_basis, trace_matrix
+from fem_adhesion.elasticity import CellStiffness, Space, cell_stiffness, ring_measure, scatter
 from fem_adhesion.far_field import Exterior, FarField, point_load
 from halfspace.compliance import Array, ElasticOperator, Index
 

@@ -8,24 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from scipy import sparse
-from skfem import Dofs, ElementVector, FacetBasis
-from skfem.mapping import MappingIsoparametric
+from skfem import Dofs, ElementVector
 from skfem.quadrature import get_quadrature
-from skfem.refdom import RefLine, RefTri
+from skfem.refdom import RefTri
 
 from halfspace.compliance import Array, Index
 
 BATCH = 400_000
 """Numbers held in one batch of strain-displacement matrices: 16 MB, small enough for the cache to help."""
-
-
-INVERSION_TOLERANCE = 1e-6
-"""Summed over the points of a facet, in units of the reference cell; a cell of 1e-9 of its radius is still resolved."""
 
 
 @dataclass(frozen=True)
@@ -223,57 +218,6 @@ def reference_functions(element: Any, points: Array) -> tuple[Array, Array]:
     found = [element.lbasis(points, i) for i in range(count)]
     values = np.array([np.broadcast_to(value, points.shape[1:]) for value, _ in found])
     return values, np.array([np.broadcast_to(slope, points.shape) for _, slope in found])
-
-
-def boundary_basis(space: Space, name: str, points: int) -> Any:
-    """Return skfem's basis of the scalar element on the named boundary, with Gauss `points` on each facet."""
-    quadrature = get_quadrature(RefLine, 2 * points - 1)
-    facets = space.mesh.boundaries[name]
-    return FacetBasis(
-        space.mesh,
-        space.element,
-        mapping=_forgiving_mapping(space.mesh),
-        facets=facets,
-        quadrature=quadrature,
-        dofs=space.scalar_dofs,
-        disable_doflocs=True,
-    )
-
-
-def _forgiving_mapping(mesh: Any) -> Any:
-    """The mesh's mapping; inverted on quadrilaterals only as far as rounding allows.
-
-    skfem inverts them by Newton's method to 1e-12 of a cell, which the coordinates of thin cells far from the origin
-    cannot resolve. On straight-sided rectangles its first step is exact.
-    """
-    mapping = mesh.mapping()
-    if isinstance(mapping, MappingIsoparametric):
-        mapping.invF = partial(mapping.invF, newton_tol=INVERSION_TOLERANCE)
-    return mapping
-
-
-def trace_matrix(basis: Any, functions: Index) -> sparse.csr_array:
-    """Return the values of the given functions at the points of a boundary basis.
-
-    Parameters
-    ----------
-    basis : skfem.FacetBasis
-        With k points on each of its facets.
-    functions : (m,) int array
-        Functions that do not vanish on the boundary, ascending.
-
-    Returns
-    -------
-    (facets k, m) sparse array
-    """
-    values = np.array([b[0] for b in basis.basis])
-    rows = np.broadcast_to(np.arange(values[0].size).reshape(values[0].shape), values.shape)
-    columns = np.searchsorted(functions, basis.element_dofs)
-    found = np.isin(basis.element_dofs, functions)
-    columns = np.broadcast_to(columns[:, :, None], values.shape)
-    return sparse.csr_array(
-        (values[found].ravel(), (rows[found].ravel(), columns[found].ravel())), shape=(values[0].size, len(functions))
-    )
 
 
 def scatter(blocks: Array, dofs: Index, size: int) -> sparse.csc_array:

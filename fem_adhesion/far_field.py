@@ -15,13 +15,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from fem_adhesion.elasticity import (
-    Space,
-    boundary_basis,
-    lame_parameters,
-    ring_measure,
-    trace_matrix,
-)
+from fem_adhesion.boundary import boundary_basis, trace_matrix
+from fem_adhesion.elasticity import Space, lame_parameters, ring_measure
 from halfspace.compliance import Array, Index
 
 TRACE_POINTS = 6

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from fem_adhesion.elasticity import Space, boundary_basis
+from fem_adhesion.boundary import boundary_basis
+from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import Exterior
 from halfspace.compliance import Array, ElasticOperator, Index
 

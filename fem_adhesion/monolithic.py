@@ -23,8 +23,9 @@ from scipy.sparse.linalg import splu
 from skfem import BilinearForm, CellBasis, ElementVector, LinearForm
 from skfem.helpers import ddot, sym_grad, trace
 
+from fem_adhesion.boundary import boundary_basis
 from fem_adhesion.condensed import contact_surface
-from fem_adhesion.elasticity import Space, boundary_basis, cell_quadrature, lame_parameters
+from fem_adhesion.elasticity import Space, cell_quadrature, lame_parameters
 from fem_adhesion.far_field import Exterior, FarField, point_load, with_interiors
 from halfspace.compliance import Array, ElasticOperator
 from halfspace.contact import ContactProblem

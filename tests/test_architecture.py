@@ -134,6 +134,7 @@ FLOORS = [
     {"fem_adhesion.incompressible", "fem_adhesion.finite_strain_solve", "fem_adhesion.finite_strain_traction"},
     {"fem_adhesion.condensed", "fem_adhesion.finite_strain_bodies", "fem_adhesion.finite_strain_surface"},
     {"fem_adhesion.far_field", "fem_adhesion.finite_strain_cells"},
+    {"fem_adhesion.boundary"},
     {"fem_adhesion.held_sphere"},
     {"fem_adhesion.bodies", "fem_adhesion.nested"},
     {"fem_adhesion.elasticity", "fem_adhesion.neo_hookean"},

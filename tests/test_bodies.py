@@ -6,8 +6,9 @@ from legendre_sphere import legendre, sphere_operator, surface_deflection
 from skfem import CellBasis, ElementQuadP
 
 from fem_adhesion import bodies, curved
+from fem_adhesion.boundary import boundary_basis
 from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space, boundary_basis, cell_quadrature, cell_stiffness, ring_measure, scatter
+from fem_adhesion.elasticity import Space, cell_quadrature, cell_stiffness, ring_measure, scatter
 from fem_adhesion.far_field import clamped, sliding
 from fem_adhesion.incompressible import stiffness_for
 from halfspace import grid

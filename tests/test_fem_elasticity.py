@@ -19,9 +19,9 @@ from skfem import (
 )
 from skfem.helpers import ddot, div, sym_grad
 
+from fem_adhesion.boundary import boundary_basis, trace_matrix
 from fem_adhesion.elasticity import (
     Space,
-    boundary_basis,
     cell_quadrature,
     cell_stiffness,
     elastic_matrix,
@@ -29,7 +29,6 @@ from fem_adhesion.elasticity import (
     ring_measure,
     scatter,
     strain_displacement,
-    trace_matrix,
 )
 from fem_adhesion.far_field import boussinesq_displacement, boussinesq_stress, trace_projection
 from fem_adhesion.mesh import (

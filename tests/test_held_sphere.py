@@ -9,8 +9,9 @@ from skfem import Basis, ElementQuadP, ElementTriP2
 
 from fem_adhesion import held_sphere as module
 from fem_adhesion.bodies import CORE, DEPTH, Stereographic, hemisphere
+from fem_adhesion.boundary import boundary_basis, trace_matrix
 from fem_adhesion.condensed import condense, contact_surface, eliminate_interiors, factorise
-from fem_adhesion.elasticity import Space, boundary_basis, cell_stiffness, cell_strains, ring_measure, trace_matrix
+from fem_adhesion.elasticity import Space, cell_stiffness, cell_strains, ring_measure
 from fem_adhesion.far_field import Exterior, clamped, sliding
 from fem_adhesion.held_sphere import contact_ends, held_sphere
 from fem_adhesion.mesh_file import read_body

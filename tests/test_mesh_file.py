@@ -9,8 +9,9 @@ import pytest
 from scipy.spatial import cKDTree
 from skfem import CellBasis, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2, MeshTri, MeshTri2
 
+from fem_adhesion.boundary import boundary_basis
 from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space, boundary_basis
+from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import clamped
 from fem_adhesion.mesh_checks import facet_nodes
 from fem_adhesion.mesh_file import read_body
