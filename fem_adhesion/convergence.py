@@ -67,13 +67,15 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     Returns
     -------
     EquilibriumPath
-        The curve and its events; their error estimates add the change by a higher degree and by a larger block, that
-        is, they are distances from the half-space, not from the block.
+        The curve and its events. Of a block, their error estimates add the change by a higher degree and by a larger
+        block, that is, they are distances from the half-space, not from the block; of another body they are the change
+        by a higher degree, of a user's mesh that by a finer one. The curve of such a body is right to some 1e-3; its
+        events are solved for anew.
 
     Raises
     ------
     ValueError
-        If an input is out of range.
+        If an input is out of range, a mesh file is no body, or the contact grows wider than its body.
     halfspace.newton.NotConverged
         If the curve cannot be traced.
     """

@@ -28,10 +28,8 @@ GRIPS = {"sliding": sliding, "bonded": clamped}
 
 FINEST, GROWTH = 0.6, 2.5  # of the cells: at the contact edge in widths of the spike of tension, and of their lengths
 CURVE_DEGREE = 4  # of the elements for the curve, whose operator is interpolated to some 1e-4
-FOURTH, PER_DEGREE = (
-    1.5e-5,
-    15.0,
-)  # estimated error of the events from degree 4 to 5, and what each degree divides it by
+FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
+PER_DEGREE = 15.0  # what each degree divides it by
 REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
 BEYOND = 1e3  # size of the block under a sphere, in R: nothing acts on it beyond R, and its far field errs by O(L^-5)
 
@@ -59,7 +57,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: the events on elements of a degree that suits the tolerance, one more on each level."""
     degree = int(np.clip(4 + np.ceil(np.log(FOURTH / rtol) / np.log(PER_DEGREE) - 1e-9), 4, 8)) + level
     fine, coarse = (sized_body(scene, Discretisation(d)) for d in (degree, CURVE_DEGREE + level))
-    settings = {"degree": degree, "finest": FINEST, "growth": GROWTH}
+    settings = {"degree": degree, "curve_degree": CURVE_DEGREE + level, "finest": FINEST, "growth": GROWTH}
     stages = (AroundEvents(fine, WINDOW / 2**level),)
     return Rung(partial(coarse.curve, to_load), stages, settings, remaining=REMAINING, along=True)
 
