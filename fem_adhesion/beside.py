@@ -41,7 +41,7 @@ def half_space_beside(state: State) -> Beside:
 
     Raises
     ------
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If the half-space has no such state.
     """
     source, tabor = state.problem.operator.at(1.0), state.scene.tabor

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from fem_adhesion.commands import assess, compare, curve, finite_sphere, greenwood, hard, report, speed
 from fem_adhesion.commands.common import BAD_INPUT, DISAGREE, INTERRUPTED, Parser
+from halfspace.errors import InputError, NotConverged
 
 COMMANDS = (compare, curve, assess, finite_sphere, speed, hard, greenwood, report)
 
@@ -22,14 +23,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = make_parser().parse_args(arguments)
     try:
         return int(options.run(options))
-    except ValueError as error:
+    except InputError as error:
         print(f"fem-adhesion: {error}", file=sys.stderr)
         return BAD_INPUT
-    except RuntimeError as error:
-        from halfspace.newton import NotConverged
-
-        if not isinstance(error, NotConverged):
-            raise
+    except NotConverged as error:
         print(f"fem-adhesion: {error}; nothing was written", file=sys.stderr)
         return DISAGREE
     except KeyboardInterrupt:

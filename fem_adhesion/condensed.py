@@ -13,6 +13,7 @@ from fem_adhesion.boundary import boundary_basis, trace_matrix
 from fem_adhesion.elasticity import CellStiffness, Space, cell_stiffness, ring_measure, scatter
 from fem_adhesion.far_field import Exterior, FarField, point_load
 from halfspace.compliance import Array, ElasticOperator, Index
+from halfspace.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -186,12 +187,12 @@ def condense(
 
     Raises
     ------
-    ValueError
+    InputError
         If poisson is out of range or `points` too few.
     """
     points = space.degree + 2 if points is None else points
     if points <= space.degree:
-        raise ValueError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
+        raise InputError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
     surface = contact_surface(space, points, traction)
     exterior = far_field(space, poisson)
     skeleton = eliminate_interiors(space, stiffness(space, poisson))

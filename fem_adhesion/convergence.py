@@ -74,9 +74,9 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
 
     Raises
     ------
-    ValueError
+    InputError
         If an input is out of range, a mesh file is no body, or the contact grows wider than its body.
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If the curve cannot be traced.
     """
     require_rtol(rtol)

@@ -19,14 +19,14 @@ from fem_adhesion.mesh import tensor_grid
 from fem_adhesion.mesh_file import read_body
 from fem_adhesion.pairs import radii_of
 from fem_adhesion.refinement import refined
-from fem_adhesion.scene import Scene
+from fem_adhesion.scene import Counter, Scene
 from fem_adhesion.sized import GRIPS, Discretisation, sized_body
 from halfspace import grid
 from halfspace.accuracy import extent_for
-from halfspace.compliance import Array, ElasticOperator
+from halfspace.compliance import Array
 from halfspace.contact import ContactProblem, spike_width
 from halfspace.profiles import PARABOLOID, Profile, Tabulated
-from halfspace.sized import CROWDED
+from halfspace.sized import CROWDED, SizedBody
 
 RTOL = 1e-5
 """Of the load left out beyond a block that goes on as a half-space: it is then 15 to 80 beta wide."""
@@ -83,7 +83,7 @@ def discretised(scene: Scene, source: ContactProblem, contact_radius: float, how
         return _block_under_sphere(scene, how, lines, body.profile)
     if scene.counter is None:
         return _of(scene, _hemisphere(scene, how, scene.sphere_radius, lines[: -bodies.LAYERS]), body.profile)
-    return _first_of_pair(scene, how, lines, body.make(lines)[0], body.profile)
+    return _first_of_pair(scene, scene.counter, how, lines, body)
 
 
 def _finest(scene: Scene, how: Discretisation) -> float:
@@ -126,13 +126,10 @@ def _hemisphere(scene: Scene, how: Discretisation, R: float, core: Array) -> Con
     return _condensed(scene, how, mesh, GRIPS[scene.grip])
 
 
-def _first_of_pair(
-    scene: Scene, how: Discretisation, lines: Array, operator: ElasticOperator, profile: Profile
-) -> Discretised:
-    assert scene.counter is not None
-    R1, _ = radii_of(scene.sphere_radius, scene.counter)
+def _first_of_pair(scene: Scene, counter: Counter, how: Discretisation, lines: Array, pair: SizedBody) -> Discretised:
+    R1, _ = radii_of(scene.sphere_radius, counter)
     body = _hemisphere(scene, how, R1, lines[: -bodies.LAYERS])
-    return Discretised(body, ContactProblem(operator, scene.tabor, profile=profile))
+    return Discretised(body, ContactProblem(pair.make(lines)[0], scene.tabor, profile=pair.profile))
 
 
 def _meshed(scene: Scene, source: ContactProblem) -> Discretised:

@@ -18,6 +18,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from halfspace.compliance import Array, Index
+from halfspace.errors import InputError
 
 BATCH = 400_000
 """Numbers held in one batch of strain-displacement matrices: 16 MB, small enough for the cache to help."""
@@ -101,11 +102,11 @@ def lame_parameters(poisson: float) -> tuple[float, float]:
 
     Raises
     ------
-    ValueError
+    InputError
         Unless 0 <= poisson < 0.5.
     """
     if not 0.0 <= poisson < 0.5:
-        raise ValueError(f"poisson = {poisson} must lie in [0, 0.5); displacements alone lock at 0.5, use 0.49 or less")
+        raise InputError(f"poisson = {poisson} must lie in [0, 0.5); displacements alone lock at 0.5, use 0.49 or less")
     E = 1.0 - poisson**2
     return E * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), E / (2.0 * (1.0 + poisson))
 

@@ -37,7 +37,7 @@ LEAST_VOLUME = 0.1
 
 @dataclass(frozen=True)
 class FiniteStrainProblem:
-    """Equilibrium of a surface law with a body at finite strain; a `halfspace.newton.Equilibrium`.
+    """Equilibrium of a surface law with a body at finite strain; a `halfspace.newton.Traceable`.
 
     Attributes
     ----------
@@ -170,16 +170,22 @@ class FiniteStrainProblem:
         cells, n = self.body.cell_tangents(np.zeros(self.body.unknowns)), self.exterior.reduction.shape[1]
         return self._elimination.factorise(cells, self.exterior.stiffness.tocsr(), np.zeros(n), np.eye(1, n + 1, n)[0])
 
-    def _surface_state(self, x: Array) -> Array:
+    def surface_state(self, x: Array) -> Array:
         """State as the interface knows it: H, alpha*, and the radii's fixed scale 1."""
         return np.append(self.gaps(x), [x[-1], 1.0])
+
+    def state_from_surface(self, state: Array) -> Array:
+        """State of the linear body under the pressure that the gaps of an interface's state make."""
+        pressure, nothing = self.interface.pressure(state), np.zeros(self.exterior.reduction.shape[1])
+        forces = Traction(self.surface, self.tabor, 0.0, 0.0).forces(nothing, pressure, np.zeros(pressure.size))
+        return np.append(self._undeformed.solve(-np.append(forces, 0.0))[:-1], state[-2])
 
     def _surface_change(self, dx: Array) -> Array:
         return np.append(-self.tabor * (self.surface.vertical @ dx[:-1]) - dx[-1], [dx[-1], 0.0])
 
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap and contact radius as deformed (nan without contact), shape (4,)."""
-        state = self._surface_state(x)
+        state = self.surface_state(x)
         gap = float(self.interface.operator.axis_row @ state[:-2])
         radius = self._deformed(x, self.interface.contact_radius(state))
         return np.array([float(x[-1]), self.load(x), gap, radius])
@@ -212,7 +218,7 @@ class FiniteStrainProblem:
 
     def _edge_rows(self, x: Array) -> tuple[Array, Array]:
         """Rows that interpolate at the contact edge, and their derivatives by its undeformed radius."""
-        return self.interface.operator.at(1.0).interpolation(self.interface.contact_radius(self._surface_state(x)))
+        return self.interface.operator.at(1.0).interpolation(self.interface.contact_radius(self.surface_state(x)))
 
     def _radius_by_gap(self, x: Array) -> Array:
         """Derivative of the deformed contact radius by the gaps, as the edge moves over the surface, (q,)."""
@@ -222,7 +228,7 @@ class FiniteStrainProblem:
 
     def longest_step(self, x: Array, dx: Array) -> float:
         """Fraction of the step dx that takes no gap h below a quarter of its value, nor any J below a tenth."""
-        fraction = self.interface.longest_step(self._surface_state(x), self._surface_change(dx))
+        fraction = self.interface.longest_step(self.surface_state(x), self._surface_change(dx))
         T = self.exterior.reduction
         least = min(LEAST_VOLUME, self.body.least_volume_ratio(T @ x[:-1]) / 2)
         while self.body.least_volume_ratio(T @ (x + fraction * dx)[:-1]) < least:
@@ -232,16 +238,16 @@ class FiniteStrainProblem:
     def size(self, x: Array, dx: Array) -> float:
         """Relative change of the gaps, the approach and the displacements."""
         displacements = float(np.abs(dx[:-1]).max() / (1 + np.abs(x[:-1]).max()))
-        return max(displacements, self.interface.size(self._surface_state(x), self._surface_change(dx)))
+        return max(displacements, self.interface.size(self.surface_state(x), self._surface_change(dx)))
 
     def misfit(self, x: Array, residual: Array) -> float:
         """Norm, relative to the gaps, of the undeformed body's deflection due to the forces out of balance."""
         dH = -self.tabor * (self.surface.vertical @ self._undeformed.solve(np.append(residual, 0.0))[:-1])
-        return self.interface.misfit(self._surface_state(x), np.append(dH, 0.0))
+        return self.interface.misfit(self.surface_state(x), np.append(dH, 0.0))
 
     def require_resolution(self, x: Array) -> None:
         """Refuse a state whose contact edge stands on facets too long for the spike of tension; raise GridTooCoarse."""
-        self.interface.require_resolution(self._surface_state(x))
+        self.interface.require_resolution(self.surface_state(x))
 
     def elastic_energy(self, x: Array) -> float:
         """Elastic energy of body and exterior in R dgamma eps."""

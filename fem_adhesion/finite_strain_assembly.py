@@ -14,6 +14,7 @@ from fem_adhesion.finite_strain_surface import contact_surface, rigid_operator
 from fem_adhesion.finite_strain_traction import CONVENTIONS, Convention
 from fem_adhesion.incompressible import REMEDY_FROM
 from halfspace.contact import ContactProblem
+from halfspace.errors import InputError
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
 from halfspace.profiles import PARABOLOID, Profile
 
@@ -55,11 +56,11 @@ def finite_strain_problem(
 
     Raises
     ------
-    ValueError
+    InputError
         If the exterior holds the body by a spring that has to be taken off again (`free`).
     """
     if exterior.rigid_compliance:
-        raise ValueError("a far field with a rigid_compliance is known to `condense` only; use point_load or clamped")
+        raise InputError("a far field with a rigid_compliance is known to `condense` only; use point_load or clamped")
     whole = _with_pressures(exterior, body)
     space = body.space
     surface = contact_surface(space, whole, space.degree + 2 if points is None else points)

@@ -27,6 +27,7 @@ from fem_adhesion.finite_strain_cells import (
     summed,
 )
 from halfspace.compliance import Array, Index
+from halfspace.errors import InputError
 
 
 class Body(Protocol):
@@ -166,7 +167,7 @@ def displacement_body(space: Space, poisson: float, stretch: float) -> Displacem
 
     Raises
     ------
-    ValueError
+    InputError
         If poisson or stretch is out of range.
     """
     lame_parameters(poisson)
@@ -175,7 +176,7 @@ def displacement_body(space: Space, poisson: float, stretch: float) -> Displacem
 
 
 def require_stretch(stretch: float) -> float:
-    """Return delta = beta/R, or raise ValueError unless 0 <= stretch <= 2: a sphere smaller than its own contact."""
+    """Return delta = beta/R, or raise InputError unless 0 <= stretch <= 2: a sphere smaller than its own contact."""
     if not 0.0 <= stretch <= 2.0:
-        raise ValueError(f"stretch = {stretch} is outside 0 <= stretch <= 2; give beta/R = sqrt(tabor/radius_ratio)")
+        raise InputError(f"stretch = {stretch} is outside 0 <= stretch <= 2; give beta/R = sqrt(tabor/radius_ratio)")
     return stretch

@@ -8,8 +8,9 @@ from fem_adhesion.finite_strain import FiniteStrainProblem
 from halfspace import newton
 from halfspace.compliance import Array
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
+from halfspace.errors import NotConverged
 from halfspace.events import Located
-from halfspace.newton import Control, NotConverged
+from halfspace.newton import Control
 from halfspace.path import Metric, Point, make_point
 
 SMALLEST_PART = 1 / 32

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from skfem import ElementQuadP
@@ -47,8 +47,8 @@ class Discretised:
 
     @property
     def chart(self) -> Chart:
-        """Chart for the curve, which asks of a problem only what both kinds of it have."""
-        return Chart(cast(ContactProblem, self.problem), self.problem.body.unknowns)
+        """Chart for the curve."""
+        return Chart(self.problem, self.problem.body.unknowns)
 
     def near(self, segments: Sequence[Segment], observables: Array) -> Array:
         """State of the linear body at the contact radius, or central gap, of another state.

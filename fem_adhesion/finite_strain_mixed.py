@@ -34,6 +34,7 @@ from fem_adhesion.finite_strain_cells import (
     summed,
 )
 from halfspace.compliance import Array, Index
+from halfspace.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -158,11 +159,11 @@ def mixed_body(space: Space, poisson: float, stretch: float, pressure: Any) -> M
 
     Raises
     ------
-    ValueError
+    InputError
         If poisson is zero, at which the pressure is undetermined, or poisson or stretch is out of range.
     """
     if lame_parameters(poisson)[0] == 0.0:
-        raise ValueError("poisson = 0 leaves the pressure undetermined; use displacement_body, nothing locks there")
+        raise InputError("poisson = 0 leaves the pressure undetermined; use displacement_body, nothing locks there")
     cells, dofs = cells_of(space), Dofs(space.mesh, pressure)
     by_cell = np.asarray(dofs.element_dofs, dtype=np.intp)
     pressures = tuple(np.split(by_cell.T, np.cumsum([len(c.dofs) for c in cells])[:-1]))

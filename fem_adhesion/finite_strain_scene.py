@@ -26,6 +26,7 @@ from halfspace.curve import (
     metric_for,
     trace_charts,
 )
+from halfspace.errors import InputError
 from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event
 from halfspace.limits import require_load, require_rtol
 
@@ -117,14 +118,14 @@ def trace(
 
     Raises
     ------
-    ValueError
+    InputError
         If an input is out of range, or does not go with finite strain.
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If the curve or an event is lost, as where the material is squeezed or torn beyond what Newton's method follows.
     """
     _require(scene, rtol, to_load)
     if scene.tabor > WIDEST_TABOR:
-        raise ValueError(
+        raise InputError(
             f"tabor = {scene.tabor:g} is outside tabor <= {WIDEST_TABOR:g} for a curve at finite strain; "
             'take strain = "small"'
         )
@@ -200,8 +201,6 @@ def _energy_released(state: State) -> float:
     if "separated" not in state:
         return float("nan")
     before, after = state["separated"], state["zero_approach"]
-    assert isinstance(before.problem, FiniteStrainProblem)
-    assert isinstance(after.problem, FiniteStrainProblem)
     return before.problem.energy(before.point.x) - after.problem.energy(after.point.x)
 
 
@@ -216,11 +215,11 @@ def _require(scene: Scene, rtol: float, to_load: float) -> None:
     require_rtol(rtol)
     require_load(to_load)
     if rtol < TIGHTEST:
-        raise ValueError(f"rtol = {rtol:g} is outside {TIGHTEST:g} <= rtol for finite strain; take 1e-4")
+        raise InputError(f"rtol = {rtol:g} is outside {TIGHTEST:g} <= rtol for finite strain; take 1e-4")
     for name, value, wanted in (
         ("body", scene.body, "hemisphere"),
         ("traction", scene.traction, "projected"),
         ("counter", scene.counter, None),
     ):
         if value != wanted:
-            raise ValueError(f"{name} = {value!r} does not go with finite strain; take {name} = {wanted!r}")
+            raise InputError(f"{name} = {value!r} does not go with finite strain; take {name} = {wanted!r}")

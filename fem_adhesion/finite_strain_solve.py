@@ -16,6 +16,7 @@ from scipy.sparse.linalg import splu
 from fem_adhesion.far_field import Exterior
 from fem_adhesion.finite_strain_bodies import Body
 from halfspace.compliance import Array, Index
+from halfspace.errors import NotConverged
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ class Elimination:
 
         Raises
         ------
-        numpy.linalg.LinAlgError
+        halfspace.errors.NotConverged
             If the matrix is singular.
         """
         inside, outside = self.inside, self.outside
@@ -139,7 +140,7 @@ def _factors(matrix: sparse.csc_array, pivoting: float) -> Any:
         # A symmetric pattern, indefinite on the unstable branch: ordered as such, yet pivoted.
         return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=pivoting, options={"SymmetricMode": True})
     except RuntimeError as error:  # SuperLU's way of saying so
-        raise np.linalg.LinAlgError("the bordered Jacobian is singular") from error
+        raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start") from error
 
 
 def elimination(body: Body, exterior: Exterior, surface: Index) -> Elimination:

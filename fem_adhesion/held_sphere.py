@@ -16,6 +16,7 @@ from fem_adhesion.bodies import CORE, DEPTH, LAYERS, stereographic
 from fem_adhesion.curved import Block, CurvedQuads, joined
 from fem_adhesion.nested import refined_towards
 from halfspace.compliance import Array, Index
+from halfspace.errors import InputError
 from halfspace.limits import require_cap_angle
 
 RINGS = 0.2 ** np.arange(1.0, 8.0)
@@ -81,12 +82,12 @@ def held_sphere(R: float, x_lines: Array, depths: Array, cap_angle: float) -> Cu
 
     Raises
     ------
-    ValueError
+    InputError
         If cap_angle is out of range, or x_lines are fewer than three.
     """
     angle = np.radians(require_cap_angle(cap_angle))
     if len(x_lines) < 3:
-        raise ValueError(f"x_lines = {x_lines} are {len(x_lines)}, limit 3: the cap ends at one of them; give more")
+        raise InputError(f"x_lines = {x_lines} are {len(x_lines)}, limit 3: the cap ends at one of them; give more")
     rim = _rim(R, cap_angle)
     near = _Lines(x_lines, depths, np.linspace(0, 1, LAYERS + 1))
     far = _far_lines(R, len(x_lines) - 1, len(depths) - 1, rim)

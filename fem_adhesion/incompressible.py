@@ -31,6 +31,7 @@ from fem_adhesion.elasticity import (
 )
 from fem_adhesion.far_field import Exterior, FarField, point_load, with_interiors
 from halfspace.compliance import Array, ElasticOperator
+from halfspace.errors import InputError
 
 REMEDY_FROM = 0.4
 """Poisson's ratio from which the projection earns its cost, a tenth more time to condense a block. Of the error of the
@@ -69,11 +70,11 @@ def pressure_modes(space: Space) -> Array:
 
     Raises
     ------
-    ValueError
+    InputError
         Unless the cells are quadrilaterals of degree 2 or more.
     """
     if space.degree < 2 or space.element.refdom.nnodes != 4:
-        raise ValueError(
+        raise InputError(
             f"{type(space.element).__name__} has no projected dilatation; use ElementQuadP(2) or more, or taylor_hood"
         )
     x, y = 2.0 * cell_quadrature(space)[0] - 1.0
@@ -103,12 +104,12 @@ def taylor_hood(
 
     Raises
     ------
-    ValueError
+    InputError
         If poisson is zero, at which the pressure is undetermined.
     """
     lam = lame_parameters(poisson)[0]
     if lam == 0.0:
-        raise ValueError("poisson = 0 leaves the pressure undetermined; use condense, nothing locks there")
+        raise InputError("poisson = 0 leaves the pressure undetermined; use condense, nothing locks there")
     exterior = with_interiors(far_field(space, poisson), space)
     T = exterior.reduction
     K, coupling, volume = _mixed_matrices(space, poisson, pressure)

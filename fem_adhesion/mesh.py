@@ -9,6 +9,7 @@ import numpy as np
 from skfem import MeshQuad, MeshTri
 
 from halfspace.compliance import Array, Index
+from halfspace.errors import InputError
 from halfspace.grid import geometric
 
 SizeFunction = Callable[[Array, Array], Array]
@@ -55,7 +56,7 @@ def quarter_disc(radius: float, size: SizeFunction) -> Any:
 
     Raises
     ------
-    ValueError
+    InputError
         If the radius is not positive.
     """
     _require_positive("radius", radius)
@@ -84,12 +85,12 @@ def tensor_grid(r_breaks: Array, z_breaks: Array) -> Any:
 
     Raises
     ------
-    ValueError
+    InputError
         If the lines do not ascend from 0.
     """
     for name, lines in (("r_breaks", r_breaks), ("z_breaks", z_breaks)):
         if len(lines) < 2 or lines[0] != 0.0 or np.any(np.diff(lines) <= 0.0):
-            raise ValueError(f"{name} = {lines} must ascend strictly from 0; sort them and remove duplicates")
+            raise InputError(f"{name} = {lines} must ascend strictly from 0; sort them and remove duplicates")
     return with_named_boundaries(MeshQuad.init_tensor(r_breaks, -z_breaks[::-1]))
 
 
@@ -115,15 +116,15 @@ def graded_breaks(fine: float, fine_radius: float, length: float, *, growth: flo
 
     Raises
     ------
-    ValueError
+    InputError
         If the lengths are not positive, fine_radius reaches length or growth is not above 1.
     """
     _require_positive("fine", fine)
     _require_positive("fine_radius", fine_radius)
     if not fine_radius < length:
-        raise ValueError(f"fine_radius = {fine_radius} must be less than length = {length}; enlarge the block")
+        raise InputError(f"fine_radius = {fine_radius} must be less than length = {length}; enlarge the block")
     if not growth > 1.0:
-        raise ValueError(f"growth = {growth} must be above 1; use a value between 1.2 and 3")
+        raise InputError(f"growth = {growth} must be above 1; use a value between 1.2 and 3")
     uniform = np.linspace(0.0, fine_radius, int(np.ceil(fine_radius / fine - 1e-9)) + 1)
     outside = fine_radius + geometric(length - fine_radius, uniform[1], growth)[1:]
     return np.concatenate([uniform, outside[:-1], [length]])
@@ -166,4 +167,4 @@ def _far(x: Array) -> Any:
 
 def _require_positive(name: str, value: float) -> None:
     if not (np.isfinite(value) and value > 0.0):
-        raise ValueError(f"{name} = {value} must be positive and finite; give a length in beta")
+        raise InputError(f"{name} = {value} must be positive and finite; give a length in beta")

@@ -15,6 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from halfspace.compliance import Array, Index
+from halfspace.errors import InputError
 
 GROUPS = {"axis": "axis", "contact": "contact", "grip": "far"}
 """Groups of lines of a file, and what the boundaries are called inside."""
@@ -36,7 +37,7 @@ RADIUS_ERROR, ROUNDNESS = 0.05, 0.02
 
 
 def require_body(mesh: Any) -> None:
-    """Raise ValueError unless a mesh with the boundaries "axis", "contact" and "far" is that of a body.
+    """Raise InputError unless a mesh with the boundaries "axis", "contact" and "far" is that of a body.
 
     Parameters
     ----------
@@ -45,13 +46,13 @@ def require_body(mesh: Any) -> None:
 
     Raises
     ------
-    ValueError
+    InputError
         One line: what is wrong with value and limit, and the remedy.
     """
     for check in CHECKS:
         complaint = check(mesh)
         if complaint:
-            raise ValueError(complaint)
+            raise InputError(complaint)
 
 
 def facet_nodes(mesh: Any, facets: Index) -> Index:

@@ -21,6 +21,7 @@ import numpy as np
 
 from fem_adhesion.mesh_checks import GROUPS, TOLERANCE, facet_nodes, pole, require_body
 from halfspace.compliance import Array, Index
+from halfspace.errors import InputError
 
 CORNERS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
 """Vertices of the cells that are read, by meshio's name."""
@@ -54,14 +55,14 @@ def read_body(path: str | Path) -> Any:
 
     Raises
     ------
-    ValueError
+    InputError
         If the file cannot be read or is no mesh of a body; it says what is wrong and what to do.
     """
     try:
         mesh = _with_boundaries(_read(Path(path)))
         require_body(mesh)
-    except ValueError as error:
-        raise ValueError(f"mesh {path}: {error}") from error
+    except InputError as error:
+        raise InputError(f"mesh {path}: {error}") from error
     return _in_place(mesh)
 
 
@@ -70,7 +71,7 @@ def _read(path: Path) -> Any:
     import meshio  # slow to load, and needed here only
 
     if not path.is_file():
-        raise ValueError("there is no such file; check its name")
+        raise InputError("there is no such file; check its name")
     said = io.StringIO()  # meshio prints and ends the program when a reader fails
     try:
         with redirect_stdout(said), redirect_stderr(said), warnings.catch_warnings():
@@ -78,7 +79,7 @@ def _read(path: Path) -> Any:
             return meshio.read(path)
     except (meshio.ReadError, SystemExit, *PARSER_ERRORS) as error:
         cause = said.getvalue() if isinstance(error, SystemExit) else f"{type(error).__name__}: {error}"
-        raise ValueError(
+        raise InputError(
             f"meshio cannot read it ({_one_line(cause)}); save it as Gmsh's .msh, 2.2 if 4.1 fails"
         ) from error
 
@@ -91,7 +92,7 @@ def _with_boundaries(raw: Any) -> Any:
     found = {name: facets for name, facets in {**(mesh.boundaries or {}), **found}.items() if len(facets)}
     missing = [name for name in GROUPS if name not in found]
     if missing:
-        raise ValueError(
+        raise InputError(
             f"group {_listed(missing)} is missing, the file has {_listed(found)}; name the groups of boundary lines "
             f"{_listed(GROUPS)} (in Gmsh: Physical Curve)"
         )
@@ -103,15 +104,15 @@ def _cell_kind(raw: Any) -> str:
     """Return meshio's name of the cells, all of one kind."""
     kinds = sorted({block.type for block in raw.cells if block.dim >= 2 and len(block)})
     if not kinds:
-        raise ValueError(
+        raise InputError(
             "no triangles or quadrilaterals in it; in Gmsh put the surface into a Physical Surface as well"
         )
     if not set(kinds) <= set(CORNERS):
-        raise ValueError(
+        raise InputError(
             f"cells of type {_listed(kinds)} are none of {_listed(CORNERS)}; mesh the meridian section, in order 1 or 2"
         )
     if len(kinds) > 1:
-        raise ValueError(f"cells are of {len(kinds)} types, {_listed(kinds)}, limit 1; use triangles or quadrilaterals")
+        raise InputError(f"cells are of {len(kinds)} types, {_listed(kinds)}, limit 1; use triangles or quadrilaterals")
     return str(kinds[0])
 
 
@@ -139,13 +140,13 @@ def _plane_points(points: Array, cells: Index) -> Array:
     """Return r and z of the nodes, (nodes, 2); those in no cell are not looked at."""
     if cells.min() < 0 or cells.max() >= len(points):
         wrong = cells.min() if cells.min() < 0 else cells.max()
-        raise ValueError(f"a cell has node {wrong}, limit 0 to {len(points) - 1}; export the mesh again")
+        raise InputError(f"a cell has node {wrong}, limit 0 to {len(points) - 1}; export the mesh again")
     used = points[np.unique(cells)]
     if not np.all(np.isfinite(used)):
-        raise ValueError(f"{np.sum(~np.isfinite(used))} coordinates are not finite, limit 0; export the mesh again")
+        raise InputError(f"{np.sum(~np.isfinite(used))} coordinates are not finite, limit 0; export the mesh again")
     height = float(np.abs(used[:, 2:]).max(initial=0.0))
     if height > TOLERANCE * np.ptp(used):
-        raise ValueError(f"third coordinate = {height:.4g} must be 0; let the first be r and the second z")
+        raise InputError(f"third coordinate = {height:.4g} must be 0; let the first be r and the second z")
     return np.asarray(points[:, :2], dtype=np.float64)
 
 
@@ -189,7 +190,7 @@ def _facets(mesh: Any, vertices: Index, lines: Index, name: str) -> Index:
     facets = np.flatnonzero(np.isin(corners[0] * n + corners[1], (ends[:, 0] * n + ends[:, 1])[known]))
     stray = len(np.unique(np.sort(lines, axis=1), axis=0)) - len(facets)
     if stray and name in GROUPS:
-        raise ValueError(f'{stray} lines of group "{name}" are no sides of cells, limit 0; merge duplicate nodes')
+        raise InputError(f'{stray} lines of group "{name}" are no sides of cells, limit 0; merge duplicate nodes')
     return facets
 
 

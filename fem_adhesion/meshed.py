@@ -24,7 +24,7 @@ def ladder(scene: Scene, level: int) -> Rung:
 
     Raises
     ------
-    ValueError
+    InputError
         If the file holds no body.
     GridTooCoarse
         If the mesh does not carry the spike of tension at the contact edge.

@@ -29,6 +29,7 @@ from fem_adhesion.elasticity import Space, cell_quadrature, lame_parameters
 from fem_adhesion.far_field import Exterior, FarField, point_load, with_interiors
 from halfspace.compliance import Array, ElasticOperator
 from halfspace.contact import ContactProblem
+from halfspace.errors import InputError, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
 
 
@@ -68,7 +69,7 @@ pressure_work, pressure_change_work = LinearForm(_pressure_work), BilinearForm(_
 
 @dataclass(frozen=True)
 class MonolithicProblem:
-    """Equilibrium of a surface law with a block of N displacement unknowns; a `halfspace.newton.Equilibrium`.
+    """Equilibrium of a surface law with a block of N displacement unknowns; a `halfspace.newton.Traceable`.
 
     Attributes
     ----------
@@ -154,7 +155,7 @@ class MonolithicProblem:
             # A symmetric pattern but for the border, indefinite on the unstable branch: ordered as such, yet pivoted.
             factors = splu(J, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options={"SymmetricMode": True})
         except RuntimeError as error:  # SuperLU's way of saying so
-            raise np.linalg.LinAlgError("the bordered Jacobian is singular") from error
+            raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start") from error
         return lambda rhs: np.asarray(factors.solve(rhs))
 
     def surface_state(self, x: Array) -> Array:
@@ -162,6 +163,10 @@ class MonolithicProblem:
         state = self.interface.undeformed(x[-1])
         state[:-2] += self.tabor * (self.deflection_rows @ x[:-1])
         return state
+
+    def state_from_surface(self, state: Array) -> Array:
+        """State under the pressure that the gaps of an interface's state make."""
+        return self.state_from(float(state[-2]), self.interface.pressure(state))
 
     def _surface_change(self, dx: Array) -> Array:
         return np.append(self.tabor * (self.deflection_rows @ dx[:-1]) - dx[-1], [dx[-1], 0.0])
@@ -192,6 +197,15 @@ class MonolithicProblem:
         """Norm, relative to the gaps, of the deflection due to the forces out of balance: the condensed misfit."""
         dH = self.tabor * (self.deflection_rows @ self._factors.solve(residual))
         return self.interface.misfit(self.surface_state(x), np.append(dH, 0.0))
+
+    def negative_directions(self, x: Array) -> int:
+        """Number of directions in which the energy falls at fixed approach; 0 means stable under fixed grips.
+
+        The negative pivots of the tangent, factorised without exchanges (Sylvester's law of inertia).
+        """
+        tangent = self.jacobian(x)[:, :-1]
+        factors = splu(tangent, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        return int(np.sum(factors.U.diagonal() < 0))
 
     def require_resolution(self, x: Array) -> None:
         """Refuse a state whose contact edge stands on facets too long for the spike of tension; raise GridTooCoarse."""
@@ -241,13 +255,13 @@ def assemble(
 
     Raises
     ------
-    ValueError
+    InputError
         If poisson is out of range, or the far field holds the body by a spring that has to be taken off again (`free`).
     """
     points = space.degree + 2 if points is None else points
     exterior = with_interiors(far_field(space, poisson), space)
     if exterior.rigid_compliance:
-        raise ValueError("a far field with a rigid_compliance is known to `condense` only; use point_load or clamped")
+        raise InputError("a far field with a rigid_compliance is known to `condense` only; use point_load or clamped")
     surface = contact_surface(space, points)
     r, weights = surface.radii, surface.weights
     rigid = ElasticOperator(r, weights, np.zeros((r.size, r.size)), surface.cells, surface.cell_nodes)

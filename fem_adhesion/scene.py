@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
+from halfspace.errors import InputError
 from halfspace.limits import (
     require_cap_angle,
     require_fixed_mesh,
@@ -40,7 +41,7 @@ class Counter:
 
     Raises
     ------
-    ValueError
+    InputError
         If a value is out of range.
     """
 
@@ -88,7 +89,7 @@ class Scene:
 
     Raises
     ------
-    ValueError
+    InputError
         If a value is out of range, or does not go with the others.
     """
 
@@ -130,9 +131,9 @@ class Scene:
 
     def _require_radius_ratio(self) -> None:
         if self.sized and self.radius_ratio is None:
-            raise ValueError(f"radius_ratio = None for {self._what()}, limit: a number; give R/eps")
+            raise InputError(f"radius_ratio = None for {self._what()}, limit: a number; give R/eps")
         if not self.sized and self.radius_ratio is not None:
-            raise ValueError(
+            raise InputError(
                 f"radius_ratio = {self.radius_ratio:g} means nothing to a block under a paraboloid; leave it out, or "
                 'take body = "hemisphere" or profile = "sphere"'
             )
@@ -155,7 +156,7 @@ class Scene:
         }
         for name, (ignored, why) in unheeded.items():
             if ignored:
-                raise ValueError(f"{name} = {getattr(self, name)} does not go with {self._what()}; {why}")
+                raise InputError(f"{name} = {getattr(self, name)} does not go with {self._what()}; {why}")
 
     def _what(self) -> str:
         return f'body = "{self.body}" and profile = "{self.profile}"'
@@ -174,4 +175,4 @@ CHOICES: dict[str, Any] = {
 def _require_one_of(name: str, value: object, names: tuple[str, ...]) -> None:
     if value not in names and not (name == "body" and isinstance(value, Path)):
         remedy = "a mesh is given as a pathlib.Path; " if name == "body" else ""
-        raise ValueError(f"{name} = {value!r} is not one of {', '.join(names)}; {remedy}take {names[0]}")
+        raise InputError(f"{name} = {value!r} is not one of {', '.join(names)}; {remedy}take {names[0]}")

@@ -4,8 +4,41 @@ All quantities are dimensionless: radii in beta = (R^2 dgamma/E*)^(1/3), gaps an
 pressures P = mu eps p/dgamma; compression is positive.
 """
 
-from halfspace.accuracy import trace
-from halfspace.curve import EquilibriumPath, Estimate
-from halfspace.events import Event
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["EquilibriumPath", "Estimate", "Event", "trace"]
+if TYPE_CHECKING:
+    from halfspace.accuracy import trace
+    from halfspace.curve import EquilibriumPath, Estimate
+    from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
+    from halfspace.events import Event
+
+__all__ = [
+    "ContactTooWide",
+    "EquilibriumPath",
+    "Estimate",
+    "Event",
+    "GridTooCoarse",
+    "InputError",
+    "NotConverged",
+    "trace",
+]
+
+_HOMES = {
+    "trace": "accuracy",
+    "EquilibriumPath": "curve",
+    "Estimate": "curve",
+    "Event": "events",
+    **dict.fromkeys(("ContactTooWide", "GridTooCoarse", "InputError", "NotConverged"), "errors"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is public when it is first asked for, so that the command line answers at once."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

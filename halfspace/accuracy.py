@@ -125,9 +125,9 @@ def trace(
 
     Raises
     ------
-    ValueError
+    InputError
         If an input is out of range.
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If the curve cannot be traced.
     """
     require_tabor(tabor)

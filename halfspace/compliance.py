@@ -10,6 +10,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
+from halfspace.errors import InputError
 from halfspace.kernel import band_deflection, panel_integrals
 
 Array = NDArray[np.float64]
@@ -170,7 +171,7 @@ def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
         k, from 1 to 16; the pressure has degree k - 1 in each panel and may jump between them.
     """
     if not 1 <= nodes_per_panel <= 16:
-        raise ValueError(f"nodes_per_panel {nodes_per_panel} is outside 1 to 16; use more panels instead")
+        raise InputError(f"nodes_per_panel {nodes_per_panel} is outside 1 to 16; use more panels instead")
     x, w = leggauss(nodes_per_panel)
     half = np.diff(breakpoints)[:, None] / 2
     radii = breakpoints[:-1, None] + half * (1 + x)

@@ -22,6 +22,7 @@ from scipy.optimize import brentq
 
 from halfspace.breathing import Operator
 from halfspace.compliance import ElasticOperator
+from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
 from halfspace.profiles import PARABOLOID, Profile
 
@@ -41,14 +42,6 @@ def widest_interval(nodes: int) -> float:
     """Widest interval between k nodes of a cell that carries the spike, in its widths: found by trial."""
     k = nodes - 1
     return max(0.1, min(0.1 * k, 0.021 * k**2))
-
-
-class ContactTooWide(ValueError):
-    """The contact spreads over so much of the body that its elasticity is no longer that of small slopes."""
-
-
-class GridTooCoarse(ValueError):
-    """The grid cannot carry the spike of tension at the contact edge; the message says where and by how much."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +69,19 @@ class ContactProblem:
     def follows_contact(self) -> bool:
         """Whether the grid follows the contact, whose radius then joins the unknowns."""
         return self.operator.follows_contact
+
+    @property
+    def interface(self) -> ContactProblem:
+        """The problem itself, whose state is that of the surface: see `halfspace.newton.Traceable`."""
+        return self
+
+    def surface_state(self, x: Array) -> Array:
+        """Return the state itself."""
+        return x
+
+    def state_from_surface(self, state: Array) -> Array:
+        """Return the state itself."""
+        return state
 
     def operator_at(self, x: Array) -> ElasticOperator:
         """Operator of a state."""
@@ -117,7 +123,7 @@ class ContactProblem:
         """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
         lu, pivots, info = dgetrf(np.vstack([self.jacobian(x), row]), overwrite_a=True)
         if info > 0:
-            raise np.linalg.LinAlgError("the bordered Jacobian is singular")
+            raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start")
         return lambda rhs: np.asarray(dgetrs(lu, pivots, rhs)[0])
 
     def observables(self, x: Array) -> Array:

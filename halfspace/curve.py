@@ -16,8 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from halfspace import newton
-from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST, ContactProblem, ContactTooWide
+from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
+from halfspace.errors import ContactTooWide
 from halfspace.events import EXTREMUM, FOLD, ZERO_LOAD, Condition, Event, Located, locate, relocate
+from halfspace.newton import Traceable
 from halfspace.path import Metric, Point, Steps, follow, loaded_to, make_point
 
 Array = NDArray[np.float64]
@@ -29,7 +31,7 @@ COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwi
 class Chart:
     """A discretisation, its unknowns, and the contact radius (beta) up to which it serves; infinite for the last."""
 
-    problem: ContactProblem
+    problem: Traceable
     unknowns: int
     until: float = np.inf
 
@@ -38,7 +40,7 @@ class Chart:
 class Segment:
     """Points of the path on one chart."""
 
-    problem: ContactProblem
+    problem: Traceable
     points: tuple[Point, ...]
 
 
@@ -184,7 +186,7 @@ def trace_charts(
     for chart in charts:
         if segments:
             point = _hand_over(segments[-1], chart.problem, metric)
-        last = _ended(to_load, chart.problem.profile.end)
+        last = _ended(to_load, chart.problem.interface.profile.end)
         stop = last if np.isinf(chart.until) else _beyond(chart.until)
         segments.append(Segment(chart.problem, tuple(follow(chart.problem, point, metric, stop, steps=steps))))
     return tuple(segments)
@@ -200,13 +202,13 @@ def _beyond(radius: float) -> Callable[[Point], bool]:
     return lambda point: bool(point.observables[CONTACT_RADIUS] > radius)
 
 
-def _far_separation(problem: ContactProblem, approach: float, metric: Metric) -> Point:
+def _far_separation(problem: Traceable, approach: float, metric: Metric) -> Point:
     """First point of the path, heading towards contact."""
     solution = newton.solve(problem, problem.undeformed(approach), newton.approach(approach))
     return make_point(problem, solution, metric, newton.approach(approach).weights, 0.0)
 
 
-def _hand_over(segment: Segment, problem: ContactProblem, metric: Metric) -> Point:
+def _hand_over(segment: Segment, problem: Traceable, metric: Metric) -> Point:
     """Solve the last state of a segment again on the next chart, at the same contact radius."""
     last = segment.points[-1]
     radius = float(last.observables[CONTACT_RADIUS])
@@ -215,8 +217,13 @@ def _hand_over(segment: Segment, problem: ContactProblem, metric: Metric) -> Poi
     return make_point(problem, solution, metric, metric.weights * last.rates, last.arclength)
 
 
-def transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array:
-    """Interpolate a state of one problem as a start for another; beyond the grid the load acts as at a point."""
+def transfer(source: Traceable, x: Array, target: Traceable) -> Array:
+    """Interpolate a state of one problem as a start for another."""
+    return target.state_from_surface(_transfer(source.interface, source.surface_state(x), target.interface))
+
+
+def _transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array:
+    """Interpolate the gaps; beyond the grid the load acts as at a point."""
     H, alpha = x[:-2], x[-2]
     scale = source.contact_radius(x) if target.follows_contact else 1.0
     body, radii = source.operator_at(x), target.operator.at(scale).radii
@@ -229,11 +236,10 @@ def transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array:
     return np.concatenate([gap, [alpha, scale]])
 
 
-def moved(event: Located, problem: ContactProblem) -> Located:
+def moved(event: Located, problem: Traceable) -> Located:
     """Solve for an event again on another discretisation."""
-    source = event.problem
-    assert isinstance(source, ContactProblem)
-    return relocate(event, problem, transfer(source, event.point.x, problem), metric_for(problem.tabor))
+    start = transfer(event.problem, event.point.x, problem)
+    return relocate(event, problem, start, metric_for(problem.tabor))
 
 
 def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
@@ -271,7 +277,7 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
 
 
 def _too_wide(segment: Segment, event: str) -> ContactTooWide:
-    radius, body = segment.points[-1].observables[CONTACT_RADIUS], segment.problem.profile.end
+    radius, body = segment.points[-1].observables[CONTACT_RADIUS], segment.problem.interface.profile.end
     return ContactTooWide(
         f"contact radius {radius:.3g} beta exceeds {WIDEST:g} of the body's radius, {body:.3g} beta, before {event} is "
         "reached; take a larger radius_ratio or a smaller tabor"
@@ -281,6 +287,4 @@ def _too_wide(segment: Segment, event: str) -> ContactTooWide:
 def energy_released(located: Mapping[str, Located]) -> float:
     """Energy between the states ``separated`` and ``zero_approach`` of `find_events`, in R dgamma eps."""
     before, after = located["separated"], located["zero_approach"]
-    assert isinstance(before.problem, ContactProblem)
-    assert isinstance(after.problem, ContactProblem)
     return before.problem.energy(before.point.x) - after.problem.energy(after.point.x)

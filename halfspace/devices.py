@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,30 +21,13 @@ from numpy.typing import NDArray
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD, ContactProblem
 from halfspace.curve import EquilibriumPath, Estimate, Finest, Segment, metric_for, moved, transfer
+from halfspace.errors import InputError
 from halfspace.events import ROUND_OFF, Condition, Event, Located, estimate_event, locate
-from halfspace.newton import Control, Equilibrium
+from halfspace.newton import Control, Traceable
 from halfspace.path import make_point
 from halfspace.reach import reaching
 
 Array = NDArray[np.float64]
-
-
-@runtime_checkable
-class Energetic(Protocol):
-    """An equilibrium with a potential energy and a state to start from."""
-
-    def energy(self, x: Array) -> float:
-        """Total potential energy in R dgamma eps."""
-        ...
-
-    def undeformed(self, approach: float) -> Array:
-        """State without deformation."""
-        ...
-
-    @property
-    def tabor(self) -> float:
-        """Tabor parameter."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -109,15 +91,15 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
 
     Raises
     ------
-    ValueError
+    InputError
         If the stiffness is not positive.
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If a landing cannot be solved for.
     """
     if not stiffness > 0:
-        raise ValueError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
+        raise InputError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
     if not isinstance(path.segments[0].problem, ContactProblem):
-        raise ValueError("strain = finite, limit: small strain, for the landings of jumps; use the events of the path")
+        raise InputError("strain = finite, limit: small strain, for the landings of jumps; use the events of the path")
     rough = jumps(reaching(path, stiffness).segments, 1 / stiffness)
     if rough is None:
         return None
@@ -151,7 +133,6 @@ def jumps(segments: Sequence[Segment], compliance: float) -> tuple[_States, _Sta
     on, off = folds[0], folds[-1]
     contact = _roots(segments, Condition(APPROACH, value=_base(on, compliance), compliance=compliance))[-1]
     separated = segments[0].problem
-    assert isinstance(separated, Energetic)
     start = separated.undeformed(_base(off, compliance))
     return _States(on, contact), _States(off, _landing(separated, start, off, compliance))
 
@@ -166,11 +147,10 @@ def _base(state: Located, compliance: float) -> float:
     return float(state.point.observables[APPROACH] + compliance * state.point.observables[LOAD])
 
 
-def _landing(problem: Equilibrium, start: Array, take_off: Located, compliance: float) -> Located:
+def _landing(problem: Traceable, start: Array, take_off: Located, compliance: float) -> Located:
     """State on a discretisation at the base of a take-off."""
     base, weights = _base(take_off, compliance), np.array([1.0, compliance, 0.0, 0.0])
     solution = newton.solve(problem, start, Control(weights, base))
-    assert isinstance(problem, Energetic)
     point = make_point(problem, solution, metric_for(problem.tabor), weights, 0.0)
     return Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
 
@@ -179,7 +159,6 @@ def _refined(states: _States, finest: Finest, compliance: float) -> _States:
     """Both states of a jump on the finest discretisation."""
     fold = moved(states.take_off, finest(states.take_off).problem)
     source, target = states.landing.problem, finest(states.landing).problem
-    assert isinstance(source, ContactProblem)
     start = transfer(source, states.landing.point.x, target)
     return _States(fold, _landing(target, start, fold, compliance))
 
@@ -195,5 +174,4 @@ def _jump(rough: _States, fine: _States, compliance: float) -> Jump:
 
 def _energy(state: Located, compliance: float) -> float:
     """E + W^2/(2k)."""
-    assert isinstance(state.problem, Energetic)
     return state.problem.energy(state.point.x) + float(compliance * state.point.observables[LOAD] ** 2 / 2)

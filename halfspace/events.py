@@ -16,7 +16,8 @@ from scipy.optimize import brentq
 
 from halfspace import newton
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
-from halfspace.newton import Control, Equilibrium, NotConverged
+from halfspace.errors import NotConverged
+from halfspace.newton import Control, Traceable
 from halfspace.path import Metric, Point, correct, least_slope, make_point
 
 Array = NDArray[np.float64]
@@ -105,7 +106,7 @@ class Located:
     ----------
     condition : Condition
         What vanishes.
-    problem : Equilibrium
+    problem : Traceable
         The discretisation.
     point : Point
         The converged point.
@@ -114,12 +115,12 @@ class Located:
     """
 
     condition: Condition
-    problem: Equilibrium
+    problem: Traceable
     point: Point
     slope: float
 
 
-def locate(problem: Equilibrium, points: Sequence[Point], metric: Metric, condition: Condition) -> list[Located]:
+def locate(problem: Traceable, points: Sequence[Point], metric: Metric, condition: Condition) -> list[Located]:
     """Find every root of a condition between successive points of one discretisation's path."""
     return [
         _between(problem, c, d, condition, metric)
@@ -130,7 +131,7 @@ def locate(problem: Equilibrium, points: Sequence[Point], metric: Metric, condit
 
 
 def _watched(
-    problem: Equilibrium, a: Point, b: Point, condition: Condition, metric: Metric, depth: int = 8
+    problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric, depth: int = 8
 ) -> list[tuple[Point, Point]]:
     """Halve the interval between two points as long as a pair of roots may hide in it, unseen at its ends."""
     if not depth or not _may_hide(a, b, condition):
@@ -157,7 +158,7 @@ NEARLY = 0.2  # of the larger rate at the two ends
 LONG = 0.05  # arclength
 
 
-def _between(problem: Equilibrium, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
+def _between(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
     """Find the root between two points of which the second was reached from the first."""
     length = b.arclength - a.arclength
     trials = {0.0: a, length: b}
@@ -172,7 +173,7 @@ def _between(problem: Equilibrium, a: Point, b: Point, condition: Condition, met
     return Located(condition, problem, trials[root], (condition.of(b) - condition.of(a)) / length)
 
 
-def _hermite(problem: Equilibrium, a: Point, b: Point, t: float) -> Array:
+def _hermite(problem: Traceable, a: Point, b: Point, t: float) -> Array:
     """State between two points, from the cubic through both with their tangents; gaps stay positive."""
     h = b.arclength - a.arclength
     x = (
@@ -183,7 +184,7 @@ def _hermite(problem: Equilibrium, a: Point, b: Point, t: float) -> Array:
     return np.asarray(a.x + problem.longest_step(a.x, x - a.x) * (x - a.x))
 
 
-def relocate(event: Located, problem: Equilibrium, start: Array, metric: Metric) -> Located:
+def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located:
     """Solve for an event again on another discretisation, from a state transferred to it.
 
     Raises
@@ -207,7 +208,7 @@ def relocate(event: Located, problem: Equilibrium, start: Array, metric: Metric)
     )
 
 
-def _same_place(point: Point, problem: Equilibrium, start: Array, metric: Metric) -> Point:
+def _same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:
     """Solve on another discretisation in the plane across the path at a given point."""
     weights = metric.weights * point.rates
     used = weights != 0

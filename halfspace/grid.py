@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from halfspace.errors import InputError
+
 Array = NDArray[np.float64]
 
 
@@ -30,9 +32,9 @@ def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0) 
     """
     _require_positive(finest=finest, extent=extent)
     if not 0 <= radius < extent:
-        raise ValueError(f"radius {radius:g} lies outside 0 <= radius < extent = {extent:g}; move it inside the grid")
+        raise InputError(f"radius {radius:g} lies outside 0 <= radius < extent = {extent:g}; move it inside the grid")
     if growth <= 1:
-        raise ValueError(f"growth {growth:g} is not above 1; take about 2")
+        raise InputError(f"growth {growth:g} is not above 1; take about 2")
     inner = radius - geometric(radius, finest, growth)[::-1] if radius else np.zeros(1)
     inner[0] = 0.0  # not what rounding leaves of it
     return np.concatenate([inner, (radius + geometric(extent - radius, finest, growth))[1:]])
@@ -48,4 +50,4 @@ def geometric(length: float, finest: float, growth: float) -> Array:
 def _require_positive(**lengths: float) -> None:
     for name, value in lengths.items():
         if not (np.isfinite(value) and value > 0):
-            raise ValueError(f"{name} {value:g} is not a positive length; give it in beta")
+            raise InputError(f"{name} {value:g} is not a positive length; give it in beta")

@@ -25,8 +25,8 @@ from halfspace.curve import (
     moved,
     trace_charts,
 )
+from halfspace.errors import InputError, NotConverged
 from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event
-from halfspace.newton import NotConverged
 
 MOST_RUNGS = 3  # above the lowest
 
@@ -123,7 +123,7 @@ def climb(
 
     Raises
     ------
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If the curve cannot be traced or an event not be found again.
     GridTooCoarse
         If a grid cannot carry the spike at the contact edge.
@@ -134,7 +134,7 @@ def climb(
         except NotConverged:  # as where two folds about to merge exist on one grid but not on the next
             if start == most_rungs - 1:
                 raise
-    raise ValueError(f"most_rungs = {most_rungs} leaves nothing to climb; allow 1 or more")
+    raise InputError(f"most_rungs = {most_rungs} leaves nothing to climb; allow 1 or more")
 
 
 def _climb_from(

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 
+from halfspace.errors import InputError
+
 
 def require_tabor(tabor: float) -> float:
-    """Return the Tabor parameter, or raise ValueError unless 1e-12 <= tabor <= 300: beyond, a closed form will do."""
+    """Return the Tabor parameter, or raise InputError unless 1e-12 <= tabor <= 300: beyond, a closed form will do."""
     _require(tabor, "tabor", 0 < tabor < math.inf, "0 < tabor", "give the Tabor parameter of the contact")
     _require(tabor, "tabor", tabor >= 1e-12, "1e-12 <= tabor", "the body is rigid: use halfspace.theories.bradley_load")
     return _require(tabor, "tabor", tabor <= 300, "tabor <= 300", "JKR's theory holds: use halfspace.theories.jkr_load")
 
 
 def require_poisson(poisson: float) -> float:
-    """Return Poisson's ratio, or raise ValueError unless 0 <= poisson <= 0.499999.
+    """Return Poisson's ratio, or raise InputError unless 0 <= poisson <= 0.499999.
 
     A digit is lost to rounding for each further 9 of 0.4999...; the limit leaves nine.
     """
@@ -23,18 +25,18 @@ def require_poisson(poisson: float) -> float:
 
 
 def require_rtol(rtol: float) -> float:
-    """Return the relative tolerance, or raise ValueError unless 1e-9 <= rtol <= 1e-1."""
+    """Return the relative tolerance, or raise InputError unless 1e-9 <= rtol <= 1e-1."""
     return _require(rtol, "rtol", 1e-9 <= rtol <= 1e-1, "1e-9 <= rtol <= 1e-1", "take 1e-5 if in doubt")
 
 
 def require_load(to_load: float) -> float:
-    """Return the compressive load at which a curve ends, or raise ValueError unless 0 < to_load <= 1000."""
+    """Return the compressive load at which a curve ends, or raise InputError unless 0 < to_load <= 1000."""
     remedy = "the curve must pass zero load, and Hertz's theory serves above: take 5"
     return _require(to_load, "to_load", 0 < to_load <= 1000, "0 < to_load <= 1000", remedy)
 
 
 def require_radius(radius: float, tabor: float) -> float:
-    """Return the size of a block, or raise ValueError unless the contact and its attraction fit in, and it in floats.
+    """Return the size of a block, or raise InputError unless the contact and its attraction fit in, and it in floats.
 
     A contact is 2 to 3 beta wide and a nearly rigid sphere attracts over some beta/sqrt(tabor); half a block must do,
     since the error is estimated from one half as large.
@@ -45,7 +47,7 @@ def require_radius(radius: float, tabor: float) -> float:
 
 
 def require_fixed_mesh(tabor: float) -> float:
-    """Return the Tabor parameter, or raise ValueError if a mesh that does not follow the contact edge is too dear.
+    """Return the Tabor parameter, or raise InputError if a mesh that does not follow the contact edge is too dear.
 
     It must be fine wherever the edge passes: 8 mu^2 cells, at 10 s a curve for tabor 3 and minutes for 5.
     """
@@ -53,7 +55,7 @@ def require_fixed_mesh(tabor: float) -> float:
 
 
 def require_radius_ratio(radius_ratio: float, tabor: float) -> float:
-    """Return R/eps, or raise ValueError unless it is 2 to 1e12 and R/beta = sqrt(radius_ratio/tabor) at least 1.5.
+    """Return R/eps, or raise InputError unless it is 2 to 1e12 and R/beta = sqrt(radius_ratio/tabor) at least 1.5.
 
     A contact is 1 to 2 beta wide where it is lost: a smaller sphere is deformed as a whole, and past its equator.
     """
@@ -64,7 +66,7 @@ def require_radius_ratio(radius_ratio: float, tabor: float) -> float:
 
 
 def require_cap_angle(cap_angle: float) -> float:
-    """Return the half-angle of a cap in degrees, or raise ValueError unless it is 1 to 89.99, or 90.
+    """Return the half-angle of a cap in degrees, or raise InputError unless it is 1 to 89.99, or 90.
 
     Between the last two the free ring beside the equator is lost to rounding.
     """
@@ -73,11 +75,11 @@ def require_cap_angle(cap_angle: float) -> float:
 
 
 def require_share(share: float, radius: float) -> float:
-    """Return a counter-body's part of the compliance, or raise ValueError unless 0 < share < 1 and its radius is."""
+    """Return a counter-body's part of the compliance, or raise InputError unless 0 < share < 1 and its radius is."""
     remedy = "a rigid one is no counter-body: leave it out"
     _require(share, "share", 0 < share < 1, "0 < share < 1", remedy)
     if not radius >= 1:
-        raise ValueError(
+        raise InputError(
             f"radius = {radius:g} of the counter-body is outside 1 <= radius; let the smaller body be first"
         )
     return share
@@ -85,5 +87,5 @@ def require_share(share: float, radius: float) -> float:
 
 def _require(value: float, name: str, holds: bool, limit: str, remedy: str) -> float:
     if not holds or not math.isfinite(value):
-        raise ValueError(f"{name} = {value:.9g} is outside {limit}; {remedy}")
+        raise InputError(f"{name} = {value:.9g} is outside {limit}; {remedy}")
     return float(value)

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from halfspace.errors import InputError
 from halfspace.lennard_jones import LENNARD_JONES
 from halfspace.theories import Array, ContactState, gap_shape
 
@@ -58,9 +59,9 @@ class MaugisDugdale:
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
         if not 1e-6 <= self.maugis <= 1e6:
-            raise ValueError(f"maugis = {self.maugis:g} is outside 1e-6 <= maugis <= 1e6; take DMT-M below, JKR above")
+            raise InputError(f"maugis = {self.maugis:g} is outside 1e-6 <= maugis <= 1e6; take DMT-M below, JKR above")
         if not 0 < self.tabor < np.inf:
-            raise ValueError(f"tabor = {self.tabor:g} is outside 0 < tabor < inf; give the Tabor parameter")
+            raise InputError(f"tabor = {self.tabor:g} is outside 0 < tabor < inf; give the Tabor parameter")
 
     @classmethod
     def matched(cls, tabor: float) -> MaugisDugdale:

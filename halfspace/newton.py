@@ -9,7 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
+from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.errors import NotConverged
 
 Array = NDArray[np.float64]
 
@@ -26,7 +27,7 @@ class Equilibrium(Protocol):
         ...
 
     def bordered_solver(self, x: Array, row: Array) -> Callable[[Array], Array]:
-        """Solver for the linearised equations with the control row below them."""
+        """Solver for the linearised equations with the control row below them; raise NotConverged if singular."""
         ...
 
     def observables(self, x: Array) -> Array:
@@ -58,8 +59,38 @@ class Equilibrium(Protocol):
         ...
 
 
-class NotConverged(RuntimeError):
-    """Newton's method ended without a solution; the message says how, and what to try."""
+class Traceable(Equilibrium, Protocol):
+    """What a whole curve, its stability, its jumps and its change of discretisation need beyond that."""
+
+    @property
+    def tabor(self) -> float:
+        """Tabor parameter mu."""
+        ...
+
+    @property
+    def interface(self) -> ContactProblem:
+        """Surface law, profile and grid of the surface: the problem itself if that is all its state is made of."""
+        ...
+
+    def surface_state(self, x: Array) -> Array:
+        """State as `interface` knows it: gaps, approach, scale of the grid."""
+        ...
+
+    def state_from_surface(self, state: Array) -> Array:
+        """State whose surface is about that of a state of `interface`, as a start for Newton's method."""
+        ...
+
+    def undeformed(self, approach: float) -> Array:
+        """State without deformation, as a start for Newton's method."""
+        ...
+
+    def energy(self, x: Array) -> float:
+        """Total potential energy in R dgamma eps."""
+        ...
+
+    def negative_directions(self, x: Array) -> int:
+        """Number of directions in which the energy falls at fixed approach; 0 means stable under fixed grips."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -162,10 +193,7 @@ def solve(
         raise NotConverged("the start has no contact radius to be prescribed; start from a state in contact")
     for iteration in range(1, max_iterations + 1):
         row = problem.gradient(x, control.weights)
-        try:
-            dx = -problem.bordered_solver(x, row)(F)
-        except np.linalg.LinAlgError as error:
-            raise NotConverged(f"{error} at Newton step {iteration}; try another control or a nearer start") from error
+        dx = -problem.bordered_solver(x, row)(F)
         update = problem.size(x, dx)
         x, F, damping = _damped(problem, x, F, dx, control)
         if damping == 1 and update < tolerance:

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from halfspace import newton
 from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD
-from halfspace.newton import Control, Equilibrium, NotConverged
+from halfspace.errors import NotConverged
+from halfspace.newton import Control, Equilibrium
 
 Array = NDArray[np.float64]
 

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from halfspace import newton
-from halfspace.contact import APPROACH, ContactProblem
+from halfspace.contact import APPROACH
 from halfspace.curve import EquilibriumPath, Segment, metric_for
+from halfspace.newton import Traceable
 from halfspace.path import Metric, Point, make_point
 
 FARTHER, NEARER = 1.5, 1.1  # margins by which the points added to a curve reach past the jump and past its beginning
@@ -40,7 +41,7 @@ def _far_segment(first: Segment, jump: float) -> Segment:
     return Segment(problem, tuple(points))
 
 
-def _separated(problem: ContactProblem, approach: float, metric: Metric, before: Point | None) -> Point:
+def _separated(problem: Traceable, approach: float, metric: Metric, before: Point | None) -> Point:
     """State on the separated branch; its arclength goes along the tangent of the point before, as a step's does."""
     control = newton.approach(approach)
     solution = newton.solve(problem, problem.undeformed(approach), control)

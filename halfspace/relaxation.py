@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from halfspace.contact import APPROACH, CENTRAL_GAP, ContactProblem
+from halfspace.errors import InputError, NotConverged
 from halfspace.lennard_jones import SurfaceLaw
-from halfspace.newton import Control, NotConverged
+from halfspace.newton import Control
 
 Array = NDArray[np.float64]
 
@@ -86,7 +87,7 @@ def simple(
 
     Raises
     ------
-    ValueError
+    InputError
         If the grid follows the contact, or the control is another one.
     NotConverged
         If the gaps run away or the sweeps run out.
@@ -131,7 +132,7 @@ def greenwood(
 
     Raises
     ------
-    ValueError
+    InputError
         If the grid follows the contact, or the control is another one.
     NotConverged
         If the pressures run away or the sweeps run out.
@@ -153,7 +154,7 @@ def greenwood(
 def _gaps_under(problem: ContactProblem, control: Control) -> _Gaps:
     """Eliminate the approach: it is given, or follows from the gap given on the axis."""
     if problem.follows_contact:
-        raise ValueError("the grid follows the contact; the 1997 iterations need a fixed one")
+        raise InputError("the grid follows the contact; the 1997 iterations need a fixed one")
     body, undeformed = problem.operator.at(1.0), problem.undeformed(0.0)[:-2]
     C = problem.tabor * body.compliance
     if np.array_equal(control.weights, np.eye(4)[APPROACH]):
@@ -161,7 +162,7 @@ def _gaps_under(problem: ContactProblem, control: Control) -> _Gaps:
     if np.array_equal(control.weights, np.eye(4)[CENTRAL_GAP]):
         axis = body.axis_row
         return _Gaps(undeformed - axis @ undeformed + control.target, C - axis @ C)
-    raise ValueError("the 1997 iterations work under newton.approach or newton.central_gap only; take newton.solve")
+    raise InputError("the 1997 iterations work under newton.approach or newton.central_gap only; take newton.solve")
 
 
 def _local_changes(influence: Array) -> Array:

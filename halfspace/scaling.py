@@ -11,6 +11,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from halfspace.errors import InputError
+
 Array = NDArray[np.float64]
 
 
@@ -89,7 +91,7 @@ def contact_modulus(young: float, poisson: float, other_young: float = math.inf,
     """Contact modulus E* in Pa of two bodies: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; the other is rigid by default."""
     compliance = _plane_strain_compliance(young, poisson) + _plane_strain_compliance(other_young, other_poisson)
     if compliance == 0:
-        raise ValueError("young = inf for both bodies is outside young < inf for one; give the modulus of the softer")
+        raise InputError("young = inf for both bodies is outside young < inf for one; give the modulus of the softer")
     return 1 / compliance
 
 
@@ -97,7 +99,7 @@ def equivalent_radius(radius: float, other_radius: float = math.inf) -> float:
     """Equivalent radius R in m of two spheres: 1/R = 1/R1 + 1/R2; flat if infinite, a socket if negative."""
     curvature = 1 / radius + 1 / other_radius if radius and other_radius else math.nan
     if not 0 < curvature < math.inf:
-        raise ValueError(
+        raise InputError(
             f"radius = {radius:g} m and {other_radius:g} m have a curvature 1/R1 + 1/R2 outside 0 < 1/R; "
             "let a socket (negative) be wider than its ball, and a flat infinite"
         )
@@ -108,13 +110,13 @@ def _plane_strain_compliance(young: float, poisson: float) -> float:
     if young != math.inf:
         _require_positive(young, "young", "Pa")
     if not -1 < poisson <= 0.5:
-        raise ValueError(f"poisson = {poisson:g} is outside -1 < poisson <= 0.5; take 0.5 for rubber")
+        raise InputError(f"poisson = {poisson:g} is outside -1 < poisson <= 0.5; take 0.5 for rubber")
     return (1 - poisson**2) / young
 
 
 def _require_positive(value: float, name: str, unit: str) -> None:
     if not 0 < value < math.inf:
-        raise ValueError(f"{name} = {value:g} {unit} is outside 0 < {name} < inf; give it in {unit}")
+        raise InputError(f"{name} = {value:g} {unit} is outside 0 < {name} < inf; give it in {unit}")
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from halfspace.errors import InputError
 from halfspace.lennard_jones import LENNARD_JONES
 from halfspace.theories import Array, ContactState
 
@@ -44,7 +45,7 @@ class RigidSphere:
 
     Raises
     ------
-    ValueError
+    InputError
         If the ratio is out of range.
     """
 
@@ -124,7 +125,7 @@ class JKRSphere:
 
     Raises
     ------
-    ValueError
+    InputError
         If a parameter is out of range.
     """
 
@@ -133,7 +134,7 @@ class JKRSphere:
 
     def __post_init__(self) -> None:
         if not 0 < self.tabor < math.inf:
-            raise ValueError(f"tabor = {self.tabor:g} is outside 0 < tabor < inf; give the Tabor parameter")
+            raise InputError(f"tabor = {self.tabor:g} is outside 0 < tabor < inf; give the Tabor parameter")
         _require_ratio(self.radius_ratio, self.tabor)
 
     @property
@@ -200,7 +201,7 @@ def _relative_excess(x: Array) -> Array:
 
 def _require_ratio(radius_ratio: float, least: float) -> None:
     if not least <= radius_ratio < math.inf:
-        raise ValueError(
+        raise InputError(
             f"radius_ratio = {radius_ratio:g} is outside {least:g} <= radius_ratio < inf; "
             "give R/eps, or take halfspace.theories for the paraboloid"
         )

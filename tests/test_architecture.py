@@ -165,6 +165,7 @@ FLOORS = [
         "halfspace.theories",
         "halfspace.scaling",
     },
+    {"halfspace.errors"},
 ]
 FLOOR_OF = {module: number for number, modules in enumerate(FLOORS) for module in modules}
 

@@ -7,7 +7,7 @@ import pytest
 
 from fem_adhesion import cli
 from fem_adhesion.output.files import written_aside
-from halfspace.newton import NotConverged
+from halfspace.errors import NotConverged
 
 
 def run(*arguments):
@@ -109,7 +109,7 @@ def test_disagreement_exits_with_1(monkeypatch, capsys):
 
 def test_a_failure_is_reported_with_its_reason_and_exits_with_1(monkeypatch, capsys, tmp_path):
     from fem_adhesion.studies import crosscheck
-    from halfspace.newton import NotConverged
+    from halfspace.errors import NotConverged
 
     def fail(*_args, **_kwargs):
         raise NotConverged("on purpose; try another day")

@@ -4,10 +4,10 @@ from scipy.integrate import quad
 
 from halfspace import compliance, grid, newton, theories
 from halfspace.breathing import Homogeneous
-from halfspace.contact import ContactProblem, GridTooCoarse, count_negative
+from halfspace.contact import ContactProblem, count_negative
 from halfspace.curve import transfer
+from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
-from halfspace.newton import NotConverged
 
 CENTRED = compliance.panels(grid.graded(0.0, 0.3, 400.0), 10)
 EDGE = compliance.panels(grid.graded(1.0, 0.1, 400.0), 10)

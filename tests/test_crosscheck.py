@@ -11,8 +11,8 @@ from fem_adhesion.studies.crosscheck import Case, Failure, Row
 from halfspace import limits
 from halfspace.contact import ContactProblem
 from halfspace.curve import Estimate
+from halfspace.errors import NotConverged
 from halfspace.lennard_jones import SurfaceLaw
-from halfspace.newton import NotConverged
 
 RTOL = 1e-4  # defects change the numbers by per cents: coarse meshes show them as well
 

@@ -15,7 +15,7 @@ from fem_adhesion.output import curve_record, curve_terminal
 from fem_adhesion.scene import Scene
 from fem_adhesion.studies import curves as study
 from halfspace.curve import EquilibriumPath
-from halfspace.newton import NotConverged
+from halfspace.errors import NotConverged
 from halfspace.scaling import Units
 
 UNITS = Units(100e-9, 1.1e9, 0.05, 0.3e-9)

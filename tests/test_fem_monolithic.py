@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
+from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
 from fem_adhesion.condensed import condense
 from fem_adhesion.elasticity import Space, cell_stiffness, scatter
@@ -11,9 +11,10 @@ from fem_adhesion.mesh import block_grid, graded_size, quarter_disc
 from fem_adhesion.monolithic import assemble, block_stiffness
 from halfspace import newton
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.curve import Chart, find_events, metric_for, trace_charts
+from halfspace.curve import Chart, energy_released, find_events, metric_for, trace_charts
+from halfspace.devices import energy_lost
+from halfspace.errors import NotConverged
 from halfspace.events import EXTREMUM, FOLD, locate, relocate
-from halfspace.newton import NotConverged
 from halfspace.path import follow, make_point
 
 NU = 0.3
@@ -113,6 +114,41 @@ def test_no_step_closes_the_gap(small, in_contact):
 # --- against the condensed problem ---
 
 
+@pytest.fixture(scope="module")
+def curve(body):
+    return trace_charts([Chart(ContactProblem(body.operator, 2.0), body.unknowns)])[0]
+
+
+def test_stability_is_that_of_the_condensed_problem(body, curve):
+    problem = assemble(body.space, NU, 2.0)
+    expected = [curve.problem.negative_directions(point.x) for point in curve.points]
+    found = [problem.negative_directions(problem.state_from_surface(point.x)) for point in curve.points]
+    assert found == expected
+    assert set(expected) == {0, 1}
+
+
+def test_a_whole_curve_of_either_kind_of_problem_is_the_same():
+    """All of the road asks a problem for nothing but what both kinds have: its events, energies, stability, jumps."""
+    space = Space(block_grid(0.4, 3.0, 20.0), ElementQuad2())
+    paths = [
+        charted_path(problem)
+        for problem in (ContactProblem(condense(space, NU).operator, 1.0), assemble(space, NU, 1.0))
+    ]
+    condensed, whole = (find_events(path) for path in paths)
+    assert whole.keys() == condensed.keys()
+    for name, event in condensed.items():
+        np.testing.assert_allclose(whole[name].point.observables, event.point.observables, rtol=1e-8, err_msg=name)
+    losses = [energy_lost(path, events) for path, events in zip(paths, (condensed, whole), strict=True)]
+    assert losses[1] == pytest.approx(losses[0], rel=1e-7, abs=0)
+    energies = [energy_released(events) for events in (condensed, whole)]
+    assert energies[1] == pytest.approx(energies[0], rel=1e-9, abs=0)
+    assert losses[0] > 0.01
+
+
+def charted_path(problem):
+    return trace_charts([Chart(problem, 0)])
+
+
 @pytest.mark.parametrize("tabor", EVENTS)
 def test_the_events_of_the_condensed_problem(body, tabor):
     problem = assemble(body.space, NU, tabor)
@@ -194,7 +230,7 @@ def test_arclength_carries_the_whole_problem_through_a_fold():
 def test_a_failure_says_how_it_ended(small, in_contact):
     with pytest.raises(NotConverged, match=r"no convergence in 2 Newton steps .* try a nearer start"):
         newton.solve(small, in_contact, newton.approach(1.0), max_iterations=2)
-    with pytest.raises(NotConverged, match="singular at Newton step 1; try another control"):
+    with pytest.raises(NotConverged, match="the bordered Jacobian is singular; try another control"):
         newton.solve(small, in_contact, newton.Control(np.zeros(4), 1.0))
 
 

@@ -34,7 +34,7 @@ from fem_adhesion.studies.finite_sphere_table import Row, rows
 from fem_adhesion.studies.materials import materials
 from fem_adhesion.studies.store import open_store
 from halfspace.curve import Estimate
-from halfspace.newton import NotConverged
+from halfspace.errors import NotConverged
 from halfspace.sphere_theories import JKRSphere
 from halfspace.theories import JKR_PULL_OFF
 

@@ -16,7 +16,7 @@ from fem_adhesion.mesh import block_grid
 from fem_adhesion.scene import Scene
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD
-from halfspace.newton import NotConverged
+from halfspace.errors import NotConverged
 from halfspace.path import Metric
 
 

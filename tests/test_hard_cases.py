@@ -15,7 +15,7 @@ from fem_adhesion.studies.fold_birth import FIRST, SECOND, tabor_of
 from fem_adhesion.studies.hard_bodies import Locking, flattened, locking
 from fem_adhesion.studies.hard_cases import Case, Row
 from fem_adhesion.studies.measured import Measured, worst
-from halfspace.newton import NotConverged
+from halfspace.errors import NotConverged
 
 REFUSALS = {
     "start with gaps of 0.8 eps": "no convergence in 40 Newton steps",

@@ -9,7 +9,7 @@ from skfem import CellBasis, ElementQuad2, MeshQuad, MeshQuad2
 import fem_adhesion
 from fem_adhesion import Scene
 from fem_adhesion.refinement import refined
-from halfspace.contact import GridTooCoarse
+from halfspace.errors import GridTooCoarse
 
 MESHES = Path(__file__).parents[1] / "meshes"
 

@@ -16,7 +16,7 @@ from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.mesh import block_grid
 from halfspace.contact import APPROACH, LOAD, ContactProblem
 from halfspace.curve import metric_for
-from halfspace.newton import NotConverged
+from halfspace.errors import NotConverged
 from halfspace.path import correct, predict
 from halfspace.theories import BRADLEY_PULL_OFF, JKR_PULL_OFF
 

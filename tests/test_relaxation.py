@@ -6,7 +6,7 @@ import pytest
 from halfspace import compliance, grid, newton
 from halfspace.breathing import Homogeneous
 from halfspace.contact import ContactProblem
-from halfspace.newton import NotConverged
+from halfspace.errors import NotConverged
 from halfspace.relaxation import CHECKED_EVERY, greenwood, simple
 
 

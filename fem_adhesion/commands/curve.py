@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from fem_adhesion.commands.common import AGREE, progress_bar
+from halfspace.errors import InputError
 
 if TYPE_CHECKING:
     from fem_adhesion.commands.common import Commands, Parser
@@ -126,13 +127,13 @@ def _require_drawing(options: argparse.Namespace, scene: Scene, solver: SolverNa
     """Refuse what cannot be drawn of the body before any work."""
     for path, suffix in ((options.render, ".png"), (options.movie, ".gif")):
         if path and path.suffix != suffix:
-            raise ValueError(f"{path} ends in {path.suffix!r}, limit: {suffix}; rename it")
+            raise InputError(f"{path} ends in {path.suffix!r}, limit: {suffix}; rename it")
     if options.at and not options.render:
-        raise ValueError(f"at = {options.at} without a picture, limit: with --render; give --render FILE.png too")
+        raise InputError(f"at = {options.at} without a picture, limit: with --render; give --render FILE.png too")
     if not (options.render or options.movie):
         return
     if solver == "half-space":
-        raise ValueError(
+        raise InputError(
             "picture with solver = half-space, which has no fields inside, limit: fem or both; take --solver fem"
         )
     from fem_adhesion.fields import require_fields
@@ -149,11 +150,11 @@ def _require_vtk(options: argparse.Namespace, scene: Scene, solver: SolverName) 
     from fem_adhesion.output.vtk import require_pyvista
 
     if solver == "half-space":
-        raise ValueError(
+        raise InputError(
             "vtk with solver = half-space, which has no fields inside, limit: fem or both; take --solver fem"
         )
     if options.points < 0:
-        raise ValueError(f"points = {options.points} is outside 0 <= points; 0 writes the events only")
+        raise InputError(f"points = {options.points} is outside 0 <= points; 0 writes the events only")
     if options.revolve is not None:
         require_angle(options.revolve)
     require_fields(scene)
@@ -164,12 +165,12 @@ def _require_vtk(options: argparse.Namespace, scene: Scene, solver: SolverName) 
 def _require_free(directory: Path, *, force: bool) -> None:
     """Refuse a directory that cannot be written or holds files; `write_path` would only do so after the work."""
     if directory.exists() and not directory.is_dir():
-        raise ValueError(f"{directory} is a file; give the name of a directory")
+        raise InputError(f"{directory} is a file; give the name of a directory")
     if not directory.parent.is_dir():
-        raise ValueError(f"{directory} cannot be written (no such folder); choose a folder that exists and is yours")
+        raise InputError(f"{directory} cannot be written (no such folder); choose a folder that exists and is yours")
     present = sum(1 for _ in directory.iterdir()) if directory.is_dir() else 0
     if present and not force:
-        raise ValueError(f"{directory} holds {present} files, limit 0; empty it, choose another or use --force")
+        raise InputError(f"{directory} holds {present} files, limit 0; empty it, choose another or use --force")
 
 
 def _form_of(plot: Path | None) -> str:
@@ -202,15 +203,15 @@ def _units(options: argparse.Namespace) -> Units | None:
     given = {name: text for name in MATERIAL if (text := getattr(options, name)) is not None}
     if not given:
         if options.tabor is None:
-            raise ValueError(
+            raise InputError(
                 "tabor = None and no material, limit: one of both; give --tabor 2, say, or --radius 100nm ..."
             )
         return None
     if options.tabor is not None:
-        raise ValueError(f"tabor = {options.tabor:g} with a material, limit: one of both; leave out --tabor")
+        raise InputError(f"tabor = {options.tabor:g} with a material, limit: one of both; leave out --tabor")
     missing = [f"--{name.replace('_', '-')}" for name in MATERIAL if name not in given]
     if missing:
-        raise ValueError(f"{', '.join(missing)} missing, limit: a whole material or none; give it too")
+        raise InputError(f"{', '.join(missing)} missing, limit: a whole material or none; give it too")
     return Contact(poisson=options.poisson, **{name: parse(text, name) for name, text in given.items()}).units
 
 
@@ -218,12 +219,12 @@ def _scene(options: argparse.Namespace, units: Units | None) -> Scene:
     from fem_adhesion.scene import Scene
 
     if options.mesh and options.body:
-        raise ValueError(f"mesh = {options.mesh} with body = {options.body}, limit: one of both; leave out --body")
+        raise InputError(f"mesh = {options.mesh} with body = {options.body}, limit: one of both; leave out --body")
     body: BodyName | Path = options.mesh or options.body or "block"
     profile: ProfileName = options.profile or "paraboloid"
     sized = body != "block" or profile == "sphere"
     if units and options.radius_ratio is not None:
-        raise ValueError(
+        raise InputError(
             f"radius_ratio = {options.radius_ratio:g} with a material, limit: its own {units.radius_ratio:.4g}; "
             "leave out --radius-ratio"
         )
@@ -243,6 +244,6 @@ def _stiffness(options: argparse.Namespace, units: Units | None) -> float:
     try:
         return float(options.stiffness)
     except ValueError as error:
-        raise ValueError(
+        raise InputError(
             f"stiffness = {options.stiffness} is not a plain number in R dgamma/eps; give one, or a material"
         ) from error

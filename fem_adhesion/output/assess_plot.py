@@ -21,6 +21,7 @@ from halfspace.compliance import Array
 from halfspace.contact import APPROACH, LOAD
 from halfspace.curve import EquilibriumPath, Segment
 from halfspace.devices import cycle
+from halfspace.errors import InputError
 from halfspace.reach import reaching
 from halfspace.scaling import Units
 
@@ -39,9 +40,9 @@ Ends = tuple[float, float]
 
 
 def require_suffix(path: Path) -> str:
-    """Return the format of a figure file, or raise ValueError if it is none of png, svg and pdf."""
+    """Return the format of a figure file, or raise InputError if it is none of png, svg and pdf."""
     if path.suffix not in SUFFIXES:
-        raise ValueError(f"{path} ends in {path.suffix!r}, limit: one of {', '.join(SUFFIXES)}; rename it")
+        raise InputError(f"{path} ends in {path.suffix!r}, limit: one of {', '.join(SUFFIXES)}; rename it")
     return path.suffix[1:]
 
 

@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
+from halfspace.errors import InputError
+
 
 @contextmanager
 def written_aside(path: Path) -> Iterator[IO[str]]:
@@ -17,17 +19,17 @@ def written_aside(path: Path) -> Iterator[IO[str]]:
 
     Raises
     ------
-    ValueError
+    InputError
         At once, before any work, if `path` cannot be written.
     """
     if path.is_dir():
-        raise ValueError(f"{path} is a directory; give the name of a file")
+        raise InputError(f"{path} is a directory; give the name of a file")
     if path.exists() and not path.is_file():
-        raise ValueError(f"{path} is a device or a pipe, limit: a file; give the name of one")
+        raise InputError(f"{path} is a device or a pipe, limit: a file; give the name of one")
     try:
         descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", text=True)
     except OSError as error:
-        raise ValueError(
+        raise InputError(
             f"{path} cannot be written ({error.strerror}); choose a folder that exists and is yours"
         ) from error
     aside = Path(name)
@@ -53,17 +55,17 @@ def directory_written_aside(path: Path, *, force: bool = False) -> Iterator[Path
 
     Raises
     ------
-    ValueError
+    InputError
         At once, before any work, if `path` is a file, cannot be written, or is not empty and `force` not set.
     """
     if path.exists() and not path.is_dir():
-        raise ValueError(f"{path} is a file; give the name of a directory")
+        raise InputError(f"{path} is a file; give the name of a directory")
     exists = path.is_dir()
     aside = _directory_in(path if exists else path.parent, path)
     try:
         present = sum(1 for _ in path.iterdir()) - 1 if exists else 0
         if present and not force:
-            raise ValueError(f"{path} holds {present} files, limit 0; empty it, choose another or use --force")
+            raise InputError(f"{path} holds {present} files, limit 0; empty it, choose another or use --force")
         yield aside
         path.mkdir(exist_ok=True)
         for file in aside.iterdir():
@@ -77,7 +79,7 @@ def _directory_in(parent: Path, wanted: Path) -> Path:
     try:
         return Path(tempfile.mkdtemp(dir=parent, prefix=".unfinished."))
     except OSError as error:
-        raise ValueError(
+        raise InputError(
             f"{wanted} cannot be written ({error.strerror}); choose a folder that exists and is yours"
         ) from error
 

@@ -12,6 +12,7 @@ from fem_adhesion.studies.finite_sphere_cases import Record
 from fem_adhesion.studies.finite_sphere_chart import LEVELS, Rule, field_of, rule
 from fem_adhesion.studies.finite_sphere_fit import Finding, Fit
 from fem_adhesion.studies.finite_sphere_table import Row
+from halfspace.errors import InputError
 
 QUANTITIES = {
     "pull_off_load": "pull-off force",
@@ -60,7 +61,7 @@ def _rule(rows: Sequence[Row], quantity: str, level: float, poisson: float | Non
     head = (QUANTITIES[quantity], f"{100 * level:g} %")
     try:
         found = rule(field_of(rows, quantity, poisson), level)
-    except ValueError as error:
+    except InputError as error:
         return (*head, "", "", "", str(error))
     return (*head, line(found), f"{100 * found.misfit:.2g} %", f"{found.tabor[0]:g} to {found.tabor[1]:g}", "")
 
@@ -97,7 +98,7 @@ def _theories(rows: Sequence[Row]) -> Table:
             (c.theory, f"{c.expected:.4f}", f"{c.fitted.value:.4f}", f"{c.fitted.error:.1e}", f"{c.tabor:g}", "")
             for c in finite_sphere_fit.compare(rows)
         )
-    except ValueError as error:
+    except InputError as error:
         lines = (("", "", "", "", "", str(error)),)
     return Table("theories", "Leading coefficients beside theories", see, columns, lines)
 

@@ -17,6 +17,7 @@ from fem_adhesion.output.finite_sphere_chart import chart
 from fem_adhesion.studies.finite_sphere_fit import RIGID_PULL_OFF, SOFT_PULL_OFF, Samples, fit, samples
 from fem_adhesion.studies.finite_sphere_table import Row
 from fem_adhesion.studies.finite_sphere_terms import Array, leading_terms
+from halfspace.errors import InputError
 
 DOTS_PER_INCH = 160
 LOOK: Mapping[Any, Any] = {**style.LOOK, "svg.fonttype": "none"}
@@ -117,7 +118,7 @@ def _cause(axes: Any, rows: Sequence[Row], cause: str, tabor: float, poisson: fl
     _signed(axes, data, color=colour, marker=marker, label=label)
     try:
         found = fit(data, terms := leading_terms(cause, "pull_off_load", one_tabor=True))
-    except ValueError:
+    except InputError:
         return  # too few points for a line through them: the table says so
     x = np.geomspace(data.stretch.min(), found.holds_to, 200)
     parts = [c.value * terms[name](np.full_like(x, tabor), tabor / x**2) for name, c in found.coefficients.items()]

@@ -21,6 +21,7 @@ from fem_adhesion.studies.finite_sphere_cases import CAUSES, Record
 from fem_adhesion.studies.finite_sphere_chart import Field, field_of, rule, safe_from
 from fem_adhesion.studies.finite_sphere_table import Row, rows
 from fem_adhesion.studies.machine import machine
+from halfspace.errors import InputError
 
 LEVEL = 0.01  # of the answer on top
 PARTS = ("table", *(f"figure {picture.stem}" for picture in PICTURES), "page")
@@ -100,7 +101,7 @@ def _when(field: Field) -> str:
     """Condition under which a deviation is below the level."""
     try:
         found = rule(field, LEVEL)
-    except ValueError:
+    except InputError:
         return _from(field)
     least, most = found.tabor
     return f"if R/eps > {line(found)} (right within {ceil(100 * found.misfit)} %, mu from {least:g} to {most:g})"

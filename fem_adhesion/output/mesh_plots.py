@@ -17,6 +17,7 @@ from fem_adhesion.sized import Discretisation
 from fem_adhesion.studies.curves import Curves
 from halfspace.compliance import Array
 from halfspace.contact import APPROACH, CONTACT_RADIUS
+from halfspace.errors import InputError
 
 EVENT = "pull_off"
 MESH = Discretisation(degree=4)
@@ -29,7 +30,7 @@ def is_drawn(scene: Scene) -> bool:
     """Whether there is a picture of a scene's body."""
     try:
         require_fields(scene)
-    except ValueError:
+    except InputError:
         return False
     return True
 

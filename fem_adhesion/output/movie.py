@@ -77,9 +77,9 @@ def write_movie(curves: Curves, file: IO[str], size: tuple[int, int] = SIZE) -> 
 
     Raises
     ------
-    ValueError
+    InputError
         If pyvista is missing, or there is nothing to draw with off-screen.
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If a state cannot be solved for.
     """
     frames = experiment(curves.path)

@@ -14,6 +14,7 @@ from fem_adhesion.output.load_plots import draw_central_gap, draw_load
 from fem_adhesion.output.mesh_plots import draw_mesh, is_drawn
 from fem_adhesion.output.profile_plots import draw_gap, draw_pressure, draw_spike
 from fem_adhesion.studies.curves import FINITE_ELEMENTS, Curves
+from halfspace.errors import InputError
 
 SUFFIXES = (".png", ".svg", ".pdf")
 LOOK = {**style.LOOK, "font.size": 9.5, "svg.hashsalt": "fem-adhesion"}
@@ -21,9 +22,9 @@ SIZE = (7.3, 10.0)  # inches
 
 
 def require_suffix(path: Path) -> str:
-    """Return the format of a figure file, or raise ValueError if it is none of png, svg and pdf."""
+    """Return the format of a figure file, or raise InputError if it is none of png, svg and pdf."""
     if path.suffix not in SUFFIXES:
-        raise ValueError(f"{path} ends in {path.suffix!r}, limit: one of {', '.join(SUFFIXES)}; rename it")
+        raise InputError(f"{path} ends in {path.suffix!r}, limit: one of {', '.join(SUFFIXES)}; rename it")
     return path.suffix[1:]
 
 

@@ -52,8 +52,7 @@ class Profile:
 def state_of(path: EquilibriumPath, name: str) -> tuple[ContactProblem, Array]:
     """Return the problem and the state x of an event, on the finest discretisation."""
     found = path.stages[-1][name]
-    assert isinstance(found.problem, ContactProblem)
-    return found.problem, found.point.x
+    return found.problem.interface, found.problem.surface_state(found.point.x)
 
 
 def profile(path: EquilibriumPath, name: str, radii: Array) -> Profile:

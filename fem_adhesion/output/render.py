@@ -26,6 +26,7 @@ from fem_adhesion.scene import Scene
 from fem_adhesion.studies.curves import Curves
 from fem_adhesion.studies.quantities import Quantity
 from halfspace.contact import APPROACH, LOAD
+from halfspace.errors import InputError
 
 SIZE = (1600, 1000)
 """Of a picture in pixels."""
@@ -56,7 +57,7 @@ def write_picture(curves: Curves, file: IO[str], at: str = "pull_off", size: tup
 
     Raises
     ------
-    ValueError
+    InputError
         If the curve has no such event, pyvista is missing, or there is nothing to draw with off-screen.
     """
     require_event(curves, at)
@@ -69,9 +70,9 @@ def write_picture(curves: Curves, file: IO[str], at: str = "pull_off", size: tup
 
 
 def require_event(curves: Curves, at: str) -> None:
-    """Raise ValueError unless a curve has an event."""
+    """Raise InputError unless a curve has an event."""
     if curves.path.event(at) is None:
-        raise ValueError(
+        raise InputError(
             f"at = {at} is not on the curve at tabor = {curves.path.tabor:g}, which does not fold; take pull_off"
         )
 

@@ -66,7 +66,7 @@ def page(contents: Contents) -> str:
 
     Raises
     ------
-    ValueError
+    InputError
         If a directory does not hold what its command writes.
     """
     verdict = overall_verdict(contents.cases)

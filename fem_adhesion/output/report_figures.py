@@ -6,6 +6,8 @@ import re
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
+from halfspace.errors import InputError
+
 SVG = "http://www.w3.org/2000/svg"
 XLINK = "http://www.w3.org/1999/xlink"
 REFERENCE = re.compile(r"url\(#([^)]*)\)")
@@ -33,7 +35,7 @@ def figure(svg: bytes, name: str, caption: str) -> Figure:
 
     Raises
     ------
-    ValueError
+    InputError
         If the file is not SVG.
     """
     root = _parsed(svg, name)
@@ -50,9 +52,9 @@ def _parsed(svg: bytes, name: str) -> ElementTree.Element:
     try:
         root = ElementTree.fromstring(svg)
     except ElementTree.ParseError as error:
-        raise ValueError(f"the picture {name} is not SVG: {error}; write it anew") from error
+        raise InputError(f"the picture {name} is not SVG: {error}; write it anew") from error
     if root.tag != f"{{{SVG}}}svg":
-        raise ValueError(f"the picture {name} is not SVG: its first element is {root.tag}; write it anew")
+        raise InputError(f"the picture {name} is not SVG: its first element is {root.tag}; write it anew")
     return root
 
 

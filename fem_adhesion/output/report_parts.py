@@ -11,6 +11,7 @@ from pathlib import Path
 
 from fem_adhesion.output.greenwood_tables import typeset
 from fem_adhesion.output.report_figures import Figure
+from halfspace.errors import InputError
 
 MOST_LINES = 400  # of a table that is shown
 MOST_DIGITS = 12  # of a number that was written to be read; more are those of the machine
@@ -54,13 +55,13 @@ def read_table(file: Path, title: str) -> Table:
 
     Raises
     ------
-    ValueError
+    InputError
         If the file is empty.
     """
     with file.open(newline="", encoding="utf-8") as stream:
         columns, *lines = list(csv.reader(stream)) or [[]]
     if not columns:
-        raise ValueError(f"{file} is empty; run its command again")
+        raise InputError(f"{file} is empty; run its command again")
     left_out = f" (first {MOST_LINES} of {len(lines)} lines; all are in {file.name})" if len(lines) > MOST_LINES else ""
     shown = [[cell(text) for text in line] for line in lines[:MOST_LINES]]
     return Table(title + left_out, [symbols(name.replace("_", " ")) for name in columns], shown)

@@ -11,6 +11,7 @@ from fem_adhesion.output.finite_sphere_plots import PICTURES
 from fem_adhesion.output.greenwood_plots import PLOTS
 from fem_adhesion.output.report_figures import figure
 from fem_adhesion.output.report_parts import Section, Table, read_table, symbols
+from halfspace.errors import InputError
 
 AFTER = {plot.stem: f"After Fig. {plot.number}: {plot.title}. {plot.see}" for plot in PLOTS}
 CHARTS = {picture.stem: f"{picture.title}. {picture.see}" for picture in PICTURES}
@@ -84,7 +85,7 @@ def section_of(source: Source, directory: Path | None) -> Section:
 
     Raises
     ------
-    ValueError
+    InputError
         If the directory does not hold what the command writes.
     """
     if directory is None:
@@ -108,5 +109,5 @@ def _outcomes(table: Table) -> str:
 
 def _require(file: Path, source: Source) -> Path:
     if not file.is_file():
-        raise ValueError(f"{file} is not there; give the directory that fem-adhesion {source.command} --out wrote")
+        raise InputError(f"{file} is not there; give the directory that fem-adhesion {source.command} --out wrote")
     return file

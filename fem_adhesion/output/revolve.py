@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from halfspace.compliance import Array, Index
+from halfspace.errors import InputError
 
 SEGMENT = 15.0
 """Largest angle of a cell in degrees."""
@@ -111,7 +112,7 @@ def revolved(points: Array, cells: Index, degrees: float) -> Solid:
 
     Raises
     ------
-    ValueError
+    InputError
         Unless 0 < degrees <= 360.
     """
     require_angle(degrees)
@@ -128,9 +129,9 @@ def revolved(points: Array, cells: Index, degrees: float) -> Solid:
 
 
 def require_angle(degrees: float) -> None:
-    """Raise ValueError unless 0 < degrees <= 360."""
+    """Raise InputError unless 0 < degrees <= 360."""
     if not 0 < degrees <= 360:
-        raise ValueError(f"revolve = {degrees:g} is outside 0 < revolve <= 360; give degrees, 360 for the whole solid")
+        raise InputError(f"revolve = {degrees:g} is outside 0 < revolve <= 360; give degrees, 360 for the whole solid")
 
 
 def _numbered(axial: NDArray[np.bool_], layers: int, *, closed: bool) -> tuple[Index, Index, Index]:

@@ -15,6 +15,7 @@ from fem_adhesion.fields import State
 from fem_adhesion.output.cutaway import Section, View, section, surfaces
 from fem_adhesion.output.vtk import require_pyvista
 from halfspace.compliance import Array
+from halfspace.errors import InputError
 
 Pixels = NDArray[np.uint8]
 
@@ -48,7 +49,7 @@ def solid_image(state: State, view: View, size: tuple[int, int]) -> Pixels:
 
     Raises
     ------
-    ValueError
+    InputError
         As `require_drawing`.
     """
     pyvista = require_drawing()
@@ -66,7 +67,7 @@ def solid_image(state: State, view: View, size: tuple[int, int]) -> Pixels:
 
 
 def require_drawing() -> Any:
-    """Return pyvista, or raise ValueError where it or what it draws with off-screen is not installed.
+    """Return pyvista, or raise InputError where it or what it draws with off-screen is not installed.
 
     Without OpenGL's libraries VTK crashes when it draws, and says nothing before.
     """
@@ -77,7 +78,7 @@ def require_drawing() -> Any:
     with _quiet():
         last_resort = vtkRenderWindow().GetClassName() == "vtkOSOpenGLRenderWindow"
     if last_resort and not any(map(_is_installed, OSMESA)):
-        raise ValueError(
+        raise InputError(
             "OpenGL is not installed, which draws off-screen pictures; apt-get install libegl1 libgl1-mesa-dri"
         )
     return pyvista

@@ -30,6 +30,7 @@ from fem_adhesion.output.vtk_arrays import (
     turned,
 )
 from halfspace.compliance import Array, Index
+from halfspace.errors import InputError
 from halfspace.scaling import Units
 
 TOLERANCE = 1e-4
@@ -76,7 +77,7 @@ def write_path(
 
     Raises
     ------
-    ValueError
+    InputError
         If there are no states, units or angle do not fit, the directory cannot be written, or pyvista is missing.
     """
     if revolve is not None:
@@ -93,11 +94,11 @@ def write_path(
 
 
 def require_pyvista() -> Any:
-    """Return pyvista, or raise ValueError where it is not installed."""
+    """Return pyvista, or raise InputError where it is not installed."""
     try:
         import pyvista
     except ImportError as error:
-        raise ValueError(
+        raise InputError(
             "pyvista is not installed, which writes VTK files; pip install 'fem-adhesion[view]'"
         ) from error
     return pyvista

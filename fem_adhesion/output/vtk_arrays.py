@@ -14,6 +14,7 @@ from fem_adhesion.output.lattice import Cut
 from fem_adhesion.output.revolve import Solid
 from fem_adhesion.scene import Scene
 from halfspace.compliance import Array
+from halfspace.errors import InputError
 from halfspace.scaling import Units
 
 Named = dict[str, Array]
@@ -189,14 +190,14 @@ def _plain(value: object) -> float | str:
 
 
 def require_same_scene(states: Sequence[State], units: Units | None) -> None:
-    """Raise ValueError unless there are states, all of one scene, with the Tabor parameter of the material."""
+    """Raise InputError unless there are states, all of one scene, with the Tabor parameter of the material."""
     if not states:
-        raise ValueError("no states to write, limit: 1 or more; ask for points or events of the curve")
+        raise InputError("no states to write, limit: 1 or more; ask for points or events of the curve")
     scene = states[0].scene
     if any(state.scene != scene for state in states):
-        raise ValueError("states of several scenes, limit: one scene; write each to a directory of its own")
+        raise InputError("states of several scenes, limit: one scene; write each to a directory of its own")
     if units is not None and abs(units.tabor - scene.tabor) > SAME_TABOR * scene.tabor:
-        raise ValueError(
+        raise InputError(
             f"the material's tabor = {units.tabor:.9g} is not the scene's {scene.tabor:.9g}; "
             "take units.tabor for the scene"
         )

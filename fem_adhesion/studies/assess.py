@@ -22,7 +22,7 @@ from fem_adhesion.studies.assess_predictions import (
     soft_sphere,
 )
 from fem_adhesion.studies.assess_verdict import Deviation, cautions, deviation, regime, verdict
-from halfspace.newton import NotConverged
+from halfspace.errors import InputError, NotConverged
 from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
 
 RIGID_TABOR = 1e-12  # below it the rigid sphere is taken; above REFERENCE_TABOR, JKR
@@ -107,7 +107,7 @@ def assess(contact: Contact, progress: Progress = lambda *_: None) -> Assessment
 
     Raises
     ------
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If the half-space's curve cannot be traced.
     """
     began = time.perf_counter()
@@ -165,7 +165,7 @@ def _tried(make: Callable[[Contact], Prediction], contact: Contact) -> tuple[Pre
     """Prediction, or why there is none."""
     try:
         return make(contact), None
-    except (ValueError, NotConverged) as error:  # the sphere is outside what the solver serves
+    except (InputError, NotConverged) as error:  # the sphere is outside what the solver serves
         return None, f"finite sphere not solved: {error}"
 
 
@@ -184,7 +184,7 @@ def _finite(contact: Contact) -> Prediction:
     """The elastic hemisphere held at its mid-plane."""
     units = contact.units
     if units.tabor > FINITE_TABOR:
-        raise ValueError(
+        raise InputError(
             f"tabor = {units.tabor:.4g} is outside tabor <= {FINITE_TABOR:g}, beyond which it takes long; "
             "trace a Scene with body hemisphere"
         )

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
+from halfspace.errors import InputError
 from halfspace.limits import require_poisson
 from halfspace.scaling import Units, contact_modulus, equivalent_radius
 
@@ -31,7 +32,7 @@ class Contact:
 
     Raises
     ------
-    ValueError
+    InputError
         If a value is out of range or one of the other body's two is missing.
     """
 
@@ -48,13 +49,13 @@ class Contact:
     def __post_init__(self) -> None:
         require_poisson(self.poisson)
         if not self.stiffness > 0:
-            raise ValueError(
+            raise InputError(
                 f"stiffness = {self.stiffness:g} N/m is outside 0 < stiffness; leave it out for fixed grips"
             )
         given = {"counter_modulus": self.counter_modulus, "counter_poisson": self.counter_poisson}
         missing = [name for name, value in given.items() if value is None]
         if len(missing) == 1:
-            raise ValueError(f"{missing[0]} = None, limit: with both or none of {' and '.join(given)}; give it too")
+            raise InputError(f"{missing[0]} = None, limit: with both or none of {' and '.join(given)}; give it too")
         self.units  # noqa: B018  it refuses what is not positive
 
     @cached_property

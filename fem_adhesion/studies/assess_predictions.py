@@ -79,7 +79,7 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
 
     Raises
     ------
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If a jump or a landing cannot be solved for.
     """
     tension, free = path.events["pull_off"], path.events["zero_load"]
@@ -150,7 +150,7 @@ def soft_sphere(units: Units) -> Prediction:
 
     Raises
     ------
-    ValueError
+    InputError
         If the contact would span the sphere.
     """
     theory = JKRSphere(units.tabor, units.radius_ratio)
@@ -168,7 +168,7 @@ def rigid_sphere(units: Units) -> Prediction:
 
     Raises
     ------
-    ValueError
+    InputError
         If the sphere is far smaller than the spacing.
     """
     tension = RigidSphere(units.radius_ratio).pull_off()

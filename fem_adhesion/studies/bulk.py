@@ -70,7 +70,7 @@ def bulk_compliance(grip: GripName, poisson: float, sphere_radius: float) -> Est
 
     Raises
     ------
-    ValueError
+    InputError
         If grip or poisson is out of range.
     """
     terms = coefficients(grip, poisson)

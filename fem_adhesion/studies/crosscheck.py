@@ -25,11 +25,10 @@ from fem_adhesion.mesh import tensor_grid
 from fem_adhesion.scene import Scene
 from halfspace import compliance, grid
 from halfspace.compliance import Array, ElasticOperator
-from halfspace.contact import ContactProblem, GridTooCoarse
 from halfspace.curve import EquilibriumPath, Estimate, transfer
+from halfspace.errors import NotConverged
 from halfspace.events import ROUND_OFF, Event, Located
 from halfspace.limits import require_rtol
-from halfspace.newton import NotConverged
 
 Verdict = Literal["agree", "disagree", "inconclusive"]
 Solver = Callable[..., EquilibriumPath]
@@ -131,9 +130,9 @@ def compare(
 
     Raises
     ------
-    ValueError
+    InputError
         If an input is out of range.
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If a solver fails.
     """
     require_rtol(rtol)
@@ -151,7 +150,7 @@ def run(scenes: Sequence[Scene], *, rtol: float = 1e-5) -> Iterator[Case | Failu
             if operators is None:
                 operators = compare_operators(scene, rtol=rtol)
             yield compare(scene, rtol=rtol, operators=operators)
-        except (NotConverged, GridTooCoarse, np.linalg.LinAlgError) as error:
+        except NotConverged as error:
             yield Failure(scene, str(error), tuple(operators or ()))
 
 
@@ -225,19 +224,13 @@ def _residual(found: Sequence[Located], equations: Located) -> Estimate:
 
     The error is the mean change of the residual from stage to stage: what the state itself is uncertain by.
     """
-    target = equations.problem
-    assert isinstance(target, ContactProblem)
-    states = [_transferred(event, target) for event in found]
+    target = equations.problem.interface
+    states = [transfer(event.problem, event.point.x, target) for event in found]
     residuals = [target.residual(x)[:-1] for x in states]
     weight = target.operator_at(states[-1]).weights * np.abs(target.pressure(states[-1]))
     weight /= weight.sum()
     changes = [weight @ np.abs(b - a) for a, b in pairwise(residuals)]
     return Estimate(float(weight @ np.abs(residuals[-1])), float(sum(changes)) + ROUND_OFF)
-
-
-def _transferred(event: Located, target: ContactProblem) -> Array:
-    assert isinstance(event.problem, ContactProblem)
-    return transfer(event.problem, event.point.x, target)
 
 
 # Level 3: events

@@ -13,6 +13,7 @@ from fem_adhesion import convergence
 from fem_adhesion.scene import Scene
 from halfspace.curve import EquilibriumPath
 from halfspace.devices import Cycle, cycle
+from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol
 from halfspace.scaling import Units
 
@@ -44,7 +45,7 @@ class Question:
 
     Raises
     ------
-    ValueError
+    InputError
         If a value is out of range, or the solver does not serve the scene.
     """
 
@@ -59,11 +60,11 @@ class Question:
         require_rtol(self.rtol)
         require_load(self.to_load)
         if not self.stiffness > 0:
-            raise ValueError(
+            raise InputError(
                 f"stiffness = {self.stiffness:g} R dgamma/eps is outside 0 < stiffness; leave it out for fixed grips"
             )
         if self.solver == "half-space" and self.scene.body != "block":
-            raise ValueError(
+            raise InputError(
                 f'solver = half-space does not serve body = "{self.scene.body}", limit: block; take fem or both'
             )
 
@@ -121,7 +122,7 @@ def solve(question: Question, progress: Progress = lambda *_: None) -> Curves:
 
     Raises
     ------
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If a curve cannot be traced.
     """
     solvers = {"fem": (FINITE_ELEMENTS,), "half-space": (HALF_SPACE,), "both": (FINITE_ELEMENTS, HALF_SPACE)}

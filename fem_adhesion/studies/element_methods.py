@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, cast
+from typing import Any
 
 from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
@@ -65,7 +65,7 @@ def _condensed(space: Space, tabor: float, far_field: FarField) -> Solved:
 
 def _monolithic(space: Space, tabor: float, far_field: FarField) -> Solved:
     problem = assemble(space, POISSON, tabor, far_field=far_field)
-    return from_chart(cast(ContactProblem, problem), space.unknowns)  # it has all that a curve on one chart needs
+    return from_chart(problem, space.unknowns)
 
 
 def _disc_step(element: Any, f: float, L: float, far_field: FarField = point_load, solve: Solver = _condensed) -> Step:

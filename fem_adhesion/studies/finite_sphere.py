@@ -25,6 +25,7 @@ from fem_adhesion.studies.finite_sphere_cases import (
 )
 from fem_adhesion.studies.parallel import Died, stream
 from fem_adhesion.studies.store import Store
+from halfspace.errors import InputError
 from halfspace.limits import require_poisson, require_tabor
 
 TABORS = (0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0)
@@ -67,7 +68,7 @@ def plan(
 
     Raises
     ------
-    ValueError
+    InputError
         If an input is out of range.
     """
     asked = any(values is not None for values in (tabors, radius_ratios, poissons))
@@ -109,7 +110,7 @@ def _require_inputs(sweep: Sweep) -> None:
         require_poisson(poisson)
     for ratio in sweep.radius_ratios:
         if not 1 <= ratio <= 1e9:
-            raise ValueError(f"radius_ratio = {ratio:g} is outside 1 <= radius_ratio <= 1e9; give R/eps")
+            raise InputError(f"radius_ratio = {ratio:g} is outside 1 <= radius_ratio <= 1e9; give R/eps")
 
 
 def _cases(sweep: Sweep, rtol: float) -> Iterator[Case]:
@@ -152,7 +153,7 @@ def run(
 
     Raises
     ------
-    ValueError
+    InputError
         Before any work, if jobs is not positive or the cluster does not answer.
     """
     records = {} if fresh else dict(_stored(cases, store))
@@ -179,7 +180,7 @@ def _stored(cases: Sequence[Case], store: Store) -> Iterator[tuple[Case, Record]
             continue
         try:
             yield case, from_plain(case, plain)
-        except ValueError as error:
+        except InputError as error:
             store.notes.append(str(error))
 
 

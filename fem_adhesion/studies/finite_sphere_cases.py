@@ -18,8 +18,8 @@ from fem_adhesion.finite_strain_scene import find_jumps
 from fem_adhesion.finite_strain_traction import ConventionName
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.devices import cycle
+from halfspace.errors import InputError, NotConverged
 from halfspace.events import Event
-from halfspace.newton import NotConverged
 
 FINITE_STRAIN_RTOL = 1e-4  # the tightest: a finer one is dear, and the effect is of the order of beta/R
 TO_LOAD = 0.5  # R dgamma: past every event, and little, since a sphere is no wider than it is
@@ -95,7 +95,7 @@ class Model:
     Attributes
     ----------
     solve : callable
-        Computes the quantities of a case; raises ValueError or NotConverged where there are none.
+        Computes the quantities of a case; raises InputError or NotConverged where there are none.
     inputs : tuple of str
         Those of ``radius_ratio`` and ``poisson`` on which it depends.
     grip : str, optional
@@ -141,7 +141,7 @@ def compute(case: Case) -> Record:
     began = time.perf_counter()
     try:
         values = MODELS[case.model].solve(case)
-    except (ValueError, NotConverged) as error:
+    except (InputError, NotConverged) as error:
         return Record(case, "refused", {}, str(error), time.perf_counter() - began)
     return Record(case, "solved", values, "", time.perf_counter() - began)
 
@@ -248,10 +248,10 @@ def to_plain(record: Record) -> dict[str, object]:
 
 
 def from_plain(case: Case, plain: Mapping[str, object]) -> Record:
-    """Record of a case from what `to_plain` made, or ValueError if that is not what it is."""
+    """Record of a case from what `to_plain` made, or InputError if that is not what it is."""
     try:
         values = {name: Estimate(**pair) for name, pair in cast(dict[str, dict[str, float]], plain["values"]).items()}
         status, reason = cast(Status, plain["status"]), str(plain["reason"])
         return Record(case, status, values, reason, float(cast(float, plain["seconds"])))
     except (KeyError, TypeError, AttributeError) as error:
-        raise ValueError(f"{plain} is no record of a case; compute it again") from error
+        raise InputError(f"{plain} is no record of a case; compute it again") from error

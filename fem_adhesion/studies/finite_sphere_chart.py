@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_adhesion.studies.finite_sphere_table import Row
+from halfspace.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -139,13 +140,13 @@ def rule(field: Field, level: float) -> Rule:
 
     Raises
     ------
-    ValueError
+    InputError
         If the contour passes fewer than three Tabor parameters, or is no line.
     """
     ratio = contour(field, level)
     known = np.isfinite(ratio)
     if known.sum() < 3:
-        raise ValueError(
+        raise InputError(
             f"the contour of {level:g} passes {known.sum()} Tabor parameters, limit 3; "
             "take more of tabor or radius_ratio"
         )
@@ -154,7 +155,7 @@ def rule(field: Field, level: float) -> Rule:
     fitted = (a + b * mu) / ratio
     misfit = float(np.abs(fitted - 1).max())
     if misfit > MISFIT:
-        raise ValueError(
+        raise InputError(
             f"the contour of {level:g} is {100 * misfit:.0f} % off a line, limit {100 * MISFIT:.0f} %; read the chart"
         )
     return Rule(level, float(a), float(b), misfit, (float(mu[0]), float(mu[-1])))

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from fem_adhesion.studies.finite_sphere_table import Row
 from fem_adhesion.studies.finite_sphere_terms import TERMS, Array, Term, leading_terms
 from halfspace.curve import Estimate
+from halfspace.errors import InputError
 
 TOLERANCE = 0.1  # of the sum of the terms' sizes
 DEVIATIONS = 2.0  # standard deviations that bound an error
@@ -138,7 +139,7 @@ def _findings(cause: str, quantity: str, data: Samples) -> Iterator[Finding]:
 def _finding(cause: str, quantity: str, tabor: float | None, data: Samples, terms: Mapping[str, Term]) -> Finding:
     try:
         return Finding(cause, quantity, tabor, fit(data, terms))
-    except ValueError as error:
+    except InputError as error:
         return Finding(cause, quantity, tabor, None, str(error))
 
 
@@ -147,12 +148,12 @@ def compare(rows: Sequence[Row]) -> tuple[Comparison, ...]:
 
     Raises
     ------
-    ValueError
+    InputError
         If there are too few points to fit.
     """
     data = samples(rows, "profile", "pull_off_load", None)
     if not data.tabor.size:
-        raise ValueError(
+        raise InputError(
             "0 deviations of the pull-off by the profile, limit 4; solve for some at small tabor/radius_ratio"
         )
     hard, soft = float(data.tabor.min()), float(data.tabor.max())
@@ -192,7 +193,7 @@ def fit(data: Samples, terms: Mapping[str, Term] = TERMS, *, tolerance: float = 
 
     Raises
     ------
-    ValueError
+    InputError
         If no fit is within the tolerance on at least twice as many points as there are terms.
     """
     functions = list(terms.values())
@@ -205,7 +206,7 @@ def fit(data: Samples, terms: Mapping[str, Term] = TERMS, *, tolerance: float = 
             found = _with_bias(found, part.where(part.stretch <= limit / 2), functions, tolerance)
             coefficients = dict(zip(terms, found, strict=True))
             return Fit(coefficients, float(limit), tolerance, part.tabor.size, float(np.abs(residual).max()))
-    raise ValueError(
+    raise InputError(
         f"{data.tabor.size} points leave no {2 * len(terms)} or more within tolerance = {tolerance:g} of a fit; "
         "give more points of small tabor/radius_ratio"
     )

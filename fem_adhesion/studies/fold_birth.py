@@ -14,8 +14,9 @@ from scipy.optimize import brentq, minimize_scalar
 from halfspace import newton
 from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.compliance import Array
-from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD, ContactProblem
+from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.curve import EquilibriumPath, metric_for
+from halfspace.newton import Traceable
 from halfspace.path import Point, make_point
 
 
@@ -82,7 +83,7 @@ def critical_stiffness(tabor: float, *, rtol: float = 1e-7) -> float:
     return -float(minimize_scalar(slope, bounds=STEEPEST, method="bounded", options={"xatol": 1e-7}).fun)
 
 
-def approached(problem: ContactProblem, gap: float) -> Array:
+def approached(problem: Traceable, gap: float) -> Array:
     """State at a central gap below 3 eps, reached from far separation in a dozen steps of it."""
     far = -5 - problem.tabor
     x = newton.solve(problem, problem.undeformed(far), newton.approach(far)).x
@@ -91,7 +92,7 @@ def approached(problem: ContactProblem, gap: float) -> Array:
     return x
 
 
-def at_gap(problem: ContactProblem, start: Array, gap: float) -> Point:
+def at_gap(problem: Traceable, start: Array, gap: float) -> Point:
     """Point of the curve at a central gap, its tangent towards larger gaps."""
     solution = newton.solve(problem, start, newton.central_gap(gap))
     return make_point(problem, solution, metric_for(problem.tabor), newton.central_gap(gap).weights, 0.0)

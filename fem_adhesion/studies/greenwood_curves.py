@@ -11,7 +11,7 @@ import halfspace
 from halfspace import devices
 from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.compliance import Array
-from halfspace.contact import CENTRAL_GAP, ContactProblem
+from halfspace.contact import CENTRAL_GAP
 from halfspace.curve import COMPRESSION, EquilibriumPath, Estimate, metric_for, trace_charts
 from halfspace.devices import cycle
 from halfspace.events import FOLD, Condition, Located, locate
@@ -113,8 +113,7 @@ def profiles(path: EquilibriumPath) -> Iterator[Profile]:
 
 def _profile(state: Located) -> Profile:
     """State as a field; the gap is interpolated, the pressure is what the law gives for it."""
-    problem, x = state.problem, state.point.x
-    assert isinstance(problem, ContactProblem)
+    problem, x = state.problem.interface, state.problem.surface_state(state.point.x)
     gap = problem.operator_at(x).values_at(PROFILE_RADII, x[:-2])
     approach, load, central_gap, radius = state.point.observables
     pressure = problem.law.pressure(gap, problem.tabor)

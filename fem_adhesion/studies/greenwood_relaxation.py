@@ -14,7 +14,7 @@ import numpy as np
 from halfspace import compliance, grid, newton, relaxation
 from halfspace.compliance import Array
 from halfspace.contact import LOAD, ContactProblem
-from halfspace.newton import NotConverged
+from halfspace.errors import NotConverged
 
 NODES, OUTER = 200, 6.0  # uniform triangles, to this radius in beta, or in beta/sqrt(mu) below mu = 1
 TABORS = (0.05, 0.2, 0.5, 1.0, 2.0, 3.0)

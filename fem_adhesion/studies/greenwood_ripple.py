@@ -15,7 +15,7 @@ from halfspace import compliance, grid, newton
 from halfspace.compliance import Array
 from halfspace.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.curve import EquilibriumPath, transfer
-from halfspace.newton import NotConverged
+from halfspace.errors import NotConverged
 
 EXTENT = 6.0  # beta: less than 0.6 % of the pull-off load is lost beyond it for mu >= 1
 WINDOW = 2.0  # spacings, on both sides of the contact radius at pull-off: the ripple's period is one
@@ -74,7 +74,7 @@ def ripple(path: EquilibriumPath, spacing: float, window: float, steps: int = ST
 
     Raises
     ------
-    halfspace.newton.NotConverged
+    halfspace.errors.NotConverged
         If the coarse grid has no state near the resolved one.
     """
     problem = Unguarded(compliance.triangles(grid.uniform(EXTENT, spacing)), path.tabor)

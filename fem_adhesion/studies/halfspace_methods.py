@@ -13,7 +13,8 @@ from fem_adhesion.studies.methods import Method, Solved, Step, from_chart, from_
 from halfspace import compliance, grid, newton, relaxation
 from halfspace.compliance import Array, ElasticOperator
 from halfspace.contact import APPROACH, LOAD, ContactProblem, spike_width
-from halfspace.newton import Control, NotConverged
+from halfspace.errors import NotConverged
+from halfspace.newton import Control
 from halfspace.relaxation import Relaxed
 
 MOST_NODES = 3000  # of a dense operator: 70 MB, and as much again for each factorisation

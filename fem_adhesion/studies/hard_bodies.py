@@ -22,6 +22,7 @@ from fem_adhesion.studies.measured import Measured, compare_events
 from halfspace.compliance import Array, ElasticOperator
 from halfspace.contact import ContactProblem
 from halfspace.curve import COMPRESSION, Chart, EquilibriumPath, trace_charts
+from halfspace.errors import InputError
 from halfspace.ladder import Charts, Rung, charted_rung, climb
 
 INDEPENDENT = "half-space"
@@ -65,7 +66,7 @@ def flattened(mesh: Any, radius: float, angle: float) -> Any:
 
     Raises
     ------
-    ValueError
+    InputError
         If that turns a neighbouring triangle over.
     """
     surface = mesh.facets[:, mesh.boundaries["contact"]]
@@ -75,7 +76,7 @@ def flattened(mesh: Any, radius: float, angle: float) -> Any:
     points, (a, b) = mesh.p.copy(), mesh.p[0, base]
     points[:, apex] = np.array([[(a + b) / 2], [-abs(b - a) / 2 / np.tan(angle / 2)]])
     if np.any(_areas(points, mesh.t) * _areas(mesh.p, mesh.t) <= 0):
-        raise ValueError(f"an angle of {angle:g} at radius {radius:g} turns a neighbouring triangle over; move it")
+        raise InputError(f"an angle of {angle:g} at radius {radius:g} turns a neighbouring triangle over; move it")
     return with_named_boundaries(MeshTri(points, mesh.t))
 
 

@@ -24,7 +24,7 @@ from fem_adhesion.studies.hard_contacts import (
 )
 from fem_adhesion.studies.hard_spheres import against_half_space, against_integral, against_tighter
 from fem_adhesion.studies.measured import Measured
-from halfspace.newton import NotConverged
+from halfspace.errors import InputError, NotConverged
 
 Outcome = Literal["converged", "refused", "wrong"]
 Attempt = Callable[[], Measured]
@@ -87,7 +87,7 @@ def _attempt(case: Case) -> Measured | str:
     """What was measured, or the message with which it was refused."""
     try:
         return case.attempt()
-    except (ValueError, NotConverged) as error:
+    except (InputError, NotConverged) as error:
         return str(error)
 
 

@@ -101,13 +101,12 @@ def from_other_branch(tabor: float, start: float, approach: float) -> Measured:
     """Start Newton's method at one approach from the state in contact, or the only one, at another."""
     problem, metric = _centred(tabor), metric_for(tabor)
     found = _states_at(_curve(tabor, GRID), start, metric)[-1]
-    assert isinstance(found.problem, ContactProblem)
     x = transfer(found.problem, found.point.x, problem)
     return _judged(problem, newton.solve(problem, x, newton.approach(approach)), approach)
 
 
 def _centred(tabor: float) -> ContactProblem:
-    return half_space_charts(tabor, resolution_for(tabor, GRID))[0].problem
+    return half_space_charts(tabor, resolution_for(tabor, GRID))[0].problem.interface
 
 
 def _curve(tabor: float, rtol: float) -> Sequence[Segment]:

@@ -12,9 +12,10 @@ from typing import Literal
 
 import numpy as np
 
-from halfspace.contact import APPROACH, LOAD, ContactProblem
+from halfspace.contact import APPROACH, LOAD
 from halfspace.curve import COMPRESSION, Chart, EquilibriumPath, find_events, trace_charts
 from halfspace.devices import cycle, energy_lost
+from halfspace.newton import Traceable
 from halfspace.theories import jkr_radius
 
 QUANTITIES = ("pull_off", "jump_on", "hysteresis")
@@ -84,7 +85,7 @@ def from_path(path: EquilibriumPath) -> Solved:
     return Solved(path.unknowns, values)
 
 
-def from_chart(problem: ContactProblem, unknowns: int) -> Solved:
+def from_chart(problem: Traceable, unknowns: int) -> Solved:
     """Quantities from one discretisation, whose events are found once and taken as they are."""
     segments = trace_charts([Chart(problem, unknowns)])
     found = find_events(segments)

@@ -24,6 +24,8 @@ from urllib.parse import urlsplit
 import joblib
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
+from halfspace.errors import InputError
+
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -63,7 +65,7 @@ def stream(
 
     Raises
     ------
-    ValueError
+    InputError
         At once, if jobs is not positive, distributed is not installed, or the scheduler does not answer.
     """
     if dask is not None:
@@ -72,9 +74,9 @@ def stream(
 
 
 def workers(jobs: int | None) -> int:
-    """Number of local processes, or ValueError unless it is positive."""
+    """Number of local processes, or InputError unless it is positive."""
     if jobs is not None and jobs < 1:
-        raise ValueError(f"jobs = {jobs} is outside 1 <= jobs; leave it out to use all cores")
+        raise InputError(f"jobs = {jobs} is outside 1 <= jobs; leave it out to use all cores")
     return jobs or int(joblib.cpu_count())
 
 
@@ -156,21 +158,21 @@ def _connected(address: str) -> tuple[ModuleType, Any]:
     try:
         distributed = importlib.import_module("distributed")
     except ModuleNotFoundError as error:
-        raise ValueError(f"dask = {address} needs the extra cluster; pip install fem-adhesion[cluster]") from error
+        raise InputError(f"dask = {address} needs the extra cluster; pip install fem-adhesion[cluster]") from error
     try:
         _knock(address)
         return distributed, distributed.Client(address, timeout=CONNECTION_SECONDS, set_as_default=False)
     except (OSError, ValueError) as error:
-        raise ValueError(
+        raise InputError(
             f"dask = {address} does not answer within {CONNECTION_SECONDS} s; give the scheduler's, as tcp://host:8786"
         ) from error
 
 
 def _knock(address: str) -> None:
-    """Raise OSError or ValueError unless somebody listens: a client that fails to connect does not die quietly."""
+    """Raise OSError or InputError unless somebody listens: a client that fails to connect does not die quietly."""
     parts = urlsplit(address)
     if not parts.hostname or not parts.port:
-        raise ValueError("no host or no port")
+        raise InputError("no host or no port")
     socket.create_connection((parts.hostname, parts.port), timeout=CONNECTION_SECONDS).close()
 
 

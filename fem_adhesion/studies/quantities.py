@@ -10,6 +10,7 @@ from functools import cache
 from typing import Any
 
 from halfspace.curve import Estimate
+from halfspace.errors import InputError
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)(?![a-zA-Z])"
 NUMBER_AND_UNIT = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*")
@@ -56,17 +57,17 @@ def parse(text: str, name: str) -> float:
 
     Raises
     ------
-    ValueError
+    InputError
         If the number or the unit is missing, the unit is unknown or of another dimension, or the number is not
         positive and finite.
     """
     example = KINDS[name][1]
     found = NUMBER_AND_UNIT.fullmatch(text)
     if not found:
-        raise ValueError(f"{name} = {text!r} is not a number with a unit; write it as {example}")
+        raise InputError(f"{name} = {text!r} is not a number with a unit; write it as {example}")
     value = float(found[1]) * _size(text, found[2], name)
     if not 0 < value < math.inf:
-        raise ValueError(f"{name} = {text} is outside 0 < {name} < inf; write it as {example}")
+        raise InputError(f"{name} = {text} is outside 0 < {name} < inf; write it as {example}")
     return value
 
 
@@ -74,15 +75,15 @@ def _size(text: str, written: str, name: str) -> float:
     """Size of a unit in the SI unit of the quantity."""
     unit, example = KINDS[name]
     if not written:
-        raise ValueError(f"{name} = {text} has no unit, limit: a multiple of {unit}; write it as {example}")
+        raise InputError(f"{name} = {text} has no unit, limit: a multiple of {unit}; write it as {example}")
     try:
         if not UNIT.fullmatch(written):
-            raise ValueError(written)
+            raise InputError(written)
         found = _registry().parse_units(written)
     except (AttributeError, ValueError) as error:  # pint's error for an unknown unit is an AttributeError
-        raise ValueError(f"{name} = {text} has the unknown unit {written!r}; write it as {example}") from error
+        raise InputError(f"{name} = {text} has the unknown unit {written!r}; write it as {example}") from error
     if not found.is_compatible_with(unit):
-        raise ValueError(f"{name} = {text} has a unit of the wrong kind, limit: a multiple of {unit}; as in {example}")
+        raise InputError(f"{name} = {text} has a unit of the wrong kind, limit: a multiple of {unit}; as in {example}")
     return float(_registry().Quantity(1.0, found).to(unit).magnitude)
 
 

@@ -19,10 +19,9 @@ from fem_adhesion.studies.halfspace_methods import halfspace_methods
 from fem_adhesion.studies.machine import peak_memory
 from fem_adhesion.studies.methods import Method, Solved, Step
 from fem_adhesion.studies.speed_result import CONVERGED, Rung, SpeedStudy, size_of
-from halfspace.contact import GridTooCoarse
 from halfspace.curve import Estimate
 from halfspace.devices import cycle
-from halfspace.newton import NotConverged
+from halfspace.errors import InputError, NotConverged
 
 TABOR_RANGE = (0.05, 2.0)  # beyond it fixed grids need too many nodes, or rigid surfaces leave nothing to compare
 SHARE = {False: 15.0, True: 0.8}  # seconds for each method, in the full and in the quick study
@@ -54,7 +53,7 @@ def measure(
 
     Raises
     ------
-    ValueError
+    InputError
         If tabor is out of range.
     """
     require_tabor(tabor)
@@ -70,10 +69,10 @@ def measure(
 
 
 def require_tabor(tabor: float) -> float:
-    """Return the Tabor parameter, or raise ValueError unless the study is meant for it."""
+    """Return the Tabor parameter, or raise InputError unless the study is meant for it."""
     low, high = TABOR_RANGE
     if not low <= tabor <= high:
-        raise ValueError(f"tabor = {tabor:g} is outside {low:g} <= tabor <= {high:g} for the speed study; take 1")
+        raise InputError(f"tabor = {tabor:g} is outside {low:g} <= tabor <= {high:g} for the speed study; take 1")
     return tabor
 
 
@@ -120,7 +119,7 @@ def _run(method: str, step: Step, tabor: float, truth: Mapping[str, Estimate]) -
     try:
         with peak_memory() as memory:
             solved = step.run(tabor)
-    except (NotConverged, GridTooCoarse, np.linalg.LinAlgError) as error:
+    except NotConverged as error:
         return Rung(method, step.setting, str(error), time.perf_counter() - began)
     seconds = time.perf_counter() - began
     if seconds < REPEATED_BELOW:

@@ -14,6 +14,8 @@ from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from halfspace.errors import InputError
+
 SCHEMA = 1  # raised whenever what is stored changes
 FOLDER = "cases"
 
@@ -92,18 +94,18 @@ def open_store(directory: Path, *, resume: bool = False, force: bool = False) ->
 
     Raises
     ------
-    ValueError
+    InputError
         If the directory is a file, cannot be written, or is not empty and neither asked to be resumed nor forced.
     """
     if directory.exists() and not directory.is_dir():
-        raise ValueError(f"{directory} is a file; give the name of a directory")
+        raise InputError(f"{directory} is a file; give the name of a directory")
     place = directory if directory.is_dir() else directory.parent
     if not (place.is_dir() and os.access(place, os.W_OK | os.X_OK)):
-        raise ValueError(f"{directory} cannot be written; choose a folder that exists and is yours")
+        raise InputError(f"{directory} cannot be written; choose a folder that exists and is yours")
     present = len(list(directory.iterdir())) if directory.is_dir() else 0
     if present and not force and not (resume and (directory / FOLDER).is_dir()):
         remedy = "it is no study to resume, choose another" if resume else "choose another or use --resume"
-        raise ValueError(f"{directory} holds {present} files, limit 0; {remedy} or --force")
+        raise InputError(f"{directory} holds {present} files, limit 0; {remedy} or --force")
     return Store(directory, package_version())
 
 

@@ -19,7 +19,7 @@ from fem_adhesion.sized import Discretisation
 from fem_adhesion.stress import positions, sampled
 from halfspace.compliance import Array
 from halfspace.curve import EquilibriumPath
-from halfspace.newton import NotConverged
+from halfspace.errors import NotConverged
 
 SEEN = Discretisation(degree=4)  # of the fields: right to the width of a line
 RADII = 151  # of the profiles

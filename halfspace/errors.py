@@ -1,0 +1,20 @@
+"""How a computation may end without a result: by what the user can mend, or by the solver's honest end.
+
+Every other exception is a defect of the program, and shows its traceback.
+"""
+
+
+class InputError(ValueError):
+    """What was asked for cannot be; the message gives the value, the limit and the remedy."""
+
+
+class NotConverged(RuntimeError):
+    """A solver ended without a solution; the message says how, and what to try."""
+
+
+class ContactTooWide(NotConverged):
+    """The contact spreads over so much of the body that its elasticity is no longer that of small slopes."""
+
+
+class GridTooCoarse(NotConverged):
+    """The grid cannot carry the spike of tension at the contact edge; the message says where and by how much."""
