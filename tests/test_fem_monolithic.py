@@ -121,8 +121,8 @@ def curve(body):
 
 def test_stability_is_that_of_the_condensed_problem(body, curve):
     problem = assemble(body.space, NU, 2.0)
-    expected = [curve.problem.negative_directions(point.x) for point in curve.points]
-    found = [problem.negative_directions(problem.state_from_surface(point.x)) for point in curve.points]
+    expected = [curve.problem.negative_directions(point.x) for point in curve.points[::3]]
+    found = [problem.negative_directions(problem.state_from_surface(point.x)) for point in curve.points[::3]]
     assert found == expected
     assert set(expected) == {0, 1}
 
@@ -137,7 +137,9 @@ def test_a_whole_curve_of_either_kind_of_problem_is_the_same():
     condensed, whole = (find_events(path) for path in paths)
     assert whole.keys() == condensed.keys()
     for name, event in condensed.items():
-        np.testing.assert_allclose(whole[name].point.observables, event.point.observables, rtol=1e-8, err_msg=name)
+        np.testing.assert_allclose(
+            whole[name].point.observables, event.point.observables, rtol=1e-8, atol=1e-12, err_msg=name
+        )
     losses = [energy_lost(path, events) for path, events in zip(paths, (condensed, whole), strict=True)]
     assert losses[1] == pytest.approx(losses[0], rel=1e-7, abs=0)
     energies = [energy_released(events) for events in (condensed, whole)]
