@@ -36,8 +36,8 @@ class Beside:
 def half_space_beside(state: State) -> Beside:
     """Solve for the half-space by the integral equation where a body of finite elements was solved for.
 
-    Its rings end where the elements do, but its compliance is that of the ring kernel. The contact radius is
-    prescribed, or the central gap if there is no contact; approach and load are its own.
+    Its rings end where the elements do, except at the contact edge, but its compliance is that of the ring kernel.
+    The contact radius is prescribed, or the central gap if there is no contact; approach and load are its own.
 
     Raises
     ------
@@ -45,12 +45,27 @@ def half_space_beside(state: State) -> Beside:
         If the half-space has no such state.
     """
     source, tabor = state.problem.operator.at(1.0), state.scene.tabor
-    operator = compliance.panels(source.cells, min(source.cell_nodes.shape[1], MOST_NODES))
+    cells = _clear_of(source.cells, float(state.observables[CONTACT_RADIUS]))
+    operator = compliance.panels(cells, min(source.cell_nodes.shape[1], MOST_NODES))
     problem = ContactProblem(operator, tabor, profile=state.problem.profile)
     start = np.append(source.values_at(operator.radii, state.gap), state.point.x[-2:])
     solution = newton.solve(problem, start, _same(state.observables))
     P, H = problem.pressure(solution.x), solution.x[:-2]
     return Beside(operator.values_at(state.radii, P), operator.values_at(state.radii, H), solution.observables)
+
+
+def _clear_of(cells: Array, radius: float) -> Array:
+    """Ends of rings none of which is at the contact edge: gaps jump there, by the error of their polynomials.
+
+    Newton's method would go to and fro between the two sides of such a jump for ever.
+    """
+    if np.isnan(radius):
+        return cells
+    nearest = int(np.clip(np.abs(cells - radius).argmin(), 1, cells.size - 2))
+    other = nearest - 1 if cells[nearest] <= radius else nearest + 1
+    moved = cells.copy()
+    moved[nearest] = (cells[nearest] + cells[other]) / 2
+    return moved
 
 
 def is_same_contact(scene: Scene) -> bool:

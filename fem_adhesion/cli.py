@@ -6,7 +6,8 @@ import sys
 from collections.abc import Sequence
 
 from fem_adhesion.commands import assess, compare, curve, finite_sphere, greenwood, hard, report, speed
-from fem_adhesion.commands.common import BAD_INPUT, DISAGREE, INTERRUPTED, Parser
+from fem_adhesion.commands.common import BAD_INPUT, DISAGREE, INTERRUPTED, NOT_WRITTEN, Parser
+from fem_adhesion.writing import NotWritten
 from halfspace.errors import InputError, NotConverged
 
 COMMANDS = (compare, curve, assess, finite_sphere, speed, hard, greenwood, report)
@@ -18,7 +19,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 if all is well, 1 if solvers disagree or fail, 2 for bad input, 130 if interrupted.
+        0 if all is well, 1 if solvers disagree or fail or the disk is full, 2 for bad input, 130 if interrupted.
     """
     options = make_parser().parse_args(arguments)
     try:
@@ -29,6 +30,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except NotConverged as error:
         print(f"fem-adhesion: {error}; nothing was written", file=sys.stderr)
         return DISAGREE
+    except NotWritten as error:
+        print(f"fem-adhesion: {error}", file=sys.stderr)
+        return NOT_WRITTEN
     except KeyboardInterrupt:
         print("fem-adhesion: interrupted; nothing was written", file=sys.stderr)
         return INTERRUPTED

@@ -165,7 +165,7 @@ FLOORS = [
         "halfspace.theories",
         "halfspace.scaling",
     },
-    {"halfspace.errors"},
+    {"halfspace.errors", "fem_adhesion.writing"},
 ]
 FLOOR_OF = {module: number for number, modules in enumerate(FLOORS) for module in modules}
 

@@ -7,7 +7,7 @@ import json
 import math
 from contextlib import ExitStack
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from fem_adhesion.commands.common import AGREE, progress_bar
 from halfspace.errors import InputError
@@ -76,12 +76,13 @@ def _add_results(curve: Parser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Trace the curve, write what is asked for and print the events."""
     from fem_adhesion.output import curve_record, curve_terminal
-    from fem_adhesion.output.files import written_aside
+    from fem_adhesion.output.files import directory_written_aside, written_aside
     from fem_adhesion.studies.curves import solve
 
     question = _question(options)
     form = _form_of(options.plot)
     with ExitStack() as stack:
+        fields = options.vtk and stack.enter_context(directory_written_aside(options.vtk, force=options.force))
         data, points, figure, picture, movie = (
             stack.enter_context(written_aside(path)) if path else None
             for path in (options.json, options.csv, options.plot, options.render, options.movie)
@@ -96,23 +97,25 @@ def run(options: argparse.Namespace) -> int:
             from fem_adhesion.output import plots
 
             plots.write(curves, figure, form)
-        if options.vtk:
-            _write_vtk(options, curves)
+        if fields:
+            _write_vtk(options, curves, fields)
         _draw_body(curves, picture, options.at or "pull_off", movie)
+        for file in filter(None, (data, points, figure, picture, movie)):
+            file.flush()  # all on disk before the first takes its place
     curve_terminal.show(curves)
     return AGREE
 
 
-def _write_vtk(options: argparse.Namespace, curves: Curves) -> None:
+def _write_vtk(options: argparse.Namespace, curves: Curves, aside: Path) -> None:
     from fem_adhesion.fields import states_along
-    from fem_adhesion.output.vtk import write_path
+    from fem_adhesion.output.vtk import write_states
 
     question = curves.question
     states = states_along(question.scene, curves.path, points=options.points)
-    write_path(states, options.vtk, units=question.units, revolve=options.revolve, force=options.force)
+    write_states(states, aside, options.vtk, units=question.units, revolve=options.revolve)
 
 
-def _draw_body(curves: Curves, picture: IO[str] | None, at: str, movie: IO[str] | None) -> None:
+def _draw_body(curves: Curves, picture: TextIO | None, at: str, movie: TextIO | None) -> None:
     if picture:
         from fem_adhesion.output import render
 
@@ -158,19 +161,7 @@ def _require_vtk(options: argparse.Namespace, scene: Scene, solver: SolverName) 
     if options.revolve is not None:
         require_angle(options.revolve)
     require_fields(scene)
-    _require_free(options.vtk, force=options.force)
     require_pyvista()
-
-
-def _require_free(directory: Path, *, force: bool) -> None:
-    """Refuse a directory that cannot be written or holds files; `write_path` would only do so after the work."""
-    if directory.exists() and not directory.is_dir():
-        raise InputError(f"{directory} is a file; give the name of a directory")
-    if not directory.parent.is_dir():
-        raise InputError(f"{directory} cannot be written (no such folder); choose a folder that exists and is yours")
-    present = sum(1 for _ in directory.iterdir()) if directory.is_dir() else 0
-    if present and not force:
-        raise InputError(f"{directory} holds {present} files, limit 0; empty it, choose another or use --force")
 
 
 def _form_of(plot: Path | None) -> str:

@@ -38,6 +38,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.output.files import directory_written_aside
     from fem_adhesion.studies import finite_sphere
     from fem_adhesion.studies.store import open_store
+    from fem_adhesion.writing import writing
 
     cases = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
     store = open_store(options.out, resume=options.resume, force=options.force)
@@ -49,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
         print(f"fem-adhesion: interrupted; what is done is kept in {options.out}, --resume goes on", file=sys.stderr)
         return INTERRUPTED
     parts = finite_sphere_report.PARTS
-    with directory_written_aside(options.out, force=True) as aside, progress_bar() as step:
+    with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
         note = finite_sphere_report.write(records, aside, lambda part: step(part, parts.index(part), len(parts)))
     for line in filter(None, (*store.notes, note)):
         print(f"fem-adhesion: {line}", file=sys.stderr)

@@ -31,6 +31,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.output.files import directory_written_aside
     from fem_adhesion.output.greenwood_plots import PLOTS
     from fem_adhesion.studies import greenwood1997
+    from fem_adhesion.writing import writing
 
     total = len(greenwood1997.SUBJECTS) + len(PLOTS)
     done = itertools.count()
@@ -40,6 +41,7 @@ def run(options: argparse.Namespace) -> int:
             step(part, next(done), total)
 
         study = greenwood1997.compute(quick=options.quick, progress=begin)
-        greenwood_report.write(study, aside, begin)
+        with writing(options.out):
+            greenwood_report.write(study, aside, begin)
     print(f"written: {options.out / 'index.html'}")
     return AGREE

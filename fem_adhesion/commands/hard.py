@@ -31,6 +31,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.output import hard_report
     from fem_adhesion.output.files import directory_written_aside
     from fem_adhesion.studies import hard_bodies, hard_cases
+    from fem_adhesion.writing import writing
 
     cases = hard_cases.cases()
     names = [*(case.name for case in cases), "locking"]
@@ -42,7 +43,8 @@ def run(options: argparse.Namespace) -> int:
                 rows.append(row)
                 step(names[len(rows)], len(rows), len(names))
             locking = list(hard_bodies.locking())
-        hard_report.write_hard(aside, rows, locking)
+        with writing(options.out):
+            hard_report.write_hard(aside, rows, locking)
     console = Console(width=None if sys.stdout.isatty() else 150)
     console.print(hard_report.cases_table(rows), hard_report.locking_table(locking))
     return DISAGREE if any(row.outcome == "wrong" for row in rows) else AGREE

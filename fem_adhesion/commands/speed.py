@@ -30,10 +30,12 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.output import speed_report
     from fem_adhesion.output.files import directory_written_aside
     from fem_adhesion.studies import speed
+    from fem_adhesion.writing import writing
 
     speed.require_tabor(options.tabor)
     with directory_written_aside(options.out, force=options.force) as aside, progress_bar() as step:
         study = speed.measure(options.tabor, quick=options.quick, progress=step)
-        speed_report.write(study, aside)
+        with writing(options.out):
+            speed_report.write(study, aside)
     print((options.out / "speed.md").read_text(), end="")
     return AGREE

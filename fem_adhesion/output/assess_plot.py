@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
-from typing import IO, Any
+from typing import Any, TextIO
 
 import numpy as np
 from matplotlib import rc_context
@@ -46,10 +46,12 @@ def require_suffix(path: Path) -> str:
     return path.suffix[1:]
 
 
-def write(assessment: Assessment, file: IO[str], form: str) -> None:
+def write(assessment: Assessment, file: TextIO, form: str) -> None:
     """Write the figure, in a format of `require_suffix`, to a file from `fem_adhesion.output.files.written_aside`."""
-    with os.fdopen(os.dup(file.fileno()), "wb") as binary, rc_context(dict(style.LOOK)):
-        draw(assessment).savefig(binary, format=form, dpi=160)
+    picture = BytesIO()
+    with rc_context(dict(style.LOOK)):
+        draw(assessment).savefig(picture, format=form, dpi=160)
+    file.buffer.write(picture.getbuffer())
 
 
 def draw(assessment: Assessment) -> Figure:

@@ -13,7 +13,6 @@ from typing import Any
 from rich.markup import escape
 from rich.table import Table
 
-from fem_adhesion.output.files import written_aside
 from fem_adhesion.output.record import versions
 from fem_adhesion.studies.hard_bodies import Locking
 from fem_adhesion.studies.hard_cases import Row
@@ -56,7 +55,7 @@ def write_hard(directory: Path, rows: Sequence[Row], locking: Sequence[Locking])
     """Write hard.csv, locking.csv and hard.json, which holds both, into an existing directory."""
     write_csv(directory / "hard.csv", rows)
     write_csv(directory / "locking.csv", locking)
-    with written_aside(directory / "hard.json") as file:
+    with (directory / "hard.json").open("w") as file:
         json.dump(hard_record(rows, locking), file, indent=1, allow_nan=False)
 
 
@@ -72,7 +71,7 @@ def hard_record(rows: Sequence[Row], locking: Sequence[Locking]) -> dict[str, An
 
 def write_csv(path: Path, rows: Sequence[Row] | Sequence[Locking]) -> None:
     """Write rows of one kind under their fields' names; empty where there is no number."""
-    with written_aside(path) as file:
+    with path.open("w") as file:
         writer = csv.DictWriter(file, [field.name for field in fields(rows[0])], lineterminator="\n")
         writer.writeheader()
         writer.writerows(_plain(row) for row in rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -46,9 +47,8 @@ def draw_load(axes: Any, curves: Curves) -> str:
     _draw_frame(axes, curves, lines.frame(curves.path, highest))
     units = scales(curves)
     style.dress(axes, units["approach"].label, units["load"].label, legend=None)
-    axes.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=4, columnspacing=1.2, **LEGEND | {"handlelength": 2.5}
-    )
+    below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 4, "columnspacing": 1.2}
+    axes.legend(handles=_seen(axes), **below, **LEGEND | {"handlelength": 2.5})
     close = lines.around_events(curves.path)
     if highest > FAR_BEYOND * close.load[1]:
         inset = axes.inset_axes((0.08, 0.4, 0.42, 0.5))
@@ -56,6 +56,13 @@ def draw_load(axes: Any, curves: Curves) -> str:
         inset.tick_params(labelsize=7.5)
         inset.set_title("enlarged around the events", fontsize=8)
     return _title(curves)
+
+
+def _seen(axes: Any) -> list[Any]:
+    """What has a name and is inside the frame; arrows are, of which the named line has no points."""
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    named = {line: line.get_xydata() for line in axes.get_legend_handles_labels()[0]}
+    return [line for line, at in named.items() if not len(at) or np.any(np.all((low <= at) & (at <= high), axis=1))]
 
 
 def _draw_frame(axes: Any, curves: Curves, frame: Frame) -> None:
@@ -115,16 +122,14 @@ def _draw_jumps(axes: Any, curves: Curves, frame: Frame) -> None:
     """Arrows of the jumps, under fixed grips and along the load lines of an apparatus."""
     units = scales(curves)
     for cycle, look in ((curves.grips, GRIPS), (curves.apparatus, APPARATUS)):
-        for jump in (cycle.jump_on, cycle.jump_off) if cycle else ():
-            tail, head = ((state.approach, state.load) for state in (jump.take_off, jump.landing))
-            if seen := _clipped(tail, head, frame):
-                _arrow(axes, _scaled(seen[0], units), _scaled(seen[1], units), look)
-    for name, cycle, look in (
-        ("jumps under fixed grips", curves.grips, GRIPS),
-        (f"jumps, {_stiffness(curves)}", curves.apparatus, APPARATUS),
-    ):
-        if cycle:
-            axes.plot([], [], label=name, linewidth=1.4, **look)
+        jumps = (cycle.jump_on, cycle.jump_off) if cycle else ()
+        ends = [[(state.approach, state.load) for state in (jump.take_off, jump.landing)] for jump in jumps]
+        seen = list(filter(None, (_clipped(tail, head, frame) for tail, head in ends)))
+        for tail, head in seen:
+            _arrow(axes, _scaled(tail, units), _scaled(head, units), look)
+        if cycle and seen:
+            words = "jumps under fixed grips" if math.isinf(cycle.stiffness) else f"jumps, {_stiffness(curves)}"
+            axes.plot([], [], label=words, linewidth=1.4, **look)
     if curves.apparatus:
         _load_lines(axes, curves.apparatus, units)
 

@@ -23,6 +23,7 @@ EVENT = "pull_off"
 MESH = Discretisation(degree=4)
 SHOWN = 3.0  # radius of the picture, in contact radii
 DRAWN_AS = 0.45  # contact radii that the largest displacement is drawn as
+HIGHEST = 0.9  # height of the picture, in contact radii
 SIDE = 9  # points drawn on a side of a cell
 
 
@@ -74,7 +75,7 @@ def _perimeter(*, triangle: bool) -> Array:
 
 
 def draw_mesh(axes: Any, curves: Curves) -> str:
-    """Mesh and deformation where the load is least, magnified, under the rigid sphere if the body is a half-space.
+    """Mesh and deformation where the load is least, magnified; over a half-space the rigid sphere, unless too far.
 
     Returns the title.
     """
@@ -85,11 +86,13 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
     factor = DRAWN_AS * a / float(np.abs(moved).max())
     look: dict[str, Any] = {"facecolors": "0.94", "edgecolors": style.BLUE, "linewidths": 0.35}
     axes.add_collection(PolyCollection(list(unit.of(places + factor * moved)), **look))
-    if scene.body == "block":
-        r = np.linspace(0, SHOWN * a, 200)
-        axes.plot(unit.of(r), unit.of(factor * _sphere(state, r)), color="black", linewidth=1.3, label="rigid sphere")
+    r = np.linspace(0, SHOWN * a, 200)
+    sphere = factor * _sphere(state, r)
+    if scene.body == "block" and sphere[0] < HIGHEST * a:
+        axes.plot(unit.of(r), unit.of(sphere), color="black", linewidth=1.3, label="rigid sphere")
         axes.legend(loc="lower right", **LEGEND)
-    axes.set(xlim=(0, unit.size * SHOWN * a), ylim=(-unit.size * 1.6 * a, unit.size * 0.9 * a), aspect="equal")
+    axes.set(xlim=(0, unit.size * SHOWN * a), ylim=(-unit.size * 1.6 * a, unit.size * HIGHEST * a), aspect="equal")
+    axes.set_anchor("W")  # under the beginning of its title, which is wider
     axes.set_xlabel(unit.label)
     axes.set_ylabel(unit.label.replace("radius $r$", "height $z$").replace("radius $u = r/", "height $z/"))
     return _title(curves, factor)

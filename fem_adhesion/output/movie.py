@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from io import BytesIO
 from itertools import pairwise
-from typing import IO, Any
+from typing import Any, TextIO
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -63,7 +63,7 @@ class Frame:
     seconds: float = MOVING
 
 
-def write_movie(curves: Curves, file: IO[str], size: tuple[int, int] = SIZE) -> None:
+def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = SIZE) -> None:
     """Draw the body along the curve through its jumps and write it as gif.
 
     Parameters
@@ -86,8 +86,9 @@ def write_movie(curves: Curves, file: IO[str], size: tuple[int, int] = SIZE) -> 
     images = list(_images(curves, frames, size))
     first, *rest = _with_one_palette(images)
     seconds = [round(1000 * frame.seconds) for frame in frames]
-    with os.fdopen(os.dup(file.fileno()), "wb") as binary:
-        first.save(binary, "GIF", save_all=True, append_images=rest, duration=seconds, loop=0)
+    gif = BytesIO()
+    first.save(gif, "GIF", save_all=True, append_images=rest, duration=seconds, loop=0)
+    file.buffer.write(gif.getbuffer())
 
 
 def experiment(path: EquilibriumPath) -> list[Frame]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
+from io import BytesIO
 from pathlib import Path
-from typing import IO, Any
+from typing import Any, TextIO
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
@@ -28,10 +28,12 @@ def require_suffix(path: Path) -> str:
     return path.suffix[1:]
 
 
-def write(curves: Curves, file: IO[str], form: str) -> None:
+def write(curves: Curves, file: TextIO, form: str) -> None:
     """Write the page, in a format of `require_suffix`, to a file from `fem_adhesion.output.files.written_aside`."""
-    with os.fdopen(os.dup(file.fileno()), "wb") as binary, rc_context(LOOK):
-        draw(curves).savefig(binary, format=form, dpi=200, metadata={"Date": None} if form == "svg" else None)
+    picture = BytesIO()
+    with rc_context(LOOK):
+        draw(curves).savefig(picture, format=form, dpi=200, metadata={"Date": None} if form == "svg" else None)
+    file.buffer.write(picture.getbuffer())
 
 
 def draw(curves: Curves) -> Figure:

@@ -56,11 +56,15 @@ def state_of(path: EquilibriumPath, name: str) -> tuple[ContactProblem, Array]:
 
 
 def profile(path: EquilibriumPath, name: str, radii: Array) -> Profile:
-    """State of an event at radii (beta), by the polynomials of its discretisation; none beyond its end."""
+    """State of an event at radii (beta), by the polynomials of its discretisation; none beyond its end.
+
+    The deflection goes through the polynomials, not the gap, in which the equator of a sphere is vertical.
+    """
     problem, x = state_of(path, name)
     body = problem.operator_at(x)
     inside = radii[radii <= body.extent]
-    gap = body.values_at(inside, x[:-2])
+    undeformed, nodal = (problem.tabor * problem.profile.height(r) for r in (inside, body.radii))
+    gap = undeformed + body.values_at(inside, x[:-2] - nodal)
     return Profile(inside, problem.law.pressure(gap, problem.tabor), gap)
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
-from typing import IO
+from io import BytesIO
+from typing import TextIO
 
 import numpy as np
 from matplotlib import rc_context
@@ -41,7 +41,7 @@ DIGITS = 6
 """Significant ones of a number, at most."""
 
 
-def write_picture(curves: Curves, file: IO[str], at: str = "pull_off", size: tuple[int, int] = SIZE) -> None:
+def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tuple[int, int] = SIZE) -> None:
     """Draw the body at an event and write it as png.
 
     Parameters
@@ -65,8 +65,9 @@ def write_picture(curves: Curves, file: IO[str], at: str = "pull_off", size: tup
     view = view_of(list(states.values()))
     solid = solid_image(states[at], view, size)
     picture = composed(curves, solid, states[at], view, _caption(curves, at))
-    with os.fdopen(os.dup(file.fileno()), "wb") as binary:
-        picture.savefig(binary, format="png")
+    png = BytesIO()
+    picture.savefig(png, format="png")
+    file.buffer.write(png.getbuffer())
 
 
 def require_event(curves: Curves, at: str) -> None:

@@ -1,12 +1,14 @@
 """Files for ParaView: the fields inside the body, its contact surface, and the curve's states as a time series.
 
-Names have no spaces. Units, signs, the scene and the state are in the field data of each file. Section and surface lie
-in the plane y = 0 with the axis z, so that the solid of revolution passes through them.
+Names have no spaces and, in SI, end in their unit. The numbers of the scene and of the state are in the field data of
+each file; words, which not every reader knows, are in ``notes.json``. Section and surface lie in the plane y = 0 with
+the axis z, so that the solid of revolution passes through them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -20,18 +22,24 @@ from fem_adhesion.output.lattice import cut_for
 from fem_adhesion.output.revolve import require_angle, revolved
 from fem_adhesion.output.vtk_arrays import (
     COMPONENTS,
+    COMPONENTS_OF_SOLID,
     Named,
-    half_space_notes,
+    half_space_numbers,
+    in_si,
     inside,
     magnification_for,
-    notes,
+    numbers,
     on_surface,
     require_same_scene,
     turned,
+    words,
 )
+from fem_adhesion.writing import writing
 from halfspace.compliance import Array, Index
 from halfspace.errors import InputError
 from halfspace.scaling import Units
+
+Labels = Mapping[str, Sequence[str]]
 
 TOLERANCE = 1e-4
 """Largest error of the displacement as drawn, of its maximum, in the section."""
@@ -55,7 +63,7 @@ def write_path(
 
     ``body.pvd`` and ``contact.pvd``, and ``solid.pvd`` if revolved, are the time series: their time is the arclength.
     ``body_0000.vtu`` has the meridian section in second-order cells, ``contact_0000.vtp`` the contact surface with the
-    values of both solvers, ``solid_0000.vtu`` the solid.
+    values of both solvers, ``solid_0000.vtu`` the solid. ``notes.json`` says in words what the arrays are.
 
     Parameters
     ----------
@@ -64,7 +72,7 @@ def write_path(
     directory : Path
         Where to; made unless it exists.
     units : Units, optional
-        Of a material, of which the SI values are then in the field data too.
+        Of a material: points and arrays are in SI then, and the names of arrays end in their unit.
     revolve : float, optional
         Angle of the solid in degrees, 360 for all round; no solid unless given.
     force : bool
@@ -79,18 +87,28 @@ def write_path(
     ------
     InputError
         If there are no states, units or angle do not fit, the directory cannot be written, or pyvista is missing.
+    NotWritten
+        If the disk is full.
     """
+    with directory_written_aside(directory, force=force) as aside:
+        names = write_states(states, aside, directory, units=units, revolve=revolve)
+    return [directory / name for name in names]
+
+
+def write_states(
+    states: Iterable[State], aside: Path, directory: Path, *, units: Units | None, revolve: float | None
+) -> list[str]:
+    """Write into a directory made by `directory_written_aside` and return the names; the rest as `write_path`."""
     if revolve is not None:
         require_angle(revolve)
     pyvista = require_pyvista()
-    with directory_written_aside(directory, force=force) as aside:
-        held = list(states)
-        require_same_scene(held, units)
-        scale = magnification_for(held)
+    held = list(states)
+    require_same_scene(held, units)
+    scale = magnification_for(held)
+    with writing(directory):
         files = [_write_state(pyvista, aside, k, state, scale, units, revolve) for k, state in enumerate(held)]
         series = [_write_series(aside, kind, files, held) for kind in files[0]]
-        names = [*series, *(name for each in files for name in each.values())]
-    return [directory / name for name in names]
+        return [*series, _write_notes(aside, files, held), *(name for each in files for name in each.values())]
 
 
 def require_pyvista() -> Any:
@@ -109,50 +127,79 @@ def _write_state(
 ) -> dict[str, str]:
     """Write a state's files and return their names by kind."""
     files = {}
-    for kind, suffix, grid in _grids(pyvista, state, scale, revolve):
-        _annotate(grid, notes(state, scale, units))
+    for kind, suffix, grid in _grids(pyvista, state, scale, units, revolve):
+        _annotate(grid, numbers(state, scale, units))
         files[kind] = f"{kind}_{number:04d}.{suffix}"
-        grid.save(str(folder / files[kind]))
+        _save(grid, folder / files[kind])
     return files
 
 
-def _grids(pyvista: Any, state: State, scale: float, revolve: float | None) -> Iterator[tuple[str, str, Any]]:
+def _save(grid: Any, file: Path) -> None:
+    """Write a grid by way of memory: where the disk is full VTK's own writing ends the process."""
+    from vtkmodules import vtkIOXML
+
+    kind = vtkIOXML.vtkXMLPolyDataWriter if file.suffix == ".vtp" else vtkIOXML.vtkXMLUnstructuredGridWriter
+    writer = kind()
+    writer.SetInputData(grid)
+    writer.SetDataModeToBinary()
+    writer.WriteToOutputStringOn()
+    writer.Write()
+    file.write_text(writer.GetOutputString(), encoding="utf-8")
+
+
+def _grids(
+    pyvista: Any, state: State, scale: float, units: Units | None, revolve: float | None
+) -> Iterator[tuple[str, str, Any]]:
     """Kind, suffix and grid of each file of a state."""
     cut = cut_for(state.space, state.components, TOLERANCE)
     cells, (r, z) = cut.cells, cut.points
     section = {QUADRATIC[cells.shape[1]]: cells}
-    yield "body", "vtu", _grid(pyvista, section, np.stack([r, 0 * r, z], axis=1), inside(state, cut, scale))
-    yield "contact", "vtp", _surface(pyvista, state, scale)
+    yield "body", "vtu", _grid(pyvista, section, np.stack([r, 0 * r, z], axis=1), inside(state, cut, scale), units)
+    yield "contact", "vtp", _surface(pyvista, state, scale, units)
     if revolve is not None:
         coarse = cut_for(state.space, state.components, SOLID_TOLERANCE)
         solid = revolved(coarse.points, coarse.cells, revolve)
-        yield "solid", "vtu", _grid(pyvista, solid.cells, solid.points, turned(inside(state, coarse, scale), solid))
+        arrays = turned(inside(state, coarse, scale), solid)
+        yield "solid", "vtu", _grid(pyvista, solid.cells, solid.points, arrays, units, COMPONENTS_OF_SOLID)
 
 
-def _grid(pyvista: Any, cells: dict[int, Index], points: Array, arrays: Named) -> Any:
-    grid = pyvista.UnstructuredGrid({kind: nodes for kind, nodes in cells.items() if len(nodes)}, points)
-    return _with_arrays(grid, arrays)
+def _grid(
+    pyvista: Any,
+    cells: dict[int, Index],
+    points: Array,
+    arrays: Named,
+    units: Units | None,
+    labels: Labels = COMPONENTS,
+) -> Any:
+    kept = {kind: nodes for kind, nodes in cells.items() if len(nodes)}
+    return _with_arrays(pyvista.UnstructuredGrid(kept, _placed(points, units)), arrays, units, labels)
 
 
-def _surface(pyvista: Any, state: State, scale: float) -> Any:
+def _surface(pyvista: Any, state: State, scale: float, units: Units | None) -> Any:
     """Contact surface as one line through its nodes."""
     r, z = state.surface.radii, -state.surface.depths
     line = np.append(r.size, np.arange(r.size))
     beside = half_space_beside(state)
-    grid = pyvista.PolyData(np.stack([r, 0 * r, z], axis=1), lines=line)
-    _annotate(grid, half_space_notes(state.scene, beside))
-    return _with_arrays(grid, on_surface(state, beside, scale))
+    grid = pyvista.PolyData(_placed(np.stack([r, 0 * r, z], axis=1), units), lines=line)
+    _annotate(grid, half_space_numbers(beside, units))
+    return _with_arrays(grid, on_surface(state, beside, scale), units)
 
 
-def _annotate(grid: Any, notes: dict[str, float | str]) -> None:
-    for name, value in notes.items():
+def _placed(points: Array, units: Units | None) -> Array:
+    """Points in beta, or in m where the material is known."""
+    return points * (units.length if units else 1.0)
+
+
+def _annotate(grid: Any, values: Mapping[str, float]) -> None:
+    for name, value in values.items():
         grid.field_data[name] = np.atleast_1d(value)
 
 
-def _with_arrays(grid: Any, arrays: Named) -> Any:
-    for name, values in arrays.items():
+def _with_arrays(grid: Any, arrays: Named, units: Units | None, labels: Labels = COMPONENTS) -> Any:
+    shown = in_si(arrays, units) if units else arrays
+    for (name, values), plain in zip(shown.items(), arrays, strict=True):
         grid.point_data[name] = values
-        for number, component in enumerate(COMPONENTS.get(name, ())):
+        for number, component in enumerate(labels.get(plain, ())):
             grid.GetPointData().GetArray(name).SetComponentName(number, component)
     return grid
 
@@ -167,3 +214,11 @@ def _write_series(folder: Path, kind: str, files: Sequence[dict[str, str]], stat
     ElementTree.indent(root)
     ElementTree.ElementTree(root).write(folder / f"{kind}.pvd", encoding="utf-8", xml_declaration=True)
     return f"{kind}.pvd"
+
+
+def _write_notes(folder: Path, files: Sequence[dict[str, str]], states: Sequence[State]) -> str:
+    """Write in words what the files hold, and which of them are events, and return the name."""
+    held = [{"event": state.name or None, **names} for names, state in zip(files, states, strict=True)]
+    notes = json.dumps({**words(states[0].scene), "states": held}, indent=1, allow_nan=False)
+    (folder / "notes.json").write_text(notes + "\n", encoding="utf-8")
+    return "notes.json"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import asdict
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -15,9 +16,11 @@ from fem_adhesion.output.revolve import Solid
 from fem_adhesion.scene import Scene
 from halfspace.compliance import Array
 from halfspace.errors import InputError
+from halfspace.events import EVENTS
 from halfspace.scaling import Units
 
 Named = dict[str, Array]
+Numbers = TypeVar("Numbers", float, Array)
 
 LARGEST_STRAIN = 0.5
 """Drawn at most: the cells stay far from turning inside out."""
@@ -43,25 +46,73 @@ COMPONENTS = {
 
 VECTORS = ("displacement", "displacement_in_beta", "displacement_magnified")
 
-UNITS = {
-    "points": "beta = (R^2 dgamma/E*)^(1/3)",
-    "displacement": "beta^2/R = mu eps",
-    "displacement_in_beta": "beta",
-    "displacement_magnified": "beta, not to scale: displacement times magnified_beta_per_displacement_unit",
-    "stress_cylindrical": "E* beta/R = dgamma/(mu eps); in VTK's order of xx yy zz xy yz xz: rr tt zz rt tz rz",
-    "stress": "E* beta/R = dgamma/(mu eps); Cartesian",
-    "von_mises": "E* beta/R",
-    "hydrostatic": "E* beta/R; mean of the three normal stresses",
-    "principal_stresses": "E* beta/R; descending",
-    "strain_energy_density": "E* (beta/R)^2",
-    "pressure": "P in E* beta/R",
-    "gap": "h in eps",
+COMPONENTS_OF_SOLID = COMPONENTS | dict.fromkeys(VECTORS, ("x", "y", "z"))
+"""The same in the solid of revolution."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Unit of an array.
+
+    Attributes
+    ----------
+    words : str
+        The paper's.
+    suffix : str
+        That of SI, as part of a name; none of a number without a dimension.
+    size : callable
+        The paper's unit of a material in that of SI.
+    """
+
+    words: str
+    suffix: str = ""
+    size: Callable[[Units], float] = lambda _: 1.0
+
+
+_LENGTH = Unit("beta = (R^2 dgamma/E*)^(1/3)", "m", lambda units: units.length)
+_DISPLACEMENT = Unit("beta^2/R = mu eps", "m", lambda units: units.tabor * units.approach)
+_GAP = Unit("eps", "m", lambda units: units.approach)
+_STRESS = Unit("E* beta/R = dgamma/(mu eps)", "Pa", lambda units: units.pressure)
+_DENSITY = Unit("E* (beta/R)^2", "J_per_m3", lambda units: units.pressure**2 / units.modulus)
+_LOAD = Unit("R dgamma", "N", lambda units: units.load)
+
+UNITS: Mapping[str, Unit] = {
+    "points": _LENGTH,
+    "displacement": _DISPLACEMENT,
+    "displacement_in_beta": _LENGTH,
+    "displacement_magnified": _LENGTH,
+    "stress_cylindrical": _STRESS,
+    "stress": _STRESS,
+    "von_mises": _STRESS,
+    "hydrostatic": _STRESS,
+    "principal_stresses": _STRESS,
+    "strain_energy_density": _DENSITY,
+    "pressure": _STRESS,
+    "gap": _GAP,
+    "H": Unit("1"),
+    "deflection": _DISPLACEMENT,
+    "approach": _GAP,
+    "load": _LOAD,
+    "central_gap": _GAP,
+    "contact_radius": _LENGTH,
+}
+"""Of the arrays, and of the numbers in the field data."""
+
+OBSERVED = ("approach", "load", "central_gap", "contact_radius")
+
+MEANINGS: Mapping[str, str] = {
+    "displacement": "u_r, u_theta, u_z; in the solid u_x, u_y, u_z",
+    "displacement_magnified": "displacement, not to scale",
+    "stress_cylindrical": "in VTK's order of xx yy zz xy yz xz: rr tt zz rt tz rz",
+    "stress": "Cartesian, in the solid",
+    "hydrostatic": "mean of the three normal stresses",
+    "principal_stresses": "descending",
+    "pressure": "that of the surface law; pressure_from_stress what the stress inside exerts",
+    "gap": "h, from surface to surface",
     "H": "h/eps - 1",
-    "deflection": "w = -u_z in beta^2/R",
-    "approach": "eps",
-    "load": "R dgamma",
-    "central_gap": "H(0), h/eps - 1",
-    "contact_radius": "beta, where h = 3^(1/6) eps; nan without contact",
+    "deflection": "-u_z",
+    "central_gap": "H(0) = h(0)/eps - 1, in SI h(0) - eps",
+    "contact_radius": "where h = 3^(1/6) eps; nan without contact",
     "arclength": "of the load-approach curve in units of its metric; the time of the .pvd",
 }
 
@@ -69,6 +120,25 @@ SIGNS = (
     "pressure and load positive in compression, stress positive in tension; approach positive when pressed together; "
     "displacement z upwards, out of the body; deflection positive into the body"
 )
+
+NAMES = (
+    "a name that ends in a unit of SI holds values in that unit; any other holds values in the units above; points are "
+    "in m where a material is given"
+)
+
+
+def unit_of(name: str) -> Unit:
+    """Unit of an array by its name, of the half-space's arrays too."""
+    return UNITS[name.partition("_of_half_space")[0].removesuffix("_from_stress")]
+
+
+def in_si(arrays: Mapping[str, Numbers], units: Units) -> dict[str, Numbers]:
+    """Numbers or arrays in SI, the unit at the end of their names; those without a dimension as they are."""
+    found = {name: unit_of(name) for name in arrays}
+    return {
+        f"{name}_{unit.suffix}" if unit.suffix else name: arrays[name] * unit.size(units)
+        for name, unit in found.items()
+    }
 
 
 def inside(state: State, cut: Cut, scale: float) -> Named:
@@ -135,58 +205,78 @@ def magnification_for(states: Sequence[State]) -> float:
     return 1 / R if scale * R < TO_SCALE else scale
 
 
-def notes(state: State, scale: float, units: Units | None) -> dict[str, float | str]:
-    """Field data: the scene, the state, units, signs, how the displacement is magnified, and SI values."""
-    alpha, load, gap, radius = map(float, state.observables)
-    scene = {f"scene_{name}": _plain(value) for name, value in asdict(state.scene).items() if value is not None}
-    R = state.scene.sphere_radius
+def numbers(state: State, scale: float, units: Units | None) -> dict[str, float]:
+    """Field data: scene and state, which event it is, how the displacement is magnified, and the material.
+
+    No words: not every reader of these files knows strings.
+    """
+    observed = dict(zip(OBSERVED, map(float, state.observables), strict=True))
+    rho = state.scene.radius_ratio
     return (
-        scene
-        | {"tabor": state.scene.tabor, "poisson": state.scene.poisson, "event": state.name or "none"}
-        | {"approach": alpha, "load": load, "central_gap": gap, "contact_radius": radius}
+        {"tabor": state.scene.tabor, "poisson": state.scene.poisson}
+        | ({} if rho is None else {"radius_ratio": rho})
+        | observed
+        | (in_si(observed, units) if units else {})
+        | {f"is_{name}": float(state.name == name) for name in EVENTS}
         | {"arclength": state.arclength, "stable_under_fixed_grips": float(state.stable)}
         | {"stable_under_dead_load": float(state.stable_under_dead_load)}
-        | _magnification(scale, R)
-        | ({} if np.isinf(R) else {"sphere_radius_in_beta": R})
-        | {f"unit_of_{name}": unit for name, unit in UNITS.items()}
-        | {"signs": SIGNS}
-        | (_si(units) if units else {})
+        | _magnification(state.scene, scale, units)
+        | (_material(units) if units else {})
     )
 
 
-def _magnification(scale: float, R: float) -> dict[str, float | str]:
-    how = (
-        "displacement_magnified is displacement times this, in all states alike: the largest of 1, 2, 5 times a power "
-        f"of ten at which no strain is drawn as more than {LARGEST_STRAIN:g}, or to scale if that is less than "
-        f"{TO_SCALE:g} times the true displacement"
-    )
-    true = {} if np.isinf(R) else {"magnification_of_true_displacement": scale * R}
-    return {"magnified_beta_per_displacement_unit": scale, "how_magnified": how, **true}
+def radius_in_beta(scene: Scene, units: Units | None) -> float:
+    """Radius of the sphere in beta, infinite where neither the scene nor a material says."""
+    return units.radius / units.length if units else scene.sphere_radius
 
 
-def half_space_notes(scene: Scene, beside: Beside) -> dict[str, float | str]:
-    """Field data on the half-space's values: whose they are, its approach (eps) and load (R dgamma)."""
-    alpha, load = map(float, beside.observables[:2])
-    numbers = {"approach_of_half_space": alpha, "load_of_half_space": load}
-    where = "at the same contact radius, or central gap without contact"
-    if is_same_contact(scene):
-        return numbers | {"half_space": f"the same contact, solved by the integral equation {where}"}
-    return numbers | {"half_space": f"another body than the scene's, under the same profile, {where}"}
+def _magnification(scene: Scene, scale: float, units: Units | None) -> dict[str, float]:
+    R = radius_in_beta(scene, units)
+    true = {} if np.isinf(R) else {"sphere_radius_in_beta": R, "magnification_of_true_displacement": scale * R}
+    return {"magnified_beta_per_displacement_unit": scale, **true}
 
 
-def _si(units: Units) -> dict[str, float | str]:
+def _material(units: Units) -> dict[str, float]:
     return {
-        "SI_points_unit_in_m": units.length,
-        "SI_displacement_unit_in_m": units.tabor * units.approach,
-        "SI_gap_unit_in_m": units.approach,
-        "SI_stress_unit_in_Pa": units.pressure,
-        "SI_energy_density_unit_in_J_per_m3": units.pressure**2 / units.modulus,
-        "SI_load_unit_in_N": units.load,
+        "radius_m": units.radius,
+        "contact_modulus_Pa": units.modulus,
+        "work_of_adhesion_J_per_m2": units.work_of_adhesion,
+        "spacing_m": units.spacing,
     }
 
 
-def _plain(value: object) -> float | str:
-    return float(value) if isinstance(value, int | float) else str(value)
+def half_space_numbers(beside: Beside, units: Units | None) -> dict[str, float]:
+    """Field data on the half-space's approach and load."""
+    alpha, load = map(float, beside.observables[:2])
+    own = {"approach_of_half_space": alpha, "load_of_half_space": load}
+    return own | (in_si(own, units) if units else {})
+
+
+def words(scene: Scene) -> dict[str, object]:
+    """What the arrays are, for people: units, meanings, components, signs."""
+    where = "at the same contact radius, or central gap without contact"
+    other = "the same contact, solved by the integral equation" if is_same_contact(scene) else "another body than this"
+    return {
+        "scene": {name: _plain(value) for name, value in asdict(scene).items()},
+        "units": {name: unit.words for name, unit in UNITS.items()},
+        "names": NAMES,
+        "meanings": dict(MEANINGS),
+        "components": dict(COMPONENTS),
+        "signs": SIGNS,
+        "magnification": HOW_MAGNIFIED,
+        "half_space": f"{other}, under the same profile, {where}",
+    }
+
+
+HOW_MAGNIFIED = (
+    "displacement_magnified is displacement times magnified_beta_per_displacement_unit, in all states alike: the "
+    f"largest of 1, 2, 5 times a power of ten at which no strain is drawn as more than {LARGEST_STRAIN:g}, or to scale "
+    f"if that is less than {TO_SCALE:g} times the true displacement"
+)
+
+
+def _plain(value: object) -> object:
+    return value if value is None or isinstance(value, str | int | float | dict) else str(value)
 
 
 def require_same_scene(states: Sequence[State], units: Units | None) -> None:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from fem_adhesion.writing import writing
 from halfspace.errors import InputError
 
 SCHEMA = 1  # raised whenever what is stored changes
@@ -64,14 +65,10 @@ class Store:
     def put(self, inputs: Plain, result: Plain) -> None:
         """Write the result of a case: after this call it is on disk; before, there is none, or the one of before."""
         path = self.path(inputs)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        aside = path.with_name(f".{path.name}")  # left by a crash, it is overwritten by the case's next attempt
-        with aside.open("w") as file:
-            json.dump({**self._heading(inputs), "result": result}, file, indent=1, allow_nan=False)
-            file.flush()
-            os.fsync(file.fileno())
-        aside.replace(path)
-        _sync_directory(path.parent)
+        text = json.dumps({**self._heading(inputs), "result": result}, indent=1, allow_nan=False)
+        with writing(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            _write_through(path, text)
 
     def _heading(self, inputs: Plain) -> dict[str, object]:
         return {"schema": SCHEMA, "version": self.version, "inputs": dict(inputs)}
@@ -115,6 +112,20 @@ def package_version() -> str:
         return version("fem-adhesion")
     except PackageNotFoundError:  # run from its sources
         return "unknown"
+
+
+def _write_through(path: Path, text: str) -> None:
+    """Write a file aside, wait until it is on disk, and put it in its place."""
+    aside = path.with_name(f".{path.name}")  # left by a crash, it is overwritten by the case's next attempt
+    try:
+        with aside.open("w") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        aside.replace(path)
+    finally:
+        aside.unlink(missing_ok=True)
+    _sync_directory(path.parent)
 
 
 def _sync_directory(path: Path) -> None:

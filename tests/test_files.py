@@ -1,0 +1,226 @@
+"""What cannot be written ends in one line and leaves what was there before, whichever command writes it."""
+
+import errno
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from fem_adhesion import cli
+from fem_adhesion.output.files import directory_written_aside, written_aside
+from fem_adhesion.studies import curves
+from fem_adhesion.studies.store import open_store
+from fem_adhesion.writing import ELSEWHERE, REMEDIES, NotWritten, writing
+
+CURVE = ["curve", "--tabor", "0.5", "--rtol", "1e-2"]
+MATERIAL = ["--radius", "100nm", "--modulus", "1GPa", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm"]
+WRITERS = {
+    "json": [*CURVE, "--json", "a.json"],
+    "csv": [*CURVE, "--csv", "a.csv"],
+    "plot": [*CURVE, "--plot", "a.svg"],
+    "vtk": [*CURVE, "--vtk", "fields", "--points", "0"],
+    "all together": [
+        *CURVE,
+        "--json",
+        "a.json",
+        "--csv",
+        "a.csv",
+        "--plot",
+        "a.png",
+        "--vtk",
+        "fields",
+        "--points",
+        "0",
+    ],
+    "compare": ["compare", "--tabor", "0.5", "--rtol", "1e-2", "--json", "a.json"],
+    "assess": ["assess", *MATERIAL, "--poisson", "0.3", "--plot", "a.png"],
+    "report": ["report", "--tabor", "0.5", "--walk", "0.5", "--rtol", "1e-2", "--out", "a.html"],
+}
+
+RUN = """
+import contextlib, io, json, os, sys
+from fem_adhesion import cli
+done = {}
+for name, arguments in json.loads(sys.argv[1]).items():
+    error = io.StringIO()
+    with contextlib.redirect_stderr(error), contextlib.redirect_stdout(io.StringIO()):
+        code = cli.main(arguments)
+    done[name] = [code, error.getvalue(), sorted(os.listdir())]
+print(json.dumps(done))
+"""
+SMALL_FILES = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (2048, 2048))"
+OWN_DISK = "mount -t tmpfs -o size=1m tmpfs . && cd . && head -c 1044480 /dev/zero >fill; cd $PWD && exec "
+
+
+def _ended(folder, commands, before=(), code=""):
+    """Exit code, errors and the files left of each command, run whole in a process of their own."""
+    command = [*before, sys.executable, "-c", code + RUN, json.dumps(commands)]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def _own_disk():
+    """How to run a command on a disk of one megabyte, all but a page of it in use, or None where that is forbidden."""
+    inside = ["unshare", "-Urm", "sh", "-c"]
+    if shutil.which("unshare") is None:
+        return None
+    tried = subprocess.run([*inside, "mount -t tmpfs tmpfs /mnt"], capture_output=True, check=False)
+    return [*inside, OWN_DISK + '"$@"', "sh"] if tried.returncode == 0 else None
+
+
+def test_a_full_disk_ends_every_command_in_one_line_and_leaves_nothing(tmp_path):
+    before = _own_disk()
+    if before is None:
+        pytest.skip("no disk of our own without privileges here; the next test limits the size of files")
+    ended = _ended(tmp_path, {name: WRITERS[name] for name in ("json", "all together")}, before)
+    assert len(ended) == 2
+    for name, (code, error, left) in ended.items():
+        assert code == 1, name
+        assert error.count("\n") == 1, error
+        assert "cannot be written (No space left on device); free some space or choose another disk" in error
+        assert left == ["fill"], name
+
+
+def test_files_that_may_not_grow_end_every_command_in_one_line_and_leave_nothing(tmp_path):
+    ended = _ended(tmp_path, WRITERS, code=SMALL_FILES)
+    assert set(ended) == set(WRITERS)
+    for name, (code, error, left) in ended.items():
+        assert code == 1, name
+        assert error.count("\n") == 1, error
+        assert "cannot be written (File too large); raise the limit on the size of files, ulimit -f" in error
+        assert left == [], name
+    assert "fields cannot" in ended["vtk"][1]
+    assert "a.html cannot" in ended["report"][1]
+
+
+def _full(*_args, **_kwargs):
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+@pytest.mark.parametrize("command", ["speed", "greenwood", "hard", "finite-sphere"])
+def test_a_full_disk_ends_each_study_in_one_line_and_leaves_nothing(command, tmp_path, monkeypatch, capsys):
+    from fem_adhesion.output import finite_sphere_report, greenwood_report, hard_report, speed_report
+    from fem_adhesion.studies import finite_sphere, greenwood1997, hard_bodies, hard_cases, speed
+
+    for module, name in (
+        (speed_report, "write"),
+        (greenwood_report, "write"),
+        (hard_report, "write_hard"),
+        (finite_sphere_report, "write"),
+    ):
+        monkeypatch.setattr(module, name, _full)
+    monkeypatch.setattr(speed, "measure", lambda *_, **__: None)
+    monkeypatch.setattr(greenwood1997, "compute", lambda **_: None)
+    monkeypatch.setattr(hard_cases, "run", lambda _: [])
+    monkeypatch.setattr(hard_bodies, "locking", list)
+    monkeypatch.setattr(finite_sphere, "run", lambda *_, **__: [SimpleNamespace(status="solved")])
+    assert cli.main([command, "--out", str(tmp_path / "out")]) == 1
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert f"{tmp_path / 'out'} cannot be written (No space left on device)" in error
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_defect_that_is_an_oserror_is_not_taken_for_a_full_disk(tmp_path, monkeypatch):
+    monkeypatch.setattr("fem_adhesion.studies.speed.measure", _full)
+    with pytest.raises(OSError, match="No space left"):
+        cli.main(["speed", "--out", str(tmp_path / "out")])
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_case_that_cannot_be_stored_leaves_the_others(tmp_path, monkeypatch):
+    store = open_store(tmp_path / "study")
+    store.put({"a": 1}, {"b": 2})
+    monkeypatch.setattr(os, "fsync", _full)
+    with pytest.raises(NotWritten, match=r"\.json cannot be written \(No space left on device\)"):
+        store.put({"a": 2}, {"b": 3})
+    assert store.get({"a": 1}) == {"b": 2}
+    assert len([file for file in (tmp_path / "study").rglob("*") if file.is_file()]) == 1
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root writes where it likes")
+def test_a_folder_that_may_only_be_read_is_refused_before_any_work(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("fem_adhesion.studies.curves.solve", lambda *_: pytest.fail("worked"))
+    tmp_path.chmod(0o500)
+    for option in ("--json", "--vtk"):
+        assert cli.main([*CURVE, option, str(tmp_path / "a")]) == 2
+        assert "cannot be written (Permission denied); choose a folder that is yours" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("number", "words"), [(errno.EACCES, "choose a folder that is yours"), (errno.EROFS, "choose a disk that is not")]
+)
+def test_what_is_refused_at_once_is_bad_input(number, words, tmp_path, monkeypatch, capsys):
+    def refuse(*_args, **_kwargs):
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr("fem_adhesion.studies.curves.solve", lambda *_: pytest.fail("worked"))
+    monkeypatch.setattr("tempfile.mkstemp", refuse)
+    monkeypatch.setattr("tempfile.mkdtemp", refuse)
+    for option in ("--json", "--vtk"):
+        assert cli.main([*CURVE, option, str(tmp_path / "a")]) == 2
+        error = capsys.readouterr().err
+        assert words in error
+        assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize(("option", "name"), [("--json", "a.json"), ("--csv", "a.csv"), ("--vtk", ".")])
+def test_a_folder_that_vanishes_meanwhile_is_named(option, name, tmp_path, monkeypatch, capsys):
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    solve = curves.solve
+
+    def vanishing(question, step):
+        shutil.rmtree(folder)
+        return solve(question, step)
+
+    monkeypatch.setattr(curves, "solve", vanishing)
+    assert cli.main([*CURVE, option, str(folder / name), *(["--points", "0"] if option == "--vtk" else [])]) == 1
+    error = capsys.readouterr().err
+    assert f"{folder / name} cannot be written (No such file or directory); choose a folder that exists" in error
+    assert error.count("\n") == 1
+    assert not folder.exists()
+
+
+def test_a_file_that_cannot_be_replaced_keeps_its_content(tmp_path, monkeypatch):
+    file = tmp_path / "a.txt"
+    file.write_text("old")
+    monkeypatch.setattr(Path, "replace", _full)
+    with pytest.raises(NotWritten), written_aside(file) as aside:
+        aside.write("new")
+    assert file.read_text() == "old"
+    with pytest.raises(NotWritten), directory_written_aside(tmp_path / "out") as folder:
+        (folder / "b.txt").write_text("new")
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_what_is_not_about_writing_passes_through(tmp_path):
+    with pytest.raises(ZeroDivisionError), writing(tmp_path):
+        _ = 1 / 0
+    with pytest.raises(ZeroDivisionError), written_aside(tmp_path / "a") as file:
+        file.write(f"half {1 / 0}")
+    assert not list(tmp_path.iterdir())
+
+
+def test_bytes_and_text_go_to_the_same_file(tmp_path):
+    file = tmp_path / "a"
+    with written_aside(file) as aside:
+        aside.buffer.write(b"\x89")
+        aside.flush()
+    assert file.read_bytes() == b"\x89"
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EPIPE, 0])
+def test_each_message_has_what_why_and_a_remedy(number, tmp_path):
+    error = OSError(number, os.strerror(number)) if number else OSError("encoder error")
+    with pytest.raises(NotWritten) as refused, writing(tmp_path / "a"):
+        raise error
+    reason = os.strerror(number) if number else "encoder error"
+    remedy = REMEDIES.get(number, ELSEWHERE)
+    assert str(refused.value) == f"{tmp_path / 'a'} cannot be written ({reason}); {remedy}"
