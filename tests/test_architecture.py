@@ -96,6 +96,7 @@ FLOORS = [
         "fem_adhesion.studies.greenwood_ripple",
         "fem_adhesion.studies.hard_bodies",
         "fem_adhesion.studies.hard_contacts",
+        "fem_adhesion.studies.hard_run",
         "fem_adhesion.studies.hard_spheres",
         "fem_adhesion.studies.finite_sphere_cases",
         "fem_adhesion.studies.assess_predictions",

@@ -17,7 +17,8 @@ def add(commands: Commands) -> None:
     hard = commands.add_parser(
         "hard",
         help="run the hard cases: a number within its estimate, or a clear refusal",
-        description="Run the cases that are hard for the solvers. Exit code 1 if one ends in a wrong number.",
+        description="Run the cases that are hard for the solvers; one minute. "
+        "Exit code 1 if one ends otherwise than was declared for it beforehand.",
         epilog="example: fem-adhesion hard --out hard",
     )
     add_output(hard)
@@ -30,16 +31,16 @@ def run(options: argparse.Namespace) -> int:
 
     from fem_adhesion.output import hard_report
     from fem_adhesion.output.files import directory_written_aside
-    from fem_adhesion.studies import hard_bodies, hard_cases
+    from fem_adhesion.studies import hard_bodies, hard_cases, hard_run
     from fem_adhesion.writing import writing
 
     cases = hard_cases.cases()
     names = [*(case.name for case in cases), "locking"]
-    rows: list[hard_cases.Row] = []
+    rows: list[hard_run.Row] = []
     with directory_written_aside(options.out, force=options.force) as aside:
         with progress_bar() as step:
             step(names[0], 0, len(names))
-            for row in hard_cases.run(cases):
+            for row in hard_run.run(cases):
                 rows.append(row)
                 step(names[len(rows)], len(rows), len(names))
             locking = list(hard_bodies.locking())

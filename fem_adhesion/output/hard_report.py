@@ -15,28 +15,29 @@ from rich.table import Table
 
 from fem_adhesion.output.record import versions
 from fem_adhesion.studies.hard_bodies import Locking
-from fem_adhesion.studies.hard_cases import Row
+from fem_adhesion.studies.hard_run import Row
 
 STYLES = {"converged": "green", "refused": "cyan", "wrong": "bold red"}
 
 
 def cases_table(rows: Sequence[Row]) -> Table:
-    """One line for each case; a refusal in its own words."""
+    """One line for each case: the ending declared, the one found; a refusal in its own words."""
     table = Table(title=summary(rows), title_justify="left")
-    table.add_column("case", min_width=30)
-    table.add_column("outcome", no_wrap=True)
+    table.add_column("case", min_width=26)
+    table.add_column("expected")
+    table.add_column("found")
     for name in ("error", "estimate", "Newton steps", "seconds"):
-        table.add_column(name, justify="right", no_wrap=True)
+        table.add_column(name, justify="right")
     table.add_column("compared, or refused because", overflow="fold")
     for row in rows:
-        style = STYLES[row.outcome]
+        found = f"[{STYLES[row.outcome]}]{escape(row.found)}[/]"
         cells = (_small(row.error), _small(row.estimate), _steps(row), f"{row.seconds:.2f}", escape(row.message))
-        table.add_row(escape(row.name), f"[{style}]{row.outcome}[/]", *cells)
+        table.add_row(escape(row.name), row.expected, found, *cells)
     return table
 
 
 def summary(rows: Sequence[Row]) -> str:
-    """How many cases ended how."""
+    """How many cases ended how; otherwise than declared is wrong."""
     counts = {outcome: sum(row.outcome == outcome for row in rows) for outcome in STYLES}
     return ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
 

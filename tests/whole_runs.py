@@ -1,0 +1,51 @@
+"""Command lines run whole, each once in a session, whichever tests and however many workers ask for it."""
+
+import fcntl
+import hashlib
+import json
+import os
+import shlex
+import subprocess
+import sys
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+BIN = Path(sys.executable).parent
+
+
+@dataclass(frozen=True)
+class Run:
+    """How a command line ended, and the directory where it ran and left its files."""
+
+    line: str
+    code: int
+    out: str
+    err: str
+    directory: str
+
+    def __truediv__(self, name):
+        return Path(self.directory) / name
+
+
+def whole_run(session, line):
+    """Run a command line in an empty directory of its own, or read how it ended if that was done before.
+
+    Who asks while it is under way waits for its end, however long that takes.
+    """
+    place = session / hashlib.sha256(line.encode()).hexdigest()[:16]
+    place.mkdir(parents=True, exist_ok=True)
+    record = place / "run.json"
+    with (place / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not record.exists():
+            record.write_text(json.dumps(asdict(_run(line, place / "here"))))
+    return Run(**json.loads(record.read_text()))
+
+
+def _run(line, directory):
+    directory.mkdir()
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "COLUMNS": "150", "TERM": "dumb", "NO_COLOR": "1"}
+    command = [str(BIN / "fem-adhesion"), *shlex.split(line)[1:]]
+    done = subprocess.run(command, cwd=directory, env=environment, capture_output=True, text=True)
+    return Run(line, done.returncode, done.stdout, done.stderr, str(directory))
