@@ -1,11 +1,16 @@
 """The harness agrees where it should and, with a defect put into one side, refuses and says which quantity shows it."""
 
+import json
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from whole_runs import tables_in
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene, convergence, elasticity
+from fem_adhesion import Scene, cli, convergence, elasticity
+from fem_adhesion.output.tables import crosscheck_table
 from fem_adhesion.studies import crosscheck
 from fem_adhesion.studies.crosscheck import Case, Failure, Row
 from halfspace import limits
@@ -125,6 +130,184 @@ def test_a_defect_in_the_finite_elements_is_shown(defect, monkeypatch):
 
 def test_the_same_scene_without_a_defect_agrees_at_that_tolerance():
     assert crosscheck.compare(Scene(tabor=1.0), rtol=RTOL).verdict == "agree"
+
+
+# --- budgets ---
+
+COMPARE = "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json"
+
+# What two solvers may err by together for a comparison to 1e-4 to mean something, at a Tabor parameter of 2: so much
+# of a load or an energy; of an approach in the unit 1 + |alpha*|; ten times that of gaps, radii and deflections,
+# which are values at a point; and 50e-4 eps of residuals.
+BUDGETS = {
+    "operator: uniform disc": 10e-4 * 0.775445,
+    "operator: Hertz": 10e-4 * 0.527904,
+    "operator: spike": 10e-4 * 0.086525,
+    "operator: ring": 10e-4 * 0.113754,
+    "cross-residual: pull_off": 50e-4,
+    "cross-residual: jump_on": 50e-4,
+    "cross-residual: jump_off": 50e-4,
+    "cross-residual: zero_load": 50e-4,
+    "pull_off load": 1e-4 * 4.975011,
+    "jump_on approach": 1e-4 * 3.551914,
+    "jump_on load": 1e-4 * 1.155421,
+    "jump_on central_gap": 10e-4 * 2.262963,
+    "jump_off approach": 1e-4 * 4.381701,
+    "jump_off load": 1e-4 * 2.857924,
+    "jump_off central_gap": 10e-4 * 1.020074,
+    "zero_load approach": 1e-4 * 5.007768,
+    "zero_load contact_radius": 10e-4 * 3.368143,
+    "energy released": 1e-4 * 16.355117,
+}
+
+
+@pytest.fixture(scope="module")
+def command(whole):
+    return whole(COMPARE)
+
+
+@pytest.fixture(scope="module")
+def record(command):
+    return json.loads((command / "result.json").read_text())
+
+
+def test_the_command_agrees_and_says_so_everywhere(command, record):
+    assert command.code == 0
+    assert command.err.strip() == ""
+    assert record["verdict"] == "agree"
+    assert [(case["tabor"], case["poisson"], case["verdict"]) for case in record["cases"]] == [
+        (0.5, 0.45, "agree"),
+        (2, 0.45, "agree"),
+    ]
+    assert command.out.rstrip().endswith("verdict: agree")
+    assert [line for line in command.out.splitlines() if line.startswith("tabor")] != []
+
+
+def test_every_quantity_has_the_budget_it_should(record):
+    rows = {row["quantity"]: row for row in record["cases"][1]["comparison"]}
+    assert rows.keys() == BUDGETS.keys()
+    for quantity, budget in BUDGETS.items():
+        assert rows[quantity]["budget"] == pytest.approx(budget, rel=1e-4), quantity
+
+
+def test_the_record_of_the_command_holds_both_solvers_under_their_names(record):
+    for case in record["cases"]:
+        hs, fe = halfspace.trace(case["tabor"], rtol=1e-5), case["finite_element"]
+        assert case["halfspace"]["unknowns"] == hs.unknowns < fe["unknowns"]
+        for row in case["comparison"]:
+            assert row["error"] == row["halfspace_error"] + row["finite_element_error"]
+            assert row["verdict"] == "agree"
+            assert row["difference"] <= row["error"] <= row["budget"]
+            if ":" not in row["quantity"]:
+                assert row["difference"] == abs(row["halfspace"] - row["finite_element"])
+            event, _, quantity = row["quantity"].partition(" ")
+            if event in hs.events:
+                assert row["halfspace"] == getattr(hs.event(event), quantity)
+                assert row["halfspace_error"] == getattr(hs.event(event), f"{quantity}_error")
+            if event in fe["events"] and quantity in ("load", "approach"):
+                assert row["finite_element"] == fe["events"][event][quantity]
+                assert row["finite_element_error"] == fe["events"][event][f"{quantity}_error"]
+
+
+def test_the_tables_of_the_command_show_what_the_record_holds(command, record):
+    tables = tables_in(command.out)
+    for case, table in zip(record["cases"], tables, strict=True):
+        for row, shown in zip(case["comparison"], table, strict=True):
+            assert (shown["quantity"], shown["unit"], shown["verdict"]) == (row["quantity"], row["unit"], "agree")
+            for header, key in (("half-space", "halfspace"), ("finite elements", "finite_element")):
+                assert float(shown[header]) == pytest.approx(row[key], rel=0.1, abs=row[f"{key}_error"])
+            assert [shown[header] for header in ("difference", "error (hs)", "error (fe)", "budget")] == [
+                f"{row[key]:.1e}" for key in ("difference", "halfspace_error", "finite_element_error", "budget")
+            ]
+
+
+def test_a_solver_less_accurate_than_the_comparison_is_inconclusive_whatever_it_hits():
+    """A hundred times less: of all rows that it has a part in, only the contact radius stays within its budget."""
+    case = crosscheck.compare(
+        Scene(tabor=2.0), rtol=1e-5, operators=(), solve=lambda scene, **_: fem_adhesion.trace(scene, rtol=1e-3)
+    )
+    assert case.verdict == "inconclusive"
+    verdicts = {row.quantity: row.verdict for row in case.rows}
+    assert verdicts.pop("zero_load contact_radius") == "agree"
+    assert len(verdicts) == 13
+    assert set(verdicts.values()) == {"inconclusive"}
+
+
+# --- verdicts ---
+
+VALUE = {"agree": 1.5, "disagree": 2.5, "inconclusive": 3.5}
+
+
+def _made_up(verdict):
+    """A row whose numbers are all distinct, with the verdict given."""
+    error, budget = (0.25, 0.125) if verdict == "inconclusive" else (0.03125, 0.0625)
+    value = VALUE[verdict]
+    difference = 0.5 if verdict == "disagree" else 0.015625
+    hs, fe = Estimate(value, error), Estimate(value + difference, error / 4)
+    return Row(f"made up to {verdict}", "eps", hs, fe, difference, budget)
+
+
+@pytest.mark.parametrize("verdict", VALUE)
+def test_a_row_has_the_verdict_of_its_numbers(verdict):
+    assert _made_up(verdict).verdict == verdict
+
+
+def test_agreement_is_within_the_estimates_and_they_within_the_budget_to_the_last_bit():
+    def verdict(difference, error, budget):
+        return Row("load", "eps", Estimate(1.0, error / 2), Estimate(1.0, error / 2), difference, budget).verdict
+
+    assert verdict(1.0, 1.0, 1.0) == "agree"
+    assert verdict(np.nextafter(1.0, 2), 1.0, 1.0) == "disagree"
+    assert verdict(1.0, 1.0, np.nextafter(1.0, 0)) == "inconclusive"
+    assert verdict(np.nan, 1.0, 1.0) == verdict(1.0, np.nan, 1.0) == "disagree"
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "overall", "code"),
+    [
+        (("agree", "agree"), "agree", 0),
+        (("agree", "inconclusive"), "inconclusive", 1),
+        (("inconclusive", "agree", "disagree"), "disagree", 1),
+    ],
+)
+def test_the_worst_verdict_reaches_table_record_and_exit_code(verdicts, overall, code, monkeypatch, tmp_path, capsys):
+    solved = fem_adhesion.trace(Scene(tabor=0.5), rtol=1e-1)
+    rows = tuple(_made_up(verdict) for verdict in verdicts)
+    case = Case(Scene(tabor=0.5), halfspace.trace(0.5, rtol=1e-1), solved, rows)
+    monkeypatch.setattr(crosscheck, "run", lambda *_, **__: iter([case]))
+    assert case.verdict == overall
+    assert cli.main(["compare", "--tabor", "0.5", "--json", str(tmp_path / "made-up.json")]) == code
+    out = capsys.readouterr().out
+    assert out.rstrip().endswith(f"verdict: {overall}")
+    assert f"tabor 0.5, poisson 0.3: {overall}" in out
+    (table,) = tables_in(out)
+    record = json.loads((tmp_path / "made-up.json").read_text())
+    assert record["verdict"] == record["cases"][0]["verdict"] == overall
+    written = record["cases"][0]["comparison"]
+    for verdict, row, shown, kept in zip(verdicts, rows, table, written, strict=True):
+        assert shown["quantity"] == kept["quantity"] == row.quantity
+        assert shown["verdict"] == kept["verdict"] == verdict
+        assert (kept["halfspace"], kept["finite_element"]) == (row.halfspace.value, row.finite_element.value)
+        assert (kept["halfspace_error"], kept["finite_element_error"]) == (
+            row.halfspace.error,
+            row.finite_element.error,
+        )
+        assert (kept["difference"], kept["budget"], kept["unit"]) == (row.difference, row.budget, "eps")
+        assert float(shown["half-space"]) == pytest.approx(row.halfspace.value, abs=0.05)
+        assert float(shown["finite elements"]) == pytest.approx(row.finite_element.value, abs=0.05)
+        assert shown["error (hs)"] == f"{row.halfspace.error:.1e}"
+        assert shown["error (fe)"] == f"{row.finite_element.error:.1e}"
+        assert shown["difference"] == f"{row.difference:.1e}"
+        assert shown["budget"] == f"{row.budget:.1e}"
+
+
+def test_a_verdict_has_its_colour():
+    """Green means agreement and nothing else does."""
+    case = Case(Scene(tabor=0.5), halfspace.trace(0.5, rtol=1e-1), halfspace.trace(0.5, rtol=1e-1), ())
+    for verdict, style in (("agree", "green"), ("disagree", "bold red"), ("inconclusive", "yellow")):
+        table = crosscheck_table(replace(case, rows=(_made_up("agree"), _made_up(verdict))))
+        assert table.title == f"tabor 0.5, poisson 0.3: [{style}]{verdict}[/]"
+        assert [row.style for row in table.rows] == [None, None if verdict == "agree" else style]
 
 
 def test_a_missing_event_disagrees():

@@ -49,3 +49,16 @@ def _run(line, directory):
     command = [str(BIN / "fem-adhesion"), *shlex.split(line)[1:]]
     done = subprocess.run(command, cwd=directory, env=environment, capture_output=True, text=True)
     return Run(line, done.returncode, done.stdout, done.stderr, str(directory))
+
+
+def tables_in(text):
+    """Tables drawn in a text, each as a list of lines: cells by the header above them."""
+    found = []
+    for line in text.splitlines():
+        if line.startswith("┃"):
+            header = [cell.strip() for cell in line.strip("┃").split("┃")]
+            found.append([])
+        elif line.startswith("│"):
+            cells = [cell.strip() for cell in line.strip("│").split("│")]
+            found[-1].append(dict(zip(header, cells, strict=True)))
+    return found
