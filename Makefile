@@ -1,4 +1,5 @@
 # Two commands do all the set-up themselves: `make compare` and `make test`. They need Python 3.11 or later and make.
+# To use an environment that is there already, give BIN=its/bin, and VENV=a directory with the stamps installed{,-dev}.
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
@@ -21,11 +22,11 @@ check: $(VENV)/installed-dev ## check format, style and types
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 
-bench: $(VENV)/installed-dev ## time the solvers beside a yardstick
-	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-enable --benchmark-columns=min,median,rounds -q
+bench: $(VENV)/installed-dev ## time the solvers beside a yardstick (four minutes; QUICK=1: half a minute)
+	QUICK=$(QUICK) $(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-enable --benchmark-columns=min,median,rounds -q
 
-honesty: $(VENV)/installed-dev ## check all error estimates against tighter solutions, over a fine net (five minutes)
-	HONESTY=1 $(BIN)/python -m pytest tests/test_honesty.py -k estimates -s
+honesty: $(VENV)/installed-dev ## check all error estimates against tighter solutions, over a fine net (five minutes; QUICK=1: half a minute)
+	HONESTY=$(if $(QUICK),quick,full) $(BIN)/python -m pytest tests/test_honesty.py -k estimates -s
 
 clean: ## remove the environment and all caches
 	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

@@ -99,6 +99,23 @@ def test_errors_are_small_and_positive(path):
     assert 0 < found.jump_on.take_off.approach_error < 1e-5
 
 
+@pytest.mark.parametrize("rtol", [1e-2, 1e-4])
+@pytest.mark.parametrize(("tabor", "stiffness"), [(0.75, 0.5), (2.0, math.inf), (8.0, 3.0)])
+def test_the_error_of_an_energy_is_its_change_from_the_curves_grid_to_the_finest(tabor, stiffness, rtol):
+    """And holds the truth, as another curve gives it that is four decades tighter."""
+    path, truth = halfspace.trace(tabor, rtol=rtol), cycle(halfspace.trace(tabor, rtol=1e-4 * rtol), stiffness)
+    found, rough = cycle(path, stiffness), jumps(path.segments, 1 / stiffness)
+    for jump, before, known in zip(
+        (found.jump_on, found.jump_off), rough, (truth.jump_on, truth.jump_off), strict=True
+    ):
+        change = abs(jump.energy.value - before.energy(1 / stiffness))
+        assert jump.energy.error == pytest.approx(change, rel=1e-6, abs=2e-11 * (1 + jump.energy.value))
+        assert abs(jump.energy.value - known.energy.value) <= jump.energy.error
+    assert found.energy_lost.value == found.jump_on.energy.value + found.jump_off.energy.value
+    assert found.energy_lost.error == found.jump_on.energy.error + found.jump_off.energy.error
+    assert abs(found.energy_lost.value - truth.energy_lost.value) <= found.energy_lost.error
+
+
 @pytest.mark.parametrize("stiffness", [0.0, -1.0, float("nan")])
 def test_an_apparatus_has_a_positive_stiffness(path, stiffness):
     with pytest.raises(ValueError, match="outside 0 < stiffness; a dead load jumps off at pull_off"):
