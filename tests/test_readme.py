@@ -1,46 +1,212 @@
-"""Every command that the README shows is one, and those that finish in seconds do."""
+"""Every command that the README shows is run whole, as it stands there or in its quick form, and its files are opened.
 
+What is in the files is read back by the tests of each command, of the same run.
+"""
+
+import csv
 import itertools
+import json
 import re
 import shlex
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
+import test_make
+from PIL import Image
+from whole_runs import ROOT, tables_in
 
 from fem_adhesion import cli
+from fem_adhesion.studies import hard_cases
 
-README = (Path(__file__).parents[1] / "README.md").read_text()
-BLOCKS = re.findall(r"^    (fem-adhesion (?:[^\n\\]|\\\n)*)", README, re.M)
-COMMANDS = list(dict.fromkeys(re.sub(r"\s*\\\n\s*", " ", block) for block in BLOCKS))
-LONG = ("speed", "greenwood", "finite-sphere", "hard", "report")  # their own tests run them, smaller
+README = (ROOT / "README.md").read_text()
+
+ASSESS = (
+    "fem-adhesion assess --radius 100nm --modulus 70GPa --poisson 0.17 --work-of-adhesion 0.1J/m^2 --spacing 0.3nm "
+    "--stiffness 0.2N/m"
+)
+MAKE, INSTALL = "make", "install"  # run by test_make; what the environment of the tests was installed with
+
+# How each is run: as another line, which may only add --quick; by test_make; by what installs the tests' environment.
+LINES = {
+    "fem-adhesion curve --tabor 2 --plot curve.png": "fem-adhesion curve --tabor 2 --plot curve.png",
+    "make compare": MAKE,
+    "make test": MAKE,
+    "make help": MAKE,
+    "make check": MAKE,
+    "make bench": MAKE,
+    "make honesty": MAKE,
+    "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json": (
+        "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json"
+    ),
+    "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve": (
+        "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve"
+    ),
+    "pip install 'fem-adhesion[view]'": INSTALL,
+    "fem-adhesion report --out report.html": "fem-adhesion report --out report.html",
+    "fem-adhesion speed --out speed --quick": "fem-adhesion speed --out speed --quick",
+    "fem-adhesion greenwood --out greenwood": "fem-adhesion greenwood --out greenwood --quick",
+    f"{ASSESS} --plot silica.png": f"{ASSESS} --plot silica.png",
+    "fem-adhesion finite-sphere --out sphere --quick": "fem-adhesion finite-sphere --out sphere --quick",
+    "fem-adhesion hard --out hard": "fem-adhesion hard --out hard",
+    "fem-adhesion curve --tabor 2 --render body.png": "fem-adhesion curve --tabor 2 --render body.png",
+    "fem-adhesion finite-sphere --out sphere": "fem-adhesion finite-sphere --out sphere --quick",
+    "fem-adhesion speed --out speed": "fem-adhesion speed --out speed --quick",
+    f"{ASSESS} --plot assess.png": f"{ASSESS} --plot silica.png",  # the same but for the name of the picture
+}
+RUN = tuple(dict.fromkeys(run for run in LINES.values() if run not in (MAKE, INSTALL)))
+
+
+def _joined(text):
+    """A text with the lines that a backslash continues made one."""
+    return re.sub(r"\s*\\\n\s*", " ", text)
+
+
+def _shown():
+    """Every command line of the README: indented blocks, and commands within the text."""
+    prose = re.sub(r"```.*?```", "", README, flags=re.S)
+    blocks = [line.split("  #")[0].strip() for line in re.findall(r"^    (\S.*)$", _joined(prose), re.M)]
+    inline = [" ".join(code.split()) for code in re.findall(r"`([^`]+)`", prose)]
+    return list(dict.fromkeys([*blocks, *(code for code in inline if re.match(r"(make|pip|fem-adhesion) ", code))]))
+
+
+def test_every_command_line_of_the_readme_is_run():
+    assert sorted(_shown()) == sorted(LINES)
+
+
+def test_a_line_is_run_as_it_stands_or_in_its_quick_form():
+    for line, run in LINES.items():
+        if run == MAKE:
+            assert line.removeprefix("make ") in test_make.TARGETS
+        elif run != INSTALL:
+            assert run.replace("silica.png", "assess.png") in (
+                line.replace("silica.png", "assess.png"),
+                f"{line} --quick",
+            )
 
 
 def test_the_readme_shows_every_command():
-    shown = {shlex.split(command)[1] for command in COMMANDS}
+    shown = {shlex.split(line)[1] for line in LINES if line.startswith("fem-adhesion")}
     names = {command.__name__.rsplit(".", 1)[1].replace("_", "-") for command in cli.COMMANDS}
     assert shown == names
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_a_command_of_the_readme_runs(command, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    arguments = shlex.split(command)[1:]
-    options = cli.make_parser().parse_args(arguments)
-    if arguments[0] in LONG:
-        assert callable(options.run)
-        return
-    assert cli.main(arguments) == 0
-    assert capsys.readouterr().out
-    asked = [name for flag, name in itertools.pairwise(arguments) if flag in FILES]
-    assert all((tmp_path / name).exists() for name in asked)
+def test_other_blocks_are_python_and_run_as_doctests():
+    blocks = re.findall(r"```(\w*)\n(.*?)```", README, re.S)
+    assert len(blocks) >= 3
+    for language, text in blocks:
+        assert language == "python"
+        assert text.startswith(">>> ")
+    settings = (ROOT / "pyproject.toml").read_text()
+    assert "--doctest-glob=README.md" in settings
+    assert 'testpaths = ["tests", "README.md"]' in settings
 
 
-FILES = ("--plot", "--json", "--csv", "--vtk", "--render", "--movie")
+# --- what the commands leave ---
+
+
+@pytest.mark.parametrize("line", RUN)
+def test_a_command_of_the_readme_runs_to_its_end(line, whole):
+    run = whole(line)
+    assert run.code == 0, run.err
+    assert run.out.strip()
+    assert "Traceback" not in run.err
+    assert "Warning" not in run.err
+    arguments = shlex.split(line)
+    asked = [argument for flag, argument in itertools.pairwise(arguments) if flag in FILES]
+    left = [file for file in Path(run.directory).rglob("*") if file.is_file()]
+    for name in asked:
+        assert (run / name).exists()
+    for file in left:
+        OPENED[file.suffix](file)
+    assert bool(left) == bool(asked)
+    assert {file.relative_to(run.directory).parts[0] for file in left} == set(asked)
+
+
+FILES = ("--plot", "--json", "--csv", "--vtk", "--render", "--movie", "--out")
+
+
+def _open_json(file):
+    def refuse(constant):
+        raise ValueError(f"{constant} is no JSON")
+
+    assert json.loads(file.read_text(), parse_constant=refuse)
+
+
+def _open_csv(file):
+    with file.open() as lines:
+        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    assert rows
+    for row in rows:
+        assert None not in row, "a line longer than the header"
+        assert None not in row.values(), "a line shorter than the header"
+        assert "nan" not in row.values()
+
+
+def _open_picture(file):
+    with Image.open(file) as picture:
+        assert min(picture.size) > 200
+        assert len(picture.convert("RGB").resize((64, 64)).getcolors(4096)) > 10
+
+
+def _open_page(file):
+    text = file.read_text()
+    assert text.lstrip().lower().startswith("<!doctype html>")
+    assert text.rstrip().endswith("</html>")
+    assert "{{" not in text
+
+
+OPENED = {
+    ".json": _open_json,
+    ".jsonl": lambda file: [json.loads(line) for line in file.read_text().splitlines()],
+    ".csv": _open_csv,
+    ".png": _open_picture,
+    ".html": _open_page,
+    **dict.fromkeys((".svg", ".vtu", ".vtp", ".vtk", ".pvd"), ElementTree.parse),
+}
+
+
+def test_the_report_takes_what_the_other_commands_of_the_readme_left(whole, tmp_path, capsys):
+    lines = {shlex.split(run)[1]: run for run in RUN if "--out" in run}
+    made = {name: whole(lines[name]) for name in ("speed", "hard", "greenwood", "finite-sphere")}
+    given = [f"--{name}={run / shlex.split(run.line)[3]}" for name, run in made.items()]
+    page = tmp_path / "report.html"
+    assert cli.main(["report", "--out", str(page), "--tabor", "0.5", "--rtol", "1e-2", "--walk", "0.5", *given]) == 0
+    assert "verdict: agree" in capsys.readouterr().out
+    text = page.read_text()
+    for name in made:
+        assert f"--{name} " not in text, "a section that says how to compute it"
+    for row in json.loads((made["hard"] / "hard/hard.json").read_text())["cases"]:
+        assert row["name"].replace("<", "&lt;") in text
+
+
+# --- what the README says of them ---
+
+
+def test_the_number_of_hard_cases_is_theirs():
+    assert f"runs {len(hard_cases.cases())} hard cases" in README
+
+
+def test_the_table_of_the_readme_is_what_make_compare_prints(whole):
+    """Values to the digits that both show; differences and errors, which rounding moves, to their magnitude."""
+    (shown,) = re.findall(r"^\| quantity \| half-space \|.*?\n\|[-:|]+\n(.*?)\n\n", README, re.M | re.S)
+    tables = tables_in(whole(test_make.COMPARE).out)
+    printed = {row["quantity"]: row for row in tables[3]}  # of the Tabor parameter 2
+    lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in shown.splitlines()]
+    assert len(lines) == 5
+    for quantity, hs, fe, difference, hs_error, fe_error, budget, verdict in lines:
+        row = printed[quantity]
+        assert float(hs) == pytest.approx(float(row["half-space"]), abs=2 * float(hs_error))
+        assert float(fe) == pytest.approx(float(row["finite elements"]), abs=2 * float(fe_error))
+        assert float(hs_error) == pytest.approx(float(row["error (hs)"]), rel=0.5)
+        assert float(fe_error) == pytest.approx(float(row["error (fe)"]), rel=0.5)
+        assert float(difference) <= float(hs_error) + float(fe_error)
+        assert (budget, verdict) == (row["budget"], row["verdict"])
 
 
 @pytest.mark.parametrize("picture", re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README))
 def test_a_picture_of_the_readme_is_there(picture):
-    assert (Path(__file__).parents[1] / picture).stat().st_size > 10_000
+    assert (ROOT / picture).stat().st_size > 10_000
 
 
 @pytest.mark.parametrize("command", cli.COMMANDS, ids=lambda command: command.__name__)

@@ -1,0 +1,124 @@
+"""Every target of the Makefile does what `make help` says, in the environment that the tests run in.
+
+No target installs anything here: the stamps that say that the environment is complete are given.
+"""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+from whole_runs import BIN, ROOT, tables_in
+
+MAKEFILE = (ROOT / "Makefile").read_text()
+
+# How each target is run; `test` is what runs this, and `clean` works on a copy.
+COMPARE = "make compare"
+TARGETS = {
+    "help": "make help",
+    "compare": COMPARE,
+    "test": "make --dry-run test",
+    "check": "make check",
+    "bench": "make bench QUICK=1",
+    "honesty": "make honesty QUICK=1",
+    "clean": "make clean",
+}
+
+
+@pytest.fixture(scope="module")
+def made(whole):
+    return lambda target: whole(TARGETS[target])
+
+
+def test_every_target_is_run():
+    (phony,) = re.findall(r"^\.PHONY: (.*)$", MAKEFILE, re.M)
+    assert sorted(phony.split()) == sorted(TARGETS)
+
+
+def test_help_lists_the_targets_with_what_they_do(made):
+    run = made("help")
+    assert run.code == 0
+    listed = dict(line.split(maxsplit=1) for line in run.out.splitlines())
+    assert listed.keys() == TARGETS.keys()
+    assert listed["check"] == "check format, style and types"
+
+
+def test_compare_prints_six_tables_and_agrees(made):
+    run = made("compare")
+    assert run.code == 0, run.err
+    titles = [line.strip() for line in run.out.splitlines() if line.startswith("tabor")]
+    assert titles == [f"tabor {tabor}, poisson 0.3: agree" for tabor in ("0.05", "0.5", "1", "2", "3", "5")]
+    assert run.out.rstrip().endswith("verdict: agree")
+    for table in tables_in(run.out):
+        for row in table:
+            assert row["verdict"] == "agree"
+            error = float(row["error (hs)"]) + float(row["error (fe)"])
+            assert float(row["difference"]) <= error * 1.1  # two digits are printed
+            assert error <= float(row["budget"]) * 1.1
+
+
+def test_check_finds_nothing(made):
+    run = made("check")
+    assert run.code == 0, run.out + run.err
+    for tool in ("ruff format --check .", "ruff check .", "mypy"):
+        assert f"{BIN}/{tool}" in run.out
+    assert "All checks passed!" in run.out
+    assert re.search(r"Success: no issues found in \d+ source files", run.out)
+
+
+def test_test_runs_all_tests_on_all_processors(made):
+    """A rehearsal: the real one is what runs this."""
+    run = made("test")
+    assert run.code == 0
+    assert run.out.split() == [f"{BIN}/python", "-m", "pytest", "--numprocesses", "auto", "--dist", "loadfile"]
+
+
+def test_bench_times_every_solver_beside_the_yardstick(made):
+    run = made("bench")
+    assert run.code == 0, run.out + run.err
+    (section,) = re.findall(r"medians, in seconds and in yardsticks.*?\n(.*?)\n\n", run.out, re.S)
+    lines = [re.fullmatch(r"(\S+) +([\d.]+) s +(\d+)", line).groups() for line in section.splitlines()]
+    medians = {name.split("[")[0]: (float(seconds), int(yardsticks)) for name, seconds, yardsticks in lines}
+    tests = (ROOT / "tests/benchmarks/test_wall_times.py").read_text()
+    assert sorted(medians) == sorted(re.findall(r"^def (test_\w+)", tests, re.M))
+    assert medians["test_yardstick_dgesv_of_200"][1] == 1
+    for seconds, yardsticks in medians.values():
+        assert seconds > 0
+        assert yardsticks >= 1
+    assert re.search(r"peak memory of one process: \d+ MiB", run.out)
+
+
+def test_honesty_judges_every_kind_of_estimate_of_both_solvers(made):
+    run = made("honesty")
+    assert run.code == 0, run.out + run.err
+    judged = re.findall(r"(half-space|finite elements), ([\w ]+): (\d+) numbers, [\d.]+% within the estimate", run.out)
+    assert [(solver, kind) for solver, kind, _ in judged] == [
+        (solver, kind)
+        for solver in ("half-space", "finite elements")
+        for kind in ("loads and approaches", "gaps and radii", "energies")
+    ]
+    assert all(int(count) >= 4 for _, _, count in judged)
+
+
+def test_clean_removes_what_was_made_and_nothing_else(tmp_path):
+    (tmp_path / "Makefile").write_text(MAKEFILE)
+    for name in (".venv/bin", "build/lib", "fem_adhesion.egg-info", ".mypy_cache", "halfspace", "meshes"):
+        (tmp_path / name).mkdir(parents=True)
+        (tmp_path / name / "file").touch()
+    subprocess.run(["make", "clean"], cwd=tmp_path, check=True, capture_output=True)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["Makefile", "halfspace", "meshes"]
+
+
+def test_the_environment_of_a_target_is_made_once_and_from_what_is_pinned():
+    """Rehearsed in a directory without one; a second run finds the stamps and makes nothing."""
+    rehearsed = subprocess.run(
+        ["make", "--dry-run", "compare", "VENV=no-such-environment"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.splitlines()
+    assert rehearsed[0].endswith("-m venv no-such-environment")
+    assert "--constraint constraints.txt --editable ." in rehearsed[1]
+    assert rehearsed[-1] == "no-such-environment/bin/fem-adhesion compare"
+    assert not Path(ROOT / "no-such-environment").exists()
