@@ -162,6 +162,7 @@ OPENED = {
     ".csv": _open_csv,
     ".png": _open_picture,
     ".html": _open_page,
+    ".md": lambda file: file.read_text().strip() or pytest.fail("an empty page"),
     **dict.fromkeys((".svg", ".vtu", ".vtp", ".vtk", ".pvd"), ElementTree.parse),
 }
 
