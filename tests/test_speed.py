@@ -1,41 +1,92 @@
-"""The speed study on a few small rungs, its figures of merit on made-up data, and the report as a reader finds it."""
+"""The speed study: its quick form through the command line, figures of merit on made-up data, and absurd results."""
 
+import contextlib
 import csv
 import dataclasses
+import io
 import math
+import re
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from matplotlib import rc_context
 from numpy.polynomial.legendre import leggauss
 
+import fem_adhesion
 import halfspace
-from fem_adhesion.output import speed_report
+from fem_adhesion import cli
+from fem_adhesion.output import speed_plots, speed_report
 from fem_adhesion.output.files import directory_written_aside
+from fem_adhesion.scene import Scene
 from fem_adhesion.studies import speed
 from fem_adhesion.studies.element_methods import element_methods
-from fem_adhesion.studies.halfspace_methods import halfspace_methods
-from fem_adhesion.studies.methods import QUANTITIES
+from fem_adhesion.studies.halfspace_methods import MOST_NODES, _affordable, halfspace_methods
+from fem_adhesion.studies.methods import QUANTITIES, Method, Solved, Step
 from fem_adhesion.studies.speed import measure
-from fem_adhesion.studies.speed_result import CONVERGED, Rung, best, cheapest, pareto_front, slope
+from fem_adhesion.studies.speed_result import Rung, SpeedStudy, Truth, best, cheapest, pareto_front, slope
 from halfspace import newton
-from halfspace.curve import transfer
+from halfspace.curve import Estimate, transfer
 from halfspace.devices import cycle
+from halfspace.errors import GridTooCoarse, InputError, NotConverged
 
 METHODS = [*halfspace_methods(), *element_methods()]
-SLOW = {"Greenwood's iteration", "FE P2, monolithic", "FE hp, monolithic"}
+PREFIX = {"half-space": "", "finite elements": "FE "}
 FILES = {"speed.csv", "speed.md"} | {f"{q}.{suffix}" for q in QUANTITIES for suffix in ("svg", "png")}
+TRUE = {"pull_off": -5.24854818839, "jump_on": -1.62921671169, "hysteresis": 0.2507086026}  # at a Tabor parameter of 1
+SIZES = {"pull_off": 5.24854818839, "jump_on": 2.62921671169, "hysteresis": 0.2507086026}
+REACHED = {  # best relative error of the pull-off load on the quick ladder, at most
+    "simple relaxation": 1e-3,
+    "Greenwood's iteration": 3e-3,
+    "uniform bands": 1e-3,
+    "uniform triangles": 1e-3,
+    "graded triangles": 1e-4,
+    "panels, fixed grid": 2e-6,
+    "adaptive": 1e-9,
+    "FE P1": 3e-3,
+    "FE P2": 1e-4,
+    "FE P3": 2e-5,
+    "FE Q2": 1e-4,
+    "FE P1, clamped": 3e-3,
+    "FE P2, clamped": 1e-4,
+    "FE P2, monolithic": 1e-3,
+    "FE hp": 1e-8,
+    "FE hp, clamped": 1e-5,
+    "FE hp, monolithic": 1e-3,
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """What one quick run left."""
+
+    code: int
+    printed: str
+    out: object
+    study: SpeedStudy
 
 
 @pytest.fixture(scope="module")
-def study():
-    """Three rungs at most of every method that is quick about them."""
-    small = [dataclasses.replace(m, steps=m.steps[:3]) for m in METHODS if m.name not in SLOW]
-    return measure(1.0, quick=True, methods=small)
+def ran(tmp_path_factory):
+    """Every method on its quick ladder, through the command line."""
+    kept, out, printed = [], tmp_path_factory.mktemp("speed") / "out", io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(printed):
+        measured = speed.measure
+        patch.setattr(speed, "measure", lambda *a, **k: kept.append(measured(*a, **k)) or kept[-1])
+        code = cli.main(["speed", "--out", str(out), "--quick"])
+    return Run(code, printed.getvalue(), out, kept[0])
 
 
-def rung(seconds, error, method="some"):
-    return Rung(method, "", CONVERGED, seconds, 1, 1.0, {"pull_off": error})
+@pytest.fixture(scope="module")
+def rows(ran):
+    return list(csv.DictReader((ran.out / "speed.csv").read_text().splitlines()))
+
+
+def rung(seconds, error, method="some", **more):
+    return Rung(method, "", "converged", seconds, "", 1, 1.0, {"pull_off": error}, **more)
+
+
+FAILED = Rung("some", "", "failed", 0.1, "on purpose")
 
 
 # --- the energy lost in a cycle ---
@@ -77,55 +128,170 @@ def test_no_energy_is_lost_without_jumps():
     assert cycle(halfspace.trace(0.5, rtol=1e-3)) is None
 
 
-# --- the study ---
+# --- every method, as a user runs it ---
 
 
-def test_every_method_reaches_a_result_and_errors_fall_up_the_ladder(study):
-    for method in study.methods:
-        errors = [r.error("pull_off") for r in study.of(method.name) if r.converged]
-        assert errors, method.name
-        assert errors[-1] <= errors[0], method.name
-    assert all(r.seconds > 0 and r.unknowns > 0 and r.worst_error < 1 for r in study.rungs if r.converged)
-    assert study.yardstick > 0
+def test_the_quick_run_ends_well_and_its_files_are_there(ran):
+    assert ran.code == 0
+    assert {file.name for file in ran.out.iterdir()} == FILES
+    assert all(file.stat().st_size > 1000 for file in ran.out.iterdir())
+    assert ran.printed == (ran.out / "speed.md").read_text()
 
 
-def test_a_grid_too_coarse_is_recorded_with_its_reason(study):
-    coarse = study.of("uniform bands")[0]
-    assert "grid spacing" in coarse.outcome
-    assert not coarse.converged
-    assert coarse.errors == {}
+def test_the_rungs_climbed_are_those_of_the_ladders(rows):
+    """The same on every machine: no rung is left out since another one took long."""
+    assert [(row["method"], row["setting"]) for row in rows] == [
+        (method.name, step.setting) for method in METHODS for step in method.steps[: method.quick]
+    ]
 
 
-def test_a_method_gives_only_what_it_can(study):
-    relaxed = [r for r in study.of("simple relaxation") if r.converged]
-    assert {tuple(r.errors) for r in relaxed} == {("pull_off",)}
-    assert all(tuple(r.errors) == QUANTITIES for r in study.of("adaptive") if r.converged)
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
+def test_each_method_is_as_accurate_as_it_is_known_to_be(method, rows):
+    solved = [r for r in rows if r["method"] == method.name and r["outcome"] == "converged"]
+    errors = [float(r["pull_off_error"]) for r in solved]
+    assert min(errors) < REACHED[method.name]
+    assert errors[-1] <= errors[0]
+    assert all(float(r["seconds"]) > 0 and int(r["unknowns"]) > 20 for r in solved)
+    assert [int(r["unknowns"]) for r in solved] == sorted(int(r["unknowns"]) for r in solved)
+
+
+def test_every_method_is_known():
+    assert [method.name for method in METHODS] == list(REACHED)
+    assert [PREFIX[m.family] + m.basis + (f", {m.variant}" if m.variant else "") for m in METHODS] == list(REACHED)
+
+
+def test_the_best_of_each_family_finds_the_known_values(rows):
+    """The table's errors are differences from values known otherwise, under the right name."""
+    for method, asked in (("adaptive", lambda t: halfspace.trace(1.0, rtol=t)), ("FE hp", fe_path)):
+        row = next(r for r in rows if r["method"] == method and r["setting"] == "rtol=1e-03")
+        path = asked(1e-3)
+        found = {"pull_off": path.event("pull_off").load, "jump_on": path.event("jump_on").approach}
+        found["hysteresis"] = cycle(path).energy_lost.value
+        for quantity, value in found.items():
+            error = abs(value - TRUE[quantity]) / SIZES[quantity]
+            assert float(row[f"{quantity}_error"]) == pytest.approx(error, rel=0.01, abs=2e-10), quantity
+
+
+def fe_path(rtol):
+    return fem_adhesion.trace(Scene(1.0, 0.3), rtol=rtol)
+
+
+def test_clamping_the_far_boundary_tells_and_solving_whole_does_not(rows):
+    """A clamped box is another body; the monolithic solver finds what the condensed one finds on the same mesh."""
+    of = {(r["method"], r["setting"]): r for r in rows}
+    free, clamped, whole = (of[name, "f=0.6 L=16"] for name in ("FE P2", "FE P2, clamped", "FE P2, monolithic"))
+    assert float(clamped["jump_on_error"]) > 100 * float(free["jump_on_error"])
+    for quantity in QUANTITIES:
+        assert float(whole[f"{quantity}_error"]) == pytest.approx(float(free[f"{quantity}_error"]), rel=1e-3, abs=0)
+
+
+def test_a_grid_too_coarse_is_recorded_with_its_reason(rows):
+    coarse = next(r for r in rows if r["method"] == "uniform bands")
+    assert coarse["outcome"] == "too coarse"
+    assert coarse["reason"].startswith("grid spacing 0.2")
+    assert {coarse[key] for key in ("unknowns", "pull_off_error", "jump_on_error", "hysteresis_error")} == {""}
+    assert all(bool(r["reason"]) == (r["outcome"] != "converged") for r in rows)
+
+
+def test_a_method_gives_only_what_it_can(rows):
+    for r in rows:
+        if r["outcome"] == "converged":
+            given = {q for q in QUANTITIES if r[f"{q}_error"]}
+            swept = r["method"] in ("simple relaxation", "Greenwood's iteration")
+            assert given == ({"pull_off"} if swept else set(QUANTITIES)), r
+
+
+def test_each_family_is_judged_by_the_other(ran, rows):
+    """Each row carries the uncertainty of the other family's solution."""
+    for family, judge in (("half-space", "finite elements"), ("finite elements", "half-space")):
+        assert ran.study.truths[family].family == judge
+        names = {m.name for m in METHODS if m.family == family}
+        values = ran.study.truths[family].values
+        for row in (r for r in rows if r["method"] in names and r["outcome"] == "converged"):
+            for quantity, estimate in values.items():
+                floor = float(row[f"{quantity}_truth_uncertainty"])
+                assert floor == pytest.approx(estimate.error / SIZES[quantity], rel=1e-3, abs=0)
+    ours, theirs = (ran.study.truths[family].values["pull_off"] for family in PREFIX)
+    assert ours.error != theirs.error
+
+
+def test_a_wrong_half_space_is_not_its_own_judge(monkeypatch):
+    """Every half-space solution 1 % off: the half-space is found to be off, and the truths to disagree."""
+    true = halfspace.trace
+
+    def off(tabor, **keywords):
+        path = true(tabor, **keywords)
+        wrong = dataclasses.replace(path.events["pull_off"], load=1.01 * path.events["pull_off"].load)
+        return dataclasses.replace(path, events={**path.events, "pull_off": wrong})
+
+    monkeypatch.setattr(halfspace, "trace", off)
+    monkeypatch.setattr(speed, "TIGHTEST", 1e-5)
+    adaptive = next(m for m in METHODS if m.name == "adaptive")
+    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)])
+    assert found.rungs[0].error("pull_off") == pytest.approx(0.01, rel=1e-2)
+    assert any("the truths disagree in pull_off" in trouble for trouble in found.troubles())
 
 
 def test_no_jumps_below_the_critical_tabor_parameter():
     adaptive = next(m for m in METHODS if m.name == "adaptive")
-    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, steps=adaptive.steps[:1])])
-    assert set(found.truth) == {"pull_off"}
+    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)])
+    assert found.quantities == ("pull_off",)
     assert set(found.rungs[0].errors) == {"pull_off"}
-
-
-def test_a_method_stops_when_its_share_is_used_up(monkeypatch):
-    monkeypatch.setattr(speed, "SHARE", {True: 0.0})
-    adaptive = next(m for m in METHODS if m.name == "adaptive")
-    first, second = measure(1.0, quick=True, methods=[dataclasses.replace(adaptive, steps=adaptive.steps[:2])]).rungs
-    assert first.converged
-    assert "left out" in second.outcome
-    assert math.isnan(second.seconds)
+    assert list(found.troubles()) == []
 
 
 def test_names_are_unique_and_ladders_long_enough_for_exponents():
     assert len({m.name for m in METHODS}) == len(METHODS)
-    assert all(len(m.steps) >= 3 for m in METHODS)
+    assert all(len(m.steps) >= 3 and 1 <= m.quick <= len(m.steps) for m in METHODS)
+
+
+def counted_method(runs, quick):
+    steps = [Step(str(n), lambda tabor, n=n: runs.append(n) or Solved(n, {"pull_off": tabor})) for n in range(3)]
+    return Method("half-space", "counted", steps, quick)
+
+
+@pytest.mark.parametrize(("quick", "expected"), [(True, [0, 1]), (False, [0, 0, 1, 1, 2])])
+def test_what_is_run_depends_on_the_ladder_alone(monkeypatch, quick, expected):
+    truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)})
+    monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
+    runs = []
+    measure(1.0, quick=quick, methods=[counted_method(runs, 2)])
+    assert runs == expected
+
+
+@pytest.mark.parametrize(
+    ("error", "status"),
+    [(GridTooCoarse, "too coarse"), (InputError, "refused"), (NotConverged, "failed")],
+)
+def test_a_rung_is_recorded_by_how_it_ended(monkeypatch, error, status):
+    def end(_tabor):
+        raise error("on purpose")
+
+    truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)})
+    monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
+    found = measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)]).rungs[0]
+    assert (found.status, found.reason) == (status, "on purpose")
+
+
+def test_a_defect_is_no_outcome(monkeypatch):
+    def end(_tabor):
+        raise ValueError("operands could not be broadcast together")
+
+    truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)})
+    monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
+    with pytest.raises(ValueError, match="broadcast"):
+        measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)])
+
+
+def test_too_many_nodes_are_refused_before_any_work():
+    assert _affordable(np.zeros(MOST_NODES)).size == MOST_NODES
+    with pytest.raises(InputError, match=f"{MOST_NODES + 1} nodes exceed {MOST_NODES} .*; take"):
+        _affordable(np.zeros(MOST_NODES + 1))
 
 
 @pytest.mark.parametrize("tabor", [0.0, 5.0, float("nan")])
 def test_a_tabor_parameter_out_of_range_is_refused(tabor):
-    with pytest.raises(ValueError, match=r"tabor = .* is outside 0\.05 <= tabor <= 2 .*; take 1"):
+    with pytest.raises(InputError, match=r"tabor = .* is outside 0\.05 <= tabor <= 2 .*; take 1"):
         measure(tabor)
 
 
@@ -135,13 +301,12 @@ def test_a_tabor_parameter_out_of_range_is_refused(tabor):
 def test_the_pareto_front():
     fast, mid, slow = rung(1, 1e-1), rung(2, 1e-2), rung(9, 1e-5)
     beaten = [rung(3, 1e-2), rung(2, 5e-2), rung(1, 2e-1), rung(10, 1e-5)]
-    failed = Rung("some", "", "too coarse", 0.1)
-    assert pareto_front([slow, *beaten, failed, fast, mid], "pull_off") == [fast, mid, slow]
-    assert pareto_front([failed], "pull_off") == []
+    assert pareto_front([slow, *beaten, FAILED, fast, mid], "pull_off") == [fast, mid, slow]
+    assert pareto_front([FAILED], "pull_off") == []
 
 
 def test_what_an_accuracy_costs():
-    rungs = [rung(1, 1e-2), rung(5, 1e-4), rung(4, 5e-4), Rung("some", "", "too coarse", 0.1)]
+    rungs = [rung(1, 1e-2), rung(5, 1e-4), rung(4, 5e-4), FAILED]
     assert cheapest(rungs, 1e-3).seconds == 4
     assert cheapest(rungs, 1e-6) is None
     assert best(rungs).seconds == 5
@@ -154,28 +319,213 @@ def test_exponents():
     assert math.isnan(slope(n[:1], n[:1]))
 
 
-# --- the report ---
+def test_errors_that_the_truth_cannot_tell_do_not_bend_the_exponents():
+    made = [Rung("some", "", "converged", 10.0**n, "", 10**n, 1.0, {"pull_off": 10.0**-n}) for n in (1, 2, 3)]
+    floor = {"pull_off": 1e-3}
+    made = [dataclasses.replace(r, floors=floor) for r in (*made, dataclasses.replace(made[-1], seconds=1e9))]
+    assert made_study(rungs=made).exponents("some").time_by_accuracy == pytest.approx(1)
 
 
-def test_the_report_is_complete(study, tmp_path):
-    out = tmp_path / "report"
-    with directory_written_aside(out) as directory:
-        speed_report.write(study, directory)
-    assert {file.name for file in out.iterdir()} == FILES
-    assert all(file.stat().st_size > 1000 for file in out.iterdir())
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["report"]
-    rows = list(csv.DictReader((out / "speed.csv").read_text().splitlines()))
-    assert len(rows) == len(study.rungs)
-    for row, made in zip(rows, study.rungs, strict=True):
-        assert row["method"] == made.method
-        assert row["outcome"] == made.outcome
-        if made.converged:
-            assert float(row["yardsticks"]) == pytest.approx(made.seconds / study.yardstick, rel=0.01, abs=1)
-            assert float(row["pull_off_error"]) == pytest.approx(made.error("pull_off"), rel=1e-3)
-    page = (out / "speed.md").read_text()
-    for needed in ("processor", "numpy", "scikit-fem", "yardstick", "to 1e-03", "to 1e-06", "exponents"):
-        assert needed in page
-    assert all(page.count(f"| {method.name} |") >= 4 for method in study.methods)
+# --- a made-up result is read back from every table and picture ---
+
+
+def made_study(rungs, truths=None, *, quick=False, methods=None):
+    some = methods or (Method("half-space", "some", [Step(str(n), None) for n in range(4)], 2),)
+    estimate = {"pull_off": Estimate(-5.0, 1e-9), "jump_on": Estimate(-1.5, 2e-9), "hysteresis": Estimate(0.25, 3e-9)}
+    default = {
+        "half-space": Truth("finite elements", 1e-9, estimate),
+        "finite elements": Truth("half-space", 1e-8, estimate),
+    }
+    return SpeedStudy(1.0, quick, truths or default, 1e-3, tuple(some), tuple(rungs))
+
+
+@pytest.fixture
+def distinct():
+    """Four rungs of two methods; no two values are the same."""
+    methods = tuple(Method(f, "some", [Step("a", None), Step("b", None)], 1) for f in PREFIX)
+    rungs = []
+    for m, method in enumerate(methods):
+        for n in range(2):
+            at = 2 * m + n
+            errors = {q: (1 + at) * 10.0 ** -(3 + k) for k, q in enumerate(QUANTITIES)}
+            floors = {q: (1 + at) * 10.0 ** -(8 + k) for k, q in enumerate(QUANTITIES)}
+            rungs.append(Rung(method.name, "ab"[n], "converged", 0.5 + at, "", 100 + at, 7.0 + at, errors, floors))
+    return made_study(rungs, methods=methods)
+
+
+def test_each_value_stands_under_its_name_in_the_csv(distinct, tmp_path):
+    speed_report.write(distinct, tmp_path)
+    table = list(csv.DictReader((tmp_path / "speed.csv").read_text().splitlines()))
+    assert len(table) == 4
+    for row, made in zip(table, distinct.rungs, strict=True):
+        assert (row["method"], row["setting"], row["outcome"]) == (made.method, made.setting, "converged")
+        assert int(row["unknowns"]) == made.unknowns
+        assert float(row["seconds"]) == made.seconds
+        assert float(row["yardsticks"]) == made.seconds / 1e-3
+        assert float(row["peak_mebibytes"]) == made.memory
+        for q in QUANTITIES:
+            assert float(row[f"{q}_error"]) == pytest.approx(made.errors[q], rel=1e-3, abs=0)
+            assert float(row[f"{q}_truth_uncertainty"]) == pytest.approx(made.floors[q], rel=1e-3, abs=0)
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_axes_are_labelled_with_what_is_drawn_along_them(distinct, quantity):
+    figure = speed_plots.error_against_time(distinct, quantity)
+    words = {"pull_off": "pull-off load", "jump_on": "jump-on approach", "hysteresis": "energy lost"}
+    assert words[quantity] in figure.axes[0].get_ylabel()
+    assert "error" in figure.axes[0].get_ylabel()
+    assert "Tabor parameter 1" in figure._suptitle.get_text()
+    for axes, family in zip(figure.axes, PREFIX, strict=True):
+        assert axes.get_title().startswith(family + ", judged by the ")
+        assert axes.get_title().endswith(distinct.truths[family].family)
+        assert "time" in axes.get_xlabel()
+        assert axes.get_xlabel().endswith(", s")
+        line = next(x for x in axes.lines if x.get_label() == f"{PREFIX[family]}some")
+        made = distinct.of(f"{PREFIX[family]}some")
+        assert list(line.get_xdata()) == [r.seconds for r in made]
+        assert list(line.get_ydata()) == [r.errors[quantity] for r in made]
+        floor = next(x for x in axes.lines if "uncertainty of the truth" in x.get_label())
+        assert set(floor.get_ydata()) == {distinct.uncertainty(family, quantity)}
+
+
+def section(page, title):
+    lines = page[page.index(f"## {title}") :].split("\n\n")[1].splitlines()
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    return [dict(zip(cells[0], row, strict=True)) for row in cells[2:]]
+
+
+def test_the_page_gives_each_cost_and_each_truth(distinct):
+    text = "\n".join(speed_report.page(distinct))
+    for quantity, error in zip(QUANTITIES, ("1e-03", "1e-04", "1e-05"), strict=True):
+        row = section(text, f"What it costs to have {quantity}")[0]
+        assert row["method"] == "some"
+        assert row["to 1e-03"].startswith("0.50 s = 500 yardsticks (a)")
+        assert row["best reached"] == f"{error} in 0.50 s (a)"
+    row = section(text, "What it costs to have every")[1]
+    assert (row["method"], row["to 1e-03"], row["best reached"]) == ("FE some", "-", "3e-03 in 2.50 s (a)")
+    truth = section(text, "The truths")[1]
+    assert truth["quantity"] == "jump_on"
+    assert truth["unit"] == "eps"
+    assert truth["judge of the half-space: finite elements, rtol 1e-09"] == "-1.5, error 2e-09"
+    assert truth["within both errors"] == "yes"
+
+
+def test_an_error_below_the_truths_uncertainty_is_shown_as_such():
+    hidden = rung(1.0, 2e-9, floors={"pull_off": 2e-9})
+    study = made_study([hidden])
+    assert "<2e-09 in 1.00 s" in "\n".join(speed_report.page(study))
+    axes = speed_plots.error_against_time(study, "pull_off").axes[0]
+    arrows = next(line for line in axes.lines if line.get_label() == "within that uncertainty")
+    assert list(arrows.get_xdata()) == [1.0]
+    told = made_study([rung(1.0, 3e-9, floors={"pull_off": 2e-9})])
+    assert "<" not in "\n".join(speed_report.page(told)).split("What it costs")[1]
+    labels = [line.get_label() for line in speed_plots.error_against_time(told, "pull_off").axes[0].lines]
+    assert "within that uncertainty" not in labels
+
+
+def test_a_legend_names_only_what_is_drawn(ran):
+    for quantity in QUANTITIES:
+        figure = speed_plots.error_against_time(ran.study, quantity)
+        for axes in figure.axes:
+            for text, line in zip(axes.get_legend().get_texts(), axes.get_legend().legend_handles, strict=True):
+                drawn = next(x for x in axes.lines if x.get_label() == text.get_text())
+                assert np.isfinite(drawn.get_ydata()).any(), text
+                assert line.get_color() == drawn.get_color()
+
+
+def test_nothing_is_cut_off_or_overprinted(ran):
+    for quantity in QUANTITIES:
+        with rc_context(speed_plots.LOOK):
+            figure = speed_plots.error_against_time(ran.study, quantity)
+            figure.draw_without_rendering()
+        boxes = [axes.get_tightbbox() for axes in figure.axes]
+        assert all(box.x0 >= 0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0 for box in boxes)
+        assert boxes[0].x1 <= boxes[1].x0
+        assert all(axes.get_window_extent().width > 0.3 * figure.bbox.width for axes in figure.axes)
+
+
+# --- absurd results find absurd sentences, or none ---
+
+
+def test_a_quick_run_says_so(ran):
+    page = (ran.out / "speed.md").read_text()
+    assert "quick run" in page.splitlines()[0]
+    assert "A quick run: 58 of 93 rungs were climbed" in page
+    whole = "\n".join(speed_report.page(made_study([rung(1.0, 1e-3)])))
+    assert "quick" not in whole
+    assert "1 of 4 rungs were climbed, 1 have a result." in whole
+
+
+def judged(method, *statuses):
+    return made_study([Rung("some", str(n), s, 1.0, f"why {n}") for n, s in enumerate(statuses)], methods=[method])
+
+
+SOME = Method("half-space", "some", [Step("a", None)], 1)
+
+
+@pytest.mark.parametrize(
+    ("statuses", "troubles"),
+    [
+        (("too coarse", "converged"), ["some at 1: a result that is not a number"]),
+        (("failed",), ["some at 0: why 0", "some: no rung has a result"]),
+        (("too coarse",), ["some: no rung has a result"]),
+        (("refused",), ["some: no rung has a result"]),
+    ],
+)
+def test_what_failed_that_should_not_have(statuses, troubles):
+    assert list(judged(SOME, *statuses).troubles()) == troubles
+
+
+def test_an_iteration_known_to_diverge_may():
+    assert list(judged(dataclasses.replace(SOME, may_diverge=True), "failed").troubles()) == []
+
+
+def test_a_grid_refused_above_a_coarser_one_that_was_not_is_trouble():
+    good, coarse = rung(1.0, 1e-3), Rung("some", "finer", "too coarse", 1.0, "spacing")
+    assert list(made_study([coarse, good]).troubles()) == []
+    assert list(made_study([good, coarse]).troubles()) == ["some at finer: spacing"]
+
+
+def test_truths_that_disagree_are_told_first():
+    truths = {
+        "half-space": Truth("finite elements", 1e-9, {"pull_off": Estimate(-5.0, 1e-9)}),
+        "finite elements": Truth("half-space", 1e-9, {"pull_off": Estimate(-6.0, 1e-9)}),
+    }
+    page = list(speed_report.page(made_study([rung(1.0, 1e-3)], truths)))
+    assert page[3] == "FAILED where it should not have, 1 times:"
+    assert page[4] == "* the truths disagree in pull_off: -5 and -6"
+    assert section("\n".join(page), "The truths")[0]["within both errors"] == "NO"
+    nan = {family: Truth(family, 1e-9, {"pull_off": Estimate(math.nan, 1e-9)}) for family in PREFIX}
+    assert section("\n".join(speed_report.page(made_study([], nan))), "The truths")[0]["within both errors"] == "NO"
+
+
+def test_a_result_that_is_not_a_number_is_neither_best_nor_cheapest_nor_drawn():
+    absurd = made_study([rung(0.1, math.nan), rung(0.2, math.inf)])
+    text = "\n".join(speed_report.page(absurd))
+    assert section(text, "What it costs to have pull_off")[0]["best reached"] == "-"
+    assert "FAILED" in text
+    lines = speed_plots.error_against_time(absurd, "pull_off").axes[0].lines
+    assert [line.get_label() for line in lines] == ["uncertainty of the truth"]
+
+
+def test_a_failure_that_should_not_be_is_told_first_and_ends_in_1(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(speed, "measure", lambda *_a, **_k: judged(SOME, "failed"))
+    assert cli.main(["speed", "--out", str(tmp_path / "out")]) == 1
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == "2 failed that should not have, the first: some at 0: why 0"
+    page = (tmp_path / "out" / "speed.md").read_text()
+    assert "FAILED where it should not have, 2 times:\n* some at 0: why 0" in page
+
+
+def test_every_number_in_the_pages_own_words_is_computed():
+    """With nothing measured no figure is left but settings: tolerances, the yardstick's size, versions."""
+    page = "\n".join(speed_report.page(made_study([], methods=[SOME])))
+    kept = [line for line in page.splitlines() if not line.startswith("* ") and "judge" not in line]
+    numbers = set(re.findall(r"\d[\d.e+-]*", "\n".join(kept)))
+    assert numbers <= {"1", "0", "1e-03", "1e-06", "0e+00"} | {"-5", "5", "1.5", "0.25", "1e-09", "2e-09", "3e-09"}
+
+
+# --- directories of results ---
 
 
 def test_a_directory_in_use_is_refused_before_any_work(tmp_path):

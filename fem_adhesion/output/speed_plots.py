@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
@@ -35,43 +36,54 @@ FRONT: dict[str, Any] = {
     "zorder": 0,
 }
 FLOOR: dict[str, Any] = {"color": "0.4", "linewidth": 1, "dashes": (1, 3)}
+HIDDEN: dict[str, Any] = {"color": "0.4", "linestyle": "none", "marker": r"$\downarrow$", "markersize": 11}
 LOOK: dict[Any, Any] = {"svg.fonttype": "none", "font.size": 11, "axes.spines.top": False, "axes.spines.right": False}
 
 
 def draw(study: SpeedStudy, directory: Path) -> None:
     """Write a figure for each quantity that the study has, as SVG and PNG."""
     with rc_context(LOOK):
-        for quantity in study.truth:
+        for quantity in study.quantities:
             figure = error_against_time(study, quantity)
             for suffix in ("svg", "png"):
                 figure.savefig(directory / f"{quantity}.{suffix}", dpi=160)
 
 
 def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
-    """Figure of one quantity: a panel for each family, with the Pareto front of both families behind."""
+    """Figure of one quantity: a panel for each family, with the Pareto front of both families behind.
+
+    A method without this quantity has no line and no place in the legend; an arrow downwards hangs on every error that
+    is no more than the uncertainty of the truth.
+    """
     figure = Figure(figsize=(11.5, 7.2), layout="constrained")
-    figure.suptitle(f"{TITLES[quantity]}: error against wall time at Tabor parameter {study.tabor:g}")
+    quick = ", quick run" if study.quick else ""
+    figure.suptitle(f"{TITLES[quantity]}: error against wall time at Tabor parameter {study.tabor:g}{quick}")
     panels = figure.subplots(1, 2, sharex=True, sharey=True)
     for axes, family in zip(panels, FAMILIES, strict=True):
         _draw_front(axes, pareto_front(study.rungs, quantity), quantity)
-        axes.axhline(study.uncertainty(quantity), label="uncertainty of the truth", **FLOOR)
+        axes.axhline(study.uncertainty(family, quantity), label="uncertainty of the truth", **FLOOR)
         for method in study.methods:
             if method.family == family:
                 _draw_method(axes, study, method, quantity)
-        _dress(axes, family)
+        _draw_hidden(axes, study, family, quantity)
+        _dress(axes, f"{family}, judged by the {study.truths[family].family}")
     panels[0].set_ylabel(ERRORS[quantity])
     return figure
 
 
 def _draw_front(axes: Any, front: Sequence[Rung], quantity: str) -> None:
     """A broad grey line behind the points that no other beats in both time and error."""
+    if not front:
+        return
     seconds, errors = [rung.seconds for rung in front], [rung.error(quantity) for rung in front]
     axes.loglog(seconds, errors, label="Pareto front, all methods", drawstyle="steps-post", **FRONT)
 
 
 def _draw_method(axes: Any, study: SpeedStudy, method: Method, quantity: str) -> None:
     """One method's ladder; markers of what departs from the family's usual are hollow."""
-    rungs = [rung for rung in study.of(method.name) if quantity in rung.errors]
+    rungs = [rung for rung in study.of(method.name) if np.isfinite(rung.error(quantity))]
+    if not rungs:
+        return
     colour, marker = _style(study, method)
     axes.loglog(
         [rung.seconds for rung in rungs],
@@ -81,8 +93,17 @@ def _draw_method(axes: Any, study: SpeedStudy, method: Method, quantity: str) ->
         marker=marker,
         markersize=7,
         markerfacecolor="white" if method.variant else colour,
-        label=method.name if rungs else f"{method.name} (gives none)",
+        label=method.name,
     )
+
+
+def _draw_hidden(axes: Any, study: SpeedStudy, family: Family, quantity: str) -> None:
+    """Arrows at the errors that the truth cannot tell."""
+    names = {method.name for method in study.methods if method.family == family}
+    hidden = [rung for rung in study.rungs if rung.method in names and rung.hidden(quantity)]
+    if hidden:
+        places = [rung.seconds for rung in hidden], [0.75 * rung.error(quantity) for rung in hidden]
+        axes.loglog(*places, label="within that uncertainty", **HIDDEN)
 
 
 def _style(study: SpeedStudy, method: Method) -> tuple[str, str]:
@@ -91,8 +112,8 @@ def _style(study: SpeedStudy, method: Method) -> tuple[str, str]:
     return ADAPTIVE.get(method.basis) or STYLES[list(bases).index(method.basis)]
 
 
-def _dress(axes: Any, family: str) -> None:
-    axes.set_title(family)
+def _dress(axes: Any, title: str) -> None:
+    axes.set_title(title)
     axes.set_xlabel("wall time from set-up to events, s")
     axes.grid(True, which="major", color="0.92", linewidth=0.8)
     axes.set_axisbelow(True)

@@ -16,7 +16,7 @@ from fem_adhesion.studies.speed_result import Rung, SpeedStudy, best, cheapest
 TOLERANCES = (1e-3, 1e-6)
 UNITS = {"pull_off": "R dgamma", "jump_on": "eps", "hysteresis": "R dgamma eps"}
 COLUMNS = ("method", "setting", "unknowns", "seconds", "yardsticks", "peak_mebibytes")
-ERROR_COLUMNS = tuple(f"{quantity}_error" for quantity in QUANTITIES)
+ERROR_COLUMNS = tuple(f"{quantity}_{what}" for quantity in QUANTITIES for what in ("error", "truth_uncertainty"))
 
 
 def write(study: SpeedStudy, directory: Path) -> None:
@@ -26,7 +26,7 @@ def write(study: SpeedStudy, directory: Path) -> None:
     """
     with (directory / "speed.csv").open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow([*COLUMNS, *ERROR_COLUMNS, "outcome"])
+        table.writerow([*COLUMNS, *ERROR_COLUMNS, "outcome", "reason"])
         table.writerows(_cells(rung, study.yardstick) for rung in study.rungs)
     (directory / "speed.md").write_text("\n".join(page(study)) + "\n")
     draw(study, directory)
@@ -34,7 +34,11 @@ def write(study: SpeedStudy, directory: Path) -> None:
 
 def _cells(rung: Rung, yardstick: float) -> list[str]:
     """Row of the table; what is not known is left empty."""
-    errors = [_number(rung.error(quantity), "{:.3e}") for quantity in QUANTITIES]
+    errors = [
+        _number(value, "{:.3e}")
+        for quantity in QUANTITIES
+        for value in (rung.error(quantity), rung.floors.get(quantity, math.nan))
+    ]
     return [
         rung.method,
         rung.setting,
@@ -43,7 +47,8 @@ def _cells(rung: Rung, yardstick: float) -> list[str]:
         _number(rung.seconds / yardstick, "{:.0f}"),
         _number(rung.memory, "{:.1f}"),
         *errors,
-        rung.outcome,
+        rung.status,
+        rung.reason,
     ]
 
 
@@ -53,20 +58,45 @@ def _number(value: float, form: str) -> str:
 
 def page(study: SpeedStudy) -> Iterator[str]:
     """Lines of the page, in Markdown."""
-    yield f"# Error against wall time at Tabor parameter {study.tabor:g}{', quick' if study.quick else ''}"
+    yield f"# Error against wall time at Tabor parameter {study.tabor:g}{', quick run' if study.quick else ''}"
+    yield ""
+    yield from verdict(study)
     yield ""
     yield from (f"* {key}: {value}" for key, value in (machine() | versions()).items())
     yield f"* yardstick, one dgesv of n = 200: {study.yardstick * 1e3:.2f} ms"
-    yield ""
-    yield "The truth is the half-space solver at rtol 1e-9; errors are not counted below its own uncertainty."
-    yield ""
-    for quantity, estimate in study.truth.items():
-        yield f"* {quantity}: {estimate.value:.10g} {UNITS[quantity]}, within {estimate.error:.0e}"
+    yield from _truths(study)
     yield from _costs(study, "What it costs to have every quantity that a method gives", None)
-    for quantity in study.truth:
+    for quantity in study.quantities:
         yield from _costs(study, f"What it costs to have {quantity}", quantity)
     yield from _exponents(study)
     yield from _failures(study)
+
+
+def verdict(study: SpeedStudy) -> Iterator[str]:
+    """What the run was, and what failed that should not have; a sentence each."""
+    rungs = sum(len(method.steps) for method in study.methods)
+    counted = (
+        f"{len(study.rungs)} of {rungs} rungs were climbed, {sum(r.converged for r in study.rungs)} have a result."
+    )
+    yield f"A quick run: {counted} The finer ones were left out." if study.quick else counted
+    troubles = list(study.troubles())
+    if troubles:
+        yield f"FAILED where it should not have, {len(troubles)} times:"
+        yield from (f"* {trouble}" for trouble in troubles)
+
+
+def _truths(study: SpeedStudy) -> Iterator[str]:
+    """What the errors are taken against, and whether the two truths agree."""
+    title = "The truths: each family is judged by the other; an error below the truth's own uncertainty is shown as <"
+    columns = [
+        f"judge of the {judged}: {truth.family}, rtol {truth.rtol:.0e}" for judged, truth in study.truths.items()
+    ]
+    yield from _heading(title, ["quantity", "unit", *columns, "difference", "within both errors"])
+    for quantity in study.quantities:
+        a, b = (truth.values[quantity] for truth in study.truths.values())
+        cells = [f"{estimate.value:.12g}, error {estimate.error:.0e}" for estimate in (a, b)]
+        agree = abs(a.value - b.value) <= a.error + b.error
+        yield _line([quantity, UNITS[quantity], *cells, f"{abs(a.value - b.value):.0e}", "yes" if agree else "NO"])
 
 
 def _costs(study: SpeedStudy, title: str, quantity: str | None) -> Iterator[str]:
@@ -85,25 +115,28 @@ def _cost(rung: Rung | None, study: SpeedStudy) -> str:
 
 
 def _best(rung: Rung | None, quantity: str | None) -> str:
-    if rung is None:
+    named = quantity or (rung.worst if rung else None)
+    if rung is None or named is None:
         return "-"
-    error = rung.error(quantity) if quantity else rung.worst_error
-    return f"{error:.0e} in {rung.seconds:.2f} s ({rung.setting})"
+    below = "<" if rung.hidden(named) else ""
+    return f"{below}{rung.error(named):.0e} in {rung.seconds:.2f} s ({rung.setting})"
 
 
 def _exponents(study: SpeedStudy) -> Iterator[str]:
     title = "How the cost grows: exponents b fitted to cost ~ x^b; the error is that of pull_off"
     costs = [f"{cost}, x = {x}" for x in ("unknowns", "1/error") for cost in ("time", "peak memory")]
-    yield from _heading(title, ["method", *costs])
+    yield from _heading(title, ["method", "rungs", *costs])
     for method in study.methods:
         b = study.exponents(method.name)
         fitted = (b.time, b.memory, b.time_by_accuracy, b.memory_by_accuracy)
-        yield _line([method.name, *(_number(value, "{:.2f}") or "-" for value in fitted)])
+        yield _line([method.name, str(b.rungs), *(_number(value, "{:.2f}") or "-" for value in fitted)])
 
 
 def _failures(study: SpeedStudy) -> Iterator[str]:
-    yield from _heading("Rungs without result", ["method", "setting", "reason"])
-    yield from (_line([rung.method, rung.setting, rung.outcome]) for rung in study.rungs if not rung.converged)
+    yield from _heading("Rungs without result", ["method", "setting", "outcome", "reason"])
+    for rung in study.rungs:
+        if not rung.converged:
+            yield _line([rung.method, rung.setting, rung.status, rung.reason])
 
 
 def _heading(title: str, columns: Sequence[str]) -> Iterator[str]:

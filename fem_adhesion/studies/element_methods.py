@@ -30,11 +30,12 @@ def _fixed_degrees() -> list[Method]:
     tri = [(0.6, 16.0), (0.4, 24.0), (0.28, 34.0), (0.2, 48.0), (0.14, 68.0), (0.1, 96.0)]
     quad = [(0.6, 16.0, 2.0), (0.4, 24.0, 1.7), (0.28, 34.0, 1.45), (0.2, 48.0, 1.3), (0.14, 68.0, 1.2)]
     P1, P2, P3 = ("P1", ElementTriP1()), ("P2", ElementTriP2()), ("P3", ElementTriP3())
-    methods = [_method(basis, [_disc_step(element, *s) for s in tri]) for basis, element in (P1, P2, P3)]
-    methods += [_method("Q2", [_block_step(2, *s) for s in quad])]
-    for basis, element in (P1, P2):
-        methods += [_method(basis, [_disc_step(element, *s, far_field=clamped) for s in tri], "clamped")]
-    methods += [_method("P2", [_disc_step(P2[1], *s, solve=_monolithic) for s in tri[:3]], "monolithic")]
+    triangles = ((P1, 4), (P2, 3), (P3, 3))
+    methods = [_method(basis, [_disc_step(element, *s) for s in tri], n) for (basis, element), n in triangles]
+    methods += [_method("Q2", [_block_step(2, *s) for s in quad], 4)]
+    for (basis, element), n in triangles[:2]:
+        methods += [_method(basis, [_disc_step(element, *s, far_field=clamped) for s in tri], n, "clamped")]
+    methods += [_method("P2", [_disc_step(P2[1], *s, solve=_monolithic) for s in tri[:3]], 1, "monolithic")]
     return methods
 
 
@@ -44,11 +45,11 @@ def _high_orders() -> list[Method]:
     far = [(4, 1e2), (5, 1e3), (6, 1e4), (7, 1e5), (8, 1e6)]
     boxes = [_block_step(p, 0.8, L, 2.5, far_field=clamped) for p, L in far]
     whole = [_block_step(p, 0.8, L, 2.5, solve=_monolithic) for p, L in ((2, 20.0), (3, 40.0), (4, 80.0))]
-    return [_method("hp", adaptive), _method("hp", boxes, "clamped"), _method("hp", whole, "monolithic")]
+    return [_method("hp", adaptive, 4), _method("hp", boxes, 3, "clamped"), _method("hp", whole, 2, "monolithic")]
 
 
-def _method(basis: str, steps: Sequence[Step], variant: Variant = "") -> Method:
-    return Method("finite elements", basis, steps, variant)
+def _method(basis: str, steps: Sequence[Step], quick: int, variant: Variant = "") -> Method:
+    return Method("finite elements", basis, steps, quick, variant)
 
 
 def _fe_step(rtol: float) -> Step:

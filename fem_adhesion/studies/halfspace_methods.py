@@ -13,7 +13,7 @@ from fem_adhesion.studies.methods import Method, Solved, Step, from_chart, from_
 from halfspace import compliance, grid, newton, relaxation
 from halfspace.compliance import Array, ElasticOperator
 from halfspace.contact import APPROACH, LOAD, ContactProblem, spike_width
-from halfspace.errors import NotConverged
+from halfspace.errors import InputError
 from halfspace.newton import Control
 from halfspace.relaxation import Relaxed
 
@@ -22,13 +22,13 @@ MOST_NODES = 3000  # of a dense operator: 70 MB, and as much again for each fact
 
 def halfspace_methods() -> list[Method]:
     """Every half-space method."""
-    return [*_relaxations(), *_fixed_grids(), Method("half-space", "adaptive", _adaptive_steps())]
+    return [*_relaxations(), *_fixed_grids(), Method("half-space", "adaptive", _adaptive_steps(), 5)]
 
 
 def _affordable(nodes: Array) -> Array:
-    """Nodes of a grid, unless they are too many for a dense operator."""
+    """Nodes of a grid, or raise InputError if they are too many for a dense operator."""
     if nodes.size > MOST_NODES:
-        raise NotConverged(f"{nodes.size} nodes exceed {MOST_NODES}; a dense operator of them is too large")
+        raise InputError(f"{nodes.size} nodes exceed {MOST_NODES} of a dense operator; take another Tabor parameter")
     return nodes
 
 
@@ -51,10 +51,10 @@ def _fixed_grids() -> list[Method]:
     graded = [(0.2, 8.0, 1.4), (0.1, 10.0, 1.2), (0.05, 20.0, 1.1), (0.025, 40.0, 1.05), (0.0125, 80.0, 1.025)]
     panels = [(4, 8.0), (5, 12.0), (6, 20.0), (8, 50.0), (10, 120.0), (12, 300.0), (14, 800.0)]
     return [
-        Method("half-space", "uniform bands", [_uniform_step(compliance.bands, *s) for s in uniform]),
-        Method("half-space", "uniform triangles", [_uniform_step(compliance.triangles, *s) for s in uniform]),
-        Method("half-space", "graded triangles", [_graded_step(*s) for s in graded]),
-        Method("half-space", "panels, fixed grid", [_panel_step(*s) for s in panels]),
+        Method("half-space", "uniform bands", [_uniform_step(compliance.bands, *s) for s in uniform], 4),
+        Method("half-space", "uniform triangles", [_uniform_step(compliance.triangles, *s) for s in uniform], 4),
+        Method("half-space", "graded triangles", [_graded_step(*s) for s in graded], 4),
+        Method("half-space", "panels, fixed grid", [_panel_step(*s) for s in panels], 4),
     ]
 
 
@@ -91,9 +91,11 @@ def _adaptive_step(rtol: float) -> Step:
 def _relaxations() -> list[Method]:
     """Simple relaxation and Greenwood's on graded triangles, which need the fewest nodes; pull-off load only."""
     grids = [(0.2, 5.0, 1.4), (0.1, 7.0, 1.3), (0.07, 9.0, 1.2), (0.05, 12.0, 1.15), (0.025, 24.0, 1.08)]
+    simple = [_relaxation_step(_simple, *s) for s in grids]
+    local = [_relaxation_step(_greenwood, *s) for s in grids[:-1]]  # on the finest the sweeps run out
     return [
-        Method("half-space", "simple relaxation", [_relaxation_step(_simple, *s) for s in grids]),
-        Method("half-space", "Greenwood's iteration", [_relaxation_step(_greenwood, *s) for s in grids]),
+        Method("half-space", "simple relaxation", simple, 4, may_diverge=True),
+        Method("half-space", "Greenwood's iteration", local, 2, may_diverge=True),
     ]
 
 

@@ -58,22 +58,32 @@ class Method:
         Whose elasticity it is.
     basis : str
         How the pressure or the displacement is represented, or solved for.
-    variant : str
-        What differs from the family's usual: for finite elements, condensed with a point load's far field.
     steps : sequence of Step
         From coarse to fine.
+    quick : int
+        How many of them, the coarsest, make up the quick ladder: a budget of work, the same on every machine.
+    variant : str
+        What differs from the family's usual: for finite elements, condensed with a point load's far field.
+    may_diverge : bool
+        Whether its iteration is known to run away from stiff attraction: that it does is then a finding, not a failure.
     """
 
     family: Family
     basis: str
     steps: Sequence[Step]
+    quick: int
     variant: Variant = ""
+    may_diverge: bool = False
 
     @property
     def name(self) -> str:
         """Unique name."""
         prefix = "FE " if self.family == "finite elements" else ""
         return f"{prefix}{self.basis}" + (f", {self.variant}" if self.variant else "")
+
+    def ladder(self, *, quick: bool) -> Sequence[Step]:
+        """Rungs to climb."""
+        return self.steps[: self.quick] if quick else self.steps
 
 
 def from_path(path: EquilibriumPath) -> Solved:
