@@ -1,6 +1,9 @@
-"""The study after Greenwood (1997), quick: every file as a reader finds it, printed numbers met, fits sensible."""
+"""The study after Greenwood (1997) through the command line, quick: files read back, printed numbers met."""
 
+import contextlib
 import csv
+import dataclasses
+import io
 import math
 from html.parser import HTMLParser
 from pathlib import Path
@@ -8,11 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem_adhesion.output import greenwood_report
-from fem_adhesion.output.files import directory_written_aside
+from fem_adhesion import cli
 from fem_adhesion.studies import greenwood1997
 from fem_adhesion.studies.greenwood_criteria import JumpOn, fit
-from fem_adhesion.studies.greenwood_tables import LAST_DIGIT
+from fem_adhesion.studies.greenwood_tables import LAST_DIGIT, ROUNDED
 from halfspace import criteria
 from halfspace.contact import CENTRAL_GAP
 from halfspace.curve import Estimate
@@ -27,31 +29,57 @@ TABLES = (
     "devices",
     "relaxation",
     "pull_off",
+    "coarse_grids",
     "criteria",
     "criteria_constants",
 )
 
 
-@pytest.fixture(scope="module")
-def told():
-    return []
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """What one quick run left."""
+
+    code: int
+    printed: str
+    out: Path
+    study: greenwood1997.Greenwood1997
+    told: list
 
 
 @pytest.fixture(scope="module")
-def study(told):
-    return greenwood1997.compute(quick=True, progress=told.append)
+def ran(tmp_path_factory):
+    """The whole study as a user runs it."""
+    kept, told, out, printed = [], [], tmp_path_factory.mktemp("greenwood") / "out", io.StringIO()
+    compute = greenwood1997.compute
+
+    def keeping(*, quick, progress):
+        kept.append(compute(quick=quick, progress=lambda part: (told.append(part), progress(part))))
+        return kept[-1]
+
+    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(printed):
+        patch.setattr(greenwood1997, "compute", keeping)
+        code = cli.main(["greenwood", "--out", str(out), "--quick"])
+    return Run(code, printed.getvalue(), out, kept[0], told)
 
 
 @pytest.fixture(scope="module")
-def report(study, tmp_path_factory):
-    out = tmp_path_factory.mktemp("greenwood") / "report"
-    with directory_written_aside(out) as directory:
-        greenwood_report.write(study, directory)
-    return out
+def study(ran):
+    return ran.study
+
+
+@pytest.fixture(scope="module")
+def report(ran):
+    return ran.out
 
 
 def rows(report, stem):
     return list(csv.DictReader((report / f"{stem}.csv").read_text().splitlines()))
+
+
+def test_the_quick_run_ends_well(ran):
+    assert ran.code == 0
+    assert ran.printed == f"written: {ran.out / 'index.html'}\n"
+    assert list(ran.study.troubles()) == []
 
 
 # --- printed numbers ---
@@ -91,6 +119,7 @@ def test_attard_and_parkers_row_to_its_last_printed_digit(study):
 def test_the_row_of_the_jump_off_at_5_is_one_state_beside_the_fold(study):
     """Printed load 2.708, central gap 0.00630 and radius 0.700 belong together; no fold lies there."""
     note = next(p.note for p in study.tables.table_2 if p.row == "jump_off H0" and p.column == 5)
+    assert note.startswith("a state beside the fold")
     assert "H0 = 0.00630, a* = 0.701" in note
 
 
@@ -102,6 +131,7 @@ def test_no_separated_state_exists_at_the_printed_jump_on(study):
 
 
 def test_pressures_printed_with_figure_4(study):
+    assert [p.note for p in study.tables.profile_checks] == [ROUNDED] * 2
     for p in study.tables.profile_checks:
         assert abs(p.computed.value - float(p.printed)) <= p.computed.error
     gaps = [profile.central_gap for profile in study.states.profiles]
@@ -146,10 +176,10 @@ def test_the_pull_off_force_falls_from_bradleys_to_jkrs(study):
 def test_coarse_uniform_triangles_raise_the_pull_off_force(study):
     """The false rise: it starts later the finer the grid, and comes with a ripple."""
     turns = []
-    for ripples in study.rises.values():
-        forces = [-r.pull_off for r in ripples]
+    for rise in study.rises.values():
+        forces = [-r.pull_off for r in rise.ripples]
         assert forces[-1] > min(forces)
-        turns.append(ripples[int(np.argmin(forces))].tabor)
+        turns.append(rise.ripples[int(np.argmin(forces))].tabor)
     assert turns == sorted(turns)
     upward = [np.sum(np.maximum(np.diff(r.load[: r.load.argmin()]), 0)) for r in study.ripples]
     assert upward[0] > 10 * upward[-1]
@@ -191,7 +221,7 @@ def test_a_fit_returns_the_constants_that_made_the_jumps():
 
 def test_every_file_is_there(report):
     expected = {f"fig_{number}.{suffix}" for number in FIGURES for suffix in ("svg", "png")}
-    expected |= {f"{stem}.csv" for stem in TABLES} | {"index.html"}
+    expected |= {f"{stem}.csv" for stem in (*TABLES, "captions")} | {"index.html"}
     assert {file.name for file in report.iterdir()} == expected
     assert all((report / f"fig_{number}.png").stat().st_size > 10_000 for number in FIGURES)
 
@@ -240,6 +270,6 @@ def test_the_page_shows_everything(report):
         assert link.startswith("https://doi.org/") or link.lstrip("#") in page.ids or (report / link).exists()
 
 
-def test_progress_names_every_subject_once(study, told):
-    assert told == list(greenwood1997.SUBJECTS)
+def test_progress_names_every_subject_once(study, ran):
+    assert ran.told == list(greenwood1997.SUBJECTS)
     assert math.isfinite(study.seconds)

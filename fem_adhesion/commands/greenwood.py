@@ -6,7 +6,7 @@ import argparse
 import itertools
 from typing import TYPE_CHECKING
 
-from fem_adhesion.commands.common import AGREE, add_output, progress_bar
+from fem_adhesion.commands.common import AGREE, DISAGREE, add_output, progress_bar
 
 if TYPE_CHECKING:
     from fem_adhesion.commands.common import Commands
@@ -17,7 +17,8 @@ def add(commands: Commands) -> None:
     greenwood = commands.add_parser(
         "greenwood",
         help="recompute Greenwood (1997): every figure and table beside the printed values",
-        description="Recompute the figures and tables of the paper, with finite elements drawn over the half-space.",
+        description="Recompute the figures and tables of the paper, with finite elements drawn over the half-space. "
+        "Exit code 1 if a number is off that should not be.",
         epilog="example: fem-adhesion greenwood --out greenwood --quick",
     )
     greenwood.add_argument("--quick", action="store_true", help="fewer points and lower accuracies")
@@ -43,5 +44,8 @@ def run(options: argparse.Namespace) -> int:
         study = greenwood1997.compute(quick=options.quick, progress=begin)
         with writing(options.out):
             greenwood_report.write(study, aside, begin)
+    troubles = list(study.troubles())
+    if troubles:
+        print(f"{len(troubles)} failed that should not have, the first: {troubles[0]}")
     print(f"written: {options.out / 'index.html'}")
-    return AGREE
+    return DISAGREE if troubles else AGREE

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from fem_adhesion.output.finite_sphere_plots import reference_poisson
-from fem_adhesion.output.greenwood_tables import Table, with_error
+from fem_adhesion.output.greenwood_tables import Table
+from fem_adhesion.output.greenwood_text import with_error
 from fem_adhesion.studies import finite_sphere_fit
 from fem_adhesion.studies.bulk import coefficients
 from fem_adhesion.studies.finite_sphere_cases import Record

@@ -8,7 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion.output import greenwood_style as style
+from fem_adhesion.output import greenwood_trend_captions as captions
 from fem_adhesion.output.greenwood_style import Plot, dress, note, panels, plain_ticks
+from fem_adhesion.output.greenwood_text import digits
 from fem_adhesion.studies.greenwood1997 import Greenwood1997
 from halfspace.devices import Cycle, Jump
 
@@ -61,8 +63,8 @@ def _border(axes: Any, study: Greenwood1997) -> None:
     axes.axhline(stiffness[0], color="0.5", linewidth=0.9)
     note(axes, "follows smoothly", (0.15, 60))
     note(axes, "jumps", (0.35, 2.2))
-    note(axes, rf"fixed grips jump from $\mu = {study.critical_tabor.value:.6f}$", (0.22, 550))
-    note(axes, "rigid: 6.449", (0.52, stiffness[0]), (0, -14))
+    note(axes, rf"fixed grips jump from $\mu = {digits(study.critical_tabor)}$", (0.22, 550))
+    note(axes, rf"{stiffness[0]:.4g} at $\mu = {tabor[0]:.1g}$", (0.45, stiffness[0]), (0, -14))
     dress(axes, r"Tabor parameter $\mu$", r"stiffness $k\,\epsilon/R\Delta\gamma$", legend=None, ylim=(1, 1000))
     plain_ticks(axes.yaxis, (1, 3, 10, 30, 100, 300, 1000))
     axes.set_title("where an apparatus makes the contact jump")
@@ -72,9 +74,7 @@ DEVICE_PLOTS = (
     Plot(
         "8",
         "Jumps of an apparatus of finite stiffness, and where they begin (beyond the paper)",
-        "A softer apparatus jumps on from farther away, jumps off at a larger pull and loses more; below a stiffness "
-        "of 6.449 R dgamma/eps even a rigid contact jumps, above it only from a Tabor parameter that grows to 0.697215 "
-        "for fixed grips.",
+        captions.figure_8,
         _figure_8,
     ),
 )

@@ -7,17 +7,14 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fem_adhesion.output import greenwood_captions as captions
 from fem_adhesion.output import greenwood_style as style
+from fem_adhesion.output.greenwood_captions import DMT_TABOR, RIGID, SCALED, SOFT
 from fem_adhesion.output.greenwood_style import Plot, curve, dress, note, panels, theory
 from fem_adhesion.studies.greenwood1997 import JUMPS_AT, Greenwood1997
 from halfspace import dmt
 from halfspace.compliance import Array
 from halfspace.theories import bradley_load, hertz_load, hertz_radius_at, jkr_approach, jkr_load
-
-RIGID = (0.02, 0.1, 0.3)
-SCALED = (0.1, 0.3, 0.5, 1.0)
-SOFT = (1.0, 2.0, 3.0, 5.0)
-DMT_TABOR = 0.1
 
 
 def _figure_1a(study: Greenwood1997) -> Figure:
@@ -100,35 +97,31 @@ LOAD_PLOTS = (
     Plot(
         "1a",
         "Load against approach around pull-off, small Tabor parameters",
-        "While the surfaces are apart a nearly rigid sphere follows Bradley's curve; the DMT theories, drawn at "
-        f"mu = {DMT_TABOR:g}, start from his pull-off force -2 pi at alpha* = 0 and rise sooner than the solution.",
+        captions.figure_1a,
         _figure_1a,
     ),
     Plot(
         "1b",
         "The same with the approach in units of beta^2/R",
-        "Scaled by mu, Hertz, DMT-M and JKR are one curve each; the computed ones move from DMT-M's pull-off force "
-        "towards JKR's as mu grows.",
+        captions.figure_1b,
         _figure_1b,
     ),
     Plot(
         "1c",
-        "Deep compression at mu = 0.02",
-        "The load rises later than in any DMT theory, since the surfaces are pressed closer than their equilibrium "
-        "spacing, which Hertz's contact does not allow for; DMT's force method and DMT-M coincide here.",
+        f"Deep compression at mu = {RIGID[0]:g}",
+        captions.figure_1c,
         _figure_1c,
     ),
     Plot(
         "2a",
-        "S-shaped curve at mu = 2 and its jumps under fixed grips",
-        "The surfaces jump on from A to B and off from C to D; between A and C lies the unstable branch, and the "
-        "finite-element points follow all of it.",
+        f"Load against approach at mu = {JUMPS_AT:g}, and the jumps under fixed grips",
+        captions.figure_2a,
         _figure_2a,
     ),
     Plot(
         "2b",
-        "Load against scaled approach for mu = 1 to 5",
-        "In contact the curves close in on JKR's as mu grows, while the jump on moves towards alpha*/mu = 0.",
+        f"Load against scaled approach for mu = {SOFT[0]:g} to {SOFT[-1]:g}",
+        captions.figure_2b,
         _figure_2b,
     ),
 )

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fem_adhesion.output import greenwood_captions as captions
 from fem_adhesion.output import greenwood_style as style
+from fem_adhesion.output.greenwood_captions import GAPS_AT, RADII_AT
 from fem_adhesion.output.greenwood_style import Plot, branches, curve, dress, note, panels, theory
 from fem_adhesion.studies.greenwood1997 import WINDING_AT, Greenwood1997
 from halfspace.compliance import Array
@@ -15,9 +17,8 @@ from halfspace.maugis import MaugisDugdale, carpick_radius
 from halfspace.scaling import MAUGIS
 from halfspace.theories import hertz_load, jkr_load
 
-GAPS_AT = (0.5, 1.0, 2.0, 5.0)
-RADII_AT = (0.5, 2.0, 5.0)
 THEORIES_AT = (0.5, 2.0)
+FOLD_NUMBERS = ((0, (8, 0)), (1, (-16, -3)), (1, (8, -3)), (0, (-4, 9)))  # panel and offset in points
 PROFILE_STYLES = (
     (style.SKY, "-"),
     (style.BLUE, style.DASHED),
@@ -65,18 +66,19 @@ def _figure_3c(study: Greenwood1997) -> Figure:
         branches(axes, path, path.approach, path.central_gap)
         axes.plot(folds[:, 0], folds[:, 2], "o", color="black", markersize=5, label="folds")
     style.stability_key(whole)
-    for number, (axes, offset) in enumerate(((whole, (8, 0)), (close, (-16, -3)), (close, (8, -3)), (whole, (-4, 9)))):
-        note(axes, str(number + 1), (folds[number, 0], folds[number, 2]), offset)
+    for number, fold in enumerate(folds):
+        axes, offset = FOLD_NUMBERS[min(number, len(FOLD_NUMBERS) - 1)]
+        note((whole, close)[axes], str(number + 1), (fold[0], fold[2]), offset)
     dress(whole, style.APPROACH, style.CENTRAL_GAP, legend="upper right", xlim=(-9, 0), ylim=(-0.3, 6))
     dress(close, style.APPROACH, style.CENTRAL_GAP, legend=None, xlim=(-4.56, -4.42), ylim=(-0.05, 1.3))
     whole.set_title(rf"$\mu = {WINDING_AT:g}$")
-    close.set_title("enlarged around the folds 2 and 3")
+    close.set_title("enlarged around the inner folds")
     return figure
 
 
 def _figure_4(study: Greenwood1997, quantity: str, label: str, ylim: tuple[float, float]) -> Figure:
     figure, (axes,) = panels(height=5.8)
-    for profile, (colour, dashes) in zip(study.states.profiles, PROFILE_STYLES, strict=True):
+    for profile, (colour, dashes) in zip(study.states.profiles, PROFILE_STYLES, strict=False):
         values = getattr(profile, quantity)
         text = f"$H(0) = {profile.central_gap:.4g}$" if abs(profile.central_gap) > 1e-9 else "$H(0) = 0$"
         axes.plot(profile.radii, values, color=colour, linestyle=dashes, linewidth=1.8, label=text)
@@ -123,42 +125,37 @@ STATE_PLOTS = (
     Plot(
         "3a",
         "Central gap against approach",
-        "At mu = 0.5 every approach has one gap, from about mu = 0.7 on the curve bends back and the surfaces jump.",
+        captions.figure_3a,
         _figure_3a,
     ),
     Plot(
         "3b",
         "Central gap against load",
-        "Prescribing the central gap leads through the unstable branch, as the finite-element points show; the least "
-        "load, pull-off, comes where the gap is already negative.",
+        captions.figure_3b,
         _figure_3b,
     ),
     Plot(
         "3c",
-        "The winding curve at mu = 5",
-        "Four folds: on the unstable branch the approach turns twice more, at 2 and 3; only the central gap falls "
-        "all along the curve.",
+        f"Central gap against approach at mu = {WINDING_AT:g}, and its folds",
+        captions.figure_3c,
         _figure_3c,
     ),
     Plot(
         "4a",
-        "Gap profiles along the curve at mu = 5",
-        "From separation (2.554) a neck rises on the axis until the centres meet; from there on the contact spreads "
-        "with a nearly flat gap inside a sharp edge.",
+        f"Gap profiles along the curve at mu = {WINDING_AT:g}",
+        captions.figure_4a,
         _figure_4a,
     ),
     Plot(
         "4b",
         "Pressure profiles of the same states",
-        "In contact the tension is concentrated in a spike at the edge whose height, 1.03 mu, is the strength of the "
-        "surface law; the spike only moves outwards as the contact grows.",
+        captions.figure_4b,
         _figure_4b,
     ),
     Plot(
         "5",
         "Contact radius against load",
-        "The radius, where the tension is largest, closes in on JKR's as mu grows; Maugis-Dugdale's, the inner edge of "
-        "its ring of tension, is smaller at small mu.",
+        captions.figure_5,
         _figure_5,
     ),
 )

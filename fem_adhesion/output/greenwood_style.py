@@ -63,15 +63,15 @@ class Plot:
         As in the paper.
     title : str
         What is drawn.
-    see : str
-        One sentence on what to see.
+    see : callable
+        Says what is to be seen in it, from the study.
     draw : callable
         Draws it from the study.
     """
 
     number: str
     title: str
-    see: str
+    see: Callable[[Greenwood1997], str]
     draw: Callable[[Greenwood1997], Figure]
 
     @property

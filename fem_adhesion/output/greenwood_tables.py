@@ -10,12 +10,15 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from fem_adhesion.studies.greenwood1997 import Greenwood1997
+from fem_adhesion.output import greenwood_remarks as remarks
+from fem_adhesion.output.greenwood_text import digits
+from fem_adhesion.studies.greenwood1997 import JUMPS_AT, WINDING_AT, Greenwood1997
 from fem_adhesion.studies.greenwood_criteria import CriteriaStudy
 from fem_adhesion.studies.greenwood_devices import DeviceStudy
-from fem_adhesion.studies.greenwood_relaxation import Attempt
+from fem_adhesion.studies.greenwood_relaxation import NODES, Attempt
 from fem_adhesion.studies.greenwood_tables import Printed
 from halfspace.curve import Estimate
+from halfspace.events import Event
 
 SYMBOLS = {
     "mu": "&mu;",
@@ -57,6 +60,7 @@ def tables(study: Greenwood1997) -> list[Table]:
         _cycles(study.devices),
         _relaxations(study.relaxations),
         _pull_offs(study),
+        _rises(study),
         _true_jumps(study.criteria),
         _constants(study.criteria),
     ]
@@ -64,31 +68,14 @@ def tables(study: Greenwood1997) -> list[Table]:
 
 def _printed_tables(study: Greenwood1997) -> Iterator[Table]:
     printed = study.tables
-    a, b = (with_error(e) for e in printed.asymptote)
-    yield _printed(
-        "table_1",
-        "Table 1: f(alpha*)/alpha*^(3/2) of the DMT force method",
-        f"Every value agrees to its last printed digit; the asymptote f = a alpha*^(3/2) - b alpha*^2, fitted between "
-        f"2e-5 and 1e-4, has a = {a} and b = {b} (standard errors of the fit; the paper: 1.84 and 7.7).",
-        "alpha*",
-        printed.table_1,
-    )
-    yield _printed(
-        "table_2",
-        "Table 2: jumping on and off under fixed grips",
-        f"The largest relative deviation is {max(abs(p.deviation) for p in printed.table_2):.1e}; what is off is "
-        "explained by states found beside the folds and by misprints, see the notes.",
-        "mu",
-        printed.table_2,
-    )
-    yield _printed(
-        "fig_4_checks",
-        "Pressures printed with Fig. 4, mu = 5",
-        "The printed pressures have the sign of the corrected law, compression positive; their error is that of the "
-        "rounded gap.",
-        "gap H",
-        printed.profile_checks,
-    )
+    title = "Table 1: f(alpha*)/alpha*^(3/2) of the DMT force method"
+    see = remarks.table_1(printed.table_1, printed.asymptote)
+    yield _printed("table_1", title, see, "alpha*", printed.table_1)
+    title = "Table 2: jumping on and off under fixed grips"
+    see = f"{remarks.agreement(printed.table_2)} The notes say what explains the others."
+    yield _printed("table_2", title, see, "mu", printed.table_2)
+    title, see = f"Pressures printed with Fig. 4, mu = {WINDING_AT:g}", remarks.profile_checks(printed.profile_checks)
+    yield _printed("fig_4_checks", title, see, "gap H", printed.profile_checks)
 
 
 def _printed(stem: str, title: str, see: str, column: str, entries: Sequence[Printed]) -> Table:
@@ -106,26 +93,38 @@ def _jumps(study: Greenwood1997) -> Table:
         (f"{j.take_off} to {j.landing}", *_cells(j.approach), *_cells(j.load), *_cells(j.landing_load))
         for j in study.states.jumps
     )
-    return Table(
-        "jumps", "Jumps of Fig. 2a, mu = 2, fixed grips", "Where each jump takes off and lands.", columns, rows
-    )
+    see = "Where each jump takes off and lands." if rows else "No jump was found."
+    return Table("jumps", f"Jumps of Fig. 2a, mu = {JUMPS_AT:g}, fixed grips", see, columns, rows)
 
 
 def _cycles(devices: DeviceStudy) -> Table:
     """Both jumps and the loss of every apparatus."""
-    ends = ("jump on", "lands", "jump off", "lands")
-    columns = ("stiffness, R dgamma/eps", *(f"{end}: alpha*, eps | W, R dgamma" for end in ends))
+    ends = ("jump on", "landing in contact", "jump off", "landing apart")
+    parts = (
+        f"{end}: {what}" for end in ends for what in ("alpha*, eps", "error, eps", "W, R dgamma", "error, R dgamma")
+    )
     rows = tuple(
         (
-            "fixed grips" if math.isinf(c.stiffness) else f"{c.stiffness:g}",
-            *(f"{e.approach:.6f} | {e.load:.6f}" for j in (c.jump_on, c.jump_off) for e in (j.take_off, j.landing)),
-            *_cells(c.energy_lost),
+            "fixed grips" if math.isinf(cycle.stiffness) else f"{cycle.stiffness:g}",
+            *(
+                cell
+                for jump in (cycle.jump_on, cycle.jump_off)
+                for e in (jump.take_off, jump.landing)
+                for cell in _end(e)
+            ),
+            *_cells(cycle.energy_lost),
         )
-        for c in devices.cycles
+        for cycle in devices.cycles
     )
-    see = "The softer the apparatus, the more energy a cycle loses; the loss is the work of the base round the loop."
     title = f"Cycles of an apparatus, mu = {devices.tabor:g}"
-    return Table("devices", title, see, (*columns, "energy lost, R dgamma eps", "error"), rows)
+    columns = ("stiffness, R dgamma/eps", *parts, "energy lost, R dgamma eps", "error, R dgamma eps")
+    return Table("devices", title, remarks.devices(devices), columns, rows)
+
+
+def _end(event: Event) -> tuple[str, ...]:
+    """Approach and load where a jump takes off or lands."""
+    approach, load = Estimate(event.approach, event.approach_error), Estimate(event.load, event.load_error)
+    return (*_cells(approach), *_cells(load))
 
 
 def _relaxations(attempts: Sequence[Attempt]) -> Table:
@@ -142,18 +141,26 @@ def _relaxations(attempts: Sequence[Attempt]) -> Table:
         )
         for a in attempts
     )
-    see = (
-        "Simple relaxation reaches H(0) = 0 in sweeps that grow with mu and as 1/c, until c must shrink; Greenwood's "
-        "needs some ten thousand at any mu, since its changes conserve the sum of the pressures."
-    )
-    return Table("relaxation", "The iterations of 1997 on 200 uniform nodes", see, columns, rows)
+    title = f"The iterations of 1997 on {NODES} uniform nodes, from the undeformed surfaces to H(0) = 0"
+    return Table("relaxation", title, remarks.relaxations(attempts), columns, rows)
 
 
 def _pull_offs(study: Greenwood1997) -> Table:
     columns = ("mu", "half-space, R dgamma", "error", "finite elements, R dgamma", "error")
     rows = tuple((f"{p.tabor:.6g}", *_cells(p.half_space), *_cells(p.finite_element)) for p in study.pull_offs)
-    see = "From Bradley's -2 pi = -6.2832 to JKR's -3 pi/2 = -4.7124."
-    return Table("pull_off", "Load at pull-off, Fig. 7", see, columns, rows)
+    return Table("pull_off", "Load at pull-off, Fig. 7", remarks.pull_offs(study.pull_offs), columns, rows)
+
+
+def _rises(study: Greenwood1997) -> Table:
+    """Least loads met on grids that are too coarse, wrong on purpose."""
+    columns = ("spacing, beta", "mu", "least load, R dgamma")
+    rows = tuple(
+        (f"{spacing:g}", f"{r.tabor:.6g}", f"{r.pull_off:.4f}")
+        for spacing, rise in study.rises.items()
+        for r in rise.ripples
+    )
+    title = "Least load on uniform triangles that are too wide, Fig. 7: wrong on purpose, so without an error"
+    return Table("coarse_grids", title, remarks.rises_of(study), columns, rows)
 
 
 def _true_jumps(criteria: CriteriaStudy) -> Table:
@@ -172,11 +179,9 @@ def _true_jumps(criteria: CriteriaStudy) -> Table:
         )
         for i, jump in enumerate(criteria.jumps)
     )
-    see = (
-        "The fundamental criterion (4.3) reads b sigma'/sigma = -1 at the jump, where the solution has -1.6 to -1.7: "
-        "states that it calls unstable are stable."
+    return Table(
+        "criteria", "True jumps on and the criteria's predictions", remarks.true_jumps(criteria), columns, rows
     )
-    return Table("criteria", "True jumps on and the criteria's predictions", see, columns, rows)
 
 
 def _constants(criteria: CriteriaStudy) -> Table:
@@ -186,28 +191,14 @@ def _constants(criteria: CriteriaStudy) -> Table:
         for c in criteria.criteria
         for name, printed, fitted in c.constants
     )
-    tabor = criteria.tabor
-    title = f"Constants of the criteria, refitted for mu = {tabor[0]:g} to {tabor[-1]:g}"
-    see = (
-        "Least squares of logarithms; the closed criteria are too large, 1.8 (App. C) to 2.7 times (Pethica & Sutton)."
-    )
-    return Table("criteria_constants", title, see, columns, rows)
+    span = f" for mu = {criteria.tabor[0]:g} to {criteria.tabor[-1]:g}" if criteria.jumps else ""
+    title = f"Constants of the criteria, refitted{span}"
+    return Table("criteria_constants", title, remarks.constants(criteria), columns, rows)
 
 
 def _cells(estimate: Estimate | None) -> tuple[str, str]:
     """Value and error; empty if there is none."""
-    return ("", "") if estimate is None else (_digits(estimate), f"{estimate.error:.1e}")
-
-
-def with_error(estimate: Estimate) -> str:
-    """Value with its error behind it."""
-    return f"{_digits(estimate)} +- {estimate.error:.1g}"
-
-
-def _digits(estimate: Estimate) -> str:
-    """Value to one digit beyond the first uncertain one, ten decimals at most."""
-    digits = 1 - math.floor(math.log10(estimate.error)) if estimate.error else 10
-    return f"{estimate.value:.{min(max(digits, 1), 10)}f}"
+    return ("", "") if estimate is None else (digits(estimate), f"{estimate.error:.1e}")
 
 
 def write_csv(table: Table, directory: Path) -> None:

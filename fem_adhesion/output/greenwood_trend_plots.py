@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion.output import greenwood_style as style
+from fem_adhesion.output import greenwood_trend_captions as captions
 from fem_adhesion.output.greenwood_style import Plot, dress, panels, plain_ticks
 from fem_adhesion.studies.greenwood1997 import RIPPLE_AT, Greenwood1997, PullOff
 from fem_adhesion.studies.greenwood_criteria import Criterion
@@ -84,8 +85,8 @@ def _figure_7(study: Greenwood1997) -> Figure:
     trend.semilogx(tabor, maugis, color=style.GREEN, linestyle=style.CHAIN, label="Maugis-Dugdale")
     carpick = -carpick_pull_off(MAUGIS.of(tabor))
     trend.semilogx(tabor, carpick, color="0.35", linestyle=style.DOTTED, label="Carpick et al.")
-    for spacing, ripples in study.rises.items():
-        _spacing(trend, spacing, [r.tabor for r in ripples], [-r.pull_off for r in ripples])
+    for spacing, rise in study.rises.items():
+        _spacing(trend, spacing, [r.tabor for r in rise.ripples], [-r.pull_off for r in rise.ripples])
     _limits(trend, float(tabor[0]), float(tabor[-1]))
     dress(trend, TABOR, r"pull-off force $-W_\mathrm{min}/R\Delta\gamma$", legend="below", columns=2, ylim=(4.5, 6.5))
     _ripples(ripple, study)
@@ -126,22 +127,19 @@ TREND_PLOTS = (
     Plot(
         "6a",
         "Central gap and approach at jump-on, with the criteria",
-        "Attard & Parker, Pethica & Sutton and App. C expect the jump at too wide a gap, by a factor of about two in "
-        "(H0 + 1)^(7/2); the empirical fits pass through the true jumps.",
+        captions.figure_6a,
         _figure_6a,
     ),
     Plot(
         "6b",
         "Central gap at jump-on, scaled by mu^(3/7)",
-        "The scaled gap is constant from mu = 5 on, so the power 3/7 of the criteria is right and only their constant "
-        "is wrong; below mu = 2 repulsion delays the jump, which (4.5) allows for.",
+        captions.figure_6b,
         _figure_6b,
     ),
     Plot(
         "7",
-        "Pull-off force against the Tabor parameter, and its false rise",
-        "The true force falls smoothly from Bradley's to JKR's, yet on uniform triangles it turns upwards as soon "
-        "as the spike of tension, of width 1/mu^2, is narrower than a few intervals; the ripple, right, tells.",
+        "Pull-off force against the Tabor parameter, and on coarse grids",
+        captions.figure_7,
         _figure_7,
     ),
 )

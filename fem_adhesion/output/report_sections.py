@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+import csv
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from fem_adhesion.output.finite_sphere_plots import PICTURES
-from fem_adhesion.output.greenwood_plots import PLOTS
 from fem_adhesion.output.report_figures import figure
 from fem_adhesion.output.report_parts import Section, Table, read_table, symbols
 from halfspace.errors import InputError
 
-AFTER = {plot.stem: f"After Fig. {plot.number}: {plot.title}. {plot.see}" for plot in PLOTS}
 CHARTS = {picture.stem: f"{picture.title}. {picture.see}" for picture in PICTURES}
 
 
@@ -26,11 +25,13 @@ class Source:
     command, title, introduction : str
         Its name, the section's title, and what to know before looking.
     figures : sequence of (stem, caption)
-        SVG files; the caption is the text alternative too.
+        SVG files; the caption is the text alternative too. What the command measured itself stands in `captions`.
     tables : sequence of (stem, title)
         CSV files.
     counted : str
         Stem of a table whose column ``outcome`` is counted, or "".
+    captions : str
+        Stem of a CSV file with columns ``figure`` and ``caption``, or "".
     """
 
     command: str
@@ -39,6 +40,7 @@ class Source:
     figures: Sequence[tuple[str, str]]
     tables: Sequence[tuple[str, str]]
     counted: str = ""
+    captions: str = ""
 
 
 SOURCES = (
@@ -46,7 +48,7 @@ SOURCES = (
         "speed",
         "Speed against error",
         "Each line is a method at ever finer settings. The grey band is the least time for each error by any method, "
-        "the dotted line the uncertainty of the truth that errors are taken against.",
+        "the dotted line the uncertainty of the truth that errors are taken against: the other family's solution.",
         (
             ("pull_off", "Error of the pull-off load against wall time: half-space left, finite elements right."),
             ("jump_on", "Error of the approach at jump-on against wall time: half-space left, finite elements right."),
@@ -67,8 +69,9 @@ SOURCES = (
         "Greenwood (1997), printed and computed",
         "The paper's tables beside the same quantities computed here with their estimated errors, and figures after "
         "the paper's and beyond.",
-        tuple((stem, AFTER[stem]) for stem in ("fig_3b", "fig_7", "fig_8")),
+        tuple((stem, "") for stem in ("fig_3b", "fig_7", "fig_8")),
         (("table_1", "Table 1"), ("table_2", "Table 2"), ("criteria_constants", "Criteria for jumping on")),
+        captions="captions",
     ),
     Source(
         "finite-sphere",
@@ -90,14 +93,27 @@ def section_of(source: Source, directory: Path | None) -> Section:
     """
     if directory is None:
         return Section(source.command, source.title, missing=True)
+    captions = dict(source.figures) | _captions(source, directory)
     figures = tuple(
-        figure(_require(directory / f"{stem}.svg", source).read_bytes(), f"{source.command}-{stem}", symbols(caption))
-        for stem, caption in source.figures
+        figure(
+            _require(directory / f"{stem}.svg", source).read_bytes(),
+            f"{source.command}-{stem}",
+            symbols(captions[stem]),
+        )
+        for stem, _ in source.figures
     )
     tables = {stem: read_table(_require(directory / f"{stem}.csv", source), title) for stem, title in source.tables}
     counted = (_outcomes(tables[source.counted]),) if source.counted else ()
     paragraphs = (source.introduction, *counted)
     return Section(source.command, source.title, paragraphs=paragraphs, figures=figures, tables=tuple(tables.values()))
+
+
+def _captions(source: Source, directory: Path) -> dict[str, str]:
+    """Captions that the command left beside its figures."""
+    if not source.captions:
+        return {}
+    with _require(directory / f"{source.captions}.csv", source).open(newline="", encoding="utf-8") as file:
+        return {row["figure"]: row["caption"] for row in csv.DictReader(file)}
 
 
 def _outcomes(table: Table) -> str:

@@ -6,7 +6,7 @@ J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +21,7 @@ from fem_adhesion.studies.greenwood_criteria import CriteriaStudy, fit, jump_on
 from fem_adhesion.studies.greenwood_curves import Jump, Profile, fine_path
 from fem_adhesion.studies.greenwood_devices import DeviceStudy, devices
 from fem_adhesion.studies.greenwood_relaxation import Attempt, attempts
-from fem_adhesion.studies.greenwood_ripple import Ripple, false_rise, ripple
+from fem_adhesion.studies.greenwood_ripple import Ripple, Rise, false_rise, ripple
 from fem_adhesion.studies.greenwood_tables import Printed
 from halfspace.compliance import Array
 from halfspace.curve import COMPRESSION, EquilibriumPath, Estimate
@@ -43,6 +43,12 @@ class PullOff:
     tabor: float
     half_space: Estimate
     finite_element: Estimate | None
+
+    @property
+    def agree(self) -> bool:
+        """Whether both solvers agree within their errors; not so without finite elements."""
+        a, b = self.half_space, self.finite_element
+        return b is not None and abs(a.value - b.value) <= a.error + b.error
 
 
 @dataclass(frozen=True)
@@ -96,7 +102,7 @@ class Greenwood1997:
         By rising Tabor parameter.
     ripples : tuple of Ripple
         Curves at mu = 2 on grids that are too coarse.
-    rises : mapping of float to tuple of Ripple
+    rises : mapping of float to Rise
         By spacing: the false rise of the pull-off force.
     criteria : CriteriaStudy
         Of jumping on.
@@ -119,7 +125,7 @@ class Greenwood1997:
     states: States
     pull_offs: tuple[PullOff, ...]
     ripples: tuple[Ripple, ...]
-    rises: Mapping[float, tuple[Ripple, ...]]
+    rises: Mapping[float, Rise]
     criteria: CriteriaStudy
     tables: Tables
     relaxations: tuple[Attempt, ...]
@@ -127,6 +133,19 @@ class Greenwood1997:
     critical_tabor: Estimate
     seconds: float
     quick: bool
+
+    def troubles(self) -> Iterator[str]:
+        """What failed that should not have, a sentence each."""
+        printed = self.tables
+        for entry in (*printed.table_1, *printed.table_2, *printed.profile_checks):
+            if not entry.credible:
+                yield f"{entry.row} at {entry.column:g}: {entry.computed.value:.6g}, printed {entry.printed}"
+        for p in self.pull_offs:
+            if p.finite_element and not p.agree:
+                yield f"the solvers disagree in the pull-off load at mu = {p.tabor:g}"
+        for subject, found in (("jumps", self.states.jumps), ("cycles", self.devices.cycles)):
+            if not found:
+                yield f"no {subject} were found"
 
 
 @dataclass(frozen=True)
@@ -254,10 +273,10 @@ def _states(winding: EquilibriumPath) -> States:
     return States(curves.jumps(JUMPS_AT), folds, tuple(curves.profiles(winding)))
 
 
-def _rises(extent: Extent) -> dict[float, tuple[Ripple, ...]]:
+def _rises(extent: Extent) -> dict[float, Rise]:
     """False rise on each spacing, from curves that are resolved."""
     resolved = [halfspace.trace(mu, rtol=curves.SEEN) for mu in extent.rising]
-    return {spacing: tuple(false_rise(resolved, spacing)) for spacing in extent.rises}
+    return {spacing: false_rise(resolved, spacing) for spacing in extent.rises}
 
 
 def _printed(extent: Extent) -> Tables:

@@ -56,6 +56,14 @@ class Ripple:
         return float(self.load.min())
 
 
+@dataclass(frozen=True)
+class Rise:
+    """Pull-off at rising Tabor parameters on one spacing, and why it ends where it does."""
+
+    ripples: tuple[Ripple, ...]
+    ended: str
+
+
 def ripple(path: EquilibriumPath, spacing: float, window: float, steps: int = STEPS_DRAWN) -> Ripple:
     """Separate the surfaces through pull-off on uniform triangles, from a resolved path's state in contact.
 
@@ -99,14 +107,14 @@ def _separated(problem: ContactProblem, x: Array, radii: Array) -> Iterator[Arra
         yield solution.observables
 
 
-def false_rise(paths: Sequence[EquilibriumPath], spacing: float) -> list[Ripple]:
+def false_rise(paths: Sequence[EquilibriumPath], spacing: float) -> Rise:
     """Pull-off at rising Tabor parameters on one spacing, until the rise is proved or the grid has no solution."""
     found: list[Ripple] = []
     for path in paths:
         try:
             found.append(ripple(path, spacing, WINDOW * spacing, STEPS))
-        except NotConverged:
-            break
+        except NotConverged as error:
+            return Rise(tuple(found), f"no solution at mu = {path.tabor:.3g}: {error}")
         if found[-1].pull_off < ENOUGH:
-            break
-    return found
+            return Rise(tuple(found), f"the load is below {ENOUGH:g} R dgamma")
+    return Rise(tuple(found), "no larger mu was asked for")
