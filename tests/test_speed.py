@@ -305,6 +305,12 @@ def test_the_pareto_front():
     assert pareto_front([FAILED], "pull_off") == []
 
 
+def test_errors_that_the_truth_cannot_tell_are_equally_accurate():
+    sooner = rung(1, 2e-9, floors={"pull_off": 2e-9})
+    later = rung(2, 1e-9, floors={"pull_off": 1e-9})
+    assert pareto_front([rung(0.5, 1e-3), later, sooner], "pull_off") == [rung(0.5, 1e-3), sooner]
+
+
 def test_what_an_accuracy_costs():
     rungs = [rung(1, 1e-2), rung(5, 1e-4), rung(4, 5e-4), FAILED]
     assert cheapest(rungs, 1e-3).seconds == 4

@@ -207,11 +207,14 @@ def _error(rung: Rung, quantity: str | None) -> float:
 
 
 def pareto_front(rungs: Sequence[Rung], quantity: str) -> list[Rung]:
-    """Rungs than which none is both faster and more accurate, from the fastest to the most accurate."""
+    """Rungs than which none is both faster and more accurate, from the fastest to the most accurate.
+
+    Of those whose error the truth cannot tell only the fastest counts: no other is known to be more accurate.
+    """
     front: list[Rung] = []
     known = [rung for rung in rungs if np.isfinite(rung.error(quantity))]
     for rung in sorted(known, key=lambda r: (r.seconds, r.error(quantity))):
-        if not front or rung.error(quantity) < front[-1].error(quantity):
+        if not front or (rung.error(quantity) < front[-1].error(quantity) and not front[-1].hidden(quantity)):
             front.append(rung)
     return front
 
