@@ -12,6 +12,7 @@ import pytest
 import halfspace
 from halfspace import theories
 from halfspace.accuracy import half_space_charts, resolution_for
+from halfspace.contact import CONTACT_RADIUS
 from halfspace.curve import find_events, metric_for, trace_charts
 from halfspace.path import Steps
 
@@ -27,6 +28,17 @@ def _reference():
 @pytest.fixture(scope="module")
 def curves():
     return {tabor: halfspace.trace(tabor) for tabor in (0.02, 0.05, 0.5, 0.69, 0.7, 0.71, 1, 2, 3, 5, 10)}
+
+
+@pytest.mark.parametrize("tabor", [0.02, 0.71, 2, 10])
+def test_the_curve_goes_on_where_one_grid_hands_it_over_to_another(curves, tabor):
+    """The same state on two grids, of which each is right to some 1e-5 where the edge leaves the one for the other."""
+    separated, contact = curves[tabor].segments
+    last, first = separated.points[-1], contact.points[0]
+    assert first.arclength == last.arclength
+    assert first.observables[CONTACT_RADIUS] == pytest.approx(last.observables[CONTACT_RADIUS], rel=1e-9, abs=0)
+    np.testing.assert_allclose(first.observables, last.observables, rtol=2e-4)
+    np.testing.assert_allclose(first.rates, last.rates, rtol=1e-3, atol=1e-4)
 
 
 @pytest.mark.parametrize("row", _reference(), ids=lambda row: f"{row['tabor']:g}-{row['event']}")

@@ -241,6 +241,12 @@ def test_carpick_fits_maugis(lam):
     assert np.isnan(maugis.carpick_radius(-7.0, lam))
 
 
+def test_carpicks_transition_parameter_by_the_formula_that_they_print():
+    """Their (13), lambda = -0.924 ln(1 - 1.02 alpha)."""
+    alpha = np.linspace(0, 0.95, 20)
+    np.testing.assert_allclose(maugis.carpick_transition(-0.924 * np.log(1 - 1.02 * alpha)), alpha, atol=1e-14)
+
+
 def test_carpick_runs_from_dmt_to_jkr():
     loads = np.array([0.0, 5.0, 20.0])
     np.testing.assert_allclose(maugis.carpick_radius(loads, 1e-6), np.cbrt(3 / 4 * (loads + 2 * np.pi)), rtol=2e-3)
