@@ -38,7 +38,7 @@ def test_the_curve_goes_on_where_one_grid_hands_it_over_to_another(curves, tabor
     assert first.arclength == last.arclength
     assert first.observables[CONTACT_RADIUS] == pytest.approx(last.observables[CONTACT_RADIUS], rel=1e-9, abs=0)
     np.testing.assert_allclose(first.observables, last.observables, rtol=2e-4)
-    np.testing.assert_allclose(first.rates, last.rates, rtol=1e-3, atol=1e-4)
+    np.testing.assert_allclose(first.rates, last.rates, rtol=1e-2, atol=1e-3)
 
 
 @pytest.mark.parametrize("row", _reference(), ids=lambda row: f"{row['tabor']:g}-{row['event']}")
