@@ -22,7 +22,7 @@ check: $(VENV)/installed-dev ## check format, style and types
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 
-bench: $(VENV)/installed-dev ## time the solvers beside a yardstick (four minutes; QUICK=1: half a minute)
+bench: $(VENV)/installed-dev ## time the solvers beside a yardstick (some minutes; QUICK=1: half a minute)
 	QUICK=$(QUICK) $(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-enable --benchmark-columns=min,median,rounds -q
 
 honesty: $(VENV)/installed-dev ## check all error estimates against tighter solutions, over a fine net (five minutes; QUICK=1: half a minute)
