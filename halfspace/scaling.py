@@ -15,6 +15,8 @@ from halfspace.errors import InputError
 
 Array = NDArray[np.float64]
 
+HAMAKER = 16 * math.pi  # A/(dgamma eps^2) of the 3-9 law
+
 
 @dataclass(frozen=True)
 class Units:
@@ -29,7 +31,8 @@ class Units:
     work_of_adhesion : float
         Work of adhesion dgamma in J/m^2.
     spacing : float
-        Equilibrium spacing eps of the surface law in m.
+        Equilibrium spacing eps of the surface law in m. Not an atom's diameter: of work of adhesion, spacing and Hamaker
+        constant two are independent, see `hamaker`; `spacing_of` takes the latter in the place of the spacing.
 
     Examples
     --------
@@ -55,6 +58,14 @@ class Units:
     def radius_ratio(self) -> float:
         """Ratio rho = R/eps of a finite sphere."""
         return self.radius / self.spacing
+
+    @property
+    def hamaker(self) -> float:
+        """Hamaker constant A = 16 pi dgamma eps^2 in J that the surface law implies.
+
+        Far apart the 3-9 law is (8 dgamma/3 eps)(eps/h)^3; between half-spaces van der Waals' attraction is A/(6 pi h^3).
+        """
+        return HAMAKER * self.work_of_adhesion * self.spacing**2
 
     @property
     def length(self) -> float:
@@ -85,6 +96,13 @@ class Units:
     def energy(self) -> float:
         """Unit R dgamma eps of energies in J."""
         return self.load * self.approach
+
+
+def spacing_of(hamaker: float, work_of_adhesion: float) -> float:
+    """Equilibrium spacing eps in m of the surface law with a Hamaker constant in J and a work of adhesion in J/m^2."""
+    _require_positive(hamaker, "hamaker", "J")
+    _require_positive(work_of_adhesion, "work_of_adhesion", "J/m^2")
+    return math.sqrt(hamaker / work_of_adhesion / HAMAKER)
 
 
 def contact_modulus(young: float, poisson: float, other_young: float = math.inf, other_poisson: float = 0.0) -> float:

@@ -1,10 +1,14 @@
-"""What the test files share."""
+"""What the test files share: whole runs of commands, and an `approx` that does not swallow small numbers."""
 
 import os
+from collections.abc import Mapping
 from functools import partial
 
+import numpy as np
 import pytest
 from whole_runs import whole_run
+
+ORIGINAL, RELATIVE, ABSOLUTE = pytest.approx, 1e-6, 1e-12
 
 
 @pytest.fixture(scope="session")
@@ -13,3 +17,19 @@ def whole(tmp_path_factory):
     base = tmp_path_factory.getbasetemp()
     shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
     return partial(whole_run, shared / "whole")
+
+
+def approx(expected, rel=None, abs=None, nan_ok=False):  # noqa: A002  pytest's own name
+    """As pytest's, but its absolute tolerance is 1e-12 of what is expected: alone it passes any two lengths in metres.
+
+    A tolerance of 1e-12 itself is kept where zero is expected.
+    """
+    if abs is None:
+        values = list(expected.values()) if isinstance(expected, Mapping) else expected
+        sizes = np.abs(np.asarray(values, float))
+        largest = np.max(sizes[np.isfinite(sizes)], initial=0.0)
+        rel, abs = RELATIVE if rel is None else rel, ABSOLUTE * (min(1.0, largest) or 1.0)  # noqa: A001
+    return ORIGINAL(expected, rel=rel, abs=abs, nan_ok=nan_ok)
+
+
+pytest.approx = approx

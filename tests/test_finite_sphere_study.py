@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -35,6 +36,7 @@ from fem_adhesion.studies.materials import materials
 from fem_adhesion.studies.store import open_store
 from halfspace.curve import Estimate
 from halfspace.errors import NotConverged
+from halfspace.lennard_jones import LENNARD_JONES
 from halfspace.sphere_theories import JKRSphere
 from halfspace.theories import JKR_PULL_OFF
 
@@ -454,15 +456,61 @@ def test_a_hard_contact_has_no_jumps():
 
 # --- materials ---
 
+# Young's modulus in Pa and Hamaker constant in J: what handbooks give, from the least to the largest.
+HANDBOOK = {
+    "silica": ((70e9, 75e9), (6e-20, 7e-20)),
+    "gold": ((74e9, 82e9), (2.5e-19, 5e-19)),
+    "mica": ((50e9, 70e9), (0.9e-19, 1.4e-19)),
+    "PDMS": ((1e6, 3e6), (4e-20, 5e-20)),
+    "polystyrene": ((3e9, 3.6e9), (6e-20, 8e-20)),
+    "toner": ((1e9, 4e9), (5e-20, 8e-20)),
+}
+CUTOFF = 0.165e-9  # m, between two continua: dgamma = A/(12 pi D0^2), Israelachvili (2011)
 
-def test_materials_are_real_and_sourced():
-    listed = materials()
-    for word in ("silica", "gold", "mica", "PDMS", "polystyrene", "toner"):
-        assert any(material.name.startswith(word) for material in listed)
-    for material in listed:
+
+def _kind(material):
+    return material.name.split(",")[0]
+
+
+def test_materials_are_those_promised_and_sourced():
+    assert {_kind(material) for material in materials()} == set(HANDBOOK)
+    for material in materials():
         assert material.source
         assert "typical" in material.note
-        assert 0 < material.poisson < 0.5
-        assert material.units.radius_ratio == pytest.approx(material.units.radius / material.units.spacing)
-    silica = listed[0]
-    assert silica.units.tabor == pytest.approx(np.cbrt(1e-8 * (0.063 * (1 - 0.17**2) / 7.2e10) ** 2) / 3e-10)
+
+
+@pytest.mark.parametrize("material", materials(), ids=lambda material: material.name)
+def test_a_material_is_within_the_ranges_of_handbooks(material):
+    modulus, hamaker = HANDBOOK[_kind(material)]
+    assert modulus[0] <= material.units.modulus * (1 - material.poisson**2) <= modulus[1]
+    assert hamaker[0] <= material.units.hamaker <= hamaker[1]
+    assert 0.1 < material.poisson < 0.5
+    number, unit = re.search(r"(\d+) (nm|um)", material.name).groups()
+    size = float(number) * {"nm": 1e-9, "um": 1e-6}[unit]
+    across = size / 2 if "across" in material.name else size
+    assert material.units.radius == pytest.approx(across, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize("material", materials(), ids=lambda material: material.name)
+def test_adhesion_spacing_and_hamaker_constant_of_a_material_agree(material):
+    """The attraction from afar of the surface law, read off the law itself, is the one of the Hamaker constant."""
+    units, gap = material.units, 1e3
+    tension = -float(LENNARD_JONES.pressure(np.array(gap - 1), units.tabor)) * units.pressure
+    assert tension == pytest.approx(units.hamaker / (6 * np.pi * (gap * units.spacing) ** 3), rel=1e-9, abs=0)
+    assert units.work_of_adhesion == pytest.approx(units.hamaker / (12 * np.pi * CUTOFF**2), rel=0.1, abs=0)
+    assert units.spacing == pytest.approx(math.sqrt(0.75) * CUTOFF, rel=0.05, abs=0)
+
+
+def test_one_material_has_one_stiffness_and_one_surface_at_every_size():
+    for kind in HANDBOOK:
+        sizes = [material for material in materials() if _kind(material) == kind]
+        assert len({(m.units.modulus, m.poisson, m.units.work_of_adhesion, m.units.spacing) for m in sizes}) == 1
+
+
+def test_a_material_stands_on_the_chart_where_its_own_numbers_put_it():
+    silica = materials()[0]
+    assert silica.units.tabor == pytest.approx(
+        np.cbrt(1e-8 * (0.063 * (1 - 0.17**2) / 7.2e10) ** 2) / silica.units.spacing, rel=1e-12
+    )
+    assert silica.units.tabor == pytest.approx(0.1353, abs=5e-4)
+    assert silica.units.radius_ratio == pytest.approx(69.8, abs=0.1)

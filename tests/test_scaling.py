@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from halfspace import scaling, theories
+from halfspace.errors import InputError
+from halfspace.lennard_jones import LENNARD_JONES
 from halfspace.maugis import MaugisDugdale
 from halfspace.scaling import Units
 
@@ -28,6 +30,49 @@ def test_units_of_a_silica_bead():
     assert units.stiffness == si(50e-9 / 0.3e-9)
     assert units.energy == si(50e-9 * 0.3e-9)
     assert units.radius_ratio == si(1e-6 / 0.3e-9)
+
+
+@pytest.mark.parametrize("size", [1.0, 5e-9, 1e-20, 1e-27])
+@pytest.mark.parametrize("rel", [None, 1e-6])
+def test_approx_tells_small_numbers_apart(size, rel):
+    assert size == pytest.approx(size * (1 + 1e-7), rel=rel)
+    assert size != pytest.approx(size * (1 + 1e-5), rel=rel)
+    assert [size, 2 * size] != pytest.approx([size, 2.001 * size], rel=rel)
+    assert {"a": size} != pytest.approx({"a": 1.001 * size}, rel=rel)
+
+
+def test_units_one_by_one():
+    """Powers of the four inputs that no two units share, so that one in another's place is seen."""
+    units = Units(radius=2.0, modulus=3.0, work_of_adhesion=5.0, spacing=7.0)
+    assert units.tabor == pytest.approx((2 * 5**2 / (3**2 * 7**3)) ** (1 / 3), rel=1e-14)
+    assert units.length == pytest.approx((2**2 * 5 / 3) ** (1 / 3), rel=1e-14)
+    assert units.radius_ratio == pytest.approx(2 / 7, rel=1e-14)
+    assert (units.approach, units.load, units.energy) == (7.0, 10.0, 70.0)
+    assert units.stiffness == pytest.approx(10 / 7, rel=1e-14)
+    assert units.pressure == pytest.approx(5 / 7 / units.tabor, rel=1e-14)
+    assert units.hamaker == pytest.approx(16 * math.pi * 5 * 7**2, rel=1e-14)
+
+
+@pytest.mark.parametrize("material", [SILICA, SILICA | {"work_of_adhesion": 0.4, "spacing": 0.14e-9}])
+def test_the_hamaker_constant_is_that_of_the_surface_law_far_away(material):
+    """The law's tension at a wide gap against A/(6 pi h^3), in SI."""
+    units, gap = Units(**material), 1e3
+    tension = -float(LENNARD_JONES.pressure(np.array(gap - 1), units.tabor)) * units.pressure
+    assert tension == pytest.approx(units.hamaker / (6 * math.pi * (gap * units.spacing) ** 3), rel=1e-9)
+    assert scaling.spacing_of(units.hamaker, units.work_of_adhesion) == pytest.approx(units.spacing, rel=1e-14)
+
+
+def test_silica_has_the_spacing_of_its_hamaker_constant():
+    """A = 6.5e-20 J and 0.063 J/m^2, which obey dgamma = A/(12 pi (0.165 nm)^2): eps = sqrt(3/4) 0.165 nm."""
+    assert scaling.spacing_of(6.5e-20, 0.063) == pytest.approx(math.sqrt(0.75) * 0.165e-9, rel=4e-3)
+
+
+@pytest.mark.parametrize("value", [0.0, -1e-20, math.inf, math.nan])
+def test_a_hamaker_constant_out_of_range_is_refused(value):
+    with pytest.raises(InputError, match=r"^hamaker = \S+ J is outside 0 < hamaker < inf; give it in J$"):
+        scaling.spacing_of(value, 0.063)
+    with pytest.raises(InputError, match=r"^work_of_adhesion = \S+ J/m\^2 is outside 0 < work_of_adhesion < inf"):
+        scaling.spacing_of(6.5e-20, value)
 
 
 def test_hertz_in_si():

@@ -1,4 +1,9 @@
-"""Real materials for the chart of the finite sphere: typical values and their sources."""
+"""Real materials for the chart of the finite sphere: typical values and their sources.
+
+The work of adhesion and the Hamaker constant A are what is known of a material. The spacing of the surface law follows,
+eps^2 = A/(16 pi dgamma), so that law and source have the same attraction from afar: 0.14 to 0.15 nm, near the cut-off
+D0 = 0.165 nm between two continua and not the diameter of an atom, of which the law between planes knows nothing.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +11,7 @@ import csv
 from dataclasses import dataclass
 from pathlib import Path
 
-from halfspace.scaling import Units, contact_modulus
+from halfspace.scaling import Units, contact_modulus, spacing_of
 
 FILE = Path(__file__).parent / "data" / "materials.csv"
 
@@ -20,7 +25,7 @@ class Material:
     name : str
         What, and how large.
     units : Units
-        Its units, and with them the Tabor parameter and R/eps.
+        Its units, and with them the Tabor parameter, R/eps and the Hamaker constant.
     poisson : float
         Poisson's ratio.
     source, note : str
@@ -43,7 +48,7 @@ def materials() -> tuple[Material, ...]:
 def _material(line: dict[str, str]) -> Material:
     poisson = float(line["poisson"])
     modulus = contact_modulus(float(line["young_Pa"]), poisson)
-    sizes = (float(line[name]) for name in ("work_of_adhesion_J_per_m2", "spacing_m"))
-    return Material(
-        line["name"], Units(float(line["radius_m"]), modulus, *sizes), poisson, line["source"], line["note"]
-    )
+    adhesion = float(line["work_of_adhesion_J_per_m2"])
+    spacing = spacing_of(float(line["hamaker_J"]), adhesion)
+    units = Units(float(line["radius_m"]), modulus, adhesion, spacing)
+    return Material(line["name"], units, poisson, line["source"], line["note"])

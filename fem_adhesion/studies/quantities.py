@@ -23,7 +23,8 @@ LENGTH, MODULUS = ("m", "100nm"), ("Pa", "70GPa")
 KINDS: Mapping[str, tuple[str, str]] = {
     "radius": LENGTH,
     "counter_radius": LENGTH,
-    "spacing": ("m", "0.3nm"),
+    "spacing": ("m", "0.143nm"),
+    "hamaker": ("J", "65zJ"),
     "modulus": MODULUS,
     "counter_modulus": MODULUS,
     "work_of_adhesion": ("J/m^2", "0.1J/m^2"),
