@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 
 from fem_adhesion.commands import assess, compare, curve, finite_sphere, greenwood, hard, report, speed
-from fem_adhesion.commands.common import BAD_INPUT, DISAGREE, INTERRUPTED, NOT_WRITTEN, Parser
+from fem_adhesion.commands.common import BAD_INPUT, DISAGREE, INTERRUPTED, NOT_WRITTEN, Parser, Version
 from fem_adhesion.writing import NotWritten
 from halfspace.errors import InputError, NotConverged
 
@@ -41,6 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def make_parser() -> Parser:
     """Parser of all commands."""
     parser = Parser(prog="fem-adhesion", description="Adhesive contact of elastic spheres by two solvers.")
+    parser.add_argument("--version", action=Version, nargs=0, help="show the version and exit")
     commands = parser.add_subparsers(required=True, metavar="command", parser_class=Parser)
     for command in COMMANDS:
         command.add(commands)

@@ -24,7 +24,7 @@ from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.scene import Counter
 from halfspace import grid
 from halfspace.compliance import Array, ElasticOperator
-from halfspace.profiles import Pair, Paraboloid, Profile, Sphere
+from halfspace.profiles import Paraboloid, Profile, between_spheres
 
 BEYOND = 1e3  # size of a block, in radii of the sphere that meets it
 
@@ -36,11 +36,7 @@ def radii_of(R: float, counter: Counter) -> tuple[float, float]:
 
 def gap_of(R: float, counter: Counter, profile: str) -> Profile:
     """Undeformed gap of the pair."""
-    R1, R2 = radii_of(R, counter)
-    if profile == "paraboloid":
-        return Paraboloid(R1)
-    second = Paraboloid() if np.isinf(R2) else Sphere(R2)
-    return Pair(Sphere(R1), second, (R / R1, R / R2))
+    return Paraboloid(radii_of(R, counter)[0]) if profile == "paraboloid" else between_spheres(R, counter.radius)
 
 
 def pair_operator(

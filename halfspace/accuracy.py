@@ -16,8 +16,8 @@ from halfspace.breathing import FlatCoordinate, Homogeneous
 from halfspace.contact import ContactProblem, spike_width
 from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
 from halfspace.ladder import Charted, Rung, climb
-from halfspace.limits import require_load, require_radius_ratio, require_rtol, require_tabor
-from halfspace.profiles import Sphere
+from halfspace.limits import require_counter_radius, require_load, require_radius_ratio, require_rtol, require_tabor
+from halfspace.profiles import Profile, between_spheres
 from halfspace.sized import WINDOW, AroundEvents, Made, SizedBody, to_equator
 from halfspace.theories import jkr_radius
 
@@ -103,7 +103,12 @@ def half_space_charts(tabor: float, resolution: Resolution, to_load: float = COM
 
 
 def trace(
-    tabor: float, *, rtol: float = 1e-6, to_load: float = COMPRESSION, radius_ratio: float | None = None
+    tabor: float,
+    *,
+    rtol: float = 1e-6,
+    to_load: float = COMPRESSION,
+    radius_ratio: float | None = None,
+    counter_radius: float = math.inf,
 ) -> EquilibriumPath:
     """Trace the load-approach curve of a rigid paraboloid or sphere on the adhesive half-space and solve for events.
 
@@ -117,6 +122,8 @@ def trace(
         Compressive load at which the curve ends, in R dgamma.
     radius_ratio : float, optional
         rho = R/eps of a true sphere, R/beta = sqrt(rho/tabor); a paraboloid unless given.
+    counter_radius : float
+        Of a second true sphere in radii of the first, 1 or more; R is that of the pair then, 1/R = 1/R1 + 1/R2.
 
     Returns
     -------
@@ -133,9 +140,10 @@ def trace(
     require_tabor(tabor)
     require_rtol(rtol)
     require_load(to_load)
+    require_counter_radius(counter_radius, radius_ratio)
     if radius_ratio is not None:
-        sphere = math.sqrt(require_radius_ratio(radius_ratio, tabor) / tabor)
-        return climb(rtol, partial(_sphere_rung, tabor, sphere, rtol, to_load), to_load=to_load)
+        gap = between_spheres(math.sqrt(require_radius_ratio(radius_ratio, tabor) / tabor), counter_radius)
+        return climb(rtol, partial(_sphere_rung, tabor, gap, rtol, to_load), to_load=to_load)
 
     def rung(level: int) -> Rung:
         resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
@@ -150,11 +158,11 @@ def trace(
     return climb(rtol, rung, to_load=to_load)
 
 
-def _sphere_rung(tabor: float, R: float, rtol: float, to_load: float, level: int) -> Rung:
-    """Rung of a level for a sphere of radius R (beta), whose surface ends at its equator."""
+def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level: int) -> Rung:
+    """Rung of a level for a sphere or two, whose surface ends at the smaller one's equator."""
     resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
-    fine, other = (_under_sphere(tabor, R, r) for r in (resolution, twin))
+    fine, other = (_under_sphere(tabor, gap, r) for r in (resolution, twin))
     window = WINDOW / 2**level
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(
@@ -165,8 +173,8 @@ def _sphere_rung(tabor: float, R: float, rtol: float, to_load: float, level: int
     )
 
 
-def _under_sphere(tabor: float, R: float, resolution: Resolution) -> SizedBody:
+def _under_sphere(tabor: float, gap: Profile, resolution: Resolution) -> SizedBody:
     def make(lines: compliance.Array) -> Made:
         return compliance.panels(lines, resolution.nodes), resolution.nodes * (lines.size - 1)
 
-    return SizedBody(tabor, Sphere(R), make, resolution.finest, resolution.growth, to_equator(R), FlatCoordinate())
+    return SizedBody(tabor, gap, make, resolution.finest, resolution.growth, to_equator(gap.end), FlatCoordinate())

@@ -65,6 +65,19 @@ def require_radius_ratio(radius_ratio: float, tabor: float) -> float:
     return _require(radius_ratio, "radius_ratio", radius_ratio >= least, f"2.25 tabor = {least:.3g} or more", remedy)
 
 
+def require_counter_radius(counter_radius: float, radius_ratio: float | None) -> float:
+    """Return a counter-body's radius in radii of the first sphere, or raise InputError unless 1 or more, and heeded."""
+    if not counter_radius >= 1:
+        raise InputError(
+            f"counter_radius = {counter_radius:g} is outside 1 <= counter_radius; let the smaller be first"
+        )
+    if counter_radius != math.inf and radius_ratio is None:
+        raise InputError(
+            f"counter_radius = {counter_radius:g} means nothing to a paraboloid; give radius_ratio, its R/eps, too"
+        )
+    return counter_radius
+
+
 def require_cap_angle(cap_angle: float) -> float:
     """Return the half-angle of a cap in degrees, or raise InputError unless it is 1 to 89.99, or 90.
 

@@ -97,6 +97,22 @@ class Pair:
         return self.parts[0] * self.first.slope(radii) + self.parts[1] * self.second.slope(radii)
 
 
+def between_spheres(R: float, counter_radius: float = np.inf) -> Profile:
+    """Gap between a sphere and another, or a wall.
+
+    Parameters
+    ----------
+    R : float
+        Radius of the pair in beta, 1/R = 1/R1 + 1/R2.
+    counter_radius : float
+        R2/R1; infinite for a wall.
+    """
+    if np.isinf(counter_radius):
+        return Sphere(R)
+    first, second = R * (1 + 1 / counter_radius), R * (1 + counter_radius)
+    return Pair(Sphere(first), Sphere(second), (R / first, R / second))
+
+
 @dataclass(frozen=True)
 class Tabulated:
     """Heights (n,) at ascending radii (n,), with their slopes: the surface of a body that is given as a mesh."""

@@ -31,8 +31,8 @@ class Units:
     work_of_adhesion : float
         Work of adhesion dgamma in J/m^2.
     spacing : float
-        Equilibrium spacing eps of the surface law in m. Not an atom's diameter: of work of adhesion, spacing and Hamaker
-        constant two are independent, see `hamaker`; `spacing_of` takes the latter in the place of the spacing.
+        Equilibrium spacing eps of the surface law in m. Not an atom's diameter: of work of adhesion, spacing and
+        Hamaker constant two are independent, see `hamaker`, and `spacing_of` for the constant in the spacing's place.
 
     Examples
     --------
@@ -63,7 +63,7 @@ class Units:
     def hamaker(self) -> float:
         """Hamaker constant A = 16 pi dgamma eps^2 in J that the surface law implies.
 
-        Far apart the 3-9 law is (8 dgamma/3 eps)(eps/h)^3; between half-spaces van der Waals' attraction is A/(6 pi h^3).
+        Far apart the 3-9 law is (8 dgamma/3 eps)(eps/h)^3, and van der Waals' attraction of half-spaces A/(6 pi h^3).
         """
         return HAMAKER * self.work_of_adhesion * self.spacing**2
 

@@ -8,6 +8,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 FLOORS = [
+    {"fem_adhesion.__main__"},
     {"fem_adhesion.cli"},
     {
         "fem_adhesion.commands.assess",
@@ -19,6 +20,7 @@ FLOORS = [
         "fem_adhesion.commands.report",
         "fem_adhesion.commands.speed",
     },
+    {"fem_adhesion.commands.contact"},
     {"fem_adhesion.commands.common"},
     {"fem_adhesion.output.report", "fem_adhesion.output.movie"},
     {"fem_adhesion.output.render"},
@@ -59,6 +61,7 @@ FLOORS = [
     },
     {
         "fem_adhesion.output.files",
+        "fem_adhesion.output.terminal",
         "fem_adhesion.output.report_figures",
         "fem_adhesion.output.lattice",
         "fem_adhesion.output.revolve",

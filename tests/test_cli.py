@@ -1,7 +1,9 @@
 import json
 import os
+import re
 import subprocess
 import sys
+from importlib.metadata import version
 
 import pytest
 
@@ -26,7 +28,8 @@ def compared(tmp_path_factory):
 def test_agreement_exits_with_0_and_prints_a_table_for_each_value(compared):
     done, _, _ = compared
     assert done.returncode == 0, done.stderr
-    assert done.stdout.count("poisson 0.2: agree") == 2
+    assert "…" not in done.stdout
+    assert done.stdout.count("; poisson 0.2: agree") == 2
     assert "verdict: agree" in done.stdout
     assert "pull_off load" in done.stdout
     assert "unknowns" in done.stdout
@@ -154,15 +157,137 @@ def test_a_file_keeps_its_old_content_until_the_new_one_is_whole(tmp_path):
     assert file.stat().st_mode & 0o777 == 0o666 & ~mask
 
 
-def test_help_does_not_load_the_solvers():
+HELPS = [
+    [],
+    *([name] for name in ("compare", "curve", "assess", "finite-sphere", "speed", "hard", "greenwood", "report")),
+]
+
+
+@pytest.mark.parametrize("command", HELPS, ids=lambda words: " ".join(words) or "all")
+def test_help_does_not_load_the_solvers(command):
+    """Nothing heavy is loaded, so that help answers at once on any machine."""
     code = (
         "import sys; from fem_adhesion import cli\n"
-        "try: cli.main(['--help'])\nexcept SystemExit: pass\n"
-        "print([m for m in ('skfem', 'numpy', 'scipy', 'rich') if m in sys.modules], file=sys.stderr)"
+        f"try: cli.main([*{command}, '--help'])\nexcept SystemExit: pass\n"
+        "heavy = ('skfem', 'numpy', 'scipy', 'rich', 'matplotlib', 'meshio', 'pint', 'importlib.metadata')\n"
+        "print([m for m in heavy if m in sys.modules], file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "compare" in done.stdout
+    assert "usage: fem-adhesion" in done.stdout
     assert done.stderr.strip() == "[]"
+
+
+def _option_lines(command, capsys):
+    """Help of each option of a command, by its name."""
+    with pytest.raises(SystemExit) as ended:
+        cli.main([command, "--help"])
+    assert ended.value.code == 0
+    text = capsys.readouterr().out
+    parts = re.split(r"\n  (?=-)", text)
+    return text, {re.match(r"(?:-\w, )?(--[\w-]+)", part)[1]: " ".join(part.split()) for part in parts[1:]}
+
+
+def test_help_shows_groups_and_defaults(capsys):
+    text, options = _option_lines("compare", capsys)
+    assert "(default: 0.05 0.5 1 2 3 5)" in options["--tabor"]
+    assert "(default: 0.3)" in options["--poisson"]
+    assert "(default: 1e-05)" in options["--rtol"]
+    assert "(default" not in options["--json"]
+    text, options = _option_lines("curve", capsys)
+    assert all(f"\n{group}:\n" in text for group in ("contact", "body and solver", "results"))
+    assert "(default: 5.0)" in options["--to-load"]
+    assert "0.3 unless given with --tabor" in options["--poisson"]
+    assert "20 unless given" in options["--points"]
+    text, options = _option_lines("assess", capsys)
+    assert all(f"\n{group}:\n" in text for group in ("contact", "results"))
+    assert not any("None" in line or "False" in line for line in options.values())
+
+
+def test_a_contact_has_the_same_options_in_every_command_that_takes_one(capsys):
+    _, curve = _option_lines("curve", capsys)
+    _, assess = _option_lines("assess", capsys)
+    contact = {"--radius", "--modulus", "--poisson", "--work-of-adhesion", "--spacing", "--hamaker"}
+    contact |= {"--counter-modulus", "--counter-poisson", "--counter-radius", "--grip", "--stiffness"}
+    assert contact <= set(curve)
+    assert set(assess) == contact | {"--help", "--json", "--plot"}
+
+
+@pytest.mark.parametrize("module", ["fem_adhesion", "fem_adhesion.cli"])
+def test_the_package_runs_as_a_module_and_says_its_version(module):
+    done = subprocess.run([sys.executable, "-m", module, "--version"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, f"fem-adhesion {version('fem-adhesion')}\n", "")
+
+
+MATERIAL = ["--radius", "100nm", "--modulus", "70GPa", "--poisson", "0.17", "--work-of-adhesion", "0.1J/m^2"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "--radius, --modulus, --poisson, --work-of-adhesion, --spacing or --hamaker missing"),
+        (MATERIAL, "--spacing or --hamaker missing"),
+        ([*MATERIAL, "--spacing", "1nm", "--hamaker", "1zJ"], "--spacing with --hamaker, limit: one of both"),
+        ([*MATERIAL, "--spacing", "1nm", "--counter-poisson", "0.3"], "counter_modulus = None"),
+        ([*MATERIAL, "--spacing", "1nm", "--tabor", "1"], "unrecognized arguments: --tabor 1"),
+        ([*MATERIAL, "--spacing", "1nm", "--json", "a.svg", "--plot", "./a.svg"], "is given for two outputs"),
+        ([*MATERIAL, "--spacing", "1nm", "--plot", "-"], "limit: one of .png, .svg, .pdf"),
+        ([*MATERIAL, "--hamaker", "1nm"], "hamaker = 1nm has a unit of the wrong kind, limit: a multiple of J"),
+        (
+            [*MATERIAL, "--spacing", "0.001nm", "--grip", "bonded"],
+            "--grip would not be heeded, limit: tabor <= 10, where a finite sphere is solved, and this is 57.74",
+        ),
+    ],
+)
+def test_assess_refuses_in_one_line_before_any_work(arguments, message, monkeypatch, capsys, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("fem_adhesion.studies.assess.assess", lambda *_: pytest.fail("work was begun"))
+    try:
+        code = cli.main(["assess", *arguments])
+    except SystemExit as ended:  # refused by the parser itself
+        code = ended.code
+    out, err = capsys.readouterr()
+    assert (code, out) == (2, "")
+    assert message in err
+    assert err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_command_line_of_a_contact_is_heeded_to_the_last_option(monkeypatch):
+    """Every number distinct, read back from the contact that is assessed."""
+    asked = []
+    monkeypatch.setattr("fem_adhesion.studies.assess.assess", lambda contact, _: asked.append(contact))
+    other = ["--counter-modulus", "3GPa", "--counter-poisson", "0.41", "--counter-radius", "0.7um"]
+    with pytest.raises(AttributeError):
+        cli.main(["assess", *MATERIAL, "--spacing", "1nm", *other, "--grip", "bonded", "--stiffness", "0.2N/m"])
+    assert {name: value for name, value in vars(asked[0]).items() if name != "units"} == {
+        "radius": pytest.approx(1e-7),
+        "modulus": pytest.approx(7e10),
+        "poisson": 0.17,
+        "work_of_adhesion": pytest.approx(0.1),
+        "spacing": pytest.approx(1e-9),
+        "counter_modulus": pytest.approx(3e9),
+        "counter_poisson": 0.41,
+        "counter_radius": pytest.approx(7e-7),
+        "stiffness": pytest.approx(0.2),
+        "grip": "bonded",
+    }
+
+
+def test_compare_writes_its_record_to_standard_output_alone(capsys):
+    assert cli.main(["compare", "--tabor", "0.5", "--rtol", "1e-2", "--json", "-"]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out)["verdict"] == "agree"
+    assert "verdict: agree" in err
+    assert "pull_off load" in err
+
+
+def test_what_fails_leaves_nothing_on_standard_output(monkeypatch, capsys):
+    def fail(*_, **__):
+        raise NotConverged("on purpose")
+
+    monkeypatch.setattr("fem_adhesion.studies.curves.solve", fail)
+    assert cli.main(["curve", "--tabor", "1", "--json", "-"]) == 1
+    assert capsys.readouterr().out == ""
 
 
 def test_a_device_is_never_replaced_by_a_file(tmp_path):

@@ -3,21 +3,26 @@
 import csv
 import io
 import json
+import math
 import re
 import shlex
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from fem_adhesion.commands import curve
 from fem_adhesion.commands.common import Parser
-from fem_adhesion.output import curve_record, curve_terminal
-from fem_adhesion.scene import Scene
+from fem_adhesion.output import curve_lines, curve_record, curve_terminal
+from fem_adhesion.scene import Counter, Scene
 from fem_adhesion.studies import curves as study
 from halfspace.curve import EquilibriumPath
-from halfspace.errors import NotConverged
+from halfspace.errors import InputError, NotConverged
 from halfspace.scaling import Units
 
+MATERIAL = ("--radius", "100nm", "--modulus", "1GPa", "--poisson", "0.3", "--work-of-adhesion", "50mJ/m^2")
+MATERIAL = (*MATERIAL, "--spacing", "0.3nm")
 UNITS = Units(100e-9, 1.1e9, 0.05, 0.3e-9)
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 
@@ -46,8 +51,13 @@ def _printed(cell):
 
 
 def _rows(curves):
-    table = curve_terminal.table(curves)
-    return list(zip(*(column._cells for column in table.columns), strict=True))
+    return list(zip(*(column.cells for column in curve_terminal.table(curves).columns), strict=True))
+
+
+def _shown(what, width, *, terminal=True):
+    console = Console(width=width, file=io.StringIO(), force_terminal=terminal, color_system=None, legacy_windows=False)
+    curve_terminal.show(what, console)
+    return console.file.getvalue()
 
 
 def test_the_table_has_the_events_of_both_solvers_within_their_errors(both):
@@ -72,17 +82,30 @@ def test_the_table_has_where_the_jumps_land_and_the_notes_what_they_lose(both):
     for device, cycle in (("fixed grips", both.grips), ("apparatus", both.apparatus)):
         shown, bound = _printed(rows[f"jump on lands, {device}"][3])
         assert abs(shown - cycle.jump_on.landing.load) <= bound
-    lost = next(line for line in curve_terminal.notes(both) if "fixed grips" in line)
-    shown, bound = _printed(lost.split()[-4])
-    assert abs(shown - both.grips.energy_lost.value) <= bound
+    for device, cycle in (("fixed grips", both.grips), ("k = 1 R dgamma/eps", both.apparatus)):
+        lost = next(line for line in curve_terminal.notes(both) if device in line)
+        shown, bound = _printed(lost.split()[-4])
+        assert abs(shown - cycle.energy_lost.value) <= bound
 
 
 def test_a_material_gives_si(real):
     table = curve_terminal.table(real)
-    assert [str(column.header).split("\n")[1] for column in table.columns[2:]] == ["nm", "nN", "nm", "nm"]
-    pull_off = next(row for row in _rows(real) if row[0] == "pull-off")
-    shown, bound = _printed(pull_off[3])
-    assert abs(shown - real.path.event("pull_off").load * 100e-9 * 0.05 * 1e9) <= bound
+    assert [column.header.split("\n") for column in table.columns[2:]] == [
+        ["approach", "nm"],
+        ["load", "nN"],
+        ["central gap", "nm"],
+        ["contact radius", "nm"],
+    ]
+    pull_off, event = next(row for row in _rows(real) if row[0] == "pull-off"), real.path.event("pull_off")
+    beta = (1e-14 * 0.05 / 1.1e9) ** (1 / 3) * 1e9
+    for cell, value in zip(
+        pull_off[2:],
+        (event.approach * 0.3, event.load * 5, event.central_gap * 0.3, event.contact_radius * beta),
+        strict=True,
+    ):
+        shown, bound = _printed(cell)
+        assert abs(shown - value) <= bound
+    assert f"Hamaker constant {16 * np.pi * 0.05 * 0.09e-18 * 1e21:.4g} zJ" in "".join(table.title)
     assert "k = 200 mN/m" in "".join(curve_terminal.notes(real))
 
 
@@ -124,14 +147,57 @@ def test_the_table_for_machines_has_points_and_events_in_order_in_both_units(rea
     assert float(rows[rows.index(jump_on) - 1]["approach_eps"]) < event.approach
 
 
-def test_a_pipe_gets_no_plot_and_a_terminal_does(both, capsys, monkeypatch):
-    curve_terminal.show(both)
-    piped = capsys.readouterr().out
+def test_a_pipe_gets_no_plot_and_a_terminal_does(both):
+    piped = _shown(both, 150, terminal=False)
     assert "pull-off" in piped
-    assert "⠁" not in piped
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    curve_terminal.show(both)
-    assert "approach, eps" in capsys.readouterr().out.split("In brackets")[1]
+    assert "│" not in piped.split("In brackets")[1]
+    assert "approach, eps" in _shown(both, 150).split("In brackets")[1]
+
+
+@pytest.mark.parametrize("width", [150, 80, 60, 45])
+def test_every_number_and_unit_is_whole_and_the_plot_fits_at_any_width(both, real, width):
+    for what in (both, real):
+        text = _shown(what, width)
+        assert "…" not in text
+        assert max(map(len, text.splitlines())) <= width
+        numbers = re.findall(r"-?[\d.]+\(\d+\)", text)
+        assert set(numbers) <= set(re.findall(r"-?[\d.]+\(\d+\)", _shown(what, 150)))
+        assert len(numbers) >= 2 * len(_rows(what)) - 2  # approach and load are never left out, 0 has no error
+        drawn = [line for line in text.splitlines() if "│" in line and "┃" not in line and line.index("│") == 9]
+        assert len(drawn) == curve_terminal.HEIGHT
+        assert {len(line) for line in drawn} == {min(width, curve_terminal.WIDTH + 10)}
+
+
+def test_the_axes_of_the_plot_in_characters_are_load_upwards_and_approach_to_the_right(real):
+    """The figures at the ends of the axes, which the names stand beside, against the data."""
+    lines = curve_terminal.plot(real).plain.split("\n")
+    frame = curve_lines.around_events(real.path)
+    assert lines[0] == "load, nN"
+    assert float(lines[1].split("│")[0]) == pytest.approx(frame.load[1] * 5, rel=6e-3)
+    assert float(lines[curve_terminal.HEIGHT].split("│")[0]) == pytest.approx(frame.load[0] * 5, rel=6e-3)
+    low, name, unit, high = lines[-1].split()
+    assert (name, unit) == ("approach,", "nm")
+    assert float(low) == pytest.approx(frame.approach[0] * 0.3, rel=6e-3)
+    assert float(high) == pytest.approx(frame.approach[1] * 0.3, rel=6e-3)
+    assert frame.approach != frame.load
+
+
+def test_the_key_of_the_plot_names_what_is_drawn(both):
+    hard = study.solve(study.Question(Scene(0.3), rtol=1e-2))
+    assert "unstable" in _shown(both, 80)
+    assert "B, D where the jumps" in _shown(both, 80)
+    text = _shown(hard, 80)
+    assert not any(word in text for word in ("unstable", "B, D where", "A jump on"))
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 37.0, 1e4])
+def test_units_are_chosen_by_the_largest_value(real, size):
+    """Of materials of any size, the largest number of a column has one to three digits before the point."""
+    material = Units(100e-9 * size**3, 1.1e9, 0.05, 0.3e-9 * size)
+    sized = replace(real, question=replace(real.question, units=material))
+    for column in curve_terminal.table(sized).columns[2:]:
+        largest = max(abs(_printed(cell)[0]) for cell in column.cells if "(" in cell)
+        assert 1 <= largest < 1000, column.header
 
 
 def test_the_plot_in_characters_has_the_events_where_they_are(both):
@@ -175,7 +241,25 @@ def test_fields_inside_are_written_for_every_event(tmp_path):
         ([], "tabor = None and no material"),
         (["--tabor", "0"], "tabor = 0 is outside 0 < tabor"),
         (["--tabor", "2", "--radius", "100nm"], "leave out --tabor"),
-        (["--radius", "100nm", "--modulus", "1GPa"], "--work-of-adhesion, --spacing missing"),
+        (["--radius", "100nm", "--modulus", "1GPa"], "--poisson, --work-of-adhesion, --spacing or --hamaker missing"),
+        ([*MATERIAL, "--hamaker", "65zJ"], "--spacing with --hamaker, limit: one of both"),
+        ([*MATERIAL, "--counter-share", "0.5"], "--counter-share would not be heeded, limit: with --tabor"),
+        ([*MATERIAL, "--counter-modulus", "1GPa"], "counter_poisson = None"),
+        ([*MATERIAL, "--profile", "sphere", "--counter-radius", "1um"], "take --body hemisphere"),
+        ([*MATERIAL, "--body", "sphere", "--counter-radius", "1um"], "it meets a hemisphere only"),
+        (["--tabor", "2", "--grip", "sliding"], "--grip would not be heeded, limit: with a body that has a size"),
+        (["--tabor", "2", "--poisson", "0.2"], "--poisson would not be heeded, limit: with a material, fem or both"),
+        (
+            ["--tabor", "2", "--counter-radius", "2"],
+            "--counter-radius would not be heeded, limit: with --counter",
+        ),
+        (["--tabor", "2", "--counter-share", "0.5"], "it meets a hemisphere only"),
+        (["--tabor", "2", "--counter-share", "0.5", "--counter-radius", "1um"], "plain number in radii of the first"),
+        (["--tabor", "2", "--points", "5"], "--points would not be heeded, limit: with --vtk DIR"),
+        (["--tabor", "2", "--revolve", "90", "--force"], "--revolve, --force would not be heeded"),
+        (["--tabor", "2", "--json", "a.txt", "--csv", "./a.txt"], "is given for two outputs"),
+        (["--tabor", "2", "--json", "-", "--csv", "-"], "standard output is given for two outputs"),
+        (["--tabor", "2", "--plot", "-"], "limit: one of .png, .svg, .pdf"),
         (["--tabor", "2", "--stiffness", "1N/m"], "not a plain number in R dgamma/eps"),
         (["--tabor", "2", "--stiffness", "-1"], "outside 0 < stiffness"),
         (["--tabor", "2", "--plot", "a.gif"], "ends in '.gif', limit: one of .png, .svg, .pdf"),
@@ -203,17 +287,26 @@ def test_bad_input_is_refused_in_one_line_before_any_work(arguments, message, mo
 
 
 def test_a_material_without_a_spring_is_held_by_fixed_grips(capsys):
-    material = ("--radius", "100nm", "--modulus", "1GPa", "--poisson", 0.3)
-    _run(*material, "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm", "--rtol", 1e-3)
+    _run(*MATERIAL, "--rtol", 1e-3)
     shown = capsys.readouterr().out
     assert "energy lost in a cycle, fixed grips" in shown
     assert "no jumps" not in shown
 
 
 def test_a_material_with_a_size_of_its_own_is_not_given_another():
-    material = ("--radius", "100nm", "--modulus", "1GPa", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm")
-    with pytest.raises(ValueError, match="leave out --radius-ratio"):
-        _run(*material, "--body", "hemisphere", "--radius-ratio", 100)
+    with pytest.raises(InputError, match="--radius-ratio would not be heeded"):
+        _run(*MATERIAL, "--body", "hemisphere", "--radius-ratio", 100)
+
+
+def test_standard_output_has_the_data_alone_and_a_person_reads_the_rest_on_standard_error(capsys):
+    assert _run("--tabor", 0.3, "--rtol", 1e-3, "--json", "-") == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out)["scene"]["tabor"] == 0.3
+    assert "pull-off" in err
+    assert _run("--tabor", 0.3, "--rtol", 1e-3, "--csv", "-") == 0
+    out, err = capsys.readouterr()
+    assert next(csv.DictReader(io.StringIO(out)))["solver"] == "half-space"
+    assert "pull-off" in err
 
 
 @pytest.mark.parametrize(
@@ -229,19 +322,56 @@ def test_what_ends_early_leaves_no_file(error, seen, monkeypatch, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_question_takes_the_size_of_the_sphere_from_the_material(monkeypatch):
+def _asked(monkeypatch, *arguments):
+    """The question that is made of a command line."""
     asked = []
     monkeypatch.setattr(study, "solve", lambda question, _: asked.append(question) or pytest.skip.Exception)
     with pytest.raises(AttributeError):
-        _run(
-            *("--radius", "100nm", "--modulus", "1GPa", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm"),
-            *("--body", "hemisphere", "--profile", "sphere", "--stiffness", "0.2N/m"),
-        )
-    (question,) = asked
+        _run(*arguments)
+    return asked[0]
+
+
+def test_the_question_takes_the_size_of_the_sphere_from_the_material(monkeypatch):
+    sphere = ("--body", "hemisphere", "--profile", "sphere", "--grip", "bonded", "--stiffness", "0.2N/m")
+    question = _asked(monkeypatch, *MATERIAL, *sphere)
     assert question.solver == "fem"
     assert question.scene.radius_ratio == pytest.approx(100 / 0.3)
     assert question.scene.tabor == pytest.approx(question.units.tabor)
+    assert question.scene.grip == "bonded"
+    assert question.scene.counter is None
     assert question.stiffness == pytest.approx(0.2 / question.units.stiffness)
+
+
+def test_the_counter_body_of_a_material_is_heeded(monkeypatch):
+    """In the units of two half-spaces, and as a body of its own against a hemisphere."""
+    other = ("--counter-modulus", "3GPa", "--counter-poisson", 0.4, "--counter-radius", "300nm")
+    flat = _asked(monkeypatch, *MATERIAL, *other)
+    modulus = 1 / ((1 - 0.3**2) / 1e9 + (1 - 0.4**2) / 3e9)
+    assert flat.units.modulus == pytest.approx(modulus, rel=1e-12)
+    assert flat.units.radius == pytest.approx(75e-9, rel=1e-12)
+    assert flat.scene.counter is None
+    round_ = _asked(monkeypatch, *MATERIAL, *other, "--body", "hemisphere", "--profile", "sphere")
+    assert round_.units == flat.units
+    assert round_.scene.poisson == 0.3
+    assert round_.scene.counter.share == pytest.approx(modulus * (1 - 0.4**2) / 3e9, rel=1e-12)
+    assert (round_.scene.counter.poisson, round_.scene.counter.radius) == (0.4, pytest.approx(3.0, rel=1e-12))
+
+
+def test_the_counter_body_of_a_tabor_parameter_is_heeded(monkeypatch):
+    body = ("--tabor", 1, "--body", "hemisphere", "--profile", "sphere", "--radius-ratio", 90)
+    plain = _asked(monkeypatch, *body)
+    assert (plain.scene.counter, plain.scene.poisson, plain.scene.grip) == (None, 0.3, "sliding")
+    pair = _asked(monkeypatch, *body, "--counter-share", 0.4)
+    assert pair.scene.counter == Counter(0.4, 0.3, math.inf)
+    pair = _asked(monkeypatch, *body, "--counter-share", 0.4, "--counter-poisson", 0.2, "--counter-radius", 3)
+    assert pair.scene.counter == Counter(0.4, 0.2, 3.0)
+
+
+def test_a_hamaker_constant_makes_the_spacing(monkeypatch):
+    given = MATERIAL[:-2]
+    question = _asked(monkeypatch, *given, "--hamaker", "65zJ")
+    assert question.units.hamaker == pytest.approx(6.5e-20, rel=1e-12)
+    assert question.units.spacing == pytest.approx(np.sqrt(6.5e-20 / (16 * np.pi * 0.05)), rel=1e-12)
 
 
 def test_the_other_solver_of_a_true_sphere_has_its_profile(monkeypatch):
@@ -249,7 +379,9 @@ def test_the_other_solver_of_a_true_sphere_has_its_profile(monkeypatch):
     monkeypatch.setattr(study.halfspace, "trace", lambda _, **options: asked.update(options))
     scene = Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=100)
     study._trace(study.Question(scene, solver="both"), study.HALF_SPACE)
-    assert asked["radius_ratio"] == 100
+    assert (asked["radius_ratio"], asked["counter_radius"]) == (100, math.inf)
+    study._trace(study.Question(replace(scene, counter=Counter(0.5, 0.3, 2.0)), solver="both"), study.HALF_SPACE)
+    assert (asked["radius_ratio"], asked["counter_radius"]) == (100, 2.0)
     study._trace(study.Question(Scene(2.0, body="hemisphere", radius_ratio=100), solver="both"), study.HALF_SPACE)
     assert asked["radius_ratio"] is None
 

@@ -22,7 +22,7 @@ from fem_adhesion.studies import hard_cases
 README = (ROOT / "README.md").read_text()
 
 ASSESS = (
-    "fem-adhesion assess --radius 100nm --modulus 70GPa --poisson 0.17 --work-of-adhesion 0.1J/m^2 --spacing 0.3nm "
+    "fem-adhesion assess --radius 100nm --modulus 72GPa --poisson 0.17 --work-of-adhesion 0.063J/m^2 --hamaker 65zJ "
     "--stiffness 0.2N/m"
 )
 MAKE, INSTALL = "make", "install"  # run by test_make; what the environment of the tests was installed with

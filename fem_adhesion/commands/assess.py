@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import argparse
 import json
-from contextlib import ExitStack
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_adhesion.commands.common import AGREE, progress_bar
+from fem_adhesion.commands.common import AGREE, console_beside, progress_bar, require_distinct, written
+from fem_adhesion.commands.contact import add_contact, material_of, refuse
 
 if TYPE_CHECKING:
     from fem_adhesion.commands.common import Commands
+    from fem_adhesion.studies.assess_contact import Contact
 
 
 def add(commands: Commands) -> None:
@@ -19,22 +21,16 @@ def add(commands: Commands) -> None:
     assess = commands.add_parser(
         "assess",
         help="assess a real contact in SI: forces, jumps, losses, and which model to trust",
-        description="Compute what a contact does, beside the closed theories, and how wrong the half-space is for it. "
-        "Quantities carry units; the spacing is asked for, never guessed.",
-        epilog="example: fem-adhesion assess --radius 100nm --modulus 70GPa --poisson 0.17 "
-        "--work-of-adhesion 0.1J/m^2 --spacing 0.3nm --stiffness 0.2N/m",
+        description="Compute what a contact does, beside the closed theories, and how wrong the half-space is for it.",
+        epilog="example: fem-adhesion assess --radius 100nm --modulus 72GPa --poisson 0.17 "
+        "--work-of-adhesion 0.063J/m^2 --hamaker 65zJ --stiffness 0.2N/m",
     )
-    assess.add_argument("--radius", required=True, help="radius of the sphere, as 100nm")
-    assess.add_argument("--modulus", required=True, help="Young's modulus of the sphere, as 70GPa")
-    assess.add_argument("--poisson", required=True, type=float, help="its Poisson's ratio, 0 <= nu < 0.5", metavar="NU")
-    assess.add_argument("--work-of-adhesion", required=True, help="as 0.1J/m^2 or 100mN/m", metavar="ENERGY")
-    assess.add_argument("--spacing", required=True, help="equilibrium spacing of the surfaces, as 0.3nm")
-    assess.add_argument("--counter-modulus", help="of the other body, rigid unless given", metavar="MODULUS")
-    assess.add_argument("--counter-poisson", type=float, help="of the other body", metavar="NU")
-    assess.add_argument("--counter-radius", help="of the other body, flat unless given", metavar="RADIUS")
-    assess.add_argument("--stiffness", help="of the cantilever, as 0.2N/m; fixed grips unless given")
-    assess.add_argument("--json", type=Path, help="also write the result to this file", metavar="FILE")
-    assess.add_argument("--plot", type=Path, help="also draw force against distance: png, svg or pdf", metavar="FILE")
+    add_contact(assess, in_si_only=True)
+    results = assess.add_argument_group("results")
+    results.add_argument(
+        "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
+    )
+    results.add_argument("--plot", type=Path, help="also draw force against distance: png, svg or pdf", metavar="FILE")
     assess.set_defaults(run=run)
 
 
@@ -43,22 +39,29 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.output import assess_plot, assess_report
     from fem_adhesion.output.files import written_aside
     from fem_adhesion.studies.assess import assess
-    from fem_adhesion.studies.assess_contact import Contact
-    from fem_adhesion.studies.quantities import KINDS, parse
 
-    given = {name: text for name in KINDS if (text := getattr(options, name)) is not None}
-    quantities = {name: parse(text, name) for name, text in given.items()}
-    numbers = {"counter_poisson": options.counter_poisson, "poisson": options.poisson}
-    contact = Contact(**quantities, **numbers)
+    contact = _contact(options)
+    require_distinct(options.json, options.plot)
     form = assess_plot.require_suffix(options.plot) if options.plot else ""
-    with ExitStack() as stack:
-        record = stack.enter_context(written_aside(options.json)) if options.json else None
-        figure = stack.enter_context(written_aside(options.plot)) if options.plot else None
+    with written(options.json) as record, written_aside(options.plot) if options.plot else nullcontext() as figure:
         with progress_bar() as step:
             assessment = assess(contact, step)
         if record:
             json.dump(assess_report.record(assessment), record, indent=1, allow_nan=False)
         if figure:
             assess_plot.write(assessment, figure, form)
-    assess_report.show(assessment)
+    console_beside(options.json).print(assess_report.report(assessment))
     return AGREE
+
+
+def _contact(options: argparse.Namespace) -> Contact:
+    """The contact, with nothing given that would not be heeded."""
+    from fem_adhesion.studies.assess import FINITE_TABOR
+
+    contact = material_of(options)
+    tabor = contact.units.tabor
+    if tabor > FINITE_TABOR:
+        refuse(
+            options, ("grip",), f"tabor <= {FINITE_TABOR:g}, where a finite sphere is solved, and this is {tabor:.4g}"
+        )
+    return contact

@@ -1,22 +1,63 @@
-"""What the commands share: exit codes, the option for results, the progress bar."""
+"""What the commands share: exit codes, help, the options for results, the progress bar."""
 
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
+
+from halfspace.errors import InputError
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     Commands = argparse._SubParsersAction["Parser"]
 
 AGREE, DISAGREE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 NOT_WRITTEN = DISAGREE
 
 
+STANDARD = Path("-")  # stands for standard output
+
+
+class Help(argparse.HelpFormatter):
+    """Shows defaults, where there are any."""
+
+    def _get_help_string(self, action: argparse.Action) -> str | None:
+        text, default = action.help, action.default
+        if not text or default in (None, False, argparse.SUPPRESS) or "%(default)" in text:
+            return text
+        shown = " ".join(f"{value:g}" for value in default) if isinstance(default, list) else "%(default)s"
+        return f"{text} (default: {shown})"
+
+
+class Version(argparse.Action):
+    """Prints the version, which is looked up only then."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option_string: str | None = None,
+    ) -> None:
+        """Print and exit."""
+        from importlib.metadata import version
+
+        del namespace, values, option_string
+        print(f"fem-adhesion {version('fem-adhesion')}")
+        parser.exit(AGREE)
+
+
 class Parser(argparse.ArgumentParser):
-    """Refuses bad arguments in one line."""
+    """Refuses bad arguments in one line, and shows defaults."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**{"formatter_class": Help, **settings})
 
     def error(self, message: str) -> NoReturn:
         """Exit with code 2."""
@@ -27,6 +68,43 @@ def add_output(command: Parser) -> None:
     """Add the options of a command that writes a directory."""
     command.add_argument("--out", type=Path, required=True, help="directory for the results", metavar="DIR")
     command.add_argument("--force", action="store_true", help="replace files in a directory that is not empty")
+
+
+def require_distinct(*paths: Path | None) -> None:
+    """Refuse two outputs under one name."""
+    seen: set[Path] = set()
+    for path in filter(None, paths):
+        where = path if path == STANDARD else path.resolve()
+        if where in seen:
+            name = "standard output" if path == STANDARD else str(path)
+            raise InputError(f"{name} is given for two outputs, limit: one; give each a name of its own")
+        seen.add(where)
+
+
+@contextmanager
+def written(path: Path | None) -> Iterator[TextIO | None]:
+    """Open the file of an output, whole or not at all; standard output for ``-``, nothing for None."""
+    from fem_adhesion.output.files import written_aside
+    from fem_adhesion.writing import writing
+
+    if path is None:
+        yield None
+    elif path == STANDARD:
+        text = StringIO()
+        yield text
+        with writing(Path("standard output")):
+            sys.stdout.write(text.getvalue())
+            sys.stdout.flush()
+    else:
+        with written_aside(path) as file:
+            yield file
+
+
+def console_beside(*paths: Path | None) -> Console:
+    """Console for what is said to a person: on standard error where standard output is for a machine."""
+    from fem_adhesion.output.terminal import make_console
+
+    return make_console(to_error=STANDARD in paths)
 
 
 @contextmanager

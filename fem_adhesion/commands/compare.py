@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from collections.abc import Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_adhesion.commands.common import AGREE, DISAGREE, progress_bar
+from fem_adhesion.commands.common import AGREE, DISAGREE, console_beside, progress_bar, written
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -30,48 +28,48 @@ def add(commands: Commands) -> None:
         "Exit code 0: all agree, 1: some do not, 2: bad input.",
         epilog="example: fem-adhesion compare --tabor 0.5 2 --rtol 1e-4",
     )
+    scenes, results = compare.add_argument_group("scenes"), compare.add_argument_group("results")
     tabors = [0.05, 0.5, 1, 2, 3, 5]
-    compare.add_argument("--tabor", nargs="+", type=float, default=tabors, help="Tabor parameters", metavar="MU")
-    compare.add_argument("--poisson", type=float, default=0.3, help="Poisson's ratio, 0 <= nu < 0.5", metavar="NU")
-    compare.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy of the comparison, 1e-9 to 1e-1")
-    compare.add_argument("--json", type=Path, help="also write the result to this file", metavar="FILE")
+    scenes.add_argument("--tabor", nargs="+", type=float, default=tabors, help="Tabor parameters", metavar="MU")
+    scenes.add_argument(
+        "--poisson", type=float, default=0.3, help="Poisson's ratio of the elements, 0 <= nu < 0.5", metavar="NU"
+    )
+    scenes.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy of the comparison, 1e-9 to 1e-1")
+    file = "also write the result to this file, - for standard output"
+    results.add_argument("--json", type=Path, help=file, metavar="FILE")
     compare.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Compare all scenes asked for, print a table each, and write the record."""
-    from fem_adhesion.output.files import written_aside
     from fem_adhesion.scene import Scene
     from halfspace.limits import require_rtol
 
     require_rtol(options.rtol)
     scenes = [Scene(tabor=tabor, poisson=options.poisson) for tabor in options.tabor]
-    with written_aside(options.json) if options.json else nullcontext() as file:
-        cases = _compare_with_progress(scenes, options.rtol)
+    console = console_beside(options.json)
+    with written(options.json) as file:
+        cases = _compare_with_progress(scenes, options.rtol, console)
         from fem_adhesion.output.record import crosscheck_record
 
         record = crosscheck_record(cases)
         if file:
             json.dump(record, file, indent=1, allow_nan=False)
-    print(f"verdict: {record['verdict']}")
+    console.print(f"verdict: {record['verdict']}", highlight=False)
     return AGREE if record["verdict"] == "agree" else DISAGREE
 
 
-def _compare_with_progress(scenes: Sequence[Scene], rtol: float) -> list[Case | Failure]:
-    """Run the cases with a bar on standard error and tables on standard output."""
-    from rich.console import Console
-
+def _compare_with_progress(scenes: Sequence[Scene], rtol: float, console: Console) -> list[Case | Failure]:
+    """Run the cases with a bar on standard error and tables on the console."""
     from fem_adhesion.studies import crosscheck
 
-    console = Console(width=None if sys.stdout.isatty() else 150)
-    names = [f"tabor {scene.tabor:g}" for scene in scenes] + ["done"]
     cases: list[Case | Failure] = []
-    with progress_bar() as step:
-        step(names[0], 0, len(scenes))
-        for case in crosscheck.run(scenes, rtol=rtol):
-            cases.append(case)
-            _show(case, console)
-            step(names[len(cases)], len(cases), len(scenes))
+    solved = crosscheck.run(scenes, rtol=rtol)
+    for done, scene in enumerate(scenes):
+        with progress_bar() as step:  # it is gone when a table is printed, which would break it
+            step(f"tabor {scene.tabor:g}", done, len(scenes))
+            cases.append(next(solved))
+        _show(cases[-1], console)
     return cases
 
 
@@ -82,7 +80,8 @@ def _show(case: Case | Failure, console: Console) -> None:
     if isinstance(case, Case):
         console.print(crosscheck_table(case))
     else:
-        console.print(f"tabor {case.scene.tabor:g}, poisson {case.scene.poisson:g}: failed: {case.reason}")
+        name = f"tabor {case.scene.tabor:g}, poisson {case.scene.poisson:g}"
+        console.print(f"{name}: failed: {case.reason}", highlight=False, markup=False)
         for row in case.rows:
-            console.print(f"  {row.quantity}: {row.verdict}")
+            console.print(f"  {row.quantity}: {row.verdict}", highlight=False, markup=False)
     console.print()

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import TYPE_CHECKING
 
-from fem_adhesion.commands.common import AGREE, DISAGREE, add_output, progress_bar
+from fem_adhesion.commands.common import AGREE, DISAGREE, add_output, console_beside, progress_bar
 
 if TYPE_CHECKING:
     from fem_adhesion.commands.common import Commands
@@ -27,8 +26,6 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Run the hard cases, print their tables and write them."""
-    from rich.console import Console
-
     from fem_adhesion.output import hard_report
     from fem_adhesion.output.files import directory_written_aside
     from fem_adhesion.studies import hard_bodies, hard_cases, hard_run
@@ -46,6 +43,5 @@ def run(options: argparse.Namespace) -> int:
             locking = list(hard_bodies.locking())
         with writing(options.out):
             hard_report.write_hard(aside, rows, locking)
-    console = Console(width=None if sys.stdout.isatty() else 150)
-    console.print(hard_report.cases_table(rows), hard_report.locking_table(locking))
+    console_beside().print(hard_report.cases_table(rows), hard_report.locking_table(locking))
     return DISAGREE if any(row.outcome == "wrong" for row in rows) else AGREE

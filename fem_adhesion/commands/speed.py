@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import TYPE_CHECKING
 
-from fem_adhesion.commands.common import AGREE, DISAGREE, add_output, progress_bar
+from fem_adhesion.commands.common import AGREE, DISAGREE, add_output, console_beside, progress_bar
 
 if TYPE_CHECKING:
     from fem_adhesion.commands.common import Commands
@@ -30,6 +31,7 @@ def run(options: argparse.Namespace) -> int:
     """Measure, draw and write the speed study."""
     from fem_adhesion.output import speed_report
     from fem_adhesion.output.files import directory_written_aside
+    from fem_adhesion.output.terminal import page
     from fem_adhesion.studies import speed
     from fem_adhesion.writing import writing
 
@@ -41,5 +43,9 @@ def run(options: argparse.Namespace) -> int:
     troubles = list(study.troubles())
     if troubles:
         print(f"{len(troubles)} failed that should not have, the first: {troubles[0]}")
-    print((options.out / "speed.md").read_text(), end="")
+    text = (options.out / "speed.md").read_text()
+    if sys.stdout.isatty():
+        console_beside().print(*page(text), sep="\n", highlight=False)
+    else:
+        print(text, end="")
     return DISAGREE if troubles else AGREE

@@ -3,75 +3,109 @@
 from __future__ import annotations
 
 import math
-import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 
-from rich.console import Console, Group, RenderableType
-from rich.table import Table
+from rich.console import Group, RenderableType
 from rich.text import Text
 
 from fem_adhesion.output.record import versions
+from fem_adhesion.output.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.studies.assess import Assessment
-from fem_adhesion.studies.assess_predictions import QUANTITIES, WORDS, Prediction
+from fem_adhesion.studies.assess_predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction
 from fem_adhesion.studies.quantities import Quantity
 
-PREFIXES = {-18: "a", -15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+PREFIXES = {
+    -24: "y",
+    -21: "z",
+    -18: "a",
+    -15: "f",
+    -12: "p",
+    -9: "n",
+    -6: "µ",
+    -3: "m",
+    0: "",
+    3: "k",
+    6: "M",
+    9: "G",
+    12: "T",
+}
 DIGITS, DIGITS_OF_RATIO = 6, 4  # significant, at most
-LEGEND = (
-    "Separation: of the undeformed surfaces where the jump takes off, negative if they overlap. Base: position of the "
-    "cantilever's far end there, zero where the undeformed surfaces would be one spacing apart, negative away from the "
-    "wall. Of the finite sphere the mid-plane is held. In brackets: error of the last digit, for closed theories that "
-    "of the reading only. -: not in the model."
+RANKS = {"both": 0, "true profile": 1, "finite body": 1}  # by which columns of the differences are left out
+CONTACT_RADIUS = (
+    "Contact radius: of what is computed where the gap is 3^(1/6) eps, the place of the largest tension; of JKR, DMT "
+    "and Maugis-Dugdale the edge of their own contact, without the ring of attraction around it."
 )
-
-
-def show(assessment: Assessment) -> None:
-    """Print everything, 150 columns wide where there is no terminal."""
-    Console(width=None if sys.stdout.isatty() else 150).print(report(assessment))
 
 
 def report(assessment: Assessment) -> RenderableType:
     """Everything for the terminal."""
     return Group(
-        *(Text(line) for line in _head(assessment)),
+        *_head(assessment),
         models_table(assessment),
-        Text(LEGEND, style="dim"),
+        *map(prose, _legend(assessment)),
         Text(),
-        deviations_table(assessment),
-        Text(),
-        *(Text(f"caution: {line}") for line in assessment.cautions),
-        *(Text(line) for line in assessment.verdict),
+        *_deviations(assessment),
+        *(prose(f"caution: {line}") for line in assessment.cautions),
+        *map(prose, assessment.verdict),
     )
 
 
-def _head(assessment: Assessment) -> Iterator[str]:
+def _head(assessment: Assessment) -> Iterator[RenderableType]:
     contact, units = assessment.contact, assessment.contact.units
-    yield f"regime: {assessment.regime}"
-    yield "; ".join(f"{name} = {value:.4g}" for name, value in assessment.parameters.items())
+    yield prose(f"regime: {assessment.regime}")
+    yield Flow([f"{name} = {value:.4g}" for name, value in assessment.parameters.items()])
     sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
-    yield "; ".join(f"{name} = {engineering(value, unit)}" for name, value, unit in sizes) + (
-        f"; R/eps = {units.radius_ratio:.4g}; beta/R = {units.length / units.radius:.2g}"
-    )
+    ratios = (f"R/eps = {units.radius_ratio:.4g}", f"beta/R = {units.length / units.radius:.2g}")
+    yield Flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in sizes), *ratios])
+    law = (("spacing eps", units.spacing, "m"), ("work of adhesion", units.work_of_adhesion, "J/m^2"))
+    implied = f"with them the Hamaker constant 16 pi dgamma eps^2 = {engineering(units.hamaker, 'J')}"
+    yield Flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in law), implied])
     fixed = math.isinf(contact.stiffness)
-    yield "fixed grips" if fixed else f"cantilever: {engineering(contact.stiffness, 'N/m')}"
-    yield ""
+    yield Text("fixed grips" if fixed else f"cantilever: {engineering(contact.stiffness, 'N/m')}")
+    yield Text()
 
 
-def models_table(assessment: Assessment) -> Table:
-    """A line for each quantity, a column for each model."""
-    table = Table(title="what each model says", title_justify="left")
-    table.add_column("quantity", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
-    for model in assessment.models:
-        table.add_column(model.model, justify="right", no_wrap=True)
-    for name in QUANTITIES:
-        known = [model.values[name] for model in assessment.models if name in model.values]
-        if known:
-            exponent = exponent_of(known[0].value)
-            cells = (_cell(model, name, exponent) for model in assessment.models)
-            table.add_row(WORDS[name], PREFIXES[exponent] + known[0].unit, *cells)
-    return table
+def _legend(assessment: Assessment) -> Iterator[str]:
+    """How to read the table of models; only what stands in it."""
+    shown = {name for model in assessment.models for name in model.values}
+    if shown & set(POSITIONS):
+        yield (
+            "Separation: of the undeformed surfaces where the jump takes off, negative if they overlap. Base: position "
+            "of the cantilever's far end there, zero where the undeformed surfaces would be one spacing apart, "
+            "negative away from the wall."
+        )
+    if shown & set(RADII):
+        yield CONTACT_RADIUS
+    if assessment.finite:
+        yield f"Of the {assessment.finite.model} what is round is held at its mid-plane, {assessment.contact.grip}."
+    yield (
+        "In brackets: error of the last digit, for closed theories that of the reading only. -: not in the model. "
+        "Differences of a position that is less than the spacing are parts of the spacing."
+    )
+
+
+def models_table(assessment: Assessment) -> Fitted:
+    """A line for each quantity, a column for each model; the last ones are left out first."""
+    rows = [name for name in QUANTITIES if any(name in model.values for model in assessment.models)]
+    scales = {name: _scale([model.values.get(name) for model in assessment.models]) for name in rows}
+    # What was computed first, the best of it last to be left out; theories by their distance from it.
+    kept = [model.model for model in (assessment.half_space, assessment.finite, assessment.profile) if model]
+    order = [*kept, *(d.model for d in assessment.distances if d.model not in kept)]
+    columns = [
+        Column(model.model, [_cell(model, name, scales[name][0]) for name in rows], order.index(model.model))
+        for model in assessment.models
+    ]
+    words = Column("quantity", [WORDS[name] for name in rows], text=True, wraps=True)
+    units = Column("unit", [scales[name][1] for name in rows], text=True)
+    return Fitted([words, units, *columns], ["what each model says"])
+
+
+def _scale(quantities: Sequence[Quantity | None]) -> tuple[int, str]:
+    """Exponent of ten and unit that suit the largest of them."""
+    largest = max((q for q in quantities if q), key=lambda q: abs(q.value))
+    exponent = exponent_of(largest.value)
+    return exponent, PREFIXES[exponent] + largest.unit
 
 
 def _cell(model: Prediction, name: str, exponent: int) -> str:
@@ -79,18 +113,24 @@ def _cell(model: Prediction, name: str, exponent: int) -> str:
     return with_error(quantity, 10.0**-exponent) if quantity else "-"
 
 
-def deviations_table(assessment: Assessment) -> Table:
-    """How far the finite sphere is from the half-space, by cause."""
-    table = Table(title="finite sphere less half-space, in % of the half-space", title_justify="left")
-    table.add_column("quantity", no_wrap=True)
-    for cause in ("true profile", "finite body", "both"):
-        table.add_column(cause, justify="right", no_wrap=True)
-    for d in assessment.deviations:
-        if d.profile is None and d.total is None:
-            continue
-        cells = (with_error(q, 100, DIGITS_OF_RATIO) if q else "-" for q in (d.profile, d.body, d.total))
-        table.add_row(WORDS[d.quantity], *cells)
-    return table
+def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
+    """Table of how far the finite bodies are from the half-space, by cause, if that is known."""
+    known = [d for d in assessment.deviations if d.profile or d.total]
+    if not known:
+        return
+    causes = {
+        "true profile": [d.profile for d in known],
+        "finite body": [d.body for d in known],
+        "both": [d.total for d in known],
+    }
+    columns = [
+        Column(f"{name}\n%", [with_error(q, 100, DIGITS_OF_RATIO) if q else "-" for q in found], RANKS[name])
+        for name, found in causes.items()
+        if any(found)
+    ]
+    words = Column("quantity", [WORDS[d.quantity] for d in known], text=True, wraps=True)
+    yield Fitted([words, *columns], [f"difference from the {assessment.half_space.model}, in % of it, by cause"])
+    yield Text()
 
 
 def with_error(quantity: Quantity, scale: float = 1.0, digits: int = DIGITS) -> str:
@@ -131,9 +171,10 @@ def record(assessment: Assessment) -> dict[str, object]:
     """Everything as plain data for JSON, without infinities: a quantity is a value, an error and a unit in SI."""
     contact = assessment.contact
     return {
-        "input": {name: _finite(value) for name, value in asdict(contact).items()},
+        "input": {name: _plain(value) for name, value in asdict(contact).items()},
         "equivalent_radius": contact.units.radius,
         "contact_modulus": contact.units.modulus,
+        "hamaker": contact.units.hamaker,
         "radius_ratio": contact.units.radius_ratio,
         "parameters": dict(assessment.parameters),
         "regime": assessment.regime,
@@ -142,6 +183,8 @@ def record(assessment: Assessment) -> dict[str, object]:
             for model in assessment.models
         ],
         "deviations": [asdict(deviation) for deviation in assessment.deviations],
+        "distances": [asdict(distance) for distance in assessment.distances],
+        "definitions": {"contact_radius": CONTACT_RADIUS},
         "cautions": list(assessment.cautions),
         "verdict": list(assessment.verdict),
         "seconds": assessment.seconds,
@@ -149,5 +192,5 @@ def record(assessment: Assessment) -> dict[str, object]:
     }
 
 
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and math.isfinite(value) else None
+def _plain(value: float | str | None) -> float | str | None:
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -24,6 +24,8 @@ class Canvas:
         Values at the left and right, lower and upper edge.
     """
 
+    MARGIN = 10  # characters in front of it, for the values at its edges and the frame
+
     def __init__(self, width: int, height: int, x: tuple[float, float], y: tuple[float, float]) -> None:
         self._dots = np.zeros((height, width), dtype=int)
         self._styles = np.full((height, width), "", dtype=object)
@@ -49,14 +51,14 @@ class Canvas:
         """Lines of text, with the values at the lower and upper edge in front."""
         text, (height, width) = Text(), self._dots.shape
         for row in range(height):
-            text.append(f"{ {0: edges[1], height - 1: edges[0]}.get(row, ''):>8} │")
+            text.append(f"{ {0: edges[1], height - 1: edges[0]}.get(row, ''):>{self.MARGIN - 2}} │")
             for column in range(width):
                 letter = self._letters.get((row, column))
                 text.append(
                     letter or chr(BLANK + self._dots[row, column]), "bold" if letter else self._styles[row, column]
                 )
             text.append("\n")
-        return text.append(" " * 9 + "└" + "─" * width + "\n")
+        return text.append(" " * (self.MARGIN - 1) + "└" + "─" * width + "\n")
 
     def _place(self, x: Array, y: Array) -> tuple[Index, Index]:
         """Column and row of dots, counted from the upper left; outside where a value is nan."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -59,8 +60,9 @@ SYMBOLS: Mapping[str, tuple[str, str]] = {
 }
 
 
-TYPICAL: Mapping[str, float] = {"approach": 10, "central_gap": 10, "gap": 10, "load": 5, "energy": 10}
-"""Size of quantities on a curve, in their dimensionless units, that decides the prefix; 1 unless given."""
+EVENT_QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
+ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}
+"""Quantities with the prefix of another."""
 
 
 def si_sizes(units: Units) -> Mapping[str, tuple[float, str]]:
@@ -80,14 +82,30 @@ def si_sizes(units: Units) -> Mapping[str, tuple[float, str]]:
 
 
 def scales(curves: Curves) -> Mapping[str, Scale]:
-    """Scale of each quantity of a curve, with the prefix that suits its size."""
+    """Scale of each quantity of a curve, with the prefix that suits the largest of its values at events and jumps."""
     units = curves.question.units
     if units is None:
         return PAPER
-    return {name: _si_scale(name, size, unit) for name, (size, unit) in si_sizes(units).items()}
+    largest = _largest(curves)
+    return {
+        name: _si_scale(name, size, unit, largest.get(ALIKE.get(name, name), 1.0))
+        for name, (size, unit) in si_sizes(units).items()
+    }
 
 
-def _si_scale(name: str, size: float, unit: str) -> Scale:
-    exponent = exponent_of(size * TYPICAL.get(name, 1.0))
+def _largest(curves: Curves) -> Mapping[str, float]:
+    """Largest size of what a table of events shows, in dimensionless units; what is not known is left out."""
+    states = [event for path in curves.paths.values() for event in path.events.values()]
+    cycles = [cycle for cycle in (curves.grips, curves.apparatus) if cycle]
+    jumps = [jump for cycle in cycles for jump in (cycle.jump_on, cycle.jump_off)]
+    states += [state for jump in jumps for state in (jump.take_off, jump.landing)]
+    sizes = {name: [abs(getattr(state, name)) for state in states] for name in EVENT_QUANTITIES}
+    sizes["energy"] = [abs(cycle.energy_lost.value) for cycle in cycles]
+    known = {name: [size for size in found if math.isfinite(size) and size] for name, found in sizes.items()}
+    return {name: max(found) for name, found in known.items() if found}
+
+
+def _si_scale(name: str, size: float, unit: str, largest: float) -> Scale:
+    exponent = exponent_of(size * largest)
     shown = PREFIXES[exponent] + unit
     return Scale(f"{SYMBOLS[name][0]}, {shown}", shown, size * 10.0**-exponent)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from rich.console import Console
-from rich.table import Table
+from rich.markup import escape
 from rich.text import Text
 
 from fem_adhesion.output import curve_lines as lines
 from fem_adhesion.output.assess_report import engineering, with_error
 from fem_adhesion.output.braille import Canvas
 from fem_adhesion.output.curve_scales import Scale, scales
+from fem_adhesion.output.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.studies.curves import Curves
 from fem_adhesion.studies.quantities import Quantity
 from halfspace.devices import Cycle
@@ -31,34 +31,42 @@ EVENTS: Mapping[str, str] = {
 LETTERS: Mapping[str, str] = {"pull_off": "P", "jump_on": "A", "jump_off": "C", "zero_load": "Z"}
 COLOURS = {lines.STABLE: "bright_blue", lines.GRIPS_ONLY: "cyan", lines.UNSTABLE: "yellow"}
 COLUMNS = ("approach", "load", "central_gap", "contact_radius")
+RANKS = {"approach": 0, "load": 0, "contact_radius": 1, "central_gap": 2}  # by which columns are left out
 
 
-def show(curves: Curves) -> None:
+def show(curves: Curves, console: Console) -> None:
     """Print everything; the plot only in a terminal."""
-    console = Console(width=None if sys.stdout.isatty() else 150)
     console.print(table(curves))
     for line in notes(curves):
-        console.print(line, highlight=False, markup=False)
+        console.print(prose(line), highlight=False)
     if console.is_terminal:
-        console.print(plot(curves))
+        console.print(plot(curves, min(WIDTH, console.width - Canvas.MARGIN)))
+        console.print(Flow(_key(curves), ", "))
 
 
-def table(curves: Curves) -> Table:
+def table(curves: Curves) -> Fitted:
     """A line for each event of each solver, and for where each jump lands."""
-    units = scales(curves)
-    made = Table(title=_title(curves), title_justify="left")
-    made.add_column("state", no_wrap=True)
-    made.add_column("solver", no_wrap=True)
-    for name in COLUMNS:
-        made.add_column(f"{name.replace('_', ' ')}\n{units[name].unit}", justify="right", no_wrap=True)
+    units, rows = scales(curves), list(_rows(curves))
+    words = Column("state", [words for words, _, _ in rows], text=True, wraps=True)
+    # The solver tells rows apart only where there are two.
+    solver = Column("solver", [name for _, name, _ in rows], 0 if len(curves.paths) > 1 else 3, text=True, wraps=True)
+    numbers = zip(*(cells(event, units) for _, _, event in rows), strict=True)
+    columns = [
+        Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts, RANKS[name])
+        for name, texts in zip(COLUMNS, numbers, strict=True)
+    ]
+    return Fitted([words, solver, *columns], list(_title(curves)))
+
+
+def _rows(curves: Curves) -> Iterator[tuple[str, str, Event]]:
+    """What each row is, by which solver, and its numbers."""
     for solver, path in curves.paths.items():
         for name, words in EVENTS.items():
             if event := path.event(name):
-                made.add_row(words, solver, *cells(event, units))
+                yield words, solver, event
     for device, cycle in (("fixed grips", curves.grips), ("apparatus", curves.apparatus)):
         for words, state in _landings(cycle, with_take_off=device == "apparatus"):
-            made.add_row(f"{words}, {device}", curves.solver, *cells(state, units))
-    return made
+            yield f"{words}, {device}", curves.solver, state
 
 
 def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str, Event]]:
@@ -81,15 +89,19 @@ def cells(event: Event, units: Mapping[str, Scale]) -> Iterator[str]:
             yield with_error(Quantity(value, error, ""), units[name].size, DIGITS)
 
 
-def _title(curves: Curves) -> str:
+def _title(curves: Curves) -> Iterator[str]:
     scene, units = curves.question.scene, curves.question.units
-    parts = [f"tabor {scene.tabor:.6g}, poisson {scene.poisson:g}, {scene.body}"]
+    yield f"tabor {scene.tabor:.6g}"
+    yield f"poisson {scene.poisson:g}"
+    yield escape(str(scene.body))
     if scene.radius_ratio:
-        parts.append(f"R/eps {scene.radius_ratio:.4g}")
+        yield f"R/eps {scene.radius_ratio:.4g}"
+    if scene.counter:
+        yield f"counter-body with {scene.counter.share:.4g} of the compliance, radius {scene.counter.radius:.4g}"
     if units:
         sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
-        parts += [f"{name} = {engineering(value, unit)}" for name, value, unit in sizes]
-    return "; ".join(parts)
+        yield from (f"{name} = {engineering(value, unit)}" for name, value, unit in sizes)
+        yield f"Hamaker constant {engineering(units.hamaker, 'J')}"
 
 
 def notes(curves: Curves) -> Iterator[str]:
@@ -106,7 +118,10 @@ def notes(curves: Curves) -> Iterator[str]:
             yield f"no jumps, {device}: the contact follows smoothly"
     for solver, path in curves.paths.items():
         yield f"{solver}: {path.unknowns} unknowns, {len(path.points)} points, {path.seconds:.2f} s"
-    yield "In brackets: error of the last digit. Compression and approach are positive; -: no contact."
+    yield (
+        "In brackets: error of the last digit. Compression and approach are positive. Contact radius: where the gap is "
+        "3^(1/6) eps, the place of the largest tension; -: no contact."
+    )
 
 
 def _apparatus(curves: Curves) -> str:
@@ -114,11 +129,19 @@ def _apparatus(curves: Curves) -> str:
     return f"k = {engineering(k * units.stiffness, 'N/m')}" if units else f"k = {k:g} R dgamma/eps"
 
 
-def plot(curves: Curves) -> Text:
-    """Load against approach around the events, unstable stretches thinned, events and landings as letters."""
+def plot(curves: Curves, width: int = WIDTH) -> Text:
+    """Load against approach around the events, unstable stretches thinned, events and landings as letters.
+
+    Parameters
+    ----------
+    curves : Curves
+        The curve, of which the first path is drawn.
+    width : int
+        In characters, without the figures beside it.
+    """
     units, path = scales(curves), curves.path
     frame = lines.around_events(path)
-    canvas = Canvas(WIDTH, HEIGHT, frame.approach, frame.load)
+    canvas = Canvas(width, HEIGHT, frame.approach, frame.load)
     line = lines.smooth(reaching(path, curves.question.stiffness))
     for kind, load in line.parts(line.load):
         canvas.line(line.approach, load, COLOURS[kind], thinned=kind == lines.UNSTABLE)
@@ -131,10 +154,15 @@ def plot(curves: Curves) -> Text:
     text = Text(f"load, {y.unit}\n")
     text.append_text(canvas.text(_ticks(frame.load, y)))
     low, high = _ticks(frame.approach, x)
-    text.append(f"{low:>9} {f'approach, {x.unit}':^{WIDTH - 12}}{high:>11}\n")
-    text.append(" ".join(f"{LETTERS[name]} {words}," for name, words in EVENTS.items() if path.event(name)))
-    text.append(" B, D where the jumps from A and C land, dots thinned: unstable" if curves.grips else "")
-    return text
+    return text.append(f"{low:>{Canvas.MARGIN}}{f'approach, {x.unit}':^{width - 10}}{high:>10}")
+
+
+def _key(curves: Curves) -> list[str]:
+    """What the letters and dots of the plot mean."""
+    words = [f"{LETTERS[name]} {words}" for name, words in EVENTS.items() if curves.path.event(name)]
+    landings = ["B, D where the jumps from A and C land"] if curves.grips else []
+    thinned = ["dots thinned: unstable"] if not curves.path.stable.all() else []
+    return [*words, *landings, *thinned]
 
 
 def _ticks(span: Sequence[float], scale: Scale) -> tuple[str, str]:

@@ -11,29 +11,40 @@ from pathlib import Path
 from typing import Any
 
 from rich.markup import escape
-from rich.table import Table
 
 from fem_adhesion.output.record import versions
+from fem_adhesion.output.terminal import Column, Fitted
 from fem_adhesion.studies.hard_bodies import Locking
 from fem_adhesion.studies.hard_run import Row
 
+COLUMNS = ("case", "expected", "found", "error", "estimate", "Newton steps", "seconds", "compared, or refused because")
+RANKS = {"error": 1, "estimate": 1, "seconds": 2, "Newton steps": 3}  # by which columns are left out
+WORDS = (*COLUMNS[:3], COLUMNS[-1])
 STYLES = {"converged": "green", "refused": "cyan", "wrong": "bold red"}
 
 
-def cases_table(rows: Sequence[Row]) -> Table:
+def cases_table(rows: Sequence[Row]) -> Fitted:
     """One line for each case: the ending declared, the one found; a refusal in its own words."""
-    table = Table(title=summary(rows), title_justify="left")
-    table.add_column("case", min_width=26)
-    table.add_column("expected")
-    table.add_column("found")
-    for name in ("error", "estimate", "Newton steps", "seconds"):
-        table.add_column(name, justify="right")
-    table.add_column("compared, or refused because", overflow="fold")
-    for row in rows:
-        found = f"[{STYLES[row.outcome]}]{escape(row.found)}[/]"
-        cells = (_small(row.error), _small(row.estimate), _steps(row), f"{row.seconds:.2f}", escape(row.message))
-        table.add_row(escape(row.name), row.expected, found, *cells)
-    return table
+    cells = [
+        (
+            escape(row.name),
+            row.expected,
+            f"[{STYLES[row.outcome]}]{escape(row.found)}[/]",
+            _small(row.error),
+            _small(row.estimate),
+            _steps(row),
+            f"{row.seconds:.2f}",
+            escape(row.message),
+        )
+        for row in rows
+    ]
+    return Fitted(
+        [
+            Column(name, texts, RANKS.get(name, 0), name in WORDS, wraps=name in WORDS)
+            for name, texts in zip(COLUMNS, zip(*cells, strict=True), strict=True)
+        ],
+        [summary(rows)],
+    )
 
 
 def summary(rows: Sequence[Row]) -> str:
@@ -42,14 +53,13 @@ def summary(rows: Sequence[Row]) -> str:
     return ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
 
 
-def locking_table(rows: Sequence[Locking]) -> Table:
+def locking_table(rows: Sequence[Locking]) -> Fitted:
     """One line for each Poisson's ratio and element."""
-    table = Table(title="locking: largest error of the deflection under a smooth pressure", title_justify="left")
-    for name in ("poisson", "element", "error", "with the remedy", "remedy"):
-        table.add_column(name, no_wrap=True)
-    for row in rows:
-        table.add_row(f"{row.poisson:g}", row.element, _small(row.error), _small(row.remedied), row.remedy)
-    return table
+    cells = [(f"{row.poisson:g}", row.element, _small(row.error), _small(row.remedied), row.remedy) for row in rows]
+    headers = ("poisson", "element", "error", "with the remedy", "remedy")
+    columns = zip(headers, zip(*cells, strict=True), strict=True)
+    title = "locking: largest error of the deflection under a smooth pressure"
+    return Fitted([Column(name, texts, text=True, wraps=name == "remedy") for name, texts in columns], [title])
 
 
 def write_hard(directory: Path, rows: Sequence[Row], locking: Sequence[Locking]) -> None:

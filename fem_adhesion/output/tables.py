@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rich.table import Table
-
+from fem_adhesion.output.terminal import Column, Fitted
 from fem_adhesion.studies.crosscheck import Case, Row
 from halfspace.curve import EquilibriumPath, Estimate
 
@@ -20,24 +19,29 @@ COLUMNS = (
     "budget",
     "verdict",
 )
+RANKS = {
+    "unit": 1,
+    "half-space": 1,
+    "finite elements": 1,
+    "difference": 2,
+    "error (hs)": 3,
+    "error (fe)": 3,
+    "budget": 4,
+}
 WORDS = ("quantity", "unit", "verdict")  # columns without numbers
 STYLES = {"agree": "green", "disagree": "bold red", "inconclusive": "yellow"}
 
 
-def crosscheck_table(case: Case) -> Table:
+def crosscheck_table(case: Case) -> Fitted:
     """One line for each quantity: both values, the difference, both error estimates, the budget and the verdict."""
     style = STYLES[case.verdict]
-    table = Table(
-        title=f"tabor {case.scene.tabor:g}, poisson {case.scene.poisson:g}: [{style}]{case.verdict}[/]",
-        caption=f"half-space {_cost(case.halfspace)}; finite elements {_cost(case.finite_element)}",
-        title_justify="left",
-        caption_justify="left",
+    columns = zip(COLUMNS, zip(*map(cells, case.rows), strict=True), strict=True)
+    return Fitted(
+        [Column(name, texts, RANKS.get(name, 0), name in WORDS, wraps=name == "quantity") for name, texts in columns],
+        [f"tabor {case.scene.tabor:g}", f"poisson {case.scene.poisson:g}: [{style}]{case.verdict}[/]"],
+        [f"half-space {_cost(case.halfspace)}", f"finite elements {_cost(case.finite_element)}"],
+        ["" if row.verdict == "agree" else STYLES[row.verdict] for row in case.rows],
     )
-    for name in COLUMNS:
-        table.add_column(name, justify="left" if name in WORDS else "right", no_wrap=True)
-    for row in case.rows:
-        table.add_row(*cells(row), style=None if row.verdict == "agree" else STYLES[row.verdict])
-    return table
 
 
 def cells(row: Row) -> tuple[str, ...]:

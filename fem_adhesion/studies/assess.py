@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -12,7 +13,6 @@ from fem_adhesion.scene import Scene
 from fem_adhesion.studies import assess_theories
 from fem_adhesion.studies.assess_contact import Contact
 from fem_adhesion.studies.assess_predictions import (
-    QUANTITIES,
     REFERENCE_TABOR,
     Prediction,
     closed,
@@ -21,10 +21,19 @@ from fem_adhesion.studies.assess_predictions import (
     rigid_sphere,
     soft_sphere,
 )
-from fem_adhesion.studies.assess_verdict import Deviation, cautions, deviation, regime, verdict
+from fem_adhesion.studies.assess_verdict import (
+    Deviation,
+    Distance,
+    cautions,
+    deviations,
+    ranked,
+    regime,
+    verdict,
+)
 from halfspace.errors import InputError, NotConverged
 from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
 
+HALF_SPACE, PROFILE, FINITE, PAIR = "half-space", "true profile", "finite sphere", "finite pair"
 RIGID_TABOR = 1e-12  # below it the rigid sphere is taken; above REFERENCE_TABOR, JKR
 RTOL, FINITE_RTOL = 1e-6, 1e-4  # of the half-space, and of the finite sphere beside it
 FINITE_TABOR = 10.0  # up to which the finite sphere takes a few seconds
@@ -58,11 +67,14 @@ class Assessment:
     half_space : Prediction
         The paraboloid on the half-space, computed, or a closed theory where that is as good.
     profile, finite : Prediction or None
-        The true sphere's profile on the half-space, and the elastic hemisphere held at its mid-plane.
+        The true profile of sphere or spheres on the half-space, and the elastic hemisphere held at its mid-plane, with
+        its counter-body if that is more than a rigid wall.
     theories : tuple of Prediction
         Closed theories.
     deviations : tuple of Deviation
         Of the finite sphere from the half-space, by cause.
+    distances : tuple of Distance
+        Of every other model from the best one, the nearest first.
     regime : str
         In words.
     cautions, verdict : tuple of str
@@ -77,6 +89,7 @@ class Assessment:
     finite: Prediction | None
     theories: tuple[Prediction, ...]
     deviations: tuple[Deviation, ...]
+    distances: tuple[Distance, ...]
     regime: str
     cautions: tuple[str, ...]
     verdict: tuple[str, ...]
@@ -123,21 +136,20 @@ def assess(contact: Contact, progress: Progress = lambda *_: None) -> Assessment
     begin()
     theories = tuple(_theories(contact))
     begin()
-    profile, reason = _tried(_profile, contact)
+    profile, reason = _tried(PROFILE, _profile, contact)
     begin()
-    finite, why_not = _tried(_finite, contact)
-    deviations = tuple(deviation(name, half_space, profile, finite) for name in QUANTITIES if name in half_space.values)
-    reasons = [text for text in dict.fromkeys((reason, why_not)) if text]
+    finite, why_not = _tried(PAIR if contact.pair else FINITE, _finite, contact)
     return Assessment(
         contact,
         half_space,
         profile,
         finite,
         theories,
-        deviations,
+        tuple(deviations(half_space, profile, finite, contact.spacing)),
+        distances := ranked((half_space, profile, finite, *theories), contact.spacing),
         regime(contact.units.tabor),
-        (*cautions(contact, half_space), *reasons),
-        tuple(verdict(half_space, theories, deviations, solved=finite is not None)),
+        (*cautions(contact, half_space), *filter(None, (reason, why_not))),
+        tuple(verdict(finite or half_space, distances, computed=finite is not None)),
         time.perf_counter() - began,
     )
 
@@ -150,7 +162,7 @@ def _half_space(contact: Contact) -> Prediction:
     if units.tabor < RIGID_TABOR:
         return closed("rigid half-space", assess_theories.bradley, units.tabor, stiffness, units)
     path = halfspace.trace(units.tabor, rtol=RTOL, to_load=TO_LOAD)
-    return computed("half-space", path, stiffness, units)
+    return computed(HALF_SPACE, path, stiffness, units)
 
 
 def _theories(contact: Contact) -> Iterator[Prediction]:
@@ -161,27 +173,34 @@ def _theories(contact: Contact) -> Iterator[Prediction]:
             yield closed(name, make, tabor, contact.reduced_stiffness, contact.units)
 
 
-def _tried(make: Callable[[Contact], Prediction], contact: Contact) -> tuple[Prediction | None, str | None]:
-    """Prediction, or why there is none."""
+def _tried(name: str, make: Callable[[Contact], Prediction], contact: Contact) -> tuple[Prediction | None, str | None]:
+    """Prediction, or why there is none: the sphere is outside what the solver serves, or the solver gave up."""
     try:
         return make(contact), None
-    except (InputError, NotConverged) as error:  # the sphere is outside what the solver serves
-        return None, f"finite sphere not solved: {error}"
+    except (InputError, NotConverged) as error:
+        return None, f"{name} not solved: {error}"
 
 
 def _profile(contact: Contact) -> Prediction:
-    """The true sphere's profile on the half-space."""
-    units = contact.units
+    """The true profile of sphere or spheres on the half-space."""
+    units, larger = contact.units, contact.larger_radius
+    if not RIGID_TABOR <= units.tabor <= REFERENCE_TABOR and math.isfinite(larger):
+        raise InputError(
+            f"tabor = {units.tabor:.4g} of two spheres is outside {RIGID_TABOR:g} <= tabor <= {REFERENCE_TABOR:g}; "
+            "the paraboloid serves"
+        )
     if units.tabor > REFERENCE_TABOR:
         return soft_sphere(units)
     if units.tabor < RIGID_TABOR:
         return rigid_sphere(units)
-    path = halfspace.trace(units.tabor, rtol=RTOL, to_load=TO_LOAD, radius_ratio=units.radius_ratio)
-    return computed("sphere's profile", path, contact.reduced_stiffness, units)
+    path = halfspace.trace(
+        units.tabor, rtol=RTOL, to_load=TO_LOAD, radius_ratio=units.radius_ratio, counter_radius=larger
+    )
+    return computed(PROFILE, path, contact.reduced_stiffness, units)
 
 
 def _finite(contact: Contact) -> Prediction:
-    """The elastic hemisphere held at its mid-plane."""
+    """The elastic hemisphere held at its mid-plane, against a rigid wall or its counter-body."""
     units = contact.units
     if units.tabor > FINITE_TABOR:
         raise InputError(
@@ -190,10 +209,12 @@ def _finite(contact: Contact) -> Prediction:
         )
     scene = Scene(
         tabor=units.tabor,
-        poisson=contact.poisson,
+        poisson=contact.smaller_poisson,
         body="hemisphere",
         profile="sphere",
         radius_ratio=units.radius_ratio,
+        grip=contact.grip,
+        counter=contact.counter,
     )
     path = fem_adhesion.trace(scene, rtol=FINITE_RTOL, to_load=TO_LOAD)
-    return computed("finite sphere", path, contact.reduced_stiffness, units)
+    return computed(PAIR if contact.pair else FINITE, path, contact.reduced_stiffness, units)

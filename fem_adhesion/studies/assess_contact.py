@@ -1,4 +1,7 @@
-"""A real contact in SI, checked, and its passage to the dimensionless one."""
+"""A real contact in SI, checked, and its passage to the dimensionless one.
+
+What is asked of a material is asked of it only, and never guessed: Poisson's ratios too, as they are part of E*.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,12 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
+from fem_adhesion.scene import Counter, GripName
 from halfspace.errors import InputError
 from halfspace.limits import require_poisson
 from halfspace.scaling import Units, contact_modulus, equivalent_radius
+
+RIGID = 1e-9  # part of the pair's compliance that stands for none: a rigid sphere is a counter-body all the same
 
 
 @dataclass(frozen=True)
@@ -29,6 +35,8 @@ class Contact:
         Of the other body in m; flat by default.
     stiffness : float
         Of the cantilever in N/m; infinite for fixed grips.
+    grip : {"sliding", "bonded"}
+        How spheres are held at their mid-planes.
 
     Raises
     ------
@@ -45,6 +53,7 @@ class Contact:
     counter_poisson: float | None = None
     counter_radius: float = math.inf
     stiffness: float = math.inf
+    grip: GripName = "sliding"
 
     def __post_init__(self) -> None:
         require_poisson(self.poisson)
@@ -61,8 +70,7 @@ class Contact:
     @cached_property
     def units(self) -> Units:
         """Units of the contact."""
-        both = self.counter_modulus is not None and self.counter_poisson is not None
-        other = (self.counter_modulus, self.counter_poisson) if both else ()
+        other = () if self._other is None else self._other
         modulus = contact_modulus(self.modulus, self.poisson, *other)
         return Units(equivalent_radius(self.radius, self.counter_radius), modulus, self.work_of_adhesion, self.spacing)
 
@@ -72,6 +80,35 @@ class Contact:
         return self.stiffness / self.units.stiffness
 
     @property
-    def both_elastic(self) -> bool:
-        """Whether the other body deforms too."""
-        return self.counter_modulus is not None
+    def pair(self) -> bool:
+        """Whether the other body is more than a rigid wall."""
+        return self._other is not None or math.isfinite(self.counter_radius)
+
+    @property
+    def smaller_poisson(self) -> float:
+        """Poisson's ratio of the smaller body; of the elastic one if that is rigid."""
+        return self._other[1] if self._other and self.counter_radius < self.radius else self.poisson
+
+    @property
+    def larger_radius(self) -> float:
+        """Radius of the larger body in radii of the smaller one."""
+        ratio = self.counter_radius / self.radius
+        return max(ratio, 1 / ratio)
+
+    @cached_property
+    def counter(self) -> Counter | None:
+        """The larger body as the counter-body of the smaller, or None for a rigid wall."""
+        if not self.pair:
+            return None
+        swapped = self.counter_radius < self.radius
+        its_part = self.units.modulus * (1 - self.poisson**2) / self.modulus
+        share = min(max(its_part if swapped else 1 - its_part, RIGID), 1 - RIGID)
+        poisson = self.poisson if swapped or self._other is None else self._other[1]
+        return Counter(share, poisson, self.larger_radius)
+
+    @property
+    def _other(self) -> tuple[float, float] | None:
+        """Modulus and Poisson's ratio of the other body, None if it is rigid."""
+        if self.counter_modulus is None or self.counter_poisson is None:
+            return None
+        return self.counter_modulus, require_poisson(self.counter_poisson)

@@ -30,6 +30,8 @@ DISTANCE = {
     "energy_lost": 5e-4,
 }
 QUANTITIES = tuple(DISTANCE)
+RADII = ("pull_off_radius", "zero_load_radius")
+POSITIONS = ("jump_on_separation", "jump_on_base", "jump_off_separation", "jump_off_base")
 WORDS = {
     "pull_off_force": "pull-off force",
     "pull_off_radius": "contact radius at pull-off",
@@ -72,6 +74,11 @@ class Prediction:
     model: str
     values: Mapping[str, Quantity]
     curve: EquilibriumPath | Curve | None = field(default=None, repr=False)
+
+    @property
+    def is_computed(self) -> bool:
+        """Whether a solver has computed it, rather than a closed theory, which has a contact radius of its own."""
+        return isinstance(self.curve, EquilibriumPath)
 
 
 def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) -> Prediction:
@@ -203,9 +210,15 @@ def _known(values: Mapping[str, Quantity]) -> dict[str, Quantity]:
     return {name: q for name, q in values.items() if math.isfinite(q.value)}
 
 
-def relative(ours: Prediction, reference: Prediction, name: str) -> Quantity | None:
-    """Relative difference of a quantity from a reference's, with both errors in it, or None if either has none."""
+def relative(ours: Prediction, reference: Prediction, name: str, spacing: float) -> Quantity | None:
+    """Difference of a quantity from a reference's, with both errors in it, or None if either has none.
+
+    It is a part of the reference's value; of a position, which may be zero, a part of the spacing in m if that is more.
+    """
     a, b = ours.values.get(name), reference.values.get(name)
-    if a is None or b is None or not b.value:
+    if a is None or b is None:
         return None
-    return Quantity((a.value - b.value) / abs(b.value), (a.error + b.error) / abs(b.value), "1")
+    size = max(abs(b.value), spacing) if name in POSITIONS else abs(b.value)
+    if not size:
+        return None
+    return Quantity((a.value - b.value) / size, (a.error + b.error) / size, "1")

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from fem_adhesion.studies.assess_contact import Contact
-from fem_adhesion.studies.assess_predictions import WORDS, Prediction, relative
+from fem_adhesion.studies.assess_predictions import QUANTITIES, RADII, WORDS, Prediction, relative
 from fem_adhesion.studies.quantities import Quantity
 
-RIGID_TO, SOFT_FROM = (
-    0.1,
-    5.0,
-)  # Tabor parameters between which neither limit serves, [G97] and Johnson & Greenwood 1997
-LEVELS = (1e-3, 1e-2, 1e-1)
-CLOSE = LEVELS[1:]
+# Tabor parameters between which neither limit serves, [G97] and Johnson & Greenwood 1997.
+RIGID_TO, SOFT_FROM = 0.1, 5.0
+GOOD = 0.01  # largest difference of a model that does in the place of the best one
 
 WIDEST_CONTACT = 0.3  # of the radius: beyond, neither the parabola nor linear elasticity hold
 LARGEST_STRAIN = 0.2  # beta/R, the strain of a contact beta wide
@@ -32,8 +28,8 @@ class Deviation:
     quantity : str
         One of `fem_adhesion.studies.assess_predictions.QUANTITIES`.
     profile, body, total : Quantity or None
-        By the sphere's true shape on the half-space, by the finite body under it, and by both; as a part of the
-        half-space's value, with errors. None where not known.
+        By the true shape on the half-space, by the finite bodies under it, and by both; as a part of the half-space's
+        value, with errors, see `fem_adhesion.studies.assess_predictions.relative`. None where not known.
     """
 
     quantity: str
@@ -42,14 +38,67 @@ class Deviation:
     total: Quantity | None
 
 
-def deviation(name: str, half_space: Prediction, profile: Prediction | None, finite: Prediction | None) -> Deviation:
-    """Split the difference between the half-space and the finite sphere."""
-    by_profile = relative(profile, half_space, name) if profile else None
-    total = relative(finite, half_space, name) if finite else None
-    if by_profile is None or total is None:
-        return Deviation(name, by_profile, None, total)
-    by_body = Quantity(total.value - by_profile.value, total.error + by_profile.error, "1")
-    return Deviation(name, by_profile, by_body, total)
+@dataclass(frozen=True)
+class Distance:
+    """How far a model is from the best one at most.
+
+    Attributes
+    ----------
+    model : str
+        Its name.
+    worst : str or None
+        The quantity in which it is farthest; None if it has none of the best one's.
+    size : float
+        Relative difference there, both errors included.
+    missing : tuple of str
+        Those quantities of the best model that it lacks.
+    """
+
+    model: str
+    worst: str | None
+    size: float
+    missing: tuple[str, ...]
+
+
+def deviations(
+    half_space: Prediction, profile: Prediction | None, finite: Prediction | None, spacing: float
+) -> Iterator[Deviation]:
+    """Split the difference between the half-space and the finite bodies, for each quantity of the half-space."""
+    for name in QUANTITIES:
+        if name in half_space.values:
+            by_profile = relative(profile, half_space, name, spacing) if profile else None
+            total = relative(finite, half_space, name, spacing) if finite else None
+            yield Deviation(name, by_profile, _rest(total, by_profile), total)
+
+
+def _rest(total: Quantity | None, part: Quantity | None) -> Quantity | None:
+    return Quantity(total.value - part.value, total.error + part.error, "1") if total and part else None
+
+
+def ranked(models: Sequence[Prediction | None], spacing: float) -> tuple[Distance, ...]:
+    """Distances from the best model, the nearest first, those that lack quantities last.
+
+    Parameters
+    ----------
+    models : sequence of Prediction or None
+        Half-space, true profile and finite bodies, then the closed theories. The finite bodies are the best model, or
+        if they were not solved the half-space.
+    spacing : float
+        In m.
+    """
+    best = models[2] or models[0]
+    found = [_distance(model, best, spacing) for model in models if best and model and model is not best]
+    return tuple(sorted(found, key=lambda distance: (len(distance.missing), distance.size)))
+
+
+def _distance(model: Prediction, best: Prediction, spacing: float) -> Distance:
+    """Distance in all that both mean alike: the contact radius of a closed theory is another than a computed one."""
+    names = [n for n in best.values if n not in RADII or model.is_computed == best.is_computed]
+    known = {name: d for name in names if (d := relative(model, best, name, spacing))}
+    sizes = {name: abs(d.value) + d.error for name, d in known.items()}
+    worst = max(sizes, key=sizes.__getitem__, default=None)
+    missing = tuple(name for name in best.values if name not in model.values)
+    return Distance(model.model, worst, sizes[worst] if worst else 0.0, missing)
 
 
 def regime(tabor: float) -> str:
@@ -66,102 +115,55 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
     """Sentences on what the numbers leave out of account."""
     units = contact.units
     R = units.radius
-    radius = half_space.values.get("zero_load_radius")
-    if radius and radius.value > WIDEST_CONTACT * R:
-        yield _beyond("contact radius over R", radius.value / R, WIDEST_CONTACT, "linear elasticity no longer holds")
-    if units.length > LARGEST_STRAIN * R:
-        yield _beyond("strain beta/R", units.length / R, LARGEST_STRAIN, "finite strain matters")
-    if units.spacing > LARGEST_SPACING * R:
-        yield _beyond(
-            "spacing over R", units.spacing / R, LARGEST_SPACING, "a law between continuous planes is doubtful"
-        )
-    jump = half_space.values.get("jump_on_separation")
-    if jump and jump.value > FARTHEST_JUMP * R:
-        yield _beyond("jump-on distance over R", jump.value / R, FARTHEST_JUMP, "the law between planes is doubtful")
-    if contact.both_elastic:
-        yield (
-            "both bodies are elastic: they act as one with their contact modulus, and the finite sphere carries all of "
-            "the compliance, so that its deviations are too large"
-        )
-    if math.isfinite(contact.counter_radius):
-        yield "both bodies are round: they act as one sphere of the equivalent radius, nearer to a half-space than it"
+    wide, far = (half_space.values.get(name) for name in ("zero_load_radius", "jump_on_separation"))
+    judged = (
+        ("contact radius over R", _over(wide, R), WIDEST_CONTACT, "linear elasticity no longer holds"),
+        ("strain beta/R", units.length / R, LARGEST_STRAIN, "finite strain matters"),
+        ("spacing over R", units.spacing / R, LARGEST_SPACING, "a law between continuous planes is doubtful"),
+        ("jump-on distance over R", _over(far, R), FARTHEST_JUMP, "the law between planes is doubtful"),
+    )
+    for what, value, limit, meaning in judged:
+        if value > limit:
+            yield f"{what} is {value:.2g}, limit {limit:g}: {meaning}"
 
 
-def _beyond(what: str, value: float, limit: float, meaning: str) -> str:
-    return f"{what} is {value:.2g}, limit {limit:g}: {meaning}"
+def _over(quantity: Quantity | None, R: float) -> float:
+    return quantity.value / R if quantity else 0.0
 
 
-def verdict(
-    half_space: Prediction, theories: Sequence[Prediction], deviations: Sequence[Deviation], *, solved: bool
-) -> Iterator[str]:
+def verdict(best: Prediction, distances: Sequence[Distance], *, computed: bool) -> Iterator[str]:
     """Sentences on which model to trust.
 
     Parameters
     ----------
-    half_space : Prediction
-        The reference.
-    theories : sequence of Prediction
-        Closed ones beside it.
-    deviations : sequence of Deviation
-        Of the finite sphere from the half-space.
-    solved : bool
-        Whether the finite sphere was solved.
+    best : Prediction
+        The one from which the others' distances are.
+    distances : sequence of Distance
+        As from `ranked`.
+    computed : bool
+        Whether the best model is that of the finite bodies.
     """
-    yield _theories(half_space, theories)
-    known = [d for d in deviations if (d.total or d.profile) is not None]
-    if not known:
-        yield "the finite sphere is not known: judge the half-space by the cautions"
+    yield from (f"beside the {best.model}: {_judged(distance)}" for distance in distances)
+    if not computed:
+        yield f"the finite body is not known: judge the {best.model} by the cautions"
         return
-    worst = max(known, key=_size)
-    what = "the finite sphere" if solved else "the sphere's true shape on the half-space"
-    yield from (f"beside {what}, {_judged(d)}" for d in dict.fromkeys((known[0], worst)))
-    yield _advice(half_space, theories, _size(worst), solved=solved)
+    whole = [distance for distance in distances if distance.worst and not distance.missing]
+    good = [distance.model for distance in whole if distance.size <= GOOD]
+    if good:
+        yield f"trust the {best.model}; within {_percent(GOOD)} in every quantity: {', '.join(good)}"
+    elif whole:
+        nearest = f"the {whole[0].model} is nearest, off by up to {_percent(whole[0].size)}"
+        yield f"trust the {best.model}; no other model is within {_percent(GOOD)} in every quantity, {nearest}"
+    else:
+        yield f"trust the {best.model}; no other model has all its quantities"
 
 
-def _judged(deviation: Deviation) -> str:
-    """How far off the half-space is in one quantity, and why."""
-    size = _size(deviation)
-    level = next((f"within {_percent(level)}" for level in LEVELS if size <= level), f"beyond {_percent(LEVELS[-1])}")
-    return f"the half-space is {level} in {WORDS[deviation.quantity]}: off by {_percent(size)}{_cause(deviation)}"
-
-
-def _cause(deviation: Deviation) -> str:
-    if deviation.profile is None or deviation.body is None:
-        return ""
-    profile, body = abs(deviation.profile.value), abs(deviation.body.value)
-    return ", mostly by the true profile" if profile > body else ", mostly by the finite body"
-
-
-def _advice(half_space: Prediction, theories: Sequence[Prediction], worst: float, *, solved: bool) -> str:
-    if worst > CLOSE[0] and solved:
-        return "trust the finite sphere; the half-space is an estimate"
-    near = [theory for theory in theories if _distance(theory, half_space) <= CLOSE[0]]
-    if near:
-        best = min(near, key=lambda theory: _distance(theory, half_space))
-        return f"trust the {half_space.model}; {best.model} gives the same pull-off force within {_percent(CLOSE[0])}"
-    return f"trust the {half_space.model}; no closed theory has its pull-off force within {_percent(CLOSE[0])}"
-
-
-def _theories(half_space: Prediction, theories: Sequence[Prediction]) -> str:
-    """Which closed theory comes close in pull-off."""
-    groups = []
-    for low, high in ((0.0, CLOSE[0]), CLOSE):
-        names = [theory.model for theory in theories if low <= _distance(theory, half_space) < high]
-        if names:
-            groups.append(f"within {_percent(high)}: {', '.join(names)}")
-    beside = "; ".join(groups) or f"none within {_percent(CLOSE[1])}"
-    return f"closed theories beside the {half_space.model} in pull-off force: {beside}"
-
-
-def _distance(theory: Prediction, half_space: Prediction) -> float:
-    found = relative(theory, half_space, "pull_off_force")
-    return abs(found.value) if found else math.inf
-
-
-def _size(deviation: Deviation) -> float:
-    """Largest that a deviation may be, its error included."""
-    known = deviation.total or deviation.profile
-    return abs(known.value) + known.error if known else 0.0
+def _judged(distance: Distance) -> str:
+    """How far off a model is, in what, and what it lacks."""
+    lacks = f"; has no {', '.join(WORDS[name] for name in distance.missing)}" if distance.missing else ""
+    if distance.worst is None:
+        return f"{distance.model} has none of its quantities"
+    return f"{distance.model} off by up to {_percent(distance.size)}, in {WORDS[distance.worst]}{lacks}"
 
 
 def _percent(part: float) -> str:

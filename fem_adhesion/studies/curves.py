@@ -142,4 +142,6 @@ def _trace(question: Question, solver: str) -> EquilibriumPath:
     if solver == FINITE_ELEMENTS:
         return convergence.trace(scene, **wanted)
     curved = scene.profile == "sphere" or isinstance(scene.body, Path)
-    return halfspace.trace(scene.tabor, radius_ratio=scene.radius_ratio if curved else None, **wanted)
+    larger = scene.counter.radius if scene.counter and curved else math.inf
+    ratio = scene.radius_ratio if curved else None
+    return halfspace.trace(scene.tabor, radius_ratio=ratio, counter_radius=larger, **wanted)

@@ -1,0 +1,220 @@
+"""Text and tables that fit the terminal: columns are dropped by rank and said to be, numbers and units never cut."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from rich import box
+from rich.cells import cell_len
+from rich.console import Console, ConsoleOptions, JustifyMethod, RenderableType, RenderResult
+from rich.markup import escape
+from rich.measure import Measurement
+from rich.table import Table
+from rich.text import Text
+
+WIDE = 150  # columns where there is no terminal
+UNBOUNDED = 10_000
+LEAST = 14  # columns of text that may be wrapped
+LONG = 40  # a cell of a page that is wrapped
+NUMBER = re.compile(r"[(=-]*\d[\d.e+()-]*")
+UNIT = re.compile(r"(%|[yzafpnµmkMGT]?(m|N|Pa|J|N/m|J/m\^2)|s|R|dgamma(/eps)?|eps|beta|unknowns|points)[.,;:)]*")
+
+
+def _framed() -> Table:
+    return Table(box=box.HEAVY_HEAD)
+
+
+def _light() -> Table:
+    return Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 0))
+
+
+Layout = Callable[[], Table]
+LAYOUTS: tuple[Layout, ...] = (_framed, _light)
+
+
+def make_console(*, to_error: bool = False) -> Console:
+    """Console as wide as its terminal, or as the variable COLUMNS says, or `WIDE`."""
+    known = (sys.stderr if to_error else sys.stdout).isatty() or "COLUMNS" in os.environ
+    return Console(stderr=to_error, width=None if known else WIDE)
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Parts of a line, such as ``R = 100 nm``, that is broken between them only.
+
+    Parameters
+    ----------
+    parts : sequence of str
+        In rich's markup.
+    separator : str
+        Between two on a line.
+    style : str
+        Of the whole.
+    """
+
+    parts: Sequence[str]
+    separator: str = "; "
+    style: str = ""
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Lines, each with as many parts as fit."""
+        del console
+        line = Text(style=self.style)
+        for number, part in enumerate(self.parts):
+            end = "" if number == len(self.parts) - 1 else self.separator
+            text = Text.from_markup(part + end)
+            if line and line.cell_len + len(part + end.rstrip()) > options.max_width:
+                line.rstrip()
+                yield line
+                line = Text(style=self.style)
+            line.append_text(text)
+        yield line
+
+
+def prose(text: str) -> Flow:
+    """Sentences that are broken between words, but not between a number and its unit."""
+    parts: list[str] = []
+    glued = False  # whether the last word is a number, or the unit of one
+    for word in text.split(" "):
+        joins = glued and bool(UNIT.fullmatch(word))
+        if joins:
+            parts[-1] += " " + escape(word)
+        else:
+            parts.append(escape(word))
+        glued = joins or bool(NUMBER.fullmatch(word))
+    return Flow(parts, " ")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Parameters
+    ----------
+    header : str
+        Its name, with its unit below.
+    cells : sequence of str
+        In rich's markup.
+    rank : int
+        0 if it stays; the higher, the sooner it is left out. Columns of one rank go together.
+    text : bool
+        Whether it is words, to the left, rather than numbers.
+    wraps : bool
+        Whether its words may go on in the next line.
+    """
+
+    header: str
+    cells: Sequence[str]
+    rank: int = 0
+    text: bool = False
+    wraps: bool = False
+
+    @property
+    def least(self) -> int:
+        """Least width in which nothing is cut: that of a line, or where words may go on below of a word."""
+        texts = [Text.from_markup(text).plain for text in (self.header, *self.cells)]
+        lines = max(cell_len(line) for text in texts for line in text.split("\n"))
+        words = max((cell_len(word) for text in texts for word in text.split()), default=0)
+        return max(words, min(LEAST, lines)) if self.wraps else lines
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A table that leaves out columns until it fits, and becomes a list where not even those of rank 0 do.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        The first names the row.
+    title, caption : sequence of str
+        Parts of the lines above and below.
+    styles : sequence of str
+        Of the rows, empty unless given.
+    """
+
+    columns: Sequence[Column]
+    title: Sequence[str] = ()
+    caption: Sequence[str] = ()
+    styles: Sequence[str] = ()
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Title, table or list, what was left out, and caption."""
+        if self.title:
+            yield Flow(self.title, style="italic")
+        kept, made = self._fitting(console, options)
+        if made is None:
+            yield from self._items()
+        else:
+            yield made
+            if left_out := [_one_line(column.header) for column in self.columns if column not in kept]:
+                yield Flow([f"left out at this width: {left_out[0]}", *left_out[1:]], ", ", "dim")
+        if self.caption:
+            yield Flow(self.caption, style="dim italic")
+
+    def _fitting(self, console: Console, options: ConsoleOptions) -> tuple[Sequence[Column], Table | None]:
+        """Columns that fit and their table, None if none does: all of them if it may be, in a lighter frame if not."""
+        open_ended = options.update(width=UNBOUNDED)
+        for kept, layout in self._choices():
+            made = self._table(kept, layout)
+            if Measurement.get(console, open_ended, made).minimum <= options.max_width:
+                return kept, made
+        return (), None
+
+    def _choices(self) -> Iterator[tuple[Sequence[Column], Layout]]:
+        yield from ((self.columns, layout) for layout in LAYOUTS)
+        for rank in sorted({column.rank for column in self.columns} - {0}, reverse=True):
+            yield [column for column in self.columns if column.rank < rank], LAYOUTS[-1]
+
+    def _table(self, columns: Sequence[Column], layout: Layout) -> Table:
+        made = layout()
+        for column in columns:
+            justify: JustifyMethod = "left" if column.text else "right"
+            made.add_column(column.header, justify=justify, no_wrap=not column.wraps, min_width=column.least)
+        styles = self.styles or [""] * len(self.columns[0].cells)
+        for cells, style in zip(zip(*(column.cells for column in columns), strict=True), styles, strict=True):
+            made.add_row(*cells, style=style or None)
+        return made
+
+    def _items(self) -> Iterator[RenderableType]:
+        """Every row as a heading and a line for each of its cells."""
+        for row in zip(*(column.cells for column in self.columns), strict=True):
+            yield Text.from_markup(row[0], style="bold")
+            for column, cell in zip(self.columns[1:], row[1:], strict=True):
+                yield Flow([f"  {_one_line(column.header)}:", _one_line(cell)], " ")
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split("\n"))
+
+
+def page(markdown: str) -> Iterator[RenderableType]:
+    """Lines of a page in Markdown, its tables fitted: the last columns are left out first."""
+    rows: list[list[str]] = []
+    for line in (*markdown.splitlines(), ""):
+        if line.startswith("|"):
+            rows.append([_broken(cell.strip()) for cell in line.strip("|").split(" | ")])
+            continue
+        if rows:
+            yield _from_rows(rows)
+            rows = []
+        yield Text(line)
+
+
+def _broken(cell: str) -> str:
+    """Cell of a page with what is in brackets, and what it equals, on lines of their own."""
+    return re.sub(r" (?=\(|= )", "\n", cell.replace("[", r"\[")) if len(cell) < LONG else cell.replace("[", r"\[")
+
+
+def _from_rows(rows: Sequence[Sequence[str]]) -> Fitted:
+    """Table whose first row is the headings and whose second divides it from the others."""
+    columns = zip(rows[0], *rows[2:], strict=True)
+    return Fitted(
+        [
+            Column(header, cells, rank, text=True, wraps=not rank or any(len(cell) >= LONG for cell in cells))
+            for rank, (header, *cells) in enumerate(columns)
+        ]
+    )
