@@ -106,7 +106,7 @@ def _full(*_args, **_kwargs):
 @pytest.mark.parametrize("command", ["speed", "greenwood", "hard", "finite-sphere"])
 def test_a_full_disk_ends_each_study_in_one_line_and_leaves_nothing(command, tmp_path, monkeypatch, capsys):
     from fem_adhesion.output import finite_sphere_report, greenwood_report, hard_report, speed_report
-    from fem_adhesion.studies import finite_sphere, greenwood1997, hard_bodies, hard_cases, speed
+    from fem_adhesion.studies import finite_sphere, greenwood1997, hard_bodies, hard_run, speed
 
     for module, name in (
         (speed_report, "write"),
@@ -117,7 +117,7 @@ def test_a_full_disk_ends_each_study_in_one_line_and_leaves_nothing(command, tmp
         monkeypatch.setattr(module, name, _full)
     monkeypatch.setattr(speed, "measure", lambda *_, **__: None)
     monkeypatch.setattr(greenwood1997, "compute", lambda **_: None)
-    monkeypatch.setattr(hard_cases, "run", lambda _: [])
+    monkeypatch.setattr(hard_run, "run", lambda _: [])
     monkeypatch.setattr(hard_bodies, "locking", list)
     monkeypatch.setattr(finite_sphere, "run", lambda *_, **__: [SimpleNamespace(status="solved")])
     assert cli.main([command, "--out", str(tmp_path / "out")]) == 1
