@@ -281,7 +281,7 @@ def test_the_worst_verdict_reaches_table_record_and_exit_code(verdicts, overall,
     assert cli.main(["compare", "--tabor", "0.5", "--json", str(tmp_path / "made-up.json")]) == code
     out = capsys.readouterr().out
     assert out.rstrip().endswith(f"verdict: {overall}")
-    assert f"tabor 0.5, poisson 0.3: {overall}" in out
+    assert f"tabor 0.5; poisson 0.3: {overall}" in out
     (table,) = tables_in(out)
     record = json.loads((tmp_path / "made-up.json").read_text())
     assert record["verdict"] == record["cases"][0]["verdict"] == overall
@@ -308,8 +308,8 @@ def test_a_verdict_has_its_colour():
     case = Case(Scene(tabor=0.5), halfspace.trace(0.5, rtol=1e-1), halfspace.trace(0.5, rtol=1e-1), ())
     for verdict, style in (("agree", "green"), ("disagree", "bold red"), ("inconclusive", "yellow")):
         table = crosscheck_table(replace(case, rows=(_made_up("agree"), _made_up(verdict))))
-        assert table.title == f"tabor 0.5, poisson 0.3: [{style}]{verdict}[/]"
-        assert [row.style for row in table.rows] == [None, None if verdict == "agree" else style]
+        assert table.title == ["tabor 0.5", f"poisson 0.3: [{style}]{verdict}[/]"]
+        assert table.styles == ["", "" if verdict == "agree" else style]
 
 
 def test_a_missing_event_disagrees():
@@ -341,6 +341,7 @@ def test_a_failing_case_does_not_lose_the_others(monkeypatch):
     results = list(crosscheck.run([Scene(tabor=1.0), Scene(tabor=0.5)], rtol=1e-2))
     assert isinstance(results[0], Failure)
     assert results[0].reason == "on purpose; try another day"
+    assert [row.quantity for row in results[0].rows] == [f"operator: {name}" for name in crosscheck.PRESSURES]
     assert isinstance(results[1], Case)
 
 
