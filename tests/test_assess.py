@@ -376,7 +376,7 @@ def _check_record(data, assessment):
     assert (data["equivalent_radius"], data["contact_modulus"]) == (units.radius, units.modulus)
     assert (data["regime"], data["verdict"]) == (assessment.regime, list(assessment.verdict))
     assert data["cautions"] == list(assessment.cautions)
-    assert [entry["model"] for entry in data["distances"]] == [distance.model for distance in assessment.distances]
+    assert data["distances"] == [vars(d) | {"missing": list(d.missing)} for d in assessment.distances]
 
 
 def test_the_command_prints_and_writes_what_it_computed(said):
@@ -385,7 +385,9 @@ def test_the_command_prints_and_writes_what_it_computed(said):
     _check_record(said.record, said.assessment)
     assert said.record["input"]["grip"] == "sliding"
     assert said.record["input"]["stiffness"] == 0.2
-    assert said.plot.read_text().startswith("<?xml")
+    drawn = set(re.findall(r"<!-- (.*?) -->", said.plot.read_text()))  # what the letters' outlines say
+    assert {"separation of the undeformed surfaces, nm", "force (compression positive), nN"} <= drawn
+    assert {"half-space", "finite sphere", "JKR"} <= drawn
     for line in (*said.assessment.verdict, *said.assessment.cautions):
         assert line in said.text.replace("\n", " ")
 
@@ -677,6 +679,14 @@ def test_progress_is_told():
     told = []
     assess(Contact(**BEAD), lambda *step: told.append(step))
     assert [step[1:] for step in told] == [(i, 4) for i in range(4)]
+
+
+def test_standard_output_may_have_the_record_alone(capsys):
+    bead = ["--radius", "50um", "--modulus", "2MPa", "--poisson", "0.49", "--work-of-adhesion", "0.05J/m^2"]
+    assert cli.main(["assess", *bead, "--spacing", "0.3nm", "--json", "-"]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out)["input"]["poisson"] == 0.49
+    assert "regime: soft" in err
 
 
 def test_the_record_is_plain_data_without_infinities(bead):

@@ -357,6 +357,16 @@ def test_the_counter_body_of_a_material_is_heeded(monkeypatch):
     assert (round_.scene.counter.poisson, round_.scene.counter.radius) == (0.4, pytest.approx(3.0, rel=1e-12))
 
 
+@pytest.mark.parametrize(("radius", "recorded"), [(math.inf, None), (2.0, 2.0)])
+def test_the_counter_body_is_in_title_and_record(both, radius, recorded):
+    """JSON has no number for the radius of a flat one."""
+    scene = Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=90.0, counter=Counter(0.4, 0.2, radius))
+    pair = replace(both, question=replace(both.question, scene=scene))
+    found = json.loads(json.dumps(curve_record.record(pair), allow_nan=False))
+    assert found["scene"]["counter"] == {"share": 0.4, "poisson": 0.2, "radius": recorded}
+    assert f"counter-body with 0.4 of the compliance, radius {radius:g}" in _shown(pair, 150)
+
+
 def test_the_counter_body_of_a_tabor_parameter_is_heeded(monkeypatch):
     body = ("--tabor", 1, "--body", "hemisphere", "--profile", "sphere", "--radius-ratio", 90)
     plain = _asked(monkeypatch, *body)

@@ -66,8 +66,9 @@ class Parser(argparse.ArgumentParser):
 
 def add_output(command: Parser) -> None:
     """Add the options of a command that writes a directory."""
-    command.add_argument("--out", type=Path, required=True, help="directory for the results", metavar="DIR")
-    command.add_argument("--force", action="store_true", help="replace files in a directory that is not empty")
+    results = command.add_argument_group("results")
+    results.add_argument("--out", type=Path, required=True, help="directory for the results", metavar="DIR")
+    results.add_argument("--force", action="store_true", help="replace files in a directory that is not empty")
 
 
 def require_distinct(*paths: Path | None) -> None:

@@ -9,7 +9,7 @@ from dataclasses import asdict
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from fem_adhesion.output.record import versions
+from fem_adhesion.output.record import plain, versions
 from fem_adhesion.output.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.studies.assess import Assessment
 from fem_adhesion.studies.assess_predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction
@@ -171,7 +171,7 @@ def record(assessment: Assessment) -> dict[str, object]:
     """Everything as plain data for JSON, without infinities: a quantity is a value, an error and a unit in SI."""
     contact = assessment.contact
     return {
-        "input": {name: _plain(value) for name, value in asdict(contact).items()},
+        "input": plain(asdict(contact)),
         "equivalent_radius": contact.units.radius,
         "contact_modulus": contact.units.modulus,
         "hamaker": contact.units.hamaker,
@@ -190,7 +190,3 @@ def record(assessment: Assessment) -> dict[str, object]:
         "seconds": assessment.seconds,
         "versions": versions(),
     }
-
-
-def _plain(value: float | str | None) -> float | str | None:
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import IO, Any
 
 from fem_adhesion.output.curve_scales import si_sizes
-from fem_adhesion.output.record import versions
+from fem_adhesion.output.record import plain, versions
 from fem_adhesion.studies.curves import Curves
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.devices import Cycle, Jump
@@ -38,9 +38,8 @@ def record(curves: Curves) -> dict[str, Any]:
         the factor that takes each into SI, and the SI unit.
     """
     question = curves.question
-    scene = {name: value if _is_plain(value) else str(value) for name, value in asdict(question.scene).items()}
     return {
-        "scene": scene,
+        "scene": plain(asdict(question.scene)),
         "rtol": question.rtol,
         "to_load": question.to_load,
         "units": dict(UNITS),
@@ -49,10 +48,6 @@ def record(curves: Curves) -> dict[str, Any]:
         "jumps": {"fixed_grips": _cycle(curves.grips), "apparatus": _cycle(curves.apparatus)},
         "versions": versions(),
     }
-
-
-def _is_plain(value: object) -> bool:
-    return value is None or isinstance(value, (str, int, float, dict))
 
 
 def _si(curves: Curves) -> dict[str, Any] | None:

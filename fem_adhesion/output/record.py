@@ -23,6 +23,15 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version(), **{name: version(name) for name in packages}}
 
 
+def plain(value: object) -> object:
+    """What JSON has: None for what is infinite or not a number, a name for a file."""
+    if isinstance(value, dict):
+        return {name: plain(part) for name, part in value.items()}
+    if isinstance(value, float):
+        return _finite(value)
+    return value if value is None or isinstance(value, (str, int)) else str(value)
+
+
 def verdict_of(case: Case | Failure) -> str:
     """Verdict of a case, ``failed`` if it was not solved."""
     return "failed" if isinstance(case, Failure) else case.verdict

@@ -12,6 +12,7 @@ from fem_adhesion import stress as stresses
 from fem_adhesion.beside import Beside, is_same_contact
 from fem_adhesion.fields import State
 from fem_adhesion.output.lattice import Cut
+from fem_adhesion.output.record import plain
 from fem_adhesion.output.revolve import Solid
 from fem_adhesion.scene import Scene
 from halfspace.compliance import Array
@@ -257,7 +258,7 @@ def words(scene: Scene) -> dict[str, object]:
     where = "at the same contact radius, or central gap without contact"
     other = "the same contact, solved by the integral equation" if is_same_contact(scene) else "another body than this"
     return {
-        "scene": {name: _plain(value) for name, value in asdict(scene).items()},
+        "scene": plain(asdict(scene)),
         "units": {name: unit.words for name, unit in UNITS.items()},
         "names": NAMES,
         "meanings": dict(MEANINGS),
@@ -273,10 +274,6 @@ HOW_MAGNIFIED = (
     f"largest of 1, 2, 5 times a power of ten at which no strain is drawn as more than {LARGEST_STRAIN:g}, or to scale "
     f"if that is less than {TO_SCALE:g} times the true displacement"
 )
-
-
-def _plain(value: object) -> object:
-    return value if value is None or isinstance(value, str | int | float | dict) else str(value)
 
 
 def require_same_scene(states: Sequence[State], units: Units | None) -> None:
