@@ -16,7 +16,15 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import cli
 from fem_adhesion.output import assess_plot
-from fem_adhesion.output.assess_report import PREFIXES, engineering, exponent_of, record, report, with_error
+from fem_adhesion.output.assess_report import (
+    PREFIXES,
+    contact_radius,
+    engineering,
+    exponent_of,
+    record,
+    report,
+    with_error,
+)
 from fem_adhesion.output.files import written_aside
 from fem_adhesion.scene import Counter, Scene
 from fem_adhesion.studies import assess as study
@@ -632,11 +640,19 @@ def test_a_caution_stands_beyond_its_limit_only(what, contact, values, figure):
     assert list(cautions(Contact(**SILICA), Prediction("fine", fine))) == []
 
 
+def test_the_contact_radius_says_what_it_is_beside_others(silica, bead):
+    """Of a computed curve the state at the largest tension, of a theory its own; only of those that stand there."""
+    assert contact_radius(bead).startswith("Contact radius: of JKR with reach, JKR on the sphere, JKR")
+    assert "3^(1/6)" not in contact_radius(bead)
+    assert record(silica)["definitions"]["contact_radius"] == contact_radius(silica)
+
+
 def test_the_legend_explains_only_what_is_shown(silica, made_up):
     text = " ".join(_shown(silica).split())
     assert "Separation: of the undeformed surfaces" in text
     assert "Of the finite sphere what is round is held at its mid-plane, sliding." in text
-    assert "where the gap is 3^(1/6) eps" in text
+    assert "of half-space, true profile, finite sphere, where the gap is 3^(1/6) eps, the place of the largest" in text
+    assert "of JKR, Maugis-Dugdale, DMT-M, the edge of the theory's own contact" in text
     force = {"pull_off_force": made_up.half_space.values["pull_off_force"]}
     bare = replace(
         made_up,

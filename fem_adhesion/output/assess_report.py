@@ -32,10 +32,6 @@ PREFIXES = {
 }
 DIGITS, DIGITS_OF_RATIO = 6, 4  # significant, at most
 RANKS = {"both": 0, "true profile": 1, "finite body": 1}  # by which columns of the differences are left out
-CONTACT_RADIUS = (
-    "Contact radius: of what is computed where the gap is 3^(1/6) eps, the place of the largest tension; of JKR, DMT "
-    "and Maugis-Dugdale the edge of their own contact, without the ring of attraction around it."
-)
 
 
 def report(assessment: Assessment) -> RenderableType:
@@ -76,12 +72,26 @@ def _legend(assessment: Assessment) -> Iterator[str]:
             "negative away from the wall."
         )
     if shown & set(RADII):
-        yield CONTACT_RADIUS
+        yield contact_radius(assessment)
     if assessment.finite:
         yield f"Of the {assessment.finite.model} what is round is held at its mid-plane, {assessment.contact.grip}."
     yield (
         "In brackets: error of the last digit, for closed theories that of the reading only. -: not in the model. "
         "Differences of a position that is less than the spacing are parts of the spacing."
+    )
+
+
+def contact_radius(assessment: Assessment) -> str:
+    """What each model means by it."""
+    named = [model for model in assessment.models if set(model.values) & set(RADII)]
+    edge = "where the gap is 3^(1/6) eps, the place of the largest tension"
+    meanings = {edge: True, "the edge of the theory's own contact, without the ring of attraction around it": False}
+    said = {
+        meaning: [model.model for model in named if model.is_computed == computed]
+        for meaning, computed in meanings.items()
+    }
+    return (
+        "Contact radius: " + "; ".join(f"of {', '.join(names)}, {what}" for what, names in said.items() if names) + "."
     )
 
 
@@ -184,7 +194,7 @@ def record(assessment: Assessment) -> dict[str, object]:
         ],
         "deviations": [asdict(deviation) for deviation in assessment.deviations],
         "distances": [asdict(distance) for distance in assessment.distances],
-        "definitions": {"contact_radius": CONTACT_RADIUS},
+        "definitions": {"contact_radius": contact_radius(assessment)},
         "cautions": list(assessment.cautions),
         "verdict": list(assessment.verdict),
         "seconds": assessment.seconds,
