@@ -18,8 +18,8 @@ from rich.text import Text
 
 WIDE = 150  # columns where there is no terminal
 UNBOUNDED = 10_000
-LEAST = 14  # columns of text that may be wrapped
-LONG = 40  # a cell of a page that is wrapped
+LEAST = 14  # columns of text that may be wrapped, where it is so long
+PAGE = 18  # the same of a cell of a page, in which a number and its unit stay together
 NUMBER = re.compile(r"[(=-]*\d[\d.e+()-]*")
 UNIT = re.compile(r"(%|[yzafpnµmkMGT]?(m|N|Pa|J|N/m|J/m\^2)|s|R|dgamma(/eps)?|eps|beta|unknowns|points)[.,;:)]*")
 
@@ -105,6 +105,8 @@ class Column:
         Whether it is words, to the left, rather than numbers.
     wraps : bool
         Whether its words may go on in the next line.
+    wrapped : int
+        Columns that it has even so.
     """
 
     header: str
@@ -112,6 +114,7 @@ class Column:
     rank: int = 0
     text: bool = False
     wraps: bool = False
+    wrapped: int = LEAST
 
     @property
     def least(self) -> int:
@@ -119,7 +122,7 @@ class Column:
         texts = [Text.from_markup(text).plain for text in (self.header, *self.cells)]
         lines = max(cell_len(line) for text in texts for line in text.split("\n"))
         words = max((cell_len(word) for text in texts for word in text.split()), default=0)
-        return max(words, min(LEAST, lines)) if self.wraps else lines
+        return max(words, min(self.wrapped, lines)) if self.wraps else lines
 
 
 @dataclass(frozen=True)
@@ -206,7 +209,7 @@ def page(markdown: str) -> Iterator[RenderableType]:
 
 def _broken(cell: str) -> str:
     """Cell of a page with what is in brackets, and what it equals, on lines of their own."""
-    return re.sub(r" (?=\(|= )", "\n", cell.replace("[", r"\[")) if len(cell) < LONG else cell.replace("[", r"\[")
+    return re.sub(r" (?=\(|= )", "\n", cell.replace("[", r"\["))
 
 
 def _from_rows(rows: Sequence[Sequence[str]]) -> Fitted:
@@ -214,7 +217,7 @@ def _from_rows(rows: Sequence[Sequence[str]]) -> Fitted:
     columns = zip(rows[0], *rows[2:], strict=True)
     return Fitted(
         [
-            Column(header, cells, rank, text=True, wraps=not rank or any(len(cell) >= LONG for cell in cells))
+            Column(re.sub(r"(?<=[:,]) ", "\n", header), cells, rank, text=True, wraps=True, wrapped=PAGE)
             for rank, (header, *cells) in enumerate(columns)
         ]
     )
