@@ -3,21 +3,29 @@
 import contextlib
 import csv
 import dataclasses
+import html
 import io
 import math
+import re
+import types
 from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib import rc_context
 
 from fem_adhesion import cli
-from fem_adhesion.studies import greenwood1997
-from fem_adhesion.studies.greenwood_criteria import JumpOn, fit
+from fem_adhesion.output import greenwood_plots, greenwood_report
+from fem_adhesion.output.greenwood_tables import tables, typeset
+from fem_adhesion.output.greenwood_text import NOTHING
+from fem_adhesion.studies import greenwood1997, greenwood_ripple, greenwood_tables
+from fem_adhesion.studies.greenwood_criteria import CriteriaStudy, JumpOn, fit
 from fem_adhesion.studies.greenwood_tables import LAST_DIGIT, ROUNDED
 from halfspace import criteria
 from halfspace.contact import CENTRAL_GAP
 from halfspace.curve import Estimate
+from halfspace.errors import NotConverged
 
 DATA = Path(__file__).parent / "data"
 FIGURES = ("1a", "1b", "1c", "2a", "2b", "3a", "3b", "3c", "4a", "4b", "5", "6a", "6b", "7", "8")
@@ -273,3 +281,556 @@ def test_the_page_shows_everything(report):
 def test_progress_names_every_subject_once(study, ran):
     assert ran.told == list(greenwood1997.SUBJECTS)
     assert math.isfinite(study.seconds)
+
+
+# --- each value under its label ---
+
+DRAWN = {  # what is drawn along an axis of that label, from a curve
+    r"load $W/R\Delta\gamma$": lambda path: path.load,
+    r"approach $\alpha^*$": lambda path: path.approach,
+    r"scaled approach $\alpha^*/\mu$": lambda path: path.approach / path.tabor,
+    r"central gap $H(0)$": lambda path: path.central_gap,
+    r"contact radius $a^* = a/\beta$": lambda path: path.contact_radius,
+}
+CURVES = {"1a": 3, "1b": 4, "1c": 1, "2a": 3, "2b": 4, "3a": 7, "3b": 8, "3c": 4, "5": 4, "7": 1, "8": 2}  # lines
+
+
+def figure(study, number):
+    plot = next(plot for plot in greenwood_plots.PLOTS if plot.number == number)
+    with rc_context(dict(greenwood_plots.LOOK)):
+        return plot.draw(study)
+
+
+def same(drawn, known):
+    """Whether drawn values are the known ones where they are drawn at all."""
+    seen = np.isfinite(drawn)
+    return drawn.shape == known.shape and seen.sum() > 1 and np.allclose(drawn[seen], known[seen], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(("number", "count"), CURVES.items())
+def test_axes_are_labelled_with_what_is_drawn_along_them(study, number, count):
+    """Stretches of half-space curves, and finite-element points, are drawn under the labels of both axes."""
+    found = 0
+    paths = [*study.curves.values(), *study.elements.values()]
+    for axes in figure(study, number).axes:
+        if axes.get_xlabel() in DRAWN and axes.get_ylabel() in DRAWN:
+            x, y = (DRAWN[label] for label in (axes.get_xlabel(), axes.get_ylabel()))
+            for line in axes.lines:
+                at, value = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+                found += any(same(at, x(path)) and same(value, y(path)) for path in paths)
+    assert found == count
+
+
+@pytest.mark.parametrize(
+    ("number", "label", "quantity"), [("4a", "gap $H$", "gap"), ("4b", "pressure $P$", "pressure")]
+)
+def test_profiles_are_drawn_under_their_labels(study, number, label, quantity):
+    (axes,) = figure(study, number).axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (r"radius $u = r/\beta$", label)
+    for line, profile in zip(axes.lines, study.states.profiles, strict=True):
+        assert same(line.get_xdata(), profile.radii)
+        assert same(line.get_ydata(), getattr(profile, quantity))
+        assert float(re.search(r"= (.*)\$", line.get_label())[1]) == pytest.approx(profile.central_gap, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("number", "name", "least"),
+    [("1a", "Bradley, $\\mu = 0$", -2 * np.pi), ("2b", "JKR", -1.5 * np.pi), ("1b", "JKR", -1.5 * np.pi)],
+)
+def test_theories_have_their_pull_off_along_the_axis_of_load(study, number, name, least):
+    (axes,) = figure(study, number).axes
+    line = next(line for line in axes.lines if line.get_label() == name)
+    assert axes.get_ylabel() == r"load $W/R\Delta\gamma$"
+    assert min(line.get_ydata()) == pytest.approx(least, rel=1e-3)
+
+
+def test_jumps_are_drawn_where_they_are(study):
+    jumps = {jump.landing: jump for jump in study.states.jumps}
+    arrows = [note for note in figure(study, "2a").axes[0].texts if getattr(note, "arrow_patch", None)]
+    assert len(arrows) == 2
+    for arrow, letter in zip(arrows, "BD", strict=True):
+        jump = jumps[letter]
+        assert arrow.xyann == (jump.approach.value, jump.load.value)
+        assert arrow.xy == (jump.approach.value, jump.landing_load.value)
+
+
+def test_trends_are_drawn_under_their_labels(study):
+    gap, approach = figure(study, "6a").axes
+    for axes, label, values in (
+        (gap, "central gap at the jump, $H_0 + 1$", study.criteria.central_gap + 1),
+        (approach, r"approach at the jump, $|\alpha^*| + 1$", 1 - study.criteria.approach),
+    ):
+        assert (axes.get_xlabel(), axes.get_ylabel()) == (r"Tabor parameter $\mu$", label)
+        assert same(axes.lines[0].get_xdata(), study.criteria.tabor)
+        assert same(axes.lines[0].get_ydata(), values)
+    (scaled,) = figure(study, "6b").axes
+    assert scaled.get_ylabel() == r"$(H_0 + 1)/\mu^{3/7}$"
+    assert same(scaled.lines[0].get_ydata(), (study.criteria.central_gap + 1) / study.criteria.tabor ** (3 / 7))
+    for criterion in (c for c in study.criteria.criteria if c.predict):
+        axes = approach if criterion.of_approach else gap
+        line = next(line for line in axes.lines if line.get_label() == criterion.name)
+        predicted = criterion.predict(np.asarray(line.get_xdata()))
+        assert same(np.asarray(line.get_ydata()), 1 - predicted if criterion.of_approach else 1 + predicted)
+
+
+def test_pull_off_forces_are_drawn_under_their_names(study):
+    axes = figure(study, "7").axes[0]
+    assert axes.get_xlabel() == r"Tabor parameter $\mu$"
+    assert axes.get_ylabel().startswith("pull-off force")
+    lines = {line.get_label(): line for line in axes.lines}
+    assert same(lines["half-space"].get_xdata(), np.array([p.tabor for p in study.pull_offs]))
+    assert same(np.array(lines["half-space"].get_ydata()), np.array([-p.half_space.value for p in study.pull_offs]))
+    both = [p for p in study.pull_offs if p.finite_element]
+    assert same(np.array(lines["finite elements"].get_ydata()), np.array([-p.finite_element.value for p in both]))
+    for spacing, rise in study.rises.items():
+        drawn = np.array(lines[rf"uniform triangles, ${spacing:g}\,\beta$"].get_ydata())
+        assert same(drawn, np.array([-r.pull_off for r in rise.ripples]))
+
+
+def test_the_border_of_jumping_is_drawn_with_its_numbers(study):
+    jumps, border = figure(study, "8").axes
+    assert border.get_xlabel() == r"Tabor parameter $\mu$"
+    assert border.get_ylabel() == r"stiffness $k\,\epsilon/R\Delta\gamma$"
+    assert same(border.lines[0].get_xdata(), study.devices.border[:, 0])
+    assert same(border.lines[0].get_ydata(), study.devices.border[:, 1])
+    words = " ".join(text.get_text() for text in border.texts)
+    assert "fixed grips jump from $\\mu = 0.69721" in words
+    assert "6.449 at $\\mu = 0.0007$" in words
+    arrows = [note for note in jumps.texts if getattr(note, "arrow_patch", None)]
+    assert len(arrows) == 2 * 3
+    shown = [cycle for cycle in study.devices.cycles if cycle.stiffness in (np.inf, 3.0, 1.0)]
+    ends = [j for cycle in shown for j in (cycle.jump_on, cycle.jump_off)]
+    for arrow, jump in zip(arrows, ends, strict=True):
+        assert arrow.xyann == (jump.take_off.approach, jump.take_off.load)
+        assert arrow.xy == (jump.landing.approach, jump.landing.load)
+
+
+@pytest.mark.parametrize("number", FIGURES)
+def test_legends_name_only_what_is_drawn_and_nothing_is_cut_off(study, number):
+    drawn = figure(study, number)
+    drawn.draw_without_rendering()
+    for axes in drawn.axes:
+        box = axes.get_tightbbox()
+        assert -1 <= box.x0 <= box.x1 <= drawn.bbox.x1 + 1
+        assert -1 <= box.y0 <= box.y1 <= drawn.bbox.y1 + 1
+        lines = [line for line in axes.lines if line.get_label()[0] != "_"]
+        named = [text.get_text() for text in axes.get_legend().get_texts()] if axes.get_legend() else []
+        assert len(named) == len(set(named))
+        keys = {"stable under fixed grips", "unstable"} | {
+            text for text in named if "grips" in text or text[:3] == "$k "
+        }
+        for text in set(named) - keys:
+            line = next(line for line in lines if line.get_label() == text)
+            (left, right), (low, high) = sorted(axes.get_xlim()), sorted(axes.get_ylim())
+            x, y = np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)
+            assert np.any((x >= left) & (x <= right) & (y >= low) & (y <= high)), f"{text} is out of sight"
+
+
+def near(cell, value):
+    """Whether a cell is the value to the digits that it shows."""
+    decimals = len(cell.partition("e")[0].partition(".")[2])
+    scale = 10.0 ** (int(cell.partition("e")[2] or 0) - decimals)
+    return abs(float(cell) - value) <= 0.51 * scale
+
+
+def assert_row(row, expected):
+    for name, value in expected.items():
+        assert near(row[name], value), (name, row[name], value)
+
+
+def test_cells_of_jumps_and_cycles(report, study):
+    for row, jump in zip(rows(report, "jumps"), study.states.jumps, strict=True):
+        assert row["jump"] == f"{jump.take_off} to {jump.landing}"
+        assert_row(row, {"alpha*, eps": jump.approach.value, "error of alpha*, eps": jump.approach.error})
+        assert_row(row, {"W before, R dgamma": jump.load.value, "error of W before, R dgamma": jump.load.error})
+        after = jump.landing_load
+        assert_row(row, {"W after, R dgamma": after.value, "error of W after, R dgamma": after.error})
+    for row, cycle in zip(rows(report, "devices"), study.devices.cycles, strict=True):
+        stiffness = row["stiffness, R dgamma/eps"]
+        assert stiffness == "fixed grips" if math.isinf(cycle.stiffness) else float(stiffness) == cycle.stiffness
+        lost = cycle.energy_lost
+        assert_row(row, {"energy lost, R dgamma eps": lost.value, "error, R dgamma eps": lost.error})
+        for end, state in (
+            ("jump on", cycle.jump_on.take_off),
+            ("landing in contact", cycle.jump_on.landing),
+            ("jump off", cycle.jump_off.take_off),
+            ("landing apart", cycle.jump_off.landing),
+        ):
+            assert_row(row, {f"{end}: alpha*, eps": state.approach, f"{end}: error, eps": state.approach_error})
+            assert_row(row, {f"{end}: W, R dgamma": state.load, f"{end}: error, R dgamma": state.load_error})
+
+
+def test_cells_of_pull_offs_and_coarse_grids(report, study):
+    for row, p in zip(rows(report, "pull_off"), study.pull_offs, strict=True):
+        assert float(row["mu"]) == pytest.approx(p.tabor, rel=1e-5)
+        for solver, estimate in (("half-space", p.half_space), ("finite elements", p.finite_element)):
+            value, error = row[f"{solver}, R dgamma"], row[f"{solver}, error, R dgamma"]
+            if estimate:
+                assert near(value, estimate.value)
+                assert near(error, estimate.error)
+            else:
+                assert (value, error) == ("", "")
+    ripples = [(spacing, r) for spacing, rise in study.rises.items() for r in rise.ripples]
+    for row, (spacing, r) in zip(rows(report, "coarse_grids"), ripples, strict=True):
+        assert float(row["spacing, beta"]) == spacing
+        assert_row(row, {"mu": r.tabor, "least load, R dgamma": r.pull_off})
+
+
+def test_cells_of_criteria_and_relaxations(report, study):
+    for i, (row, jump) in enumerate(zip(rows(report, "criteria"), study.criteria.jumps, strict=True)):
+        assert_row(row, {"mu": jump.tabor, "b sigma'/sigma": jump.fundamental})
+        for name, estimate in (("alpha*", jump.approach), ("H0", jump.central_gap)):
+            assert_row(row, {f"{name}, eps": estimate.value, f"error of {name}, eps": estimate.error})
+        for c in (c for c in study.criteria.criteria if c.predict):
+            name = f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps"
+            assert_row(row, {name: c.predict(study.criteria.tabor)[i]})
+    constants = [(c, *constant) for c in study.criteria.criteria for constant in c.constants]
+    for row, (c, name, printed, fitted) in zip(rows(report, "criteria_constants"), constants, strict=True):
+        assert (row["criterion"], row["formula"], row["constant"]) == (c.name, c.formula, name)
+        assert row["printed"] == "" if printed is None else float(row["printed"]) == pytest.approx(printed, rel=1e-5)
+        assert_row(
+            row, {"refitted": fitted.value, "standard error": fitted.error, "scatter of ln(left side)": c.scatter}
+        )
+    for row, attempt in zip(rows(report, "relaxation"), study.relaxations, strict=True):
+        assert (row["iteration"], row["outcome"]) == (attempt.method, attempt.outcome)
+        assert row["sweeps"] == ("not converged" if attempt.sweeps is None else str(attempt.sweeps))
+        assert_row(row, {"mu": attempt.tabor, "seconds": attempt.seconds, "Newton, seconds": attempt.newton_seconds})
+
+
+def test_cells_of_the_printed_tables(report, study):
+    for stem, entries in (("table_1", study.tables.table_1), ("table_2", study.tables.table_2)):
+        for row, entry in zip(rows(report, stem), entries, strict=True):
+            assert (row["row"], row["unit"], row["printed"]) == (entry.row, entry.unit, entry.printed)
+            assert_row(row, {"computed": entry.computed.value, "error": entry.computed.error})
+
+
+def test_the_caption_of_each_figure_is_that_of_the_page(report, study):
+    captions = {row["figure"]: row["caption"] for row in rows(report, "captions")}
+    page = html.unescape((report / "index.html").read_text(encoding="utf-8"))
+    assert list(captions) == [f"fig_{number}" for number in FIGURES]
+    for plot in greenwood_plots.PLOTS:
+        assert captions[plot.stem].endswith(plot.see(study))
+        assert html.unescape(typeset(plot.see(study))) in page
+
+
+# --- absurd results find absurd sentences, or none ---
+
+NAN = Estimate(math.nan, math.nan)
+
+
+def absurd_path(path, **changes):
+    """A curve whose arrays and events are made up."""
+    arrays = {key: getattr(path, key) for key in ("approach", "load", "central_gap", "contact_radius", "stable")}
+    known = {"tabor": path.tabor, "points": path.points, "events": path.events, **arrays, **changes}
+    return types.SimpleNamespace(**known, event=known["events"].get)
+
+
+def without_numbers(study):
+    """A study in which every measured number is NaN."""
+    lost = dict.fromkeys(("approach", "load", "central_gap", "contact_radius"), math.nan)
+    nan_events = {
+        mu: {name: dataclasses.replace(e, **lost) for name, e in path.events.items()}
+        for mu, path in study.curves.items()
+    }
+    rates = [types.SimpleNamespace(rates=np.full(4, np.nan))]
+    curves = {
+        mu: absurd_path(
+            path,
+            events=nan_events[mu],
+            points=rates,
+            **{key: np.full(path.load.shape, np.nan) for key in ("approach", "load", "central_gap", "contact_radius")},
+        )
+        for mu, path in study.curves.items()
+    }
+    tables = dataclasses.replace(
+        study.tables,
+        **{
+            name: tuple(dataclasses.replace(p, computed=NAN) for p in getattr(study.tables, name))
+            for name in ("table_1", "table_2", "profile_checks")
+        },
+        asymptote=(NAN, NAN),
+    )
+    jumps = tuple(dataclasses.replace(j, approach=NAN, central_gap=NAN) for j in study.criteria.jumps)
+    cycles = tuple(dataclasses.replace(c, energy_lost=NAN) for c in study.devices.cycles)
+    return dataclasses.replace(
+        study,
+        curves=curves,
+        elements={},
+        states=dataclasses.replace(
+            study.states,
+            jumps=tuple(dataclasses.replace(j, approach=NAN, load=NAN, landing_load=NAN) for j in study.states.jumps),
+            profiles=tuple(
+                dataclasses.replace(p, gap=p.gap * np.nan, pressure=p.pressure * np.nan, central_gap=math.nan)
+                for p in study.states.profiles
+            ),
+        ),
+        pull_offs=tuple(dataclasses.replace(p, half_space=NAN, finite_element=None) for p in study.pull_offs),
+        rises={s: dataclasses.replace(r, ripples=()) for s, r in study.rises.items()},
+        criteria=dataclasses.replace(study.criteria, jumps=jumps),
+        tables=tables,
+        devices=dataclasses.replace(study.devices, cycles=cycles, border=study.devices.border * np.nan),
+        critical_tabor=NAN,
+    )
+
+
+def without_results(study):
+    """A study in which nothing was found that may be missing."""
+    empty = dataclasses.replace(study.tables, table_1=(), table_2=(), profile_checks=())
+    return dataclasses.replace(
+        study,
+        elements={},
+        states=dataclasses.replace(study.states, jumps=(), folds=np.empty((0, 4)), profiles=()),
+        pull_offs=(),
+        ripples=(),
+        rises={},
+        criteria=CriteriaStudy((), ()),
+        tables=empty,
+        relaxations=(),
+        devices=dataclasses.replace(study.devices, cycles=(), border=np.empty((0, 2))),
+    )
+
+
+CLAIMS = (  # words that conclude
+    "closes in", "falls", "grows", "rises", "loses more", "agree within", "holds", "later", "sooner", "towards 0",
+    "too wide", "too large", "are stable", "negative at each", "is the strength", "moves outwards", "is smaller",
+    "in contact exist", "farther", "the more energy",
+)  # fmt: skip
+
+
+def sentences(study):
+    """Everything that the page says of the study in words."""
+    told = [plot.see(study) for plot in greenwood_plots.PLOTS]
+    return told + [table.see for table in tables(study)]
+
+
+def test_without_numbers_nothing_is_concluded(study):
+    told = sentences(without_numbers(study))
+    for text in told:
+        assert "nan" not in text.lower()
+        for claim in CLAIMS:
+            assert not re.search(rf"(?<!not ){claim}", text), text
+    assert "0 of 10 values agree to their last printed digit. 10 are not numbers." in told[len(FIGURES)]
+    assert len(list(without_numbers(study).troubles())) == 57
+
+
+def test_without_results_nothing_is_concluded_and_the_page_is_made(study, tmp_path):
+    bare = without_results(study)
+    for text, plot in zip(sentences(bare), greenwood_plots.PLOTS, strict=False):
+        assert "Finite elements agree" not in text
+        assert "finite-element points" not in text, plot.number
+    page_of = dict(zip([plot.number for plot in greenwood_plots.PLOTS], sentences(bare), strict=False))
+    assert "No jump was found." in page_of["2a"]
+    assert "has 0 folds." in page_of["3c"]
+    assert page_of["4a"] == page_of["4b"] == page_of["6a"] == page_of["6b"] == page_of["7"] == NOTHING
+    greenwood_report.write(bare, tmp_path)
+    assert (tmp_path / "index.html").stat().st_size > 10_000
+    assert list(bare.troubles()) == ["no jumps were found", "no cycles were found"]
+
+
+def off(estimate, factor):
+    return dataclasses.replace(estimate, value=factor * estimate.value)
+
+
+def with_tables(study, name, factor):
+    entries = tuple(dataclasses.replace(p, computed=off(p.computed, factor)) for p in getattr(study.tables, name))
+    return dataclasses.replace(study, tables=dataclasses.replace(study.tables, **{name: entries}))
+
+
+def with_events(study, changes):
+    """A study some events of whose curves are moved: by Tabor parameter and name, the changed fields."""
+    curves = dict(study.curves)
+    for (mu, name), change in changes.items():
+        path = curves[mu]
+        moved = {**path.events, name: dataclasses.replace(path.events[name], **change)}
+        curves[mu] = absurd_path(path, events=moved)
+    return dataclasses.replace(study, curves=curves)
+
+
+def upside_down(study):
+    """Every sequence in the opposite order, under the Tabor parameters as they were."""
+    values = [p.half_space for p in study.pull_offs][::-1]
+    pull_offs = tuple(
+        dataclasses.replace(p, half_space=v, finite_element=None if p.finite_element is None else off(v, 2.0))
+        for p, v in zip(study.pull_offs, values, strict=True)
+    )
+    devices = dataclasses.replace(
+        study.devices,
+        cycles=study.devices.cycles[::-1],
+        border=np.column_stack([study.devices.border[:, 0], study.devices.border[::-1, 1]]),
+    )
+    wide = tuple(
+        dataclasses.replace(
+            j,
+            central_gap=off(j.central_gap, 5 * (1 + i)),
+            approach=Estimate(-5.25 * (1 + i) * j.central_gap.value, 0.0),
+        )
+        for i, j in enumerate(study.criteria.jumps)
+    )
+    made = fit(wide)
+    last = study.states.profiles
+    profiles = tuple(
+        dataclasses.replace(p, pressure=q.pressure / 2, radii=q.radii) for p, q in zip(last, last[::-1], strict=True)
+    )
+    rises = {
+        s: dataclasses.replace(
+            r, ripples=tuple(dataclasses.replace(x, load=x.load * 0 - 5 + x.tabor) for x in r.ripples)
+        )
+        for s, r in study.rises.items()
+    }
+    turned = dataclasses.replace(
+        study, pull_offs=pull_offs, devices=devices, criteria=made, rises=rises,
+        states=dataclasses.replace(study.states, profiles=profiles, folds=study.states.folds[:2]),
+    )  # fmt: skip
+    changes = {(mu, "pull_off"): {"load": -3 - mu, "central_gap": 1.0} for mu in (0.1, 0.3, 0.5, 1.0)}
+    changes |= {
+        (mu, "zero_load"): {"approach": -mu * mu, "contact_radius": 2.418 + 1 / mu}
+        for mu in (0.1, 0.5, 1.0, 2.0, 3.0, 5.0)
+    }
+    changes[0.1, "zero_load"]["approach"] = 1e-6
+    changes |= {(mu, "jump_on"): {"approach": -mu * mu} for mu in (1.0, 2.0, 3.0, 5.0)}
+    return with_events(turned, changes)
+
+
+NEGATED = {
+    "1a": "not all of them rise sooner",
+    "1b": "it does not fall all along, not between DMT-M's",
+    "2b": "it does not close in on JKR's 1.9489. The jump on goes from alpha*/mu = -1.000 to -5.000, not towards 0.",
+    "3b": "not negative at each mu",
+    "3c": "The approach has 2 folds. ",
+    "4b": "the largest tension is not the strength of the surface law",
+    "5": "it closes in on JKR's 2.418",
+    "6a": "too narrow",
+    "6b": "the power 3/7 of the criteria does not hold there",
+    "7": "The true force does not fall all along",
+    "8": "does not always jump on from farther away",
+}
+
+
+@pytest.mark.parametrize(("number", "told"), NEGATED.items())
+def test_a_caption_says_the_contrary_of_the_contrary(study, number, told):
+    plot = next(plot for plot in greenwood_plots.PLOTS if plot.number == number)
+    assert told not in plot.see(study)
+    assert told in plot.see(upside_down(study))
+
+
+def test_captions_that_turn_with_their_curves(study):
+    sees = {plot.number: plot.see for plot in greenwood_plots.PLOTS}
+    early = absurd_path(study.curves[0.02], load=np.append(study.curves[0.02].load[:-1], 1e6))
+    turned = dataclasses.replace(study, curves={**study.curves, 0.02: early})
+    assert "The load rises later than in any DMT theory" in sees["1c"](study)
+    assert "The load rises not later than in every DMT theory" in sees["1c"](turned)
+    stable = absurd_path(study.curves[2.0], stable=np.ones_like(study.curves[2.0].stable))
+    turned = dataclasses.replace(study, curves={**study.curves, 2.0: stable})
+    assert "Between the folds the branch is unstable." in sees["2a"](study)
+    assert "No branch is unstable." in sees["2a"](turned)
+    rising = [types.SimpleNamespace(rates=-point.rates) for point in study.curves[5.0].points]
+    turned = dataclasses.replace(study, curves={**study.curves, 5.0: absurd_path(study.curves[5.0], points=rising)})
+    assert "The central gap falls all along" in sees["3c"](study)
+    assert "The central gap does not fall all along" in sees["3c"](turned)
+    assert "does not fall all along" in sees["3b"](turned)
+    assert "0 at mu = 0.5, 2 at mu = 1, 2 at mu = 2 and 4 at mu = 5" in sees["3a"](study)
+    apart = absurd_path(study.elements[2.0], load=study.elements[2.0].load + 1.0)
+    near_, far = (
+        float(re.search(r"within (\S+) of the line", sees["2a"](s))[1])
+        for s in (study, dataclasses.replace(study, elements={2.0: apart}))
+    )
+    assert near_ < 0.01
+    assert far > 0.1
+
+
+def test_remarks_on_tables_turn_with_their_entries(study):
+    def see(changed, stem):
+        return next(table.see for table in tables(changed) if table.stem == stem)
+
+    assert "10 of 10 values agree" in see(study, "table_1")
+    assert "0 of 10 values agree" in see(with_tables(study, "table_1", 1.179), "table_1")
+    assert "largest relative deviation is 1.8e-01" in see(with_tables(study, "table_1", 1.179), "table_1")
+    assert "0 of 2 printed pressures have the sign" in see(with_tables(study, "profile_checks", -1.0), "fig_4_checks")
+    turned = upside_down(study)
+    assert "The softer the apparatus, the more energy a cycle loses." in see(study, "devices")
+    assert "the energy that a cycle loses does not always grow" in see(turned, "devices")
+    assert "has -1.60 to -1.70: states that it calls unstable are stable" in see(study, "criteria")
+    assert "it does not always come too soon" in see(turned, "criteria")
+    assert "too large: 1.81 times the refitted (App. C) to 2.73 (Pethica & Sutton)" in see(study, "criteria_constants")
+    assert "too small: " in see(turned, "criteria_constants")
+    assert see(turned, "pull_off").startswith("From -4.7222 at mu = 0.005 to -6.2820 at mu = 20;")
+    assert "Greenwood's, relaxation 1.5: 0 of 3 converged." in see(study, "relaxation")
+    quick = dataclasses.replace(study, relaxations=tuple(dataclasses.replace(a, sweeps=7) for a in study.relaxations))
+    assert "Greenwood's, relaxation 1.5: 3 of 3 converged, in 7 to 7 sweeps." in see(quick, "relaxation")
+
+
+def test_what_is_off_is_a_trouble_told_first_with_exit_code_1(study, monkeypatch, tmp_path, capsys):
+    wrong = with_tables(study, "table_1", 1.179)
+    fe = tuple(
+        dataclasses.replace(p, finite_element=off(p.finite_element, 2.0)) if p.finite_element else p
+        for p in study.pull_offs
+    )
+    wrong = dataclasses.replace(wrong, pull_offs=fe)
+    monkeypatch.setattr(greenwood1997, "compute", lambda **_: wrong)
+    monkeypatch.setattr(greenwood_report, "draw", lambda _study, directory, _told: [
+        (directory / f"{plot.stem}.svg").write_text("<svg/>") for plot in greenwood_plots.PLOTS
+    ])  # fmt: skip
+    assert cli.main(["greenwood", "--out", str(tmp_path / "out")]) == 1
+    first = capsys.readouterr().out.splitlines()[0]
+    assert first.startswith(
+        "12 failed that should not have, the first: f_over_alpha_star_1_5 at 0.001: 1.90034, printed"
+    )
+    page = (tmp_path / "out" / "index.html").read_text()
+    assert "FAILED where it should not have, 12 times" in page
+    assert "the solvers disagree in the pull-off load at &mu; = 0.5" in page
+    assert "0 of 10 values agree to their last printed digit" in page
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_a_quick_page_says_so(study, quick):
+    page = "".join(greenwood_report._head(dataclasses.replace(study, quick=quick), []))
+    assert ("quick run" in page) == quick
+    assert ("A quick run: fewer points" in page) == quick
+
+
+# --- explanations of the printed table are tried on its numbers ---
+
+
+def test_an_explanation_that_does_not_hold_is_not_given(study, monkeypatch):
+    """Another printed table, wrong at random: no misprint, no state beside the fold, no other row explains it."""
+    column = {
+        "minus_alpha_star": "9.999",
+        "minus_alpha_star_over_mu": "3.210",
+        "minus_W_over_R_dgamma": "1.500",
+        "H0": "0.5",
+    }
+    column["H0_plus_1_over_mu_3_7"] = "7.77"
+    monkeypatch.setattr(greenwood_tables, "printed_column", lambda *_: column)
+    for name, quantity in (("jump_on", q) for q in column):
+        note = greenwood_tables.explained(name, quantity, study.curves[2.0], Estimate(2.5, 1e-6))
+        assert note.startswith(greenwood_tables.UNEXPLAINED), (quantity, note)
+
+
+@pytest.mark.parametrize(
+    ("approach", "ratio", "note"),
+    [
+        ("8.178", "1.637", "follows from alpha* = -8.187, not from the printed -8.178"),
+        ("8.178", "1.636", "follows from the printed alpha* = -8.178"),
+        ("8.178", "1.500", "not explained"),
+    ],
+)
+def test_exchanged_digits_are_found_and_not_made_up(study, monkeypatch, approach, ratio, note):
+    column = {"minus_alpha_star": approach, "minus_alpha_star_over_mu": ratio}
+    monkeypatch.setattr(greenwood_tables, "printed_column", lambda *_: column)
+    made = greenwood_tables.explained("jump_off", "minus_alpha_star_over_mu", study.curves[5.0], Estimate(1.6379, 1e-9))
+    assert made.startswith(note)
+
+
+def test_a_rise_says_why_it_ends(monkeypatch):
+    path = types.SimpleNamespace(tabor=3.0)
+
+    def fail(*_):
+        raise NotConverged("on purpose")
+
+    monkeypatch.setattr(greenwood_ripple, "ripple", fail)
+    rise = greenwood_ripple.false_rise([path], 0.1)
+    assert (rise.ripples, rise.ended) == ((), "no solution at mu = 3: on purpose")
+    monkeypatch.setattr(greenwood_ripple, "ripple", lambda *_: types.SimpleNamespace(pull_off=-8.0))
+    assert greenwood_ripple.false_rise([path, path], 0.1).ended == "the load is below -7.5 R dgamma"
+    monkeypatch.setattr(greenwood_ripple, "ripple", lambda *_: types.SimpleNamespace(pull_off=-5.0))
+    assert greenwood_ripple.false_rise([path, path], 0.1).ended == "no larger mu was asked for"

@@ -60,11 +60,12 @@ def _border(axes: Any, study: Greenwood1997) -> None:
     tabor, stiffness = study.devices.border.T
     axes.semilogy(tabor, stiffness, color=style.BLUE, linewidth=2)
     axes.axvline(study.critical_tabor.value, color="0.5", linewidth=0.9)
-    axes.axhline(stiffness[0], color="0.5", linewidth=0.9)
     note(axes, "follows smoothly", (0.15, 60))
     note(axes, "jumps", (0.35, 2.2))
     note(axes, rf"fixed grips jump from $\mu = {digits(study.critical_tabor)}$", (0.22, 550))
-    note(axes, rf"{stiffness[0]:.4g} at $\mu = {tabor[0]:.1g}$", (0.45, stiffness[0]), (0, -14))
+    if stiffness.size and np.isfinite(stiffness[0]):
+        axes.axhline(stiffness[0], color="0.5", linewidth=0.9)
+        note(axes, rf"{stiffness[0]:.4g} at $\mu = {tabor[0]:.1g}$", (0.45, stiffness[0]), (0, -14))
     dress(axes, r"Tabor parameter $\mu$", r"stiffness $k\,\epsilon/R\Delta\gamma$", legend=None, ylim=(1, 1000))
     plain_ticks(axes.yaxis, (1, 3, 10, 30, 100, 300, 1000))
     axes.set_title("where an apparatus makes the contact jump")

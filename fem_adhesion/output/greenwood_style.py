@@ -89,12 +89,14 @@ def panels(columns: int = 1, height: float = 5.0) -> tuple[Figure, Sequence[Any]
 def dress(
     axes: Any, x: str, y: str, *, legend: str | None = "best", columns: int = 3, **limits: tuple[float, float]
 ) -> None:
-    """Label the axes, set `xlim` and `ylim` if given, and add a legend at a place, or in columns below the axes."""
+    """Label the axes, set `xlim` and `ylim` if given, and add a legend of what is drawn at a place, or in columns below."""
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.set(**limits)
     axes.grid(True, color="0.93", linewidth=0.8)
     axes.set_axisbelow(True)
+    if not axes.get_legend_handles_labels()[1]:
+        return
     if legend == "below":
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=columns, frameon=False, **LEGEND)
     elif legend:

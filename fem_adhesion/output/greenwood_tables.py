@@ -88,7 +88,8 @@ def _entry(p: Printed) -> tuple[str, ...]:
 
 
 def _jumps(study: Greenwood1997) -> Table:
-    columns = ("jump", "alpha*, eps", "error", "W before, R dgamma", "error", "W after, R dgamma", "error")
+    loads = (f"{what} {when}, R dgamma" for when in ("before", "after") for what in ("W", "error of W"))
+    columns = ("jump", "alpha*, eps", "error of alpha*, eps", *loads)
     rows = tuple(
         (f"{j.take_off} to {j.landing}", *_cells(j.approach), *_cells(j.load), *_cells(j.landing_load))
         for j in study.states.jumps
@@ -146,7 +147,8 @@ def _relaxations(attempts: Sequence[Attempt]) -> Table:
 
 
 def _pull_offs(study: Greenwood1997) -> Table:
-    columns = ("mu", "half-space, R dgamma", "error", "finite elements, R dgamma", "error")
+    solvers = ("half-space", "finite elements")
+    columns = ("mu", *(f"{solver}{what}, R dgamma" for solver in solvers for what in ("", ", error")))
     rows = tuple((f"{p.tabor:.6g}", *_cells(p.half_space), *_cells(p.finite_element)) for p in study.pull_offs)
     return Table("pull_off", "Load at pull-off, Fig. 7", remarks.pull_offs(study.pull_offs), columns, rows)
 
@@ -168,7 +170,8 @@ def _true_jumps(criteria: CriteriaStudy) -> Table:
     usable = [c for c in criteria.criteria if c.predict is not None]
     predicted = [c.predict(criteria.tabor) for c in usable if c.predict]
     names = (f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps" for c in usable)
-    columns = ("mu", "alpha*, eps", "error", "H0, eps", "error", "b sigma'/sigma", *names)
+    errors = ("error of alpha*, eps", "error of H0, eps")
+    columns = ("mu", "alpha*, eps", errors[0], "H0, eps", errors[1], "b sigma'/sigma", *names)
     rows = tuple(
         (
             f"{jump.tabor:.6g}",

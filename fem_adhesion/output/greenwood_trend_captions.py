@@ -27,7 +27,7 @@ def figure_6a(study: Greenwood1997) -> str:
 def closed_ratios(study: CriteriaStudy) -> Array:
     """(H0 + 1)^(7/2) by each closed criterion over that of the true jumps; shape (criteria, jumps)."""
     predicted = [c.predict(study.tabor) for c in study.criteria if c.name in CLOSED and c.predict]
-    return (np.reshape(predicted, (-1, study.tabor.size)) + 1) ** 3.5 / (study.central_gap + 1) ** 3.5
+    return (np.reshape(predicted, (len(predicted), study.tabor.size)) + 1) ** 3.5 / (study.central_gap + 1) ** 3.5
 
 
 def _closed(study: CriteriaStudy) -> str:

@@ -50,7 +50,7 @@ def _figure_6a(study: Greenwood1997) -> Figure:
 
 
 def _tabors(study: Greenwood1997) -> Array:
-    return np.geomspace(0.72, study.criteria.tabor[-1], 300)
+    return np.geomspace(0.72, max(study.criteria.tabor, default=1.0), 300)
 
 
 def _criterion(axes: Any, criterion: Criterion, tabor: Array, power: float = 0.0) -> None:
@@ -78,7 +78,12 @@ def _figure_7(study: Greenwood1997) -> Figure:
     figure, (trend, ripple) = panels(2, height=6.6)
     tabor = np.array([p.tabor for p in study.pull_offs])
     trend.semilogx(
-        tabor, [-p.half_space.value for p in study.pull_offs], color=style.BLUE, linewidth=2, label="half-space"
+        tabor,
+        [-p.half_space.value for p in study.pull_offs],
+        color=style.BLUE,
+        linewidth=2,
+        marker=".",
+        label="half-space",
     )
     _elements(trend, [p for p in study.pull_offs if p.finite_element])
     maugis = [-MaugisDugdale.matched(mu).pull_off().load for mu in tabor]
@@ -87,7 +92,8 @@ def _figure_7(study: Greenwood1997) -> Figure:
     trend.semilogx(tabor, carpick, color="0.35", linestyle=style.DOTTED, label="Carpick et al.")
     for spacing, rise in study.rises.items():
         _spacing(trend, spacing, [r.tabor for r in rise.ripples], [-r.pull_off for r in rise.ripples])
-    _limits(trend, float(tabor[0]), float(tabor[-1]))
+    if tabor.size:
+        _limits(trend, float(tabor[0]), float(tabor[-1]))
     dress(trend, TABOR, r"pull-off force $-W_\mathrm{min}/R\Delta\gamma$", legend="below", columns=2, ylim=(4.5, 6.5))
     _ripples(ripple, study)
     return figure

@@ -113,16 +113,21 @@ def _repulsion(mu: Array, y: Array) -> Criterion:
     """Fit (4.5), which allows for the repulsion at small mu."""
     ratio = np.log(y**3.5 / mu**1.5)
     start = (np.log(criteria.FIT), criteria.FIT_REPULSION)
-    values, covariance = curve_fit(lambda y, log_c, n: log_c + np.log(np.maximum(1 - n / y**6, 1e-6)), y, ratio, start)
+    values, covariance = curve_fit(_log_repulsion, y, ratio, start)
     errors = np.sqrt(np.diag(covariance))
     c = float(np.exp(values[0]))
-    scatter = np.std(ratio - values[0] - np.log(1 - values[1] / y**6), ddof=2)
+    scatter = np.std(ratio - _log_repulsion(y, *values), ddof=2)
     constants = (
         ("c", criteria.FIT, Estimate(c, c * float(errors[0]))),
         ("n", criteria.FIT_REPULSION, Estimate(float(values[1]), float(errors[1]))),
     )
     formula = "(H0 + 1)^(7/2) = c mu^(3/2) [1 - n/(H0 + 1)^6]"
     return Criterion("fit (4.5)", formula, criteria.fitted_gap, False, constants, float(scatter))
+
+
+def _log_repulsion(y: Array, log_c: float, n: float) -> Array:
+    """Logarithm of c [1 - n/y^6], bounded where there is none."""
+    return np.asarray(log_c + np.log(np.maximum(1 - n / y**6, 1e-6)))
 
 
 def _of_approach(mu: Array, z: Array) -> Criterion:
