@@ -89,7 +89,7 @@ def panels(columns: int = 1, height: float = 5.0) -> tuple[Figure, Sequence[Any]
 def dress(
     axes: Any, x: str, y: str, *, legend: str | None = "best", columns: int = 3, **limits: tuple[float, float]
 ) -> None:
-    """Label the axes, set `xlim` and `ylim` if given, and add a legend of what is drawn at a place, or in columns below."""
+    """Label the axes, set `xlim` and `ylim` if given, and add a legend of what is drawn, at a place or below."""
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.set(**limits)
