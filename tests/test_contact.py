@@ -3,6 +3,7 @@ import pytest
 from scipy.integrate import quad
 
 from halfspace import compliance, grid, newton, theories
+from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.breathing import Homogeneous
 from halfspace.contact import ContactProblem, count_negative
 from halfspace.curve import transfer
@@ -172,3 +173,41 @@ def test_rigid_limit_is_bradleys_along_the_whole_path():
         solution = newton.solve(problem, x, newton.approach(approach))
         x = solution.x
         assert solution.observables[1] == pytest.approx(float(theories.bradley_load(approach)), rel=2e-3)
+
+
+@pytest.mark.parametrize("central_gap", [2.0, 11.0, 50.0])
+def test_the_energy_of_the_surfaces_goes_on_beyond_the_grid(central_gap):
+    """Of rigid surfaces it is minus the work of Bradley's load from afar, -(8 pi/3) (1/h - h^-7/28)."""
+    tabor = 1e-6
+    problem = half_space_charts(tabor, resolution_for(tabor, 1e-4))[0].problem
+    energy = problem.energy(problem.undeformed(1 - central_gap))
+    h = central_gap
+    assert energy == pytest.approx(-8 * np.pi / 3 * (1 / h - h**-7 / 28), rel=1e-6)
+
+
+@pytest.mark.parametrize(("nodes", "widths"), [(2, 0.1), (3, 0.1), (5, 0.336), (10, 0.9)])
+@pytest.mark.parametrize(("tabor", "width"), [(2.0, 0.25), (0.1, 0.7 / 0.1**0.5)])
+def test_the_grid_must_be_fine_where_the_edge_stands_to_the_limit_and_no_further(nodes, widths, tabor, width):
+    """So many widths of the spike, mu^-2 or 0.7 mu^-1/2 of a nearly rigid contact, between the nodes of a panel."""
+    limit = widths * width
+
+    def require(spacing):
+        panel = spacing * (nodes - 1)
+        problem = ContactProblem(compliance.panels(np.arange(8) * panel, nodes), tabor)
+        x = problem.undeformed(0.0)
+        x[:-2] = 0.1 * (problem.radii(x) - 3.5 * panel) + LENNARD_JONES.edge_gap
+        problem.require_resolution(x)
+
+    require(0.999 * limit)
+    with pytest.raises(GridTooCoarse, match=f"exceeds {limit:.3g} beta for tabor {tabor:g}; refine the grid there"):
+        require(1.001 * limit)
+
+
+def test_no_step_of_newtons_method_takes_a_gap_below_a_quarter_of_its_value(problem):
+    x = problem.undeformed(-5.0)
+    dx = np.zeros(x.size)
+    dx[3] = -10 * (x[3] + 1)
+    assert problem.longest_step(x, dx) == pytest.approx(0.075)
+    dx[3] = -0.75 * (x[3] + 1)
+    assert problem.longest_step(x, dx) == pytest.approx(1.0)
+    assert problem.longest_step(x, -1e3 * dx) == 1.0

@@ -27,6 +27,19 @@ def test_attard_and_parkers_load_in_table_2_to_its_last_printed_digit():
     assert [f"{-load:.3f}" for load in loads] == list(printed.values())
 
 
+@pytest.mark.parametrize(
+    ("k", "printed"),
+    [
+        (criteria.ATTARD_PARKER, 3 * np.sqrt(2) * np.pi),
+        (criteria.PETHICA_SUTTON, 16 * np.pi / 3),
+        (criteria.APPENDIX_C, 5 * np.pi / np.sqrt(2)),
+    ],
+)
+def test_closed_criteria_have_the_factors_of_their_authors(k, printed):
+    """(H0 + 1)^(7/2) in mu^(3/2)."""
+    assert (criteria.closed_gap(4.0, k) + 1) ** 3.5 == pytest.approx(8 * printed, rel=1e-12)
+
+
 @pytest.mark.parametrize("k", [criteria.ATTARD_PARKER, criteria.PETHICA_SUTTON, criteria.APPENDIX_C])
 def test_closed_criteria_expect_the_jump_too_soon(k):
     """All predict too wide a gap: (H0 + 1)^(7/2) is about twice that of the true jump."""

@@ -117,6 +117,7 @@ def _ended(attempt, *endings):
 def test_a_number_counts_within_its_estimate_and_that_of_the_reference():
     assert _ended(lambda: FINE) == ("converged", "converged")
     assert _ended(lambda: Measured("load", 1.0, 0.9, "", 0.2)) == ("converged", "converged")
+    assert _ended(lambda: Measured("load", 1.0, 0.9, "", 0.0999)) == ("wrong", "beyond the estimate")
     assert _ended(lambda: Measured("load", 1.0, 0.9, "")) == ("wrong", "beyond the estimate")
     assert _ended(lambda: Measured("load", math.nan, 0.9, "")) == ("wrong", "beyond the estimate")
     assert _ended(lambda: Measured("load", 1.0, math.nan, "")) == ("wrong", "beyond the estimate")
