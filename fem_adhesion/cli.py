@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 
 from fem_adhesion.commands import assess, compare, curve, finite_sphere, greenwood, hard, report, speed
-from fem_adhesion.commands.common import BAD_INPUT, DISAGREE, INTERRUPTED, NOT_WRITTEN, Parser, Version
+from fem_adhesion.commands.common import BAD_INPUT, DISAGREE, NOT_WRITTEN, Parser, Version, ended, ended_by_signal
 from fem_adhesion.writing import NotWritten
 from halfspace.errors import InputError, NotConverged
 
@@ -19,11 +19,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 if all is well, 1 if solvers disagree or fail or the disk is full, 2 for bad input, 130 if interrupted.
+        0 if all is well, 1 if solvers disagree or fail or the disk is full, 2 for bad input, 130 if interrupted by
+        Ctrl-C, 143 if terminated by SIGTERM.
     """
     options = make_parser().parse_args(arguments)
     try:
-        return int(options.run(options))
+        with ended_by_signal():
+            return int(options.run(options))
     except InputError as error:
         print(f"fem-adhesion: {error}", file=sys.stderr)
         return BAD_INPUT
@@ -33,9 +35,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except NotWritten as error:
         print(f"fem-adhesion: {error}", file=sys.stderr)
         return NOT_WRITTEN
-    except KeyboardInterrupt:
-        print("fem-adhesion: interrupted; nothing was written", file=sys.stderr)
-        return INTERRUPTED
+    except KeyboardInterrupt as how:
+        return ended(how, "nothing was written")
 
 
 def make_parser() -> Parser:

@@ -6,6 +6,9 @@ import math
 
 from halfspace.errors import InputError
 
+SMALLEST_SPHERE = 1.5**2
+"""Least R/eps over the Tabor parameter, (R/beta)^2."""
+
 
 def require_tabor(tabor: float) -> float:
     """Return the Tabor parameter, or raise InputError unless 1e-12 <= tabor <= 300: beyond, a closed form will do."""
@@ -60,9 +63,10 @@ def require_radius_ratio(radius_ratio: float, tabor: float) -> float:
     A contact is 1 to 2 beta wide where it is lost: a smaller sphere is deformed as a whole, and past its equator.
     """
     _require(radius_ratio, "radius_ratio", 2 <= radius_ratio <= 1e12, "2 <= radius_ratio <= 1e12", "give R/eps")
-    least = 1.5**2 * tabor
+    least = SMALLEST_SPHERE * tabor
     remedy = "the sphere is as small as its contact, R < 1.5 beta: take a stiffer or larger one"
-    return _require(radius_ratio, "radius_ratio", radius_ratio >= least, f"2.25 tabor = {least:.3g} or more", remedy)
+    limit = f"{SMALLEST_SPHERE:g} tabor = {least:.3g} or more"
+    return _require(radius_ratio, "radius_ratio", radius_ratio >= least, limit, remedy)
 
 
 def require_counter_radius(counter_radius: float, radius_ratio: float | None) -> float:

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,23 +20,14 @@ import halfspace
 from fem_adhesion.output.finite_sphere_tables import COLUMNS, NO_PARQUET, TEXTS, write_tables
 from fem_adhesion.studies import finite_sphere, finite_sphere_cases, finite_sphere_fit, store
 from fem_adhesion.studies.finite_sphere import plan, run, seconds_left
-from fem_adhesion.studies.finite_sphere_cases import (
-    CAUSES,
-    MODELS,
-    QUANTITIES,
-    Case,
-    Record,
-    case_of,
-    from_plain,
-    quantities_of,
-    to_plain,
-)
+from fem_adhesion.studies.finite_sphere_cases import CAUSES, MODELS, case_of, quantities_of
 from fem_adhesion.studies.finite_sphere_fit import SOFT_PULL_OFF, Samples, fit
+from fem_adhesion.studies.finite_sphere_records import QUANTITIES, Case, Record, from_plain, to_plain
 from fem_adhesion.studies.finite_sphere_table import Row, rows
 from fem_adhesion.studies.materials import materials
 from fem_adhesion.studies.store import open_store
 from halfspace.curve import Estimate
-from halfspace.errors import NotConverged
+from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES
 from halfspace.sphere_theories import JKRSphere
 from halfspace.theories import JKR_PULL_OFF
@@ -44,10 +36,15 @@ CASES = [Case("half_space", tabor, rtol=1e-2) for tabor in (0.2, 0.4, 0.6, 0.8, 
 
 
 def cheap(case):
-    """Half-space at a low accuracy; notes in the directory STUDY_LOG that it was computed, and takes its time."""
+    """Half-space at a low accuracy; notes in the directory STUDY_LOG that it was begun.
+
+    From the third on it then waits for the file STUDY_GATE, if there is to be one.
+    """
     if log := os.environ.get("STUDY_LOG"):
         (Path(log) / f"{case.tabor:g}-{time.monotonic_ns()}").touch()
-        time.sleep(float(os.environ.get("STUDY_SLEEP", "0")))
+    gate = os.environ.get("STUDY_GATE")
+    while gate and case not in CASES[:3] and not Path(gate).exists():
+        time.sleep(0.01)
     return finite_sphere_cases.compute(case)
 
 
@@ -55,6 +52,11 @@ def deadly(case):
     if case.tabor == 0.4:
         os.kill(os.getpid(), signal.SIGKILL)
     return cheap(case)
+
+
+def opened(directory, **options):
+    """Store of code that does not change."""
+    return open_store(directory, "code of the test", **options)
 
 
 def solved(case, **values):
@@ -65,14 +67,14 @@ def solved(case, **values):
 
 
 def test_each_case_is_solved_once_though_many_points_need_it():
-    cases = plan()
+    cases = plan().cases
     assert len(set(cases)) == len(cases)
     assert {case.tabor for case in cases if case.model == "half_space"} == set(finite_sphere.TABORS)
     assert sum(case.model == "half_space" for case in cases) == len(finite_sphere.TABORS)
 
 
 def test_every_cause_finds_its_baseline_in_the_plan():
-    cases = set(plan())
+    cases = set(plan().cases)
     for case in cases:
         for cause in CAUSES.values():
             if cause.model == case.model:
@@ -80,7 +82,9 @@ def test_every_cause_finds_its_baseline_in_the_plan():
 
 
 def test_the_inputs_asked_for_are_the_full_product():
-    points = {(c.tabor, c.radius_ratio, c.poisson) for c in plan([1.0, 2.0], [10.0], [0.1, 0.2]) if c.model == "sphere"}
+    points = {
+        (c.tabor, c.radius_ratio, c.poisson) for c in plan([1.0, 2.0], [10.0], [0.1, 0.2]).cases if c.model == "sphere"
+    }
     assert points == {(mu, 10.0, nu) for mu in (1.0, 2.0) for nu in (0.1, 0.2)}
 
 
@@ -88,26 +92,39 @@ def test_the_inputs_asked_for_are_the_full_product():
     ("inputs", "message"),
     [
         (([-1.0],), "tabor = -1 "),
-        ((None, [0.5]), "radius_ratio = 0.5 is outside 1 <= radius_ratio <= 1e9; "),
+        ((None, [1.0]), "radius_ratio = 1 is outside 2 <= radius_ratio <= 1e12; "),
+        (([3.0, 2.0], [4.0, 100.0]), "radius_ratio = 4 is outside 2.25 tabor = 4.5 or more; "),
         ((None, [math.nan]), "radius_ratio = nan "),
         ((None, None, [0.5]), "poisson = 0.5 is outside 0 <= poisson < 0.5; "),
     ],
 )
 def test_inputs_out_of_range_are_refused(inputs, message):
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises(InputError, match=message):
         plan(*inputs)
+
+
+def test_spheres_too_small_for_their_tabor_parameter_are_left_out_with_the_limit():
+    found = plan([1.0, 10.0], [5.0, 100.0])
+    assert {(r.case.tabor, r.case.radius_ratio) for r in found.left_out} == {(10.0, 5.0)}
+    assert {(r.status, r.kind) for r in found.left_out} == {("left out", "InputError")}
+    assert all("radius_ratio = 5 is outside 2.25 tabor = 22.5 or more" in r.reason for r in found.left_out)
+    points = {(c.tabor, c.radius_ratio) for c in found.cases if c.model == "sphere"}
+    assert points == {(1.0, 5.0), (1.0, 100.0), (10.0, 100.0)}
+    assert Case("half_space", 10.0) in found.cases
+    assert not plan(quick=True).left_out
 
 
 # --- running, killing and resuming ---
 
 
 def start_study(directory, log):
-    """Process that computes CASES slowly on two workers."""
+    """Process that computes CASES on two workers, which wait for ever in the fourth and fifth."""
     code = (
         "from pathlib import Path; import test_finite_sphere_study as t; "
-        f"t.run(t.CASES, t.open_store(Path({str(directory)!r})), jobs=2, work=t.cheap)"
+        f"t.run(t.CASES, t.opened(Path({str(directory)!r})), jobs=2, work=t.cheap)"
     )
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent), "STUDY_LOG": str(log), "STUDY_SLEEP": "0.4"}
+    path = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, "PYTHONPATH": path, "STUDY_LOG": str(log), "STUDY_GATE": str(log.parent / "never")}
     return subprocess.Popen(
         [sys.executable, "-c", code],
         env=environment,
@@ -121,16 +138,14 @@ def stored_cases(directory):
     return {json.loads(f.read_text())["inputs"]["tabor"]: f for f in directory.glob("cases/[!.]*.json")}
 
 
-def killed_study(directory, log, *, after):
-    """Cases on disk after a study was killed as it had stored some."""
+def killed_study(directory, log):
+    """Cases on disk after a study was killed as it had stored three of them and begun two more."""
     study = start_study(directory, log)
     try:
-        assert soon(lambda: len(stored_cases(directory)) >= after)
+        wait_until(lambda: len(stored_cases(directory)) == 3 and len(list(log.iterdir())) == 5)
         study.kill()
         study.wait()
-        begun = len(list(log.iterdir()))
-        assert begun - len(stored_cases(directory)) <= 2, "only what was under way is lost"
-        assert soon(lambda: not alive(study.pid)), "the workers end by themselves"
+        wait_until(lambda: not alive(study.pid))  # the workers end by themselves
     finally:
         if alive(study.pid):
             os.killpg(study.pid, signal.SIGKILL)
@@ -138,11 +153,12 @@ def killed_study(directory, log, *, after):
     return stored_cases(directory)
 
 
-def soon(condition, seconds=30):
+def wait_until(condition, seconds=300):
+    """Wait for a condition; the end is for what never comes, not for what is slow."""
     deadline = time.monotonic() + seconds
-    while not (holds := condition()) and time.monotonic() < deadline:
+    while not condition():
+        assert time.monotonic() < deadline, "it never came"
         time.sleep(0.02)
-    return holds
 
 
 def alive(group):
@@ -157,12 +173,12 @@ def alive(group):
 def test_a_study_killed_under_way_goes_on_without_computing_anything_twice(tmp_path, monkeypatch):
     log, directory = tmp_path / "log", tmp_path / "study"
     log.mkdir()
-    kept = killed_study(directory, log, after=3)
-    assert 3 <= len(kept) < len(CASES)
+    kept = killed_study(directory, log)
+    assert set(kept) == {case.tabor for case in CASES[:3]}
     begun = len(list(log.iterdir()))
     times = {tabor: file.stat().st_mtime_ns for tabor, file in kept.items()}
     monkeypatch.setenv("STUDY_LOG", str(log))
-    records = run(CASES, open_store(directory, resume=True), jobs=1, work=cheap)
+    records = run(CASES, opened(directory, resume=True), jobs=1, work=cheap)
     assert [record.case for record in records] == CASES
     assert all(record.status == "solved" for record in records)
     assert len(list(log.iterdir())) - begun == len(CASES) - len(kept)
@@ -170,39 +186,57 @@ def test_a_study_killed_under_way_goes_on_without_computing_anything_twice(tmp_p
 
 
 def test_a_study_that_is_complete_computes_nothing(tmp_path):
-    first = run(CASES[:3], open_store(tmp_path), jobs=1, work=cheap)
-    again = run(CASES[:3], open_store(tmp_path, resume=True), jobs=1, work=deadly)
+    first = run(CASES[:3], opened(tmp_path), jobs=1, work=cheap)
+    again = run(CASES[:3], opened(tmp_path, resume=True), jobs=1, work=deadly)
     assert again == first
 
 
 def test_a_case_whose_worker_dies_is_recorded_and_tried_again_when_resumed(tmp_path):
-    records = run(CASES[:4], open_store(tmp_path), jobs=2, work=deadly)
+    records = run(CASES[:4], opened(tmp_path), jobs=2, work=deadly)
     died = records[1]
     assert (died.status, died.values) == ("died", {})
     assert "worker died" in died.reason
     assert [record.status for record in records].count("solved") == 3
-    assert run(CASES[:4], open_store(tmp_path, resume=True), jobs=1, work=cheap)[1].status == "solved"
+    assert run(CASES[:4], opened(tmp_path, resume=True), jobs=1, work=cheap)[1].status == "solved"
 
 
-def test_a_case_that_is_refused_is_recorded_with_its_reason(tmp_path):
+@pytest.mark.parametrize("kind", [InputError, NotConverged, ContactTooWide, GridTooCoarse])
+def test_a_case_that_is_refused_is_recorded_with_its_kind_and_reason(tmp_path, monkeypatch, kind):
     def refused(case):
-        raise NotConverged(f"tabor {case.tabor:g} is stuck; try another")
+        raise kind(f"tabor {case.tabor:g} is stuck; try another")
 
-    def out_of_range(case):
-        raise ValueError(f"contact radius of tabor {case.tabor:g} exceeds the sphere; take more")
+    monkeypatch.setitem(MODELS, "half_space", replace(MODELS["half_space"], solve=refused))
+    (record,) = run([Case("half_space", 1.0)], opened(tmp_path), jobs=1)
+    assert (record.status, record.kind, record.values) == ("refused", kind.__name__, {})
+    assert record.reason == "tabor 1 is stuck; try another"
+    assert run([record.case], opened(tmp_path, resume=True), jobs=1) == (record,)
 
-    for solve, message in ((refused, "tabor 1 is stuck; try another"), (out_of_range, "exceeds the sphere")):
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setitem(MODELS, "half_space", replace(MODELS["half_space"], solve=solve))
-            (record,) = run([Case("half_space", 1.0)], open_store(tmp_path, force=True), jobs=1, fresh=True)
-        assert record.status == "refused"
-        assert message in record.reason
-        assert run([record.case], open_store(tmp_path, resume=True), jobs=1) == (record,)
+
+@pytest.mark.parametrize("kind", [ValueError, TypeError, ZeroDivisionError, RuntimeError])
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_defect_of_the_program_is_no_refusal(tmp_path, kind, jobs):
+    with pytest.raises(kind, match="shapes do not fit"):
+        run([Case("half_space", 1.0)], opened(tmp_path), jobs=jobs, work=DEFECTS[kind])
+    assert not stored_cases(tmp_path)
+
+
+def defective(kind, _):
+    raise kind("shapes do not fit")
+
+
+DEFECTS = {kind: partial(defective, kind) for kind in (ValueError, TypeError, ZeroDivisionError, RuntimeError)}
+
+
+def test_a_defect_inside_a_solver_is_no_refusal(monkeypatch):
+    for kind, solve in DEFECTS.items():
+        monkeypatch.setitem(MODELS, "half_space", replace(MODELS["half_space"], solve=solve))
+        with pytest.raises(kind, match="shapes do not fit"):
+            finite_sphere_cases.compute(Case("half_space", 1.0))
 
 
 def test_progress_counts_to_the_end_and_tells_the_time_left(tmp_path):
     seen = []
-    run(CASES[:3], open_store(tmp_path), jobs=1, work=cheap, progress=lambda *args: seen.append(args))
+    run(CASES[:3], opened(tmp_path), jobs=1, work=cheap, progress=lambda *args: seen.append(args))
     assert [(done, total) for _, done, total in seen] == [(0, 3), (1, 3), (2, 3), (3, 3)]
     assert seen[-1][0].endswith("; 0 s left")
 
@@ -219,51 +253,137 @@ def test_the_time_left_follows_the_cost_of_each_model():
 
 
 def test_a_record_survives_the_disk_to_the_last_bit(tmp_path):
-    record = run(CASES[4:5], open_store(tmp_path), jobs=1)[0]
+    record = run(CASES[4:5], opened(tmp_path), jobs=1)[0]
     assert QUANTITIES.keys() == record.values.keys()
     case = record.case
-    plain = open_store(tmp_path, resume=True).get(asdict(case))
+    plain = opened(tmp_path, resume=True).get(asdict(case))
     assert from_plain(case, plain) == record
     assert to_plain(from_plain(case, plain)) == to_plain(record)
 
 
-@pytest.mark.parametrize("damage", ["", "{", "[1]", "{}", '{"result": {}}', "\x00\xff", "other case", "other version"])
-def test_a_damaged_or_foreign_file_is_computed_again_with_a_note(tmp_path, damage):
-    (first,) = run(CASES[:1], open_store(tmp_path), jobs=1)
-    (file,) = stored_cases(tmp_path).values()
-    content = json.loads(file.read_text())
-    if damage == "other case":
-        damage = json.dumps(content | {"inputs": asdict(CASES[1])})
-    elif damage == "other version":
-        damage = json.dumps(content | {"version": "0.0.0"})
+def one_stored(directory):
+    """File of a stored case, and its record."""
+    (record,) = run(CASES[:1], opened(directory), jobs=1)
+    (file,) = stored_cases(directory).values()
+    return file, record
+
+
+@pytest.mark.parametrize("damage", ["", "{", "[1]", "{}", '{"result": {}}', "null", "\x00\xff"])
+def test_a_file_that_is_no_result_is_computed_again_with_a_note(tmp_path, damage):
+    file, record = one_stored(tmp_path)
     file.write_text(damage, encoding="latin-1")
-    study = open_store(tmp_path, resume=True)
+    computed_again(tmp_path, record, f"{file} is computed again: ")
+
+
+def computed_again(directory, record, note):
+    study = opened(directory, resume=True)
     (again,) = run(CASES[:1], study, jobs=1)
-    assert again.values == first.values
+    assert again.values == record.values
     assert len(study.notes) == 1
-    assert "computed again" in study.notes[0]
-    assert json.loads(file.read_text())["inputs"] == asdict(CASES[0])
+    assert study.notes[0].startswith(note)
+    clean = opened(directory, resume=True)
+    assert run(CASES[:1], clean, jobs=1) == (again,)
+    assert not clean.notes
 
 
-def test_a_file_whose_result_is_no_record_is_computed_again(tmp_path):
-    study = open_store(tmp_path)
-    study.put(asdict(CASES[0]), {"values": {"pull_off_load": 3}})
-    (record,) = run(CASES[:1], study, jobs=1)
-    assert record.status == "solved"
-    assert len(study.notes) == 1
+def changed(value, keys, content):
+    """Copy of a JSON object with a value changed, or its key removed if that is None."""
+    key, *rest = keys
+    if rest:
+        return content | {key: changed(value, rest, content[key])}
+    return {k: v for k, v in content.items() if k != key} if value is None else content | {key: value}
 
 
-def test_another_version_or_format_finds_nothing(tmp_path, monkeypatch):
-    run(CASES[:1], open_store(tmp_path), jobs=1)
-    inputs = asdict(CASES[0])
-    assert open_store(tmp_path, resume=True).get(inputs)
-    assert replace(open_store(tmp_path, resume=True), version="99").get(inputs) is None
+LOAD = ("values", "pull_off_load")
+TAMPERED = [
+    ((*LOAD, "value"), "-5"),
+    ((*LOAD, "value"), math.nan),
+    ((*LOAD, "value"), -math.inf),
+    ((*LOAD, "value"), True),
+    ((*LOAD, "value"), None),
+    ((*LOAD, "error"), None),
+    ((*LOAD, "error"), -1e-3),
+    ((*LOAD, "error"), [1.0]),
+    (LOAD, 3.0),
+    (("values",), None),
+    (("values",), 3),
+    (("values", "weight"), {"value": 1.0, "error": 0.0}),
+    (("status",), None),
+    (("status",), "died"),
+    (("status",), "refused"),
+    (("status",), ["solved"]),
+    (("seconds",), "long"),
+    (("reason",), 3),
+    (("kind",), None),
+]
+
+
+@pytest.mark.parametrize(("keys", "value"), TAMPERED)
+def test_a_value_that_was_changed_is_computed_again_with_a_note(tmp_path, keys, value):
+    file, record = one_stored(tmp_path)
+    file.write_text(json.dumps(changed(value, ("result", *keys), json.loads(file.read_text()))))
+    computed_again(tmp_path, record, f"{file} is computed again: it has been changed")
+
+
+@pytest.mark.parametrize(("keys", "value"), [entry for entry in TAMPERED if entry[1] not in (math.nan, -math.inf)])
+def test_a_result_that_is_no_record_is_computed_again_though_it_is_as_it_was_stored(tmp_path, keys, value):
+    file, record = one_stored(tmp_path)
+    plain = changed(value, keys, to_plain(record))
+    opened(tmp_path, force=True).put(asdict(CASES[0]), plain)
+    computed_again(tmp_path, record, f"{file} is computed again: it")
+
+
+@pytest.mark.parametrize("value", [-5.000001, 0.0])
+def test_a_number_exchanged_for_another_is_noticed(tmp_path, value):
+    file, record = one_stored(tmp_path)
+    file.write_text(json.dumps(changed(value, ("result", *LOAD, "value"), json.loads(file.read_text()))))
+    computed_again(tmp_path, record, f"{file} is computed again: it has been changed")
+
+
+def test_the_file_of_another_case_is_computed_again(tmp_path):
+    file, record = one_stored(tmp_path)
+    file.write_text(json.dumps(json.loads(file.read_text()) | {"inputs": asdict(CASES[1])}))
+    computed_again(tmp_path, record, f"{file} is computed again: it has been changed")
+
+
+def test_results_of_other_code_or_another_format_are_computed_again_and_counted(tmp_path, monkeypatch):
+    records = run(CASES[:3], opened(tmp_path), jobs=1)
+    later = open_store(tmp_path, "edited code", resume=True)
+    again = run(CASES[:3], later, jobs=1)
+    assert later.notes == ("3 cases computed by other code: computed again",)
+    assert [record.values for record in again] == [record.values for record in records]
     monkeypatch.setattr(store, "SCHEMA", store.SCHEMA + 1)
-    assert open_store(tmp_path, resume=True).get(inputs) is None
+    later = open_store(tmp_path, "edited code", resume=True)
+    run(CASES[:1], later, jobs=1)
+    assert later.notes == ("1 case computed by another format: computed again",)
+
+
+def test_a_refusal_of_other_code_is_tried_again(tmp_path):
+    def refused(_):
+        raise NotConverged("stuck")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(MODELS, "half_space", replace(MODELS["half_space"], solve=refused))
+        assert run(CASES[:1], opened(tmp_path), jobs=1)[0].status == "refused"
+    assert run(CASES[:1], open_store(tmp_path, "mended code", resume=True), jobs=1)[0].status == "solved"
+
+
+def test_two_tolerances_have_a_file_each(tmp_path):
+    loose, tight = Case("half_space", 1.0, rtol=1e-2), Case("half_space", 1.0, rtol=1e-5)
+    study = opened(tmp_path)
+    for number, case in enumerate((loose, tight)):
+        study.put(asdict(case), to_plain(solved(case, pull_off_load=(-5.0 - number, 0.1))))
+    found = run((loose, tight), opened(tmp_path, resume=True), jobs=1, work=deadly)
+    assert [record.values["pull_off_load"].value for record in found] == [-5.0, -6.0]
+    names = {study.path(asdict(replace(Case("sphere", 1.0, 30.0, 0.3), **{name: 7.0}))) for name in INPUTS}
+    assert len(names) == len(INPUTS)
+
+
+INPUTS = ("tabor", "radius_ratio", "poisson", "rtol")
 
 
 def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
-    study = open_store(tmp_path)
+    study = opened(tmp_path)
     study.put({"a": 1}, {"b": 2})
     with pytest.raises(ValueError, match="not JSON compliant"):
         study.put({"a": 1}, {"b": math.nan})
@@ -272,21 +392,22 @@ def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
     with pytest.raises(OSError, match="disk full"):
         study.put({"a": 1}, {"b": 3})
     assert study.get({"a": 1}) == {"b": 2}
+    assert len(list((tmp_path / "cases").iterdir())) == 1
 
 
 def test_a_directory_that_is_not_empty_is_refused_and_left_alone(tmp_path):
     (tmp_path / "thesis.tex").touch()
     with pytest.raises(ValueError, match=r"holds 1 files, limit 0; choose another or use --resume or --force"):
-        open_store(tmp_path)
+        opened(tmp_path)
     with pytest.raises(
         ValueError, match=r"holds 1 files, limit 0; it is no study to resume, choose another or --force"
     ):
-        open_store(tmp_path, resume=True)
-    with pytest.raises(ValueError, match="is a file; give the name of a directory"):
-        open_store(tmp_path / "thesis.tex")
-    with pytest.raises(ValueError, match="cannot be written; choose a folder that exists"):
-        open_store(tmp_path / "a" / "b")
-    assert open_store(tmp_path, force=True).get({}) is None
+        opened(tmp_path, resume=True)
+    with pytest.raises(InputError, match="is a file; give the name of a directory"):
+        opened(tmp_path / "thesis.tex")
+    with pytest.raises(InputError, match="cannot be written; choose a folder that exists"):
+        opened(tmp_path / "a" / "b")
+    assert opened(tmp_path, force=True).get({}) is None
     assert [file.name for file in tmp_path.iterdir()] == ["thesis.tex"]
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from io import StringIO
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 
     Commands = argparse._SubParsersAction["Parser"]
 
-AGREE, DISAGREE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+AGREE, DISAGREE, BAD_INPUT, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 NOT_WRITTEN = DISAGREE
 
 
@@ -51,6 +53,38 @@ class Version(argparse.Action):
         del namespace, values, option_string
         print(f"fem-adhesion {version('fem-adhesion')}")
         parser.exit(AGREE)
+
+
+class Terminated(KeyboardInterrupt):
+    """The process was asked to end by SIGTERM, as batch systems and ``timeout`` do."""
+
+
+@contextmanager
+def ended_by_signal() -> Iterator[None]:
+    """Let SIGTERM end the block as Ctrl-C does, so that workers are stopped and nothing is left half-written.
+
+    A second one changes nothing: the first is being heeded. Signals reach the main thread alone.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, _terminate)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _terminate(number: int, _: object) -> NoReturn:
+    signal.signal(number, signal.SIG_IGN)
+    raise Terminated
+
+
+def ended(how: KeyboardInterrupt, what: str) -> int:
+    """Say in one line that the command was ended from outside, and give its exit code."""
+    word, code = ("terminated", TERMINATED) if isinstance(how, Terminated) else ("interrupted", INTERRUPTED)
+    print(f"fem-adhesion: {word}; {what}", file=sys.stderr)
+    return code
 
 
 class Parser(argparse.ArgumentParser):

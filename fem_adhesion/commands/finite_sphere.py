@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
-from fem_adhesion.commands.common import AGREE, INTERRUPTED, add_output, progress_bar
+from fem_adhesion.commands.common import AGREE, DISAGREE, add_output, ended, progress_bar
 
 if TYPE_CHECKING:
     from fem_adhesion.commands.common import Commands
@@ -18,13 +18,18 @@ def add(commands: Commands) -> None:
         "finite-sphere",
         help="measure how far the half-space is from a finite sphere, and why",
         description="Solve the contact under one assumption less at a time, over Tabor parameters, R/eps and Poisson's "
-        "ratios. Each case is stored at once: what is interrupted goes on with --resume.",
+        "ratios. Each case is stored at once: what is interrupted goes on with --resume. Exits with 1 if a "
+        "case has no solution.",
         epilog="example: fem-adhesion finite-sphere --out sphere --quick",
     )
     study.add_argument("--tabor", nargs="+", type=float, help="Tabor parameters", metavar="MU")
-    study.add_argument("--radius-ratio", nargs="+", type=float, help="R/eps, 2 or more", metavar="RHO")
+    study.add_argument(
+        "--radius-ratio", nargs="+", type=float, help="R/eps, 2 or more and 2.25 MU or more", metavar="RHO"
+    )
     study.add_argument("--poisson", nargs="+", type=float, help="Poisson's ratios, 0 <= nu < 0.5", metavar="NU")
-    study.add_argument("--quick", action="store_true", help="finish in a minute: three by three points, less accurate")
+    study.add_argument(
+        "--quick", action="store_true", help="finish in half a minute: three by three points, less accurate"
+    )
     study.add_argument("--resume", action="store_true", help="go on with the cases that the directory holds")
     study.add_argument("--jobs", type=int, help="processes; as many as cores unless given", metavar="N")
     study.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
@@ -33,27 +38,35 @@ def add(commands: Commands) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the study of the finite sphere or what is left of it, and write its table, its pictures and its page."""
+    """Run the study of the finite sphere or what is left of it, and write its table, its pictures and its page.
+
+    Returns
+    -------
+    int
+        1 if any case has no solution, else 0.
+    """
     from fem_adhesion.output import finite_sphere_report
     from fem_adhesion.output.files import directory_written_aside
+    from fem_adhesion.output.finite_sphere_words import headline
     from fem_adhesion.studies import finite_sphere
+    from fem_adhesion.studies.finite_sphere_records import Study
     from fem_adhesion.studies.store import open_store
     from fem_adhesion.writing import writing
 
-    cases = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
-    store = open_store(options.out, resume=options.resume, force=options.force)
-    fresh = options.force and not options.resume
+    plan = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
+    store = open_store(options.out, finite_sphere.code(), resume=options.resume, force=options.force)
+    settings = {"jobs": options.jobs, "dask": options.dask, "fresh": options.force and not options.resume}
     try:
         with progress_bar() as step:
-            records = finite_sphere.run(cases, store, jobs=options.jobs, dask=options.dask, progress=step, fresh=fresh)
-    except KeyboardInterrupt:
-        print(f"fem-adhesion: interrupted; what is done is kept in {options.out}, --resume goes on", file=sys.stderr)
-        return INTERRUPTED
-    parts = finite_sphere_report.PARTS
-    with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
-        note = finite_sphere_report.write(records, aside, lambda part: step(part, parts.index(part), len(parts)))
+            solved = finite_sphere.run(plan.cases, store, progress=step, **settings)
+        study = Study((*solved, *plan.left_out), options.quick)
+        parts = finite_sphere_report.PARTS
+        with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
+            note = finite_sphere_report.write(study, aside, lambda part: step(part, parts.index(part), len(parts)))
+            finite_sphere_report.remove_outdated(options.out, aside)
+    except KeyboardInterrupt as how:
+        return ended(how, f"what is done is kept in {options.out}, --resume goes on")
     for line in filter(None, (*store.notes, note)):
         print(f"fem-adhesion: {line}", file=sys.stderr)
-    unsolved = sum(record.status != "solved" for record in records)
-    print(f"written: {options.out / 'index.html'}; {len(records)} cases, {unsolved} without a solution")
-    return AGREE
+    print(f"{headline(study)}; written: {options.out / 'index.html'}")
+    return DISAGREE if study.failed else AGREE

@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from fem_adhesion.output import greenwood_style as style
-from fem_adhesion.studies.finite_sphere_chart import LEVELS, Array, Field, contour, field_of, refused_below
-from fem_adhesion.studies.finite_sphere_table import Row
+from fem_adhesion.studies.finite_sphere_chart import LEVELS, Array, Field, contour, field_of
+from fem_adhesion.studies.finite_sphere_table import Border, Row
 from fem_adhesion.studies.materials import Material, materials
+from halfspace.limits import SMALLEST_SPHERE
 
 TABOR = r"Tabor parameter $\mu$"
 RATIO = r"radius over spacing $R/\epsilon$"
@@ -27,6 +29,12 @@ LINES: Mapping[float, tuple[str, Any, float]] = {
 }
 SHADES = ("0.80", "0.90", "0.96")
 WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+UNSOLVED: Mapping[str, tuple[str, str]] = {  # by how a contact ended: hatching, and what it means
+    "ContactTooWide": ("///", "no solution: contact as wide as the sphere"),
+    "left out": ("\\\\\\", rf"not tried: $R < {SMALLEST_SPHERE**0.5:g}\\,\\beta$"),
+    "died": ("xxx", "not solved: its process died"),
+}
+OTHERWISE = "..."  # hatching of any other end
 MARKERS: Mapping[str, tuple[str, str]] = {
     "silica": ("o", style.BLUE),
     "gold": ("s", style.ORANGE),
@@ -37,7 +45,7 @@ MARKERS: Mapping[str, tuple[str, str]] = {
 }
 
 
-def chart(rows: Sequence[Row], poisson: float | None) -> Figure:
+def chart(rows: Sequence[Row], poisson: float | None, borders: Sequence[Border], heading: str = "") -> Figure:
     """Draw the contours of 0.1, 1 and 10 % for the pull-off force and for the jump-on approach, side by side.
 
     Parameters
@@ -46,6 +54,10 @@ def chart(rows: Sequence[Row], poisson: float | None) -> Figure:
         The table of the study.
     poisson : float or None
         Which Poisson's ratio.
+    borders : sequence of Border
+        Where the jumps begin.
+    heading : str
+        What to know of the whole, as that a part was not solved.
     """
     figure, panels = style.panels(2, height=7.4)
     for axes, (quantity, title) in zip(panels, PANELS.items(), strict=True):
@@ -53,24 +65,26 @@ def chart(rows: Sequence[Row], poisson: float | None) -> Figure:
         axes.set_title(f"half-space's {title}")
         _materials(axes)
         _dress(axes)
-    handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False, **style.LEGEND)
+    _no_jump(panels[1], [border for border in borders if border.poisson == poisson])
+    if heading:
+        figure.suptitle(heading, fontsize=10.5, color="0.25")
+    legend_below(figure, panels, columns=5)
     return figure
 
 
 def _panel(axes: Any, field: Field) -> None:
     axes.set(xscale="log", yscale="log", xlim=(LEFT, RIGHT), ylim=(BOTTOM, TOP))
-    if not field.tabor.size:
-        return
-    _contours(axes, field)
-    _no_solution(axes, field)
-    _no_jump(axes, field)
-    _points(axes, field)
+    if field.tabor.size:
+        _contours(axes, field)
+        _unsolved(axes, field)
+        _points(axes, field)
 
 
 def _contours(axes: Any, field: Field) -> None:
     for shade, level in zip(SHADES, LEVELS, strict=True):
         ratio = contour(field, level)
+        if not np.isfinite(ratio).any():
+            continue
         colour, dashes, width = LINES[level]
         axes.fill_between(field.tabor, BOTTOM, ratio, color=shade, linewidth=0, zorder=level - 1)
         axes.plot(field.tabor, ratio, color=colour, linestyle=dashes, linewidth=width, label=f"{100 * level:g} %")
@@ -85,40 +99,44 @@ def _name(axes: Any, tabor: Array, ratio: Array, level: float) -> None:
         style.note(axes, f"{100 * level:g} %", at, (5, -3), color=LINES[level][0], fontweight="bold", bbox=WHITE)
 
 
-def _no_solution(axes: Any, field: Field) -> None:
-    """Hatch where the solver refuses."""
-    limit = refused_below(field)
-    if np.isfinite(limit).any():
-        look = {"facecolor": "white", "edgecolor": "0.35", "hatch": "///", "linewidth": 0.0, "zorder": 1.5}
-        label = "no solution: contact as wide as the sphere"
-        axes.stairs(limit, _midways(field.tabor), baseline=BOTTOM, fill=True, label=label, **look)
+def _unsolved(axes: Any, field: Field) -> None:
+    """Hatch what is nearest to the points that were not solved, each by how it ended."""
+    across, along = (_midways(values) for values in (field.tabor, field.radius_ratio))
+    for ending in sorted(set(field.ending.flat) - {"solved", "absent", ""}):
+        hatch, label = UNSOLVED.get(ending, (OTHERWISE, f"not solved: {ending}"))
+        look: Any = {"facecolor": "white", "edgecolor": "0.45", "hatch": hatch, "linewidth": 0.0, "zorder": 1.5}
+        for i, j in np.argwhere(field.ending == ending):
+            width, height = across[i + 1] - across[i], along[j + 1] - along[j]
+            axes.add_patch(Rectangle((across[i], along[j]), width, height, label=label, **look))
 
 
-def _midways(tabor: Array) -> Array:
-    """Tabor parameters midway between neighbours, and the outermost two."""
-    return np.concatenate([tabor[:1], np.sqrt(tabor[1:] * tabor[:-1]), tabor[-1:]])
+def _midways(values: Array) -> Array:
+    """Midways between neighbours on a logarithmic axis, and as far beyond the outermost two."""
+    x = np.log(values)
+    steps = np.diff(x) if x.size > 1 else np.log([4.0])
+    return np.asarray(
+        np.exp(np.concatenate([x[:1] - steps[0] / 2, x[:-1] + steps[: x.size - 1] / 2, x[-1:] + steps[-1] / 2]))
+    )
 
 
-def _no_jump(axes: Any, field: Field) -> None:
-    """Say where the contact has no jump: at the Tabor parameters that were solved and have no deviation."""
-    smooth = field.tabor[~np.isfinite(field.deviation).any(axis=1) & ~field.refused.all(axis=1)]
-    jumping = field.tabor[np.isfinite(field.deviation).any(axis=1)]
-    if not smooth.size or not jumping.size:
+def _no_jump(axes: Any, borders: Sequence[Border]) -> None:
+    """Shade where the contact was found not to jump."""
+    found = [(b.tabor.value, b.radius_ratio) for b in borders if b.tabor and b.radius_ratio]
+    if not found:
         return
-    end = float(np.sqrt(smooth[-1] * jumping[0]))
-    axes.axvspan(LEFT, end, color="0.97", zorder=-2)
-    axes.axvline(end, color="0.6", linewidth=0.8)
-    words = "no jump under fixed grips"
-    axes.text(end * 0.93, BOTTOM * 1.25, words, rotation=90, ha="right", va="bottom", color="0.35", fontsize=10)
+    tabor, ratio = np.array(sorted(found, key=lambda point: point[1])).T
+    axes.fill_betweenx(ratio, LEFT, tabor, color="0.97", linewidth=0, zorder=-2)
+    axes.plot(tabor, ratio, color="0.4", linewidth=1.2, marker="|", zorder=1.7, label="jumps begin, fixed grips")
+    at = float(tabor[-1]), float(ratio[-1])
+    style.note(axes, "no jump", at, (-6, -12), ha="right", color="0.35")
 
 
 def _points(axes: Any, field: Field) -> None:
-    """Dots where the plane was solved, crosses where it was refused."""
-    solved, refused = np.isfinite(field.deviation), field.refused
-    mu, rho = np.meshgrid(field.tabor, field.radius_ratio, indexing="ij")
-    axes.plot(mu[solved], rho[solved], ".", color="0.6", markersize=3, zorder=1.6, label="solved")
-    if refused.any():
-        axes.plot(mu[refused], rho[refused], "x", color="0.2", markersize=4, zorder=1.6, label="refused")
+    """Dots where the deviation was solved for."""
+    solved = np.isfinite(field.deviation)
+    if solved.any():
+        mu, rho = np.meshgrid(field.tabor, field.radius_ratio, indexing="ij")
+        axes.plot(mu[solved], rho[solved], ".", color="0.4", markersize=4, zorder=1.8, label="solved")
 
 
 def _materials(axes: Any) -> None:
@@ -156,3 +174,11 @@ def _dress(axes: Any) -> None:
     axes.set_ylabel(RATIO)
     axes.grid(True, color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
+
+
+def legend_below(figure: Figure, panels: Sequence[Any], columns: int) -> None:
+    """One legend below the panels, of all that any of them shows, each label once."""
+    shown = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    if shown:
+        handles, labels = list(shown.values()), list(shown)
+        figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, **style.LEGEND)

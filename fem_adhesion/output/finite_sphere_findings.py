@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from fem_adhesion.output.finite_sphere_plots import reference_poisson
+from fem_adhesion.output.finite_sphere_plots import PICTURES, Picture
+from fem_adhesion.output.finite_sphere_words import caption
 from fem_adhesion.output.greenwood_tables import Table
 from fem_adhesion.output.greenwood_text import with_error
 from fem_adhesion.studies import finite_sphere_fit
 from fem_adhesion.studies.bulk import coefficients
-from fem_adhesion.studies.finite_sphere_cases import Record
 from fem_adhesion.studies.finite_sphere_chart import LEVELS, Rule, field_of, rule
-from fem_adhesion.studies.finite_sphere_fit import Finding, Fit
-from fem_adhesion.studies.finite_sphere_table import Row
+from fem_adhesion.studies.finite_sphere_fit import DEVIATIONS, TOLERANCE, Finding, Fit
+from fem_adhesion.studies.finite_sphere_points import reference_poisson
+from fem_adhesion.studies.finite_sphere_records import Record
+from fem_adhesion.studies.finite_sphere_table import Border, Results, Row
 from halfspace.errors import InputError
 
 QUANTITIES = {
@@ -27,18 +29,25 @@ QUANTITIES = {
 """Quantities on the page; the files have the others besides."""
 
 
-def tables(records: Sequence[Record], rows: Sequence[Row]) -> list[Table]:
+def tables(results: Results) -> list[Table]:
     """All tables in the order of the page.
 
     Parameters
     ----------
-    records : sequence of Record
-        Of the study.
-    rows : sequence of Row
-        Its table, with the approaches less the bulk yield.
+    results : Results
+        Of the study, with the approaches less the bulk yield.
     """
+    rows, records = results.rows, results.study.records
     found = finite_sphere_fit.findings(rows, reference_poisson(rows) or 0.0)
-    return [_rules(rows), _fits(found), _theories(rows), _bulk(records), _failures(records)]
+    return [
+        _rules(rows),
+        _borders(results.borders),
+        _fits(found),
+        _theories(rows),
+        _bulk(records),
+        _failures(records),
+        _captions(results),
+    ]
 
 
 def _rules(rows: Sequence[Row]) -> Table:
@@ -46,16 +55,15 @@ def _rules(rows: Sequence[Row]) -> Table:
     lines = (_rule(rows, quantity, level, poisson) for quantity in QUANTITIES for level in LEVELS)
     columns = ("quantity", "half-space errs less than", "if R/eps >", "rule fits contour within", "mu", "why no rule")
     see = (
-        "Lines a + b mu through the contours of the chart; within the range of mu, R/eps above them is safe but for "
-        "the misfit of the line."
+        "Lines a + b mu through the contours of the chart, refused where a point contradicts them: within the range of "
+        "mu, the deviation is below its bound at all points solved that lie above the line by more than its misfit."
     )
     return Table("rules", "Rules of thumb", see, columns, tuple(lines))
 
 
 def line(found: Rule) -> str:
-    """Right-hand side of a rule, to two digits."""
-    constant, slope = (float(f"{value:.2g}") for value in (found.constant, abs(found.slope)))
-    return f"{constant:g} {'-' if found.slope < 0 else '+'} {slope:g} mu"
+    """Right-hand side of a rule."""
+    return f"{found.constant:g} {'-' if found.slope < 0 else '+'} {abs(found.slope):g} mu"
 
 
 def _rule(rows: Sequence[Row], quantity: str, level: float, poisson: float | None) -> tuple[str, ...]:
@@ -70,8 +78,8 @@ def _rule(rows: Sequence[Row], quantity: str, level: float, poisson: float | Non
 def _fits(found: Sequence[Finding]) -> Table:
     columns = ("quantity", "cause", "mu", "leading terms", "up to beta/R", "points", "largest residual", "why no fit")
     see = (
-        "Errors are two standard deviations and the change when the points farther than half-way are left out; up to "
-        "the beta/R stated, every point is within 10 % of the terms."
+        f"Errors are {DEVIATIONS:g} standard deviations and the change when the points farther than half-way are left "
+        f"out; up to the beta/R stated, every point is within {100 * TOLERANCE:g} % of the terms beside its own error."
     )
     shown = [f for f in found if f.quantity in QUANTITIES and (f.cause == "all" or f.quantity == "pull_off_load")]
     return Table("fits", "Leading terms of the relative deviations", see, columns, tuple(map(_finding, shown)))
@@ -92,7 +100,7 @@ def _theories(rows: Sequence[Row]) -> Table:
     columns = ("theory and term", "expected", "fitted", "error", "at mu", "why not")
     see = (
         "The profile's part of the pull-off alone, on a half-space. The theories are of the limits mu = 0 and "
-        "infinity: what is left of the difference belongs to the Tabor parameter, not to the fit."
+        "infinity, the fits of the mu stated."
     )
     try:
         lines = tuple(
@@ -124,6 +132,31 @@ def _yields(poissons: Sequence[float]) -> Iterator[tuple[str, ...]]:
 
 
 def _failures(records: Sequence[Record]) -> Table:
-    lines = tuple((r.case.name, r.status, r.reason) for r in records if r.status != "solved")
+    lines = tuple((r.case.name, r.status, r.kind, r.reason) for r in records if r.status != "solved")
     see = f"{len(lines)} of {len(records)} cases."
-    return Table("failures", "What was not solved, and why", see, ("case", "status", "reason"), lines)
+    return Table("failures", "What was not solved, and why", see, ("case", "status", "kind", "reason"), lines)
+
+
+def _borders(borders: Sequence[Border]) -> Table:
+    columns = ("R/eps", "Poisson's ratio", "mu", "error", "why none")
+    see = (
+        "From this mu on the approach turns back along the curve; the spheres are held on a sliding mid-plane. Errors "
+        "are the changes from elements one degree lower, or from a coarser grid."
+    )
+    return Table("first_jumps", "Where jumps under fixed grips begin", see, columns, tuple(map(_border, borders)))
+
+
+def _border(border: Border) -> tuple[str, ...]:
+    size = "half-space" if border.radius_ratio is None else f"{border.radius_ratio:g}"
+    found = (f"{border.tabor.value:.9g}", f"{border.tabor.error:.1e}") if border.tabor else ("", "")
+    return (size, "" if border.poisson is None else f"{border.poisson:g}", *found, border.reason)
+
+
+def _captions(results: Results) -> Table:
+    lines = tuple((picture.stem, *_caption(picture, results)) for picture in PICTURES)
+    return Table("captions", "Figures", "", ("figure", "caption", "why not drawn"), lines)
+
+
+def _caption(picture: Picture, results: Results) -> tuple[str, str]:
+    lack = picture.lacks(results)
+    return ("", lack) if lack else (f"{picture.title}. {caption(picture.stem, results)}", "")

@@ -11,15 +11,18 @@ import numpy as np
 
 from fem_adhesion.output import finite_sphere_findings
 from fem_adhesion.output.finite_sphere_findings import QUANTITIES, line
-from fem_adhesion.output.finite_sphere_plots import PICTURES, Picture, draw, reference_poisson
+from fem_adhesion.output.finite_sphere_plots import PICTURES, Picture, draw
 from fem_adhesion.output.finite_sphere_tables import write_tables
+from fem_adhesion.output.finite_sphere_words import caption, headline
 from fem_adhesion.output.greenwood_report import STYLE
 from fem_adhesion.output.greenwood_tables import Table, html, typeset, write_csv
 from fem_adhesion.output.record import versions
 from fem_adhesion.studies.bulk import bulk_compliance
-from fem_adhesion.studies.finite_sphere_cases import CAUSES, Record
+from fem_adhesion.studies.finite_sphere_cases import CAUSES
 from fem_adhesion.studies.finite_sphere_chart import Field, field_of, rule, safe_from
-from fem_adhesion.studies.finite_sphere_table import Row, rows
+from fem_adhesion.studies.finite_sphere_points import reference_poisson
+from fem_adhesion.studies.finite_sphere_records import Record, Study
+from fem_adhesion.studies.finite_sphere_table import Results, Row, results
 from fem_adhesion.studies.machine import machine
 from halfspace.errors import InputError
 
@@ -28,15 +31,15 @@ PARTS = ("table", *(f"figure {picture.stem}" for picture in PICTURES), "page")
 """What `write` tells that it begins, in this order."""
 
 
-def write(records: Sequence[Record], directory: Path, begin: Callable[[str], None] | None = None) -> str:
+def write(study: Study, directory: Path, begin: Callable[[str], None] | None = None) -> str:
     """Write the table, every figure as SVG and PNG, the findings as CSV, and ``index.html``, into a directory.
 
     Give it one made by `fem_adhesion.output.files.directory_written_aside`, so that all files appear or none.
 
     Parameters
     ----------
-    records : sequence of Record
-        From `fem_adhesion.studies.finite_sphere.run`.
+    study : Study
+        What was computed.
     directory : Path
         Where to write, which exists.
     begin : callable, optional
@@ -49,34 +52,42 @@ def write(records: Sequence[Record], directory: Path, begin: Callable[[str], Non
     """
     if begin:
         begin("table")
-    table = rows(records, bulk_compliance)
-    note = write_tables(table, directory)
-    draw(table, directory, begin)
+    found = results(study, bulk_compliance)
+    note = write_tables(found.rows, directory)
+    draw(found, directory, begin)
     if begin:
         begin("page")
-    found = finite_sphere_findings.tables(records, table)
-    for one in found:
+    tables = finite_sphere_findings.tables(found)
+    for one in tables:
         write_csv(one, directory)
-    page = "\n".join(_page(records, table, found, directory))
+    page = "\n".join(_page(found, tables[:-1], directory))
     (directory / "index.html").write_text(page + "\n", encoding="utf-8")
     return note
 
 
-def _page(records: Sequence[Record], table: Sequence[Row], found: Sequence[Table], directory: Path) -> Iterator[str]:
+def remove_outdated(directory: Path, written: Path) -> None:
+    """Remove figures of an earlier study from its directory that the study written anew does not have."""
+    for name in (f"{picture.stem}.{suffix}" for picture in PICTURES for suffix in ("svg", "png")):
+        if not (written / name).exists():
+            (directory / name).unlink(missing_ok=True)
+
+
+def _page(found: Results, tables: Sequence[Table], directory: Path) -> Iterator[str]:
     yield '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">'
     yield '<meta name="viewport" content="width=device-width, initial-scale=1">'
     yield f"<title>The finite sphere</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<main>"
-    yield "<h1>Is the half-space good enough for my sphere?</h1>"
-    yield from _answer(table)
+    yield f"<h1>Is the half-space good enough for my sphere?</h1>\n<p><strong>{headline(found.study)}.</strong></p>"
+    yield from _answer(found.rows)
     chart, *others = PICTURES
-    yield from _figure(chart, directory)
-    yield from html(found[0])
+    yield from _figure(chart, found, directory)
+    rules, *rest = tables
+    yield from html(rules)
     yield from _causes()
     for picture in others:
-        yield from _figure(picture, directory)
-    for one in found[1:]:
+        yield from _figure(picture, found, directory)
+    for one in rest:
         yield from html(one)
-    yield from _foot(records)
+    yield from _foot(found.study.records)
     yield "</main>\n</body>\n</html>"
 
 
@@ -86,14 +97,14 @@ def _answer(table: Sequence[Row]) -> Iterator[str]:
     if poisson is None:
         yield "<p>No elastic sphere was solved.</p>"
         return
-    yield f"<p>It is, for errors below {100 * LEVEL:g} % at Poisson's ratio {poisson:g}, in</p><ul>"
+    yield f"<p>By the points solved at Poisson's ratio {poisson:g} it errs by less than {100 * LEVEL:g} % in</p><ul>"
     for quantity, name in QUANTITIES.items():
         yield f"<li>the <strong>{name}</strong> {typeset(_when(field_of(table, quantity, poisson)))};</li>"
     yield "</ul>"
     yield typeset(
         "Here mu is the Tabor parameter, mu^3 = R dgamma^2/(E*^2 eps^3), R the radius of the sphere, eps the spacing "
         "of the surface law; the half-space's profile is a paraboloid. The sphere is elastic, its mid-plane slides in "
-        "its grip, the wall is rigid and the strains are small. Beyond the range given, see the chart."
+        "its grip, the wall is rigid and the strains are small. Nothing is said of points beyond the range given."
     ).join(("<p>", "</p>"))
 
 
@@ -114,7 +125,7 @@ def _from(field: Field) -> str:
         return "nowhere that is known: the study has no point of it"
     least = safe_from(field, LEVEL)
     if np.isnan(least):
-        return f"at no R/eps up to {field.radius_ratio[-1]:g}"
+        return f"at no R/eps up to {field.radius_ratio[-1]:g} for all mu from {known[0]:g} to {known[-1]:g}"
     return f"if R/eps is {least:g} or more (points solved, mu from {known[0]:g} to {known[-1]:g})"
 
 
@@ -124,13 +135,18 @@ def _causes() -> Iterator[str]:
     yield "</ul></section>"
 
 
-def _figure(picture: Picture, directory: Path) -> Iterator[str]:
+def _figure(picture: Picture, found: Results, directory: Path) -> Iterator[str]:
     """A figure with its caption; the image is part of the page, which can be sent alone."""
+    title = typeset(picture.title)
+    if lack := picture.lacks(found):
+        yield f'<section id="{picture.stem}"><h2>{title}</h2><p>Not drawn: {typeset(lack)}.</p></section>'
+        return
     image = base64.b64encode((directory / f"{picture.stem}.svg").read_bytes()).decode()
     files = " ".join(f'<a href="{picture.stem}.{suffix}">{suffix.upper()}</a>' for suffix in ("svg", "png"))
-    yield f'<figure id="{picture.stem}"><h2>{typeset(picture.title)}</h2>'
-    yield f'<img alt="{typeset(f"{picture.title}. {picture.see}")}" src="data:image/svg+xml;base64,{image}">'
-    yield f"<figcaption>{typeset(picture.see)} {files}</figcaption></figure>"
+    see = typeset(caption(picture.stem, found))
+    yield f'<figure id="{picture.stem}"><h2>{title}</h2>'
+    yield f'<img alt="{title}. {see}" src="data:image/svg+xml;base64,{image}">'
+    yield f"<figcaption>{see} {files}</figcaption></figure>"
 
 
 def _foot(records: Sequence[Record]) -> Iterator[str]:

@@ -15,7 +15,7 @@ from halfspace.curve import Estimate
 NUMBERS = ("value", "baseline", "half_space", "deviation")  # each followed by its error
 FIELDS = tuple(field.name for field in fields(Row))
 COLUMNS = tuple(n for name in FIELDS for n in ((name, f"{name}_error") if name in NUMBERS else (name,)))
-TEXTS = ("cause", "quantity", "unit", "status", "reason")
+TEXTS = ("cause", "quantity", "unit", "status", "reason", "kind")
 NO_PARQUET = "no Parquet file is written, which needs the extra parquet; pip install fem-adhesion[parquet]"
 
 

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import csv
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from fem_adhesion.output.finite_sphere_plots import PICTURES
 from fem_adhesion.output.report_figures import figure
 from fem_adhesion.output.report_parts import Section, Table, read_table, symbols
 from halfspace.errors import InputError
 
-CHARTS = {picture.stem: f"{picture.title}. {picture.see}" for picture in PICTURES}
 
 
 @dataclass(frozen=True)
@@ -77,8 +75,9 @@ SOURCES = (
         "finite-sphere",
         "Is the half-space good enough for my sphere?",
         "An elastic sphere of finite radius R beside the half-space with a parabolic profile.",
-        tuple((stem, CHARTS[stem]) for stem in ("chart", "causes")),
+        (("chart", ""), ("causes", "")),
         (("rules", "Rules of thumb"), ("theories", "Beside the theories of the rigid and of the soft sphere")),
+        captions="captions",
     ),
 )
 
@@ -101,6 +100,7 @@ def section_of(source: Source, directory: Path | None) -> Section:
             symbols(captions[stem]),
         )
         for stem, _ in source.figures
+        if captions[stem]  # those without were not drawn
     )
     tables = {stem: read_table(_require(directory / f"{stem}.csv", source), title) for stem, title in source.tables}
     counted = (_outcomes(tables[source.counted]),) if source.counted else ()

@@ -8,84 +8,29 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import Literal, cast
 
 import halfspace
 from fem_adhesion import Scene, trace
 from fem_adhesion.finite_strain_scene import find_jumps
 from fem_adhesion.finite_strain_traction import ConventionName
+from fem_adhesion.scene import GripName, ProfileName, TractionName
+from fem_adhesion.sized import Discretisation, sized_body
+from fem_adhesion.studies.finite_sphere_records import CRITICAL, Case, InputName, Record, Values
+from fem_adhesion.studies.fold_birth import FIRST, Birth, NoBirth, born, tabor_of
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.devices import cycle
 from halfspace.errors import InputError, NotConverged
 from halfspace.events import Event
+from halfspace.limits import SMALLEST_SPHERE
+from halfspace.newton import Traceable
 
 FINITE_STRAIN_RTOL = 1e-4  # the tightest: a finer one is dear, and the effect is of the order of beta/R
 TO_LOAD = 0.5  # R dgamma: past every event, and little, since a sphere is no wider than it is
-
-Status = Literal["solved", "refused", "died"]
-ProfileName = Literal["paraboloid", "sphere"]
-GripName = Literal["sliding", "bonded"]
-TractionName = Literal["projected", "surface"]
-Values = Mapping[str, Estimate]
-
-
-@dataclass(frozen=True)
-class Case:
-    """One contact under one set of assumptions; an input on which they do not depend is None.
-
-    Attributes
-    ----------
-    model : str
-        The assumptions, a key of `MODELS`.
-    tabor : float
-        Tabor parameter.
-    radius_ratio : float or None
-        R/eps.
-    poisson : float or None
-        Poisson's ratio.
-    rtol : float
-        Relative accuracy asked of the solver.
-    """
-
-    model: str
-    tabor: float
-    radius_ratio: float | None = None
-    poisson: float | None = None
-    rtol: float = 1e-5
-
-    @property
-    def name(self) -> str:
-        """For the eye."""
-        parts = (("tabor", self.tabor), ("R/eps", self.radius_ratio), ("poisson", self.poisson))
-        return ", ".join([self.model, *(f"{word} {value:g}" for word, value in parts if value is not None)])
-
-
-@dataclass(frozen=True)
-class Record:
-    """How a case ended.
-
-    Attributes
-    ----------
-    case : Case
-        What was asked.
-    status : str
-        ``solved``; ``refused`` by the solver; ``died`` with the process that worked on it.
-    values : mapping of str to Estimate
-        Quantities in the units of `QUANTITIES`, with the estimated bounds of their errors; those that the contact does
-        not have, as the jumps of a hard one, are absent.
-    reason : str
-        Why it is not solved, or empty.
-    seconds : float
-        Wall time.
-    """
-
-    case: Case
-    status: Status
-    values: Values = field(default_factory=dict)
-    reason: str = ""
-    seconds: float = 0.0
+FEWEST, MOST = 0.4, 1.25  # Tabor parameters between which the first jump of every sphere is, small or bonded
+LARGEST = 1 - 1e-9  # of the Tabor parameter up to which a sphere is large enough: not beyond it by rounding
+DEGREES = (5, 6)  # of the elements on which it is solved for
 
 
 @dataclass(frozen=True)
@@ -97,14 +42,14 @@ class Model:
     solve : callable
         Computes the quantities of a case; raises InputError or NotConverged where there are none.
     inputs : tuple of str
-        Those of ``radius_ratio`` and ``poisson`` on which it depends.
-    grip : str, optional
+        Those on which it depends.
+    grip : {"sliding", "bonded"}, optional
         What holds the body; none for the half-space.
     """
 
     solve: Callable[[Case], Values]
-    inputs: tuple[str, ...] = ()
-    grip: str | None = None
+    inputs: tuple[InputName, ...]
+    grip: GripName | None = None
 
 
 @dataclass(frozen=True)
@@ -124,25 +69,16 @@ class Cause:
     meaning: str
 
 
-QUANTITIES = {
-    "pull_off_load": "R dgamma",
-    "jump_on_approach": "eps",
-    "jump_on_load": "R dgamma",
-    "jump_off_approach": "eps",
-    "jump_off_load": "R dgamma",
-    "hysteresis": "R dgamma eps",
-    "zero_load_radius": "beta",
-}
-"""Quantities and their units; hysteresis is the energy lost in a cycle under fixed grips."""
-
-
 def compute(case: Case) -> Record:
-    """Solve a case; one that cannot be solved is recorded with the solver's reason."""
+    """Solve a case; one that the solver refuses or does not solve is recorded with the kind of its error and reason.
+
+    Any other error is a defect of the program and ends the study.
+    """
     began = time.perf_counter()
     try:
         values = MODELS[case.model].solve(case)
     except (InputError, NotConverged) as error:
-        return Record(case, "refused", {}, str(error), time.perf_counter() - began)
+        return Record(case, "refused", {}, str(error), time.perf_counter() - began, type(error).__name__)
     return Record(case, "solved", values, "", time.perf_counter() - began)
 
 
@@ -169,58 +105,88 @@ def _jumps(events: Mapping[str, Event]) -> dict[str, Estimate]:
     return values
 
 
-def _half_space(case: Case) -> dict[str, Estimate]:
+def _half_space(case: Case) -> Values:
     """Reference: a paraboloid on a half-space."""
-    return quantities_of(halfspace.trace(case.tabor, rtol=case.rtol, to_load=TO_LOAD))
+    return quantities_of(halfspace.trace(case.given("tabor"), rtol=case.rtol, to_load=TO_LOAD))
 
 
-def _true_profile(case: Case) -> dict[str, Estimate]:
+def _true_profile(case: Case) -> Values:
     """A half-space under a sphere."""
-    ratio = case.radius_ratio
-    return quantities_of(halfspace.trace(case.tabor, rtol=case.rtol, to_load=TO_LOAD, radius_ratio=ratio))
+    ratio = case.given("radius_ratio")
+    return quantities_of(halfspace.trace(case.given("tabor"), rtol=case.rtol, to_load=TO_LOAD, radius_ratio=ratio))
 
 
-def _hemisphere(
+def hemisphere(
     case: Case, *, profile: ProfileName = "sphere", grip: GripName = "sliding", traction: TractionName = "projected"
-) -> dict[str, Estimate]:
-    """An elastic hemisphere, held at its mid-plane."""
-    assert case.poisson is not None
-    scene = Scene(
-        case.tabor,
-        poisson=case.poisson,
+) -> Scene:
+    """Elastic hemisphere of a case, held at its mid-plane."""
+    return Scene(
+        case.given("tabor"),
+        poisson=case.given("poisson"),
         body="hemisphere",
         profile=profile,
-        radius_ratio=case.radius_ratio,
+        radius_ratio=case.given("radius_ratio"),
         grip=grip,
         traction=traction,
     )
+
+
+def _elastic(
+    case: Case, *, profile: ProfileName = "sphere", grip: GripName = "sliding", traction: TractionName = "projected"
+) -> Values:
+    """A linear hemisphere."""
+    scene = hemisphere(case, profile=profile, grip=grip, traction=traction)
     return quantities_of(trace(scene, rtol=case.rtol, to_load=TO_LOAD))
 
 
-def _finite_strain(case: Case, convention: ConventionName) -> dict[str, Estimate]:
+def _finite_strain(case: Case, convention: ConventionName) -> Values:
     """A neo-Hookean hemisphere: pull-off and jumps only, to a tolerance of 1e-4 or more."""
-    assert case.poisson is not None
-    ratio = case.radius_ratio
-    scene = Scene(
-        case.tabor, poisson=case.poisson, body="hemisphere", profile="sphere", radius_ratio=ratio, strain="finite"
-    )
+    scene = replace(hemisphere(case), strain="finite")
     events = find_jumps(scene, max(case.rtol, FINITE_STRAIN_RTOL), convention=convention)
     pull_off = events["pull_off"]
     return {"pull_off_load": Estimate(pull_off.load, pull_off.load_error)} | _jumps(events)
 
 
-BOTH = ("radius_ratio", "poisson")
+def _first_jump(case: Case) -> Values:
+    """Tabor parameter from which on a hemisphere jumps under fixed grips; none if none that is large enough does."""
+    ratio = case.given("radius_ratio")
+    birth = Birth((FEWEST, min(MOST, LARGEST * ratio / SMALLEST_SPHERE)), FIRST.gaps, FIRST.falling)
 
-MODELS = {
-    "half_space": Model(_half_space),
-    "true_profile": Model(_true_profile, ("radius_ratio",)),
-    "finite_body": Model(partial(_hemisphere, profile="paraboloid"), BOTH, "sliding"),
-    "sphere": Model(_hemisphere, BOTH, "sliding"),
-    "bonded": Model(partial(_hemisphere, grip="bonded"), BOTH, "bonded"),
-    "surface_traction": Model(partial(_hemisphere, traction="surface"), BOTH, "sliding"),
-    "finite_strain": Model(partial(_finite_strain, convention="vertical"), BOTH, "sliding"),
-    "finite_strain_normal": Model(partial(_finite_strain, convention="normal"), BOTH, "sliding"),
-    "finite_strain_reference": Model(partial(_finite_strain, convention="reference"), BOTH, "sliding"),
+    def at(degree: int) -> float:
+        return born(birth, lambda mu: _centred(replace(case, tabor=mu), degree))
+
+    try:
+        coarse, fine = map(at, DEGREES)
+    except NoBirth:
+        return {}
+    return {CRITICAL: Estimate(fine, abs(fine - coarse))}
+
+
+def _centred(case: Case, degree: int) -> Traceable:
+    """Problem of a hemisphere, its elements fine on the axis."""
+    return sized_body(hemisphere(case), Discretisation(degree)).centred().problem
+
+
+def _first_jump_half_space(case: Case) -> Values:
+    """The same of the half-space under a paraboloid."""
+    coarse, fine = (tabor_of(FIRST, rtol=rtol) for rtol in (case.rtol, case.rtol / 100))
+    return {CRITICAL: Estimate(fine, abs(fine - coarse))}
+
+
+SPHERE: tuple[InputName, ...] = ("tabor", "radius_ratio", "poisson")
+
+MODELS: Mapping[str, Model] = {
+    "half_space": Model(_half_space, ("tabor",)),
+    "true_profile": Model(_true_profile, ("tabor", "radius_ratio")),
+    "finite_body": Model(partial(_elastic, profile="paraboloid"), SPHERE, "sliding"),
+    "sphere": Model(_elastic, SPHERE, "sliding"),
+    "bonded": Model(partial(_elastic, grip="bonded"), SPHERE, "bonded"),
+    "surface_traction": Model(partial(_elastic, traction="surface"), SPHERE, "sliding"),
+    "finite_strain": Model(partial(_finite_strain, convention="vertical"), SPHERE, "sliding"),
+    "finite_strain_normal": Model(partial(_finite_strain, convention="normal"), SPHERE, "sliding"),
+    "finite_strain_reference": Model(partial(_finite_strain, convention="reference"), SPHERE, "sliding"),
+    "first_jump": Model(_first_jump, ("radius_ratio", "poisson"), "sliding"),
+    "first_jump_half_space": Model(_first_jump_half_space, ()),
 }
 
 CAUSES = {
@@ -235,23 +201,8 @@ CAUSES = {
 }
 
 
-def case_of(model: str, tabor: float, radius_ratio: float | None, poisson: float | None, rtol: float) -> Case:
+def case_of(model: str, tabor: float | None, radius_ratio: float | None, poisson: float | None, rtol: float) -> Case:
     """Case of a model at a point, without the inputs on which it does not depend."""
+    given: Mapping[InputName, float | None] = {"tabor": tabor, "radius_ratio": radius_ratio, "poisson": poisson}
     needed = MODELS[model].inputs
-    ratio = radius_ratio if "radius_ratio" in needed else None
-    return Case(model, tabor, ratio, poisson if "poisson" in needed else None, rtol)
-
-
-def to_plain(record: Record) -> dict[str, object]:
-    """Contents of a record but for its case, as JSON can hold them."""
-    return {key: value for key, value in asdict(record).items() if key != "case"}
-
-
-def from_plain(case: Case, plain: Mapping[str, object]) -> Record:
-    """Record of a case from what `to_plain` made, or InputError if that is not what it is."""
-    try:
-        values = {name: Estimate(**pair) for name, pair in cast(dict[str, dict[str, float]], plain["values"]).items()}
-        status, reason = cast(Status, plain["status"]), str(plain["reason"])
-        return Record(case, status, values, reason, float(cast(float, plain["seconds"])))
-    except (KeyError, TypeError, AttributeError) as error:
-        raise InputError(f"{plain} is no record of a case; compute it again") from error
+    return Case(model, **{name: value for name, value in given.items() if name in needed}, rtol=rtol)

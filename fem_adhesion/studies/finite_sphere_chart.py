@@ -33,16 +33,23 @@ class Field:
         Tabor parameters, ascending.
     radius_ratio : (n,) array
         R/eps, ascending.
-    deviation : (m, n) array
-        Of the sphere from the half-space, relative to it; nan where there is none.
-    refused : (m, n) bool array
-        Where a contact on the sphere was not solved.
+    deviation, error : (m, n) array
+        Of the sphere from the half-space, relative to it, and its bound; nan where there is none.
+    ending : (m, n) array of str
+        How each contact on the sphere ended: ``solved``, ``absent`` if it does not have the quantity, ``died``, the
+        kind of error that refused it, ``left out``, or empty where none was asked for.
     """
 
     tabor: Array
     radius_ratio: Array
     deviation: Array
-    refused: NDArray[np.bool_]
+    error: Array
+    ending: NDArray[np.str_]
+
+    @property
+    def largest(self) -> Array:
+        """Largest size, (m, n), that the deviation can have; nan where there is none."""
+        return np.asarray(np.abs(self.deviation) + self.error)
 
 
 @dataclass(frozen=True)
@@ -54,7 +61,7 @@ class Rule:
     level : float
         Relative deviation.
     constant, slope : float
-        Fitted to the contour.
+        Fitted to the contour, to two digits.
     misfit : float
         Largest relative difference between the contour and the rule.
     tabor : tuple of float
@@ -81,13 +88,14 @@ def field_of(rows: Sequence[Row], quantity: str, poisson: float | None, cause: s
     chosen = [r for r in rows if (r.cause, r.quantity, r.poisson) == (cause, quantity, poisson) and r.radius_ratio]
     tabor = np.unique([row.tabor for row in chosen])
     ratio = np.unique([float(row.radius_ratio or 0) for row in chosen])
-    deviation = np.full((tabor.size, ratio.size), np.nan)
-    refused = np.zeros(deviation.shape, bool)
+    deviation, error = np.full((2, tabor.size, ratio.size), np.nan)
+    ending = np.full(deviation.shape, "", dtype="<U40")
     for row in chosen:
         at = np.searchsorted(tabor, row.tabor), np.searchsorted(ratio, float(row.radius_ratio or 0))
-        deviation[at] = row.deviation.value if row.deviation else np.nan
-        refused[at] = row.status in ("refused", "died")
-    return Field(tabor, ratio, deviation, refused)
+        ending[at] = row.kind if row.status == "refused" else row.status
+        if row.deviation and np.isfinite([row.deviation.value, row.deviation.error]).all():
+            deviation[at], error[at] = row.deviation.value, row.deviation.error
+    return Field(tabor, ratio, deviation, error, ending)
 
 
 def contour(field: Field, level: float) -> Array:
@@ -120,19 +128,16 @@ def _last_crossing(ratio: Array, deviation: Array, level: float) -> float:
     return float(np.exp(x[i] + (x[i + 1] - x[i]) * (goal - a) / (b - a)))
 
 
-def refused_below(field: Field) -> Array:
-    """R/eps, (m,), up to which no contact was solved, midway to the next point; nan where all were."""
-    limits = np.append(field.radius_ratio, np.nan)
-    last = np.array([np.flatnonzero(row)[-1] if row.any() else -1 for row in field.refused])
-    return np.where(last >= 0, np.sqrt(limits[last] * limits[last + 1]), np.nan)
-
-
 def safe_from(field: Field, level: float) -> float:
-    """Least R/eps of the points from which on all deviations are below a level; nan if the last are not."""
-    size = np.nan_to_num(np.abs(field.deviation)).max(axis=0, initial=0.0)
+    """Least R/eps of the points from which on all deviations are known to be below a level; nan if the last are not.
+
+    Tabor parameters without any deviation, as those without jumps, do not count.
+    """
+    known = np.isfinite(field.deviation)
+    size = np.where(known, field.largest, np.inf)[known.any(axis=1)].max(axis=0, initial=0.0)
     above = np.flatnonzero(size >= level)
     first = above[-1] + 1 if above.size else 0
-    return float(field.radius_ratio[first]) if first < field.radius_ratio.size else np.nan
+    return float(field.radius_ratio[first]) if known.any() and first < field.radius_ratio.size else np.nan
 
 
 def rule(field: Field, level: float) -> Rule:
@@ -151,11 +156,30 @@ def rule(field: Field, level: float) -> Rule:
             "take more of tabor or radius_ratio"
         )
     mu, ratio = field.tabor[known], ratio[known]
-    a, b = np.linalg.lstsq(np.column_stack([1 / ratio, mu / ratio]), np.ones_like(mu), rcond=None)[0]
-    fitted = (a + b * mu) / ratio
-    misfit = float(np.abs(fitted - 1).max())
+    fitted = np.linalg.lstsq(np.column_stack([1 / ratio, mu / ratio]), np.ones_like(mu), rcond=None)[0]
+    a, b = (float(f"{value:.2g}") for value in fitted)
+    misfit = float(np.abs((a + b * mu) / ratio - 1).max())
     if misfit > MISFIT:
         raise InputError(
             f"the contour of {level:g} is {100 * misfit:.0f} % off a line, limit {100 * MISFIT:.0f} %; read the chart"
         )
-    return Rule(level, float(a), float(b), misfit, (float(mu[0]), float(mu[-1])))
+    found = Rule(level, a, b, misfit, (float(mu[0]), float(mu[-1])))
+    _require_true(field, found)
+    return found
+
+
+def _require_true(field: Field, found: Rule) -> None:
+    """Refuse a rule that a point of its range contradicts: above the line, and the deviation is not below the level."""
+    rho, mu = field.radius_ratio, field.tabor[:, None]
+    line = found.constant + found.slope * mu
+    within = (mu >= found.tabor[0]) & (mu <= found.tabor[1])
+    above = rho > line * (1 + found.misfit)
+    known = np.isfinite(field.deviation)
+    last = known & (known[:, ::-1].cumsum(axis=1)[:, ::-1] == 1)  # beyond which nothing is known
+    wrong = within & (above | last) & (field.largest >= found.level)
+    if wrong.any():
+        i, j = np.argwhere(wrong)[0]
+        raise InputError(
+            f"the deviation at tabor {field.tabor[i]:g}, R/eps {rho[j]:g} is {field.deviation[i, j]:.2g}, "
+            f"limit {found.level:g} for a rule; read the chart"
+        )

@@ -47,6 +47,11 @@ class Samples:
         """beta/R = sqrt(mu/rho)."""
         return np.asarray(np.sqrt(self.tabor / self.radius_ratio))
 
+    @property
+    def significant(self) -> Samples:
+        """Those that exceed their errors."""
+        return self.where(np.abs(self.deviation) > self.error)
+
     def where(self, chosen: NDArray[np.bool_]) -> Samples:
         """Those chosen."""
         return Samples(self.tabor[chosen], self.radius_ratio[chosen], self.deviation[chosen], self.error[chosen])
@@ -170,13 +175,14 @@ def _compared(theory: str, expected: float, data: Samples, tabor: float, leading
 
 
 def samples(rows: Iterable[Row], cause: str, quantity: str, poisson: float | None) -> Samples:
-    """Deviations of a quantity for a cause, of the rows that have one."""
+    """Deviations of a quantity for a cause, of the rows that have one, and a finite one."""
     chosen = [
         (row.tabor, row.radius_ratio, row.deviation.value, row.deviation.error)
         for row in rows
         if (row.cause, row.quantity, row.poisson) == (cause, quantity, poisson) and row.deviation and row.radius_ratio
     ]
-    return Samples(*np.array(chosen, float).reshape(-1, 4).T)
+    numbers = np.array(chosen, float).reshape(-1, 4)
+    return Samples(*numbers[np.isfinite(numbers).all(axis=1)].T)
 
 
 def fit(data: Samples, terms: Mapping[str, Term] = TERMS, *, tolerance: float = TOLERANCE) -> Fit:

@@ -4,18 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import cast
 
-from fem_adhesion.studies.finite_sphere_cases import (
-    CAUSES,
-    MODELS,
-    QUANTITIES,
-    Case,
-    GripName,
-    Record,
-    Values,
-    case_of,
-)
+from fem_adhesion.scene import GripName
+from fem_adhesion.studies.finite_sphere_cases import CAUSES, MODELS, case_of
+from fem_adhesion.studies.finite_sphere_records import CRITICAL, QUANTITIES, Case, Record, Study, Values
 from halfspace.curve import Estimate
 
 BulkCompliance = Callable[[GripName, float, float], Estimate]
@@ -34,7 +26,7 @@ class Row:
     Attributes
     ----------
     tabor, radius_ratio, poisson : float or None
-        Inputs; None for one on which the case does not depend.
+        Inputs; None for one on which the case does not depend, as it always does on the first.
     cause : str
         Key of `fem_adhesion.studies.finite_sphere_cases.CAUSES`.
     quantity, unit : str
@@ -44,11 +36,14 @@ class Row:
     deviation : Estimate or None
         (value - baseline)/half_space, its error bounded by those of all three.
     status : str
-        ``solved``; ``absent`` where one of the three contacts does not have the quantity; else what ended the case.
+        ``solved``; ``absent`` where one of the three contacts does not have the quantity; else what ended the case, as
+        in `Record`.
     reason : str
         Why there is no deviation, or empty.
     seconds : float
         Wall time of the case.
+    kind : str
+        Of the error that ended the case, as in `Record`.
     """
 
     tabor: float
@@ -64,6 +59,7 @@ class Row:
     status: str
     reason: str
     seconds: float
+    kind: str = ""
 
 
 def rows(records: Sequence[Record], bulk: BulkCompliance | None = None) -> tuple[Row, ...]:
@@ -96,8 +92,9 @@ def _rows_of(
     for name in quantities:
         value, baseline, scale = three = [table.get(name) for table in tables]
         deviation = relative(value, baseline, scale) if value and baseline and scale else None
-        head = (case.tabor, case.radius_ratio, case.poisson, cause, name, UNITS[name])
-        yield Row(*head, value, baseline, scale, deviation, *_ending(record, others, three), record.seconds)
+        head = (case.given("tabor"), case.radius_ratio, case.poisson, cause, name, UNITS[name])
+        ending = (*_ending(record, others, three), record.seconds, record.kind)
+        yield Row(*head, value, baseline, scale, deviation, *ending)
 
 
 def _partner(case: Case, model: str, found: Mapping[Case, Record]) -> Record | None:
@@ -123,11 +120,12 @@ def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
 def _yielding(case: Case, bulk: BulkCompliance) -> Estimate:
     """Approach per load, kappa mu/(R/beta), of a body that is held; none of the half-space."""
     grip = MODELS[case.model].grip
-    if not (grip and case.radius_ratio and case.poisson is not None):
+    if grip is None:
         return Estimate(0.0, 0.0)
-    R = (case.radius_ratio / case.tabor) ** 0.5
-    kappa = bulk(cast(GripName, grip), case.poisson, R)
-    return Estimate(kappa.value * case.tabor / R, kappa.error * case.tabor / R)
+    tabor = case.given("tabor")
+    R = (case.given("radius_ratio") / tabor) ** 0.5
+    kappa = bulk(grip, case.given("poisson"), R)
+    return Estimate(kappa.value * tabor / R, kappa.error * tabor / R)
 
 
 def _less(approach: Estimate, compliance: Estimate, load: Estimate) -> Estimate:
@@ -152,3 +150,65 @@ def _ending(record: Record, others: Sequence[Record | None], three: Sequence[Est
         if number is None:
             return "absent", f"the {role} has none: it does not jump, or was solved for pull-off and jumps alone"
     return "solved", ""
+
+
+@dataclass(frozen=True)
+class Border:
+    """Tabor parameter from which on a contact jumps under fixed grips.
+
+    Attributes
+    ----------
+    radius_ratio, poisson : float or None
+        Of the sphere; None for the half-space.
+    tabor : Estimate or None
+        Where it begins to jump, or None if it does not as far as it is large enough, or was not solved.
+    reason : str
+        Why there is none, or empty.
+    """
+
+    radius_ratio: float | None
+    poisson: float | None
+    tabor: Estimate | None
+    reason: str
+
+
+def borders(records: Sequence[Record]) -> tuple[Border, ...]:
+    """Where the jumps begin: on the half-space, then on spheres of growing size."""
+    models = ("first_jump_half_space", "first_jump")
+    chosen = sorted((r for r in records if r.case.model in models), key=_size)
+    return tuple(_border(record) for record in chosen)
+
+
+def _size(record: Record) -> tuple[float, float]:
+    case = record.case
+    return (case.poisson or 0.0, case.radius_ratio or 0.0)
+
+
+def _border(record: Record) -> Border:
+    found = record.values.get(CRITICAL)
+    reason = record.reason or ("" if found else "it does not jump at any Tabor parameter for which it is large enough")
+    return Border(record.case.radius_ratio, record.case.poisson, found, reason)
+
+
+@dataclass(frozen=True)
+class Results:
+    """All that figures and page are made of.
+
+    Attributes
+    ----------
+    study : Study
+        What was computed.
+    rows : sequence of Row
+        Its table.
+    borders : sequence of Border
+        Where the jumps begin.
+    """
+
+    study: Study
+    rows: Sequence[Row]
+    borders: Sequence[Border]
+
+
+def results(study: Study, bulk: BulkCompliance | None = None) -> Results:
+    """Set the records of a study beside each other; `bulk` as of `rows`."""
+    return Results(study, rows(study.records, bulk), borders(study.records))

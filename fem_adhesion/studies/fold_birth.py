@@ -6,7 +6,9 @@ magnitude of its slope reaches zero, so slope and curvature vanish together.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -16,8 +18,13 @@ from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.compliance import Array
 from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.curve import EquilibriumPath, metric_for
+from halfspace.errors import NotConverged
 from halfspace.newton import Traceable
 from halfspace.path import Point, make_point
+
+
+class NoBirth(NotConverged):
+    """No pair of folds is born where it was looked for."""
 
 
 @dataclass(frozen=True)
@@ -46,12 +53,37 @@ SECOND = Birth((3.8, 4.1), (0.3, 0.6), falling=False)
 
 def tabor_of(birth: Birth, *, rtol: float = 1e-7) -> float:
     """Tabor parameter at which the pair is born, on the half-space discretised for `rtol`."""
-    return float(brentq(lambda tabor: _least_slope(birth, tabor, rtol), *birth.tabors, xtol=1e-11))
+    return born(birth, lambda tabor: half_space_charts(tabor, resolution_for(tabor, rtol))[0].problem)
 
 
-def _least_slope(birth: Birth, tabor: float, rtol: float) -> float:
+def born(birth: Birth, problem_at: Callable[[float], Traceable]) -> float:
+    """Tabor parameter at which the pair is born on any body.
+
+    Parameters
+    ----------
+    birth : Birth
+        Where to look.
+    problem_at : callable
+        The contact problem at a Tabor parameter, on a grid fine on the axis.
+
+    Raises
+    ------
+    NoBirth
+        If the pair is not born between the Tabor parameters of `birth`.
+    """
+
+    @cache
+    def least_slope(tabor: float) -> float:
+        return _least_slope(birth, problem_at(tabor))
+
+    lower, upper = birth.tabors
+    if least_slope(lower) * least_slope(upper) > 0:
+        raise NoBirth(f"no folds are born between tabor = {lower:g} and {upper:g}; look elsewhere")
+    return float(brentq(least_slope, lower, upper, xtol=1e-11))
+
+
+def _least_slope(birth: Birth, problem: Traceable) -> float:
     """Least slope of the approach over the gap, positive before the birth and negative after it."""
-    problem = half_space_charts(tabor, resolution_for(tabor, rtol))[0].problem
     x = approached(problem, birth.gaps[1])
     sign = -1 if birth.falling else 1
 

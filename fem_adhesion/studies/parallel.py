@@ -18,7 +18,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from types import ModuleType
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 from urllib.parse import urlsplit
 
 import joblib
@@ -30,7 +30,7 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 ATTEMPTS = 3  # at an item whose worker dies
-CONNECTION_SECONDS = 5
+CONNECTION_SECONDS = 30  # a scheduler that is busy answers late; one that is not there is known at once
 WATCH_SECONDS = 1  # between two looks of a local worker at whether its study is still alive
 
 
@@ -107,24 +107,28 @@ def _alone(work: Callable[[Item], Result], item: Item) -> Result | Died:
     for _ in range(ATTEMPTS - 1):
         try:
             with _stopped_early(_pool(work, [(0, item)], 2)) as results:  # joblib starts no process for a pool of one
-                _, result = next(results)
-                return cast(Result, result)
+                return next(results)[1]
         except TerminatedWorkerError as error:
             last = error
     return Died(f"its worker died {ATTEMPTS} times: {_one_line(last)}")
 
 
-def _pool(work: Callable[[Item], Result], numbered: Iterable[tuple[int, Item]], jobs: int) -> Any:
+def _pool(
+    work: Callable[[Item], Result], numbered: Iterable[tuple[int, Item]], jobs: int
+) -> Generator[tuple[int, Result], None, None]:
     """Generator of the results with their numbers, as they come."""
     # Each process keeps to one thread of BLAS: the cores are taken by the others.
     settings: dict[str, Any] = {"backend": "loky", "inner_max_num_threads": 1} if jobs > 1 else {}
     with joblib.parallel_config(**settings):
         pool = joblib.Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
-    return pool(joblib.delayed(_numbered)(work, number, item, os.getpid()) for number, item in numbered)
+    results: Generator[tuple[int, Result], None, None] = pool(
+        joblib.delayed(_numbered)(work, number, item, os.getpid()) for number, item in numbered
+    )
+    return results
 
 
 @contextmanager
-def _stopped_early(results: Any) -> Iterator[Any]:
+def _stopped_early(results: Generator[Result, None, None]) -> Iterator[Generator[Result, None, None]]:
     """Close a generator of results at the end, without joblib's warning that what was under way is lost."""
     try:
         yield results

@@ -1,7 +1,8 @@
 """Results of a study on disk, one file a case, each written at once and whole: whatever happens, they are there.
 
-A file is named after a hash of the case's inputs, the version of the package and the number of the format, so that a
-result is used again only for exactly what it was computed from. Nothing but such files is ever read or replaced.
+A file is named after a hash of the case's inputs. It holds besides them the number of the format, a digest of the code
+that computed the result, and a checksum, so that a result is used again only for exactly what it was computed from and
+as it was computed. Nothing but such files is ever read or replaced.
 """
 
 from __future__ import annotations
@@ -9,16 +10,17 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from fem_adhesion.writing import writing
 from halfspace.errors import InputError
 
-SCHEMA = 1  # raised whenever what is stored changes
+SCHEMA = 2  # raised whenever what is stored changes
 FOLDER = "cases"
+OTHER_CODE, OTHER_FORMAT = "other code", "another format"
 
 Plain = Mapping[str, object]  # what JSON can hold
 
@@ -31,20 +33,28 @@ class Store:
     ----------
     directory : Path
         The study's; the files are in its folder ``cases``. Made when the first result comes.
-    version : str
-        Of the package.
-    notes : list of str
-        What was found unreadable and is to be computed again.
+    code : str
+        Digest of the code that computes the results, see `fem_adhesion.studies.code_digest`.
+    outdated : Counter of str
+        How many results were found that something else computed, by what: they are to be computed again.
+    damaged : dict of str to str
+        Files whose contents cannot be trusted, and why: their cases are to be computed again.
     """
 
     directory: Path
-    version: str
-    notes: list[str] = field(default_factory=list)
+    code: str
+    outdated: Counter[str] = field(default_factory=Counter)
+    damaged: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def notes(self) -> Sequence[str]:
+        """What was found and not used, in lines."""
+        outdated = (f"{_cases(count)} computed by {what}: computed again" for what, count in self.outdated.items())
+        return (*outdated, *(f"{file} is computed again: {why}" for file, why in self.damaged.items()))
 
     def path(self, inputs: Plain) -> Path:
         """File of a case."""
-        text = json.dumps(self._heading(inputs), sort_keys=True, allow_nan=False)
-        return self.directory / FOLDER / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.json"
+        return self.directory / FOLDER / f"{_digest(inputs)[:32]}.json"
 
     def get(self, inputs: Plain) -> Plain | None:
         """Result of a case, or None if there is none that can be trusted; then a note says so."""
@@ -54,36 +64,56 @@ class Store:
         except FileNotFoundError:
             return None
         except (OSError, ValueError) as error:
-            self._ignore(path, str(error))
+            self.distrust(inputs, str(error))
             return None
-        result = found.pop("result", None) if isinstance(found, dict) else None
-        if isinstance(result, dict) and found == self._heading(inputs):
-            return result
-        self._ignore(path, "it does not hold the result of its case")
+        match found:
+            case {"schema": schema} if schema != SCHEMA:
+                self.outdated[OTHER_FORMAT] += 1
+            case {"inputs": dict(asked), "result": dict(result), "code": str(code), "checksum": str(checksum)}:
+                if asked != dict(inputs) or checksum != _digest([asked, code, result]):
+                    self.distrust(inputs, "it has been changed")
+                elif code != self.code:
+                    self.outdated[OTHER_CODE] += 1
+                else:
+                    return {str(key): value for key, value in result.items()}
+            case _:
+                self.distrust(inputs, "it does not hold the result of a case")
         return None
 
     def put(self, inputs: Plain, result: Plain) -> None:
         """Write the result of a case: after this call it is on disk; before, there is none, or the one of before."""
         path = self.path(inputs)
-        text = json.dumps({**self._heading(inputs), "result": result}, indent=1, allow_nan=False)
+        asked, stored = dict(inputs), dict(result)
+        checksum = _digest([asked, self.code, stored])
+        content = {"schema": SCHEMA, "code": self.code, "checksum": checksum, "inputs": asked, "result": stored}
+        text = json.dumps(content, indent=1, allow_nan=False)
         with writing(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             _write_through(path, text)
 
-    def _heading(self, inputs: Plain) -> dict[str, object]:
-        return {"schema": SCHEMA, "version": self.version, "inputs": dict(inputs)}
-
-    def _ignore(self, path: Path, why: str) -> None:
-        self.notes.append(f"{path} is computed again: {why}")
+    def distrust(self, inputs: Plain, why: str) -> None:
+        """Note that the file of a case is not used, and why."""
+        self.damaged[str(self.path(inputs))] = why
 
 
-def open_store(directory: Path, *, resume: bool = False, force: bool = False) -> Store:
+def _digest(content: object) -> str:
+    """Hash of what JSON can hold, the same whatever the order of its keys."""
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _cases(count: int) -> str:
+    return "1 case" if count == 1 else f"{count} cases"
+
+
+def open_store(directory: Path, code: str, *, resume: bool = False, force: bool = False) -> Store:
     """Store in a directory, which is checked but not yet touched.
 
     Parameters
     ----------
     directory : Path
         An existing one or a new one in a folder that exists.
+    code : str
+        Digest of the code that computes the results: those of other code are not used.
     resume : bool
         Go on with the cases that it holds.
     force : bool
@@ -103,15 +133,7 @@ def open_store(directory: Path, *, resume: bool = False, force: bool = False) ->
     if present and not force and not (resume and (directory / FOLDER).is_dir()):
         remedy = "it is no study to resume, choose another" if resume else "choose another or use --resume"
         raise InputError(f"{directory} holds {present} files, limit 0; {remedy} or --force")
-    return Store(directory, package_version())
-
-
-def package_version() -> str:
-    """Version of the installed package."""
-    try:
-        return version("fem-adhesion")
-    except PackageNotFoundError:  # run from its sources
-        return "unknown"
+    return Store(directory, code)
 
 
 def _write_through(path: Path, text: str) -> None:
