@@ -119,7 +119,7 @@ def test_a_full_disk_ends_each_study_in_one_line_and_leaves_nothing(command, tmp
     monkeypatch.setattr(greenwood1997, "compute", lambda **_: None)
     monkeypatch.setattr(hard_run, "run", lambda _: [])
     monkeypatch.setattr(hard_bodies, "locking", list)
-    monkeypatch.setattr(finite_sphere, "run", lambda *_, **__: [SimpleNamespace(status="solved")])
+    monkeypatch.setattr(finite_sphere, "run", lambda *_, **__: [SimpleNamespace(status="solved", failed=False)])
     assert cli.main([command, "--out", str(tmp_path / "out")]) == 1
     error = capsys.readouterr().err
     assert error.count("\n") == 1
@@ -135,7 +135,7 @@ def test_a_defect_that_is_an_oserror_is_not_taken_for_a_full_disk(tmp_path, monk
 
 
 def test_a_case_that_cannot_be_stored_leaves_the_others(tmp_path, monkeypatch):
-    store = open_store(tmp_path / "study")
+    store = open_store(tmp_path / "study", "code")
     store.put({"a": 1}, {"b": 2})
     monkeypatch.setattr(os, "fsync", _full)
     with pytest.raises(NotWritten, match=r"\.json cannot be written \(No space left on device\)"):

@@ -1,6 +1,7 @@
 """The finite sphere's page: its answer, chart and files, and the yield of the body that is taken out of the jumps."""
 
 import csv
+import math
 from math import log, pi
 
 import numpy as np
@@ -8,16 +9,20 @@ import pytest
 from legendre_sphere import sphere_operator
 
 from fem_adhesion.output import finite_sphere_chart, finite_sphere_plots, finite_sphere_report
+from fem_adhesion.output.finite_sphere_findings import QUANTITIES
+from fem_adhesion.output.finite_sphere_tables import write_tables
+from fem_adhesion.output.finite_sphere_words import caption
 from fem_adhesion.studies.bulk import FINE, bulk_compliance, coefficients, excess_compliance
 from fem_adhesion.studies.finite_sphere import plan
-from fem_adhesion.studies.finite_sphere_cases import Record
-from fem_adhesion.studies.finite_sphere_chart import Field, contour, refused_below, rule, safe_from
-from fem_adhesion.studies.finite_sphere_table import rows
+from fem_adhesion.studies.finite_sphere_cases import CAUSES, MODELS, case_of
+from fem_adhesion.studies.finite_sphere_chart import Field, contour, rule, safe_from
+from fem_adhesion.studies.finite_sphere_records import CRITICAL, Record, Study
+from fem_adhesion.studies.finite_sphere_table import borders, results, rows
 from fem_adhesion.studies.finite_sphere_terms import FIXED_GRIPS, leading_terms
 from halfspace.curve import Estimate
 
 TABORS, RATIOS = (0.3, 1.0, 3.0), (10.0, 100.0, 1e3, 1e4)
-TABLES = ("rules", "fits", "theories", "bulk", "failures")
+TABLES = ("rules", "first_jumps", "fits", "theories", "bulk", "failures", "figures")
 FIGURES = ("chart", "causes", "poisson", "bulk")
 
 
@@ -28,7 +33,10 @@ def law(mu, rho):
 def made(case):
     """Record of a case whose pull-off deviates from the half-space's by the law; the hardest sphere has no jump."""
     if case.tabor == 3.0 and case.radius_ratio == 10.0:
-        return Record(case, "refused", {}, "the sphere is as small as its contact; take a larger one", 0.1)
+        reason = "the contact is as wide as its sphere; take a larger one"
+        return Record(case, "refused", {}, reason, 0.1, "ContactTooWide")
+    if case.model.startswith("first_jump"):
+        return Record(case, "solved", {CRITICAL: Estimate(0.6 + 1 / (case.radius_ratio or 1e9), 1e-6)}, "", 0.1)
     deviation = law(case.tabor, case.radius_ratio) if case.radius_ratio else 0.0
     values = {"pull_off_load": Estimate(-5.0 * (1 + deviation), 1e-7)}
     if case.tabor > 0.5:
@@ -39,7 +47,7 @@ def made(case):
 
 @pytest.fixture(scope="module")
 def records():
-    return [made(case) for case in plan(TABORS, RATIOS, [0.0, 0.3, 0.45])]
+    return [made(case) for case in plan(TABORS, RATIOS, [0.0, 0.3, 0.45]).cases]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -55,9 +63,10 @@ def table(records):
     return rows(records, bulk_compliance)
 
 
-def field(deviation, refused=None, tabors=TABORS, ratios=RATIOS):
+def field(deviation, error=0.0, tabors=TABORS, ratios=RATIOS):
     deviation = np.asarray(deviation, float)
-    return Field(np.array(tabors), np.array(ratios), deviation, np.zeros_like(deviation, bool) | bool(refused))
+    ending = np.where(np.isfinite(deviation), "solved", "absent")
+    return Field(np.array(tabors), np.array(ratios), deviation, np.full_like(deviation, error), ending)
 
 
 # --- the page ---
@@ -68,7 +77,7 @@ def written(records, tmp_path_factory):
     """Directory of the study, and what was begun."""
     pytest.importorskip("pyarrow")
     directory, begun = tmp_path_factory.mktemp("study"), []
-    assert finite_sphere_report.write(records, directory, begun.append) == ""
+    assert finite_sphere_report.write(Study(records), directory, begun.append) == ""
     return directory, tuple(begun)
 
 
@@ -88,7 +97,10 @@ def test_the_page_answers_with_the_rule_and_all_files_are_there(written):
 def test_the_figures_hold_their_words_as_text(written):
     directory, _ = written
     for stem, words in (
-        ("chart", ("Tabor parameter", "toner", "no jump under fixed grips", "no solution: contact as wide")),
+        (
+            "chart",
+            ("Tabor parameter", "toner", "jumps begin, fixed grips", "no solution: contact as wide", "not solved ("),
+        ),
         ("causes", ("rigid sphere", "profile: sphere for paraboloid")),
         ("poisson", ("ratio", "pull-off force")),
         ("bulk", ("approach at jump-on", "bulk yield taken out")),
@@ -100,10 +112,13 @@ def test_the_figures_hold_their_words_as_text(written):
 
 
 def test_a_study_in_which_nothing_was_solved_says_so(tmp_path):
-    cases = plan([1.0], [10.0], [0.3])
-    finite_sphere_report.write([Record(case, "died", {}, "the worker died") for case in cases], tmp_path)
+    cases = plan([1.0], [10.0], [0.3]).cases
+    finite_sphere_report.write(Study([Record(case, "died", {}, "the worker died") for case in cases]), tmp_path)
     page = (tmp_path / "index.html").read_text()
+    assert f"<strong>{len(cases)} of {len(cases)} cases not solved ({len(cases)} died).</strong>" in page
     assert "pull-off force</strong> nowhere that is known" in page
+    assert page.count("Not drawn: ") == len(FIGURES)
+    assert not list(tmp_path.glob("*.svg"))
     with (tmp_path / "failures.csv").open(newline="") as file:
         assert [line["reason"] for line in csv.DictReader(file)] == ["the worker died"] * len(cases)
 
@@ -127,9 +142,14 @@ def test_a_contour_is_the_last_crossing_and_a_change_of_sign_is_no_power_law():
 
 def test_the_least_safe_ratio_is_the_first_after_the_last_point_above():
     found = field([[-0.3, 0.001, -0.002, -0.003], [0.3, 0.1, np.nan, -0.003], [np.nan] * 4])
-    assert safe_from(found, 0.01) == 1e3
-    assert safe_from(found, 0.5) == 10.0
+    assert safe_from(found, 0.01) == 1e4  # what is not known at 1e3 is not known to be safe
+    assert safe_from(found, 0.5) == 1e4
     assert np.isnan(safe_from(found, 0.003))
+    known = field([[-0.3, 0.001, -0.002, -0.003], [0.3, 0.1, 0.001, -0.003], [np.nan] * 4])
+    assert safe_from(known, 0.01) == 1e3
+    assert safe_from(known, 0.5) == 10.0
+    assert np.isnan(safe_from(field([[0.009] * 4] * 3, error=0.002), 0.01)), "within its error it may be above"
+    assert np.isnan(safe_from(field([[np.nan] * 4] * 3), 0.01))
 
 
 def test_a_rule_is_a_line_through_the_contour():
@@ -144,8 +164,32 @@ def test_a_rule_is_a_line_through_the_contour():
         rule(field(law(mu, rho) * np.array([[1], [5], [1]])), 0.01)
 
 
+def test_a_rule_that_a_point_contradicts_is_refused():
+    tabors = (0.3, 0.5, 1.0, 3.0)
+    mu, rho = np.array(tabors)[:, None], np.array(RATIOS)
+    good = law(mu, rho)
+    assert rule(field(good, tabors=tabors), 0.01).slope == 50
+    never = good.copy()
+    never[1] = -0.4  # never below the level, so that it has no contour
+    above = good.copy()
+    above[2, 3] = 0.02  # above its contour again
+    for wrong in (never, above):
+        with pytest.raises(ValueError, match=r"the deviation at tabor|off a line|passes \d Tabor"):
+            rule(field(wrong, tabors=tabors), 0.01)
+    with pytest.raises(ValueError, match=r"the deviation at tabor 0.5, R/eps 10 is -0.4, limit 0.01 for a rule"):
+        rule(field(np.where([[0], [1], [0], [0]], np.where(rho > 10, np.nan, -0.4), good), tabors=tabors), 0.01)
+
+
+def test_a_rule_is_right_as_it_is_printed():
+    """To two digits: what is rounded off is in its misfit."""
+    mu, rho = np.array(TABORS)[:, None], np.array(RATIOS)
+    found = rule(field(-(1.2345 + 0.56789 * mu) / rho), 0.01)
+    assert (found.constant, found.slope) == (120, 57)
+    assert 0.01 < found.misfit < 0.03
+
+
 def test_the_drawn_contour_is_that_of_the_deviations(table):
-    figure = finite_sphere_chart.chart(table, 0.3)
+    figure = finite_sphere_chart.chart(table, 0.3, ())
     pull_off, jump_on = figure.axes
     for level in (0.1, 0.01, 0.001):
         expected = (1 + np.array(TABORS) / 2) / level
@@ -164,9 +208,292 @@ def line_of(axes, label):
     return line.get_data()
 
 
-def test_the_refused_region_ends_midway_to_the_next_point(table):
-    found = finite_sphere_chart.field_of(table, "pull_off_load", 0.3)
-    assert refused_below(found) == pytest.approx([np.nan, np.nan, 10**1.5], nan_ok=True)
+def test_a_point_is_hatched_by_how_it_ended_and_no_other_is(records):
+    endings = {  # by Tabor parameter and R/eps
+        (0.3, 10.0): ("refused", "ContactTooWide", "no solution: contact as wide as the sphere"),
+        (1.0, 100.0): ("refused", "NotConverged", "not solved: NotConverged"),
+        (3.0, 1e3): ("left out", "InputError", r"not tried: $R < 1.5\,\beta$"),
+        (3.0, 10.0): ("died", "", "not solved: its process died"),
+    }
+    changed = [
+        Record(r.case, *endings[at][:1], {}, "why", 0.0, endings[at][1])
+        if (at := (r.case.tabor, r.case.radius_ratio)) in endings
+        else r
+        for r in records
+    ]
+    axes = finite_sphere_chart.chart(rows(changed), 0.3, ()).axes[0]
+    hatched = {}
+    for patch in axes.patches:
+        (x, y), width, height = patch.get_xy(), patch.get_width(), patch.get_height()
+        inside = [(mu, rho) for mu in TABORS for rho in RATIOS if x < mu < x + width and y < rho < y + height]
+        hatched[inside[0]] = (len(inside), patch.get_label(), patch.get_hatch())
+    assert {at: label for at, (_, label, _) in hatched.items()} == {at: ending[2] for at, ending in endings.items()}
+    assert {count for count, _, _ in hatched.values()} == {1}
+    assert len({hatch for _, _, hatch in hatched.values()}) == len(endings)
+    assert {tuple(point) for point in np.transpose(line_of(axes, "solved"))} == {
+        (mu, rho) for mu in TABORS for rho in RATIOS if (mu, rho) not in endings
+    }
+
+
+def test_the_border_of_the_jumps_is_drawn_where_it_was_solved_for(records):
+    axes = finite_sphere_chart.chart(rows(records), 0.3, borders(records)).axes[1]
+    tabor, ratio = line_of(axes, "jumps begin, fixed grips")
+    np.testing.assert_allclose(ratio, RATIOS)
+    np.testing.assert_allclose(tabor, 0.6 + 1 / np.array(RATIOS))
+
+
+# --- figures: what an axis says is what is drawn along it ---
+
+
+def labelled(axes):
+    return axes.get_xlabel(), axes.get_ylabel()
+
+
+def values_of(case):
+    """Every number of the study another, by model and point."""
+    model = list(MODELS).index(case.model) + 1
+    size = 1e-3 * model * (1 + (case.tabor or 0.0)) * (1 + (case.poisson or 0.0)) / np.sqrt(case.radius_ratio or 1.0)
+    names = ("pull_off_load", "jump_on_approach", "jump_on_load", "jump_off_approach", "jump_off_load")
+    names += ("hysteresis", "zero_load_radius")
+    scale = 1.0 if case.radius_ratio else 0.0
+    return {
+        name: Estimate(-(2 + n) * (1 - scale * size * (1 + 0.1 * n)), 1e-9 * (1 + n)) for n, name in enumerate(names)
+    }
+
+
+@pytest.fixture(scope="module")
+def distinct():
+    """Results whose values are all distinct."""
+    cases = [case for case in plan(TABORS, RATIOS, [0.0, 0.3]).cases if not case.model.startswith("first_jump")]
+    return results(Study([Record(case, "solved", values_of(case), "", 1.0) for case in cases]), bulk_compliance)
+
+
+def expected_deviation(cause, quantity, tabor, ratio, poisson):
+    model, baseline = MADE_OF[cause]
+    value, base, scale = (
+        values_of(case_of(name, tabor, ratio, poisson, 1e-5))[quantity].value
+        for name in (model, baseline, "half_space")
+    )
+    return (value - base) / scale
+
+
+MADE_OF = {
+    "profile": ("true_profile", "half_space"),
+    "body": ("finite_body", "half_space"),
+    "all": ("sphere", "half_space"),
+    "grip": ("bonded", "sphere"),
+    "traction": ("surface_traction", "sphere"),
+    "strain": ("finite_strain", "sphere"),
+    "direction": ("finite_strain_normal", "finite_strain"),
+    "area": ("finite_strain_reference", "finite_strain"),
+}
+
+
+def test_each_cause_compares_the_models_that_differ_by_it(distinct):
+    assert set(CAUSES) == set(MADE_OF)
+    seen = set()
+    for row in distinct.rows:
+        if row.quantity.endswith("_less_bulk"):
+            continue
+        at = row.tabor, row.radius_ratio, row.poisson
+        assert row.deviation.value == pytest.approx(expected_deviation(row.cause, row.quantity, *at), rel=1e-9)
+        assert row.value == values_of(case_of(CAUSES[row.cause].model, *at, 1e-5))[row.quantity]
+        seen.add(row.cause)
+    assert seen == set(MADE_OF)
+
+
+def test_the_csv_holds_each_number_with_its_error_under_its_name(distinct, tmp_path):
+    write_tables(distinct.rows, tmp_path)
+    with (tmp_path / "finite_sphere.csv").open(newline="") as file:
+        lines = list(csv.DictReader(file))
+    for row, line in zip(distinct.rows, lines, strict=True):
+        for name in ("value", "baseline", "half_space", "deviation"):
+            number = getattr(row, name)
+            assert (float(line[name]), float(line[f"{name}_error"])) == (number.value, number.error), name
+        assert (float(line["tabor"]), float(line["radius_ratio"])) == (row.tabor, row.radius_ratio)
+        assert line["poisson"] == ("" if row.poisson is None else str(row.poisson))
+        texts = ("cause", "quantity", "unit", "status", "reason", "kind")
+        assert [line[name] for name in texts] == [getattr(row, name) for name in texts]
+
+
+def drawn(results, stem):
+    (picture,) = (picture for picture in finite_sphere_plots.PICTURES if picture.stem == stem)
+    assert not picture.lacks(results)
+    return picture.draw(results).axes
+
+
+def test_the_axes_of_the_causes_say_what_is_drawn(distinct):
+    axes = drawn(distinct, "causes")
+    assert [panel.get_title() for panel in axes] == [rf"$\mu = {mu:g}$" for mu in TABORS]
+    for mu, panel in zip(TABORS, axes, strict=True):
+        x, y = labelled(panel)
+        assert x == r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
+        assert y in ("|relative deviation from the half-space|", "")
+        for cause in ("all", "profile", "body", "grip", "traction", "strain"):
+            label = finite_sphere_plots.CAUSES[cause][2]
+            assert label.startswith(f"{cause}: ")
+            at = sorted(np.transpose(line_of(panel, label)).tolist(), reverse=True)
+            wanted = [
+                (np.sqrt(mu / rho), abs(expected_deviation(cause, "pull_off_load", mu, rho, 0.3))) for rho in RATIOS
+            ]
+            np.testing.assert_allclose(at, wanted, rtol=1e-9)
+        low, high = panel.get_ylim()
+        for line in panel.lines:
+            shown = np.asarray(line.get_ydata())
+            assert (shown <= high).all(), "cut off"
+            assert (shown >= low).all(), "cut off"
+
+
+def test_the_axes_of_poissons_ratio_say_what_is_drawn(distinct):
+    axes = drawn(distinct, "poisson")
+    for panel, quantity in zip(axes, ("pull_off_load", "jump_on_approach"), strict=True):
+        assert labelled(panel)[0] == r"Poisson's ratio $\nu$"
+        assert quantity.replace("_load", "").replace("_", "-").split("-approach")[0] in panel.get_title()
+        for mu in TABORS:
+            for rho in RATIOS:
+                nu, size = line_of(panel, rf"$\mu = {mu:g}$, $R/\epsilon = {rho:g}$")
+                np.testing.assert_allclose(nu, (0.0, 0.3))
+                wanted = [abs(expected_deviation("all", quantity, mu, rho, poisson)) for poisson in nu]
+                np.testing.assert_allclose(size, wanted, rtol=1e-9)
+
+
+def test_the_axes_of_the_bulk_say_what_is_drawn(distinct):
+    for panel, way in zip(drawn(distinct, "bulk"), ("on", "off"), strict=True):
+        assert panel.get_title() == f"approach at jump-{way}"
+        assert labelled(panel)[0] == r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
+        quantity = f"jump_{way}_approach"
+        for mu in TABORS:
+            found = {
+                (r.radius_ratio, r.quantity): r
+                for r in distinct.rows
+                if (r.tabor, r.cause, r.poisson) == (mu, "all", 0.3)
+            }
+            for suffix in ("", "_less_bulk"):
+                wanted = [
+                    (np.sqrt(mu / rho), abs(found[rho, quantity + suffix].deviation.value)) for rho in RATIOS[::-1]
+                ]
+                assert any(
+                    len(line.get_xdata()) == len(RATIOS)
+                    and np.allclose(np.transpose(line.get_data()), wanted, rtol=1e-9)
+                    for line in panel.lines
+                )
+
+
+def test_the_axes_of_the_chart_say_what_is_drawn(distinct):
+    for panel in drawn(distinct, "chart"):
+        assert labelled(panel) == (r"Tabor parameter $\mu$", r"radius over spacing $R/\epsilon$")
+        mu, rho = line_of(panel, "solved")
+        assert (set(mu), set(rho)) == (set(TABORS), set(RATIOS))
+
+
+def test_no_legend_names_what_is_not_drawn(distinct):
+    for stem in FIGURES:
+        for panel in drawn(distinct, stem):
+            for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+                if hasattr(handle, "get_xdata"):
+                    same = [line for line in panel.lines if line.get_color() == handle.get_color()]
+                    assert any(len(line.get_xdata()) for line in same), label
+
+
+# --- sentences: true of absurd data, or not said ---
+
+
+def study_of(law, tabors=TABORS, ratios=RATIOS, poissons=(0.0, 0.3)):
+    """Results in which the pull-off and the approaches of a model deviate by law(case) from the half-space's."""
+
+    def solved(case):
+        if case.model.startswith("first_jump"):
+            return Record(case, "solved", {}, "", 1.0)
+        deviation = law(case) if case.radius_ratio else 0.0
+        names = ("pull_off_load", "jump_on_approach", "jump_on_load", "jump_off_approach", "jump_off_load")
+        return Record(case, "solved", {name: Estimate(-4.0 * (1 + deviation), 1e-9) for name in names}, "", 1.0)
+
+    cases = plan(tabors, ratios, poissons).cases
+    return results(Study([solved(case) for case in cases]), bulk_compliance)
+
+
+def share(case, **of_models):
+    """Deviation by model, the whole falling with the size of the sphere."""
+    return of_models.get(case.model, 1.0) * -0.5 / case.radius_ratio
+
+
+def test_a_grip_that_dominates_is_said_to():
+    hardly = caption("causes", study_of(lambda case: share(case, bonded=1.01)))
+    assert "The grip changes the force by 1 % of the whole deviation (12 points)." in hardly
+    mostly = caption("causes", study_of(lambda case: share(case, bonded=-7.0)))
+    assert "The grip changes the force by 8e+02 % of the whole deviation (12 points)." in mostly
+
+
+def test_the_larger_part_is_that_which_is():
+    by_body = caption("causes", study_of(lambda case: share(case, finite_body=3.0)))
+    assert (
+        "At mu = 1 the larger part is the body's at R/eps = 10 (15 %), and the body's at R/eps = 10000 (0.015 %)."
+        in by_body
+    )
+    by_profile = caption("causes", study_of(lambda case: share(case, true_profile=3.0)))
+    assert "At mu = 1 the larger part is the profile's at R/eps = 10 (15 %)" in by_profile
+
+
+def test_powers_are_those_of_the_data():
+    said = caption("causes", study_of(lambda case: -0.1 * case.radius_ratio**-0.75))
+    assert "at mu = 1 the parts go: the profile's as (beta/R)^1.5, the body's as (beta/R)^1.5." in said
+
+
+def test_a_law_per_true_area_that_adds_is_not_said_to_give_back():
+    back = caption("causes", study_of(lambda case: share(case, surface_traction=0.5)))
+    assert "The law per true area gives back 50 % of what the profile takes (12 points)." in back
+    adds = caption("causes", study_of(lambda case: share(case, surface_traction=2.0)))
+    assert "The law per true area adds 1e+02 % to what the profile does (12 points)." in adds
+    assert "gives back" not in adds
+    mixed = caption("causes", study_of(lambda case: share(case, surface_traction=0.5 if case.tabor == 1 else 2.0)))
+    assert "works against the profile at 4 of 12 points" in mixed
+
+
+def test_the_trend_with_poissons_ratio_is_counted():
+    falls = caption("poisson", study_of(lambda case: share(case) * (1 - (case.poisson or 0))))
+    assert "From Poisson's ratio 0 to 0.3 the size of the pull-off's deviation falls at 12 of 12 points." in falls
+    assert "changes its sign at 0 of 12 points" in falls
+    grows = caption("poisson", study_of(lambda case: share(case) * (1 - 5 * (case.poisson or 0))))
+    assert "changes its sign at 12 of 12 points" in grows
+
+
+def test_the_yield_is_not_said_to_be_most_of_what_it_is_not():
+    said = caption("bulk", study_of(lambda _: -10.0))
+    assert "the yield is most of it at 0 of them" in said
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_nothing_is_concluded_from_numbers_that_are_none(value, tmp_path):
+    found = study_of(lambda _: value)
+    assert [caption(stem, found) for stem in FIGURES]
+    for picture in finite_sphere_plots.PICTURES:
+        assert picture.lacks(found)
+    finite_sphere_report.write(found.study, tmp_path)
+    page = (tmp_path / "index.html").read_text()
+    assert page.count("nowhere that is known") == len(QUANTITIES)
+    assert "nan" not in page.partition("<footer>")[0].replace("nancy", "")
+
+
+def test_nothing_is_concluded_from_nothing(tmp_path):
+    finite_sphere_report.write(Study([]), tmp_path)
+    page = (tmp_path / "index.html").read_text()
+    assert "<strong>no case.</strong>" in page
+    assert "No elastic sphere was solved." in page
+    assert "errs by less" not in page
+
+
+def test_a_half_space_that_is_never_good_enough_is_not_said_to_be(tmp_path):
+    finite_sphere_report.write(study_of(lambda _: 5.0).study, tmp_path)
+    page = (tmp_path / "index.html").read_text()
+    assert page.count("at no R/&epsilon; up to 10000 for all &mu; from 0.3 to 3") >= 3
+    assert "</strong> if R/&epsilon;" not in page
+
+
+def test_a_deviation_that_grows_with_the_sphere_gives_no_rule(tmp_path):
+    finite_sphere_report.write(study_of(lambda case: 1e-6 * case.radius_ratio).study, tmp_path)
+    page = (tmp_path / "index.html").read_text()
+    assert "<strong>pull-off force</strong> if R/&epsilon;" not in page
+    assert "<strong>pull-off force</strong> at no R/&epsilon; up to 10000" in page
 
 
 # --- what a deviation begins with ---

@@ -16,14 +16,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fem_adhesion
 import halfspace
+from fem_adhesion import Scene
+from fem_adhesion.finite_strain_scene import find_jumps
 from fem_adhesion.output.finite_sphere_tables import COLUMNS, NO_PARQUET, TEXTS, write_tables
 from fem_adhesion.studies import finite_sphere, finite_sphere_cases, finite_sphere_fit, store
 from fem_adhesion.studies.finite_sphere import plan, run, seconds_left
 from fem_adhesion.studies.finite_sphere_cases import CAUSES, MODELS, case_of, quantities_of
 from fem_adhesion.studies.finite_sphere_fit import SOFT_PULL_OFF, Samples, fit
-from fem_adhesion.studies.finite_sphere_records import QUANTITIES, Case, Record, from_plain, to_plain
-from fem_adhesion.studies.finite_sphere_table import Row, rows
+from fem_adhesion.studies.finite_sphere_records import CRITICAL, QUANTITIES, Case, Record, from_plain, to_plain
+from fem_adhesion.studies.finite_sphere_table import Row, borders, rows
 from fem_adhesion.studies.materials import materials
 from fem_adhesion.studies.store import open_store
 from halfspace.curve import Estimate
@@ -573,6 +576,80 @@ def test_quantities_are_those_of_the_curve():
 def test_a_hard_contact_has_no_jumps():
     values = quantities_of(halfspace.trace(0.3, rtol=1e-4))
     assert values.keys() == {"pull_off_load", "zero_load_radius"}
+
+
+HEMISPHERE = {"poisson": 0.2, "body": "hemisphere", "radius_ratio": 30.0}
+SPHERE = {**HEMISPHERE, "profile": "sphere"}
+SCENES = {
+    "finite_body": {**HEMISPHERE, "profile": "paraboloid"},
+    "sphere": SPHERE,
+    "bonded": {**SPHERE, "grip": "bonded"},
+    "surface_traction": {**SPHERE, "traction": "surface"},
+}
+CONVENTIONS = {
+    "finite_strain": "vertical",
+    "finite_strain_normal": "normal",
+    "finite_strain_reference": "reference",
+}
+AT = (0.3, 30.0, 0.2, 1e-2)
+
+
+@pytest.fixture(scope="module")
+def solved_once():
+    """Pull-off load of every model at a point."""
+    names = [name for name in MODELS if not name.startswith("first_jump")]
+    return {name: finite_sphere_cases.compute(case_of(name, *AT)).values["pull_off_load"] for name in names}
+
+
+def pull_off_of(path):
+    return Estimate(path.event("pull_off").load, path.event("pull_off").load_error)
+
+
+def test_every_model_solves_its_own_scene(solved_once):
+    assert set(solved_once) == {"half_space", "true_profile", *SCENES, *CONVENTIONS}
+    wanted = {
+        "half_space": pull_off_of(halfspace.trace(0.3, rtol=1e-2, to_load=0.5)),
+        "true_profile": pull_off_of(halfspace.trace(0.3, rtol=1e-2, to_load=0.5, radius_ratio=30.0)),
+    }
+    for name, scene in SCENES.items():
+        wanted[name] = pull_off_of(fem_adhesion.trace(Scene(0.3, **scene), rtol=1e-2, to_load=0.5))
+    for name, convention in CONVENTIONS.items():
+        event = find_jumps(Scene(0.3, **SPHERE, strain="finite"), 1e-4, convention=convention)["pull_off"]
+        wanted[name] = Estimate(event.load, event.load_error)
+    assert solved_once == wanted
+
+
+def test_no_two_models_are_one(solved_once):
+    loads = sorted(estimate.value for estimate in solved_once.values())
+    assert min(np.diff(loads)) > 1e-5
+
+
+def test_the_grip_of_a_model_is_that_by_which_its_yield_is_taken_out():
+    grips = {name: Scene(0.3, **scene).grip for name, scene in SCENES.items()} | dict.fromkeys(CONVENTIONS, "sliding")
+    for name, model in MODELS.items():
+        if not name.startswith("first_jump"):
+            assert model.grip == grips.get(name)
+
+
+def test_the_first_jump_of_a_large_sphere_is_that_of_the_half_space_and_one_that_never_jumps_says_so():
+    found = [
+        finite_sphere_cases.compute(case_of("first_jump", None, ratio, 0.3, 1e-4)).values for ratio in (1e5, 1e7, 2.0)
+    ]
+    half_space = finite_sphere_cases.compute(case_of("first_jump_half_space", None, None, None, 1e-5)).values[CRITICAL]
+    assert half_space.value == pytest.approx(0.697214622, abs=max(half_space.error, 2e-9))
+    away = [values[CRITICAL].value - half_space.value for values in found[:2]]
+    assert 0 < away[1] < 0.3 * away[0]
+    assert found[2] == {}
+    (border,) = borders([Record(case_of("first_jump", None, 2.0, 0.3, 1e-4), "solved", {}, "", 1.0)])
+    assert (border.tabor, bool(border.reason)) == (None, True)
+
+
+def test_the_border_of_the_jumps_divides_the_curves_that_jump_from_those_that_do_not():
+    """The curve's own folds, of the study's own solver, on either side."""
+    border = finite_sphere_cases.compute(case_of("first_jump", None, 30.0, 0.2, 1e-4)).values[CRITICAL].value
+    for tabor, jumps in ((border - 0.02, False), (border + 0.02, True)):
+        scene = Scene(tabor, **SPHERE)
+        assert ("jump_on" in fem_adhesion.trace(scene, rtol=1e-3, to_load=0.5).events) == jumps
 
 
 # --- materials ---

@@ -11,15 +11,22 @@ from pathlib import Path
 
 import pytest
 
-from fem_adhesion.studies.parallel import ATTEMPTS, Died, stream
+from fem_adhesion.studies import parallel
+from fem_adhesion.studies.parallel import ATTEMPTS, CONNECTION_SECONDS, Died, stream
+from halfspace.errors import InputError
 
 
 def square(x):
     return x * x
 
 
-def slow_first(x):
-    time.sleep(1.0 if x == 0 else 0.0)
+def last_if_first(item):
+    """The item 0 waits for the others, each of which leaves a file in `directory`."""
+    x, directory = item
+    while x == 0 and len(list(Path(directory).iterdir())) < 3:
+        time.sleep(0.01)
+    if x:
+        (Path(directory) / str(x)).touch()
     return x
 
 
@@ -49,9 +56,9 @@ def test_every_item_comes_once_with_its_result(jobs):
     assert sorted(stream(square, range(20), jobs=jobs)) == [(x, x * x) for x in range(20)]
 
 
-def test_results_come_as_they_are_ready():
-    list(stream(square, range(2), jobs=2))  # so that both processes are there
-    assert [x for x, _ in stream(slow_first, range(4), jobs=2)][-1] == 0
+def test_results_come_as_they_are_ready(tmp_path):
+    """Were they given in order, the others would be too: the first ends when they have."""
+    assert [x for _, x in stream(last_if_first, [(x, str(tmp_path)) for x in range(4)], jobs=2)][-1] == 0
 
 
 def test_an_item_whose_worker_dies_is_tried_again(tmp_path):
@@ -76,7 +83,7 @@ def test_an_unforeseen_error_is_not_hidden():
 
 
 def test_a_stream_can_be_closed_early_and_another_opened():
-    first = stream(slow_first, range(1, 50), jobs=2)
+    first = stream(square, range(1, 50), jobs=2)
     next(first)
     first.close()
     assert len(list(stream(square, range(3), jobs=2))) == 3
@@ -88,7 +95,7 @@ def test_workers_keep_to_one_thread_of_blas():
 
 @pytest.mark.parametrize("jobs", [0, -1])
 def test_a_number_of_jobs_out_of_range_is_refused_at_once(jobs):
-    with pytest.raises(ValueError, match=rf"jobs = {jobs} is outside 1 <= jobs; "):
+    with pytest.raises(InputError, match=rf"jobs = {jobs} is outside 1 <= jobs; "):
         stream(square, [1], jobs=jobs)
 
 
@@ -98,7 +105,7 @@ needs_cluster = pytest.mark.skipif(importlib.util.find_spec("distributed") is No
 @needs_cluster
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
 def test_a_scheduler_that_does_not_answer_is_refused_at_once(address):
-    with pytest.raises(ValueError, match=f"dask = {address} does not answer within 5 s; "):
+    with pytest.raises(InputError, match=f"dask = {address} does not answer within {CONNECTION_SECONDS} s; "):
         stream(square, [1], dask=address)
 
 
@@ -108,12 +115,22 @@ def free_port():
         return listener.getsockname()[1]
 
 
+PATIENCE = 600  # s: the end is for what never comes, not for what is slow
+
+
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
     """Address of a scheduler on loopback with two workers that can import this module."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(parallel, "CONNECTION_SECONDS", PATIENCE)
+        yield from started_cluster(tmp_path_factory)
+
+
+def started_cluster(tmp_path_factory):
     scratch = tmp_path_factory.mktemp("dask")
     address = f"tcp://127.0.0.1:{free_port()}"
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
+    path = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, "PYTHONPATH": path}
     worker = ["dask_worker", address, "--nthreads", "1", "--no-dashboard", "--local-directory", str(scratch)]
     scheduler = ["dask_scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2], "--no-dashboard"]
     with (scratch / "log").open("w") as log:
@@ -128,30 +145,43 @@ def cluster(tmp_path_factory):
             for program, *options in (scheduler, worker, worker)
         ]
         try:
-            yield wait_for(address)
+            yield wait_for(address, processes[0])
         finally:
             for process in processes:  # with what each has started
                 os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
 
 
-def wait_for(address):
+def wait_for(address, scheduler):
+    """Wait until the scheduler listens and knows both workers."""
     from distributed import Client
 
-    for _ in range(100):
-        try:
-            stream(square, [], dask=address).close()
-            break
-        except ValueError:
-            time.sleep(0.1)
-    with Client(address, set_as_default=False) as client:
-        client.wait_for_workers(2, timeout=20)
+    while not listens(address):
+        assert scheduler.poll() is None, "the scheduler has ended"
+        time.sleep(0.05)
+    with Client(address, set_as_default=False, timeout=PATIENCE) as client:
+        client.wait_for_workers(2, timeout=PATIENCE)
     return address
+
+
+def listens(address):
+    host, port = address.removeprefix("tcp://").split(":")
+    try:
+        socket.create_connection((host, int(port))).close()
+    except ConnectionRefusedError:
+        return False
+    return True
 
 
 @needs_cluster
 def test_a_dask_cluster_does_the_work(cluster):
     assert sorted(stream(square, range(20), dask=cluster)) == [(x, x * x) for x in range(20)]
+
+
+@needs_cluster
+def test_an_unforeseen_error_on_the_cluster_is_not_taken_for_a_dead_worker(cluster):
+    with pytest.raises(ZeroDivisionError, match="item 0"):
+        list(stream(failing, [0], dask=cluster))
 
 
 @needs_cluster

@@ -31,7 +31,7 @@ SHADES = ("0.80", "0.90", "0.96")
 WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
 UNSOLVED: Mapping[str, tuple[str, str]] = {  # by how a contact ended: hatching, and what it means
     "ContactTooWide": ("///", "no solution: contact as wide as the sphere"),
-    "left out": ("\\\\\\", rf"not tried: $R < {SMALLEST_SPHERE**0.5:g}\\,\\beta$"),
+    "left out": ("|||", rf"not tried: $R < {SMALLEST_SPHERE**0.5:g}\,\beta$"),
     "died": ("xxx", "not solved: its process died"),
 }
 OTHERWISE = "..."  # hatching of any other end
@@ -87,7 +87,8 @@ def _contours(axes: Any, field: Field) -> None:
             continue
         colour, dashes, width = LINES[level]
         axes.fill_between(field.tabor, BOTTOM, ratio, color=shade, linewidth=0, zorder=level - 1)
-        axes.plot(field.tabor, ratio, color=colour, linestyle=dashes, linewidth=width, label=f"{100 * level:g} %")
+        look = {"color": colour, "linestyle": dashes, "linewidth": width, "marker": "_", "markersize": 7}  # if alone
+        axes.plot(field.tabor, ratio, **look, label=f"{100 * level:g} %")
         _name(axes, field.tabor, ratio, level)
 
 

@@ -33,6 +33,7 @@ STRETCH = r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
 SIZE = "|relative deviation from the half-space|"
 SMALLEST = 1e-7  # deviation that is shown
 MOST_LINES = 4
+DASHES = ("-", style.DASHED, style.DOTTED)  # one after the other when colours and markers come again
 WHOLE, PART = 8.0, 5.5  # sizes of markers: that of the whole shows round that of its largest part
 
 CAUSES: Mapping[str, tuple[str, str, str]] = {
@@ -188,7 +189,8 @@ def _by_poisson(axes: Any, points: tuple[Array, Array], tabor: float, ratio: flo
     nu, y = points
     if not nu.size:
         return
-    look = {"color": COLOURS[number % 6], "marker": MARKERS[number % 6], "markersize": 5.5, "linewidth": 1.2}
+    look = {"color": COLOURS[number % 6], "marker": MARKERS[number % 6], "markersize": PART, "linewidth": 1.2}
+    look["linestyle"] = DASHES[number // 6 % len(DASHES)]
     axes.plot(nu, np.abs(y), label=rf"$\mu = {tabor:g}$, $R/\epsilon = {ratio:g}$", **look)
     axes.plot(nu[y > 0], np.abs(y[y > 0]), **look | {"linestyle": "none", "markerfacecolor": "white"})
 

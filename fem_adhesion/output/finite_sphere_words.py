@@ -20,8 +20,8 @@ from fem_adhesion.studies.finite_sphere_points import (
 from fem_adhesion.studies.finite_sphere_records import Record, Study
 from fem_adhesion.studies.finite_sphere_table import Border, Results, Row
 
-PARTS = ("profile", "body", "grip", "traction", "strain")
-"""Causes of which the whole deviation is made."""
+PARTS = ("profile", "body")
+"""Causes of which the whole deviation is made; the others change what is held fixed in it."""
 
 
 def headline(study: Study) -> str:
@@ -83,7 +83,7 @@ def _causes(results: Results) -> Iterator[str]:
         found = {cause: _of(rows, cause, tabor, poisson) for cause in PARTS}
         yield from _largest(found, tabor)
     yield from _exponents(rows, poisson)
-    yield from _grip(rows, poisson)
+    yield from _changes(rows, poisson)
     yield from _given_back(rows, poisson)
 
 
@@ -93,7 +93,7 @@ def _of(rows: Sequence[Row], cause: str, tabor: float, poisson: float | None) ->
 
 
 def _largest(found: Mapping[str, Samples], tabor: float) -> Iterator[str]:
-    """Which part is the largest on the smallest and on the largest sphere on which profile and body are both known."""
+    """Which part is the larger on the smallest and on the largest sphere on which profile and body are both known."""
     both = np.intersect1d(found["profile"].radius_ratio, found["body"].radius_ratio)
     ends = []
     for ratio in dict.fromkeys(float(value) for value in both[[0, -1]]) if both.size else ():
@@ -102,7 +102,7 @@ def _largest(found: Mapping[str, Samples], tabor: float) -> Iterator[str]:
         most = max(known, key=lambda cause: known[cause])
         ends.append(f"the {most}'s at R/eps = {ratio:g} ({100 * known[most]:.2g} %)")
     if ends:
-        yield f"At mu = {tabor:g} the largest part is {', and '.join(ends)}."
+        yield f"At mu = {tabor:g} the larger part is {', and '.join(ends)}."
 
 
 def _size_at(data: Samples, ratio: float) -> float:
@@ -129,12 +129,13 @@ def _power(data: Samples) -> float:
     return float((y[1] - y[0]) / (x[1] - x[0]))
 
 
-def _grip(rows: Sequence[Row], poisson: float | None) -> Iterator[str]:
-    """The grip's part beside the whole."""
-    shares = _ratios(samples(rows, "grip", "pull_off_load", poisson), samples(rows, "all", "pull_off_load", poisson))
-    if shares.size:
-        sizes = np.abs(shares)
-        yield f"The grip changes the force by {_span(100 * sizes)} % of what all make together{_at(sizes.size)}."
+def _changes(rows: Sequence[Row], poisson: float | None) -> Iterator[str]:
+    """What grip and strain change beside the whole."""
+    whole = samples(rows, "all", "pull_off_load", poisson)
+    for cause, name in (("grip", "The grip"), ("strain", "Finite strain")):
+        shares = np.abs(_ratios(samples(rows, cause, "pull_off_load", poisson), whole))
+        if shares.size:
+            yield f"{name} changes the force by {_span(100 * shares)} % of the whole deviation{_at(shares.size)}."
 
 
 def _given_back(rows: Sequence[Row], poisson: float | None) -> Iterator[str]:

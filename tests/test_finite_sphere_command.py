@@ -1,0 +1,238 @@
+"""``fem-adhesion finite-sphere`` whole: its quick form read back, its exit codes, and how it ends when it is ended."""
+
+import csv
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+import pytest
+
+from fem_adhesion import cli
+from fem_adhesion.output import finite_sphere_report
+from fem_adhesion.studies import finite_sphere_cases
+from fem_adhesion.studies.finite_sphere_cases import MODELS
+from fem_adhesion.studies.finite_sphere_records import CRITICAL
+from halfspace.curve import Estimate
+from halfspace.errors import ContactTooWide, NotConverged
+
+QUICK = "fem-adhesion finite-sphere --out sphere --quick"
+PATIENCE = 300  # s: the end is for what never comes, not for what is slow
+
+
+@pytest.fixture(scope="module")
+def quick(whole):
+    done = whole(QUICK)
+    assert done.code == 0, done.err
+    return done
+
+
+def lines_of(file):
+    with file.open(newline="") as text:
+        return list(csv.DictReader(text))
+
+
+# --- the quick form ---
+
+
+def test_the_quick_study_says_in_its_first_line_that_it_is_one_and_that_all_was_solved(quick):
+    first = quick.out.splitlines()[0]
+    assert re.fullmatch(r"quick study, of few points; (\d+) cases, all solved; written: sphere/index\.html", first)
+    assert int(re.search(r"(\d+) cases", first)[1]) == len(list((quick / "sphere/cases").iterdir()))
+    page = (quick / "sphere/index.html").read_text()
+    assert f"<strong>{first.partition('; written')[0]}.</strong>" in page
+    assert first.partition("; written")[0] in (quick / "sphere/chart.svg").read_text()
+
+
+def test_the_table_of_the_quick_study_holds_what_the_solvers_give(quick):
+    table = {
+        (row["cause"], row["quantity"], row["tabor"], row["radius_ratio"]): row
+        for row in lines_of(quick / "sphere/finite_sphere.csv")
+    }
+    row = table["all", "pull_off_load", "1.0", "300.0"]
+    stored = [json.loads(file.read_text()) for file in (quick / "sphere/cases").iterdir()]
+    values = {(c["inputs"]["model"], c["inputs"]["tabor"], c["inputs"]["radius_ratio"]): c["result"] for c in stored}
+    for column, key in (("value", ("sphere", 1.0, 300.0)), ("half_space", ("half_space", 1.0, None))):
+        kept = values[key]["values"]["pull_off_load"]
+        assert (float(row[column]), float(row[f"{column}_error"])) == (kept["value"], kept["error"])
+    assert float(row["half_space"]) == pytest.approx(-5.2488, abs=1e-3)
+    assert float(row["deviation"]) == pytest.approx(float(row["value"]) / float(row["half_space"]) - 1, rel=1e-9)
+
+
+def test_the_border_of_the_jumps_is_solved_for_on_each_sphere_and_on_the_half_space(quick):
+    found = {line["R/eps"]: line for line in lines_of(quick / "sphere/first_jumps.csv")}
+    assert set(found) == {"half-space", "30", "300", "3000"}
+    assert float(found["half-space"]["mu"]) == pytest.approx(0.697214622, abs=float(found["half-space"]["error"]))
+    tabors = [float(found[ratio]["mu"]) for ratio in ("30", "300", "3000", "half-space")]
+    assert tabors == sorted(tabors, reverse=True)
+    assert all(0 < float(line["error"]) < 1e-4 for line in found.values())
+
+
+def test_a_figure_of_the_quick_study_is_drawn_or_says_what_it_lacks(quick):
+    page = (quick / "sphere/index.html").read_text()
+    for line in lines_of(quick / "sphere/figures.csv"):
+        drawn = (quick / f"sphere/{line['stem']}.svg").exists()
+        assert drawn == bool(line["caption"]) == (not line["why not drawn"])
+        assert drawn == (quick / f"sphere/{line['stem']}.png").exists()
+        assert (f'<figure id="{line["stem"]}">' in page) == drawn
+    assert "Not drawn: no point was solved at two Poisson's ratios." in page.replace("&#x27;", "'")
+
+
+def test_the_quick_study_resumed_computes_nothing(quick, tmp_path, monkeypatch, capsys):
+    directory = shutil.copytree(quick / "sphere", tmp_path / "sphere")
+    kept = {file: file.stat().st_mtime_ns for file in (directory / "cases").iterdir()}
+    monkeypatch.setattr(finite_sphere_report, "write", lambda *_: "")
+    assert cli.main(["finite-sphere", "--out", str(directory), "--quick", "--resume", "--jobs", "1"]) == 0
+    assert capsys.readouterr().err == ""
+    assert {file: file.stat().st_mtime_ns for file in (directory / "cases").iterdir()} == kept
+
+
+# --- exit codes ---
+
+
+def made(case):
+    if case.model.startswith("first_jump"):
+        return {CRITICAL: Estimate(0.7, 1e-3)}
+    return {"pull_off_load": Estimate(-5.0, 1e-3)}
+
+
+@pytest.fixture
+def made_up(monkeypatch):
+    """Models that cost nothing."""
+    for name, model in MODELS.items():
+        monkeypatch.setitem(MODELS, name, replace(model, solve=made))
+
+
+def refuse(kind):
+    def solve(case):
+        raise kind(f"{case.model} is stuck; try another")
+
+    return solve
+
+
+ONE = ("finite-sphere", "--tabor", "0.3", "--radius-ratio", "30", "--jobs", "1")
+
+
+@pytest.mark.usefixtures("made_up")
+@pytest.mark.parametrize("kind", [ContactTooWide, NotConverged])
+def test_a_study_that_failed_in_part_says_so_in_its_code_first_line_page_and_tables(
+    tmp_path, monkeypatch, capsys, kind
+):
+    monkeypatch.setitem(MODELS, "bonded", replace(MODELS["bonded"], solve=refuse(kind)))
+    assert cli.main([*ONE, "--out", str(tmp_path / "out")]) == 1
+    said = f"1 of {len(MODELS)} cases not solved (1 {kind.__name__})"
+    assert capsys.readouterr().out.startswith(said)
+    assert f"<strong>{said}.</strong>" in (tmp_path / "out/index.html").read_text()
+    assert said in (tmp_path / "out/chart.svg").read_text()
+    (line,) = lines_of(tmp_path / "out/failures.csv")
+    assert (line["status"], line["kind"], line["reason"]) == ("refused", kind.__name__, "bonded is stuck; try another")
+    rows = lines_of(tmp_path / "out/finite_sphere.csv")
+    assert {(row["status"], row["kind"]) for row in rows if row["cause"] == "grip"} == {("refused", kind.__name__)}
+
+
+@pytest.mark.usefixtures("made_up")
+def test_a_study_that_is_solved_ends_with_0(tmp_path, capsys):
+    assert cli.main([*ONE, "--out", str(tmp_path / "out")]) == 0
+    assert capsys.readouterr().out.startswith(f"{len(MODELS)} cases, all solved; written: ")
+
+
+@pytest.mark.usefixtures("made_up")
+def test_a_defect_of_the_program_shows_its_traceback(tmp_path, monkeypatch):
+    monkeypatch.setitem(MODELS, "bonded", replace(MODELS["bonded"], solve=refuse(TypeError)))
+    with pytest.raises(TypeError, match="bonded is stuck"):
+        cli.main([*ONE, "--out", str(tmp_path / "out")])
+
+
+@pytest.mark.parametrize("ratio", ["1", "0.5", "nan"])
+def test_a_sphere_too_small_for_all_is_refused_before_any_work(tmp_path, monkeypatch, capsys, ratio):
+    monkeypatch.setattr(finite_sphere_cases, "compute", lambda _: pytest.fail("worked"))
+    assert cli.main(["finite-sphere", "--out", str(tmp_path / "out"), "--radius-ratio", "30", ratio]) == 2
+    assert f"radius_ratio = {float(ratio):g} is outside 2 <= radius_ratio <= 1e12" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.usefixtures("made_up")
+def test_what_is_beyond_the_limits_is_left_out_and_listed(tmp_path, capsys):
+    arguments = ["--tabor", "1", "10", "--radius-ratio", "5", "--jobs", "1", "--out", str(tmp_path / "out")]
+    assert cli.main(["finite-sphere", *arguments]) == 0
+    left = len([model for model in MODELS.values() if {"tabor", "radius_ratio"} <= set(model.inputs)])
+    assert f"{left} cases left out, beyond the limits" in capsys.readouterr().out
+    lines = lines_of(tmp_path / "out/failures.csv")
+    assert len(lines) == left
+    assert all(line["status"] == "left out" and "tabor 10, R/eps 5" in line["case"] for line in lines)
+
+
+@pytest.mark.usefixtures("made_up")
+def test_a_figure_of_an_earlier_study_does_not_stay_beside_the_new_page(tmp_path):
+    (tmp_path / "poisson.svg").write_text("old")
+    (tmp_path / "notes.txt").write_text("mine")
+    assert cli.main([*ONE, "--out", str(tmp_path), "--force"]) == 0
+    assert not (tmp_path / "poisson.svg").exists()
+    assert (tmp_path / "notes.txt").exists()
+
+
+# --- ended from outside ---
+
+
+def wait_until(condition):
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < deadline, "it never came"
+        time.sleep(0.02)
+
+
+def alive(group):
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize(
+    ("number", "to", "word", "code"),
+    [
+        (signal.SIGTERM, "group", "terminated", 143),  # as timeout sends it
+        (signal.SIGTERM, "study", "terminated", 143),  # as a batch system may
+        (signal.SIGINT, "group", "interrupted", 130),  # as a terminal does
+    ],
+)
+def test_a_signal_ends_the_study_in_one_line_and_its_workers_with_it(tmp_path, number, to, word, code):
+    """What is done is kept, and --resume goes on with it."""
+    command = ["finite-sphere", "--out", str(tmp_path / "out"), "--tabor", "0.3", "3", "--radius-ratio", "1000"]
+    study = subprocess.Popen(
+        [sys.executable, "-m", "fem_adhesion.cli", *command, "--jobs", "2"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    try:
+        wait_until(lambda: list(tmp_path.glob("out/cases/[!.]*.json")) or study.poll() is not None)
+        assert study.poll() is None
+        (os.killpg if to == "group" else os.kill)(study.pid, number)
+        out, error = study.communicate(timeout=PATIENCE)
+        wait_until(lambda: not alive(study.pid))
+    finally:
+        if alive(study.pid):
+            os.killpg(study.pid, signal.SIGKILL)
+            study.wait()
+    assert study.returncode == code
+    assert out == ""
+    assert error.strip() == f"fem-adhesion: {word}; what is done is kept in {tmp_path / 'out'}, --resume goes on"
+    assert not (tmp_path / "out/index.html").exists()
+    assert [file.name for file in (tmp_path / "out").iterdir()] == ["cases"]
+
+
+def test_a_signal_ends_any_command(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("fem_adhesion.studies.curves.solve", lambda *_: os.kill(os.getpid(), signal.SIGTERM))
+    before = signal.getsignal(signal.SIGTERM)
+    assert cli.main(["curve", "--tabor", "1", "--json", str(tmp_path / "curve.json")]) == 143
+    assert capsys.readouterr().err.strip().endswith("fem-adhesion: terminated; nothing was written")
+    assert signal.getsignal(signal.SIGTERM) is before
+    assert not list(tmp_path.iterdir())
