@@ -75,11 +75,11 @@ def test_the_border_of_the_jumps_is_solved_for_on_each_sphere_and_on_the_half_sp
 
 def test_a_figure_of_the_quick_study_is_drawn_or_says_what_it_lacks(quick):
     page = (quick / "sphere/index.html").read_text()
-    for line in lines_of(quick / "sphere/figures.csv"):
-        drawn = (quick / f"sphere/{line['stem']}.svg").exists()
+    for line in lines_of(quick / "sphere/captions.csv"):
+        drawn = (quick / f"sphere/{line['figure']}.svg").exists()
         assert drawn == bool(line["caption"]) == (not line["why not drawn"])
-        assert drawn == (quick / f"sphere/{line['stem']}.png").exists()
-        assert (f'<figure id="{line["stem"]}">' in page) == drawn
+        assert drawn == (quick / f"sphere/{line['figure']}.png").exists()
+        assert (f'<figure id="{line["figure"]}">' in page) == drawn
     assert "Not drawn: no point was solved at two Poisson's ratios." in page.replace("&#x27;", "'")
 
 

@@ -22,7 +22,7 @@ from fem_adhesion.studies.finite_sphere_terms import FIXED_GRIPS, leading_terms
 from halfspace.curve import Estimate
 
 TABORS, RATIOS = (0.3, 1.0, 3.0), (10.0, 100.0, 1e3, 1e4)
-TABLES = ("rules", "first_jumps", "fits", "theories", "bulk", "failures", "figures")
+TABLES = ("rules", "first_jumps", "fits", "theories", "bulk", "failures", "captions")
 FIGURES = ("chart", "causes", "poisson", "bulk")
 
 

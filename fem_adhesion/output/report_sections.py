@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import csv
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from fem_adhesion.output.report_figures import figure
 from fem_adhesion.output.report_parts import Section, Table, read_table, symbols
 from halfspace.errors import InputError
-
 
 
 @dataclass(frozen=True)
