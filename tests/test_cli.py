@@ -127,6 +127,7 @@ def test_a_failure_is_reported_with_its_reason_and_exits_with_1(monkeypatch, cap
         "poisson": 0.3,
         "verdict": "failed",
         "reason": "on purpose; try another day",
+        "comparison": [],
     }
 
 

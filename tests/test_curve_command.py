@@ -8,13 +8,16 @@ import re
 import shlex
 from dataclasses import replace
 
+import meshio
 import numpy as np
 import pytest
+from PIL import Image
 from rich.console import Console
 
+from fem_adhesion import cli
 from fem_adhesion.commands import curve
 from fem_adhesion.commands.common import Parser
-from fem_adhesion.output import curve_lines, curve_record, curve_terminal
+from fem_adhesion.output import curve_lines, curve_record, curve_terminal, movie
 from fem_adhesion.scene import Counter, Scene
 from fem_adhesion.studies import curves as study
 from halfspace.curve import EquilibriumPath
@@ -140,11 +143,124 @@ def test_the_table_for_machines_has_points_and_events_in_order_in_both_units(rea
     np.testing.assert_array_equal([row["stable_under_fixed_grips"] == "1" for row in points], real.path.stable)
     assert np.all(np.diff([float(row["arclength"]) for row in rows]) >= 0)
     jump_on = next(row for row in rows if row["event"] == "jump_on")
-    event = real.path.event("jump_on")
-    assert float(jump_on["approach_m"]) == pytest.approx(event.approach * 0.3e-9, rel=1e-12)
-    assert float(jump_on["approach_error_eps"]) == event.approach_error
     assert jump_on["contact_radius_beta"] == ""
-    assert float(rows[rows.index(jump_on) - 1]["approach_eps"]) < event.approach
+    assert float(rows[rows.index(jump_on) - 1]["approach_eps"]) < real.path.event("jump_on").approach
+
+
+PAPER = {"approach": "eps", "load": "R_dgamma", "central_gap": "eps", "contact_radius": "beta"}
+SI = {
+    "approach": ("m", UNITS.spacing),
+    "load": ("N", UNITS.radius * UNITS.work_of_adhesion),
+    "central_gap": ("m", UNITS.spacing),
+    "contact_radius": ("m", np.cbrt(UNITS.radius**2 * UNITS.work_of_adhesion / UNITS.modulus)),
+}
+
+
+def test_each_column_of_the_csv_holds_what_its_name_says(real):
+    """Values and errors of all events, in both units, and the states in the order of the curve."""
+    file = io.StringIO()
+    curve_record.write_csv(real, file)
+    rows = list(csv.DictReader(io.StringIO(file.getvalue())))
+    path = real.path
+    for name, event in path.events.items():
+        (row,) = (row for row in rows if row["event"] == name)
+        assert float(row["arclength"]) == path.stages[-1][name].point.arclength
+        for quantity, unit in PAPER.items():
+            for what in (quantity, f"{quantity}_error"):
+                value, (si, size) = getattr(event, what), SI[quantity]
+                if np.isnan(value):
+                    assert row[f"{what}_{unit}"] == row[f"{what}_{si}"] == ""
+                else:
+                    assert float(row[f"{what}_{unit}"]) == value
+                    assert float(row[f"{what}_{si}"]) == pytest.approx(value * size, rel=1e-12, abs=0)
+        assert row["stable_under_fixed_grips"] == row["stable_under_dead_load"] == ""
+    points = [row for row in rows if not row["event"]]
+    for quantity, unit in PAPER.items():
+        found = [float(row[f"{quantity}_{unit}"] or "nan") for row in points]
+        np.testing.assert_array_equal(found, getattr(path, quantity))
+        assert {row[f"{quantity}_error_{unit}"] for row in points} == {""}
+    dead = [row["stable_under_dead_load"] == "1" for row in points]
+    np.testing.assert_array_equal(dead, path.stable_under_dead_load)
+    assert {row["solver"] for row in rows} == {"half-space"}
+
+
+def test_each_key_of_the_json_holds_what_it_says(both, real):
+    record = json.loads(json.dumps(curve_record.record(both), allow_nan=False))
+    for solver, path in both.paths.items():
+        found = record["solutions"][solver]
+        for quantity in NUMBERS:
+            values = [np.nan if value is None else value for value in found["curve"][quantity]]
+            np.testing.assert_array_equal(values, getattr(path, quantity))
+        for name, event in path.events.items():
+            for key in (*NUMBERS, *(f"{quantity}_error" for quantity in NUMBERS)):
+                value = found["events"][name][key]
+                assert value == getattr(event, key) or (value is None and np.isnan(getattr(event, key)))
+        assert found["energy_released"] == {"value": path.energy.value, "error": path.energy.error}
+        assert (found["unknowns"], found["seconds"]) == (path.unknowns, path.seconds)
+    for device, cycle in (("fixed_grips", both.grips), ("apparatus", both.apparatus)):
+        for name in ("jump_on", "jump_off"):
+            shown, jump = record["jumps"][device][name], getattr(cycle, name)
+            assert shown["take_off"]["load"] == jump.take_off.load
+            assert shown["landing"]["load"] == jump.landing.load != jump.take_off.load
+            assert shown["energy"] == {"value": jump.energy.value, "error": jump.energy.error}
+        lost = record["jumps"][device]["energy_lost"]
+        assert lost == {"value": cycle.energy_lost.value, "error": cycle.energy_lost.error}
+    assert record["jumps"]["apparatus"]["stiffness"] == 1.0
+    si = curve_record.record(real)["si"]
+    sizes = {name: (entry["unit"], entry["factor"]) for name, entry in si["units"].items()}
+    for name, (unit, size) in SI.items():
+        assert sizes[name] == (unit, pytest.approx(size, rel=1e-12, abs=0))
+    work = UNITS.radius * UNITS.work_of_adhesion
+    assert sizes["energy"] == ("J", pytest.approx(work * UNITS.spacing, rel=1e-12, abs=0))
+    assert sizes["stiffness"] == ("N/m", pytest.approx(work / UNITS.spacing))
+    assert si["material"] == {"radius": 1e-7, "modulus": 1.1e9, "work_of_adhesion": 0.05, "spacing": 3e-10}
+
+
+def test_the_command_of_the_readme_writes_every_kind_of_file_whole(tmp_path, monkeypatch, capsys):
+    """Through the command line, and read back by other people's programs."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(movie, "FRAMES", 6)
+    files = ["--json", "curve.json", "--csv", "curve.csv", "--plot", "curve.png", "--vtk", "curve", "--points", "2"]
+    pictures = ["--revolve", "90", "--render", "body.png", "--movie", "jump.gif"]
+    assert cli.main(["curve", "--tabor", "2", "--rtol", "1e-3", *files, *pictures]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    made = {"curve.json", "curve.csv", "curve.png", "curve", "body.png", "jump.gif"}
+    assert {file.name for file in tmp_path.iterdir()} == made
+    (solution,) = json.loads((tmp_path / "curve.json").read_text())["solutions"].values()
+    load = solution["events"]["pull_off"]["load"]
+    assert load == pytest.approx(-4.9750, abs=1e-3)
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "curve.csv").read_text())))
+    assert next(float(row["load_R_dgamma"]) for row in rows if row["event"] == "pull_off") == load
+    assert f"{load:.2f}" in captured.out
+    for name, size in (("curve.png", (1460, 2000)), ("body.png", (1600, 1000)), ("jump.gif", (800, 500))):
+        with Image.open(tmp_path / name) as image:
+            assert image.size == size
+            image.load()
+    notes = json.loads((tmp_path / "curve" / "notes.json").read_text())
+    events = [state["event"] for state in notes["states"]]
+    assert events == [None, "jump_on", "jump_off", "pull_off", "zero_load", None]
+    for state in notes["states"]:
+        body, solid = (meshio.read(tmp_path / "curve" / state[kind]) for kind in ("body", "solid"))
+        assert {block.type for block in body.cells} == {"quad9"}
+        assert {block.type for block in solid.cells} == {"wedge18", "hexahedron27"}
+        if state["event"] == "pull_off":
+            assert body.field_data["load"][0] == pytest.approx(load, rel=1e-3)
+    assert set((tmp_path / "curve").iterdir()) >= {tmp_path / "curve" / "body.pvd", tmp_path / "curve" / "contact.pvd"}
+
+
+def test_a_material_without_a_spring_is_drawn_and_written_in_si(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    arguments = [*MATERIAL, "--rtol", "1e-2", "--plot", "a.svg", "--vtk", "fields", "--points", "0"]
+    assert cli.main(["curve", *arguments]) == 0
+    assert "jumps under fixed grips" in (tmp_path / "a.svg").read_text()
+    zero = meshio.read(tmp_path / "fields" / "body_0003.vtu")
+    modulus = 1e9 / (1 - 0.3**2)
+    beta = np.cbrt(1e-14 * 0.05 / modulus)
+    assert zero.field_data["contact_radius_m"][0] == pytest.approx(2.2 * beta, rel=0.2)
+    assert zero.field_data["contact_modulus_Pa"][0] == pytest.approx(modulus)
+    largest = zero.point_data["stress_cylindrical_Pa"][:, 2].max()
+    assert largest == pytest.approx(16 / (9 * np.sqrt(3)) * 0.05 / 0.3e-9, rel=0.02)  # the law's largest tension
 
 
 def test_a_pipe_gets_no_plot_and_a_terminal_does(both):

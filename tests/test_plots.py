@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from matplotlib import rc_context
+from matplotlib.colors import to_rgba
 
 from fem_adhesion.fields import state_at
 from fem_adhesion.output import curve_lines, load_plots, mesh_plots, plots, profile_plots
@@ -40,7 +41,7 @@ def real():
 def _drawn(curves):
     with rc_context(plots.LOOK):
         figure = plots.draw(curves)
-        figure.canvas.draw()
+        figure.draw_without_rendering()
     return figure
 
 
@@ -222,3 +223,140 @@ def test_each_format_is_written_the_same_twice(curves, form, tmp_path):
     assert files[0].stat().st_size > 10_000
     if form != "pdf":  # which has the time in it
         assert files[0].read_bytes() == files[1].read_bytes()
+
+
+# --- labels of the axes against the data drawn ---
+
+LABELS = {
+    "load": (r"approach $\alpha^* = \alpha/\epsilon$", r"load $W/R\Delta\gamma$"),
+    "pressure": (r"radius $u = r/\beta$", r"pressure $P = \mu\epsilon p/\Delta\gamma$"),
+    "gap": (r"radius $u = r/\beta$", r"gap $H = h/\epsilon - 1$"),
+    "spike": (r"radius $u = r/\beta$", r"pressure $P = \mu\epsilon p/\Delta\gamma$"),
+    "body": (r"approach $\alpha^* = \alpha/\epsilon$", "central gap $H(0)$"),
+}
+SI_LABELS = {
+    "load": (r"approach $\alpha$, nm", "load $W$, nN"),
+    "pressure": ("radius $r$, nm", "pressure $p$, MPa"),
+    "gap": ("radius $r$, nm", r"gap $h - \epsilon$, nm"),
+    "spike": ("radius $r$, nm", "pressure $p$, MPa"),
+    "body": (r"approach $\alpha$, nm", r"central gap $h(0) - \epsilon$, nm"),
+}
+IN_SI = {
+    "approach": UNITS.spacing * 1e9,
+    "central_gap": UNITS.spacing * 1e9,
+    "load": UNITS.radius * UNITS.work_of_adhesion * 1e9,
+    "radius": np.cbrt(UNITS.radius**2 * UNITS.work_of_adhesion / UNITS.modulus) * 1e9,
+    "pressure": np.cbrt(UNITS.modulus**2 * UNITS.work_of_adhesion / UNITS.radius) * 1e-6,  # dgamma/(mu eps)
+}
+
+
+@pytest.mark.parametrize("material", [False, True])
+def test_each_axis_is_labelled_with_what_is_drawn_along_it(curves, real, material):
+    """In each panel a state is found whose numbers are known, at the place that the labels say."""
+    asked, labels = (real, SI_LABELS) if material else (curves[2.0], LABELS)
+    size = IN_SI if material else dict.fromkeys(IN_SI, 1.0)
+    figure, path = _drawn(asked), asked.path
+    for name, (x, y) in labels.items():
+        assert (_panel(figure, name).get_xlabel(), _panel(figure, name).get_ylabel()) == (x, y)
+    words = {"pull_off": "pull-off", "jump_on": "jump on", "jump_off": "jump off", "zero_load": "zero load"}
+    load, body = _lines(_panel(figure, "load")), _panel(figure, "body")
+    gaps, pressures = _lines(_panel(figure, "gap")), _lines(_panel(figure, "pressure"))
+    marks = [line for line in body.lines if len(line.get_xdata()) == 1]
+    assert len(marks) == len(path.events)
+    for event, mark in zip((path.event(name) for name in profile_plots.STATES), marks, strict=True):
+        x, y = event.approach * size["approach"], event.load * size["load"]
+        assert load[words[event.name]].get_xydata()[0] == pytest.approx((x, y), rel=1e-6, abs=1e-9)
+        assert mark.get_xydata()[0] == pytest.approx((x, event.central_gap * size["central_gap"]), rel=1e-6)
+        r, gap = gaps[words[event.name]].get_xydata().T
+        assert (r[0], gap[0]) == (0, pytest.approx(event.central_gap * size["central_gap"], rel=1e-3, abs=1e-4))
+        r, p = pressures[words[event.name]].get_xydata().T
+        law = LENNARD_JONES.pressure(np.array([event.central_gap]), path.tabor)[0]
+        assert (r[0], p[0]) == (0, pytest.approx(law * size["pressure"], rel=1e-2))
+        if np.isfinite(event.contact_radius):  # where the tension is largest
+            assert r[p.argmin()] == pytest.approx(event.contact_radius * size["radius"], rel=1e-2)
+            assert p.min() == pytest.approx(-16 / (9 * np.sqrt(3)) * path.tabor * size["pressure"], rel=1e-2)
+    nodes = _lines(_panel(figure, "spike"))["nodes of the grid"]
+    radius = path.event("jump_off").contact_radius * size["radius"]
+    assert nodes.get_xdata()[nodes.get_ydata().argmin()] == pytest.approx(radius, rel=2e-2)
+
+
+def test_the_legend_of_stability_is_that_of_the_curve(curves):
+    """Each line that is named after a stability passes through states of that stability, and through no others."""
+    path, lines = curves[5.0].path, _lines(_panel(_drawn(curves[5.0]), "load"))
+    for at in range(len(path.points)):
+        kind = curve_lines.UNSTABLE if not path.stable[at] else curve_lines.GRIPS_ONLY
+        kind = curve_lines.STABLE if path.stable_under_dead_load[at] else kind
+        drawn = lines[curve_lines.KINDS[kind]].get_xydata()
+        place = np.array([path.approach[at], path.load[at]])
+        assert np.nanmin(np.hypot(*(drawn - place).T)) < 1e-9
+
+
+def test_the_axes_of_the_mesh_are_radius_and_height(elements):
+    body = _panel(_drawn(elements), "body")
+    assert (body.get_xlabel(), body.get_ylabel()) == (r"radius $u = r/\beta$", r"height $z/\beta$")
+    r, z = _lines(body)["rigid sphere"].get_xydata().T
+    assert r[0] == 0
+    assert np.all(np.diff(z) > 0)
+    places = np.concatenate([path.vertices for path in body.collections[0].get_paths()])
+    assert places[:, 0].min() > -0.1
+    assert places[:, 1].min() < -3
+
+
+# --- what is on the page ---
+
+PAGES = {
+    "nearly rigid": Question(Scene(0.05), "fem", 1e-2),
+    "nearly JKR": Question(Scene(5.0), "both", 1e-2),
+    "sphere": Question(Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=60.0), "both", 1e-2, stiffness=3.0),
+    "material": Question(Scene(UNITS.tabor), "fem", 1e-2, units=UNITS),
+    "rigid": Question(Scene(1e-8), rtol=1e-2),
+    "little load": Question(Scene(2.0), rtol=1e-2, to_load=0.01),
+}
+
+
+@pytest.fixture(scope="module", params=PAGES)
+def made(request):
+    return _drawn(solve(PAGES[request.param]))
+
+
+def test_no_title_and_no_label_is_cut_off(made):
+    for axes in made.axes:
+        for text in (axes.title, axes._left_title, axes.xaxis.label, axes.yaxis.label):
+            if text.get_text():
+                box = text.get_window_extent()
+                assert made.bbox.x0 <= box.x0
+                assert box.x1 <= made.bbox.x1
+                assert made.bbox.y0 <= box.y0
+                assert box.y1 <= made.bbox.y1
+
+
+def test_no_two_titles_overlap(made):
+    boxes = [axes._left_title.get_window_extent() for axes in made.axes]
+    assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
+
+
+def test_each_legend_names_what_is_to_be_seen(made):
+    for axes in made.axes:
+        if axes.get_legend() is None:
+            continue
+        low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+        lines = _lines(axes)
+        for text in axes.get_legend().get_texts():
+            line = lines[text.get_text()]
+            if text.get_text().startswith("jumps"):
+                assert any(note.arrow_patch.get_edgecolor() == to_rgba(line.get_color()) for note in _arrows(axes))
+            elif text.get_text() == "edge of contact":  # across the panel
+                along = 1 if np.ptp(line.get_ydata()) == 0 else 0
+                at = (line.get_xdata(), line.get_ydata())[along][0]
+                assert low[along] <= at <= high[along]
+            else:
+                at = line.get_xydata()
+                assert np.any(np.all((low <= at) & (at <= high), axis=1)), text.get_text()
+
+
+def test_a_gap_is_smooth_up_to_the_equator_of_a_sphere(made):
+    for line in _panel(made, "gap").lines:
+        if line.get_label() in {look.words for look in profile_plots.STATES.values()}:
+            rise = np.diff(line.get_ydata())
+            far = line.get_xdata()[:-1] > 0.95 * line.get_xdata().max()
+            assert np.all(rise[far] > 0)

@@ -3,16 +3,25 @@
 import csv
 import json
 import re
+from dataclasses import replace
+from html import unescape
 
+import numpy as np
 import pytest
+from made_up import ENDINGS
+from page_tables import tables
 
 from fem_adhesion import Scene, cli
-from fem_adhesion.output.report import Contents, page, walk_data
+from fem_adhesion.beside import Beside
+from fem_adhesion.fields import state_at
+from fem_adhesion.output.report import WORDS, Contents, page, walk_data
 from fem_adhesion.output.report_figures import figure
 from fem_adhesion.output.report_parts import MOST_LINES, cell, read_table
 from fem_adhesion.studies import crosscheck
 from fem_adhesion.studies.curves import Question, solve
-from fem_adhesion.studies.walk import walk
+from fem_adhesion.studies.walk import SEEN, _station, walk
+from halfspace.errors import NotConverged
+from halfspace.lennard_jones import LENNARD_JONES
 
 
 @pytest.fixture(scope="module")
@@ -44,10 +53,11 @@ def test_the_levels_hold_every_quantity_with_its_verdict(contents, html):
     (case,) = contents.cases
     levels = html[html.index('id="levels"') : html.index('id="speed"')]
     assert levels.count("<td>agree</td>") == len(case.rows)
-    summary = re.search(r"<td>The events</td><td>(\d+)</td><td>(\d+)</td><td>([\d.e-]+)</td>", levels)
+    summary = next(line for table in tables(levels) for line in table if line.get("level") == "The events")
     events = [row for row in case.rows if ":" not in row.quantity]
-    assert int(summary[1]) == int(summary[2]) == len(events)
-    assert float(summary[3]) == pytest.approx(max(row.difference / row.error for row in events), rel=0.05)
+    assert int(summary["quantities"]) == int(summary["agree"]) == len(events)
+    largest = max(row.difference / row.error for row in events)
+    assert float(summary["largest difference / error"]) == pytest.approx(largest, rel=0.05)
 
 
 def test_pictures_keep_to_themselves():
@@ -133,3 +143,157 @@ def test_the_command_writes_the_page_with_what_other_commands_left(tmp_path, cap
     assert "<td>tabor &lt;50&gt;</td>" in html
     assert "Of 1 cases: 1 converged." in html
     assert "fem-adhesion hard --out hard" not in html
+
+
+# --- what is said, and its negation ---
+
+
+def words_of(html):
+    """The page as it is read: no markup, one space between words."""
+    shown = re.sub(r"<(script|style).*?</\1>", "", html, flags=re.S)
+    return re.sub(r"\s+", " ", unescape(re.sub(r"<[^>]*>", " ", shown)))
+
+
+@pytest.mark.parametrize("verdict", ENDINGS)
+def test_the_page_tells_the_verdict_of_its_cases_and_no_other(contents, verdict):
+    html = page(replace(contents, cases=ENDINGS[verdict]))
+    assert html.count(f'<p class="verdict {verdict}">') == 1
+    said = unescape(re.search(r'<p class="verdict.*?</p>', html, re.S)[0])
+    assert (WORDS["agree"] + "." in said) == (verdict == "agree")
+    assert WORDS[verdict] in said
+    for name in ("agree", "inconclusive", "disagree"):
+        count = sum(row.verdict == name for case in ENDINGS[verdict] for row in case.rows)
+        assert (f"; {count} quantities: {name}" in said) == bool(count)
+    if verdict == "failed":
+        assert "A solver failed at Tabor parameter 3. The two solvers agree at Tabor parameter 2." in said
+        assert "no convergence in 40 steps; try a nearer start" in html
+
+
+@pytest.mark.parametrize("verdict", ENDINGS)
+def test_the_command_tells_the_verdict_of_its_page_in_its_exit_code(contents, verdict, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(crosscheck, "run", lambda scenes, rtol: iter(ENDINGS[verdict]))  # noqa: ARG005
+    monkeypatch.setattr("fem_adhesion.studies.curves.solve", lambda *_: contents.curves)
+    monkeypatch.setattr("fem_adhesion.studies.walk.walk", lambda *_, **__: contents.walk)
+    code = cli.main(["report", "--out", str(tmp_path / "a.html"), "--tabor", "2"])
+    assert code == (0 if verdict == "agree" else 1)
+    assert capsys.readouterr().out == f"verdict: {verdict}; written: {tmp_path / 'a.html'}\n"
+    assert f'<p class="verdict {verdict}">' in (tmp_path / "a.html").read_text()
+
+
+def test_a_curve_that_cannot_be_solved_is_said_to_be_missing(tmp_path, monkeypatch, capsys):
+    def fail(*_):
+        raise NotConverged("no convergence on purpose; try another day")
+
+    monkeypatch.setattr(crosscheck, "run", lambda scenes, rtol: iter(ENDINGS["agree"]))  # noqa: ARG005
+    monkeypatch.setattr("fem_adhesion.studies.curves.solve", fail)
+    assert cli.main(["report", "--out", str(tmp_path / "a.html"), "--tabor", "2"]) == 1
+    assert "verdict: failed" in capsys.readouterr().out
+    html = (tmp_path / "a.html").read_text()
+    assert '<p class="verdict failed">' in html
+    assert "The curve was not solved." in html
+    assert "Not solved: no convergence on purpose; try another day." in html
+    assert "Walk along the curve</a> (not solved)" in html
+    assert 'id="walk-data"' not in html
+
+
+def test_what_is_said_of_the_states_is_counted(contents):
+    walked = contents.walk
+    unstable = sum(not station.stable for station in walked.stations)
+    total = len(walked.stations)
+    assert 0 < unstable < total
+    said = words_of(page(contents))
+    assert f"Of {total} states {unstable} are unstable under fixed grips: hollow points." in said
+    assert "unstable branch" in said
+    assert "the half-space has no such state" not in said
+    turned = replace(walked, stations=tuple(replace(one, stable=not one.stable) for one in walked.stations))
+    assert f"Of {total} states {total - unstable} are unstable" in words_of(page(replace(contents, walk=turned)))
+    none = np.full_like(walked.radii, np.nan)
+    alone = [replace(one, pressure=np.array([one.pressure[0], none])) for one in walked.stations[:3]]
+    missing = replace(walked, stations=(*alone, *walked.stations[3:]))
+    assert "At 3 of them the half-space has no such state." in words_of(page(replace(contents, walk=missing)))
+
+
+def test_a_curve_without_jumps_is_not_said_to_have_any():
+    curves, walked = solve(Question(Scene(0.5), "both", 1e-2)), walk(0.5, rtol=1e-2, states=3)
+    html = page(Contents(ENDINGS["agree"], curves, walked, {}))
+    said = words_of(html)
+    assert f"All {len(walked.stations)} states are stable under fixed grips." in said
+    assert "unstable branch" not in said
+    caption = unescape(re.search(r'aria-label="(Load against approach at .*?)"', html)[1])
+    assert not re.search("unstable|jump|fold", caption)
+    assert "Pressure and gap at pull-off, zero load;" in caption
+
+
+def test_the_caption_names_what_the_figure_shows(html):
+    caption = unescape(re.search(r'aria-label="(Load against approach at .*?)"', html)[1])
+    for name in (
+        "JKR",
+        "Maugis-Dugdale",
+        "unstable",
+        "half-space",
+        "fold",
+        "jumps under fixed grips",
+        "the deformed mesh",
+    ):
+        assert name in caption
+    assert "Pressure and gap at jump on, jump off, pull-off, zero load;" in caption
+
+
+@pytest.mark.parametrize(("outcomes", "warning"), [("converged refused", ""), ("converged wrong wrong", "2 wrong.")])
+def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, contents, tmp_path):
+    lines = [f"case {k},{outcome}" for k, outcome in enumerate(outcomes.split())]
+    (tmp_path / "hard.csv").write_text("\n".join(["name,outcome", *lines, ""]))
+    (tmp_path / "locking.csv").write_text("poisson,error\n0.3,1e-5\n")
+    html = page(replace(contents, directories={"hard": tmp_path}))
+    assert ("Hard cases</a> (with failures)" in html) == bool(warning)
+    assert ('<p class="warning">' in html) == bool(warning)
+    assert warning in html
+
+
+# --- the walk ---
+
+
+def test_states_of_the_walk_are_stable_where_the_curve_is(contents):
+    path, walked = contents.walk.path, contents.walk
+    stable = dict(zip(path.arclength.tolist(), path.stable.tolist(), strict=True))
+    between = [station for station in walked.stations if not station.name]
+    assert [station.stable for station in between] == [stable[station.arclength] for station in between]
+    data = data_of(page(contents))["stations"]
+    assert [one["stable"] for one in data] == [station.stable for station in walked.stations]
+
+
+def test_each_number_of_a_station_stands_under_its_name(contents):
+    walked = contents.walk
+    shown = data_of(page(contents))["stations"]
+    for one, station in zip(shown, walked.stations, strict=True):
+        for name in ("arclength", "approach", "load", "central_gap"):
+            assert one[name] == pytest.approx(getattr(station, name), rel=1e-4)
+        assert (one["contact_radius"] is None) == np.isnan(station.contact_radius)
+    for station in walked.stations:  # the gap on the axis, and the contact radius where the tension is largest
+        assert station.gap[0][0] == pytest.approx(station.central_gap, abs=1e-6)
+        if not np.isnan(station.contact_radius):
+            inside = station.gap[0] < LENNARD_JONES.edge_gap
+            assert walked.radii[inside].max() == pytest.approx(station.contact_radius, abs=2 * walked.radii[1])
+
+
+def test_the_first_profile_is_of_the_elements_and_the_second_of_the_half_space(contents, monkeypatch):
+    path = contents.walk.path
+    found = path.stages[-1]["pull_off"]
+    state = state_at(Scene(2.0), found.problem, found.point, how=SEEN)
+    other = Beside(np.full(state.radii.size, 7.0), np.full(state.radii.size, 9.0), np.zeros(4))
+    monkeypatch.setattr("fem_adhesion.studies.walk.half_space_beside", lambda _: other)
+    radii = np.array([0.0, 0.5, 1.0])
+    station = _station(state, radii, radii)
+    assert station.pressure[1] == pytest.approx([7.0] * 3)
+    assert station.gap[1] == pytest.approx([9.0] * 3)
+    assert station.pressure[0] == pytest.approx(LENNARD_JONES.pressure(station.gap[0], 2.0), abs=1e-3)
+
+
+def test_the_report_of_the_readme_has_all_its_parameters_and_the_curve_it_says(whole):
+    run = whole("fem-adhesion report --out report.html")
+    assert (run.code, run.out) == (0, "verdict: agree; written: report.html\n")
+    html = (run / "report.html").read_text()
+    levels = [line for table in tables(html) for line in table if "half-space" in line and "quantity" in line]
+    assert {line["Tabor parameter"] for line in levels} == {"0.05", "0.5", "1", "2", "3", "5"}
+    assert {line["verdict"] for line in levels} == {"agree"}
+    assert data_of(html)["tabor"] == 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -69,6 +70,7 @@ def _compute(scenes: list[Scene], rtol: float, question: Question, directories: 
     from fem_adhesion.studies import crosscheck
     from fem_adhesion.studies.curves import solve
     from fem_adhesion.studies.walk import walk
+    from halfspace.errors import NotConverged
 
     with progress_bar() as step:
         cases = []
@@ -76,7 +78,12 @@ def _compute(scenes: list[Scene], rtol: float, question: Question, directories: 
         for case in crosscheck.run(scenes, rtol=rtol):
             cases.append(case)
             step("comparison", len(cases), len(scenes))
-        curves = solve(question, step)
-        walked = walk(question.scene.tabor, rtol=rtol, progress=step)
+        contents = Contents(cases, None, None, directories)
+        try:
+            curves = solve(question, step)
+            walked = walk(question.scene.tabor, rtol=rtol, progress=step)
+            contents = replace(contents, curves=curves, walk=walked)
+        except NotConverged as error:
+            contents = replace(contents, lost=str(error))
         step("page", 0, 1)
-        return overall_verdict(cases), page(Contents(cases, curves, walked, directories))
+        return "failed" if contents.lost else overall_verdict(cases), page(contents)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from fem_adhesion.output import greenwood_style as style
 from fem_adhesion.output.load_plots import draw_central_gap, draw_load
 from fem_adhesion.output.mesh_plots import draw_mesh, is_drawn
-from fem_adhesion.output.profile_plots import draw_gap, draw_pressure, draw_spike
+from fem_adhesion.output.profile_plots import STATES, draw_gap, draw_pressure, draw_spike
 from fem_adhesion.studies.curves import FINITE_ELEMENTS, Curves
 from halfspace.errors import InputError
 
@@ -36,18 +36,33 @@ def write(curves: Curves, file: TextIO, form: str) -> None:
     file.buffer.write(picture.getbuffer())
 
 
+def has_mesh(curves: Curves) -> bool:
+    """Whether the page shows the mesh, and not the central gap."""
+    return curves.solver == FINITE_ELEMENTS and is_drawn(curves.question.scene)
+
+
+def states(curves: Curves) -> list[str]:
+    """Names of the events whose profiles the page shows."""
+    return [look.words for name, look in STATES.items() if curves.path.event(name)]
+
+
+def named(figure: Figure) -> list[str]:
+    """What the legend of the page's curve names."""
+    legend = figure.axes[0].get_legend()
+    return [text.get_text() for text in legend.get_texts()] if legend else []
+
+
 def draw(curves: Curves) -> Figure:
     """Page with the curve on top, the profiles of its states, the edge spike, and the mesh or the central gap."""
     figure = Figure(figsize=SIZE, layout="constrained")
     rows = [["load", "load"], ["pressure", "gap"], ["spike", "body"]]
     areas: dict[str, Any] = figure.subplot_mosaic(rows, height_ratios=[1.6, 1, 1])  # type: ignore[arg-type]
-    in_body = curves.solver == FINITE_ELEMENTS and is_drawn(curves.question.scene)
     painters = {
         "load": draw_load,
         "pressure": draw_pressure,
         "gap": draw_gap,
         "spike": draw_spike,
-        "body": draw_mesh if in_body else draw_central_gap,
+        "body": draw_mesh if has_mesh(curves) else draw_central_gap,
     }
     for letter, (name, paint) in zip("abcde", painters.items(), strict=True):
         words = paint(areas[name], curves)

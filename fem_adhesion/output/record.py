@@ -50,7 +50,7 @@ def crosscheck_record(cases: Sequence[Case | Failure]) -> dict[str, Any]:
 def _case(case: Case | Failure) -> dict[str, Any]:
     scene = {"tabor": case.scene.tabor, "poisson": case.scene.poisson, "verdict": verdict_of(case)}
     if isinstance(case, Failure):
-        return {**scene, "reason": case.reason}
+        return {**scene, "reason": case.reason, "comparison": [_row(row) for row in case.rows]}
     return {
         **scene,
         "halfspace": _solution(case.halfspace),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from fem_adhesion.output.record import verdict_of, versions
@@ -14,14 +15,14 @@ LEVELS = {
     "cross-residual:": "The state found by one solver in the equations of the other",
     "": "The events",
 }
-SUMMARY = ("level", "quantities", "agree", "largest difference / error", "largest error / budget")
+VERDICTS = ("agree", "inconclusive", "disagree")
+SUMMARY = ("level", "quantities", *VERDICTS, "largest difference / error", "largest error / budget")
 
 Cases = Sequence[Case | Failure]
 
 
 def crosscheck_section(cases: Cases) -> Section:
     """The comparison: a summary, and a table for each of its three levels."""
-    solved = [case for case in cases if isinstance(case, Case)]
     failures = [(f"{case.scene.tabor:g}", case.reason) for case in cases if isinstance(case, Failure)]
     lost = (Table("Not solved", ("Tabor parameter", "reason"), failures, open=True),) if failures else ()
     return Section(
@@ -34,11 +35,11 @@ def crosscheck_section(cases: Cases) -> Section:
             + "; ".join(f"Tabor parameter {case.scene.tabor:g}: {verdict_of(case)}" for case in cases)
             + ".",
         ),
-        tables=(_summary(solved), *lost, *(_level_table(solved, level) for level in LEVELS)),
+        tables=(_summary(cases), *lost, *(_level_table(cases, level) for level in LEVELS)),
     )
 
 
-def _rows(cases: Sequence[Case], level: str) -> Iterator[tuple[float, Row]]:
+def _rows(cases: Cases, level: str) -> Iterator[tuple[float, Row]]:
     """Tabor parameters and rows of a level."""
     for case in cases:
         yield from ((case.scene.tabor, row) for row in case.rows if _level(row) == level)
@@ -48,20 +49,24 @@ def _level(row: Row) -> str:
     return next(level for level in LEVELS if row.quantity.startswith(level))
 
 
-def _summary(cases: Sequence[Case]) -> Table:
+def _summary(cases: Cases) -> Table:
     lines = [_summary_line(LEVELS[level], [row for _, row in _rows(cases, level)]) for level in LEVELS]
     return Table("Summary", SUMMARY, lines, open=True)
 
 
 def _summary_line(title: str, rows: Sequence[Row]) -> list[str]:
-    agree = sum(row.verdict == "agree" for row in rows)
-    known = [row for row in rows if row.error > 0]
-    ratios = [(row.difference / row.error, row.error / row.budget) for row in known]
+    counts = [str(sum(row.verdict == verdict for row in rows)) for verdict in VERDICTS]
+    known = [row for row in rows if row.halfspace and row.finite_element]
+    ratios = [(_ratio(row.difference, row.error), _ratio(row.error, row.budget)) for row in known]
     largest = [f"{max(column):.2g}" for column in zip(*ratios, strict=True)] or ["none", "none"]
-    return [title, str(len(rows)), str(agree), *largest]
+    return [title, str(len(rows)), *counts, *largest]
 
 
-def _level_table(cases: Sequence[Case], level: str) -> Table:
+def _ratio(part: float, whole: float) -> float:
+    return part / whole if whole else (math.inf if part else 0.0)
+
+
+def _level_table(cases: Cases, level: str) -> Table:
     lines = [[f"{tabor:g}", *map(symbols, cells(row))] for tabor, row in _rows(cases, level)]
     return Table(LEVELS[level], ("Tabor parameter", *COLUMNS), lines)
 

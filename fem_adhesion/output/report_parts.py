@@ -38,6 +38,8 @@ class Section:
         For links, and for the reader.
     missing : bool
         Whether the command of that name was not run for it.
+    warning : str
+        What went wrong in it, or "".
     paragraphs, figures, tables : sequence
         In the order shown.
     """
@@ -45,6 +47,7 @@ class Section:
     name: str
     title: str
     missing: bool = False
+    warning: str = ""
     paragraphs: Sequence[str] = ()
     figures: Sequence[Figure] = ()
     tables: Sequence[Table] = ()

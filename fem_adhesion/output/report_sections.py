@@ -12,6 +12,9 @@ from fem_adhesion.output.report_figures import figure
 from fem_adhesion.output.report_parts import Section, Table, read_table, symbols
 from halfspace.errors import InputError
 
+WELL = ("converged", "refused")
+"""How a hard case may end."""
+
 
 @dataclass(frozen=True)
 class Source:
@@ -102,9 +105,14 @@ def section_of(source: Source, directory: Path | None) -> Section:
         if captions[stem]  # those without were not drawn
     )
     tables = {stem: read_table(_require(directory / f"{stem}.csv", source), title) for stem, title in source.tables}
-    counted = (_outcomes(tables[source.counted]),) if source.counted else ()
-    paragraphs = (source.introduction, *counted)
-    return Section(source.command, source.title, paragraphs=paragraphs, figures=figures, tables=tuple(tables.values()))
+    paragraphs, warning = [source.introduction], ""
+    if source.counted:
+        ended = _outcomes(tables[source.counted])
+        paragraphs.append(f"Of {ended.total()} cases: {', '.join(f'{n} {outcome}' for outcome, n in ended.items())}.")
+        wrong = {outcome: n for outcome, n in ended.items() if outcome not in WELL}
+        warning = f"{', '.join(f'{n} {outcome}' for outcome, n in wrong.items())}." if wrong else ""
+    shown = tuple(tables.values())
+    return Section(source.command, source.title, warning=warning, paragraphs=paragraphs, figures=figures, tables=shown)
 
 
 def _captions(source: Source, directory: Path) -> dict[str, str]:
@@ -115,11 +123,10 @@ def _captions(source: Source, directory: Path) -> dict[str, str]:
         return {row["figure"]: row["caption"] for row in csv.DictReader(file)}
 
 
-def _outcomes(table: Table) -> str:
+def _outcomes(table: Table) -> Counter[str]:
     """How many lines of a table ended how."""
     place = list(table.columns).index("outcome")
-    ended = Counter(line[place] for line in table.lines)
-    return f"Of {len(table.lines)} cases: {', '.join(f'{count} {outcome}' for outcome, count in ended.items())}."
+    return Counter(line[place] for line in table.lines)
 
 
 def _require(file: Path, source: Source) -> Path:

@@ -67,7 +67,7 @@
   const pressure = panel("pressure", radii, range(near.flatMap((s) => s.pressure[0]), 0.05));
   const highest = Math.max(...near.map((s) => s.central_gap)) + 4;
   const gap = panel("gap", radii, [-0.5, highest]);
-  const between = 2.2; // heights in eps per beta of depth at which the lines inside the body are drawn
+  const between = data.between; // heights in eps per beta of depth at which the lines inside the body are drawn
   const heights = near.flatMap((s) => s.lines.flatMap((rises, line) => rises.map((rise) => rise - between * data.depths[line])));
   const body = panel("body", radii, [Math.min(...heights) - 0.5, Math.max(...heights) + 5]);
 

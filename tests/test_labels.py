@@ -1,0 +1,216 @@
+"""Made-up results whose values all differ go through every table and record and are read back by their labels."""
+
+import json
+import re
+from dataclasses import fields, replace
+
+import pytest
+from made_up import AGREE, DISAGREE, ENDINGS, FAILED, MISSING, NUMBERS, WIDE, case
+from page_tables import tables
+from rich.console import Console
+
+from fem_adhesion import cli
+from fem_adhesion.output import report_levels
+from fem_adhesion.output.record import VERDICTS, crosscheck_record, overall_verdict
+from fem_adhesion.output.report import WORDS, verdict_words
+from fem_adhesion.output.report_parts import symbols
+from fem_adhesion.output.tables import COLUMNS, STYLES, crosscheck_table
+from fem_adhesion.studies import crosscheck
+from fem_adhesion.studies.crosscheck import Failure, Row
+from halfspace.curve import Estimate
+
+
+def row_as_read(cells):
+    """The numbers of a line under their headers."""
+    return {
+        "quantity": cells["quantity"],
+        "unit": cells["unit"],
+        "halfspace": float(cells["half-space"]),
+        "finite_element": float(cells["finite elements"]),
+        "difference": float(cells["difference"]),
+        "halfspace_error": float(cells["error (hs)"]),
+        "finite_element_error": float(cells["error (fe)"]),
+        "budget": float(cells["budget"]),
+        "verdict": cells["verdict"],
+    }
+
+
+def row_as_made(row):
+    return {
+        "quantity": row.quantity,
+        "unit": row.unit,
+        "halfspace": row.halfspace.value,
+        "finite_element": row.finite_element.value,
+        "difference": row.difference,
+        "halfspace_error": row.halfspace.error,
+        "finite_element_error": row.finite_element.error,
+        "budget": row.budget,
+        "verdict": row.verdict,
+    }
+
+
+def same(read, made):
+    assert read.keys() == made.keys()
+    for key, value in made.items():
+        if isinstance(value, str):
+            assert read[key] == value, key
+        else:
+            assert read[key] == pytest.approx(value, rel=0.05, abs=0), key
+
+
+def test_each_column_of_the_table_holds_what_its_header_says():
+    made = case(AGREE, DISAGREE, WIDE)
+    table = crosscheck_table(made)
+    assert [column.header for column in table.columns] == list(COLUMNS)
+    lines = zip(*(column.cells for column in table.columns), strict=True)
+    for line, row in zip(lines, made.rows, strict=True):
+        cells = dict(zip((column.header for column in table.columns), line, strict=True))
+        read = row_as_read(cells)
+        same(read, row_as_made(row))
+        for side in ("halfspace", "finite_element"):  # digits down to the first uncertain one
+            assert abs(read[side] - getattr(row, side).value) <= getattr(row, side).error
+    assert list(table.caption) == ["half-space 111 unknowns, 7.50 s", "finite elements 222 unknowns, 9.25 s"]
+
+
+def test_a_value_that_a_solver_does_not_find_is_none_and_no_number():
+    (line,) = zip(*(column.cells for column in crosscheck_table(case(MISSING)).columns), strict=True)
+    cells = dict(zip(COLUMNS, line, strict=True))
+    assert (cells["half-space"], cells["finite elements"], cells["difference"]) == ("-2.25000", "none", "-")
+    assert (cells["error (hs)"], cells["error (fe)"], cells["verdict"]) == ("1.0e-05", "-", "disagree")
+
+
+def test_each_key_of_the_record_holds_what_it_says():
+    made = case(AGREE, DISAGREE, WIDE, MISSING)
+    record = json.loads(json.dumps(crosscheck_record([made, FAILED]), allow_nan=False))
+    solved, failed = record["cases"]
+    for read, row in zip(solved["comparison"], made.rows[:3], strict=False):
+        error = read.pop("error")
+        assert error == row.halfspace.error + row.finite_element.error
+        assert read == row_as_made(row)
+    missing = solved["comparison"][3]
+    assert (missing["halfspace"], missing["finite_element"], missing["error"]) == (-2.25, None, None)
+    for key, path, first in (("halfspace", made.halfspace, 100.0), ("finite_element", made.finite_element, 200.0)):
+        assert (solved[key]["unknowns"], solved[key]["seconds"]) == (path.unknowns, path.seconds)
+        assert solved[key]["settings"] == path.settings
+        assert set(solved[key]["events"]) == {"pull_off", "jump_on", "jump_off"}
+        for place, name in enumerate(("pull_off", "jump_on", "jump_off")):
+            event = solved[key]["events"][name]
+            assert [event[number] for number in NUMBERS] == [first + 10 * place + k + 0.5 for k in range(4)]
+            assert event["approach_error"] == pytest.approx((first + 10 * place) * 1e-6)
+            assert event["load_error"] == pytest.approx((first + 10 * place + 1) * 1e-6)
+    assert (solved["tabor"], solved["verdict"]) == (2.0, "disagree")
+    assert (failed["tabor"], failed["verdict"], failed["reason"]) == (3.0, "failed", FAILED.reason)
+    assert failed["comparison"][0]["halfspace"] == 0.5
+    assert record["verdict"] == "failed"
+
+
+def section_text(section):
+    return "".join(
+        f"<table><tr>{''.join(f'<th>{c}</th>' for c in table.columns)}</tr>"
+        + "".join(f"<tr>{''.join(f'<td>{c}</td>' for c in line)}</tr>" for line in table.lines)
+        + "</table>"
+        for table in section.tables
+    )
+
+
+def test_the_levels_of_the_report_hold_each_value_under_its_header():
+    section = report_levels.crosscheck_section([case(AGREE, DISAGREE), FAILED])
+    summary, lost, operators, residuals, events = tables(section_text(section))
+    assert residuals == []
+    assert lost == [{"Tabor parameter": "3", "reason": FAILED.reason}]
+    for line, row, tabor in zip([*operators, *events], (WIDE, AGREE, DISAGREE), ("3", "2", "2"), strict=True):
+        assert (line["Tabor parameter"], line["quantity"]) == (tabor, row.quantity)
+        assert line["unit"] == symbols(row.unit)
+        same(row_as_read({**line, "unit": row.unit}), row_as_made(row))
+    of_events = next(line for line in summary if line["level"] == "The events")
+    counts = {name: of_events[name] for name in ("quantities", "agree", "inconclusive", "disagree")}
+    assert counts == {"quantities": "2", "agree": "1", "inconclusive": "0", "disagree": "1"}
+    assert float(of_events["largest difference / error"]) == pytest.approx(0.25 / 4e-4, rel=0.05)
+    assert float(of_events["largest error / budget"]) == pytest.approx(7e-3 / 7.5e-2, rel=0.05)
+    of_operators = next(line for line in summary if line["level"].startswith("Both elastic"))
+    assert (of_operators["agree"], of_operators["inconclusive"]) == ("0", "1")
+    assert "Tabor parameter 2: disagree; Tabor parameter 3: failed." in section.paragraphs[1]
+
+
+def test_a_difference_without_an_error_is_not_left_out_of_the_summary():
+    certain = replace(DISAGREE, halfspace=Estimate(1.0, 0.0), finite_element=Estimate(2.0, 0.0), difference=1.0)
+    summary = tables(section_text(report_levels.crosscheck_section([case(certain)])))[0]
+    assert summary[-1]["largest difference / error"] == "inf"
+    (missing,) = (line for line in tables(section_text(report_levels.crosscheck_section([case(MISSING)])))[0][-1:])
+    assert (missing["disagree"], missing["largest difference / error"]) == ("1", "none")
+
+
+def test_settings_and_costs_stand_beside_their_solver():
+    section = report_levels.settings_section([case(AGREE)], {"processor": "abacus"})
+    versions, settings = tables(section_text(section))
+    assert {"what": "processor", "which": "abacus"} in versions
+    halfspace, elements = settings
+    assert (halfspace["solver"], halfspace["unknowns"], halfspace["seconds"]) == ("half-space", "111", "7.50")
+    assert (elements["solver"], elements["unknowns"], elements["seconds"]) == ("finite elements", "222", "9.25")
+    assert halfspace["settings"] == "degree 112, panels (edge 113)"
+
+
+# --- the verdict, wherever it is told ---
+
+CODES = {"agree": 0, "inconclusive": 1, "disagree": 1, "failed": 1}
+
+
+def test_every_verdict_has_an_ending_and_a_name():
+    assert set(VERDICTS) == set(WORDS) == set(ENDINGS)
+    assert set(STYLES) == {"agree", "inconclusive", "disagree"} == set(report_levels.VERDICTS)
+
+
+@pytest.mark.parametrize("verdict", ENDINGS)
+def test_compare_tells_the_verdict_in_text_record_and_exit_code(verdict, tmp_path, monkeypatch, capsys):
+    cases = ENDINGS[verdict]
+    monkeypatch.setattr(crosscheck, "run", lambda scenes, rtol: iter(cases))  # noqa: ARG005
+    tabors = [f"{case.scene.tabor:g}" for case in cases]
+    assert cli.main(["compare", "--tabor", *tabors, "--json", str(tmp_path / "a.json")]) == CODES[verdict]
+    shown = capsys.readouterr().out
+    assert shown.endswith(f"verdict: {verdict}\n")
+    for one in cases:
+        ended = "failed" if isinstance(one, Failure) else one.verdict
+        assert re.search(rf"^tabor {one.scene.tabor:g}[,;] poisson 0\.3: {ended}\b", shown, re.M)
+    record = json.loads((tmp_path / "a.json").read_text())
+    assert record["verdict"] == verdict
+    assert [one["verdict"] for one in record["cases"]][-1] == verdict
+
+
+@pytest.mark.parametrize(("row", "colour"), [(AGREE, "32"), (WIDE, "33"), (DISAGREE, "1;31")])
+def test_the_terminal_has_a_colour_for_each_verdict(row, colour):
+    console = Console(force_terminal=True, width=200, color_system="standard", no_color=False)
+    with console.capture() as captured:
+        console.print(crosscheck_table(case(row)))
+    title, *rest = captured.get().split("\n")
+    assert f"\x1b[{colour}m{row.verdict}" in title.replace("[3;", "[").replace("[1;3;", "[1;")  # titles are slanted
+    line = next(line for line in rest if row.quantity in line)
+    assert (f"\x1b[{colour}m" in line) == (row.verdict != "agree")
+
+
+@pytest.mark.parametrize("rows", [[AGREE, WIDE, DISAGREE], [DISAGREE, WIDE, AGREE], [WIDE, AGREE], [AGREE]])
+def test_the_worst_of_the_rows_is_the_verdict_of_the_case_and_the_worst_case_that_of_all(rows):
+    order = ("disagree", "inconclusive", "agree")
+    wanted = next(name for name in order if any(row.verdict == name for row in rows))
+    assert case(*rows).verdict == wanted
+    assert overall_verdict([case(row) for row in rows]) == wanted
+    assert overall_verdict([*(case(row) for row in rows), FAILED]) == "failed"
+
+
+def test_mixed_verdicts_are_told_each_with_its_parameters_worst_first():
+    cases = [case(AGREE, tabor=0.5), case(DISAGREE, tabor=1.0), FAILED, case(WIDE, tabor=5.0), case(AGREE, tabor=4.0)]
+    words = verdict_words(cases)
+    assert words == (
+        "A solver failed at Tabor parameter 3. The two solvers disagree at Tabor parameter 1. The two solvers' error "
+        "estimates are too wide to tell whether they agree at Tabor parameter 5. The two solvers agree at Tabor "
+        "parameter 0.5, 4."
+    )
+    assert verdict_words([case(AGREE)]) == "The two solvers agree."
+    assert verdict_words([case(DISAGREE)]) == "The two solvers disagree."
+    assert not re.search("agree", verdict_words([FAILED]))
+
+
+def test_nothing_of_a_row_is_left_untested():
+    assert {field.name for field in fields(Row)} | {"verdict"} >= set(row_as_made(AGREE)) - {
+        "halfspace_error",
+        "finite_element_error",
+    }
