@@ -84,7 +84,7 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     if scene.strain == "finite":
         return finite_strain_scene.trace(scene, rtol, to_load)
     if isinstance(scene.body, Path):
-        return climb(rtol, partial(meshed.ladder, scene), to_load=to_load, most_rungs=1)
+        return meshed.trace(scene, rtol, to_load)
     if scene.sized:
         return climb(rtol, partial(sized.ladder, scene, rtol, to_load), to_load=to_load)
     most_rungs = MOST_RUNGS if scene.radius is None else 1

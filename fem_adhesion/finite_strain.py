@@ -194,7 +194,7 @@ class FiniteStrainProblem:
         """r_d of the point of the surface at an undeformed radius."""
         if np.isnan(radius):
             return radius
-        row, _ = self.interface.operator.at(1.0).interpolation(radius)
+        row, _ = self.interface.operator.at(1.0).continuous(radius)
         return float(row @ self.surface.deformed_radii(x[:-1], self.stretch))
 
     def weighted_observables(self, x: Array, weights: Array) -> float:
@@ -218,7 +218,7 @@ class FiniteStrainProblem:
 
     def _edge_rows(self, x: Array) -> tuple[Array, Array]:
         """Rows that interpolate at the contact edge, and their derivatives by its undeformed radius."""
-        return self.interface.operator.at(1.0).interpolation(self.interface.contact_radius(self.surface_state(x)))
+        return self.interface.operator.at(1.0).continuous(self.interface.contact_radius(self.surface_state(x)))
 
     def _radius_by_gap(self, x: Array) -> Array:
         """Derivative of the deformed contact radius by the gaps, as the edge moves over the surface, (q,)."""

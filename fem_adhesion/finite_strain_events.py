@@ -10,7 +10,7 @@ from halfspace.compliance import Array
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.errors import NotConverged
 from halfspace.events import Located
-from halfspace.newton import Control
+from halfspace.newton import Control, Traceable
 from halfspace.path import Metric, Point, make_point
 
 SMALLEST_PART = 1 / 32
@@ -58,6 +58,11 @@ def same_contact(observables: Array) -> Control:
     if np.isfinite(observables[CONTACT_RADIUS]):
         return newton.contact_radius(float(observables[CONTACT_RADIUS]))
     return newton.central_gap(float(observables[CENTRAL_GAP]))
+
+
+def undeformed_radius(problem: Traceable, point: Point) -> float:
+    """Radius in beta that the point at the contact edge had before the body was deformed; nan without contact."""
+    return problem.interface.contact_radius(problem.surface_state(point.x))
 
 
 def raised(problem: FiniteStrainProblem, start: Array, control: Control) -> newton.Solution:

@@ -16,7 +16,7 @@ from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import with_interiors
 from fem_adhesion.finite_strain import FiniteStrainProblem
 from fem_adhesion.finite_strain_assembly import finite_strain_problem, material_body
-from fem_adhesion.finite_strain_events import same_contact
+from fem_adhesion.finite_strain_events import undeformed_radius
 from fem_adhesion.finite_strain_traction import Convention
 from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.scene import Scene
@@ -24,7 +24,12 @@ from halfspace import grid, newton
 from halfspace.compliance import Array
 from halfspace.contact import CENTRAL_GAP, CONTACT_RADIUS, ContactProblem
 from halfspace.curve import Chart, Segment, transfer
+from halfspace.newton import Traceable
+from halfspace.path import Point
 from halfspace.sized import SizedBody
+
+FARTHEST = 0.98
+"""Undeformed radius in R up to which a contact may spread; small slopes end before, see `halfspace.contact.WIDEST`."""
 
 
 @dataclass(frozen=True)
@@ -50,27 +55,31 @@ class Discretised:
         """Chart for the curve."""
         return Chart(self.problem, self.problem.body.unknowns)
 
-    def near(self, segments: Sequence[Segment], observables: Array) -> Array:
-        """State of the linear body at the contact radius, or central gap, of another state.
+    def near(self, segments: Sequence[Segment], problem: Traceable, point: Point) -> Array:
+        """State of the linear body whose contact has the same edge on the undeformed surface, or the same central gap.
 
         Parameters
         ----------
         segments : sequence of Segment
             Curve of the linear body on any discretisation.
-        observables : (4,) array
-            Of the state, at finite strain or not.
+        problem : Traceable
+            Any discretisation of the body, at finite strain or not.
+        point : Point
+            A state of it.
 
         Raises
         ------
         NotConverged
             If Newton's method does not reach it from the curve's nearest point.
         """
-        touching = bool(np.isfinite(observables[CONTACT_RADIUS]))
+        radius = undeformed_radius(problem, point)
+        touching = bool(np.isfinite(radius))
         observable = CONTACT_RADIUS if touching else CENTRAL_GAP
-        value = float(observables[observable])
+        value = radius if touching else float(point.observables[CENTRAL_GAP])
+        control = newton.contact_radius(value) if touching else newton.central_gap(value)
         states = [(s.problem, p) for s in segments for p in s.points]
-        source, point = min(states, key=lambda s: _distance(s[1].observables[observable], value))
-        x = newton.solve(self.linear, transfer(source, point.x, self.linear), same_contact(observables)).x
+        source, nearest = min(states, key=lambda s: _distance(s[1].observables[observable], value))
+        x = newton.solve(self.linear, transfer(source, nearest.x, self.linear), control).x
         displacement = self.condensed.displacement(self.linear.pressure(x))
         return self.problem.state_from(float(x[-2]), displacement)
 
@@ -111,10 +120,10 @@ class ScenesBody:
         return replace(self, how=replace(self.how, degree=self.how.degree + 1))
 
     def meshed(self, inner: float, outer: float) -> Discretised:
-        """Discretise with cells that are fine for contact radii between these."""
+        """Discretise with cells that are fine for contact radii between these, as far as a contact may reach."""
         body, R = self._sized, self.scene.sphere_radius
-        ends = body.coordinate.of(inner), body.coordinate.of(outer)
-        lines = fine_between(*ends, body.length, bodies.CORE * R, self.how.growth)
+        first, last = (body.coordinate.of(min(radius, FARTHEST * R)) for radius in (inner, outer))
+        lines = fine_between(first, last, body.length, bodies.CORE * R, self.how.growth)
         depths = grid.graded(0.0, float(np.diff(lines).min()), bodies.DEPTH * R, growth=self.how.growth)
         return self._on(bodies.hemisphere(R, lines, depths), body)
 

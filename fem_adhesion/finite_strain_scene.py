@@ -10,12 +10,12 @@ import numpy as np
 
 from fem_adhesion import sized
 from fem_adhesion.finite_strain import FiniteStrainProblem
-from fem_adhesion.finite_strain_events import corrected
+from fem_adhesion.finite_strain_events import corrected, undeformed_radius
 from fem_adhesion.finite_strain_meshes import Discretised, ScenesBody, enriched
 from fem_adhesion.finite_strain_traction import CONVENTIONS, ConventionName
 from fem_adhesion.finite_strain_windows import trace_windows
 from fem_adhesion.scene import Scene
-from halfspace.contact import APPROACH, CONTACT_RADIUS
+from halfspace.contact import APPROACH
 from halfspace.curve import (
     COMPRESSION,
     Chart,
@@ -65,13 +65,23 @@ class AroundEvents:
 
     def mesh(self, event: Located) -> tuple[float, Discretised]:
         """Mesh for an event and the contact radius that it is made for, unless one made before will do."""
-        radius = float(np.nan_to_num(event.point.observables[CONTACT_RADIUS]))
-        radius = self.below.mesh(event)[0] if self.below else radius
+        radius, apart = self._place(event)
         for made in self.made:
-            if abs(radius - made[0]) <= NEARBY * radius:
+            if abs(radius - made[0]) <= apart:
                 return made
         self.made.append((radius, self.body.meshed(radius, radius)))
         return self.made[-1]
+
+    def _place(self, event: Located) -> tuple[float, float]:
+        """Contact radius that a mesh is wanted for, and how far off it may be: not at all from that of the one below.
+
+        An event may have moved on its mesh by more than meshes serve; it is the mesh that counts, not the event.
+        """
+        if self.below is None:
+            radius = float(np.nan_to_num(undeformed_radius(event.problem, event.point)))
+            return radius, NEARBY * radius
+        own = [radius for radius, mesh in self.below.made if mesh.problem is event.problem]
+        return (own[0] if own else self.below.mesh(event)[0]), 0.0
 
     def located(self, found: State) -> State:
         """Solve for events again that were found on the discretisation below, or if there is none on any."""
@@ -83,7 +93,7 @@ class AroundEvents:
             u = enriched(event.problem.displacement(event.point.x), event.problem.body.space, on.problem.body.space)
             x = on.problem.state_from(float(event.point.observables[APPROACH]), u)
         else:
-            x = on.near(self.linear, event.point.observables)
+            x = on.near(self.linear, event.problem, event.point)
         return corrected(event, on.problem, x, metric_for(self.body.scene.tabor))
 
     @property

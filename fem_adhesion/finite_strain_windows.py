@@ -7,12 +7,12 @@ for. Within a mesh the curve is followed by its arclength.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from fem_adhesion.finite_strain_events import raised, same_contact
-from fem_adhesion.finite_strain_meshes import Discretised, ScenesBody
+from fem_adhesion.finite_strain import FiniteStrainProblem
+from fem_adhesion.finite_strain_events import raised, same_contact, undeformed_radius
+from fem_adhesion.finite_strain_meshes import FARTHEST, Discretised, ScenesBody
 from halfspace import newton
-from halfspace.contact import CONTACT_RADIUS, WIDEST
 from halfspace.curve import Segment, metric_for, separated_approach
 from halfspace.path import Metric, Point, follow, loaded_to, make_point
 
@@ -41,19 +41,21 @@ def trace_windows(body: ScenesBody, linear: Sequence[Segment], to_load: float) -
     on, segments = body.meshed(0.0, width), list[Segment]()
     point, end = _far_separation(on, metric), width
     while True:
-        widest = WIDEST * on.linear.profile.end
-        points = follow(on.problem, point, metric, lambda p: _ended(p, to_load, min(end, widest)))  # noqa: B023
+        widest = FARTHEST * body.scene.sphere_radius
+        until = _ended(on.problem, to_load, min(end, widest))
+        points = follow(on.problem, point, metric, until)
         segments.append(Segment(on.chart.problem, tuple(points)))
-        if loaded_to(to_load)(points[-1]) or points[-1].observables[CONTACT_RADIUS] > widest:
+        start = undeformed_radius(on.problem, points[-1])
+        if loaded_to(to_load)(points[-1]) or start > widest:
             return tuple(segments)
-        start = float(points[-1].observables[CONTACT_RADIUS])
         end = start + width
-        on = body.meshed(start, min(end, on.linear.profile.end))
-        point = _entered(on, linear, points[-1], metric)
+        on = body.meshed(start, end)
+        point = _entered(on, linear, segments[-1], metric)
 
 
-def _ended(point: Point, to_load: float, radius: float) -> bool:
-    return loaded_to(to_load)(point) or bool(point.observables[CONTACT_RADIUS] > radius)
+def _ended(problem: FiniteStrainProblem, to_load: float, radius: float) -> Callable[[Point], bool]:
+    loaded = loaded_to(to_load)
+    return lambda point: loaded(point) or undeformed_radius(problem, point) > radius
 
 
 def _far_separation(on: Discretised, metric: Metric) -> Point:
@@ -63,7 +65,9 @@ def _far_separation(on: Discretised, metric: Metric) -> Point:
     return make_point(on.problem, solution, metric, control.weights, 0.0)
 
 
-def _entered(on: Discretised, linear: Sequence[Segment], last: Point, metric: Metric) -> Point:
-    """Point of the next mesh with the contact radius of the last one's last point."""
-    solution = raised(on.problem, on.near(linear, last.observables), same_contact(last.observables))
+def _entered(on: Discretised, linear: Sequence[Segment], before: Segment, metric: Metric) -> Point:
+    """Point of the next mesh with the contact radius of the last point of the one before."""
+    last = before.points[-1]
+    start = on.near(linear, before.problem, last)
+    solution = raised(on.problem, start, same_contact(last.observables))
     return make_point(on.problem, solution, metric, metric.weights * last.rates, last.arclength)

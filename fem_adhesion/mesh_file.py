@@ -1,8 +1,9 @@
 """A body from a file: whatever meshio reads, as a mesh of scikit-fem with its boundaries named.
 
 The file holds the meridian section of the body in the half-plane x = r >= 0, y = z, in units of the radius R of
-curvature at the pole. The groups of lines "axis", "contact" and "grip" say what its boundaries are; lines in no group
-are free. See meshes/README.md for examples, `fem_adhesion.mesh_checks` for what a body must fulfil.
+curvature at the pole. Should that be off by a few per cent the mesh is rescaled by the radius fitted to it, since R/eps
+and all loads are told in that radius. The groups of lines "axis", "contact" and "grip" say what its boundaries are;
+lines in no group are free. See meshes/README.md for examples, `fem_adhesion.mesh_checks` for what a body must fulfil.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from fem_adhesion.mesh_checks import GROUPS, TOLERANCE, facet_nodes, pole, require_body
+from fem_adhesion.mesh_checks import GROUPS, TOLERANCE, facet_nodes, pole, pole_radius, require_body
 from halfspace.compliance import Array, Index
 from halfspace.errors import InputError
 
@@ -36,7 +37,12 @@ PARSER_ERRORS = (
 
 
 def read_body(path: str | Path) -> Any:
-    """Read the mesh of a body and make sure that it is one.
+    """Return the mesh of `read_scaled` alone."""
+    return read_scaled(path)[0]
+
+
+def read_scaled(path: str | Path) -> tuple[Any, float]:
+    """Read the mesh of a body, make sure that it is one, and scale it to the radius R of curvature at its pole.
 
     Parameters
     ----------
@@ -48,10 +54,12 @@ def read_body(path: str | Path) -> Any:
 
     Returns
     -------
-    skfem.MeshTri, MeshTri2, MeshQuad or MeshQuad2
+    mesh : skfem.MeshTri, MeshTri2, MeshQuad or MeshQuad2
         Lengths in R, the pole at r = z = 0 and the body below, with the boundaries "axis", "contact" and "far", which
         is the file's "grip". Unused nodes are dropped, a body is shifted along the axis to bring its pole to z = 0,
         quadrilaterals of 8 nodes get the ninth where their own shape functions have it.
+    radius : float
+        R in the file's unit, 1 if that is R.
 
     Raises
     ------
@@ -63,7 +71,9 @@ def read_body(path: str | Path) -> Any:
         require_body(mesh)
     except InputError as error:
         raise InputError(f"mesh {path}: {error}") from error
-    return _in_place(mesh)
+    radius = pole_radius(mesh)
+    radius = 1.0 if abs(radius - 1.0) <= TOLERANCE else radius
+    return _in_place(mesh, radius), radius
 
 
 def _read(path: Path) -> Any:
@@ -194,12 +204,12 @@ def _facets(mesh: Any, vertices: Index, lines: Index, name: str) -> Index:
     return facets
 
 
-def _in_place(mesh: Any) -> Any:
-    """Return the mesh with its axis at r = 0 to the last digit and its pole at z = 0."""
+def _in_place(mesh: Any, unit: float) -> Any:
+    """Return the mesh with its axis at r = 0 to the last digit and its pole at z = 0, lengths in the unit given."""
     points = mesh.doflocs.copy()
     points[0, facet_nodes(mesh, mesh.boundaries["axis"])] = 0.0
     points[1] -= points[1, pole(mesh)]
-    return replace(mesh, doflocs=points)
+    return replace(mesh, doflocs=points / unit)
 
 
 def _listed(names: Any) -> str:

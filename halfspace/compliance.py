@@ -109,6 +109,25 @@ class ElasticOperator:
         row[nodes], derivative[nodes] = lagrange(self.radii[nodes], self._barycentric[cell], radius)
         return row, derivative
 
+    def continuous(self, radius: float) -> tuple[Array, Array]:
+        """Rows as of `interpolation`, but of a function that is continuous where two cells meet.
+
+        Polynomials through nodes inside their cells leap there by their error; so between the last node of a cell and
+        the first of the next, the one goes over into the other in proportion.
+        """
+        cell = self.cell_of(radius)
+        cell -= cell > 0 and radius < self.radii[self.cell_nodes[cell, 0]]
+        if cell + 1 == len(self.cell_nodes) or radius <= self.radii[self.cell_nodes[cell, -1]]:
+            return self.interpolation(radius)
+        before, after = self.radii[self.cell_nodes[cell, -1]], self.radii[self.cell_nodes[cell + 1, 0]]
+        part, rows = (radius - before) / (after - before), np.zeros((2, 2, self.radii.size))
+        for k in (0, 1):
+            nodes = self.cell_nodes[cell + k]
+            rows[:, k, nodes] = lagrange(self.radii[nodes], self._barycentric[cell + k], radius)
+        (left, right), (left_slope, right_slope) = rows
+        value = (1 - part) * left + part * right
+        return value, (1 - part) * left_slope + part * right_slope + (right - left) / (after - before)
+
     def values_at(self, radii: Array, values: Array) -> Array:
         """Interpolate nodal values (q,) at many radii (n,) within the extent."""
         cells = np.clip(np.searchsorted(self.cells, radii, side="right") - 1, 0, self.cells.size - 2)

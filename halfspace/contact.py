@@ -156,16 +156,21 @@ class ContactProblem:
         return self.operator_at(x).radii
 
     def contact_radius(self, x: Array) -> float:
-        """Largest radius in beta at which the gap is 3^(1/6) eps, or nan where the surfaces are further apart."""
+        """Largest radius in beta at which the gap is 3^(1/6) eps, or nan where the surfaces are further apart.
+
+        Where they are nowhere so far apart it is the extent of the surface.
+        """
         if self.follows_contact:
             return float(x[-1])
         H, edge, body = x[:-2], self.law.edge_gap, self.operator_at(x)
         inside = np.flatnonzero(edge > H)
         if inside.size == 0 and body.axis_row @ H > edge:
             return float("nan")
+        if inside.size and inside[-1] == H.size - 1 and body.continuous(body.extent)[0] @ H <= edge:
+            return body.extent
         radii = np.append(body.radii, body.extent)
         below, above = (radii[inside[-1]], radii[inside[-1] + 1]) if inside.size else (0.0, radii[0])
-        return float(brentq(lambda r: float(body.interpolation(r)[0] @ H - edge), below, above, xtol=1e-14))
+        return float(brentq(lambda r: float(body.continuous(r)[0] @ H - edge), below, above, xtol=1e-14))
 
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative by x of the weighted sum of the observables, shape (q + 2,)."""
@@ -184,7 +189,7 @@ class ContactProblem:
     def _radius_gradient(self, x: Array) -> Array:
         if self.follows_contact:
             return np.asarray(np.eye(1, x.size, x.size - 1)[0])
-        value, slope = self.operator_at(x).interpolation(self.contact_radius(x))
+        value, slope = self.operator_at(x).continuous(self.contact_radius(x))
         return np.append(-value / (slope @ x[:-2]), [0.0, 0.0])
 
     def require_resolution(self, x: Array) -> None:
@@ -201,12 +206,15 @@ class ContactProblem:
         radius, body = self.contact_radius(x), self.operator_at(x)
         if np.isnan(radius):
             return
-        spacing = body.spacing(radius)
+        spacing, intervals = body.spacing(radius), max(body.cell_nodes.shape[1] - 1, 1)
         limit = spike_width(self.tabor) * widest_interval(body.cell_nodes.shape[1])
         if spacing > limit * (1 + 1e-9):
             raise GridTooCoarse(
                 f"grid spacing {spacing:.3g} beta at the contact edge, radius {radius:.3g} beta, "
-                f"exceeds {limit:.3g} beta for tabor {self.tabor:g}; refine the grid there"
+                f"exceeds {limit:.3g} beta for tabor {self.tabor:g}; refine the grid there",
+                radius,
+                spacing * intervals,
+                limit * intervals,
             )
 
     def longest_step(self, x: Array, dx: Array) -> float:

@@ -3,6 +3,8 @@
 Every other exception is a defect of the program, and shows its traceback.
 """
 
+import math
+
 
 class InputError(ValueError):
     """What was asked for cannot be; the message gives the value, the limit and the remedy."""
@@ -17,4 +19,18 @@ class ContactTooWide(NotConverged):
 
 
 class GridTooCoarse(NotConverged):
-    """The grid cannot carry the spike of tension at the contact edge; the message says where and by how much."""
+    """The grid cannot carry the spike of tension at the contact edge; the message says where and by how much.
+
+    Attributes
+    ----------
+    radius, length, limit : float
+        Where it is too coarse, the length of its cell there and the longest that would do, in beta.
+    """
+
+    def __init__(self, message: str, radius: float = math.nan, length: float = math.nan, limit: float = math.nan):
+        super().__init__(message, radius, length, limit)
+        self.radius, self.length, self.limit = radius, length, limit
+
+    def __str__(self) -> str:
+        """Return the message alone."""
+        return str(self.args[0])

@@ -1,7 +1,7 @@
 // Hemisphere of radius 1, held at its mid-plane z = -1. x is the radius r, y the height z; lengths in R.
 //     gmsh -2 hemisphere.geo
 
-fine = 0.02;    // element size where the contact lies, r <= 0.6
+fine = 0.012;   // element size where the contact lies, r <= 0.6
 growth = 0.25;  // increase of the size per unit of distance from there
 coarse = 0.2;   // largest size
 

@@ -4,7 +4,7 @@
 
 cap_angle = 30 * Pi / 180;
 
-fine = 0.02;    // element size where the contact lies, r <= 0.6
+fine = 0.012;   // element size where the contact lies, r <= 0.6
 growth = 0.25;  // increase of the size per unit of distance from there
 edge = 0.05;    // size at the edge of the cap, where the stress is singular
 coarse = 0.2;   // largest size

@@ -5,7 +5,7 @@
 half_angle = 20 * Pi / 180;  // of the cone
 height = 4;
 
-fine = 0.02;    // element size where the contact lies, r <= 0.6
+fine = 0.012;   // element size where the contact lies, r <= 0.6
 growth = 0.25;  // increase of the size per unit of distance from there
 coarse = 0.3;   // largest size
 

@@ -107,3 +107,21 @@ def test_graded_grid_is_finest_at_its_radius():
 def test_bad_grids_are_refused(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+def test_the_continuous_interpolation_does_not_leap_where_cells_meet():
+    operator = compliance.panels(np.array([0.0, 0.5, 1.5, 4.0]), 4)
+    values = np.cos(2 * operator.radii)
+    for end in (0.5, 1.5):
+        below, at, above = (operator.continuous(r)[0] @ values for r in (end - 1e-9, end, end + 1e-9))
+        assert max(abs(below - at), abs(above - at)) < 1e-7
+        leap = operator.interpolation(end - 1e-9)[0] - operator.interpolation(end)[0]
+        assert abs(leap @ values) > 1e-4
+    for radius in (0.0, 0.2, 0.46, 0.6, 1.49, 1.7, 3.9, 4.0):
+        row, slope = operator.continuous(radius)
+        assert row.sum() == pytest.approx(1.0, abs=1e-12)
+        assert row @ operator.radii == pytest.approx(radius, abs=1e-12)
+        difference = (operator.continuous(radius + 1e-6)[0] - operator.continuous(radius - 1e-6)[0]) @ values / 2e-6
+        assert slope @ values == pytest.approx(difference, rel=1e-6, abs=1e-7)
+    for node in (0, 3, 4, 7, 11):
+        np.testing.assert_allclose(operator.continuous(operator.radii[node])[0], np.eye(12)[node], atol=1e-12)

@@ -92,6 +92,29 @@ def test_every_control_finds_the_same_state(problem, touching):
         )
 
 
+@pytest.mark.parametrize(("tabor", "nodes", "finest"), [(1.0, 4, 0.1), (1.0, 6, 0.2), (2.0, 5, 0.05)])
+def test_a_contact_edge_is_prescribed_where_two_cells_meet(tabor, nodes, finest):
+    """There the polynomials of the gap leap by their error, and Newton's method would go to and fro between them."""
+    operator = compliance.panels(grid.graded(1.0, finest, 100.0), nodes)
+    problem = ContactProblem(operator, tabor)
+    x = problem.undeformed(-5.0 - tabor)
+    for gap in (4, 3, 2, 1, 0.6, 0.4, 0.2, 0.1, 0.05):
+        x = newton.solve(problem, x, newton.central_gap(gap)).x
+    for radius in (1.0, 1.4, 1.8, 2.2, 2.5):
+        x = newton.solve(problem, x, newton.contact_radius(radius)).x
+    ends = operator.cells[(operator.cells > 0.4) & (operator.cells < 2.5)]
+    assert len(ends) > 5
+    for end in ends[::-1]:
+        solution = newton.solve(problem, x, newton.contact_radius(end))
+        x = solution.x
+        assert solution.observables[3] == pytest.approx(end, rel=1e-9, abs=0)
+
+
+def test_a_contact_wider_than_its_surface_reaches_to_the_end_of_it(problem):
+    x = problem.undeformed(1e6)
+    assert problem.contact_radius(np.append(np.zeros(x.size - 2), x[-2:])) == CENTRED.extent
+
+
 def test_a_grid_that_follows_the_contact_finds_the_state_of_a_fixed_one():
     fixed = ContactProblem(compliance.panels(grid.graded(1.0, 0.1, 400.0), 12), 1.0)
     moving = ContactProblem(Homogeneous(compliance.panels(grid.graded(1.0, 0.05, 800.0), 12)), 1.0)

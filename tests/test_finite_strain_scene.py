@@ -1,6 +1,7 @@
 """Scenes at finite strain: the curve, its events and their error estimates, and what the traction is counted per."""
 
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,14 +9,16 @@ from skfem import ElementQuadP
 
 from fem_adhesion import convergence
 from fem_adhesion.elasticity import Space
-from fem_adhesion.finite_strain_events import corrected
-from fem_adhesion.finite_strain_meshes import enriched, fine_between
-from fem_adhesion.finite_strain_scene import LITTLE, find_jumps, trace
-from fem_adhesion.finite_strain_traction import CONVENTIONS
+from fem_adhesion.finite_strain_events import corrected, raised, undeformed_radius
+from fem_adhesion.finite_strain_meshes import FARTHEST, ScenesBody, enriched, fine_between
+from fem_adhesion.finite_strain_scene import LITTLE, AroundEvents, find_jumps, trace
+from fem_adhesion.finite_strain_traction import CONVENTIONS, Convention
 from fem_adhesion.mesh import block_grid
 from fem_adhesion.scene import Scene
+from fem_adhesion.sized import Discretisation
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD
+from halfspace.curve import transfer
 from halfspace.errors import NotConverged
 from halfspace.path import Metric
 
@@ -98,6 +101,89 @@ def test_energy_released_is_the_work_of_the_load():
             released -= weight * (end - start) / 2 * problem.load(x)
     assert path.energy.value == pytest.approx(released, rel=2e-5)
     assert path.energy.error < 1e-4
+
+
+# --- spheres as small as their contact ---
+
+
+@pytest.fixture(scope="module", params=CONVENTIONS)
+def smallest(request):
+    """The smallest sphere there is, R = 2 eps, by each convention."""
+    return request.param, trace(scene(0.1, 2.0), 1e-2, LITTLE, convention=request.param)
+
+
+EXPLICIT = {"vertical": Convention(0.0), "normal": Convention(1.0), "reference": Convention(deformed_area=False)}
+"""As in the documentation of `fem_adhesion.finite_strain_traction`."""
+
+
+def test_the_smallest_sphere_is_traced_by_the_convention_asked_for(smallest):
+    name, path = smallest
+    assert path.load[-1] >= LITTLE
+    assert set(path.events) == {"pull_off", "zero_load"}
+    problems = [segment.problem for segment in path.segments]
+    problems += [event.problem for stage in path.stages for event in stage.values()]
+    assert {problem.convention for problem in problems} == {EXPLICIT[name]}
+
+
+def test_pull_off_of_the_smallest_sphere_is_the_least_load_of_its_own_convention(smallest):
+    """Of an equilibrium on another mesh, put together by hand; the three differ by per cents there."""
+    name, path = smallest
+    found, body = path.stages[-1]["pull_off"], ScenesBody(scene(0.1, 2.0), Discretisation(4), EXPLICIT[name])
+    on = body.meshed(0.3, 3.0)
+    x = on.problem.state_from_surface(transfer(found.problem, found.point.x, on.linear))
+    loads = []
+    for radius in path.events["pull_off"].contact_radius * np.array([1.0, 0.98, 1.02]):
+        x = raised(on.problem, x, newton.contact_radius(radius)).x
+        loads.append(on.problem.load(x))
+    assert loads[0] == pytest.approx(path.events["pull_off"].load, rel=1e-4, abs=0)
+    assert loads[0] < min(loads[1:])
+
+
+def test_jumps_alone_are_by_the_convention_asked_for(smallest):
+    name, path = smallest
+    curve, alone = (events["pull_off"] for events in (path.events, find_jumps(scene(0.1, 2.0), 1e-2, convention=name)))
+    assert abs(alone.load - curve.load) <= alone.load_error + curve.load_error
+    assert curve.load_error < 1e-3
+
+
+@pytest.mark.parametrize(("tabor", "radius_ratio"), [(1.0, 2.25), (1.0, 6.0)])
+def test_a_sphere_of_one_contact_radius_is_traced_until_it_is_all_in_contact(tabor, radius_ratio):
+    """The undeformed radius of the contact edge comes to 0.98 R at most; as deformed it may be wider than the sphere."""
+    path = trace(scene(tabor, radius_ratio), 1e-3, LITTLE)
+    assert path.events["zero_load"].load == pytest.approx(0, abs=1e-8)
+    for event in path.events.values():
+        assert event.load_error <= 1e-3 * abs(event.load) + 1e-6
+    R, last = np.sqrt(radius_ratio / tabor), path.segments[-1]
+    assert undeformed_radius(last.problem, last.points[-1]) < R
+    assert path.load[-1] >= LITTLE or undeformed_radius(last.problem, last.points[-1]) > FARTHEST * R
+
+
+@pytest.mark.parametrize("outer", [0.95, 1.0, 1.5, 30.0])
+def test_a_window_wider_than_the_sphere_ends_on_it(outer):
+    body = ScenesBody(scene(1.0, 6.0), Discretisation(4), EXPLICIT["vertical"])
+    R = body.scene.sphere_radius
+    for inner in (0.0, 0.5, 0.94):
+        surface = body.meshed(inner * R, outer * R).problem.surface
+        assert np.all(np.diff(surface.radii) > 0)
+        assert surface.radii[-1] < R
+
+
+def test_a_richer_rung_keeps_the_mesh_of_an_event_that_moved_on_it():
+    """Else its displacements would be of another mesh than that they are carried to."""
+    interface = SimpleNamespace(contact_radius=lambda x: x)
+
+    def meshed(radius, _):
+        problem = SimpleNamespace(interface=interface, surface_state=lambda x: x)
+        return SimpleNamespace(problem=problem, made_for=radius)
+
+    lower = AroundEvents(SimpleNamespace(meshed=meshed), ())
+    higher = AroundEvents(lower.body, (), lower)
+    for radius in (1.0, 1.015):
+        at_first = meshed(0, 0).problem
+        mesh = lower.mesh(SimpleNamespace(problem=at_first, point=SimpleNamespace(x=radius)))[1]
+        assert mesh.made_for == radius
+        moved = SimpleNamespace(problem=mesh.problem, point=SimpleNamespace(x=1.3))
+        assert higher.mesh(moved)[1].made_for == radius
 
 
 # --- its accuracy ---

@@ -1,14 +1,18 @@
 """A body from a file, solved like any other."""
 
+import re
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 from skfem import CellBasis, ElementQuad2, MeshQuad, MeshQuad2
 
 import fem_adhesion
 from fem_adhesion import Scene
+from fem_adhesion.mesh_file import read_body
 from fem_adhesion.refinement import refined
+from halfspace.contact import spike_width
 from halfspace.errors import GridTooCoarse
 
 MESHES = Path(__file__).parents[1] / "meshes"
@@ -36,9 +40,69 @@ def test_a_tip_pulls_as_its_cap_does_and_yields_more():
     assert tip["jump_off"].approach < cap["jump_off"].approach - 0.1
 
 
-def test_a_mesh_that_cannot_carry_the_spike_is_refused():
-    with pytest.raises(GridTooCoarse, match=r"grid spacing .* beta at the contact edge"):
-        fem_adhesion.trace(meshed("hemisphere", 1e4), rtol=1e-3)
+# --- the range of the examples: what meshes/README.md names ---
+
+CORNERS = [("hemisphere", 2.0, 250.0), ("sphere", 1.0, 1000.0), ("tip", 2.0, 10.0)]
+"""Of Tabor parameter and R/eps."""
+
+
+@pytest.mark.parametrize(("name", "tabor", "radius_ratio"), CORNERS)
+def test_an_example_works_at_the_ends_of_its_range(name, tabor, radius_ratio):
+    scene = Scene(tabor, body=MESHES / f"{name}.msh", radius_ratio=radius_ratio)
+    path = fem_adhesion.trace(scene, rtol=1e-2, to_load=0.5)
+    assert set(path.events) == {"pull_off", "jump_on", "jump_off", "zero_load"}
+    assert path.settings["events"]["pole_radius"] == pytest.approx(1.0, abs=1e-8)
+
+
+def test_the_range_of_the_examples_is_the_one_named():
+    text = (MESHES / "README.md").read_text()
+    assert re.search(r"R/ε = 1000 for Tabor\s+parameters up to 1", text)
+    assert re.search(r"250\s+for 2", text)
+
+
+def test_the_examples_have_one_contact_line_so_that_a_corner_of_the_range_speaks_for_all():
+    radii = []
+    for name in ("hemisphere", "sphere", "tip"):
+        mesh = read_body(MESHES / f"{name}.msh")
+        r = np.sort(mesh.p[0, np.unique(mesh.facets[:, mesh.boundaries["contact"]])])
+        radii.append(r[r < 0.6 - 1e-9])
+    np.testing.assert_allclose(radii[1:], [radii[0]] * 2, atol=1e-9)
+
+
+# --- a mesh too coarse, and one in another unit ---
+
+
+def rescaled(tmp_path, unit):
+    raw = meshio.read(MESHES / "hemisphere.msh")
+    raw.points *= unit
+    raw.write(tmp_path / "body.msh", file_format="gmsh22")
+    return tmp_path / "body.msh"
+
+
+@pytest.mark.parametrize("unit", [1.0, 1.03])
+def test_a_mesh_that_cannot_carry_the_spike_is_refused_in_its_own_unit(tmp_path, unit):
+    """The limit in the file's unit is the spike's, some 0.57 of its width for quadratic elements, over R."""
+    scene = Scene(2.0, body=rescaled(tmp_path, unit), radius_ratio=1e3)
+    with pytest.raises(GridTooCoarse) as refused:
+        fem_adhesion.trace(scene, rtol=1e-3)
+    found = re.search(r"are (\S+) long at r = (\S+), .* limit (\S+) for .* fine = (\S+),", str(refused.value))
+    length, radius, limit, fine = map(float, found.groups())
+    mesh = read_body(MESHES / "hemisphere.msh")
+    r = unit * np.sort(mesh.p[0, np.unique(mesh.facets[:, mesh.boundaries["contact"]])])
+    k = np.searchsorted(r, radius)
+    assert length == pytest.approx(r[k] - r[k - 1], rel=5e-3, abs=0)
+    assert limit == pytest.approx(unit * 0.567 * spike_width(2.0) / scene.sphere_radius, rel=5e-3, abs=0)
+    assert 0.85 * limit < fine < 0.98 * limit
+
+
+def test_the_unit_of_a_mesh_does_not_move_the_events(tmp_path):
+    """Of one that is off by 4 % the loads would be, too; R is the radius of curvature at the pole."""
+    bodies = (MESHES / "hemisphere.msh", rescaled(tmp_path, 1.04))
+    ours, theirs = (fem_adhesion.trace(Scene(0.3, body=body, radius_ratio=10.0), rtol=1e-2) for body in bodies)
+    for name, event in ours.events.items():
+        assert theirs.events[name].load == pytest.approx(event.load, rel=1e-6, abs=1e-9)
+        assert theirs.events[name].approach == pytest.approx(event.approach, rel=1e-6, abs=0)
+    assert theirs.settings["events"]["pole_radius"] == pytest.approx(1.04, rel=1e-7, abs=0)
 
 
 def test_refinement_keeps_the_shape_of_curved_quadrilaterals():
