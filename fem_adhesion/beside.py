@@ -11,13 +11,14 @@ from fem_adhesion.scene import Scene
 from halfspace import compliance, newton
 from halfspace.compliance import Array
 from halfspace.contact import CENTRAL_GAP, CONTACT_RADIUS, ContactProblem
+from halfspace.values import Valued
 
 MOST_NODES = 16
 """Of a ring of the half-space."""
 
 
-@dataclass(frozen=True)
-class Beside:
+@dataclass(frozen=True, eq=False, repr=False)
+class Beside(Valued):
     """The half-space beside a state.
 
     Attributes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,11 @@ from fem_adhesion.elasticity import CellStiffness, Space, cell_stiffness, ring_m
 from fem_adhesion.far_field import Exterior, FarField, point_load
 from halfspace.compliance import Array, ElasticOperator, Index
 from halfspace.errors import InputError
+from halfspace.values import Valued
 
 
-@dataclass(frozen=True)
-class Skeleton:
+@dataclass(frozen=True, eq=False, repr=False)
+class Skeleton(Valued):
     """Stiffness of the unknowns shared between cells; those interior to one cell are eliminated.
 
     Attributes
@@ -43,8 +45,8 @@ class Skeleton:
         return full
 
 
-@dataclass(frozen=True)
-class Surface:
+@dataclass(frozen=True, eq=False, repr=False)
+class Surface(Valued):
     """Quadrature points of the contact surface, facet by facet outwards; q = facets * k points.
 
     Attributes
@@ -75,8 +77,24 @@ class Surface:
         return np.arange(len(self.radii)).reshape(len(self.cells) - 1, -1)
 
 
-@dataclass(frozen=True)
-class CondensedBody:
+@dataclass(frozen=True, eq=False, repr=False)
+class Factorised(Valued):
+    """A symmetric, positive definite sparse matrix (n, n), factorised without pivoting when it is first solved with."""
+
+    matrix: sparse.csc_array
+
+    def solve(self, rhs: Array) -> Array:
+        """Solution for a right-hand side (n,) or (n, k)."""
+        return np.asarray(self._factors.solve(rhs))
+
+    @cached_property
+    def _factors(self) -> Any:
+        options = {"SymmetricMode": True}
+        return splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CondensedBody(Valued):
     """A block factorised once: its surface compliance, and the fields inside for a given surface pressure.
 
     Pressures are (q,) arrays at ``operator.radii``, positive in compression; all is dimensionless, E* = 1.
@@ -93,8 +111,8 @@ class CondensedBody:
         Stiffness of its cells.
     skeleton, exterior, surface
         The parts it was made of.
-    factors : scipy.sparse.linalg.SuperLU
-        Of the (n, n) reduced stiffness.
+    factors : Factorised
+        The (n, n) reduced stiffness.
     """
 
     operator: ElasticOperator
@@ -104,7 +122,7 @@ class CondensedBody:
     skeleton: Skeleton
     exterior: Exterior
     surface: Surface
-    factors: Any
+    factors: Factorised
 
     @property
     def unknowns(self) -> int:
@@ -227,11 +245,10 @@ def eliminate_interiors(space: Space, K: Array) -> Skeleton:
     return Skeleton(scatter(K_oo, space.cell_dofs[outer], space.unknowns), inner, outer, recovery)
 
 
-def factorise(skeleton: Skeleton, exterior: Exterior) -> Any:
-    """Return SuperLU's factors of T' K T + S, symmetric and positive definite, so without pivoting."""
+def factorise(skeleton: Skeleton, exterior: Exterior) -> Factorised:
+    """Return the factorised T' K T + S."""
     T = exterior.reduction
-    K = sparse.csc_array(T.T @ skeleton.stiffness @ T + exterior.stiffness)
-    return splu(K, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    return Factorised(sparse.csc_array(T.T @ skeleton.stiffness @ T + exterior.stiffness))
 
 
 def surface_operator(surface: Surface, exterior: Exterior, factors: Any) -> ElasticOperator:

@@ -16,6 +16,7 @@ from skfem import MeshQuad
 from skfem.mapping import MappingIsoparametric
 
 from halfspace.compliance import Array, Index
+from halfspace.values import Valued
 
 DEGREE = 8
 """Of the cells' shape: an arc of one radian deviates from the circle by 1e-10 of its radius."""
@@ -23,8 +24,8 @@ DEGREE = 8
 CORNERS = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]])  # of the reference square, in scikit-fem's order
 
 
-@dataclass(frozen=True)
-class Block:
+@dataclass(frozen=True, eq=False, repr=False)
+class Block(Valued):
     """A structured block of cells: the exact map of a rectangle that is cut into (m, n) cells.
 
     Attributes

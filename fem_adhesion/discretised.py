@@ -27,6 +27,7 @@ from halfspace.compliance import Array
 from halfspace.contact import ContactProblem, spike_width
 from halfspace.profiles import PARABOLOID, Profile, Tabulated
 from halfspace.sized import CROWDED, SizedBody
+from halfspace.values import Valued
 
 RTOL = 1e-5
 """Of the load left out beyond a block that goes on as a half-space: it is then 15 to 80 beta wide."""
@@ -35,8 +36,8 @@ BEYOND = 10.0
 """Size of the block under a sphere, in R: its far field errs by O(L^-5)."""
 
 
-@dataclass(frozen=True)
-class Discretised:
+@dataclass(frozen=True, eq=False, repr=False)
+class Discretised(Valued):
     """A body and the contact problem on its surface.
 
     Attributes

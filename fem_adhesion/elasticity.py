@@ -19,13 +19,14 @@ from skfem.refdom import RefTri
 
 from halfspace.compliance import Array, Index
 from halfspace.errors import InputError
+from halfspace.values import Valued
 
 BATCH = 400_000
 """Numbers held in one batch of strain-displacement matrices: 16 MB, small enough for the cache to help."""
 
 
-@dataclass(frozen=True)
-class Space:
+@dataclass(frozen=True, eq=False, repr=False)
+class Space(Valued):
     """Displacements (u_r, u_z), both expanded in one scalar element on one mesh.
 
     Attributes

@@ -18,13 +18,14 @@ from scipy.sparse.linalg import splu
 from fem_adhesion.boundary import boundary_basis, trace_matrix
 from fem_adhesion.elasticity import Space, lame_parameters, ring_measure
 from halfspace.compliance import Array, Index
+from halfspace.values import Valued
 
 TRACE_POINTS = 6
 """Gauss points on a facet beyond the degree p where a smooth field that is no polynomial is integrated."""
 
 
-@dataclass(frozen=True)
-class Exterior:
+@dataclass(frozen=True, eq=False, repr=False)
+class Exterior(Valued):
     """The far boundary's condition, reduced to matrices; N unknowns in all, n of them reduced.
 
     Attributes

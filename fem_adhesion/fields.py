@@ -30,13 +30,14 @@ from halfspace.errors import InputError
 from halfspace.events import EVENTS
 from halfspace.newton import Control, Traceable
 from halfspace.path import Metric, Point, make_point
+from halfspace.values import Valued
 
 FIELDS = Discretisation(degree=6)
 """Cells of the fields: displacement and stress differ from those of degree 9 by 5e-5 and 1e-3 of their maxima."""
 
 
-@dataclass(frozen=True)
-class State:
+@dataclass(frozen=True, eq=False, repr=False)
+class State(Valued):
     """An equilibrium of a scene with the fields inside the body, the first of two.
 
     Attributes

@@ -30,13 +30,14 @@ from fem_adhesion.finite_strain_traction import Convention, Traction
 from halfspace.compliance import Array
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.profiles import Profile
+from halfspace.values import Valued
 
 LEAST_VOLUME = 0.1
 """J below which no step may take a cell in one go, unless it was there already: before it is turned inside out."""
 
 
-@dataclass(frozen=True)
-class FiniteStrainProblem:
+@dataclass(frozen=True, eq=False, repr=False)
+class FiniteStrainProblem(Valued):
     """Equilibrium of a surface law with a body at finite strain; a `halfspace.newton.Traceable`.
 
     Attributes

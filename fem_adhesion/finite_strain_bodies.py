@@ -28,6 +28,7 @@ from fem_adhesion.finite_strain_cells import (
 )
 from halfspace.compliance import Array, Index
 from halfspace.errors import InputError
+from halfspace.values import Valued
 
 
 class Body(Protocol):
@@ -87,8 +88,8 @@ class Body(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class DisplacementBody:
+@dataclass(frozen=True, eq=False, repr=False)
+class DisplacementBody(Valued):
     """A neo-Hookean body described by its displacements alone.
 
     Attributes

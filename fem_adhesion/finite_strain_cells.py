@@ -14,10 +14,11 @@ from scipy import sparse
 from fem_adhesion.elasticity import Space, cell_strains
 from fem_adhesion.neo_hookean import Deformation
 from halfspace.compliance import Array, Index
+from halfspace.values import Valued
 
 
-@dataclass(frozen=True)
-class Pattern:
+@dataclass(frozen=True, eq=False, repr=False)
+class Pattern(Valued):
     """Positions of cell matrices in a sparse matrix, sorted once for all.
 
     Attributes
@@ -49,8 +50,8 @@ class Pattern:
         return sparse.csc_array((data, self.indices, self.indptr), shape=self.shape)
 
 
-@dataclass(frozen=True)
-class Cells:
+@dataclass(frozen=True, eq=False, repr=False)
+class Cells(Valued):
     """A batch of cells, with their shape functions at their quadrature points.
 
     Attributes

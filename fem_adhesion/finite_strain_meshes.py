@@ -27,13 +27,14 @@ from halfspace.curve import Chart, Segment, transfer
 from halfspace.newton import Traceable
 from halfspace.path import Point
 from halfspace.sized import SizedBody
+from halfspace.values import Valued
 
 FARTHEST = 0.98
 """Undeformed radius in R up to which a contact may spread; small slopes end before, see `halfspace.contact.WIDEST`."""
 
 
-@dataclass(frozen=True)
-class Discretised:
+@dataclass(frozen=True, eq=False, repr=False)
+class Discretised(Valued):
     """A body on one mesh.
 
     Attributes
@@ -88,8 +89,8 @@ def _distance(value: float, target: float) -> float:
     return float("inf") if np.isnan(value) else abs(value - target)
 
 
-@dataclass(frozen=True)
-class ScenesBody:
+@dataclass(frozen=True, eq=False, repr=False)
+class ScenesBody(Valued):
     """The body of a scene, to be meshed for any range of contact radii.
 
     Attributes

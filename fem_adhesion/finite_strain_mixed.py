@@ -35,10 +35,11 @@ from fem_adhesion.finite_strain_cells import (
 )
 from halfspace.compliance import Array, Index
 from halfspace.errors import InputError
+from halfspace.values import Valued
 
 
-@dataclass(frozen=True)
-class MixedBody:
+@dataclass(frozen=True, eq=False, repr=False)
+class MixedBody(Valued):
     """A neo-Hookean body of N displacement and M pressure unknowns, in this order.
 
     Attributes

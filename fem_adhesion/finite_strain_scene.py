@@ -15,7 +15,7 @@ from fem_adhesion.finite_strain_meshes import Discretised, ScenesBody, enriched
 from fem_adhesion.finite_strain_traction import CONVENTIONS, ConventionName
 from fem_adhesion.finite_strain_windows import trace_windows
 from fem_adhesion.scene import Scene
-from halfspace.contact import APPROACH
+from halfspace.contact import APPROACH, spike_width
 from halfspace.curve import (
     COMPRESSION,
     Chart,
@@ -29,19 +29,27 @@ from halfspace.curve import (
 from halfspace.errors import InputError
 from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event
 from halfspace.limits import require_load, require_rtol
+from halfspace.values import Valued
 
 WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a minute's work at 3
 TIGHTEST = 1e-6  # relative tolerance
 MOST_LEVELS = 2
 NEARBY = 0.01  # relative difference of contact radii that one mesh serves
 LITTLE = 0.5  # R dgamma: a load past every event
+LEAST_FOR_NORMAL = (10.0, 20.0)
+"""Least R/eps for a traction normal to the deformed surface, and least R/eps over tabor/(width of the spike in beta).
+
+A surface stress -dgamma wants waves shorter than some dgamma/E* = beta^2/R^2 beta; where the spike is not many times as
+wide they are let loose. Below a fourth to a half of either number events are lost, or differ from degree to degree.
+"""
+
 JUMPS = ("pull_off", "jump_on", "jump_off")
 
 State = Mapping[str, Located]
 
 
-@dataclass(frozen=True)
-class AroundEvents:
+@dataclass(frozen=True, eq=False, repr=False)
+class AroundEvents(Valued):
     """A discretisation on which every event has a mesh made for its own contact radius.
 
     Parameters
@@ -116,15 +124,16 @@ def trace(
     to_load : float
         Compressive load at which the curve ends, in R dgamma.
     convention : {"vertical", "normal", "reference"}
-        What the traction of the surface law is counted per: see `fem_adhesion.finite_strain_traction`.
+        What the traction of the surface law is counted per: see `fem_adhesion.finite_strain_traction`. The first and
+        the last serve spheres of any size, the second such that R/eps is at least 10 and 20 tabor over the width of the
+        spike of tension in beta, that is 20 tabor^3 or, for tabor below 0.79, 29 tabor^(3/2).
 
     Returns
     -------
     EquilibriumPath
         Each event has a mesh of its own; its error estimate is half the larger of the changes from elements one degree
         lower, on the same mesh and on that of the curve. The energy is nan with the vertical traction, which has none;
-        stability is as said at `FiniteStrainProblem.negative_directions`. `halfspace.curve.moved` and
-        `halfspace.devices` do not apply: the finest charts are for reference.
+        stability is as said at `FiniteStrainProblem.negative_directions`. `halfspace.devices` does not apply.
 
     Raises
     ------
@@ -133,7 +142,7 @@ def trace(
     halfspace.errors.NotConverged
         If the curve or an event is lost, as where the material is squeezed or torn beyond what Newton's method follows.
     """
-    _require(scene, rtol, to_load)
+    _require(scene, rtol, to_load, convention)
     if scene.tabor > WIDEST_TABOR:
         raise InputError(
             f"tabor = {scene.tabor:g} is outside tabor <= {WIDEST_TABOR:g} for a curve at finite strain; "
@@ -160,14 +169,14 @@ def find_jumps(scene: Scene, rtol: float = 1e-4, *, convention: ConventionName =
     Parameters and errors as of `trace`, without the limit of the Tabor parameter. The error estimates are half the
     changes from elements one degree lower.
     """
-    _require(scene, rtol, COMPRESSION)
+    _require(scene, rtol, COMPRESSION, convention)
     linear = _linear_curve(scene, LITTLE)
     found = {name: event for name, event in find_events(linear).items() if name in JUMPS}
     return dict(_climb(rtol, _lowest(scene, rtol, convention, linear), found).events)
 
 
-@dataclass(frozen=True)
-class _Climbed:
+@dataclass(frozen=True, eq=False, repr=False)
+class _Climbed(Valued):
     """Events on the finest discretisation, with those on the others before it."""
 
     events: Mapping[str, Event]
@@ -220,12 +229,14 @@ def _linear_curve(scene: Scene, to_load: float) -> tuple[Segment, ...]:
     return trace_charts(body.curve(to_load), to_load)
 
 
-def _require(scene: Scene, rtol: float, to_load: float) -> None:
+def _require(scene: Scene, rtol: float, to_load: float, convention: ConventionName) -> None:
     """Refuse what is out of range or has no meaning at finite strain."""
     require_rtol(rtol)
     require_load(to_load)
     if rtol < TIGHTEST:
         raise InputError(f"rtol = {rtol:g} is outside {TIGHTEST:g} <= rtol for finite strain; take 1e-4")
+    if convention == "normal":
+        _require_stiff_surface(scene)
     for name, value, wanted in (
         ("body", scene.body, "hemisphere"),
         ("traction", scene.traction, "projected"),
@@ -233,3 +244,14 @@ def _require(scene: Scene, rtol: float, to_load: float) -> None:
     ):
         if value != wanted:
             raise InputError(f"{name} = {value!r} does not go with finite strain; take {name} = {wanted!r}")
+
+
+def _require_stiff_surface(scene: Scene) -> None:
+    """Refuse a sphere whose surface a stress -dgamma would crumple."""
+    least, spikes = LEAST_FOR_NORMAL
+    least = max(least, spikes * scene.tabor / spike_width(scene.tabor))
+    if scene.radius_ratio is not None and scene.radius_ratio < least:
+        raise InputError(
+            f"radius_ratio = {scene.radius_ratio:g} is outside {least:.3g} <= radius_ratio for convention = 'normal' "
+            f"and tabor {scene.tabor:g}: its surface stress would crumple the surface; take 'vertical' or 'reference'"
+        )

@@ -17,10 +17,11 @@ from fem_adhesion.far_field import Exterior
 from fem_adhesion.finite_strain_bodies import Body
 from halfspace.compliance import Array, Index
 from halfspace.errors import NotConverged
+from halfspace.values import Valued
 
 
-@dataclass(frozen=True)
-class Step:
+@dataclass(frozen=True, eq=False, repr=False)
+class Step(Valued):
     """The bordered linear equations of one state, factorised.
 
     Attributes
@@ -56,8 +57,8 @@ class Step:
         return int(np.sum(interior) + np.sum(self.factors.U.diagonal() < 0))
 
 
-@dataclass(frozen=True)
-class Elimination:
+@dataclass(frozen=True, eq=False, repr=False)
+class Elimination(Valued):
     """Where the entries of cell matrices go once their interior unknowns are eliminated; n reduced unknowns in all.
 
     Attributes

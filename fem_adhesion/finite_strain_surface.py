@@ -12,10 +12,11 @@ from fem_adhesion.boundary import boundary_basis
 from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import Exterior
 from halfspace.compliance import Array, ElasticOperator, Index
+from halfspace.values import Valued
 
 
-@dataclass(frozen=True)
-class ContactSurface:
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactSurface(Valued):
     """Gauss points of the contact facets by radius, q in all, and the body's n reduced unknowns at them.
 
     Attributes

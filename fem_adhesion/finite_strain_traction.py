@@ -30,7 +30,8 @@ Changes of the linear hemisphere's pull-off load, in R dgamma, at tabor 1, nu = 
      100    0.1      -5.16350   -0.1114    -0.0116   -0.0093
 
 At R/eps = 1000 int sigma theta dA over the linear state is 0.054; the gap's own change leaves 0.043 of it.
-At tabor 3 the events of ``normal`` are lost from R/eps = 100 downwards, or differ from mesh to mesh.
+The events of ``normal`` are lost, or differ from degree to degree, where a surface stress -dgamma crumples the surface,
+near R/eps = 10 tabor^3: `finite_strain_scene` refuses such spheres. The others go down to R/eps = 2.25 tabor.
 """
 
 from __future__ import annotations
@@ -43,6 +44,7 @@ from scipy import sparse
 
 from fem_adhesion.finite_strain_surface import ContactSurface, scaled
 from halfspace.compliance import Array
+from halfspace.values import Valued
 
 ConventionName = Literal["vertical", "normal", "reference"]
 
@@ -75,8 +77,8 @@ CONVENTIONS: dict[ConventionName, Convention] = {
 }
 
 
-@dataclass(frozen=True)
-class Traction:
+@dataclass(frozen=True, eq=False, repr=False)
+class Traction(Valued):
     """Forces of a surface law by one of the conventions above, or between two of them.
 
     Attributes

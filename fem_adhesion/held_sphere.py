@@ -18,6 +18,7 @@ from fem_adhesion.nested import refined_towards
 from halfspace.compliance import Array, Index
 from halfspace.errors import InputError
 from halfspace.limits import require_cap_angle
+from halfspace.values import Valued
 
 RINGS = 0.2 ** np.arange(1.0, 8.0)
 """Sizes of the rings around the rim of the cap, in parts of the cells there; what is left errs by some 1e-9."""
@@ -44,8 +45,8 @@ NEAREST, NESTED = 0.7, 0.4
 """Most that its rim is from the axis then, or else from the equator, in cells; and ratio of the rings' sizes."""
 
 
-@dataclass(frozen=True)
-class _Lines:
+@dataclass(frozen=True, eq=False, repr=False)
+class _Lines(Valued):
     """Lines of one half.
 
     Attributes

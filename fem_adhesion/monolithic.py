@@ -31,6 +31,7 @@ from halfspace.compliance import Array, ElasticOperator
 from halfspace.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
+from halfspace.values import Valued
 
 
 def axisymmetric_elasticity(poisson: float) -> Any:
@@ -67,8 +68,8 @@ def _pressure_change_work(u: Any, v: Any, w: Any) -> Any:
 pressure_work, pressure_change_work = LinearForm(_pressure_work), BilinearForm(_pressure_change_work)
 
 
-@dataclass(frozen=True)
-class MonolithicProblem:
+@dataclass(frozen=True, eq=False, repr=False)
+class MonolithicProblem(Valued):
     """Equilibrium of a surface law with a block of N displacement unknowns; a `halfspace.newton.Traceable`.
 
     Attributes

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from halfspace.compliance import Array
+from halfspace.values import Valued
 
 SMALL = 0.5
 """Change of volume below which x - ln(1 + x) is integrated rather than subtracted; ten Gauss points give all digits."""
@@ -31,8 +32,8 @@ TRANSPOSED = ((1, 2), (3, 4))
 """Positions of the components of A in the r-z plane: A[i][j] = du_i/dX_j."""
 
 
-@dataclass(frozen=True)
-class Deformation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Deformation(Valued):
     """Deformation at points, from the displacement gradient.
 
     Attributes

@@ -11,6 +11,7 @@ from halfspace.errors import InputError
 from halfspace.limits import (
     require_cap_angle,
     require_fixed_mesh,
+    require_modulus,
     require_poisson,
     require_radius,
     require_radius_ratio,
@@ -52,6 +53,32 @@ class Counter:
     def __post_init__(self) -> None:
         require_share(self.share, self.radius)
         require_poisson(self.poisson)
+
+    @classmethod
+    def from_moduli(
+        cls, modulus: float, poisson: float, counter_modulus: float, counter_poisson: float, *, radius: float = math.inf
+    ) -> Counter:
+        """Counter-body by the elastic constants of both bodies, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+
+        Parameters
+        ----------
+        modulus, poisson : float
+            Young's modulus E1, in any unit, and Poisson's ratio nu1 of the first body, the scene's own.
+        counter_modulus, counter_poisson : float
+            E2, in the same unit, and nu2 of the counter-body.
+        radius : float
+            Ratio of its radius to that of the first body; infinite for a half-space.
+
+        Raises
+        ------
+        InputError
+            If a value is out of range.
+        """
+        compliances = [
+            (1 - require_poisson(nu) ** 2) / require_modulus(E)
+            for E, nu in ((modulus, poisson), (counter_modulus, counter_poisson))
+        ]
+        return cls(compliances[1] / sum(compliances), counter_poisson, radius)
 
 
 @dataclass(frozen=True)

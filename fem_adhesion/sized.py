@@ -76,14 +76,7 @@ def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
 def _pair(scene: Scene, how: Discretisation, R: float, counter: Counter) -> SizedBody:
     """Hemisphere and counter-body; beyond the smaller one's core, 0.987 of its radius, both are taken as rigid."""
     R1, _ = radii_of(R, counter)
-
-    def make(lines: Array) -> Made:
-        core = lines[: -bodies.LAYERS]
-        depths = partial(grid.graded, 0.0, np.diff(core).min(), growth=how.growth)
-        operator, unknowns = pair_operator(core, depths, R, counter, scene.poisson, how.degree, GRIPS[scene.grip])
-        return with_rigid_rim(operator, lines[-bodies.LAYERS - 1 :], bodies.Stereographic(R1)), unknowns
-
-    profile = gap_of(R, counter, scene.profile)
+    make, profile = partial(_made_pair, scene, how, R, counter), gap_of(R, counter, scene.profile)
     outer = R1 * np.linspace(bodies.CORE, 2.0, bodies.LAYERS + 1)
     return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, bodies.Stereographic(R1))
 
@@ -92,14 +85,27 @@ def _sphere(scene: Scene, how: Discretisation, R: float, profile: Profile) -> Si
     """Hemisphere held at its mid-plane, or sphere held over a cap."""
     whole = scene.body == "sphere"
     outer = contact_ends(R, scene.cap_angle) if whole else R * np.linspace(bodies.CORE, 2.0, bodies.LAYERS + 1)
-
-    def make(lines: Array) -> Made:
-        core = lines[: len(lines) - len(outer) + 1]
-        depths = grid.graded(0.0, np.diff(core).min(), bodies.DEPTH * R, growth=how.growth)
-        mesh = held_sphere(R, core, depths, scene.cap_angle) if whole else bodies.hemisphere(R, core, depths)
-        return _condensed(scene, how, mesh)
-
+    make = partial(_made_sphere, scene, how, len(outer))
     return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, bodies.Stereographic(R, scene.traction))
+
+
+def _made_pair(scene: Scene, how: Discretisation, R: float, counter: Counter, lines: Array) -> Made:
+    """Both bodies, and beyond their cells the rigid rim."""
+    core = lines[: -bodies.LAYERS]
+    depths = partial(grid.graded, 0.0, np.diff(core).min(), growth=how.growth)
+    operator, unknowns = pair_operator(core, depths, R, counter, scene.poisson, how.degree, GRIPS[scene.grip])
+    coordinate = bodies.Stereographic(radii_of(R, counter)[0])
+    return with_rigid_rim(operator, lines[-bodies.LAYERS - 1 :], coordinate), unknowns
+
+
+def _made_sphere(scene: Scene, how: Discretisation, outer: int, lines: Array) -> Made:
+    """Sphere or hemisphere whose last `outer` lines stand still."""
+    core, R = lines[: len(lines) - outer + 1], scene.sphere_radius
+    depths = grid.graded(0.0, np.diff(core).min(), bodies.DEPTH * R, growth=how.growth)
+    whole = scene.body == "sphere"
+    return _condensed(
+        scene, how, held_sphere(R, core, depths, scene.cap_angle) if whole else bodies.hemisphere(R, core, depths)
+    )
 
 
 def _block(scene: Scene, how: Discretisation, lines: Array) -> Made:

@@ -20,6 +20,7 @@ from halfspace.limits import require_counter_radius, require_load, require_radiu
 from halfspace.profiles import Profile, between_spheres
 from halfspace.sized import WINDOW, AroundEvents, Made, SizedBody, to_equator
 from halfspace.theories import jkr_radius
+from halfspace.values import Valued
 
 FINER = 30  # ratio of the errors of two successive rungs
 TWIN = (0.75, 0.87)  # finest cells and growth of a twin, in those of its sibling: no cell of the two is the same
@@ -62,8 +63,8 @@ def extent_for(tabor: float, rtol: float) -> float:
     return float(2.5 * min(rtol, 0.01) ** -0.25 * max(1.0, tabor) ** (6 / 28))
 
 
-@dataclass(frozen=True)
-class Rings:
+@dataclass(frozen=True, eq=False, repr=False)
+class Rings(Valued):
     """Breakpoints of two charts: centred on the axis up to a contact radius, then on the edge, whose radius is 1."""
 
     centred: grid.Array
@@ -174,7 +175,9 @@ def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level:
 
 
 def _under_sphere(tabor: float, gap: Profile, resolution: Resolution) -> SizedBody:
-    def make(lines: compliance.Array) -> Made:
-        return compliance.panels(lines, resolution.nodes), resolution.nodes * (lines.size - 1)
-
+    make = partial(_made, resolution.nodes)
     return SizedBody(tabor, gap, make, resolution.finest, resolution.growth, to_equator(gap.end), FlatCoordinate())
+
+
+def _made(nodes: int, lines: compliance.Array) -> Made:
+    return compliance.panels(lines, nodes), nodes * (lines.size - 1)

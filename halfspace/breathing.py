@@ -17,6 +17,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from halfspace.compliance import Array, ElasticOperator, lagrange
+from halfspace.values import Valued
 
 
 class Operator(Protocol):
@@ -63,8 +64,8 @@ class _Latest:
         return self.operator
 
 
-@dataclass(frozen=True)
-class Homogeneous:
+@dataclass(frozen=True, eq=False, repr=False)
+class Homogeneous(Valued):
     """A body without a length of its own.
 
     Parameters
@@ -100,8 +101,8 @@ class Homogeneous:
         return np.asarray(np.sqrt(scale) * self.unit.compliance_root)
 
 
-@dataclass(frozen=True)
-class _Nodes:
+@dataclass(frozen=True, eq=False, repr=False)
+class _Nodes(Valued):
     """Radii and weights of the nodes, and their derivatives by the contact radius."""
 
     radii: Array
@@ -143,8 +144,8 @@ class FlatCoordinate:
         return x, np.ones_like(x)
 
 
-@dataclass(frozen=True)
-class MovingGrid:
+@dataclass(frozen=True, eq=False, repr=False)
+class MovingGrid(Valued):
     """Cells that move with the contact edge: their ends are x = fixed + x_a moving, x_a the edge's coordinate.
 
     Attributes
@@ -172,8 +173,8 @@ class MovingGrid:
         return 1 / float(self.coordinate.radius(np.array(self.edge(contact_radius)))[1])
 
 
-@dataclass(frozen=True)
-class Interpolated:
+@dataclass(frozen=True, eq=False, repr=False)
+class Interpolated(Valued):
     """A body with a length, or any other, between the contact radii at which its operator is known.
 
     With C = A w the compliance, the symmetric kernel max(r_i, r_j) A_ij, of order one at every radius and exact for a

@@ -12,13 +12,14 @@ from scipy.linalg import eigh
 
 from halfspace.errors import InputError
 from halfspace.kernel import band_deflection, panel_integrals
+from halfspace.values import Valued
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 
-@dataclass(frozen=True)
-class ElasticOperator:
+@dataclass(frozen=True, eq=False, repr=False)
+class ElasticOperator(Valued):
     """Elastic half of a contact problem, whatever body or method it comes from.
 
     The surface is cut into rings, the `cells`; inside each, pressure, deflection and gap are

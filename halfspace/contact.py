@@ -25,6 +25,7 @@ from halfspace.compliance import ElasticOperator
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
 from halfspace.profiles import PARABOLOID, Profile
+from halfspace.values import Valued
 
 Array = NDArray[np.float64]
 
@@ -44,8 +45,8 @@ def widest_interval(nodes: int) -> float:
     return max(0.1, min(0.1 * k, 0.021 * k**2))
 
 
-@dataclass(frozen=True)
-class ContactProblem:
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactProblem(Valued):
     """Equilibrium of a surface law with an elastic operator.
 
     Parameters

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from functools import cached_property
 from typing import Protocol
 
@@ -17,18 +18,19 @@ from numpy.typing import NDArray
 
 from halfspace import newton
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
-from halfspace.errors import ContactTooWide
-from halfspace.events import EXTREMUM, FOLD, ZERO_LOAD, Condition, Event, Located, locate, relocate
+from halfspace.errors import ContactTooWide, InputError
+from halfspace.events import EVENTS, EXTREMUM, FOLD, ZERO_LOAD, Condition, Event, Located, locate, relocate
 from halfspace.newton import Traceable
 from halfspace.path import Metric, Point, Steps, follow, loaded_to, make_point
+from halfspace.values import Valued, shown
 
 Array = NDArray[np.float64]
 
 COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwise
 
 
-@dataclass(frozen=True)
-class Chart:
+@dataclass(frozen=True, eq=False, repr=False)
+class Chart(Valued):
     """A discretisation, its unknowns, and the contact radius (beta) up to which it serves; infinite for the last."""
 
     problem: Traceable
@@ -36,8 +38,8 @@ class Chart:
     until: float = np.inf
 
 
-@dataclass(frozen=True)
-class Segment:
+@dataclass(frozen=True, eq=False, repr=False)
+class Segment(Valued):
     """Points of the path on one chart."""
 
     problem: Traceable
@@ -65,8 +67,8 @@ class Finest(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class EquilibriumPath:
+@dataclass(frozen=True, eq=False, repr=False)
+class EquilibriumPath(Valued):
     """The load-approach curve from far separation to compression, through every fold.
 
     Attributes
@@ -96,7 +98,7 @@ class EquilibriumPath:
     energy: Estimate
     stages: tuple[Mapping[str, Located], ...]
     finest: Finest
-    seconds: float
+    seconds: float = field(compare=False)
     settings: Mapping[str, object] = field(default_factory=dict)
 
     @property
@@ -105,8 +107,28 @@ class EquilibriumPath:
         return self.finest.unknowns
 
     def event(self, name: str) -> Event | None:
-        """Event by name, or None if the curve does not have it."""
+        """Event by name, or None if the curve does not have it.
+
+        Raises
+        ------
+        InputError
+            If no curve has an event of that name.
+        """
+        if name not in EVENTS:
+            near = get_close_matches(name, EVENTS, n=1)
+            remedy = f'did you mean "{near[0]}"?' if near else "take one of these"
+            raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}; {remedy}')
         return self.events.get(name)
+
+    def __repr__(self) -> str:
+        """What was asked and found: events with their errors, energy, effort."""
+        events = "; ".join(map(_told, self.events.values()))
+        return (
+            f"<EquilibriumPath of tabor {self.tabor:g}: {len(self.points)} points on {len(self.segments)} charts, "
+            f"approach {self.approach[0]:.4g} to {self.approach[-1]:.4g} eps; {events}; energy released "
+            f"{self.energy.value:.6g} +- {self.energy.error:.1g} R dgamma eps; {self.unknowns} unknowns, "
+            f"{self.seconds:.2g} s; settings {shown(self.settings)}>"
+        )
 
     @property
     def approach(self) -> Array:
@@ -151,6 +173,13 @@ class EquilibriumPath:
 
     def _observable(self, index: int) -> Array:
         return np.array([point.observables[index] for point in self.points])
+
+
+def _told(event: Event) -> str:
+    return (
+        f"{event.name} at approach {event.approach:.6g} +- {event.approach_error:.1g} eps, "
+        f"load {event.load:.6g} +- {event.load_error:.1g} R dgamma"
+    )
 
 
 def _stable(segment: Segment) -> NDArray[np.bool_]:

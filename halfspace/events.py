@@ -19,6 +19,7 @@ from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.errors import NotConverged
 from halfspace.newton import Control, Traceable
 from halfspace.path import Metric, Point, correct, least_slope, make_point
+from halfspace.values import Valued
 
 Array = NDArray[np.float64]
 
@@ -98,8 +99,8 @@ EXTREMUM = Condition(LOAD, stationary=True)
 ZERO_LOAD = Condition(LOAD)
 
 
-@dataclass(frozen=True)
-class Located:
+@dataclass(frozen=True, eq=False, repr=False)
+class Located(Valued):
     """A root of a condition on one discretisation's path.
 
     Attributes

@@ -27,6 +27,7 @@ from halfspace.curve import (
 )
 from halfspace.errors import InputError, NotConverged
 from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event
+from halfspace.values import Valued
 
 MOST_RUNGS = 3  # above the lowest
 
@@ -47,8 +48,8 @@ class Stage(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Charted:
+@dataclass(frozen=True, eq=False, repr=False)
+class Charted(Valued):
     """The same charts for every event, one for those on a grid that stands still, one for those on one that follows.
 
     Attributes
@@ -70,8 +71,8 @@ class Charted:
         return max(chart.unknowns for chart in self.charts)
 
 
-@dataclass(frozen=True)
-class Rung:
+@dataclass(frozen=True, eq=False, repr=False)
+class Rung(Valued):
     """One step of a ladder of discretisations.
 
     Attributes

@@ -91,6 +91,13 @@ def require_cap_angle(cap_angle: float) -> float:
     return _require(cap_angle, "cap_angle", holds, "1 <= cap_angle <= 89.99 and is not 90", "give degrees, say 30")
 
 
+def require_modulus(modulus: float) -> float:
+    """Return a Young's modulus, or raise InputError unless it is positive and finite."""
+    return _require(
+        modulus, "modulus", modulus > 0, "0 < modulus < inf", "a rigid body is no counter-body: leave it out"
+    )
+
+
 def require_share(share: float, radius: float) -> float:
     """Return a counter-body's part of the compliance, or raise InputError unless 0 < share < 1 and its radius is."""
     remedy = "a rigid one is no counter-body: leave it out"

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.errors import NotConverged
+from halfspace.values import Valued
 
 Array = NDArray[np.float64]
 
@@ -93,8 +94,8 @@ class Traceable(Equilibrium, Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Control:
+@dataclass(frozen=True, eq=False, repr=False)
+class Control(Valued):
     """One more equation for one more unknown: a weighted sum of the observables has a target.
 
     Parameters
@@ -140,8 +141,8 @@ def _single(observable: int, value: float) -> Control:
     return Control(np.eye(4)[observable], float(value))
 
 
-@dataclass(frozen=True)
-class Solution:
+@dataclass(frozen=True, eq=False, repr=False)
+class Solution(Valued):
     """A converged state.
 
     Attributes

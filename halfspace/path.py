@@ -16,6 +16,7 @@ from halfspace import newton
 from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.errors import NotConverged
 from halfspace.newton import Control, Equilibrium
+from halfspace.values import Valued
 
 Array = NDArray[np.float64]
 
@@ -34,8 +35,8 @@ class Metric:
         return np.array([self.approach**-2, self.load**-2, self.central_gap**-2, 0.0])
 
 
-@dataclass(frozen=True)
-class Point:
+@dataclass(frozen=True, eq=False, repr=False)
+class Point(Valued):
     """A converged point of the path with its unit tangent.
 
     Attributes

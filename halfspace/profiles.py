@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
+from halfspace.values import Valued
+
 Array = NDArray[np.float64]
 
 
@@ -67,8 +69,8 @@ class Sphere:
         return np.asarray(np.sqrt((1 - sine) * (1 + sine)))
 
 
-@dataclass(frozen=True)
-class Pair:
+@dataclass(frozen=True, eq=False, repr=False)
+class Pair(Valued):
     """Gap between two surfaces of radii R1 and R2, 1/R = 1/R1 + 1/R2: their heights add.
 
     Parameters
@@ -113,8 +115,8 @@ def between_spheres(R: float, counter_radius: float = np.inf) -> Profile:
     return Pair(Sphere(first), Sphere(second), (R / first, R / second))
 
 
-@dataclass(frozen=True)
-class Tabulated:
+@dataclass(frozen=True, eq=False, repr=False)
+class Tabulated(Valued):
     """Heights (n,) at ascending radii (n,), with their slopes: the surface of a body that is given as a mesh."""
 
     radii: Array

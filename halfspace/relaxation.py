@@ -16,6 +16,7 @@ from halfspace.contact import APPROACH, CENTRAL_GAP, ContactProblem
 from halfspace.errors import InputError, NotConverged
 from halfspace.lennard_jones import SurfaceLaw
 from halfspace.newton import Control
+from halfspace.values import Valued
 
 Array = NDArray[np.float64]
 
@@ -25,8 +26,8 @@ HOPELESS = 1e6  # relative residual beyond which an iteration has run away
 CHECKED_EVERY = 10  # sweeps
 
 
-@dataclass(frozen=True)
-class Relaxed:
+@dataclass(frozen=True, eq=False, repr=False)
+class Relaxed(Valued):
     """A state to which an iteration converged.
 
     Attributes
@@ -48,8 +49,8 @@ class Relaxed:
     residual: float
 
 
-@dataclass(frozen=True)
-class _Gaps:
+@dataclass(frozen=True, eq=False, repr=False)
+class _Gaps(Valued):
     """Gaps H = given + influence @ P under a control, which has eliminated the approach from [G97] (2.8)."""
 
     given: Array

@@ -20,6 +20,7 @@ from halfspace.curve import Chart
 from halfspace.events import Located
 from halfspace.profiles import Profile
 from halfspace.theories import jkr_radius
+from halfspace.values import Valued
 
 LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the least that the other one knows
 LEAVE = 0.5  # of the first cell: the radius at which the chart centred on the axis is left
@@ -33,8 +34,8 @@ APART = 1.7  # mean ratio of the radii between which the curve's operator is int
 Made = tuple[ElasticOperator, int]
 
 
-@dataclass(frozen=True)
-class SizedBody:
+@dataclass(frozen=True, eq=False, repr=False)
+class SizedBody(Valued):
     """A body that is discretised anew on any grid of its surface.
 
     Parameters
@@ -111,8 +112,8 @@ def to_equator(R: float) -> Array:
     return np.append(R * (1 - 0.02 * 0.3 ** np.arange(float(CROWDED))), R)
 
 
-@dataclass(frozen=True)
-class AroundEvents:
+@dataclass(frozen=True, eq=False, repr=False)
+class AroundEvents(Valued):
     """Stage of a ladder on which every event has an operator made for its own contact radius.
 
     Parameters

@@ -175,7 +175,7 @@ FLOORS = [
         "halfspace.theories",
         "halfspace.scaling",
     },
-    {"halfspace.errors", "fem_adhesion.writing"},
+    {"halfspace.errors", "halfspace.values", "fem_adhesion.writing"},
 ]
 FLOOR_OF = {module: number for number, modules in enumerate(FLOORS) for module in modules}
 

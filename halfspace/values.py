@@ -1,0 +1,104 @@
+"""Results that hold arrays, as values: compared by what they hold, shown in a few lines, pickled without their caches.
+
+The comparison that `dataclasses` writes asks an array for its truth and raises; its repr prints every number.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import Field, fields, is_dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+FEW = 4
+"""Items of a sequence, and numbers of an array, that are shown one by one."""
+
+LONGEST = 60
+"""Characters shown of anything else."""
+
+
+class Valued:
+    """Base of a dataclass, declared with ``eq=False, repr=False``, whose fields may hold arrays."""
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all compared fields hold the same; nan is the same as nan."""
+        return self is other or (type(self) is type(other) and _same_fields(self, other))
+
+    def __hash__(self) -> int:
+        """Return one number for all of a class, since arrays have none: equal values must not differ."""
+        return hash(type(self).__qualname__)
+
+    def __repr__(self) -> str:
+        """Fields by name; arrays by their shape, long sequences by their length, parts by their class."""
+        return f"{type(self).__name__}({', '.join(f'{f.name}={shown(getattr(self, f.name))}' for f in _shown(self))})"
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Fields alone: what is cached is computed again."""
+        return {field.name: getattr(self, field.name) for field in _fields(self)}
+
+
+def same(a: Any, b: Any) -> bool:
+    """Whether two values are of one type and hold the same, arrays and what is not a number included."""
+    if a is b:
+        return True
+    if type(a) is not type(b):
+        return False
+    if isinstance(a, np.ndarray):
+        return bool(a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind in "fc"))
+    if _is_sparse(a):
+        return bool(a.shape == b.shape and (a != b).nnz == 0)
+    if isinstance(a, float):
+        return a == b or (math.isnan(a) and math.isnan(b))
+    if isinstance(a, Mapping):
+        return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
+    if isinstance(a, (tuple, list)):
+        return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b, strict=True))
+    if isinstance(a, partial):
+        return same((a.func, a.args, a.keywords), (b.func, b.args, b.keywords))
+    if is_dataclass(a) and not isinstance(a, type):
+        return _same_fields(a, b)
+    # A library's object, such as an element, that has no comparison of its own is what it was made of.
+    return same(vars(a), vars(b)) if "__eq__" not in _methods(a) and hasattr(a, "__dict__") else bool(a == b)
+
+
+def _methods(value: Any) -> set[str]:
+    """Names that a value's classes define, but for those of every object."""
+    return {name for base in type(value).__mro__ if base is not object for name in vars(base)}
+
+
+def shown(value: Any) -> str:
+    """Return a value in some sixty characters."""
+    if isinstance(value, np.ndarray):
+        return f"array{value.tolist()}" if value.size <= FEW else f"array of shape {value.shape}"
+    if _is_sparse(value):
+        return f"sparse array of shape {value.shape}"
+    if isinstance(value, (tuple, list)) and len(value) > FEW:
+        return f"{len(value)} times {type(value[0]).__name__}"
+    if isinstance(value, (tuple, list)):
+        return f"({', '.join(map(shown, value))})"
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key}: {shown(item)}' for key, item in value.items())}}}"
+    if isinstance(value, Valued):
+        return f"{type(value).__name__}(...)"
+    text = repr(value)
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
+
+
+def _is_sparse(value: Any) -> bool:
+    return isinstance(value, (sparse.sparray, sparse.spmatrix))
+
+
+def _same_fields(a: Any, b: Any) -> bool:
+    return all(same(getattr(a, f.name), getattr(b, f.name)) for f in fields(a) if f.compare)
+
+
+def _fields(value: Any) -> tuple[Field[Any], ...]:
+    return fields(value)
+
+
+def _shown(value: Any) -> list[Field[Any]]:
+    return [field for field in _fields(value) if field.repr]
