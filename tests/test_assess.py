@@ -30,7 +30,7 @@ from fem_adhesion.scene import Counter, Scene
 from fem_adhesion.studies import assess as study
 from fem_adhesion.studies import assess_theories
 from fem_adhesion.studies.assess import Assessment, assess
-from fem_adhesion.studies.assess_contact import RIGID, Contact
+from fem_adhesion.studies.assess_contact import Contact
 from fem_adhesion.studies.assess_predictions import QUANTITIES, WORDS, Prediction, computed, large_tabor
 from fem_adhesion.studies.assess_verdict import Distance, cautions, deviations, ranked, regime, verdict
 from fem_adhesion.studies.quantities import KINDS, Quantity, parse
@@ -192,7 +192,7 @@ def soft_path():
 
 @pytest.mark.parametrize("stiffness", [math.inf, 1.0, 0.006, 1e-4])
 def test_jkr_with_reach_is_as_near_the_half_space_as_its_errors_say(soft_path, stiffness):
-    units = Units(1.0, 1.0, 1.0, 1.0)
+    units = Units(2.0, 3.0, 5.0, 7.0)  # all of its units differ
     truth = computed("half-space", soft_path, stiffness, units)
     theory = large_tabor(300.0, stiffness, units)
     assert set(theory.values) == set(truth.values) == set(QUANTITIES)
@@ -234,10 +234,31 @@ def test_the_finite_bodies_are_those_asked_for(more, poisson, counter, grip, mon
     else:
         modulus, nu, radius = counter
         share = contact.units.modulus * (1 - nu**2) / modulus
-        expected = min(max(share, RIGID), 1 - RIGID)
-        assert scene.counter.share == pytest.approx(expected, rel=1e-12)
+        assert scene.counter.share == pytest.approx(share, rel=1e-12, abs=1e-8)  # 0 and 1 are no shares
         assert scene.counter.radius == pytest.approx(radius, rel=1e-12)
-        assert scene.counter.poisson == nu or share < RIGID  # of a rigid one it does not matter
+        assert scene.counter.poisson == nu or not share  # of a rigid one it does not matter
+
+
+@pytest.mark.parametrize(("counter_radius", "ratio"), [(math.inf, math.inf), (250e-9, 2.5), (50e-9, 2.0)])
+def test_the_true_profile_is_that_of_both_spheres(counter_radius, ratio, monkeypatch):
+    asked = []
+    monkeypatch.setattr(halfspace, "trace", lambda tabor, **options: asked.append((tabor, options)))
+    monkeypatch.setattr(study, "computed", lambda name, *_: name)
+    contact = Contact(**SILICA, counter_radius=counter_radius)
+    assert study._profile(contact) == "true profile"
+    ((tabor, options),) = asked
+    assert tabor == contact.units.tabor
+    assert options["radius_ratio"] == contact.units.radius_ratio
+    assert options["counter_radius"] == pytest.approx(ratio, rel=1e-12)
+
+
+@pytest.mark.parametrize("tabor", [1e3, 1e-14])
+def test_of_two_soft_or_rigid_spheres_no_true_profile_is_claimed(tabor):
+    """JKR's theory and Bradley's on the exact sphere know one sphere only."""
+    size = Contact(**SILICA, counter_radius=1e-7)
+    soft = replace(size, modulus=size.modulus * (size.units.tabor / tabor) ** 1.5)
+    with pytest.raises(InputError, match="of two spheres is outside 1e-12 <= tabor <= 300; the paraboloid serves"):
+        study._profile(soft)
 
 
 def test_a_pair_is_the_same_seen_from_either_body():
@@ -499,6 +520,8 @@ def test_the_half_space_in_si(silica):
     on = cycle(path, 0.2 * 0.3e-9 / 1e-8).jump_on.take_off
     assert values["jump_on_separation"].value == pytest.approx((1 - on.approach) * 0.3e-9, rel=1e-6)
     assert values["jump_on_base"].value == pytest.approx(on.approach * 0.3e-9 + on.load * 1e-8 / 0.2, rel=1e-6)
+    lost = cycle(path, 0.2 * 0.3e-9 / 1e-8).energy_lost.value
+    assert values["energy_lost"].value == pytest.approx(lost * 1e-8 * 0.3e-9, rel=1e-6)
 
 
 def test_every_quantity_has_its_error_and_unit(silica):
@@ -603,6 +626,14 @@ def test_without_finite_bodies_the_verdict_claims_nothing_about_them():
 def test_a_position_near_zero_is_judged_by_the_spacing():
     (distance,) = ranked((_model("a", 1.0, on=3e-12), None, _model("b", 1.0, on=1e-15)), 1e-10)
     assert distance == Distance("a", "jump_on_separation", pytest.approx(0.02999, rel=1e-6), ())
+
+
+def test_the_distance_of_a_model_is_what_it_may_be_at_most():
+    """Both errors are part of it."""
+    one = Prediction("a", {"energy_lost": Quantity(3.0, 0.2, "J")})
+    other = Prediction("b", {"energy_lost": Quantity(2.0, 0.4, "J")})
+    (distance,) = ranked((one, None, other), 1e-10)
+    assert distance.size == pytest.approx((3.0 - 2.0 + 0.2 + 0.4) / 2.0, rel=1e-12)
 
 
 def test_closed_theories_are_not_judged_by_a_contact_radius_that_means_another(silica):

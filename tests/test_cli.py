@@ -230,7 +230,7 @@ MATERIAL = ["--radius", "100nm", "--modulus", "70GPa", "--poisson", "0.17", "--w
         ([*MATERIAL, "--spacing", "1nm", "--hamaker", "1zJ"], "--spacing with --hamaker, limit: one of both"),
         ([*MATERIAL, "--spacing", "1nm", "--counter-poisson", "0.3"], "counter_modulus = None"),
         ([*MATERIAL, "--spacing", "1nm", "--tabor", "1"], "unrecognized arguments: --tabor 1"),
-        ([*MATERIAL, "--spacing", "1nm", "--json", "a.svg", "--plot", "./a.svg"], "is given for two outputs"),
+        ([*MATERIAL, "--spacing", "1nm", "--json", "a.svg", "--plot", "other/../a.svg"], "is given for two outputs"),
         ([*MATERIAL, "--spacing", "1nm", "--plot", "-"], "limit: one of .png, .svg, .pdf"),
         ([*MATERIAL, "--hamaker", "1nm"], "hamaker = 1nm has a unit of the wrong kind, limit: a multiple of J"),
         (
