@@ -367,7 +367,7 @@ def _printed(console_text):
 
 def _shown(assessment, width=150):
     console = Console(width=width, file=io.StringIO())
-    console.print(report(assessment))
+    console.print(report(assessment), crop=False)
     return console.file.getvalue()
 
 

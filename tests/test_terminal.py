@@ -29,9 +29,10 @@ WIDTHS = [150, 100, 80, 60, 40, 20]
 
 def shown(what, width):
     console = Console(width=width, file=io.StringIO())
-    console.print(what)
+    console.print(what, crop=False)  # so that what is too wide is seen
     text = console.file.getvalue()
     assert "…" not in text
+    assert max(map(len, text.splitlines()), default=0) <= width
     return text
 
 
@@ -144,34 +145,17 @@ def test_the_verdicts_of_a_comparison_are_whole_at_any_width(case, width):
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_the_hard_cases_are_whole_at_any_width(width):
+    nan, long = float("nan"), " ".join(9 * ["spacing too wide,"])
     rows = [
         HardRow(
-            "a sphere, small",
-            "converged",
-            "converged",
-            "converged",
-            "against: two decades tighter",
-            1.1e-7,
-            2.2e-6,
-            33,
-            4.44,
+            "a sphere", "converged", "converged", "converged", "against: two decades tighter", 1.1e-7, 2.2e-6, 3, 4.4
         ),
-        HardRow(
-            "a bad mesh",
-            "refused",
-            "InputError",
-            "InputError",
-            "size 0.5 exceeds 0.25; refine it",
-            float("nan"),
-            float("nan"),
-            0,
-            5.55,
-        ),
-        HardRow(
-            "a wrong one", "wrong", "converged", "beyond the estimate", "load, against: Hertz", 6.6e-2, 7.7e-9, 88, 9.99
-        ),
+        HardRow("a mesh", "refused", "InputError", "InputError", "0.5 exceeds 0.25; refine it", nan, nan, 0, 5.55),
+        HardRow("odd", "refused", "GridTooCoarse or InputError", "GridTooCoarse", long, 1.0, 1.0, 0, 5.5),
+        HardRow("a wrong one", "wrong", "converged", "beyond the estimate", "against: Hertz", 6.6e-2, 7.7e-9, 88, 9.99),
     ]
     text = shown(hard_report.cases_table(rows), width)
+    assert len(re.findall(r"spacing\b", text)) == len(re.findall(r"\bwide,", text)) == 9
     for word in ("converged", "InputError", "beyond", "estimate", "0.25;", "decades"):
         assert re.search(rf"(?<!\w){re.escape(word)}", text)
     kept = "1.1e-07" in text

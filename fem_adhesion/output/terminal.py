@@ -12,16 +12,27 @@ from rich import box
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, JustifyMethod, RenderableType, RenderResult
 from rich.markup import escape
-from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
 WIDE = 150  # columns where there is no terminal
-UNBOUNDED = 10_000
 LEAST = 14  # columns of text that may be wrapped, where it is so long
 PAGE = 18  # the same of a cell of a page, in which a number and its unit stay together
 NUMBER = re.compile(r"[(=-]*\d[\d.e+()-]*")
 UNIT = re.compile(r"(%|[yzafpnµmkMGT]?(m|N|Pa|J|N/m|J/m\^2)|s|R|dgamma(/eps)?|eps|beta|unknowns|points)[.,;:)]*")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How a table is framed: what makes it, and how many columns the frame takes for each of n and in all."""
+
+    make: Callable[[], Table]
+    each: int
+    once: int
+
+    def around(self, count: int) -> int:
+        """Columns that the frame takes."""
+        return self.each * count + self.once
 
 
 def _framed() -> Table:
@@ -32,8 +43,7 @@ def _light() -> Table:
     return Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 0))
 
 
-Layout = Callable[[], Table]
-LAYOUTS: tuple[Layout, ...] = (_framed, _light)
+LAYOUTS = (Layout(_framed, 3, 1), Layout(_light, 1, -1))
 
 
 def make_console(*, to_error: bool = False) -> Console:
@@ -119,10 +129,17 @@ class Column:
     @property
     def least(self) -> int:
         """Least width in which nothing is cut: that of a line, or where words may go on below of a word."""
-        texts = [Text.from_markup(text).plain for text in (self.header, *self.cells)]
-        lines = max(cell_len(line) for text in texts for line in text.split("\n"))
-        words = max((cell_len(word) for text in texts for word in text.split()), default=0)
-        return max(words, min(self.wrapped, lines)) if self.wraps else lines
+        words = max((cell_len(word) for text in self._texts for word in text.split()), default=0)
+        return max(words, min(self.wrapped, self.whole)) if self.wraps else self.whole
+
+    @property
+    def whole(self) -> int:
+        """Width in which no line is broken."""
+        return max(cell_len(line) for text in self._texts for line in text.split("\n"))
+
+    @property
+    def _texts(self) -> list[str]:
+        return [Text.from_markup(text).plain for text in (self.header, *self.cells)]
 
 
 @dataclass(frozen=True)
@@ -148,7 +165,8 @@ class Fitted:
         """Title, table or list, what was left out, and caption."""
         if self.title:
             yield Flow(self.title, style="italic")
-        kept, made = self._fitting(console, options)
+        del console
+        kept, made = self._fitting(options.max_width)
         if made is None:
             yield from self._items()
         else:
@@ -158,13 +176,12 @@ class Fitted:
         if self.caption:
             yield Flow(self.caption, style="dim italic")
 
-    def _fitting(self, console: Console, options: ConsoleOptions) -> tuple[Sequence[Column], Table | None]:
+    def _fitting(self, width: int) -> tuple[Sequence[Column], Table | None]:
         """Columns that fit and their table, None if none does: all of them if it may be, in a lighter frame if not."""
-        open_ended = options.update(width=UNBOUNDED)
         for kept, layout in self._choices():
-            made = self._table(kept, layout)
-            if Measurement.get(console, open_ended, made).minimum <= options.max_width:
-                return kept, made
+            spare = width - layout.around(len(kept)) - sum(column.least for column in kept)
+            if spare >= 0:
+                return kept, self._table(kept, layout, _widths(kept, spare))
         return (), None
 
     def _choices(self) -> Iterator[tuple[Sequence[Column], Layout]]:
@@ -172,11 +189,11 @@ class Fitted:
         for rank in sorted({column.rank for column in self.columns} - {0}, reverse=True):
             yield [column for column in self.columns if column.rank < rank], LAYOUTS[-1]
 
-    def _table(self, columns: Sequence[Column], layout: Layout) -> Table:
-        made = layout()
-        for column in columns:
+    def _table(self, columns: Sequence[Column], layout: Layout, widths: Sequence[int]) -> Table:
+        made = layout.make()
+        for column, width in zip(columns, widths, strict=True):
             justify: JustifyMethod = "left" if column.text else "right"
-            made.add_column(column.header, justify=justify, no_wrap=not column.wraps, min_width=column.least)
+            made.add_column(column.header, justify=justify, no_wrap=not column.wraps, width=width)
         styles = self.styles or [""] * len(self.columns[0].cells)
         for cells, style in zip(zip(*(column.cells for column in columns), strict=True), styles, strict=True):
             made.add_row(*cells, style=style or None)
@@ -188,6 +205,17 @@ class Fitted:
             yield Text.from_markup(row[0], style="bold")
             for column, cell in zip(self.columns[1:], row[1:], strict=True):
                 yield Flow([f"  {_one_line(column.header)}:", _one_line(cell)], " ")
+
+
+def _widths(columns: Sequence[Column], spare: int) -> list[int]:
+    """Widths of columns: the least, and what is spare in equal parts, but to none more than its lines need."""
+    widths = [column.least for column in columns]
+    wanting = sorted((column.whole - column.least, place) for place, column in enumerate(columns))
+    for number, (need, place) in enumerate(wanting):
+        given = min(need, spare // (len(wanting) - number))
+        widths[place] += given
+        spare -= given
+    return widths
 
 
 def _one_line(text: str) -> str:
