@@ -91,6 +91,19 @@ def test_a_number_is_not_parted_from_its_unit(whole):
         assert " ".join(" ".join(lines).split()) == text
 
 
+@pytest.mark.parametrize("width", range(22, 80, 4))
+def test_a_cell_is_not_broken_between_a_number_and_its_unit(width):
+    cell = "spacing 0.229 beta at the edge exceeds 0.175 beta, [red]loads to 20 R dgamma[/] \\[so]"
+    text = shown(Fitted([Column("name", ["a"], text=True), Column("cell", [cell], text=True, wraps=True)]), width)
+    assert all(
+        any(whole in line for line in text.splitlines()) for whole in ("0.229 beta", "0.175 beta,", "20 R dgamma")
+    )
+    plain = "spacing 0.229 beta at the edge exceeds 0.175 beta, loads to 20 R dgamma [so]"
+    assert [
+        word for word in re.findall(r"[^\s│┃━─┏┓┳┡╇┩└┘┴]+", text) if word not in ("name", "a", "cell")
+    ] == plain.split()
+
+
 @pytest.fixture(scope="module")
 def case():
     """A case with all values distinct and every verdict."""
@@ -147,9 +160,7 @@ def test_the_verdicts_of_a_comparison_are_whole_at_any_width(case, width):
 def test_the_hard_cases_are_whole_at_any_width(width):
     nan, long = float("nan"), " ".join(9 * ["spacing too wide,"])
     rows = [
-        HardRow(
-            "a sphere", "converged", "converged", "converged", "against: two decades tighter", 1.1e-7, 2.2e-6, 3, 4.4
-        ),
+        HardRow("a sphere", *["converged"] * 3, "against: two decades tighter", 1.1e-7, 2.2e-6, 3, 4.4),
         HardRow("a mesh", "refused", "InputError", "InputError", "0.5 exceeds 0.25; refine it", nan, nan, 0, 5.55),
         HardRow("odd", "refused", "GridTooCoarse or InputError", "GridTooCoarse", long, 1.0, 1.0, 0, 5.5),
         HardRow("a wrong one", "wrong", "converged", "beyond the estimate", "against: Hertz", 6.6e-2, 7.7e-9, 88, 9.99),

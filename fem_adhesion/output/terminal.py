@@ -87,16 +87,38 @@ class Flow:
 
 def prose(text: str) -> Flow:
     """Sentences that are broken between words, but not between a number and its unit."""
+    return Flow([escape(part) for part in _words(text)], " ")
+
+
+def _words(text: str) -> list[str]:
+    """Words of a text, a number and its unit being one."""
     parts: list[str] = []
     glued = False  # whether the last word is a number, or the unit of one
     for word in text.split(" "):
         joins = glued and bool(UNIT.fullmatch(word))
         if joins:
-            parts[-1] += " " + escape(word)
+            parts[-1] += f" {word}"
         else:
-            parts.append(escape(word))
+            parts.append(word)
         glued = joins or bool(NUMBER.fullmatch(word))
-    return Flow(parts, " ")
+    return parts
+
+
+def _wrapped(cell: str, width: int) -> Text:
+    """Cell of a table in lines of a width, broken as `prose` is."""
+    text, breaks, place = Text.from_markup(cell), [], 0
+    for line in text.plain.split("\n"):
+        used = 0
+        for part in _words(line):
+            if used and used + 1 + cell_len(part) > width:
+                breaks.append(place)
+                used = 0
+            used += cell_len(part) + bool(used)
+            place += len(part) + 1
+    lines = text.divide(breaks)
+    for part_of_text in lines:
+        part_of_text.rstrip()
+    return Text("\n").join(lines)
 
 
 @dataclass(frozen=True)
@@ -129,13 +151,17 @@ class Column:
     @property
     def least(self) -> int:
         """Least width in which nothing is cut: that of a line, or where words may go on below of a word."""
-        words = max((cell_len(word) for text in self._texts for word in text.split()), default=0)
+        words = max(cell_len(word) for text in self._texts for line in text.split("\n") for word in _words(line))
         return max(words, min(self.wrapped, self.whole)) if self.wraps else self.whole
 
     @property
     def whole(self) -> int:
         """Width in which no line is broken."""
         return max(cell_len(line) for text in self._texts for line in text.split("\n"))
+
+    def laid(self, row: int, width: int) -> str | Text:
+        """Cell in a width."""
+        return _wrapped(self.cells[row], width) if self.wraps else self.cells[row]
 
     @property
     def _texts(self) -> list[str]:
@@ -195,7 +221,8 @@ class Fitted:
             justify: JustifyMethod = "left" if column.text else "right"
             made.add_column(column.header, justify=justify, no_wrap=not column.wraps, width=width)
         styles = self.styles or [""] * len(self.columns[0].cells)
-        for cells, style in zip(zip(*(column.cells for column in columns), strict=True), styles, strict=True):
+        for row, style in enumerate(styles):
+            cells = (column.laid(row, width) for column, width in zip(columns, widths, strict=True))
             made.add_row(*cells, style=style or None)
         return made
 
