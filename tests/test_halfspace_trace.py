@@ -14,7 +14,8 @@ from halfspace import theories
 from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.contact import CONTACT_RADIUS
 from halfspace.curve import find_events, metric_for, trace_charts
-from halfspace.path import Steps
+from halfspace.events import FOLD, locate
+from halfspace.path import Steps, correct
 
 DATA = Path(__file__).parent / "data"
 
@@ -189,3 +190,19 @@ def test_the_half_space_needs_only_numpy_and_scipy():
     assert (
         subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == "[]"
     )
+
+
+@pytest.mark.parametrize("tabor", [0.6973, 0.698])
+def test_a_pair_of_folds_between_two_points_is_found_though_their_tangents_do_not_tell(tabor):
+    metric = metric_for(tabor)
+    segment = trace_charts(half_space_charts(tabor, resolution_for(tabor, 1e-6)))[0]
+    folds = [fold.point for fold in locate(segment.problem, segment.points, metric, FOLD)]
+    assert len(folds) == 2
+    before = [point for point in segment.points if point.arclength < folds[0].arclength][-1]
+    after = next(point for point in segment.points if point.arclength > folds[1].arclength)
+    step = float((metric.weights * before.rates)[:3] @ (after.observables - before.observables)[:3])
+    reached = correct(segment.problem, before, step, after.x, metric, 20)
+    assert FOLD.of(before) * FOLD.of(reached) > 0
+    found = [fold.point for fold in locate(segment.problem, [before, reached], metric, FOLD)]
+    for one, other in zip(found, folds, strict=True):
+        np.testing.assert_allclose(one.observables[:3], other.observables[:3], atol=1e-7)
