@@ -5,6 +5,7 @@
 
 import math
 import os
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,8 +15,8 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
 from halfspace.accuracy import Resolution, half_space_charts, resolution_for
-from halfspace.curve import energy_released
-from halfspace.ladder import charted_rung, climb
+from halfspace.curve import energy_released, find_events, trace_charts
+from halfspace.ladder import _meets, charted_rung, climb
 
 
 class Net(NamedTuple):
@@ -149,6 +150,37 @@ def test_the_error_of_the_energy_is_that_part_of_its_changes_which_may_be_left(s
     assert energies[-1] == path.energy.value
     left = part * np.sum(np.abs(np.diff(energies)))
     assert left <= path.energy.error <= 3 * left + 1e-11 * (1 + path.energy.value)
+
+
+def test_an_estimate_is_no_less_than_half_the_change_from_a_grid_as_coarse_as_the_one_below_with_other_cells():
+    """A number that two grids of one family share by accident is not taken for exact."""
+    path = halfspace.trace(2.0, rtol=1e-3)
+    last, before = path.settings["events"], path.stages[-2]
+    twin = Resolution(last["nodes"] - 2, 0.75 * last["finest"], 0.87 * last["growth"], last["extent"])
+    others = find_events(trace_charts(half_space_charts(2.0, twin)))
+    counted = 0
+    for name, event in path.events.items():
+        best, other, lower = (state[name].point.observables for state in (path.stages[-1], others, before))
+        for k, quantity in enumerate(("approach", "load", "central_gap")):
+            change = abs(other[k] - best[k])
+            assert getattr(event, f"{quantity}_error") >= 0.5 * change * (1 - 1e-6)
+            counted += change > 2 * abs(lower[k] - best[k])
+    assert counted > 0
+
+
+def test_a_tolerance_is_met_in_loads_relative_and_in_approaches_to_their_unit():
+    event = halfspace.trace(1.0, rtol=1e-1).event("jump_on")
+    size = 1 + abs(event.approach)
+
+    def met(load, approach, name="jump_on"):
+        errors = {"load_error": load * abs(event.load), "approach_error": approach * size}
+        return _meets(replace(event, name=name, **errors), 1e-4)
+
+    assert met(0.99e-4, 0.99e-4)
+    assert not met(1.01e-4, 0.99e-4)
+    assert not met(0.99e-4, 1.01e-4)
+    assert met(1.0, 0.99e-4, "zero_load")
+    assert not met(1.0, 1.01e-4, "zero_load")
 
 
 @pytest.mark.parametrize(
