@@ -14,16 +14,19 @@ from numpy.polynomial.legendre import leggauss
 import fem_adhesion
 import halfspace
 from fem_adhesion import cli
+from fem_adhesion.elasticity import Space
 from fem_adhesion.output import speed_plots, speed_report
 from fem_adhesion.output.files import directory_written_aside
 from fem_adhesion.scene import Scene
+from fem_adhesion.studies import element_methods as element_methods_module
+from fem_adhesion.studies import halfspace_methods as halfspace_methods_module
 from fem_adhesion.studies import speed
 from fem_adhesion.studies.element_methods import element_methods
 from fem_adhesion.studies.halfspace_methods import MOST_NODES, _affordable, halfspace_methods
 from fem_adhesion.studies.methods import QUANTITIES, Method, Solved, Step
 from fem_adhesion.studies.speed import measure
 from fem_adhesion.studies.speed_result import Rung, SpeedStudy, Truth, best, cheapest, pareto_front, slope
-from halfspace import newton
+from halfspace import compliance, newton, relaxation
 from halfspace.curve import Estimate, transfer
 from halfspace.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
@@ -245,6 +248,74 @@ def test_a_wrong_half_space_is_not_its_own_judge(monkeypatch):
     found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)])
     assert found.rungs[0].error("pull_off") == pytest.approx(0.01, rel=1e-2)
     assert any("the truths disagree in pull_off" in trouble for trouble in found.troubles())
+
+
+class Stop(InputError):
+    """Ends a rung where its solver would begin."""
+
+
+@pytest.fixture
+def called(monkeypatch):
+    """What a rung calls, in order; it is stopped where the solution would begin."""
+    calls = []
+
+    def spy(module, name, stops):
+        original = getattr(module, name)
+
+        def record(*arguments, **keywords):
+            space = arguments[0] if isinstance(arguments[0], Space) else None
+            element = (type(space.element).__name__, space.element.maxdeg) if space else ()
+            far = keywords["far_field"].__name__ if "far_field" in keywords else ()
+            calls.append((name, *element, far) if space else name)
+            if stops:
+                raise Stop(name)
+            return original(*arguments, **keywords)
+
+        monkeypatch.setattr(module, name, record)
+
+    for name in ("bands", "triangles", "panels"):
+        spy(compliance, name, stops=False)
+    spy(element_methods_module, "condense", stops=True)
+    spy(element_methods_module, "assemble", stops=True)
+    spy(halfspace_methods_module, "from_chart", stops=True)
+    for module, name in (
+        (relaxation, "simple"),
+        (relaxation, "greenwood"),
+        (halfspace, "trace"),
+        (fem_adhesion, "trace"),
+    ):
+        spy(module, name, stops=True)
+    return calls
+
+
+ELASTIC = {
+    "simple relaxation": ["triangles", "simple"],
+    "Greenwood's iteration": ["triangles", "greenwood"],
+    "uniform bands": ["bands", "from_chart"],
+    "uniform triangles": ["triangles", "from_chart"],
+    "graded triangles": ["triangles", "from_chart"],
+    "panels, fixed grid": ["panels", "from_chart"],
+    "adaptive": ["trace"],
+    "FE P1": [("condense", "ElementTriP1", 1, "point_load")],
+    "FE P2": [("condense", "ElementTriP2", 2, "point_load")],
+    "FE P3": [("condense", "ElementTriP3", 3, "point_load")],
+    "FE Q2": [("condense", "ElementQuad2", 4, "point_load")],
+    "FE P1, clamped": [("condense", "ElementTriP1", 1, "clamped")],
+    "FE P2, clamped": [("condense", "ElementTriP2", 2, "clamped")],
+    "FE P2, monolithic": [("assemble", "ElementTriP2", 2, "point_load")],
+    "FE hp": ["trace"],
+    "FE hp, clamped": [("condense", "ElementQuadP", 16, "clamped")],
+    "FE hp, monolithic": [("assemble", "ElementQuad2", 4, "point_load")],
+}
+
+
+@pytest.mark.parametrize("name", ELASTIC)
+def test_each_method_is_solved_by_what_its_name_says(called, name):
+    method = next(m for m in [*halfspace_methods(), *element_methods()] if m.name == name)
+    with pytest.raises(Stop):
+        method.steps[0].run(1.0)
+    assert called == ELASTIC[name]
+    assert list(ELASTIC) == list(REACHED)
 
 
 def test_no_jumps_below_the_critical_tabor_parameter():
