@@ -22,10 +22,12 @@ from fem_adhesion.output.greenwood_text import NOTHING
 from fem_adhesion.studies import greenwood1997, greenwood_ripple, greenwood_tables
 from fem_adhesion.studies.greenwood_criteria import CriteriaStudy, JumpOn, fit
 from fem_adhesion.studies.greenwood_tables import LAST_DIGIT, ROUNDED
-from halfspace import criteria
+from halfspace import criteria, dmt
 from halfspace.contact import CENTRAL_GAP
 from halfspace.curve import Estimate
 from halfspace.errors import NotConverged
+from halfspace.maugis import MaugisDugdale, carpick_pull_off
+from halfspace.theories import bradley_load
 
 DATA = Path(__file__).parent / "data"
 FIGURES = ("1a", "1b", "1c", "2a", "2b", "3a", "3b", "3c", "4a", "4b", "5", "6a", "6b", "7", "8")
@@ -342,6 +344,57 @@ def test_theories_have_their_pull_off_along_the_axis_of_load(study, number, name
     line = next(line for line in axes.lines if line.get_label() == name)
     assert axes.get_ylabel() == r"load $W/R\Delta\gamma$"
     assert min(line.get_ydata()) == pytest.approx(least, rel=1e-3)
+
+
+THEORIES = {  # the load at an approach, or at a radius, of each line of a theory
+    ("1a", "Bradley, $\\mu = 0$"): bradley_load,
+    ("1a", "DMT force method, $\\mu = 0.1$"): lambda x: dmt.force_load(x, 0.1),
+    ("1a", "DMT thermodynamic, $\\mu = 0.1$"): lambda x: dmt.thermodynamic_load(x, 0.1),
+    ("1a", "DMT-M, $\\mu = 0.1$"): lambda x: dmt.maugis_load(x, 0.1),
+    ("1a", "Hertz, $\\mu = 0.1$"): lambda x: 4 / 3 * (x / 0.1) ** 1.5,
+    ("1b", "DMT-M"): lambda x: 4 / 3 * x**1.5 - 2 * np.pi,
+    ("1b", "Hertz"): lambda x: 4 / 3 * x**1.5,
+    ("1c", "Bradley, $\\mu = 0$"): bradley_load,
+    ("1c", "DMT force method"): lambda x: dmt.force_load(x, 0.02),
+    ("1c", "DMT thermodynamic"): lambda x: dmt.thermodynamic_load(x, 0.02),
+    ("1c", "DMT-M"): lambda x: 4 / 3 * (x / 0.02) ** 1.5 - 2 * np.pi,
+    ("1c", "Hertz"): lambda x: 4 / 3 * (x / 0.02) ** 1.5,
+    ("5", "JKR"): lambda a: 4 / 3 * a**3 - np.sqrt(8 * np.pi * a**3),
+    ("5", "Hertz"): lambda a: 4 / 3 * a**3,
+    ("5", "Maugis-Dugdale, $\\mu = 0.5$"): lambda a: MaugisDugdale.matched(0.5).load(a),
+    ("5", "Maugis-Dugdale, $\\mu = 2$"): lambda a: MaugisDugdale.matched(2.0).load(a),
+}
+
+
+@pytest.mark.parametrize(("number", "name"), THEORIES, ids=lambda part: part.replace(" ", "_"))
+def test_a_theory_is_drawn_under_its_name(study, number, name):
+    """In figure 5 the load is along the horizontal axis."""
+    (axes,) = figure(study, number).axes
+    line = next(line for line in axes.lines if line.get_label() == name)
+    load, along = np.asarray(line.get_ydata()), np.asarray(line.get_xdata())
+    if number == "5":
+        load, along = along, load
+    np.testing.assert_allclose(load, THEORIES[number, name](along), rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["Maugis-Dugdale", "Carpick et al."])
+def test_the_pull_off_of_a_theory_is_drawn_at_its_tabor_parameter(study, name):
+    line = next(line for line in figure(study, "7").axes[0].lines if line.get_label() == name)
+    tabor = np.asarray(line.get_xdata())
+    expected = [
+        -MaugisDugdale.matched(mu).pull_off().load if name == "Maugis-Dugdale" else -carpick_pull_off(1.157 * mu)
+        for mu in tabor
+    ]
+    np.testing.assert_allclose(line.get_ydata(), expected, rtol=1e-3)
+
+
+def test_stable_stretches_are_drawn_full_and_unstable_ones_dotted(study):
+    path = study.curves[5.0]
+    full, dotted = figure(study, "3c").axes[0].lines[:2]
+    assert not full.is_dashed()
+    assert np.array_equal(np.isfinite(full.get_ydata()), path.stable)
+    assert np.all(np.isfinite(dotted.get_ydata())[~path.stable])
+    assert dotted.is_dashed()
 
 
 def test_jumps_are_drawn_where_they_are(study):
@@ -743,6 +796,7 @@ def test_remarks_on_tables_turn_with_their_entries(study):
         return next(table.see for table in tables(changed) if table.stem == stem)
 
     assert "10 of 10 values agree" in see(study, "table_1")
+    assert "15 of 45 values agree" in see(study, "table_2")
     assert "0 of 10 values agree" in see(with_tables(study, "table_1", 1.179), "table_1")
     assert "largest relative deviation is 1.8e-01" in see(with_tables(study, "table_1", 1.179), "table_1")
     assert "0 of 2 printed pressures have the sign" in see(with_tables(study, "profile_checks", -1.0), "fig_4_checks")

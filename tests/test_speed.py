@@ -25,7 +25,7 @@ from fem_adhesion.studies.element_methods import element_methods
 from fem_adhesion.studies.halfspace_methods import MOST_NODES, _affordable, halfspace_methods
 from fem_adhesion.studies.methods import QUANTITIES, Method, Solved, Step
 from fem_adhesion.studies.speed import measure
-from fem_adhesion.studies.speed_result import Rung, SpeedStudy, Truth, best, cheapest, pareto_front, slope
+from fem_adhesion.studies.speed_result import Rung, SpeedStudy, Truth, best, cheapest, pareto_front, size_of, slope
 from halfspace import compliance, newton, relaxation
 from halfspace.curve import Estimate, transfer
 from halfspace.devices import cycle
@@ -397,6 +397,11 @@ def test_errors_that_the_truth_cannot_tell_are_equally_accurate():
     assert pareto_front([rung(0.5, 1e-3), later, sooner], "pull_off") == [rung(0.5, 1e-3), sooner]
 
 
+@pytest.mark.parametrize(("quantity", "size"), [("pull_off", 3.0), ("jump_on", 4.0), ("hysteresis", 3.0)])
+def test_errors_are_relative_to_the_value_or_to_one_more_for_an_approach(quantity, size):
+    assert size_of(quantity, -3.0) == size
+
+
 def test_what_an_accuracy_costs():
     rungs = [rung(1, 1e-2), rung(5, 1e-4), rung(4, 5e-4), FAILED]
     assert cheapest(rungs, 1e-3).seconds == 4
@@ -500,6 +505,8 @@ def test_the_page_gives_each_cost_and_each_truth(distinct):
     assert truth["unit"] == "eps"
     assert truth["judge of the half-space: finite elements, rtol 1e-09"] == "-1.5, error 2e-09"
     assert truth["within both errors"] == "yes"
+    units = {row["quantity"]: row["unit"] for row in section(text, "The truths")}
+    assert units == {"pull_off": "R dgamma", "jump_on": "eps", "hysteresis": "R dgamma eps"}
 
 
 def test_an_error_below_the_truths_uncertainty_is_shown_as_such():
