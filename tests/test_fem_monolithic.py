@@ -127,6 +127,16 @@ def test_stability_is_that_of_the_condensed_problem(body, curve):
     assert set(expected) == {0, 1}
 
 
+def test_a_state_made_of_a_surface_has_that_surface_and_is_in_equilibrium(body, curve):
+    """That of the condensed body is one of the whole: its gaps make the pressure, and that the displacements."""
+    problem = assemble(body.space, NU, 2.0)
+    for point in curve.points[::6]:
+        state = problem.state_from_surface(point.x)
+        np.testing.assert_allclose(problem.surface_state(state), point.x, rtol=0, atol=1e-8)
+        assert np.abs(problem.residual(state)).max() < 1e-8
+    assert problem.surface_state(problem.undeformed(-3.0))[-2] == -3.0
+
+
 def test_a_whole_curve_of_either_kind_of_problem_is_the_same():
     """All of the road asks a problem for nothing but what both kinds have: its events, energies, stability, jumps."""
     space = Space(block_grid(0.4, 3.0, 20.0), ElementQuad2())

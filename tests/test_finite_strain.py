@@ -258,6 +258,24 @@ def test_at_zero_stretch_the_mixed_form_is_that_of_taylor_and_hood():
     np.testing.assert_allclose(problem.observables(entered(problem)), linear.observables(entered(linear)), atol=1e-9)
 
 
+@pytest.mark.parametrize("stretch", [0.0, 0.2])
+def test_a_state_made_of_a_surface_is_that_of_the_linear_body_under_its_pressure(stretch):
+    """At zero stretch an equilibrium with the same surface; at any other the same state, as a start."""
+    space = block()
+    condensed = condense(space, 0.3, far_field=clamped)
+    linear = ContactProblem(condensed.operator, 1.0)
+    x = entered(linear)
+    problem = problem_of(space, stretch)
+    state = problem.state_from_surface(x)
+    displacement = condensed.displacement(linear.pressure(x))
+    np.testing.assert_allclose(
+        problem.displacement(state), displacement, rtol=0, atol=1e-9 * np.abs(displacement).max()
+    )
+    np.testing.assert_allclose(problem.surface_state(state)[:-1], x[:-1], rtol=0, atol=1e-8)
+    residual = np.abs(problem.residual(state)).max()
+    assert residual > 1e-3 if stretch else residual < 1e-8
+
+
 def test_at_zero_stretch_the_residual_is_the_linear_one():
     space = block()
     linear = assemble(space, 0.3, 1.0, far_field=point_load)
