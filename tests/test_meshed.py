@@ -103,6 +103,15 @@ def test_the_unit_of_a_mesh_does_not_move_the_events(tmp_path):
         assert theirs.events[name].load == pytest.approx(event.load, rel=1e-6, abs=1e-9)
         assert theirs.events[name].approach == pytest.approx(event.approach, rel=1e-6, abs=0)
     assert theirs.settings["events"]["pole_radius"] == pytest.approx(1.04, rel=1e-7, abs=0)
+    _estimates_are_the_whole_change_by_the_finer_mesh(ours)
+
+
+def _estimates_are_the_whole_change_by_the_finer_mesh(path):
+    """Of quadratic elements on a mesh that somebody else graded it is not known how much of it is left."""
+    coarse, fine = path.stages
+    for name, event in path.events.items():
+        change = np.abs(fine[name].point.observables - coarse[name].point.observables)
+        assert (event.approach_error, event.load_error) == pytest.approx(tuple(change[:2]), rel=1e-3, abs=1e-10)
 
 
 def test_refinement_keeps_the_shape_of_curved_quadrilaterals():
