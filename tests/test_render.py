@@ -1,5 +1,7 @@
 """Pictures and movies of the body show its shape, its stress and its wall as they are, and every state its own."""
 
+import re
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -8,11 +10,15 @@ from scipy.interpolate import CubicSpline
 from fem_adhesion.commands import curve
 from fem_adhesion.commands.common import Parser
 from fem_adhesion.output import movie, render, solid_view
+from fem_adhesion.output.curve_lines import smooth
 from fem_adhesion.output.cutaway import section, surfaces, view_of
 from fem_adhesion.output.files import written_aside
+from fem_adhesion.output.load_plots import KINDS
+from fem_adhesion.output.profile_plots import STATES
 from fem_adhesion.scene import Scene
 from fem_adhesion.studies.curves import Question, solve
 from halfspace.contact import APPROACH, LOAD
+from halfspace.scaling import Units
 
 SMALL = (240, 150)
 HEMISPHERE = Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=200.0)
@@ -200,3 +206,77 @@ def test_a_machine_that_cannot_draw_is_told_what_to_install_before_vtk_crashes(m
     monkeypatch.setattr(solid_view, "OSMESA", ("libOfNoName.so",))
     with pytest.raises(ValueError, match="apt-get install libegl1 libgl1-mesa-dri"):
         solid_view.require_drawing()
+
+
+# --- what is written on a picture ---
+
+
+def _texts(figure):
+    return [text.get_text() for text in figure.texts]
+
+
+def _composed(curves, state, words):
+    view = view_of([state])
+    return render.composed(curves, np.full((30, 48, 3), 255, np.uint8), state, view, words), view
+
+
+def _said(text):
+    """Numbers of a caption by their symbols."""
+    found = re.findall(r"\$(W|\\alpha\^\*|\\alpha|a)\$ = (-?[\d.]+)(?:\((\d+)\))?", text.replace(render.MINUS, "-"))
+    return {symbol.strip("\\^*"): float(value) for symbol, value, _ in found}
+
+
+@pytest.mark.parametrize("event", ["jump_on", "jump_off", "pull_off", "zero_load"])
+def test_the_caption_has_the_numbers_of_the_event_under_their_symbols(block, event):
+    title, numbers = render._caption(block, event)
+    assert title == f"$\\mu$ = 2: {STATES[event].words}"
+    found, said = block.path.events[event], _said(numbers)
+    assert said["W"] == pytest.approx(found.load, abs=2e-2)
+    assert said["alpha"] == pytest.approx(found.approach, abs=2e-2)
+    assert ("a" in said) == np.isfinite(found.contact_radius)
+    if "a" in said:
+        assert said["a"] == pytest.approx(found.contact_radius, abs=2e-2)
+
+
+def test_the_words_of_a_frame_are_load_and_approach(block, states):
+    for state in states.values():
+        said = _said(render.state_words(block, state))
+        assert said["W"] == pytest.approx(state.observables[LOAD], abs=6e-3)
+        assert said["alpha"] == pytest.approx(state.observables[APPROACH], abs=6e-3)
+
+
+def test_the_curve_on_a_picture_is_load_against_approach_with_the_state_on_it(block, states):
+    figure, view = _composed(block, states["jump_off"], ("title", "numbers"))
+    solid, bar, curve = figure.axes
+    assert "title" in _texts(figure)
+    assert (curve.get_xlabel(), curve.get_ylabel()) == (
+        r"approach $\alpha^* = \alpha/\epsilon$",
+        r"load $W/R\Delta\gamma$",
+    )
+    event = block.path.events["jump_off"]
+    (mark,) = (line for line in curve.lines if line.get_marker() == "o")
+    assert (mark.get_xdata()[0], mark.get_ydata()[0]) == pytest.approx((event.approach, event.load), abs=2e-3)
+    looks = {kind: (look["color"], look["linestyle"]) for kind, look in KINDS.items()}
+    for kind, load in smooth(block.path).parts(smooth(block.path).load):
+        (drawn,) = (line for line in curve.lines if line.get_color() == looks[kind][0])
+        np.testing.assert_array_equal(drawn.get_ydata(), load)
+    assert "vertical stress" in bar.get_ylabel()
+    assert bar.get_title() == "tension"
+    ticks = [float(label.get_text().replace(render.MINUS, "-")) for label in bar.get_yticklabels()]
+    assert ticks == sorted(ticks)
+    assert ticks[-1] == pytest.approx(view.limit, rel=1e-2)
+    assert solid.axison is False
+
+
+def test_a_picture_with_a_material_is_in_si():
+    units = Units(100e-9, 1.1e9, 0.05, 0.3e-9)
+    curves = solve(Question(Scene(units.tabor), solver="fem", rtol=1e-2, units=units))
+    title, numbers = render._caption(curves, "pull_off")
+    event = curves.path.events["pull_off"]
+    assert title.startswith("$R$ = 100 nm")
+    assert _said(numbers)["W"] == pytest.approx(event.load * 5, abs=0.3)
+    assert _said(numbers)["alpha"] == pytest.approx(event.approach * 0.3, abs=0.02)
+    beta = np.cbrt(1e-14 * 0.05 / 1.1e9) * 1e9
+    assert _said(numbers)["a"] == pytest.approx(event.contact_radius * beta, abs=0.1)
+    assert numbers.count("nN") == 1
+    assert numbers.count("nm") == 2

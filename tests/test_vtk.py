@@ -18,6 +18,7 @@ from fem_adhesion.output.lattice import QUAD9, TRIANGLE6, Cut, Lattice, cut_for
 from fem_adhesion.output.revolve import revolved
 from fem_adhesion.output.vtk import TOLERANCE, write_path
 from fem_adhesion.output.vtk_arrays import COMPONENTS, MEANINGS, UNITS, in_si, inside, numbers, unit_of
+from fem_adhesion.scene import Counter
 from fem_adhesion.sized import Discretisation
 from fem_adhesion.stress import sampled
 from halfspace.lennard_jones import LENNARD_JONES
@@ -414,6 +415,14 @@ def test_values_and_numbers_come_from_the_state_itself(hemisphere):
     np.testing.assert_allclose(held["displacement_magnified"], 3 * held["displacement"])
     assert numbers(hemisphere, 3.0, None)["magnified_beta_per_displacement_unit"] == 3.0
     assert isinstance(cut, Cut)
+
+
+def test_the_energy_is_that_of_the_body_s_own_modulus(hemisphere):
+    """A counter-body that takes a quarter of the compliance leaves three quarters of the energy to the body."""
+    cut = cut_for(hemisphere.space, hemisphere.components, TOLERANCE)
+    shared = replace(hemisphere, scene=replace(hemisphere.scene, counter=Counter(0.25)))
+    alone, both = (inside(state, cut, 1.0)["strain_energy_density"] for state in (hemisphere, shared))
+    np.testing.assert_allclose(both, 0.75 * alone)
 
 
 # --- the solid ---
