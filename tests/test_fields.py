@@ -127,6 +127,8 @@ def test_states_are_those_of_the_curve_through_its_folds(winding, states):
         else:
             nearest = np.abs(path.arclength - state.arclength).argmin()
             assert state.observables[:2] == pytest.approx([path.approach[nearest], path.load[nearest]], abs=5e-3)
+            assert state.stable == path.stable[nearest]
+            assert state.stable_under_dead_load == path.stable_under_dead_load[nearest]
 
 
 def test_traction_of_the_stress_is_the_laws_pressure_the_spike_included(states):
@@ -170,7 +172,6 @@ def test_two_bodies_share_the_energy_by_their_compliance():
     both = (state.gap + state.observables[0]) / scene.tabor - state.problem.profile.height(state.radii)
     weighted = state.surface.weights * state.pressure / 2
     assert energy_inside(state) == pytest.approx(weighted @ own, rel=1e-4)
-    print(weighted @ own / (weighted @ both))
     assert weighted @ own == pytest.approx(0.75 * (weighted @ both), rel=0.01)  # but for the shapes of the bodies
 
 
