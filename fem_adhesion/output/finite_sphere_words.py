@@ -217,9 +217,9 @@ def _left(rows: Sequence[Row], quantity: str, poisson: float | None) -> np.ndarr
 
 
 def _span(values: Sequence[float] | np.ndarray[tuple[int], np.dtype[np.float64]]) -> str:
-    """Least and largest of some numbers, to two digits."""
-    ends = dict.fromkeys(f"{value:.2g}" for value in (np.min(values), np.max(values)))
-    return " to ".join(ends)
+    """Least and largest of some numbers, to two digits or to the last before the point."""
+    ends = (float(np.min(values)), float(np.max(values)))
+    return " to ".join(dict.fromkeys(f"{end:.2g}" if abs(end) < 99.5 else f"{end:.0f}" for end in ends))
 
 
 def _at(count: int) -> str:
