@@ -14,7 +14,9 @@ from halfspace import theories
 from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.contact import CONTACT_RADIUS
 from halfspace.curve import find_events, metric_for, trace_charts
+from halfspace.errors import InputError, NotConverged
 from halfspace.events import FOLD, locate
+from halfspace.ladder import charted_rung, climb
 from halfspace.path import Steps, correct
 
 DATA = Path(__file__).parent / "data"
@@ -206,3 +208,28 @@ def test_a_pair_of_folds_between_two_points_is_found_though_their_tangents_do_no
     found = [fold.point for fold in locate(segment.problem, [before, reached], metric, FOLD)]
     for one, other in zip(found, folds, strict=True):
         np.testing.assert_allclose(one.observables[:3], other.observables[:3], atol=1e-7)
+
+
+def test_a_curve_that_the_lowest_grid_cannot_carry_is_traced_on_the_next():
+    """As where two folds about to merge exist on one grid, but not on another."""
+    asked = []
+
+    def rung(level):
+        asked.append(level)
+        if level == 0:
+            raise NotConverged("the event is not found again; refine both grids")
+        return charted_rung(half_space_charts(1.0, resolution_for(1.0, 1e-3, level)))
+
+    path = climb(1e-2, rung)
+    assert asked == [0, 1, 2]
+    assert path.event("jump_on").approach == pytest.approx(-1.629216712, abs=1e-4)
+
+
+def test_a_curve_that_no_grid_can_carry_is_given_up_and_says_why():
+    def rung(level):
+        raise NotConverged(f"no level {level}; refine the grid")
+
+    with pytest.raises(NotConverged, match="no level 2; refine the grid"):
+        climb(1e-2, rung)
+    with pytest.raises(InputError, match="most_rungs = 0 leaves nothing to climb; allow 1 or more"):
+        climb(1e-2, rung, most_rungs=0)
