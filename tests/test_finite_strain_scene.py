@@ -104,6 +104,9 @@ def test_energy_released_is_the_work_of_the_load():
             released -= weight * (end - start) / 2 * problem.load(x)
     assert path.energy.value == pytest.approx(released, rel=2e-5)
     assert path.energy.error < 1e-4
+    energies = [[s[n].problem.energy(s[n].point.x) for n in ("separated", "zero_approach")] for s in path.stages[-2:]]
+    change = abs((energies[1][0] - energies[1][1]) - (energies[0][0] - energies[0][1]))
+    assert path.energy.error == pytest.approx(change / 2, rel=1e-3, abs=1e-10)
 
 
 # --- spheres as small as their contact ---

@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,10 @@ import halfspace
 from fem_adhesion import Scene
 from fem_adhesion.scene import Counter
 from fem_adhesion.sized import Discretisation, sized_body
-from halfspace.curve import moved
+from halfspace import compliance, grid
+from halfspace.breathing import Homogeneous
+from halfspace.contact import ContactProblem
+from halfspace.curve import Chart, moved
 from halfspace.sized import AroundEvents
 
 HEMISPHERE = {"tabor": 1.0, "body": "hemisphere", "profile": "sphere", "radius_ratio": 30.0}
@@ -132,6 +136,20 @@ def block(spheres):
     names = ("pull_off", "jump_on", "jump_off")
     states = {name: moved(found[name], stage(found[name]).problem) for name in names}
     return {name: state.point.observables[:2] for name, state in states.items()}
+
+
+@pytest.mark.parametrize(("part", "shared"), [(0.99, True), (1.01, False)])
+def test_events_share_an_operator_within_its_window_alone(part, shared):
+    """Beyond it the operator is extrapolated, and the error estimate could not tell."""
+    made = []
+    body = SimpleNamespace(around=lambda radius, window: made.append((radius, window)) or Chart(None, 1))
+    stage = AroundEvents(body, window=2e-3)
+    problem = ContactProblem(Homogeneous(compliance.panels(grid.graded(1.0, 0.5, 10.0), 4)), 1.0)
+    for radius in (1.0, 1.0 + part * 2e-3):
+        observables = np.array([0.0, 0.0, 0.0, radius])
+        stage(SimpleNamespace(problem=problem, point=SimpleNamespace(observables=observables)))
+    assert len(made) == (1 if shared else 2)
+    assert {window for _, window in made} == {2e-3}
 
 
 def test_the_sphere_tends_to_the_paraboloid_as_one_over_rho(spheres):
