@@ -498,6 +498,8 @@ def test_the_page_gives_each_cost_and_each_truth(distinct):
         assert row["method"] == "some"
         assert row["to 1e-03"].startswith("0.50 s = 500 yardsticks (a)")
         assert row["best reached"] == f"{error} in 0.50 s (a)"
+    costs = {q: section(text, f"What it costs to have {q}")[1]["to 1e-03"] for q in QUANTITIES}
+    assert costs == {"pull_off": "-", **dict.fromkeys(QUANTITIES[1:], "2.50 s = 2500 yardsticks (a)")}
     row = section(text, "What it costs to have every")[1]
     assert (row["method"], row["to 1e-03"], row["best reached"]) == ("FE some", "-", "3e-03 in 2.50 s (a)")
     truth = section(text, "The truths")[1]
