@@ -236,7 +236,7 @@ def _require(scene: Scene, rtol: float, to_load: float, convention: ConventionNa
     if rtol < TIGHTEST:
         raise InputError(f"rtol = {rtol:g} is outside {TIGHTEST:g} <= rtol for finite strain; take 1e-4")
     if convention == "normal":
-        _require_stiff_surface(scene)
+        require_stiff_surface(scene)
     for name, value, wanted in (
         ("body", scene.body, "hemisphere"),
         ("traction", scene.traction, "projected"),
@@ -246,7 +246,7 @@ def _require(scene: Scene, rtol: float, to_load: float, convention: ConventionNa
             raise InputError(f"{name} = {value!r} does not go with finite strain; take {name} = {wanted!r}")
 
 
-def _require_stiff_surface(scene: Scene) -> None:
+def require_stiff_surface(scene: Scene) -> None:
     """Refuse a sphere whose surface a stress -dgamma would crumple."""
     least, spikes = LEAST_FOR_NORMAL
     least = max(least, spikes * scene.tabor / spike_width(scene.tabor))

@@ -237,6 +237,9 @@ def test_a_point_is_hatched_by_how_it_ended_and_no_other_is(records):
 
 def test_the_border_of_the_jumps_is_drawn_where_it_was_solved_for(records):
     axes = finite_sphere_chart.chart(rows(records), 0.3, borders(records)).axes[1]
+    half_space, *spheres = borders(records)
+    assert (half_space.radius_ratio, half_space.tabor.value) == (None, pytest.approx(0.6))
+    assert [border.radius_ratio for border in spheres] == [*RATIOS] * 3
     tabor, ratio = line_of(axes, "jumps begin, fixed grips")
     np.testing.assert_allclose(ratio, RATIOS)
     np.testing.assert_allclose(tabor, 0.6 + 1 / np.array(RATIOS))

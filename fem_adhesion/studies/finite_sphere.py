@@ -130,11 +130,12 @@ def _cases(sweep: Sweep, rtol: float) -> Iterator[Case]:
 
 
 def _left_out(case: Case) -> Record | None:
-    """Record of a case whose sphere is too small for its Tabor parameter."""
+    """Record of a case whose sphere is too small for its Tabor parameter, or for its model besides."""
     if case.tabor is None or case.radius_ratio is None:
         return None
     try:
         require_radius_ratio(case.radius_ratio, case.tabor)
+        MODELS[case.model].check(case)
     except InputError as error:
         return Record(case, "left out", {}, str(error), 0.0, type(error).__name__)
     return None

@@ -13,7 +13,7 @@ from functools import partial
 
 import halfspace
 from fem_adhesion import Scene, trace
-from fem_adhesion.finite_strain_scene import find_jumps
+from fem_adhesion.finite_strain_scene import find_jumps, require_stiff_surface
 from fem_adhesion.finite_strain_traction import ConventionName
 from fem_adhesion.scene import GripName, ProfileName, TractionName
 from fem_adhesion.sized import Discretisation, sized_body
@@ -45,11 +45,14 @@ class Model:
         Those on which it depends.
     grip : {"sliding", "bonded"}, optional
         What holds the body; none for the half-space.
+    check : callable
+        Raises InputError if a case is beyond limits that only this model has.
     """
 
     solve: Callable[[Case], Values]
     inputs: tuple[InputName, ...]
     grip: GripName | None = None
+    check: Callable[[Case], None] = lambda _: None
 
 
 @dataclass(frozen=True)
@@ -183,7 +186,12 @@ MODELS: Mapping[str, Model] = {
     "bonded": Model(partial(_elastic, grip="bonded"), SPHERE, "bonded"),
     "surface_traction": Model(partial(_elastic, traction="surface"), SPHERE, "sliding"),
     "finite_strain": Model(partial(_finite_strain, convention="vertical"), SPHERE, "sliding"),
-    "finite_strain_normal": Model(partial(_finite_strain, convention="normal"), SPHERE, "sliding"),
+    "finite_strain_normal": Model(
+        partial(_finite_strain, convention="normal"),
+        SPHERE,
+        "sliding",
+        lambda case: require_stiff_surface(hemisphere(case)),
+    ),
     "finite_strain_reference": Model(partial(_finite_strain, convention="reference"), SPHERE, "sliding"),
     "first_jump": Model(_first_jump, ("radius_ratio", "poisson"), "sliding"),
     "first_jump_half_space": Model(_first_jump_half_space, ()),
