@@ -11,7 +11,8 @@ import halfspace
 from fem_adhesion.studies.fold_birth import critical_stiffness
 from halfspace import newton, theories
 from halfspace.contact import LOAD
-from halfspace.devices import cycle, jumps
+from halfspace.curve import find_events
+from halfspace.devices import cycle, energy_lost, jumps
 from halfspace.reach import reaching, rigid_jump_on
 
 
@@ -41,6 +42,12 @@ def test_stiff_and_soft_limits(path):
     assert cycle(path, 1e9).energy_lost.value == pytest.approx(grips.energy_lost.value, rel=1e-6)
     soft = cycle(path, 1e-3)
     assert soft.jump_off.take_off.load == pytest.approx(path.event("pull_off").load, rel=1e-5)
+
+
+def test_the_loss_on_one_discretisation_is_that_of_the_cycle_under_fixed_grips(path):
+    assert energy_lost(path.segments, find_events(path.segments)) == pytest.approx(
+        cycle(path).energy_lost.value, rel=1e-5
+    )
 
 
 def test_a_softer_apparatus_loses_more(path):
