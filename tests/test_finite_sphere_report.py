@@ -2,6 +2,7 @@
 
 import csv
 import math
+from dataclasses import replace
 from math import log, pi
 
 import numpy as np
@@ -15,7 +16,7 @@ from fem_adhesion.output.finite_sphere_words import caption
 from fem_adhesion.studies.bulk import FINE, bulk_compliance, coefficients, excess_compliance
 from fem_adhesion.studies.finite_sphere import plan
 from fem_adhesion.studies.finite_sphere_cases import CAUSES, MODELS, case_of
-from fem_adhesion.studies.finite_sphere_chart import Field, contour, rule, safe_from
+from fem_adhesion.studies.finite_sphere_chart import Field, contour, field_of, rule, safe_from
 from fem_adhesion.studies.finite_sphere_records import CRITICAL, Record, Study
 from fem_adhesion.studies.finite_sphere_table import borders, results, rows
 from fem_adhesion.studies.finite_sphere_terms import FIXED_GRIPS, leading_terms
@@ -555,3 +556,12 @@ def test_a_bonded_body_is_the_stiffer_one_and_an_incompressible_one_has_no_logar
     for poisson in (0.0, 0.3):
         assert coefficients("bonded", poisson).constant.value < coefficients("sliding", poisson).constant.value
     assert abs(coefficients("sliding", 0.499).logarithm) < 2e-6
+
+
+def test_a_deviation_whose_error_is_not_known_is_not_known(table):
+    """Were it kept, no comparison with a level would find it unsafe."""
+    chosen = [row for row in table if (row.cause, row.quantity, row.poisson) == ("all", "pull_off_load", 0.3)]
+    unknown = [replace(row, deviation=Estimate(1e-9, math.nan)) for row in chosen if row.deviation]
+    found = field_of(unknown, "pull_off_load", 0.3)
+    assert np.isnan(found.deviation).all()
+    assert np.isnan(safe_from(found, 0.01))
