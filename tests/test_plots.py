@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from matplotlib import rc_context
 from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
 
 from fem_adhesion.fields import state_at
 from fem_adhesion.output import curve_lines, load_plots, mesh_plots, plots, profile_plots
@@ -360,3 +361,13 @@ def test_a_gap_is_smooth_up_to_the_equator_of_a_sphere(made):
             rise = np.diff(line.get_ydata())
             far = line.get_xdata()[:-1] > 0.95 * line.get_xdata().max()
             assert np.all(rise[far] > 0)
+
+
+def test_a_line_outside_the_frame_is_not_named():
+    axes = Figure().add_subplot()
+    axes.plot([0.0, 1.0], [0.0, 1.0], label="inside")
+    axes.plot([5.0, 6.0], [0.0, 1.0], label="beside")
+    axes.plot([0.0, 1.0], [7.0, 8.0], label="above")
+    axes.plot([], [], label="arrows")
+    axes.set(xlim=(0, 2), ylim=(0, 2))
+    assert [line.get_label() for line in load_plots._seen(axes)] == ["inside", "arrows"]
