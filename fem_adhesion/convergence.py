@@ -16,8 +16,9 @@ from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.mesh import graded_breaks, tensor_grid
 from fem_adhesion.scene import Scene
 from halfspace import grid
-from halfspace.accuracy import extent_for, rings, widest_radius
+from halfspace.accuracy import rings, widened, widest_radius
 from halfspace.breathing import Homogeneous
+from halfspace.compliance import to_infinity
 from halfspace.contact import ContactProblem, spike_width
 from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
 from halfspace.ladder import MOST_RUNGS, Charted, Charts, Rung, climb
@@ -107,10 +108,15 @@ def resolution_for(scene: Scene, rtol: float, level: int) -> Resolution:
     degree = int(np.clip(np.ceil(-np.log10(rtol)), 3, 9)) + level
     larger = LARGER[scene.far_field]
     if scene.radius is None:
-        radius = extent_for(scene.tabor, rtol) / np.sqrt(scene.tabor) * larger**level
+        radius = size_for(scene.tabor, rtol) * larger**level
     else:
         radius = scene.radius if level else scene.radius / larger
     return Resolution(degree, finest=0.6, growth=2.5, radius=float(radius))
+
+
+def size_for(tabor: float, rtol: float) -> float:
+    """Size in beta of a block whose far field, that of a point load, leaves errors of rtol in the events."""
+    return float(2.5 * min(rtol, 0.01) ** -0.25 * widened(tabor) / np.sqrt(tabor))
 
 
 def block_charts(scene: Scene, resolution: Resolution, to_load: float = COMPRESSION) -> Charts:
@@ -142,5 +148,6 @@ def _chart(
     space = Space(tensor_grid(r_breaks, depths), ElementQuadP(resolution.degree))
     stiffness = stiffness_for(scene.poisson)
     body = condense(space, scene.poisson, far_field=FAR_FIELDS[scene.far_field], stiffness=stiffness)
-    problem = ContactProblem(Homogeneous(body.operator) if follows_contact else body.operator, scene.tabor)
+    operator = to_infinity(body.operator, resolution.degree + 1) if scene.far_field == "point_load" else body.operator
+    problem = ContactProblem(Homogeneous(operator) if follows_contact else operator, scene.tabor)
     return Chart(problem, body.unknowns, until)

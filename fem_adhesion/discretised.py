@@ -11,7 +11,7 @@ from skfem import ElementQuad2, ElementQuadP, ElementTriP2, MeshTri
 
 from fem_adhesion import bodies
 from fem_adhesion.condensed import CondensedBody, condense
-from fem_adhesion.convergence import FAR_FIELDS
+from fem_adhesion.convergence import FAR_FIELDS, size_for
 from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import FarField, point_load
 from fem_adhesion.incompressible import stiffness_for
@@ -22,7 +22,6 @@ from fem_adhesion.refinement import refined
 from fem_adhesion.scene import Counter, Scene
 from fem_adhesion.sized import GRIPS, Discretisation, sized_body
 from halfspace import grid
-from halfspace.accuracy import extent_for
 from halfspace.compliance import Array
 from halfspace.contact import ContactProblem, spike_width
 from halfspace.profiles import PARABOLOID, Profile, Tabulated
@@ -102,7 +101,7 @@ def _size_of_block(scene: Scene, source: ContactProblem) -> float:
         return scene.radius
     if scene.far_field != "point_load":
         return source.operator.at(1.0).extent
-    return extent_for(scene.tabor, RTOL) / float(np.sqrt(scene.tabor))
+    return size_for(scene.tabor, RTOL)
 
 
 def _block(scene: Scene, how: Discretisation, lines: Array, far_field: FarField) -> Discretised:

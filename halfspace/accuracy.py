@@ -15,6 +15,7 @@ from halfspace import compliance, grid
 from halfspace.breathing import FlatCoordinate, Homogeneous
 from halfspace.contact import ContactProblem, spike_width
 from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.events import REMAINING
 from halfspace.ladder import Charted, Rung, climb
 from halfspace.limits import require_counter_radius, require_load, require_radius_ratio, require_rtol, require_tabor
 from halfspace.profiles import Profile, between_spheres
@@ -22,8 +23,10 @@ from halfspace.sized import WINDOW, AroundEvents, Made, SizedBody, to_equator
 from halfspace.theories import jkr_radius
 from halfspace.values import Valued
 
-FINER = 30  # ratio of the errors of two successive rungs
-TWIN = (0.75, 0.87)  # finest cells and growth of a twin, in those of its sibling: no cell of the two is the same
+EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
+MOST_NODES = 16  # of a panel
+ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
+TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,8 @@ class Resolution:
     growth : float
         Ratio of neighbouring panels.
     extent : float
-        Outer end of the grid, in units of beta/sqrt(mu), the width of a rigid paraboloid's attraction.
+        Of the finite cells, in units of beta/sqrt(mu), the width of a rigid paraboloid's attraction; what lies beyond
+        it is one cell more, see `halfspace.compliance.to_infinity`.
     """
 
     nodes: int
@@ -49,18 +53,17 @@ class Resolution:
 
 
 def resolution_for(tabor: float, rtol: float, level: int = 0) -> Resolution:
-    """Resolution whose events are right to about `rtol` at level 0, and some 30 times better at each level above it."""
-    nodes = int(np.clip(np.ceil(3.5 - 0.75 * np.log10(rtol)) + 2 * level, 5, 16))
-    return Resolution(nodes, finest=0.6, growth=3.0, extent=extent_for(tabor, rtol) * FINER ** (level / 4))
+    """Resolution whose events are right to about `rtol` at level 0 and five to ten times better with each node more.
 
-
-def extent_for(tabor: float, rtol: float) -> float:
-    """Outer end of the surface law, in beta/sqrt(mu).
-
-    The load left out beyond it, 11 pi/extent^4, is kept below rtol of the load at jump_on, about 2 mu^(-6/7), and
-    below a per cent of it for any rtol, lest it decide whether the curve folds.
+    The first level above it has one more, the second two more than that, and so on.
     """
-    return float(2.5 * min(rtol, 0.01) ** -0.25 * max(1.0, tabor) ** (6 / 28))
+    nodes = max(math.ceil(2 - math.log10(rtol) - 1e-9), 5) + level * (level + 1) // 2
+    return Resolution(min(nodes, MOST_NODES), finest=0.6, growth=3.0, extent=EXTENT * widened(tabor))
+
+
+def widened(tabor: float) -> float:
+    """Width of the attraction at jump_on, where the gap is about mu^(3/7), in those of a rigid paraboloid."""
+    return float(max(1.0, tabor) ** (3 / 14))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -95,8 +98,10 @@ def widest_radius(tabor: float, to_load: float) -> float:
 def half_space_charts(tabor: float, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:
     """Panel grids centred on the axis and following the contact edge."""
     lines = rings(tabor, resolution.finest, resolution.growth, resolution.extent, to_load)
-    centred = compliance.panels(lines.centred, resolution.nodes)
-    edge = compliance.panels(lines.edge, resolution.nodes)
+    centred, edge = (
+        compliance.to_infinity(compliance.panels(breaks, resolution.nodes), resolution.nodes)
+        for breaks in (lines.centred, lines.edge)
+    )
     return (
         Chart(ContactProblem(centred, tabor), centred.radii.size, lines.until),
         Chart(ContactProblem(Homogeneous(edge), tabor), edge.radii.size),
@@ -151,19 +156,31 @@ def trace(
         curve = partial(half_space_charts, tabor, resolution, to_load)
         if not level:
             return Rung(curve, (), asdict(resolution))
-        wider = replace(below, extent=resolution.extent)
-        twin = replace(wider, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
-        stages = [Charted(half_space_charts(tabor, r, to_load)) for r in (wider, resolution, twin)]
-        return Rung(curve, (stages[0], stages[1]), asdict(resolution), stages[2])
+        fine, twin = (Charted(half_space_charts(tabor, r, to_load)) for r in (resolution, _twin(below)))
+        return Rung(curve, (fine,), asdict(resolution), twin, ONE_NODE if level == 1 else REMAINING)
 
     return climb(rtol, rung, to_load=to_load)
 
 
+def _twin(resolution: Resolution) -> Resolution:
+    """Return a resolution as fine, with other cells."""
+    finest, growth, extent = TWIN
+    return replace(
+        resolution,
+        finest=finest * resolution.finest,
+        growth=growth * resolution.growth,
+        extent=extent * resolution.extent,
+    )
+
+
 def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level: int) -> Rung:
-    """Rung of a level for a sphere or two, whose surface ends at the smaller one's equator."""
-    resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
-    twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
-    fine, other = (_under_sphere(tabor, gap, r) for r in (resolution, twin))
+    """Rung of a level for a sphere or two, whose surface ends at the smaller one's equator: two nodes more at each."""
+    lowest = math.ceil(3.5 - 0.75 * math.log10(rtol) - 1e-9)
+    usual = resolution_for(tabor, rtol)
+    resolution, below = (
+        replace(usual, nodes=min(max(lowest + 2 * max(n, 0), 5), MOST_NODES)) for n in (level, level - 1)
+    )
+    fine, other = (_under_sphere(tabor, gap, r) for r in (resolution, _twin(below)))
     window = WINDOW / 2**level
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(

@@ -8,8 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 from scipy.linalg import eigh
 
+from halfspace import grid
 from halfspace.errors import InputError
 from halfspace.kernel import band_deflection, panel_integrals
 from halfspace.values import Valued
@@ -28,7 +30,8 @@ class ElasticOperator(Valued):
     Attributes
     ----------
     radii : (q,) array
-        Radii of the surface nodes, ascending, in beta.
+        Radii of the surface nodes, ascending, in beta; those past the last cell are of an infinite one, see
+        `to_infinity`.
     weights : (q,) array
         Quadrature weights of the area element 2 pi u du: ``weights @ P`` is the load in R dgamma.
     compliance : (q, q) array
@@ -48,8 +51,20 @@ class ElasticOperator(Valued):
 
     @property
     def extent(self) -> float:
-        """Radius to which the surface law acts, in beta."""
+        """Radius in beta at which the last finite cell ends."""
         return float(self.cells[-1])
+
+    @cached_property
+    def beyond(self) -> Index:
+        """Nodes past the extent, none where the surface law acts only up to it."""
+        return np.flatnonzero(self.radii > self.extent)
+
+    @property
+    def finite(self) -> ElasticOperator:
+        """The operator without the nodes past its extent."""
+        inside = self.radii <= self.extent
+        compliance = self.compliance[np.ix_(inside, inside)]
+        return ElasticOperator(self.radii[inside], self.weights[inside], compliance, self.cells, self.cell_nodes)
 
     @property
     def follows_contact(self) -> bool:
@@ -138,6 +153,13 @@ class ElasticOperator(Valued):
         weights = np.where(hit.any(axis=1, keepdims=True), hit, self._barycentric[cells] / np.where(hit, 1.0, offset))
         return np.asarray(np.einsum("nk,nk->n", weights, values[nodes]) / weights.sum(axis=1))
 
+    def values_beyond(self, radii: Array, values: Array) -> Array:
+        """Interpolate nodal values (q,) that die out at infinity at radii (n,) past the extent, in t = extent/r."""
+        t = self.extent / self.radii[self.beyond][::-1]
+        return np.asarray(
+            PchipInterpolator(np.append(0.0, t), np.append(0.0, values[self.beyond][::-1]))(self.extent / radii)
+        )
+
     @cached_property
     def axis_row(self) -> Array:
         """Row (q,) that interpolates nodal values on the axis."""
@@ -199,6 +221,47 @@ def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
     weights = 2 * np.pi * radii * half * w
     return ElasticOperator(
         radii.ravel(), weights.ravel(), compliance, breakpoints, np.arange(radii.size).reshape(radii.shape)
+    )
+
+
+def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> ElasticOperator:
+    """Let the surface law act on a half-space beyond the extent U of an operator, in cells up to infinity.
+
+    Inversion s = U/t maps them on the disc t < 1 and the ring kernel on itself, G(U/tau, U/t) = (tau t/U) G(tau, t), so
+    that a pressure deflects the surface at r = U/tau by
+
+        int_U^inf P G(r, s) s ds = U tau int_0^1 (P/t^3) G(tau, t) t dt.
+
+    P/t^3 falls as t^3 for the 3-9 law on a paraboloid; it is a polynomial through Gauss's points in each cell.
+
+    Parameters
+    ----------
+    operator : ElasticOperator
+        Of a half-space, from any discretisation; how a pressure inside deflects what is beyond follows by reciprocity.
+        Where it reaches to infinity already, the cells beyond its extent are made anew.
+    nodes : int
+        Of each cell, from 1 to 16.
+    reach : float
+        Where the infinite cell begins, in extents; up to there the cells grow threefold at most.
+    """
+    x, w = leggauss(nodes)
+    ends = np.append(0.0, grid.equal_ratios(1 / reach, 1.0, most=3.0))
+    half = np.diff(ends)[:, None] / 2
+    t, U, inner = (ends[:-1, None] + half * (1 + x)).ravel(), operator.extent, operator.finite
+    radii, weights = U / t, 2 * np.pi * U**2 * (half * w).ravel() / t**3
+    tau = U / np.append(inner.radii, radii)
+    integrals = panel_integrals(tau, ends, x).reshape(tau.size, t.size)
+    order = np.argsort(radii)
+    deflection = (U * tau[:, None] * integrals / t**3)[:, order]
+    radii, weights = radii[order], weights[order]
+    inward, own = deflection[: inner.radii.size], deflection[inner.radii.size :][order]
+    outward = (inner.weights[:, None] * inward / weights).T
+    return ElasticOperator(
+        np.append(inner.radii, radii),
+        np.append(inner.weights, weights),
+        np.block([[inner.compliance, inward], [outward, own]]),
+        inner.cells,
+        inner.cell_nodes,
     )
 
 

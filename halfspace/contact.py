@@ -16,6 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 from scipy.optimize import brentq
@@ -31,6 +32,7 @@ Array = NDArray[np.float64]
 
 APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
 
+ROUND_OFF = 1e-13  # of the largest coefficient of a polynomial, what is left of those that it does not have
 WIDEST = 0.95  # of the radius of a body, that a contact may reach
 
 
@@ -173,6 +175,14 @@ class ContactProblem(Valued):
         below, above = (radii[inside[-1]], radii[inside[-1] + 1]) if inside.size else (0.0, radii[0])
         return float(brentq(lambda r: float(body.continuous(r)[0] @ H - edge), below, above, xtol=1e-14))
 
+    def ripple(self, x: Array) -> float:
+        """Largest of the last two Legendre coefficients of the gap in the cell on the axis, in eps."""
+        body = self.operator_at(x)
+        nodes = body.cell_nodes[0]
+        places = 2 * body.radii[nodes] / body.cells[1] - 1
+        sizes = np.abs(np.linalg.solve(legvander(places, nodes.size - 1), x[nodes]))
+        return float(sizes[sizes > ROUND_OFF * sizes.max()][-2:].max())
+
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative by x of the weighted sum of the observables, shape (q + 2,)."""
         row = np.zeros(x.size)
@@ -234,21 +244,11 @@ class ContactProblem(Valued):
         return float(np.linalg.norm(residual / np.append(x[:-2] + 1, 1)))
 
     def energy(self, x: Array) -> float:
-        """Total potential energy in R dgamma eps, elastic and surface; its derivative by the approach is the load.
-
-        Beyond the grid the surfaces go on as undeformed paraboloids, if they do: the energy's tail falls only as U^-2.
-        """
+        """Total potential energy in R dgamma eps, elastic and surface; its derivative by the approach is the load."""
         H, alpha, mu, body = x[:-2], x[-2], self.tabor, self.operator_at(x)
         deflection = H + alpha - mu * self.profile.height(body.radii)
         density = self.law.energy(H, mu) + self.pressure(x) * deflection / 2
-        return float(body.weights @ density) + self._energy_beyond(alpha, body.extent)
-
-    def _energy_beyond(self, alpha: float, U: float) -> float:
-        if np.isfinite(self.profile.end):
-            return 0.0
-        h, (n, m) = 1 - alpha + self.tabor * U**2 / 2, (self.law.attraction, self.law.repulsion)
-        tail = h ** -(m - 2) / ((m - 1) * (m - 2)) - h ** -(n - 2) / ((n - 1) * (n - 2))
-        return float(2 * np.pi * self.law.amplitude * tail)
+        return float(body.weights @ density)
 
     def negative_directions(self, x: Array) -> int:
         """Number of directions in which the energy falls at fixed approach; 0 means stable under fixed grips.

@@ -19,7 +19,18 @@ from numpy.typing import NDArray
 from halfspace import newton
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
 from halfspace.errors import ContactTooWide, InputError
-from halfspace.events import EVENTS, EXTREMUM, FOLD, ZERO_LOAD, Condition, Event, Located, locate, relocate
+from halfspace.events import (
+    EVENTS,
+    EXTREMUM,
+    FOLD,
+    REMAINING,
+    ZERO_LOAD,
+    Condition,
+    Event,
+    Located,
+    locate,
+    relocate,
+)
 from halfspace.newton import Traceable
 from halfspace.path import Metric, Point, Steps, follow, loaded_to, make_point
 from halfspace.values import Valued, shown
@@ -90,6 +101,10 @@ class EquilibriumPath(Valued):
         Wall time of the whole computation.
     settings : mapping
         What was asked for and how it was discretised.
+    twin : callable, optional
+        A discretisation as fine as the last but one, with other cells, for the errors of what is solved for later.
+    remaining : float
+        Part of the change from either to the finest that may be left.
     """
 
     tabor: float
@@ -100,6 +115,8 @@ class EquilibriumPath(Valued):
     finest: Finest
     seconds: float = field(compare=False)
     settings: Mapping[str, object] = field(default_factory=dict)
+    twin: Finest | None = None
+    remaining: float = REMAINING
 
     @property
     def unknowns(self) -> int:
@@ -252,7 +269,7 @@ def transfer(source: Traceable, x: Array, target: Traceable) -> Array:
 
 
 def _transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array:
-    """Interpolate the gaps; beyond the grid the load acts as at a point."""
+    """Interpolate the gaps, and beyond the grid the deflection."""
     H, alpha = x[:-2], x[-2]
     scale = source.contact_radius(x) if target.follows_contact else 1.0
     body, radii = source.operator_at(x), target.operator.at(scale).radii
@@ -260,9 +277,16 @@ def _transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array
     gap = np.empty(radii.size)
     gap[inside] = body.values_at(radii[inside], H)
     outside = radii[~inside]
-    point_load = source.load(x) / (np.pi * outside)
-    gap[~inside] = -alpha + source.tabor * (source.profile.height(outside) + point_load)
+    gap[~inside] = -alpha + source.tabor * source.profile.height(outside) + _deflection_beyond(source, x, outside)
     return np.concatenate([gap, [alpha, scale]])
+
+
+def _deflection_beyond(source: ContactProblem, x: Array, radii: Array) -> Array:
+    """Deflection in eps past the extent of the source's grid, by its infinite cell or else as under a point load."""
+    body = source.operator_at(x)
+    if body.beyond.size:
+        return body.values_beyond(radii, x[:-2] + x[-2] - source.tabor * source.profile.height(body.radii))
+    return np.asarray(source.tabor * source.load(x) / (np.pi * radii))
 
 
 def moved(event: Located, problem: Traceable) -> Located:

@@ -25,7 +25,7 @@ from halfspace.errors import InputError
 from halfspace.events import ROUND_OFF, Condition, Event, Located, estimate_event, locate
 from halfspace.newton import Control, Traceable
 from halfspace.path import make_point
-from halfspace.reach import reaching
+from halfspace.reach import reaching, widened
 
 Array = NDArray[np.float64]
 
@@ -103,8 +103,7 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     rough = jumps(reaching(path, stiffness).segments, 1 / stiffness)
     if rough is None:
         return None
-    fine = tuple(_refined(states, path.finest, 1 / stiffness) for states in rough)
-    on, off = (_jump(a, b, 1 / stiffness) for a, b in zip(rough, fine, strict=True))
+    on, off = (_jump(states, path, 1 / stiffness) for states in rough)
     lost = Estimate(on.energy.value + off.energy.value, on.energy.error + off.energy.error)
     return Cycle(stiffness, on, off, lost)
 
@@ -132,8 +131,9 @@ def jumps(segments: Sequence[Segment], compliance: float) -> tuple[_States, _Sta
         return None
     on, off = folds[0], folds[-1]
     contact = _roots(segments, Condition(APPROACH, value=_base(on, compliance), compliance=compliance))[-1]
-    separated = segments[0].problem
-    start = separated.undeformed(_base(off, compliance))
+    base = _base(off, compliance)
+    separated = widened(segments[0].problem, base)
+    start = separated.undeformed(base)
     return _States(on, contact), _States(off, _landing(separated, start, off, compliance))
 
 
@@ -157,18 +157,24 @@ def _landing(problem: Traceable, start: Array, take_off: Located, compliance: fl
 
 def _refined(states: _States, finest: Finest, compliance: float) -> _States:
     """Both states of a jump on the finest discretisation."""
-    fold = moved(states.take_off, finest(states.take_off).problem)
-    source, target = states.landing.problem, finest(states.landing).problem
+    on = widened(finest(states.take_off).problem, float(states.take_off.point.observables[APPROACH]))
+    fold = moved(states.take_off, on)
+    source = states.landing.problem
+    target = widened(finest(states.landing).problem, float(states.landing.point.observables[APPROACH]))
     start = transfer(source, states.landing.point.x, target)
     return _States(fold, _landing(target, start, fold, compliance))
 
 
-def _jump(rough: _States, fine: _States, compliance: float) -> Jump:
-    values = [states.energy(compliance) for states in (rough, fine)]
+def _jump(rough: _States, path: EquilibriumPath, compliance: float) -> Jump:
+    """Jump on the finest discretisation, its errors by the change from the curve's and, if there is one, a twin."""
+    fine = _refined(rough, path.finest, compliance)
+    others = (rough, _refined(rough, path.twin, compliance)) if path.twin else (rough,)
+    energies = [states.energy(compliance) for states in (*others, fine)]
+    change = max(abs(energy - energies[-1]) for energy in energies)
     return Jump(
-        estimate_event("take_off", [[rough.take_off, fine.take_off]]),
-        estimate_event("landing", [[rough.landing, fine.landing]]),
-        Estimate(values[1], abs(values[1] - values[0]) + ROUND_OFF * (1 + abs(values[1]))),
+        estimate_event("take_off", [[s.take_off, fine.take_off] for s in others], path.remaining, along=True),
+        estimate_event("landing", [[s.landing, fine.landing] for s in others], path.remaining),
+        Estimate(energies[-1], max(path.remaining, 1.0) * change + ROUND_OFF * (1 + abs(energies[-1]))),
     )
 
 

@@ -47,6 +47,12 @@ def geometric(length: float, finest: float, growth: float) -> Array:
     return np.concatenate([[0.0], np.cumsum(steps) * (length / steps.sum())])
 
 
+def equal_ratios(first: float, last: float, *, most: float) -> Array:
+    """Breakpoints from `first` to `last` in equal ratios, each of `most` or less; `last` alone if it is no larger."""
+    count = int(np.ceil(np.log(last / first) / np.log(most) - 1e-9))
+    return np.geomspace(first, last, count + 1) if count > 0 else np.array([last])
+
+
 def _require_positive(**lengths: float) -> None:
     for name, value in lengths.items():
         if not (np.isfinite(value) and value > 0):

@@ -1,8 +1,8 @@
 """The load-approach curve to an accuracy asked for: a ladder of discretisations of any body.
 
 The curve is traced on the lowest rung and each event solved for again on the next, and on more if need be. An event's
-error estimate is half its change from the last rung but one to the last: the change is nearly the lower
-rung's error, of which the higher rung is made to leave a tenth or less.
+error estimate is a part of its change from the last rung but one to the last, which is nearly the lower rung's error:
+half of it where the higher rung leaves a third of that error at most, more where it may leave more.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from halfspace.errors import InputError, NotConverged
 from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event
 from halfspace.values import Valued
 
-MOST_RUNGS = 3  # above the lowest
+MOST_RUNGS = 4  # above the lowest
 
 Charts = Sequence[Chart]
 State = Mapping[str, Located]
@@ -164,6 +164,8 @@ def _climb_from(
         higher.stages[-1],
         time.perf_counter() - began,
         {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
+        higher.twin,
+        higher.remaining,
     )
 
 

@@ -8,13 +8,15 @@ from dataclasses import replace
 import numpy as np
 
 from halfspace import newton
-from halfspace.contact import APPROACH
+from halfspace.compliance import ElasticOperator, to_infinity
+from halfspace.contact import APPROACH, ContactProblem
 from halfspace.curve import EquilibriumPath, Segment, metric_for
 from halfspace.newton import Traceable
 from halfspace.path import Metric, Point, make_point
 
 FARTHER, NEARER = 1.5, 1.1  # margins by which the points added to a curve reach past the jump and past its beginning
 POINTS = 12  # so added
+WIDTHS = 1.7  # of the attraction, sqrt(2 h/mu), that the cells should cover of which none is infinite
 
 
 def reaching(path: EquilibriumPath, stiffness: float) -> EquilibriumPath:
@@ -31,12 +33,28 @@ def rigid_jump_on(stiffness: float) -> float:
     return 1 - float(np.cbrt(16 * math.pi / 3 / stiffness))
 
 
+def widened(problem: Traceable, approach: float) -> Traceable:
+    """Problem whose cells cover the attraction at a separation, which widens as its root: the same if they do already.
+
+    So are those whose grid follows the contact, or whose surface law does not act to infinity.
+    """
+    if not isinstance(problem, ContactProblem) or not isinstance(problem.operator, ElasticOperator):
+        return problem
+    body, h = problem.operator, 1 - approach
+    reach = WIDTHS * math.sqrt(2 * max(h, 0.0) / problem.tabor) / body.extent
+    if not body.beyond.size or reach <= 1:
+        return problem
+    nodes = min(body.beyond.size, body.cell_nodes.shape[1])
+    return replace(problem, operator=to_infinity(body, nodes, reach))
+
+
 def _far_segment(first: Segment, jump: float) -> Segment:
     """Points of the separated branch from beyond a jump to past the first point of a curve."""
-    problem, near = first.problem, float(first.points[0].observables[APPROACH])
+    far, near = 1 - FARTHER * jump, 1 - float(first.points[0].observables[APPROACH]) / NEARER
+    problem = widened(first.problem, 1 - far)
     metric = metric_for(problem.tabor)
     points: list[Point] = []
-    for approach in 1 - np.geomspace(1 - FARTHER * jump, 1 - near / NEARER, POINTS):
+    for approach in 1 - np.geomspace(far, near, POINTS):
         points.append(_separated(problem, float(approach), metric, points[-1] if points else None))
     return Segment(problem, tuple(points))
 

@@ -162,12 +162,14 @@ def test_a_half_space_has_the_same_events_whether_homogeneous_or_interpolated():
     """On a grid with no length of its own, interpolation between any two radii is exact."""
     charts = half_space_charts(1.0, resolution_for(1.0, 1e-4))
     operator = charts[1].problem.operator
-    lines = operator.unit.cells
+    inner = operator.unit.finite
+    lines = inner.cells
     moving = MovingGrid(0 * lines, lines, FlatCoordinate())
     scales = np.array([2.0, 0.5])
     made = [compliance.panels(a * lines, operator.unit.cell_nodes.shape[1]) for a in scales]
     other = Chart(ContactProblem(Interpolated(scales, made, moving), 1.0), charts[1].unknowns)
-    first, second = (find_events(trace_charts(c)) for c in (charts, (charts[0], other)))
+    finite = Chart(ContactProblem(Homogeneous(inner), 1.0), charts[1].unknowns)
+    first, second = (find_events(trace_charts(c)) for c in ((charts[0], finite), (charts[0], other)))
     for name in ("pull_off", "jump_on", "jump_off", "zero_load"):
         a, b = (found[name].point.observables[:3] for found in (first, second))
         np.testing.assert_allclose(a, b, atol=1e-8)

@@ -36,6 +36,43 @@ def test_reciprocity(edge):
     assert ab == pytest.approx((edge.weights * b) @ edge.compliance @ a, rel=1e-12)
 
 
+# --- the cells up to infinity ---
+
+
+@pytest.mark.parametrize("reach", [1.0, 2.0, 100.0])
+def test_pressures_without_end_in_closed_form(reach):
+    """P = (1 + r^2)^(-3/2), whose Hankel transform is e^-k, and its relative with k e^-k: w = 2 int p(k) J_0 dk."""
+    body = compliance.to_infinity(compliance.panels(grid.graded(0.0, 0.5, 6.0), 14), 14, reach)
+    h = np.sqrt(1 + body.radii**2)
+    inside = body.radii < 6
+    for pressure, deflection in ((h**-3, 2 / h), (3 / h**5 - 1 / h**3, 2 / h**3)):
+        found = body.compliance @ pressure
+        np.testing.assert_allclose(found[inside], deflection[inside], rtol=1e-9)
+        np.testing.assert_allclose(found[~inside], deflection[~inside], rtol=1e-3, atol=2e-5)  # at points; as a mean much closer:
+        assert (body.weights * h**-3) @ found == pytest.approx((body.weights * h**-3) @ deflection, rel=1e-7)
+    assert body.weights @ h**-3 == pytest.approx(2 * np.pi, rel=1e-11)
+    assert body.radii.max() > 50 * reach
+    assert body.extent == 6.0
+
+
+def test_what_is_beyond_is_made_anew_and_obeys_reciprocity():
+    inner = compliance.panels(grid.graded(0.0, 0.5, 6.0), 8)
+    once = compliance.to_infinity(inner, 8)
+    again = compliance.to_infinity(once, 8, 50.0)
+    assert again.radii.size - inner.radii.size == 5 * (once.radii.size - inner.radii.size)
+    for name in ("radii", "weights", "compliance"):
+        np.testing.assert_array_equal(getattr(once.finite, name), getattr(inner, name))
+    inside, beyond = again.radii < 6, again.radii > 6
+    between = again.weights[:, None] * again.compliance
+    np.testing.assert_allclose(between[np.ix_(inside, beyond)], between[np.ix_(beyond, inside)].T, rtol=1e-12)
+
+
+def test_values_beyond_the_extent_die_out():
+    body = compliance.to_infinity(compliance.panels(grid.graded(0.0, 0.5, 6.0), 12), 12)
+    radii = np.array([6.5, 10.0, 40.0, 1e4])
+    np.testing.assert_allclose(body.values_beyond(radii, 1 / np.sqrt(1 + body.radii**2)), 1 / radii, rtol=0.02)
+
+
 @pytest.mark.parametrize("build", [lambda g: compliance.panels(g, 5), compliance.triangles, compliance.bands])
 def test_homogeneity(build):
     breakpoints = grid.graded(1.0, 0.1, 10.0)

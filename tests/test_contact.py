@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from fem_adhesion.studies.fold_birth import approached
 from halfspace import compliance, grid, newton, theories
-from halfspace.accuracy import half_space_charts, resolution_for
+from halfspace.accuracy import half_space_charts, resolution_for, rings
 from halfspace.breathing import Homogeneous
 from halfspace.contact import ContactProblem, count_negative
 from halfspace.curve import transfer
@@ -186,6 +187,31 @@ def test_the_papers_discretisations_converge_to_the_same_pull_off(build):
         x = newton.solve(problem, x, newton.central_gap(gap)).x
     loads = [newton.solve(problem, x, newton.central_gap(gap)).observables[1] for gap in np.linspace(0.0, -0.04, 21)]
     assert min(loads) == pytest.approx(-5.615543245, rel=3e-4)
+
+
+@pytest.mark.parametrize("tabor", [0.3, 1.0, 3.0])
+@pytest.mark.parametrize("gap", [4.0, 1.5, 0.5])
+def test_the_load_does_not_miss_the_attraction_beyond_the_grid(tabor, gap):
+    """The same state on grids of any extent, its load the derivative of its energy by the approach."""
+    states = []
+    for extent in (6.0, 9.0, 60.0):
+        lines = rings(tabor, 0.4, 2.0, extent * tabor**0.25)
+        problem = ContactProblem(compliance.to_infinity(compliance.panels(lines.centred, 14), 14), tabor)
+        x = newton.solve(problem, approached(problem, min(gap, 1.0)), newton.central_gap(gap)).x
+        states.append((problem, x, problem.observables(x)))
+    for _, _, observables in states[:2]:
+        np.testing.assert_allclose(observables[:3], states[2][2][:3], rtol=1e-8, atol=1e-9)
+    problem, x, observables = states[0]
+
+    def energy(step):
+        return problem.energy(newton.solve(problem, x, newton.central_gap(observables[2] + step), tolerance=1e-12).x)
+
+    def approach(step):
+        return newton.solve(problem, x, newton.central_gap(observables[2] + step), tolerance=1e-12).x[-2]
+
+    d = 1e-3
+    slopes = [f(-2 * d) - 8 * f(-d) + 8 * f(d) - f(2 * d) for f in (energy, approach)]
+    assert slopes[0] / slopes[1] == pytest.approx(observables[1], rel=1e-8)
 
 
 def test_rigid_limit_is_bradleys_along_the_whole_path():

@@ -108,15 +108,16 @@ def test_errors_are_small_and_positive(path):
 
 @pytest.mark.parametrize("rtol", [1e-2, 1e-4])
 @pytest.mark.parametrize(("tabor", "stiffness"), [(0.75, 0.5), (2.0, math.inf), (8.0, 3.0)])
-def test_the_error_of_an_energy_is_its_change_from_the_curves_grid_to_the_finest(tabor, stiffness, rtol):
-    """And holds the truth, as another curve gives it that is four decades tighter."""
+def test_the_error_of_an_energy_is_what_its_change_from_the_curves_grid_to_the_finest_may_leave(tabor, stiffness, rtol):
+    """Or from a twin, if that is more; and holds the truth, as another curve gives it that is four decades tighter."""
     path, truth = halfspace.trace(tabor, rtol=rtol), cycle(halfspace.trace(tabor, rtol=1e-4 * rtol), stiffness)
     found, rough = cycle(path, stiffness), jumps(path.segments, 1 / stiffness)
     for jump, before, known in zip(
         (found.jump_on, found.jump_off), rough, (truth.jump_on, truth.jump_off), strict=True
     ):
-        change = abs(jump.energy.value - before.energy(1 / stiffness))
-        assert jump.energy.error == pytest.approx(change, rel=1e-6, abs=2e-11 * (1 + jump.energy.value))
+        left = max(path.remaining, 1) * abs(jump.energy.value - before.energy(1 / stiffness))
+        rounding = 2e-11 * (1 + jump.energy.value)
+        assert left - rounding <= jump.energy.error <= 3 * left + rounding
         assert abs(jump.energy.value - known.energy.value) <= jump.energy.error
     assert found.energy_lost.value == found.jump_on.energy.value + found.jump_off.energy.value
     assert found.energy_lost.error == found.jump_on.energy.error + found.jump_off.energy.error
@@ -157,16 +158,46 @@ def test_a_soft_cantilever_jumps_on_from_beyond_the_traced_curve():
     assert rigid_jump_on(stiffness) == pytest.approx(1 - gap, rel=1e-6)
 
 
+@pytest.mark.parametrize("stiffness", [1e-2, 1e-4, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("rtol", [1e-2, 1e-6])
+def test_however_soft_an_apparatus_its_jumps_are_within_their_errors(truth, rtol, stiffness):
+    """Against the tightest tolerance; where the jump on lies far out, against a rigid sphere too."""
+    found, expected = (cycle(path, stiffness) for path in (halfspace.trace(1.0, rtol=rtol), truth))
+    for jump in ("jump_on", "jump_off"):
+        for place in ("take_off", "landing"):
+            ours, theirs = (getattr(getattr(c, jump), place) for c in (found, expected))
+            for quantity in ("approach", "load"):
+                error = getattr(ours, f"{quantity}_error") + getattr(theirs, f"{quantity}_error")
+                difference = abs(getattr(ours, quantity) - getattr(theirs, quantity))
+                assert difference <= error, (jump, place, quantity)
+    lost = found.energy_lost, expected.energy_lost
+    assert abs(lost[0].value - lost[1].value) <= lost[0].error + lost[1].error
+    on = found.jump_on.take_off
+    if stiffness <= 1e-6:
+        gap = np.cbrt(16 * np.pi / 3 / stiffness)
+        assert on.approach == pytest.approx(1 - gap, rel=1e-6)
+        assert on.load == pytest.approx(-8 * np.pi / 3 / gap**2, rel=2e-6, abs=0)
+        assert on.load_error < 2e-5 * abs(on.load) + 1.1e-11
+
+
+@pytest.fixture(scope="module")
+def truth():
+    return halfspace.trace(1.0, rtol=1e-9)
+
+
 def test_an_extended_curve_has_the_same_cycle(stiff_path):
-    """A stiffness whose jump lies on the curve, but so near its beginning that the curve is extended all the same."""
+    """A stiffness whose jump lies on the curve, but so near its beginning that the curve is extended all the same.
+
+    On wider cells, so that it is the same to the accuracy of the lowest rung only.
+    """
     near = stiff_path.approach[0]
     stiffness = 16 * np.pi / 3 / (1 - 0.95 * near) ** 3
     longer = reaching(stiff_path, stiffness).segments
     assert len(longer) > len(stiff_path.segments)
     ours, theirs = (jumps(segments, 1 / stiffness) for segments in (longer, stiff_path.segments))
     for a, b in zip(ours, theirs, strict=True):
-        assert a.take_off.point.observables[0] == pytest.approx(b.take_off.point.observables[0], abs=1e-9)
-        assert a.energy(1 / stiffness) == pytest.approx(b.energy(1 / stiffness), rel=1e-9)
+        assert a.take_off.point.observables[0] == pytest.approx(b.take_off.point.observables[0], rel=1e-7)
+        assert a.energy(1 / stiffness) == pytest.approx(b.energy(1 / stiffness), rel=1e-7)
 
 
 def test_a_curve_that_reaches_far_enough_is_left_alone(stiff_path):

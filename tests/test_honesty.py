@@ -63,7 +63,7 @@ def _truth(tabor, truths):
     if tabor not in truths:
 
         def rung(level):
-            usual = resolution_for(tabor, 1e-10, level)
+            usual = resolution_for(tabor, 1e-13, level)
             finer = Resolution(min(usual.nodes + 1, 16), 0.4, 2.5, usual.extent)
             return charted_rung(half_space_charts(tabor, finer))
 
