@@ -48,7 +48,9 @@ def test_pressures_without_end_in_closed_form(reach):
     for pressure, deflection in ((h**-3, 2 / h), (3 / h**5 - 1 / h**3, 2 / h**3)):
         found = body.compliance @ pressure
         np.testing.assert_allclose(found[inside], deflection[inside], rtol=1e-9)
-        np.testing.assert_allclose(found[~inside], deflection[~inside], rtol=1e-3, atol=2e-5)  # at points; as a mean much closer:
+        np.testing.assert_allclose(
+            found[~inside], deflection[~inside], rtol=1e-3, atol=2e-5
+        )  # at points; as a mean much closer:
         assert (body.weights * h**-3) @ found == pytest.approx((body.weights * h**-3) @ deflection, rel=1e-7)
     assert body.weights @ h**-3 == pytest.approx(2 * np.pi, rel=1e-11)
     assert body.radii.max() > 50 * reach
