@@ -11,6 +11,12 @@ from whole_runs import whole_run
 ORIGINAL, RELATIVE, ABSOLUTE = pytest.approx, 1e-6, 1e-12
 
 
+@pytest.fixture(autouse=True)
+def _wide(monkeypatch):
+    """Let tables be as wide as where there is no terminal, whatever terminal the tests are run in."""
+    monkeypatch.setenv("COLUMNS", "150")
+
+
 @pytest.fixture(scope="session")
 def whole(tmp_path_factory):
     """Run a command line whole, as ``whole("fem-adhesion hard --out hard")``; see `whole_runs`."""
