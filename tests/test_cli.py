@@ -122,12 +122,15 @@ def test_a_failure_is_reported_with_its_reason_and_exits_with_1(monkeypatch, cap
     assert cli.main(["compare", "--tabor", "0.5", "--rtol", "1e-2", "--json", str(file)]) == 1
     assert "failed: on purpose; try another day" in capsys.readouterr().out
     record = json.loads(file.read_text())
-    assert record["cases"][0] == {
+    (case,) = record["cases"]
+    rows = case.pop("comparison")
+    assert len(rows) == 4
+    assert all(row["quantity"].startswith("operator: ") and row["verdict"] == "agree" for row in rows)
+    assert case == {
         "tabor": 0.5,
         "poisson": 0.3,
         "verdict": "failed",
         "reason": "on purpose; try another day",
-        "comparison": [],
     }
 
 
