@@ -650,9 +650,18 @@ def test_the_first_jump_of_a_large_sphere_is_that_of_the_half_space_and_one_that
 def test_the_border_of_the_jumps_divides_the_curves_that_jump_from_those_that_do_not():
     """The curve's own folds, of the study's own solver, on either side."""
     border = finite_sphere_cases.compute(case_of("first_jump", None, 30.0, 0.2, 1e-4)).values[CRITICAL].value
-    for tabor, jumps in ((border - 0.02, False), (border + 0.02, True)):
+    for tabor, jumps in ((border - 5e-3, False), (border + 5e-3, True)):
         scene = Scene(tabor, **SPHERE)
         assert ("jump_on" in fem_adhesion.trace(scene, rtol=1e-3, to_load=0.5).events) == jumps
+
+
+def test_the_error_of_the_border_holds_what_finer_elements_change(monkeypatch):
+    case = case_of("first_jump", None, 30.0, 0.2, 1e-4)
+    found = finite_sphere_cases.compute(case).values[CRITICAL]
+    monkeypatch.setattr(finite_sphere_cases, "DEGREES", (7, 8))
+    finer = finite_sphere_cases.compute(case).values[CRITICAL]
+    assert abs(finer.value - found.value) <= found.error
+    assert finer.error < found.error < 1e-4
 
 
 # --- materials ---
