@@ -29,6 +29,7 @@ from fem_adhesion.studies.finite_sphere_records import CRITICAL, QUANTITIES, Cas
 from fem_adhesion.studies.finite_sphere_table import Row, borders, rows
 from fem_adhesion.studies.materials import materials
 from fem_adhesion.studies.store import open_store
+from fem_adhesion.writing import NotWritten
 from halfspace.curve import Estimate
 from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES
@@ -395,7 +396,7 @@ def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
         study.put({"a": 1}, {"b": math.nan})
     assert study.get({"a": 1}) == {"b": 2}
     monkeypatch.setattr(os, "fsync", lambda _: (_ for _ in ()).throw(OSError("disk full")))
-    with pytest.raises(OSError, match="disk full"):
+    with pytest.raises(NotWritten, match=r"cannot be written \(disk full\); choose another place"):
         study.put({"a": 1}, {"b": 3})
     assert study.get({"a": 1}) == {"b": 2}
     assert len(list((tmp_path / "cases").iterdir())) == 1

@@ -141,7 +141,7 @@ def test_finite_element_estimates(truths):
 
 
 @pytest.mark.parametrize(
-    ("solve", "part"), [(halfspace.trace, 0.5), (lambda tabor, rtol: fem_adhesion.trace(Scene(tabor), rtol=rtol), 1.0)]
+    ("solve", "part"), [(halfspace.trace, 2.0), (lambda tabor, rtol: fem_adhesion.trace(Scene(tabor), rtol=rtol), 1.0)]
 )
 @pytest.mark.parametrize("tabor", [0.5, 2.0])
 def test_the_error_of_the_energy_is_that_part_of_its_changes_which_may_be_left(solve, part, tabor):
@@ -153,12 +153,12 @@ def test_the_error_of_the_energy_is_that_part_of_its_changes_which_may_be_left(s
     assert left <= path.energy.error <= 3 * left + 1e-11 * (1 + path.energy.value)
 
 
-def test_an_estimate_is_no_less_than_half_the_change_from_a_grid_as_coarse_as_the_one_below_with_other_cells():
+def test_an_estimate_is_no_less_than_twice_the_change_from_a_grid_as_coarse_as_the_one_below_with_other_cells():
     """A number that two grids of one family share by accident is not taken for exact."""
-    path = halfspace.trace(2.0, rtol=1e-4)
+    path = halfspace.trace(0.8, rtol=1e-4)
     last = path.settings["events"]
-    twin = Resolution(last["nodes"] - 2, 0.75 * last["finest"], 0.87 * last["growth"], last["extent"])
-    others = find_events(trace_charts(half_space_charts(2.0, twin)))
+    twin = Resolution(last["nodes"] - 1, 0.75 * last["finest"], 0.87 * last["growth"], 0.8 * last["extent"])
+    others = find_events(trace_charts(half_space_charts(0.8, twin)))
     counted = 0
     for name, event in path.events.items():
         best, other = (state[name].point.observables for state in (path.stages[-1], others))
@@ -166,7 +166,7 @@ def test_an_estimate_is_no_less_than_half_the_change_from_a_grid_as_coarse_as_th
         along = sum(np.abs(b - a) for a, b in pairwise(chain))
         for k, quantity in enumerate(("approach", "load", "central_gap")):
             change = abs(other[k] - best[k])
-            assert getattr(event, f"{quantity}_error") >= 0.5 * change * (1 - 1e-6)
+            assert getattr(event, f"{quantity}_error") >= 2.0 * change * (1 - 1e-6)
             counted += change > 1.5 * along[k]
     assert counted > 0
 

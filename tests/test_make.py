@@ -112,7 +112,7 @@ def test_clean_removes_what_was_made_and_nothing_else(tmp_path):
 def test_the_environment_of_a_target_is_made_once_and_from_what_is_pinned():
     """Rehearsed in a directory without one; a second run finds the stamps and makes nothing."""
     rehearsed = subprocess.run(
-        ["make", "--dry-run", "compare", "VENV=no-such-environment"],
+        ["make", "--no-print-directory", "--dry-run", "compare", "VENV=no-such-environment"],
         cwd=ROOT,
         capture_output=True,
         text=True,

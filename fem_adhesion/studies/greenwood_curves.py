@@ -11,7 +11,7 @@ import halfspace
 from halfspace import devices
 from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.compliance import Array
-from halfspace.contact import CENTRAL_GAP
+from halfspace.contact import CENTRAL_GAP, CONTACT_RADIUS
 from halfspace.curve import COMPRESSION, EquilibriumPath, Estimate, metric_for, trace_charts
 from halfspace.devices import cycle
 from halfspace.events import FOLD, Condition, Located, locate
@@ -114,7 +114,9 @@ def profiles(path: EquilibriumPath) -> Iterator[Profile]:
 def _profile(state: Located) -> Profile:
     """State as a field; the gap is interpolated, the pressure is what the law gives for it."""
     problem, x = state.problem.interface, state.problem.surface_state(state.point.x)
-    gap = problem.operator_at(x).values_at(PROFILE_RADII, x[:-2])
+    edge = state.point.observables[CONTACT_RADIUS]  # where the tension is largest
+    radii = np.union1d(PROFILE_RADII, edge[np.isfinite(edge)])
+    gap = problem.operator_at(x).values_at(radii, x[:-2])
     approach, load, central_gap, radius = state.point.observables
     pressure = problem.law.pressure(gap, problem.tabor)
-    return Profile(central_gap, approach, load, radius, PROFILE_RADII, gap, pressure)
+    return Profile(central_gap, approach, load, radius, radii, gap, pressure)
