@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from halfspace import newton
-from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD
+from halfspace.contact import APPROACH, LOAD
 from halfspace.errors import NotConverged
 from halfspace.newton import Control, Equilibrium
 from halfspace.values import Valued
@@ -248,5 +248,5 @@ def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -
 
 
 def loaded_to(load: float) -> Callable[[Point], bool]:
-    """Stop where the contact bears a load, in R dgamma, on its way into compression."""
-    return lambda point: bool(point.observables[LOAD] >= load and point.rates[CENTRAL_GAP] <= 0)
+    """Stop where the contact bears a load in R dgamma, a compressive one: there is but one place."""
+    return lambda point: bool(point.observables[LOAD] >= load)

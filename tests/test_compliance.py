@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 
@@ -132,6 +134,12 @@ def test_graded_grid_is_finest_at_its_radius():
     assert max(steps[at - 1], steps[at]) <= 0.01
     assert np.all(np.diff(steps[at:]) > 0)
     assert np.all(np.diff(steps[:at]) < 0)
+
+
+def test_every_graded_grid_begins_on_the_axis_itself():
+    """Not at what rounding leaves of a radius less all the lengths before it."""
+    for radius, finest, growth in itertools.product((0.3, 0.7, 1.0, 1.9), (0.003, 0.04, 0.1), (1.3, 2.0, 3.1)):
+        assert grid.graded(radius, finest, 10.0, growth=growth)[0] == 0.0
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from halfspace import compliance, grid
 from halfspace.breathing import Homogeneous
 from halfspace.contact import ContactProblem
 from halfspace.curve import Chart, moved
+from halfspace.profiles import between_spheres
 from halfspace.sized import AroundEvents
 
 HEMISPHERE = {"tabor": 1.0, "body": "hemisphere", "profile": "sphere", "radius_ratio": 30.0}
@@ -162,3 +163,13 @@ def from_paraboloid(spheres, rho, name):
     """Approach and load of an event less those of the paraboloid."""
     sphere, paraboloid = spheres[rho].event(name), spheres[None].event(name)
     return np.array([sphere.approach - paraboloid.approach, sphere.load - paraboloid.load])
+
+
+@pytest.mark.parametrize("ratio", [1.0, 3.0, 100.0])
+def test_the_gap_between_two_spheres_ends_with_the_smaller_one(ratio):
+    gap = between_spheres(5.0, ratio)
+    smaller = 5.0 * (1 + 1 / ratio)
+    assert gap.end == pytest.approx(smaller)
+    r = np.array([0.0, 0.3, 0.9]) * smaller
+    heights = sum(R - np.sqrt(R**2 - r**2) for R in (smaller, 5.0 * (1 + ratio)))
+    np.testing.assert_allclose(gap.height(r), 5.0 * heights, rtol=1e-12, atol=1e-12)
