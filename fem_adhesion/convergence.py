@@ -80,8 +80,7 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     halfspace.errors.NotConverged
         If the curve cannot be traced.
     """
-    require_rtol(rtol)
-    require_load(to_load)
+    rtol, to_load = require_rtol(rtol), require_load(to_load)
     if scene.strain == "finite":
         return finite_strain_scene.trace(scene, rtol, to_load)
     if isinstance(scene.body, Path):

@@ -51,8 +51,8 @@ class Counter:
     radius: float = math.inf
 
     def __post_init__(self) -> None:
-        require_share(self.share, self.radius)
-        require_poisson(self.poisson)
+        _keep(self, share=require_share(self.share, self.radius), poisson=require_poisson(self.poisson))
+        _keep(self, radius=float(self.radius))
 
     @classmethod
     def from_moduli(
@@ -134,15 +134,14 @@ class Scene:
     strain: StrainName = "small"
 
     def __post_init__(self) -> None:
-        require_tabor(self.tabor)
-        require_poisson(self.poisson)
+        _keep(self, tabor=require_tabor(self.tabor), poisson=require_poisson(self.poisson))
         for name, names in CHOICES.items():
             _require_one_of(name, getattr(self, name), names)
         if self.radius is not None:
-            require_radius(self.radius, self.tabor)
+            _keep(self, radius=require_radius(self.radius, self.tabor))
         if self.far_field != "point_load":
             require_fixed_mesh(self.tabor)
-        require_cap_angle(self.cap_angle)
+        _keep(self, cap_angle=require_cap_angle(self.cap_angle))
         self._require_radius_ratio()
         self._require_fitting()
 
@@ -165,7 +164,7 @@ class Scene:
                 'take body = "hemisphere" or profile = "sphere"'
             )
         if self.radius_ratio is not None:
-            require_radius_ratio(self.radius_ratio, self.tabor)
+            _keep(self, radius_ratio=require_radius_ratio(self.radius_ratio, self.tabor))
 
     def _require_fitting(self) -> None:
         """Refuse options that the scene would not heed."""
@@ -187,6 +186,12 @@ class Scene:
 
     def _what(self) -> str:
         return f'body = "{self.body}" and profile = "{self.profile}"'
+
+
+def _keep(part: Counter | Scene, **numbers: float) -> None:
+    """Let a part being made have its numbers as floats, whatever they were given as."""
+    for name, number in numbers.items():
+        object.__setattr__(part, name, number)
 
 
 CHOICES: dict[str, Any] = {

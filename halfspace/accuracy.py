@@ -143,10 +143,8 @@ def trace(
     halfspace.errors.NotConverged
         If the curve cannot be traced.
     """
-    require_tabor(tabor)
-    require_rtol(rtol)
-    require_load(to_load)
-    require_counter_radius(counter_radius, radius_ratio)
+    tabor, rtol, to_load = require_tabor(tabor), require_rtol(rtol), require_load(to_load)
+    counter_radius = require_counter_radius(counter_radius, radius_ratio)
     if radius_ratio is not None:
         gap = between_spheres(math.sqrt(require_radius_ratio(radius_ratio, tabor) / tabor), counter_radius)
         return climb(rtol, partial(_sphere_rung, tabor, gap, rtol, to_load), to_load=to_load)

@@ -23,6 +23,7 @@ from halfspace.contact import APPROACH, LOAD, ContactProblem
 from halfspace.curve import EquilibriumPath, Estimate, Finest, Segment, metric_for, moved, transfer
 from halfspace.errors import InputError
 from halfspace.events import ROUND_OFF, Condition, Event, Located, estimate_event, locate
+from halfspace.limits import require_number
 from halfspace.newton import Control, Traceable
 from halfspace.path import make_point
 from halfspace.reach import reaching, widened
@@ -96,6 +97,7 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     halfspace.errors.NotConverged
         If a landing cannot be solved for.
     """
+    stiffness = require_number(stiffness, "stiffness")
     if not stiffness > 0:
         raise InputError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
     if not isinstance(path.segments[0].problem, ContactProblem):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import reprlib
+from numbers import Real
 
 from halfspace.errors import InputError
 
@@ -10,8 +12,20 @@ SMALLEST_SPHERE = 1.5**2
 """Least R/eps over the Tabor parameter, (R/beta)^2."""
 
 
+def require_number(value: float, name: str) -> float:
+    """Return a real number of any type as a float, or raise InputError for what is none."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        shown, kind = " ".join(reprlib.repr(value).split()), type(value).__name__
+        raise InputError(f"{name} = {shown} of type {kind}, limit: a real number; give a float")
+    try:
+        return float(value)
+    except OverflowError as error:
+        raise InputError(f"{name} has {len(str(value))} digits, limit: 1.8e308; give a float") from error
+
+
 def require_tabor(tabor: float) -> float:
     """Return the Tabor parameter, or raise InputError unless 1e-12 <= tabor <= 300: beyond, a closed form will do."""
+    tabor = require_number(tabor, "tabor")
     _require(tabor, "tabor", 0 < tabor < math.inf, "0 < tabor", "give the Tabor parameter of the contact")
     _require(tabor, "tabor", tabor >= 1e-12, "1e-12 <= tabor", "the body is rigid: use halfspace.theories.bradley_load")
     return _require(tabor, "tabor", tabor <= 300, "tabor <= 300", "JKR's theory holds: use halfspace.theories.jkr_load")
@@ -22,6 +36,7 @@ def require_poisson(poisson: float) -> float:
 
     A digit is lost to rounding for each further 9 of 0.4999...; the limit leaves nine.
     """
+    poisson = require_number(poisson, "poisson")
     remedy = "take 0.4999 for rubber"
     _require(poisson, "poisson", 0 <= poisson < 0.5, "0 <= poisson < 0.5", remedy)
     return _require(poisson, "poisson", poisson <= 0.499999, "poisson <= 0.499999", remedy)
@@ -29,11 +44,13 @@ def require_poisson(poisson: float) -> float:
 
 def require_rtol(rtol: float) -> float:
     """Return the relative tolerance, or raise InputError unless 1e-9 <= rtol <= 1e-1."""
+    rtol = require_number(rtol, "rtol")
     return _require(rtol, "rtol", 1e-9 <= rtol <= 1e-1, "1e-9 <= rtol <= 1e-1", "take 1e-5 if in doubt")
 
 
 def require_load(to_load: float) -> float:
     """Return the compressive load at which a curve ends, or raise InputError unless 0 < to_load <= 1000."""
+    to_load = require_number(to_load, "to_load")
     remedy = "the curve must pass zero load, and Hertz's theory serves above: take 5"
     return _require(to_load, "to_load", 0 < to_load <= 1000, "0 < to_load <= 1000", remedy)
 
@@ -44,6 +61,7 @@ def require_radius(radius: float, tabor: float) -> float:
     A contact is 2 to 3 beta wide and a nearly rigid sphere attracts over some beta/sqrt(tabor); half a block must do,
     since the error is estimated from one half as large.
     """
+    radius = require_number(radius, "radius")
     least = 5 * max(1.0, tabor**-0.5)
     remedy = "a contact is 2 to 3 beta wide, take 50 or more, or none to have it chosen"
     return _require(radius, "radius", least < radius <= 1e9, f"{least:.3g} < radius <= 1e9", remedy)
@@ -62,6 +80,7 @@ def require_radius_ratio(radius_ratio: float, tabor: float) -> float:
 
     A contact is 1 to 2 beta wide where it is lost: a smaller sphere is deformed as a whole, and past its equator.
     """
+    radius_ratio = require_number(radius_ratio, "radius_ratio")
     _require(radius_ratio, "radius_ratio", 2 <= radius_ratio <= 1e12, "2 <= radius_ratio <= 1e12", "give R/eps")
     least = SMALLEST_SPHERE * tabor
     remedy = "the sphere is as small as its contact, R < 1.5 beta: take a stiffer or larger one"
@@ -71,6 +90,7 @@ def require_radius_ratio(radius_ratio: float, tabor: float) -> float:
 
 def require_counter_radius(counter_radius: float, radius_ratio: float | None) -> float:
     """Return a counter-body's radius in radii of the first sphere, or raise InputError unless 1 or more, and heeded."""
+    counter_radius = require_number(counter_radius, "counter_radius")
     if not counter_radius >= 1:
         raise InputError(
             f"counter_radius = {counter_radius:g} is outside 1 <= counter_radius; let the smaller be first"
@@ -87,12 +107,14 @@ def require_cap_angle(cap_angle: float) -> float:
 
     Between the last two the free ring beside the equator is lost to rounding.
     """
+    cap_angle = require_number(cap_angle, "cap_angle")
     holds = 1 <= cap_angle <= 89.99 or cap_angle == 90
     return _require(cap_angle, "cap_angle", holds, "1 <= cap_angle <= 89.99 and is not 90", "give degrees, say 30")
 
 
 def require_modulus(modulus: float) -> float:
     """Return a Young's modulus, or raise InputError unless it is positive and finite."""
+    modulus = require_number(modulus, "modulus")
     return _require(
         modulus, "modulus", modulus > 0, "0 < modulus < inf", "a rigid body is no counter-body: leave it out"
     )
@@ -100,6 +122,8 @@ def require_modulus(modulus: float) -> float:
 
 def require_share(share: float, radius: float) -> float:
     """Return a counter-body's part of the compliance, or raise InputError unless 0 < share < 1 and its radius is."""
+    share = require_number(share, "share")
+    radius = require_number(radius, "radius")
     remedy = "a rigid one is no counter-body: leave it out"
     _require(share, "share", 0 < share < 1, "0 < share < 1", remedy)
     if not radius >= 1:
@@ -112,4 +136,4 @@ def require_share(share: float, radius: float) -> float:
 def _require(value: float, name: str, holds: bool, limit: str, remedy: str) -> float:
     if not holds or not math.isfinite(value):
         raise InputError(f"{name} = {value:.9g} is outside {limit}; {remedy}")
-    return float(value)
+    return value
