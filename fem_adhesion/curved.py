@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -64,25 +65,32 @@ class CurvedMapping(MappingIsoparametric):  # type: ignore[misc]
     def __init__(self, mesh: Any, points: Array) -> None:
         super().__init__(mesh, mesh.elem())
         self.points = points
+        self.degree = round(np.sqrt(points.shape[2])) - 1
         self._latest = (np.empty(0), np.empty(0))  # points of facets and their reference places
-        self.nodes = chebyshev_points(round(np.sqrt(points.shape[2])) - 1)
+        self._shaped = (np.empty(0), self._shapes(np.zeros((2, 1))))  # the last reference points and their shapes
 
     def Fmap(self, i: int, X: Array, tind: Any = None) -> Array:
         """Coordinate i of points of the cells."""
-        values, _ = self._shapes(X)
+        values, _ = self._shapes_at(X)
         return self._sum(i, values, tind)
 
     def _J(self, i: int, j: int, X: Array, tind: Any = None) -> Array:
-        _, derivatives = self._shapes(X)
+        _, derivatives = self._shapes_at(X)
         return self._sum(i, derivatives[j], tind)
 
     def _sum(self, i: int, shapes: Array, tind: Any) -> Array:
         points = self.points[i] if tind is None else self.points[i][tind]
         return np.asarray(points @ shapes if shapes.ndim == 2 else np.einsum("cn,ncq->cq", points, shapes))
 
+    def _shapes_at(self, X: Array) -> tuple[Array, tuple[Array, Array]]:
+        """Shapes, kept: scikit-fem asks for two coordinates and four derivatives at the same points in turn."""
+        if not np.array_equal(X, self._shaped[0]):
+            self._shaped = X.copy(), self._shapes(X)
+        return self._shaped[1]
+
     def _shapes(self, X: Array) -> tuple[Array, tuple[Array, Array]]:
         """Products of Lagrange polynomials at reference points (2, ...), and their two derivatives."""
-        (a, da), (b, db) = (lagrange_values(self.nodes, x) for x in X)
+        (a, da), (b, db) = (lagrange_values(self.degree, x) for x in X)
 
         def product(f: Array, g: Array) -> Array:
             return (f[:, None] * g[None]).reshape(-1, *f.shape[1:])
@@ -169,10 +177,15 @@ def chebyshev_points(degree: int) -> Array:
     return np.asarray((1 - np.cos(np.pi * np.arange(degree + 1) / degree)) / 2)
 
 
-def lagrange_values(nodes: Array, x: Array) -> tuple[Array, Array]:
-    """Values and derivatives at x (...) of the Lagrange polynomials through n nodes of [0, 1], each (n, ...)."""
-    degree = len(nodes) - 1
-    series = np.asarray(np.linalg.inv(chebvander(2 * nodes - 1, degree)), dtype=np.float64)
-    powers = chebvander(2 * x - 1, degree)
-    values, slopes = powers @ series, powers[..., :-1] @ chebder(series, scl=2)
-    return np.asarray(np.moveaxis(values, -1, 0)), np.asarray(np.moveaxis(slopes, -1, 0))
+def lagrange_values(degree: int, x: Array) -> tuple[Array, Array]:
+    """Values and derivatives at x (...) of the Lagrange polynomials through Chebyshev's points, (degree + 1, ...)."""
+    series, slopes = _chebyshev_series(degree)
+    powers = np.moveaxis(chebvander(2 * x - 1, degree), -1, 0)
+    return np.tensordot(series, powers, (0, 0)), np.tensordot(slopes, powers[:-1], (0, 0))
+
+
+@cache
+def _chebyshev_series(degree: int) -> tuple[Array, Array]:
+    """Columns of the coefficients in Chebyshev's polynomials of 2x - 1 of these Lagrange polynomials, and of slopes."""
+    series = np.asarray(np.linalg.inv(chebvander(2 * chebyshev_points(degree) - 1, degree)), dtype=np.float64)
+    return series, np.asarray(chebder(series, scl=2), dtype=np.float64)

@@ -20,9 +20,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 
 from halfspace.compliance import Array
+from halfspace.grid import gauss_legendre
 from halfspace.values import Valued
 
 SMALL = 0.5
@@ -94,7 +94,7 @@ def shear_energy(state: Deformation, shear: float) -> Array:
 
 def _log_remainder(x: Array) -> Array:
     """(x - ln(1 + x))/x^2 = int_0^1 t/(1 + x t) dt, 1/2 at x = 0."""
-    t, weight = leggauss(10)
+    t, weight = gauss_legendre(10)
     t, weight = (1 + t) / 2, weight / 2
     near = np.where(np.abs(x) < SMALL, x, 0.0)
     by_quadrature = np.sum(weight * t / (1 + near[..., None] * t), axis=-1)

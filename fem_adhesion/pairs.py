@@ -12,7 +12,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from skfem import ElementQuadP
 
 from fem_adhesion import bodies
@@ -98,7 +97,7 @@ def with_rigid_rim(operator: ElasticOperator, lines: Array, coordinate: bodies.S
         Of the surface.
     """
     k = operator.cell_nodes.shape[1]
-    t, w = leggauss(k)
+    t, w = grid.gauss_legendre(k)
     half = np.diff(lines)[:, None] / 2
     x = (lines[:-1, None] + half * (1 + t)).ravel()
     q, more = operator.radii.size, x.size

@@ -14,9 +14,9 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 
 from halfspace.compliance import Array, ElasticOperator, lagrange
+from halfspace.grid import gauss_legendre
 from halfspace.values import Valued
 
 
@@ -239,7 +239,7 @@ class Interpolated(Valued):
 
     def _gauss_points(self, lines: Array) -> tuple[Array, Array]:
         """Places of Gauss's points between lines and 2 pi times their weights."""
-        t, w = leggauss(self.operators[0].cell_nodes.shape[1])
+        t, w = gauss_legendre(self.operators[0].cell_nodes.shape[1])
         half = np.diff(lines)[:, None] / 2
         return (lines[:-1, None] + half * (1 + t)).ravel(), (2 * np.pi * half * w).ravel()
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.linalg import eigh
@@ -214,7 +213,7 @@ def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
     """
     if not 1 <= nodes_per_panel <= 16:
         raise InputError(f"nodes_per_panel {nodes_per_panel} is outside 1 to 16; use more panels instead")
-    x, w = leggauss(nodes_per_panel)
+    x, w = grid.gauss_legendre(nodes_per_panel)
     half = np.diff(breakpoints)[:, None] / 2
     radii = breakpoints[:-1, None] + half * (1 + x)
     compliance = panel_integrals(radii.ravel(), breakpoints, x).reshape(radii.size, radii.size)
@@ -244,7 +243,7 @@ def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> El
     reach : float
         Where the infinite cell begins, in extents; up to there the cells grow threefold at most.
     """
-    x, w = leggauss(nodes)
+    x, w = grid.gauss_legendre(nodes)
     ends = np.append(0.0, grid.equal_ratios(1 / reach, 1.0, most=3.0))
     half = np.diff(ends)[:, None] / 2
     t, U, inner = (ends[:-1, None] + half * (1 + x)).ravel(), operator.extent, operator.finite

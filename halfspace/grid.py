@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
+from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from halfspace.errors import InputError
@@ -51,6 +54,15 @@ def equal_ratios(first: float, last: float, *, most: float) -> Array:
     """Breakpoints from `first` to `last` in equal ratios, each of `most` or less; `last` alone if it is no larger."""
     count = int(np.ceil(np.log(last / first) / np.log(most) - 1e-9))
     return np.geomspace(first, last, count + 1) if count > 0 else np.array([last])
+
+
+@cache
+def gauss_legendre(points: int) -> tuple[Array, Array]:
+    """Points in (-1, 1) and weights of Gauss's rule; computed once, since every panel of every grid asks for them."""
+    rule = legendre.leggauss(points)
+    for values in rule:
+        values.flags.writeable = False
+    return rule
 
 
 def _require_positive(**lengths: float) -> None:

@@ -11,9 +11,11 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 from scipy.special import ellipe, ellipkm1, elliprd, elliprf
+
+from halfspace.grid import gauss_legendre
 
 Array = NDArray[np.float64]
 
@@ -62,7 +64,7 @@ def _elliptic_b(k: Array) -> Array:
 @cache
 def _graded_rule() -> tuple[Array, Array]:
     """Points and weights on (0, 1) for integrands with a logarithm at, or just below, 0."""
-    x, w = leggauss(NEAR_POINTS)
+    x, w = gauss_legendre(NEAR_POINTS)
     t = (1 + x) / 2
     return t**GRADING, w / 2 * GRADING * t ** (GRADING - 1)
 
@@ -105,7 +107,7 @@ def _moments(targets: Array, breakpoints: Array, k: int) -> Array:
 
 def _far_moments(r: Array, left: Array, right: Array, far: NDArray[np.bool_], k: int) -> Array:
     """Legendre moments of G s on panels far from their targets, for the pairs marked in `far`."""
-    x, w = leggauss(FAR_POINTS)
+    x, w = gauss_legendre(FAR_POINTS)
     i, j = np.nonzero(far)
     half = (right - left)[j] / 2
     s = ((right + left)[j] / 2)[:, None] + half[:, None] * x

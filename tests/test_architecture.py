@@ -169,12 +169,12 @@ FLOORS = [
     {
         "halfspace.kernel",
         "halfspace.profiles",
-        "halfspace.grid",
         "halfspace.lennard_jones",
         "halfspace.limits",
         "halfspace.theories",
         "halfspace.scaling",
     },
+    {"halfspace.grid"},
     {"halfspace.errors", "halfspace.values", "fem_adhesion.writing"},
 ]
 FLOOR_OF = {module: number for number, modules in enumerate(FLOORS) for module in modules}
