@@ -77,7 +77,7 @@ def test_fitted_gap_solves_its_equation_down_to_where_it_ends():
 
 
 def test_fundamental_criterion_calls_stable_states_unstable():
-    """It reads -1.6 to -1.7 at the true jump, where it should read -1."""
+    """At the true jump it reads well below the -1 at which it lets a state be unstable."""
     at_jump = criteria.fundamental_criterion(APPROACH, GAP)
     assert np.all((at_jump > -1.75) & (at_jump < -1.55))
 

@@ -8,10 +8,10 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import replace
 
 import pytest
+from processes import PATIENCE, alive, wait_until
 
 from fem_adhesion import cli
 from fem_adhesion.output import finite_sphere_report
@@ -22,7 +22,6 @@ from halfspace.curve import Estimate
 from halfspace.errors import ContactTooWide, NotConverged
 
 QUICK = "fem-adhesion finite-sphere --out sphere --quick"
-PATIENCE = 300  # s: the end is for what never comes, not for what is slow
 
 
 @pytest.fixture(scope="module")
@@ -179,21 +178,6 @@ def test_a_figure_of_an_earlier_study_does_not_stay_beside_the_new_page(tmp_path
 
 
 # --- ended from outside ---
-
-
-def wait_until(condition):
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < deadline, "it never came"
-        time.sleep(0.02)
-
-
-def alive(group):
-    try:
-        os.killpg(group, 0)
-    except ProcessLookupError:
-        return False
-    return True
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from processes import alive, wait_until
 
 import fem_adhesion
 import halfspace
@@ -158,23 +159,6 @@ def killed_study(directory, log):
             os.killpg(study.pid, signal.SIGKILL)
             study.wait()
     return stored_cases(directory)
-
-
-def wait_until(condition, seconds=300):
-    """Wait for a condition; the end is for what never comes, not for what is slow."""
-    deadline = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < deadline, "it never came"
-        time.sleep(0.02)
-
-
-def alive(group):
-    """Whether any process of a group is there."""
-    try:
-        os.killpg(group, 0)
-    except ProcessLookupError:
-        return False
-    return True
 
 
 def test_a_study_killed_under_way_goes_on_without_computing_anything_twice(tmp_path, monkeypatch):

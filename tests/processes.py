@@ -1,0 +1,23 @@
+"""Waiting for processes, as the tests that end them from outside do."""
+
+import os
+import time
+
+PATIENCE = 300  # s; an end to waiting for what never comes, not for what is slow
+
+
+def wait_until(condition):
+    """Wait for a condition."""
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < deadline, "it never came"
+        time.sleep(0.02)
+
+
+def alive(group):
+    """Whether any process of a group is there."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True
