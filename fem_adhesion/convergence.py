@@ -61,7 +61,8 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     scene : Scene
         The contact.
     rtol : float
-        Relative accuracy asked of loads and approaches, 1e-9 to 1e-1.
+        Relative accuracy asked of loads and approaches, 1e-9 to 1e-1; of approaches, which have no natural zero, in
+        parts of eps and the range of those of all events.
     to_load : float
         Compressive load at which the curve ends, in R dgamma.
 

@@ -28,6 +28,7 @@ from halfspace.curve import (
 )
 from halfspace.errors import InputError
 from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event
+from halfspace.ladder import meets
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Valued
 
@@ -198,15 +199,9 @@ def _climb(rtol: float, rung: AroundEvents, found: State, *, compare: bool = Fal
         states.append(rung.located(states[-1]))
         chains = [states[-2:], [found, states[-1]]] if compare and not level else [states[-2:]]
         events = {n: estimate_event(n, [[s[n] for s in c] for c in chains]) for n in EVENTS if n in found}
-        if all(_meets(event, rtol) for event in events.values()):
+        if meets(events, rtol):
             break
     return _Climbed(events, tuple(states), rung)
-
-
-def _meets(event: Event, rtol: float) -> bool:
-    """Whether the estimates are within the tolerance; approaches count relative to 1 + |alpha*|."""
-    load = event.load_error <= rtol * abs(event.load) or event.name == "zero_load"
-    return load and event.approach_error <= rtol * (1 + abs(event.approach))
 
 
 def _energy(climbed: _Climbed) -> Estimate:

@@ -123,7 +123,8 @@ def trace(
     tabor : float
         Tabor parameter mu, mu^3 = R dgamma^2/(E*^2 eps^3).
     rtol : float
-        Relative accuracy asked of loads and approaches, 1e-9 to 1e-1.
+        Relative accuracy asked of loads and approaches, 1e-9 to 1e-1; of approaches, which have no natural zero, in
+        parts of eps and the range of those of all events.
     to_load : float
         Compressive load at which the curve ends, in R dgamma.
     radius_ratio : float, optional

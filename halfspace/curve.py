@@ -28,6 +28,7 @@ from halfspace.events import (
     Condition,
     Event,
     Located,
+    approach_scale,
     locate,
     relocate,
 )
@@ -136,6 +137,11 @@ class EquilibriumPath(Valued):
             remedy = f'did you mean "{near[0]}"?' if near else "take one of these"
             raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}; {remedy}')
         return self.events.get(name)
+
+    @property
+    def approach_scale(self) -> float:
+        """Size in eps that approaches are measured by, see `halfspace.events.approach_scale`."""
+        return approach_scale(event.approach for event in self.events.values())
 
     def __repr__(self) -> str:
         """What was asked and found: events with their errors, energy, effort."""

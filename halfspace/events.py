@@ -6,7 +6,7 @@ corrector runs at every trial of the root finder; nothing is interpolated betwee
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -57,6 +57,22 @@ class Event:
     load_error: float
     central_gap_error: float
     contact_radius_error: float
+
+
+def approach_scale(approaches: Iterable[float], spacing: float = 1.0) -> float:
+    """Size by which errors and deviations of approaches count: the spacing and the range of those of a path's events.
+
+    An approach has no natural zero: its own size says where somebody began to count. Nor has the position of a base.
+
+    Parameters
+    ----------
+    approaches : iterable of float
+        At the events of one path, at least one.
+    spacing : float
+        Of the surfaces, eps, in the unit of the approaches.
+    """
+    values = list(approaches)
+    return spacing + max(values) - min(values)
 
 
 @dataclass(frozen=True)

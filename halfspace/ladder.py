@@ -26,7 +26,7 @@ from halfspace.curve import (
     trace_charts,
 )
 from halfspace.errors import InputError, NotConverged
-from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event
+from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, approach_scale, estimate_event
 from halfspace.values import Valued
 
 MOST_RUNGS = 4  # above the lowest
@@ -153,7 +153,7 @@ def _climb_from(
         chains = _step_up(state, higher)
         state = chains[0][-1]
         events = _estimate(chains, higher.remaining, along=higher.along)
-        if all(_meets(event, rtol) for event in events.values()):
+        if meets(events, rtol):
             break
     return EquilibriumPath(
         segments[0].problem.tabor,
@@ -202,7 +202,11 @@ def _energy(chains: Sequence[Sequence[State]], remaining: float) -> Estimate:
     return Estimate(best, remaining * change + ROUND_OFF * (1 + abs(best)))
 
 
-def _meets(event: Event, rtol: float) -> bool:
-    """Whether the estimates are within the tolerance; approaches count relative to 1 + |alpha*|."""
-    load = event.load_error <= rtol * abs(event.load) or event.name == "zero_load"
-    return load and event.approach_error <= rtol * (1 + abs(event.approach))
+def meets(events: Mapping[str, Event], rtol: float) -> bool:
+    """Whether the estimates of all events of a path are within the tolerance."""
+    scale = approach_scale(event.approach for event in events.values())
+    return all(
+        (event.load_error <= rtol * abs(event.load) or event.name == "zero_load")
+        and event.approach_error <= rtol * scale
+        for event in events.values()
+    )

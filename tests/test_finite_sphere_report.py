@@ -17,7 +17,7 @@ from fem_adhesion.studies.bulk import FINE, bulk_compliance, coefficients, exces
 from fem_adhesion.studies.finite_sphere import plan
 from fem_adhesion.studies.finite_sphere_cases import CAUSES, MODELS, case_of
 from fem_adhesion.studies.finite_sphere_chart import Field, contour, field_of, rule, safe_from
-from fem_adhesion.studies.finite_sphere_records import CRITICAL, Record, Study
+from fem_adhesion.studies.finite_sphere_records import APPROACH_SCALE, CRITICAL, Record, Study
 from fem_adhesion.studies.finite_sphere_table import borders, results, rows
 from fem_adhesion.studies.finite_sphere_terms import FIXED_GRIPS, leading_terms
 from halfspace.curve import Estimate
@@ -39,7 +39,7 @@ def made(case):
     if case.model.startswith("first_jump"):
         return Record(case, "solved", {CRITICAL: Estimate(0.6 + 1 / (case.radius_ratio or 1e9), 1e-6)}, "", 0.1)
     deviation = law(case.tabor, case.radius_ratio) if case.radius_ratio else 0.0
-    values = {"pull_off_load": Estimate(-5.0 * (1 + deviation), 1e-7)}
+    values = {"pull_off_load": Estimate(-5.0 * (1 + deviation), 1e-7), APPROACH_SCALE: Estimate(3.0, 0.0)}
     if case.tabor > 0.5:
         values |= {f"jump_{way}_approach": Estimate(-3.0 * (1 + 3 * deviation), 1e-7) for way in ("on", "off")}
         values |= {f"jump_{way}_load": Estimate(-2.0 * (1 + deviation), 1e-7) for way in ("on", "off")}
@@ -260,7 +260,7 @@ def values_of(case):
     names = ("pull_off_load", "jump_on_approach", "jump_on_load", "jump_off_approach", "jump_off_load")
     names += ("hysteresis", "zero_load_radius")
     scale = 1.0 if case.radius_ratio else 0.0
-    return {
+    return {APPROACH_SCALE: Estimate(11.0, 0.0)} | {
         name: Estimate(-(2 + n) * (1 - scale * size * (1 + 0.1 * n)), 1e-9 * (1 + n)) for n, name in enumerate(names)
     }
 
@@ -278,7 +278,7 @@ def expected_deviation(cause, quantity, tabor, ratio, poisson):
         values_of(case_of(name, tabor, ratio, poisson, 1e-5))[quantity].value
         for name in (model, baseline, "half_space")
     )
-    return (value - base) / scale
+    return (value - base) / (11.0 if quantity.endswith("_approach") else scale)
 
 
 MADE_OF = {
@@ -410,7 +410,8 @@ def study_of(law, tabors=TABORS, ratios=RATIOS, poissons=(0.0, 0.3)):
             return Record(case, "solved", {}, "", 1.0)
         deviation = law(case) if case.radius_ratio else 0.0
         names = ("pull_off_load", "jump_on_approach", "jump_on_load", "jump_off_approach", "jump_off_load")
-        return Record(case, "solved", {name: Estimate(-4.0 * (1 + deviation), 1e-9) for name in names}, "", 1.0)
+        values = {name: Estimate(-4.0 * (1 + deviation), 1e-9) for name in names}
+        return Record(case, "solved", values | {APPROACH_SCALE: Estimate(4.0, 0.0)}, "", 1.0)
 
     cases = plan(tabors, ratios, poissons).cases
     return results(Study([solved(case) for case in cases]), bulk_compliance)

@@ -26,7 +26,15 @@ from fem_adhesion.studies import finite_sphere, finite_sphere_cases, finite_sphe
 from fem_adhesion.studies.finite_sphere import plan, run, seconds_left
 from fem_adhesion.studies.finite_sphere_cases import CAUSES, MODELS, case_of, quantities_of
 from fem_adhesion.studies.finite_sphere_fit import SOFT_PULL_OFF, Samples, fit
-from fem_adhesion.studies.finite_sphere_records import CRITICAL, QUANTITIES, Case, Record, from_plain, to_plain
+from fem_adhesion.studies.finite_sphere_records import (
+    APPROACH_SCALE,
+    CRITICAL,
+    QUANTITIES,
+    Case,
+    Record,
+    from_plain,
+    to_plain,
+)
 from fem_adhesion.studies.finite_sphere_table import Row, borders, rows
 from fem_adhesion.studies.materials import materials
 from fem_adhesion.studies.store import open_store
@@ -245,7 +253,7 @@ def test_the_time_left_follows_the_cost_of_each_model():
 
 def test_a_record_survives_the_disk_to_the_last_bit(tmp_path):
     record = run(CASES[4:5], opened(tmp_path), jobs=1)[0]
-    assert QUANTITIES.keys() == record.values.keys()
+    assert {*QUANTITIES, APPROACH_SCALE} == record.values.keys()
     case = record.case
     plain = opened(tmp_path, resume=True).get(asdict(case))
     assert from_plain(case, plain) == record
@@ -554,7 +562,8 @@ def test_findings_cover_all_and_each_tabor_parameter():
 def test_quantities_are_those_of_the_curve():
     path = halfspace.trace(2.0, rtol=1e-4, to_load=finite_sphere_cases.TO_LOAD)
     values = quantities_of(path)
-    assert values.keys() == QUANTITIES.keys()
+    assert values.keys() == {*QUANTITIES, APPROACH_SCALE}
+    assert values[APPROACH_SCALE].value == path.approach_scale
     assert values["pull_off_load"].value == min(path.load.min(), path.events["pull_off"].load)
     assert values["jump_off_approach"].value == path.events["jump_off"].approach
     # Fig. 2a: the energy lost is what is released less what is won back, and positive.
@@ -563,7 +572,7 @@ def test_quantities_are_those_of_the_curve():
 
 def test_a_hard_contact_has_no_jumps():
     values = quantities_of(halfspace.trace(0.3, rtol=1e-4))
-    assert values.keys() == {"pull_off_load", "zero_load_radius"}
+    assert values.keys() == {"pull_off_load", "zero_load_radius", APPROACH_SCALE}
 
 
 HEMISPHERE = {"poisson": 0.2, "body": "hemisphere", "radius_ratio": 30.0}

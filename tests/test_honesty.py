@@ -17,7 +17,7 @@ import halfspace
 from fem_adhesion import Scene
 from halfspace.accuracy import Resolution, half_space_charts, resolution_for
 from halfspace.curve import energy_released, find_events, trace_charts
-from halfspace.ladder import _meets, charted_rung, climb
+from halfspace.ladder import charted_rung, climb, meets
 
 
 class Net(NamedTuple):
@@ -79,7 +79,7 @@ def _of_events(path, truth, *quantities):
             value, known = (getattr(truth.event(name), key) for key in (quantity, f"{quantity}_error"))
             if math.isfinite(value) and (name, quantity) != ("zero_load", "load"):  # which is zero by definition
                 error = abs(getattr(event, quantity) - value)
-                size = abs(value) if quantity == "load" else 1 + abs(value)
+                size = {"load": abs(value), "approach": truth.approach_scale}.get(quantity, 1 + abs(value))
                 yield getattr(event, f"{quantity}_error"), error, known, size
 
 
@@ -171,18 +171,19 @@ def test_an_estimate_is_no_less_than_twice_the_change_from_a_grid_as_coarse_as_t
     assert counted > 0
 
 
-def test_a_tolerance_is_met_in_loads_relative_and_in_approaches_to_their_unit():
-    event = halfspace.trace(1.0, rtol=1e-1).event("jump_on")
-    size = 1 + abs(event.approach)
+def test_a_tolerance_is_met_in_loads_relative_and_in_approaches_to_their_range():
+    path = halfspace.trace(1.0, rtol=1e-1)
 
     def met(load, approach, name="jump_on"):
-        errors = {"load_error": load * abs(event.load), "approach_error": approach * size}
-        return _meets(replace(event, name=name, **errors), 1e-4)
+        event = path.event(name)
+        errors = {"load_error": load * abs(event.load), "approach_error": approach * path.approach_scale}
+        exact = {n: replace(e, load_error=0.0, approach_error=0.0) for n, e in path.events.items()}
+        return meets(exact | {name: replace(event, **errors)}, 1e-4)
 
     assert met(0.99e-4, 0.99e-4)
     assert not met(1.01e-4, 0.99e-4)
     assert not met(0.99e-4, 1.01e-4)
-    assert met(1.0, 0.99e-4, "zero_load")
+    assert met(math.inf, 0.99e-4, "zero_load")
     assert not met(1.0, 1.01e-4, "zero_load")
 
 

@@ -25,7 +25,7 @@ from fem_adhesion.studies.element_methods import element_methods
 from fem_adhesion.studies.halfspace_methods import MOST_NODES, _affordable, halfspace_methods
 from fem_adhesion.studies.methods import QUANTITIES, Method, Solved, Step
 from fem_adhesion.studies.speed import measure
-from fem_adhesion.studies.speed_result import Rung, SpeedStudy, Truth, best, cheapest, pareto_front, size_of, slope
+from fem_adhesion.studies.speed_result import Rung, SpeedStudy, Truth, best, cheapest, pareto_front, slope
 from halfspace import compliance, newton, relaxation
 from halfspace.curve import Estimate, transfer
 from halfspace.devices import cycle
@@ -35,7 +35,7 @@ METHODS = [*halfspace_methods(), *element_methods()]
 PREFIX = {"half-space": "", "finite elements": "FE "}
 FILES = {"speed.csv", "speed.md"} | {f"{q}.{suffix}" for q in QUANTITIES for suffix in ("svg", "png")}
 TRUE = {"pull_off": -5.24854818839, "jump_on": -1.62921671169, "hysteresis": 0.2507086026}  # at a Tabor parameter of 1
-SIZES = {"pull_off": 5.24854818839, "jump_on": 2.62921671169, "hysteresis": 0.2507086026}
+SIZES = {"pull_off": 5.24854818839, "jump_on": 4.81849957889, "hysteresis": 0.2507086026}
 REACHED = {  # best relative error of the pull-off load on the quick ladder, at most
     "simple relaxation": 1e-3,
     "Greenwood's iteration": 3e-3,
@@ -79,7 +79,7 @@ def page(run):
 @pytest.fixture(scope="module")
 def study(rows):
     """The study as its table has it."""
-    truths = {family: Truth(judge, 1e-9, _truth(rows, family)) for family, judge in JUDGES.items()}
+    truths = {family: Truth(judge, 1e-9, _truth(rows, family), SIZES["jump_on"]) for family, judge in JUDGES.items()}
     return SpeedStudy(1.0, True, truths, 3e-4, tuple(METHODS), tuple(map(_rung, rows)))
 
 
@@ -338,7 +338,7 @@ def counted_method(runs, quick):
 
 @pytest.mark.parametrize(("quick", "expected"), [(True, [0, 1]), (False, [0, 0, 1, 1, 2])])
 def test_what_is_run_depends_on_the_ladder_alone(monkeypatch, quick, expected):
-    truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)})
+    truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
     monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
     runs = []
     measure(1.0, quick=quick, methods=[counted_method(runs, 2)])
@@ -353,7 +353,7 @@ def test_a_rung_is_recorded_by_how_it_ended(monkeypatch, error, status):
     def end(_tabor):
         raise error("on purpose")
 
-    truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)})
+    truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
     monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
     found = measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)]).rungs[0]
     assert (found.status, found.reason) == (status, "on purpose")
@@ -363,7 +363,7 @@ def test_a_defect_is_no_outcome(monkeypatch):
     def end(_tabor):
         raise ValueError("operands could not be broadcast together")
 
-    truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)})
+    truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
     monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
     with pytest.raises(ValueError, match="broadcast"):
         measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)])
@@ -397,9 +397,10 @@ def test_errors_that_the_truth_cannot_tell_are_equally_accurate():
     assert pareto_front([rung(0.5, 1e-3), later, sooner], "pull_off") == [rung(0.5, 1e-3), sooner]
 
 
-@pytest.mark.parametrize(("quantity", "size"), [("pull_off", 3.0), ("jump_on", 4.0), ("hysteresis", 3.0)])
-def test_errors_are_relative_to_the_value_or_to_one_more_for_an_approach(quantity, size):
-    assert size_of(quantity, -3.0) == size
+@pytest.mark.parametrize(("quantity", "size"), [("pull_off", 3.0), ("jump_on", 7.0), ("hysteresis", 3.0)])
+def test_errors_are_relative_to_the_value_or_to_the_scale_of_approaches(quantity, size):
+    truth = Truth("half-space", 1e-9, dict.fromkeys(QUANTITIES, Estimate(-3.0, 0.0)), 7.0)
+    assert truth.relative(quantity, 2.0) == 2.0 / size
 
 
 def test_what_an_accuracy_costs():
@@ -430,8 +431,8 @@ def made_study(rungs, truths=None, *, quick=False, methods=None):
     some = methods or (Method("half-space", "some", [Step(str(n), None) for n in range(4)], 2),)
     estimate = {"pull_off": Estimate(-5.0, 1e-9), "jump_on": Estimate(-1.5, 2e-9), "hysteresis": Estimate(0.25, 3e-9)}
     default = {
-        "half-space": Truth("finite elements", 1e-9, estimate),
-        "finite elements": Truth("half-space", 1e-8, estimate),
+        "half-space": Truth("finite elements", 1e-9, estimate, 1.0),
+        "finite elements": Truth("half-space", 1e-8, estimate, 1.0),
     }
     return SpeedStudy(1.0, quick, truths or default, 1e-3, tuple(some), tuple(rungs))
 
@@ -588,14 +589,14 @@ def test_a_grid_refused_above_a_coarser_one_that_was_not_is_trouble():
 
 def test_truths_that_disagree_are_told_first():
     truths = {
-        "half-space": Truth("finite elements", 1e-9, {"pull_off": Estimate(-5.0, 1e-9)}),
-        "finite elements": Truth("half-space", 1e-9, {"pull_off": Estimate(-6.0, 1e-9)}),
+        "half-space": Truth("finite elements", 1e-9, {"pull_off": Estimate(-5.0, 1e-9)}, 1.0),
+        "finite elements": Truth("half-space", 1e-9, {"pull_off": Estimate(-6.0, 1e-9)}, 1.0),
     }
     page = list(speed_report.page(made_study([rung(1.0, 1e-3)], truths)))
     assert page[3] == "FAILED where it should not have, 1 times:"
     assert page[4] == "* the truths disagree in pull_off: -5 and -6"
     assert section("\n".join(page), "The truths")[0]["within both errors"] == "NO"
-    nan = {family: Truth(family, 1e-9, {"pull_off": Estimate(math.nan, 1e-9)}) for family in PREFIX}
+    nan = {family: Truth(family, 1e-9, {"pull_off": Estimate(math.nan, 1e-9)}, 1.0) for family in PREFIX}
     assert section("\n".join(speed_report.page(made_study([], nan))), "The truths")[0]["within both errors"] == "NO"
 
 

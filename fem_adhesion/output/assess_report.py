@@ -65,7 +65,7 @@ def _head(assessment: Assessment) -> Iterator[RenderableType]:
 def _legend(assessment: Assessment) -> Iterator[str]:
     """How to read the table of models; only what stands in it."""
     shown = {name for model in assessment.models for name in model.values}
-    if shown & set(POSITIONS):
+    if shown & {name for names in POSITIONS for name in names}:
         yield (
             "Separation: of the undeformed surfaces where the jump takes off, negative if they overlap. Base: position "
             "of the cantilever's far end there, zero where the undeformed surfaces would be one spacing apart, "
@@ -77,7 +77,7 @@ def _legend(assessment: Assessment) -> Iterator[str]:
         yield f"Of the {assessment.finite.model} what is round is held at its mid-plane, {assessment.contact.grip}."
     yield (
         "In brackets: error of the last digit, for closed theories that of the reading only. -: not in the model. "
-        "Differences of a position that is less than the spacing are parts of the spacing."
+        "Differences of a position are parts of the spacing and the distance between both jumps, others of the value."
     )
 
 

@@ -161,8 +161,14 @@ def _ratios(part: Samples, whole: Samples) -> np.ndarray[tuple[int], np.dtype[np
     return np.array([value / sizes[mu, rho] for mu, rho, value in points if (mu, rho) in sizes], float)
 
 
+APPROACHES = (
+    "Deviations of approaches, which have no natural zero, are parts of the spacing and the range of the approaches at "
+    "all events on the half-space."
+)
+
+
 def _poisson(results: Results) -> Iterator[str]:
-    yield "Hollow markers: the force is strengthened, or the jump is from farther away."
+    yield "Hollow markers: the force is strengthened, or the jump is from nearer."
     yield from _trend(results.rows)
     yield from _signs(results.rows)
 
@@ -194,8 +200,9 @@ def _signs(rows: Sequence[Row]) -> Iterator[str]:
 def _bulk(results: Results) -> Iterator[str]:
     rows, poisson = results.rows, reference_poisson(results.rows)
     yield (
-        "The yield of the body as a whole is kappa W/(E* R), which can be taken out by hand. Filled markers: nearer to "
-        "zero than on the half-space; hollow: farther. Where a line has no marker, the deviation is within its error."
+        "The yield of the body as a whole is kappa W/(E* R), which can be taken out by hand. Filled markers: from "
+        "farther away than on the half-space; hollow: from nearer. Where a line has no marker, the deviation is within "
+        f"its error. {APPROACHES}"
     )
     shares = np.concatenate([_left(rows, f"jump_{way}_approach", poisson) for way in ("on", "off")])
     if not jumping_tabors(rows) or not shares.size:

@@ -21,7 +21,7 @@ TITLES = {
 }
 ERRORS = {
     "pull_off": "relative error of the pull-off load",
-    "jump_on": "error of the jump-on approach, over $1 + |\\alpha^*|$",
+    "jump_on": "error of the jump-on approach, over spacing and range of approaches",
     "hysteresis": "relative error of the energy lost",
 }
 # Okabe and Ito's colours, which colour-blind eyes tell apart, without the yellow, too pale on white; black is adaptive.

@@ -11,7 +11,7 @@ from fem_adhesion.studies.assess_theories import Curve, Loop, estimated, loop
 from fem_adhesion.studies.quantities import Quantity
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.devices import Jump, cycle
-from halfspace.events import Event
+from halfspace.events import Event, approach_scale
 from halfspace.scaling import Units
 from halfspace.sphere_theories import JKRSphere, RigidSphere
 from halfspace.theories import ContactState
@@ -31,7 +31,7 @@ DISTANCE = {
 }
 QUANTITIES = tuple(DISTANCE)
 RADII = ("pull_off_radius", "zero_load_radius")
-POSITIONS = ("jump_on_separation", "jump_on_base", "jump_off_separation", "jump_off_base")
+POSITIONS = (("jump_on_separation", "jump_off_separation"), ("jump_on_base", "jump_off_base"))  # along two axes
 WORDS = {
     "pull_off_force": "pull-off force",
     "pull_off_radius": "contact radius at pull-off",
@@ -213,12 +213,15 @@ def _known(values: Mapping[str, Quantity]) -> dict[str, Quantity]:
 def relative(ours: Prediction, reference: Prediction, name: str, spacing: float) -> Quantity | None:
     """Difference of a quantity from a reference's, with both errors in it, or None if either has none.
 
-    It is a part of the reference's value; of a position, which may be zero, a part of the spacing in m if that is more.
+    It is a part of the reference's value; of a position, which has no natural zero, of the spacing in m and the
+    distance between the reference's positions of both jumps, see `halfspace.events.approach_scale`.
     """
     a, b = ours.values.get(name), reference.values.get(name)
     if a is None or b is None:
         return None
-    size = max(abs(b.value), spacing) if name in POSITIONS else abs(b.value)
+    axis = {n for names in POSITIONS if name in names for n in names}
+    alike = [q.value for n, q in reference.values.items() if n in axis]
+    size = approach_scale(alike, spacing) if alike else abs(b.value)
     if not size:
         return None
     return Quantity((a.value - b.value) / size, (a.error + b.error) / size, "1")

@@ -242,11 +242,15 @@ def _compare_events(hs: EquilibriumPath, fe: EquilibriumPath, rtol: float) -> It
         if a is None and b is None:
             continue
         difference = abs(a.value - b.value) if a and b else float("nan")
-        size = abs(a.value) if a and quantity == "load" else 1 + abs(a.value if a else 0.0)
-        budget = (POINTWISE if pointwise else 1) * rtol * size
+        budget = (POINTWISE if pointwise else 1) * rtol * _size(quantity, a.value if a else 0.0, hs)
         yield Row(f"{event} {quantity}", unit, a, b, difference, budget)
     difference = abs(hs.energy.value - fe.energy.value)
     yield Row("energy released", "R dgamma eps", hs.energy, fe.energy, difference, rtol * abs(hs.energy.value))
+
+
+def _size(quantity: str, value: float, path: EquilibriumPath) -> float:
+    """What a budget is relative to; gaps count from the spacing and radii from the axis."""
+    return {"load": abs(value), "approach": path.approach_scale}.get(quantity, 1 + abs(value))
 
 
 EVENT_QUANTITIES = (

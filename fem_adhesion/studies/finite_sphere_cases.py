@@ -17,7 +17,7 @@ from fem_adhesion.finite_strain_scene import find_jumps, require_stiff_surface
 from fem_adhesion.finite_strain_traction import ConventionName
 from fem_adhesion.scene import GripName, ProfileName, TractionName
 from fem_adhesion.sized import Discretisation, sized_body
-from fem_adhesion.studies.finite_sphere_records import CRITICAL, Case, InputName, Record, Values
+from fem_adhesion.studies.finite_sphere_records import APPROACH_SCALE, CRITICAL, Case, InputName, Record, Values
 from fem_adhesion.studies.fold_birth import FIRST, Birth, NoBirth, born, tabor_of
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.devices import cycle
@@ -91,6 +91,7 @@ def quantities_of(path: EquilibriumPath) -> dict[str, Estimate]:
     values = {
         "pull_off_load": Estimate(pull_off.load, pull_off.load_error),
         "zero_load_radius": Estimate(zero_load.contact_radius, zero_load.contact_radius_error),
+        APPROACH_SCALE: Estimate(path.approach_scale, 2 * max(e.approach_error for e in path.events.values())),
     }
     values |= _jumps(path.events)
     if grips := cycle(path):

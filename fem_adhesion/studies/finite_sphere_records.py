@@ -15,6 +15,7 @@ InputName = Literal["tabor", "radius_ratio", "poisson"]
 Values = Mapping[str, Estimate]
 
 CRITICAL = "critical_tabor"
+APPROACH_SCALE = "approach_scale"  # in eps, of a whole curve: see `halfspace.events.approach_scale`
 QUANTITIES = {
     "pull_off_load": "R dgamma",
     "jump_on_approach": "eps",
@@ -156,7 +157,7 @@ def from_plain(case: Case, plain: Mapping[str, object]) -> Record:
 
 
 def _estimate(name: str, pair: object) -> Estimate:
-    known = name in QUANTITIES or name == CRITICAL
+    known = name in (*QUANTITIES, CRITICAL, APPROACH_SCALE)
     match pair:
         case {"value": float(value), "error": float(error)} if known and math.isfinite(value) and 0 <= error < math.inf:
             return Estimate(value, error)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fem_adhesion.scene import GripName
 from fem_adhesion.studies.finite_sphere_cases import CAUSES, MODELS, case_of
-from fem_adhesion.studies.finite_sphere_records import CRITICAL, QUANTITIES, Case, Record, Study, Values
+from fem_adhesion.studies.finite_sphere_records import APPROACH_SCALE, CRITICAL, QUANTITIES, Case, Record, Study, Values
 from halfspace.curve import Estimate
 
 BulkCompliance = Callable[[GripName, float, float], Estimate]
@@ -34,7 +34,8 @@ class Row:
     value, baseline, half_space : Estimate or None
         With the cause, without it, and on the half-space under a paraboloid.
     deviation : Estimate or None
-        (value - baseline)/half_space, its error bounded by those of all three.
+        (value - baseline)/half_space, of an approach over the scale of those of the half-space's curve in the place of
+        its value, see `halfspace.events.approach_scale`; its error bounded by those of all three.
     status : str
         ``solved``; ``absent`` where one of the three contacts does not have the quantity; else what ended the case, as
         in `Record`.
@@ -90,11 +91,12 @@ def _rows_of(
     others = [_partner(case, model, found) for model in (CAUSES[cause].baseline, "half_space")]
     tables = [_values(one, bulk) if one else {} for one in (record, *others)]
     for name in quantities:
-        value, baseline, scale = three = [table.get(name) for table in tables]
+        value, baseline, half_space = three = [table.get(name) for table in tables]
+        scale = half_space and tables[-1].get(APPROACH_SCALE) if UNITS[name] == "eps" else half_space
         deviation = relative(value, baseline, scale) if value and baseline and scale else None
         head = (case.given("tabor"), case.radius_ratio, case.poisson, cause, name, UNITS[name])
         ending = (*_ending(record, others, three), record.seconds, record.kind)
-        yield Row(*head, value, baseline, scale, deviation, *ending)
+        yield Row(*head, value, baseline, half_space, deviation, *ending)
 
 
 def _partner(case: Case, model: str, found: Mapping[Case, Record]) -> Record | None:

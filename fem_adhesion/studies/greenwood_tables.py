@@ -47,6 +47,8 @@ class Printed:
         Converged value with its error.
     note : str
         What explains the difference.
+    scale : float, optional
+        What the difference is relative to, in the same unit: the printed value unless given.
     """
 
     row: str
@@ -55,11 +57,12 @@ class Printed:
     printed: str
     computed: Estimate
     note: str
+    scale: float | None = None
 
     @property
     def deviation(self) -> float:
-        """Computed over printed value, less one."""
-        return self.computed.value / float(self.printed) - 1
+        """Computed less printed value, relative."""
+        return (self.computed.value - float(self.printed)) / (self.scale or float(self.printed))
 
     @property
     def to_last_digit(self) -> bool:
@@ -107,7 +110,8 @@ def _entries(row: Mapping[str, str], paths: Mapping[float, EquilibriumPath]) -> 
         if path and printed and event:
             computed, unit = _quantity(quantity, event, tabor)
             note = "" if is_rounded(printed, computed) else explained(name, quantity, path, computed)
-            yield Printed(f"{name} {quantity}", tabor, unit, printed, computed, note or LAST_DIGIT)
+            sizes = {"minus_alpha_star": path.approach_scale, "minus_alpha_star_over_mu": path.approach_scale / tabor}
+            yield Printed(f"{name} {quantity}", tabor, unit, printed, computed, note or LAST_DIGIT, sizes.get(quantity))
 
 
 def _quantity(quantity: str, event: Event, tabor: float) -> tuple[Estimate, str]:
@@ -193,7 +197,7 @@ def _beside(name: str, quantity: str, column: Mapping[str, str], path: Equilibri
     edge = "" if np.isnan(radius) else f"a* = {radius:.4f}, "
     has = f"ours with the printed load has H0 = {gap:.5f}, {edge}alpha* = {approach:.5f}"
     fold = path.events[name].approach
-    if abs(approach - fold) > BESIDE * (1 + abs(fold)):
+    if abs(approach - fold) > BESIDE * path.approach_scale:
         return f"{UNEXPLAINED}: {has}"
     ours = {"H0": gap, "a_star": radius}
     meets = {key: key in column and is_rounded(column[key], Estimate(value, 0.0)) for key, value in ours.items()}

@@ -8,7 +8,7 @@ is a matter of the ladders alone, so it is the same on every machine; time is on
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from scipy.linalg.lapack import dgesv
@@ -20,7 +20,7 @@ from fem_adhesion.studies.element_methods import POISSON, element_methods
 from fem_adhesion.studies.halfspace_methods import halfspace_methods
 from fem_adhesion.studies.machine import peak_memory
 from fem_adhesion.studies.methods import Family, Method, Solved, Step
-from fem_adhesion.studies.speed_result import Rung, SpeedStudy, Status, Truth, size_of
+from fem_adhesion.studies.speed_result import Rung, SpeedStudy, Status, Truth
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
@@ -80,9 +80,13 @@ def require_tabor(tabor: float) -> float:
 
 def find_truths(tabor: float) -> dict[Family, Truth]:
     """What each family is judged by: the other one at its tightest tolerance, with its own uncertainties."""
-    half_space = Truth("half-space", TIGHTEST, _estimates(halfspace.trace(tabor, rtol=TIGHTEST)))
-    elements = Truth("finite elements", TIGHTEST, _estimates(fem_adhesion.trace(Scene(tabor, POISSON), rtol=TIGHTEST)))
+    half_space = _truth("half-space", halfspace.trace(tabor, rtol=TIGHTEST))
+    elements = _truth("finite elements", fem_adhesion.trace(Scene(tabor, POISSON), rtol=TIGHTEST))
     return {"half-space": elements, "finite elements": half_space}
+
+
+def _truth(family: Family, path: EquilibriumPath) -> Truth:
+    return Truth(family, TIGHTEST, _estimates(path), path.approach_scale)
 
 
 def _estimates(path: EquilibriumPath) -> dict[str, Estimate]:
@@ -110,10 +114,10 @@ def _seconds(work: Callable[[], object]) -> float:
 def _climb(method: Method, tabor: float, truth: Truth, *, quick: bool) -> Iterator[Rung]:
     """Rungs of a method; in the full study those of the quick ladder, which are cheap, are timed once more, warm."""
     for number, step in enumerate(method.ladder(quick=quick)):
-        yield _run(method.name, step, tabor, truth.values, again=not quick and number < method.quick)
+        yield _run(method.name, step, tabor, truth, again=not quick and number < method.quick)
 
 
-def _run(method: str, step: Step, tabor: float, truth: Mapping[str, Estimate], *, again: bool) -> Rung:
+def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) -> Rung:
     """One rung: run it, time it again if asked, and compare with the truth."""
     began = time.perf_counter()
     try:
@@ -124,7 +128,7 @@ def _run(method: str, step: Step, tabor: float, truth: Mapping[str, Estimate], *
     seconds = time.perf_counter() - began
     if again:
         seconds = min(seconds, _seconds(lambda: step.run(tabor)))
-    errors, floors = _errors(solved, truth), {name: _relative(name, truth[name], e.error) for name, e in truth.items()}
+    errors, floors = _errors(solved, truth), {name: truth.relative(name, e.error) for name, e in truth.values.items()}
     return Rung(method, step.setting, "converged", seconds, "", solved.unknowns, memory.mebibytes, errors, floors)
 
 
@@ -135,14 +139,10 @@ def _status(error: InputError | NotConverged) -> Status:
     return "too coarse" if isinstance(error, GridTooCoarse) else "failed"
 
 
-def _errors(solved: Solved, truth: Mapping[str, Estimate]) -> dict[str, float]:
+def _errors(solved: Solved, truth: Truth) -> dict[str, float]:
     """Differences from the truth; not below its own uncertainty, since nothing less can be told."""
     return {
-        name: _relative(name, truth[name], max(abs(value - truth[name].value), truth[name].error))
+        name: truth.relative(name, max(abs(value - truth.values[name].value), truth.values[name].error))
         for name, value in solved.values.items()
-        if name in truth
+        if name in truth.values
     }
-
-
-def _relative(name: str, truth: Estimate, error: float) -> float:
-    return error / size_of(name, truth.value)

@@ -28,11 +28,18 @@ class Truth:
     values : mapping of str to Estimate
         Pull-off load in R dgamma, jump_on approach in eps, hysteresis energy in R dgamma eps; the last two only where
         the curve folds.
+    approach_scale : float
+        What errors of approaches are relative to, in eps, see `halfspace.events.approach_scale`.
     """
 
     family: Family
     rtol: float
     values: Mapping[str, Estimate]
+    approach_scale: float
+
+    def relative(self, quantity: str, error: float) -> float:
+        """Error of a quantity, relative to its value or, of an approach, which has no size of its own, to the scale."""
+        return error / (self.approach_scale if quantity == "jump_on" else abs(self.values[quantity].value))
 
 
 @dataclass(frozen=True)
@@ -55,7 +62,7 @@ class Rung:
     memory : float
         Growth of the peak memory of the process in MiB; nan where the system does not tell.
     errors : mapping of str to float
-        For each quantity found: loads and energies relative, approaches relative to 1 + |alpha*|; not below `floors`.
+        For each quantity found, as by `Truth.relative`; not below `floors`.
     floors : mapping of str to float
         Uncertainty of the truth on the same scale.
     """
@@ -150,8 +157,8 @@ class SpeedStudy:
 
     def uncertainty(self, family: Family, quantity: str) -> float:
         """Uncertainty of the truth that judges a family, on the scale of the errors."""
-        estimate = self.truths[family].values[quantity]
-        return estimate.error / size_of(quantity, estimate.value)
+        truth = self.truths[family]
+        return truth.relative(quantity, truth.values[quantity].error)
 
     def troubles(self) -> Iterator[str]:
         """What failed that should not have, a sentence each."""
@@ -182,11 +189,6 @@ def _troubles(method: Method, rungs: Sequence[Rung]) -> Iterator[str]:
         solved = solved or rung.converged
     if not solved and not method.may_diverge:
         yield f"{method.name}: no rung has a result"
-
-
-def size_of(quantity: str, value: float) -> float:
-    """What errors of a quantity are relative to: 1 + |alpha*| for an approach, which may be zero."""
-    return 1 + abs(value) if quantity == "jump_on" else abs(value)
 
 
 def cheapest(rungs: Sequence[Rung], tolerance: float, quantity: str | None = None) -> Rung | None:
