@@ -9,19 +9,23 @@ for a flat block are so for the sphere, and is the identity near the pole.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from fem_adhesion.curved import Block, joined
+from fem_adhesion.curved import Block, CurvedQuads, joined
+from fem_adhesion.nested import refined_towards
 from halfspace.compliance import Array, Index
+from halfspace.values import Valued
 
 CORE, DEPTH = 1.7, 0.9
 """Radius and depth of the tensor grid about the pole, in R on the flat plane; its corner stays inside that of 2R."""
 
 LAYERS = 2
 """Cells between the tensor grid and the mid-plane."""
+
+NO_RINGS = np.empty(0)
 
 
 @dataclass(frozen=True)
@@ -57,7 +61,43 @@ class Stereographic:
         return np.asarray(x * (1 - t) / (1 + t) ** 3), np.asarray((1 - 8 * t + 3 * t**2) / (1 + t) ** 4)
 
 
-def hemisphere(R: float, lines: Array, depths: Array, along: Callable[[Array], Array] | None = None) -> Any:
+@dataclass(frozen=True, eq=False, repr=False)
+class Lines(Valued):
+    """Lines of one half of a sphere.
+
+    Attributes
+    ----------
+    x, depths : (m + 1,) and (n + 1,) array
+        Of the core, a tensor grid on the flat plane.
+    layers : (LAYERS + 1,) array
+        From the core (0) to the mid-plane (1).
+    along : callable
+        The coordinate on the flat plane as a function of x, in which cells are cut.
+    """
+
+    x: Array
+    depths: Array
+    layers: Array = field(default_factory=lambda: np.linspace(0, 1, LAYERS + 1))
+    along: Callable[[Array], Array] = np.asarray
+
+    def core(self, i: Array, j: Array) -> Array:
+        """Points of the core at whole numbers of its lines, or between them."""
+        x, depths = (np.interp(k, np.arange(len(lines)), lines) for k, lines in ((i, self.x), (j, self.depths)))
+        return np.asarray(self.along(x) - 1j * depths)
+
+
+def even(R: float, m: int, n: int) -> Lines:
+    """Evenly spaced lines, m + 1 and n + 1 of them in the core."""
+    return Lines(np.linspace(0, CORE * R, m + 1), np.linspace(0, DEPTH * R, n + 1))
+
+
+def hemisphere(
+    R: float,
+    lines: Array,
+    depths: Array,
+    along: Callable[[Array], Array] = np.asarray,
+    rings: Array = NO_RINGS,
+) -> CurvedQuads:
     """Mesh the hemisphere z >= -R of the sphere that touches z = 0 from below.
 
     Parameters
@@ -66,48 +106,68 @@ def hemisphere(R: float, lines: Array, depths: Array, along: Callable[[Array], A
         Radius in beta.
     lines, depths : (m + 1,) and (n + 1,) array
         Lines of the core, a tensor grid on the flat plane, from 0 to CORE R and DEPTH R, in beta.
-    along : callable, optional
+    along : callable
         The coordinate x as a function of another one in which the lines and the cells between them are given instead.
+    rings : (k,) array
+        Sizes of rings around the equator, as `fem_adhesion.nested.refined_towards` takes them: where a bonded mid-plane
+        meets the free surface the stress is singular. The cells that are cut are as long as deep then; without rings
+        they are as thin as the contact's.
 
     Returns
     -------
     CurvedQuads
         With the boundaries "axis", "contact" (the sphere) and "far" (the mid-plane).
     """
-    along = along or (lambda x: x)
     m, n = len(lines), len(depths)
-    core = np.arange(m * n).reshape(m, n)
-    beside = m * n + np.arange(n * LAYERS).reshape(n, LAYERS)
-    below = m * n + n * LAYERS + np.arange((m - 1) * LAYERS).reshape(m - 1, LAYERS)
-    vertices = [
-        core,
-        np.column_stack([core[-1], beside]),
-        np.column_stack([core[:, -1], np.concatenate([below, beside[-1:]])]),
+    own = Lines(lines, depths, along=along)
+    met = even(R, m - 1, n - 1) if len(rings) else own
+    mesh = joined(half_blocks(R, own, met, stereographic), half_vertices(m, n, 0, m * n + (m + n - 1) * (LAYERS - 1)))
+    if len(rings):
+        mesh = refined_towards(mesh, vertex_at(mesh, R, -R), rings)
+    above = -R * (1 - 1e-9)
+    return named(mesh, lambda r, z: {"axis": r == 0, "contact": (r > 0) & (z > above), "far": (r > 0) & (z < above)})
+
+
+def half_blocks(R: float, own: Lines, met: Lines, onto: Callable[[Array, float], Array]) -> list[Block]:
+    """Blocks of one half of a sphere, whose rays from the core to the mid-plane end where those of other lines would.
+
+    They are cut at whole numbers, so that halves with different lines run along the mid-plane alike. No cell is turned
+    over: the rays end on the circle 2R, inside whose tangents both cores lie, and beyond the sides of both.
+    """
+
+    def outwards(i: Array, j: Array, t: Array) -> Array:
+        """Points between a side of the core (t = 0) and the circle 2R (t = 1)."""
+        ray = met.core(i, j)
+        return (1 - t) * own.core(i, j) + t * 2 * R * ray / np.abs(ray)
+
+    m, n = len(own.x) - 1, len(own.depths) - 1
+    i, j = np.arange(m + 1.0), np.arange(n + 1.0)
+    return [
+        Block(i, j, lambda i, j: onto(own.core(i, j), R)),
+        Block(j, own.layers, lambda j, t: onto(outwards(np.array(m), j, t), R)),
+        Block(i, own.layers, lambda i, t: onto(outwards(i, np.array(n), t), R)),
     ]
-    # Neighbours run along their common side in the same direction, as elements of degree 3 and more must.
-    layers = np.linspace(0, 1, LAYERS + 1)
-    blocks = [
-        Block(lines, depths, lambda s, d: stereographic(along(s) - 1j * d, R)),
-        Block(depths, layers, lambda d, t: stereographic(_outwards(along(lines[-1]) - 1j * d, t, R), R)),
-        Block(lines, layers, lambda s, t: stereographic(_outwards(along(s) - 1j * depths[-1], t, R), R)),
-    ]
-    return _named(
-        joined(blocks, vertices),
-        axis=[core[0], below[0]],
-        contact=[core[:, 0], beside[0]],
-        far=[beside[:, -1], below[:, -1]],
-    )
+
+
+def half_vertices(m: int, n: int, first: int, middle: int) -> list[Index]:
+    """Numbers of the vertices of `half_blocks` of m lines x and n depths; those on the mid-plane begin at `middle`."""
+    core = first + np.arange(m * n).reshape(m, n)
+    around = m + n - 1
+    layers = first + m * n + np.arange(around * (LAYERS - 1)).reshape(around, LAYERS - 1)
+    out = np.column_stack([np.append(core[-1], core[-2::-1, -1]), layers, middle + np.arange(around)])
+    return [core, out[:n], out[: n - 2 : -1]]
+
+
+def contact_ends(R: float, rings: Array) -> Array:
+    """Ends of the cells of a sphere's surface from the core to the equator, in its coordinate, in beta."""
+    ends = R * np.linspace(CORE, 2.0, LAYERS + 1)
+    return np.concatenate([ends[:-1], ends[-1] - (ends[-1] - ends[-2]) * rings, ends[-1:]])
 
 
 def stereographic(Z: Array, R: float) -> Array:
     """Return r and z of points of the flat plane: Z/(1 + i Z/2R)."""
     image = Z / (1 + 0.5j * Z / R)
     return np.array([image.real, image.imag])
-
-
-def _outwards(Z: Array, t: Array, R: float) -> Array:
-    """Points between a side of the core (t = 0) and the circle 2R (t = 1)."""
-    return np.asarray(Z + t * (2 * R * Z / np.abs(Z) - Z))
 
 
 def with_contact_to(mesh: Any, radius: float) -> Any:
@@ -125,11 +185,14 @@ def named_block(mesh: Any) -> Any:
     return mesh.with_boundaries({"axis": facets[axis], "contact": facets[contact], "far": facets[~(axis | contact)]})
 
 
-def _named(mesh: Any, **vertices: list[Index]) -> Any:
-    """Name the boundary facets whose two ends are among the given vertices."""
+def named(mesh: CurvedQuads, where: Callable[[Array, Array], dict[str, Any]]) -> CurvedQuads:
+    """Name the boundary facets for which the masks, by name, hold at the places r and z of their chords' middles."""
     facets = mesh.boundary_facets()
+    masks = where(*mesh.p[:, mesh.facets[:, facets]].mean(axis=1))
+    found: CurvedQuads = mesh.with_boundaries({name: facets[mask] for name, mask in masks.items()})
+    return found
 
-    def on(numbers: Index) -> Any:
-        return facets[np.isin(mesh.facets[:, facets], numbers).all(axis=0)]
 
-    return mesh.with_boundaries({name: on(np.concatenate(parts)) for name, parts in vertices.items()})
+def vertex_at(mesh: CurvedQuads, r: float, z: float) -> int:
+    """Number of the vertex at a place."""
+    return int(np.argmin(np.hypot(mesh.p[0] - r, mesh.p[1] - z)))

@@ -20,7 +20,7 @@ from fem_adhesion.mesh_file import read_body
 from fem_adhesion.pairs import radii_of
 from fem_adhesion.refinement import refined
 from fem_adhesion.scene import Counter, Scene
-from fem_adhesion.sized import GRIPS, Discretisation, sized_body
+from fem_adhesion.sized import GRIPS, Discretisation, corner_rings, sized_body
 from halfspace import grid
 from halfspace.compliance import Array
 from halfspace.contact import ContactProblem, spike_width
@@ -82,8 +82,8 @@ def discretised(scene: Scene, source: ContactProblem, contact_radius: float, how
     if scene.body == "block":
         return _block_under_sphere(scene, how, lines, body.profile)
     if scene.counter is None:
-        return _of(scene, _hemisphere(scene, how, scene.sphere_radius, lines[: -bodies.LAYERS]), body.profile)
-    return _first_of_pair(scene, scene.counter, how, lines, body)
+        return _of(scene, _hemisphere(scene, how, scene.sphere_radius, inner), body.profile)
+    return _first_of_pair(scene, scene.counter, how, lines, inner, body)
 
 
 def _finest(scene: Scene, how: Discretisation) -> float:
@@ -120,15 +120,17 @@ def _block_under_sphere(scene: Scene, how: Discretisation, lines: Array, profile
 
 def _hemisphere(scene: Scene, how: Discretisation, R: float, core: Array) -> CondensedBody:
     depths = grid.graded(0.0, np.diff(core).min(), bodies.DEPTH * R, growth=how.growth)
-    mesh = bodies.hemisphere(R, core, depths)
+    mesh = bodies.hemisphere(R, core, depths, rings=corner_rings(scene, how))
     if scene.counter is not None:
         mesh = bodies.with_contact_to(mesh, float(bodies.Stereographic(R).radius(core[-1:])[0][0]))
     return _condensed(scene, how, mesh, GRIPS[scene.grip])
 
 
-def _first_of_pair(scene: Scene, counter: Counter, how: Discretisation, lines: Array, pair: SizedBody) -> Discretised:
+def _first_of_pair(
+    scene: Scene, counter: Counter, how: Discretisation, lines: Array, core: Array, pair: SizedBody
+) -> Discretised:
     R1, _ = radii_of(scene.sphere_radius, counter)
-    body = _hemisphere(scene, how, R1, lines[: -bodies.LAYERS])
+    body = _hemisphere(scene, how, R1, core)
     return Discretised(body, ContactProblem(pair.make(lines)[0], scene.tabor, profile=pair.profile))
 
 

@@ -126,7 +126,7 @@ class ScenesBody(Valued):
         first, last = (body.coordinate.of(min(radius, FARTHEST * R)) for radius in (inner, outer))
         lines = fine_between(first, last, body.length, bodies.CORE * R, self.how.growth)
         depths = grid.graded(0.0, float(np.diff(lines).min()), bodies.DEPTH * R, growth=self.how.growth)
-        return self._on(bodies.hemisphere(R, lines, depths), body)
+        return self._on(bodies.hemisphere(R, lines, depths, rings=sized.corner_rings(self.scene, self.how)), body)
 
     def _on(self, mesh: Any, sized_body: SizedBody) -> Discretised:
         scene, far_field = self.scene, sized.GRIPS[self.scene.grip]

@@ -46,6 +46,7 @@ def pair_operator(
     poisson: float,
     degree: int,
     grip: FarField,
+    rings: Array,
 ) -> tuple[ElasticOperator, int]:
     """Operator of both bodies and the number of their unknowns.
 
@@ -65,11 +66,15 @@ def pair_operator(
         Of the elements.
     grip : FarField
         How spheres are held at their mid-planes.
+    rings : (k,) array
+        Sizes of the rings around their equators.
     """
     R1, R2 = radii_of(R, counter)
     end = float(bodies.Stereographic(R1).radius(lines[-1:])[0][0])
-    first = bodies.hemisphere(R1, lines, depths(bodies.DEPTH * R1))
-    second, held = (_block(lines, R1, depths), point_load) if np.isinf(R2) else (_larger(lines, R1, R2, depths), grip)
+    first = bodies.hemisphere(R1, lines, depths(bodies.DEPTH * R1), rings=rings)
+    second, held = (
+        (_block(lines, R1, depths), point_load) if np.isinf(R2) else (_larger(lines, R1, R2, depths, rings), grip)
+    )
     one, other = (
         condense(
             Space(bodies.with_contact_to(mesh, end), ElementQuadP(degree)),
@@ -112,7 +117,7 @@ def with_rigid_rim(operator: ElasticOperator, lines: Array, coordinate: bodies.S
     )
 
 
-def _larger(lines: Array, R1: float, R2: float, depths: Callable[[float], Array]) -> Any:
+def _larger(lines: Array, R1: float, R2: float, depths: Callable[[float], Array], rings: Array) -> Any:
     """Hemisphere of radius R2 whose cells end where those of R1 do, and beyond at its own core's end."""
     along = partial(_along, coordinate=_coordinate_on(R1, R2), last=float(lines[-1]))
     rest = bodies.CORE * R2 - float(along(lines[-1:])[0])
@@ -121,7 +126,7 @@ def _larger(lines: Array, R1: float, R2: float, depths: Callable[[float], Array]
         if rest > 1e-9 * R2
         else lines[:0]
     )
-    return bodies.hemisphere(R2, np.concatenate([lines, beyond]), depths(bodies.DEPTH * R2), along)
+    return bodies.hemisphere(R2, np.concatenate([lines, beyond]), depths(bodies.DEPTH * R2), along, rings)
 
 
 def _block(lines: Array, R1: float, depths: Callable[[float], Array]) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -12,12 +12,13 @@ from fem_adhesion import bodies
 from fem_adhesion.condensed import condense
 from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import clamped, point_load, sliding
-from fem_adhesion.held_sphere import contact_ends, held_sphere
+from fem_adhesion.held_sphere import held_sphere, rings_at_equator
 from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.mesh import tensor_grid
 from fem_adhesion.pairs import gap_of, pair_operator, radii_of, with_rigid_rim
 from fem_adhesion.scene import Counter, Scene
 from halfspace import grid
+from halfspace.accuracy import TWIN
 from halfspace.breathing import FlatCoordinate
 from halfspace.compliance import Array
 from halfspace.ladder import Rung
@@ -31,6 +32,7 @@ CURVE_DEGREE = 4  # of the elements for the curve, whose operator is interpolate
 FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
 PER_DEGREE = 15.0  # what each degree divides it by
 REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
+RINGS, MOST_RINGS = 0.2, 6  # ratio of the rings around a singular corner's, and as many as rounding allows
 BEYOND = 1e3  # size of the block under a sphere, in R: nothing acts on it beyond R, and its far field errs by O(L^-5)
 
 
@@ -46,20 +48,43 @@ class Discretisation:
         Length of the cells at the contact edge, in widths of the spike of tension there.
     growth : float
         Ratio of neighbouring cells.
+    rings : int
+        Of cells around the corner where a mid-plane meets the free surface, if it is bonded.
     """
 
     degree: int
     finest: float = FINEST
     growth: float = GROWTH
+    rings: int = MOST_RINGS - 1
 
 
 def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
-    """Rung of a level: the events on elements of a degree that suits the tolerance, one more on each level."""
+    """Rung of a level: the events on elements of a degree that suits the tolerance, one more on each level.
+
+    Where a body is held the stress may be singular, which a degree more does not tell: other cells are a twin there.
+    """
     degree = int(np.clip(4 + np.ceil(np.log(FOURTH / rtol) / np.log(PER_DEGREE) - 1e-9), 4, 8)) + level
-    fine, coarse = (sized_body(scene, Discretisation(d)) for d in (degree, CURVE_DEGREE + level))
-    settings = {"degree": degree, "curve_degree": CURVE_DEGREE + level, "finest": FINEST, "growth": GROWTH}
-    stages = (AroundEvents(fine, WINDOW / 2**level),)
-    return Rung(partial(coarse.curve, to_load), stages, settings, remaining=REMAINING, along=True)
+    how, below, curve = (_with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
+    settings = asdict(how) | {"curve_degree": curve.degree, "rings": len(corner_rings(scene, how))}
+    window = WINDOW / 2**level
+    twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
+    return Rung(
+        partial(sized_body(scene, curve).curve, to_load),
+        (AroundEvents(sized_body(scene, how), window),),
+        settings,
+        AroundEvents(sized_body(scene, twin), 2 * window) if level and _singular(scene) else None,
+        remaining=REMAINING,
+        along=True,
+    )
+
+
+def _with_rings(degree: int) -> Discretisation:
+    """Discretisation whose rings leave less than its degree does."""
+    return Discretisation(degree, rings=min(degree - 2, MOST_RINGS))
+
+
+def _singular(scene: Scene) -> bool:
+    return scene.body == "sphere" or (scene.body == "hemisphere" and scene.grip == "bonded")
 
 
 def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
@@ -77,14 +102,15 @@ def _pair(scene: Scene, how: Discretisation, R: float, counter: Counter) -> Size
     """Hemisphere and counter-body; beyond the smaller one's core, 0.987 of its radius, both are taken as rigid."""
     R1, _ = radii_of(R, counter)
     make, profile = partial(_made_pair, scene, how, R, counter), gap_of(R, counter, scene.profile)
-    outer = R1 * np.linspace(bodies.CORE, 2.0, bodies.LAYERS + 1)
+    outer = bodies.contact_ends(R1, bodies.NO_RINGS)
     return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, bodies.Stereographic(R1))
 
 
 def _sphere(scene: Scene, how: Discretisation, R: float, profile: Profile) -> SizedBody:
     """Hemisphere held at its mid-plane, or sphere held over a cap."""
     whole = scene.body == "sphere"
-    outer = contact_ends(R, scene.cap_angle) if whole else R * np.linspace(bodies.CORE, 2.0, bodies.LAYERS + 1)
+    rings = rings_at_equator(R, scene.cap_angle) if whole else corner_rings(scene, how)
+    outer = bodies.contact_ends(R, rings)
     make = partial(_made_sphere, scene, how, len(outer))
     return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, bodies.Stereographic(R, scene.traction))
 
@@ -93,7 +119,8 @@ def _made_pair(scene: Scene, how: Discretisation, R: float, counter: Counter, li
     """Both bodies, and beyond their cells the rigid rim."""
     core = lines[: -bodies.LAYERS]
     depths = partial(grid.graded, 0.0, np.diff(core).min(), growth=how.growth)
-    operator, unknowns = pair_operator(core, depths, R, counter, scene.poisson, how.degree, GRIPS[scene.grip])
+    rings = corner_rings(scene, how)
+    operator, unknowns = pair_operator(core, depths, R, counter, scene.poisson, how.degree, GRIPS[scene.grip], rings)
     coordinate = bodies.Stereographic(radii_of(R, counter)[0])
     return with_rigid_rim(operator, lines[-bodies.LAYERS - 1 :], coordinate), unknowns
 
@@ -103,9 +130,18 @@ def _made_sphere(scene: Scene, how: Discretisation, outer: int, lines: Array) ->
     core, R = lines[: len(lines) - outer + 1], scene.sphere_radius
     depths = grid.graded(0.0, np.diff(core).min(), bodies.DEPTH * R, growth=how.growth)
     whole = scene.body == "sphere"
-    return _condensed(
-        scene, how, held_sphere(R, core, depths, scene.cap_angle) if whole else bodies.hemisphere(R, core, depths)
-    )
+    if whole:
+        return _condensed(scene, how, held_sphere(R, core, depths, scene.cap_angle))
+    return _condensed(scene, how, bodies.hemisphere(R, core, depths, rings=corner_rings(scene, how)))
+
+
+def corner_rings(scene: Scene, how: Discretisation) -> Array:
+    """Sizes of the rings around the equator of a hemisphere, where stress is singular if the mid-plane is bonded.
+
+    There u ~ d^s, with d the distance and sin^2(s pi/2) = [4 (1 - nu)^2 - s^2]/(3 - 4 nu) (Williams 1952): s falls from
+    1 at nu = 0 to 0.6 at 1/2, and each ring takes the error it leaves, as d^(2 s), down by a factor of 25 to 7.
+    """
+    return np.asarray(RINGS ** np.arange(1.0, how.rings + 1)) if scene.grip == "bonded" else bodies.NO_RINGS
 
 
 def _block(scene: Scene, how: Discretisation, lines: Array) -> Made:

@@ -244,8 +244,8 @@ def estimate_event(
     chains : sequence of sequences of Located
         The event on discretisations that differ in one respect from one to the next, all chains ending with the best.
         Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
-        share by accident is not taken for exact. Where there is but one, the central gap, which at a point without area
-        errs more than the rest and in turns, counts as known no better than to what its polynomial ends with.
+        share by accident is not taken for exact. Where there is but one, or `along`, the central gap, which at a point
+        without area errs more than the rest and in turns, is known no better than to what its polynomial ends with.
     remaining : float
         Part of that change that may be left.
     along : bool
@@ -260,7 +260,7 @@ def estimate_event(
     if along and chains[0][-1].condition.stationary:
         changes += [_shifted(chains[0][-1], change) for change in changes]
     errors = remaining * np.max(changes, axis=0) + ROUND_OFF * (1 + np.abs(values))
-    if len(chains) == 1:
+    if along or len(chains) == 1:
         best = chains[0][-1]
         ripple = best.problem.interface.ripple(best.problem.surface_state(best.point.x))
         errors[CENTRAL_GAP] = max(errors[CENTRAL_GAP], ripple)

@@ -146,7 +146,8 @@ FLOORS = [
     {"fem_adhesion.far_field", "fem_adhesion.finite_strain_cells"},
     {"fem_adhesion.boundary"},
     {"fem_adhesion.held_sphere"},
-    {"fem_adhesion.bodies", "fem_adhesion.nested"},
+    {"fem_adhesion.bodies"},
+    {"fem_adhesion.nested"},
     {"fem_adhesion.elasticity", "fem_adhesion.neo_hookean"},
     {
         "fem_adhesion.mesh",

@@ -8,12 +8,12 @@ from scipy import sparse
 from skfem import Basis, ElementQuadP, ElementTriP2
 
 from fem_adhesion import held_sphere as module
-from fem_adhesion.bodies import CORE, DEPTH, Stereographic, hemisphere
+from fem_adhesion.bodies import CORE, DEPTH, Stereographic, contact_ends, hemisphere
 from fem_adhesion.boundary import boundary_basis, trace_matrix
 from fem_adhesion.condensed import condense, contact_surface, eliminate_interiors, factorise
 from fem_adhesion.elasticity import Space, cell_stiffness, cell_strains, ring_measure
 from fem_adhesion.far_field import Exterior, clamped, sliding
-from fem_adhesion.held_sphere import contact_ends, held_sphere
+from fem_adhesion.held_sphere import held_sphere, rings_at_equator
 from fem_adhesion.mesh_file import read_body
 from fem_adhesion.nested import refined_towards
 from halfspace import grid
@@ -90,7 +90,7 @@ def test_rim_of_the_cap_is_where_its_facets_end(cap_angle):
 @pytest.mark.parametrize("cap_angle", CAPS)
 def test_contact_ends_are_those_of_the_cells(cap_angle):
     surface = contact_surface(Space(sphere(cap_angle), ElementQuadP(3)), 5)
-    x = np.concatenate([lines()[0], contact_ends(R, cap_angle)[1:]])
+    x = np.concatenate([lines()[0], contact_ends(R, rings_at_equator(R, cap_angle))[1:]])
     assert surface.cells == pytest.approx(Stereographic(R).radius(x)[0], rel=1e-12, abs=1e-12)
     assert np.all(surface.weights > 0)
 
