@@ -27,8 +27,7 @@ from halfspace.curve import (
     trace_charts,
 )
 from halfspace.errors import InputError
-from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, estimate_event
-from halfspace.ladder import meets
+from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, Tolerance, estimate_event
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Valued
 
@@ -199,7 +198,7 @@ def _climb(rtol: float, rung: AroundEvents, found: State, *, compare: bool = Fal
         states.append(rung.located(states[-1]))
         chains = [states[-2:], [found, states[-1]]] if compare and not level else [states[-2:]]
         events = {n: estimate_event(n, [[s[n] for s in c] for c in chains]) for n in EVENTS if n in found}
-        if meets(events, rtol):
+        if not Tolerance.on(events, rtol).missed(events):
             break
     return _Climbed(events, tuple(states), rung)
 

@@ -23,7 +23,7 @@ from halfspace.breathing import FlatCoordinate
 from halfspace.compliance import Array
 from halfspace.ladder import Rung
 from halfspace.profiles import Paraboloid, Profile, Sphere
-from halfspace.sized import CROWDED, WINDOW, AroundEvents, Made, SizedBody, to_equator
+from halfspace.sized import CROWDED, AroundEvents, Made, SizedBody, surroundings, to_equator
 
 GRIPS = {"sliding": sliding, "bonded": clamped}
 
@@ -66,13 +66,12 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     degree = int(np.clip(4 + np.ceil(np.log(FOURTH / rtol) / np.log(PER_DEGREE) - 1e-9), 4, 8)) + level
     how, below, curve = (_with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
     settings = asdict(how) | {"curve_degree": curve.degree, "rings": len(corner_rings(scene, how))}
-    window = WINDOW / 2**level
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
     return Rung(
         partial(sized_body(scene, curve).curve, to_load),
-        (AroundEvents(sized_body(scene, how), window),),
+        (AroundEvents(sized_body(scene, how), *surroundings(rtol, level)),),
         settings,
-        AroundEvents(sized_body(scene, twin), 2 * window) if level and _singular(scene) else None,
+        AroundEvents(sized_body(scene, twin), *surroundings(rtol, level - 1)) if level and _singular(scene) else None,
         remaining=REMAINING,
         along=True,
     )

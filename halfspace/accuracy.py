@@ -19,7 +19,7 @@ from halfspace.events import REMAINING
 from halfspace.ladder import Charted, Rung, climb
 from halfspace.limits import require_counter_radius, require_load, require_radius_ratio, require_rtol, require_tabor
 from halfspace.profiles import Profile, between_spheres
-from halfspace.sized import WINDOW, AroundEvents, Made, SizedBody, to_equator
+from halfspace.sized import AroundEvents, Made, SizedBody, surroundings, to_equator
 from halfspace.theories import jkr_radius
 from halfspace.values import Valued
 
@@ -180,13 +180,12 @@ def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level:
         replace(usual, nodes=min(max(lowest + 2 * max(n, 0), 5), MOST_NODES)) for n in (level, level - 1)
     )
     fine, other = (_under_sphere(tabor, gap, r) for r in (resolution, _twin(below)))
-    window = WINDOW / 2**level
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(
         partial(fine.curve, to_load),
-        (AroundEvents(fine, window),),
+        (AroundEvents(fine, *surroundings(rtol, level)),),
         settings,
-        AroundEvents(other, 2 * window) if level else None,
+        AroundEvents(other, *surroundings(rtol, level - 1)) if level else None,
     )
 
 

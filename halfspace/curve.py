@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +28,11 @@ from halfspace.events import (
     Condition,
     Event,
     Located,
+    Tolerance,
     approach_scale,
     locate,
     relocate,
+    tolerance_told,
 )
 from halfspace.newton import Traceable
 from halfspace.path import Metric, Point, Steps, follow, loaded_to, make_point
@@ -101,7 +103,9 @@ class EquilibriumPath(Valued):
     seconds : float
         Wall time of the whole computation.
     settings : mapping
-        What was asked for and how it was discretised.
+        What was asked for, ``rtol`` among it, and how it was discretised.
+    below : callable, optional
+        The finest discretisation of the rung below the last, unless that is the curve's own.
     twin : callable, optional
         A discretisation as fine as the last but one, with other cells, for the errors of what is solved for later.
     remaining : float
@@ -115,7 +119,8 @@ class EquilibriumPath(Valued):
     stages: tuple[Mapping[str, Located], ...]
     finest: Finest
     seconds: float = field(compare=False)
-    settings: Mapping[str, object] = field(default_factory=dict)
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    below: Finest | None = None
     twin: Finest | None = None
     remaining: float = REMAINING
 
@@ -123,6 +128,26 @@ class EquilibriumPath(Valued):
     def unknowns(self) -> int:
         """Unknowns of the finest discretisation used, elastic ones included."""
         return self.finest.unknowns
+
+    @property
+    def rtol(self) -> float:
+        """Relative accuracy that was asked of loads and approaches."""
+        return float(self.settings["rtol"])
+
+    @property
+    def met(self) -> bool:
+        """Whether every event has its load and approach to the accuracy asked for; `missed` says which has not."""
+        return not self.missed
+
+    @property
+    def missed(self) -> dict[str, tuple[str, ...]]:
+        """By event, the numbers whose estimated errors exceed `tolerance`."""
+        return self.tolerance.missed(self.events)
+
+    @property
+    def tolerance(self) -> Tolerance:
+        """What `rtol` means for loads and approaches."""
+        return Tolerance.on(self.events, self.rtol)
 
     def event(self, name: str) -> Event | None:
         """Event by name, or None if the curve does not have it.
@@ -149,8 +174,9 @@ class EquilibriumPath(Valued):
         return (
             f"<EquilibriumPath of tabor {self.tabor:g}: {len(self.points)} points on {len(self.segments)} charts, "
             f"approach {self.approach[0]:.4g} to {self.approach[-1]:.4g} eps; {events}; energy released "
-            f"{self.energy.value:.6g} +- {self.energy.error:.1g} R dgamma eps; {self.unknowns} unknowns, "
-            f"{self.seconds:.2g} s; settings {shown(self.settings)}>"
+            f"{self.energy.value:.6g} +- {self.energy.error:.1g} R dgamma eps; "
+            f"{tolerance_told(self.rtol, self.missed)}; "
+            f"{self.unknowns} unknowns, {self.seconds:.2g} s; settings {shown(self.settings)}>"
         )
 
     @property

@@ -12,7 +12,7 @@ and a cycle loses what its two jumps set free: it equals the work of the base ro
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +22,7 @@ from halfspace import newton
 from halfspace.contact import APPROACH, LOAD, ContactProblem
 from halfspace.curve import EquilibriumPath, Estimate, Finest, Segment, metric_for, moved, transfer
 from halfspace.errors import InputError
-from halfspace.events import ROUND_OFF, Condition, Event, Located, estimate_event, locate
+from halfspace.events import ROUND_OFF, Condition, Event, Located, Tolerance, estimate_event, locate
 from halfspace.limits import require_number
 from halfspace.newton import Control, Traceable
 from halfspace.path import make_point
@@ -60,12 +60,28 @@ class Cycle:
         From separation into contact, A to B in [G97] Fig. 2a, and back, C to D.
     energy_lost : Estimate
         In the whole cycle, in R dgamma eps.
+    tolerance : Tolerance
+        Accuracy that was asked of the curve, and so of these states.
     """
 
     stiffness: float
     jump_on: Jump
     jump_off: Jump
     energy_lost: Estimate
+    tolerance: Tolerance
+
+    @property
+    def met(self) -> bool:
+        """Whether all four states have their loads and approaches to the accuracy asked for."""
+        return not self.missed
+
+    @property
+    def missed(self) -> dict[str, tuple[str, ...]]:
+        """By state, as ``jump_on landing``, the numbers that have not."""
+        jumps = {"jump_on": self.jump_on, "jump_off": self.jump_off}
+        return self.tolerance.missed(
+            {f"{name} {s.name}": s for name, jump in jumps.items() for s in (jump.take_off, jump.landing)}
+        )
 
 
 @dataclass(frozen=True)
@@ -107,7 +123,7 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
         return None
     on, off = (_jump(states, path, 1 / stiffness) for states in rough)
     lost = Estimate(on.energy.value + off.energy.value, on.energy.error + off.energy.error)
-    return Cycle(stiffness, on, off, lost)
+    return Cycle(stiffness, on, off, lost, path.tolerance)
 
 
 def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> float | None:
@@ -157,27 +173,51 @@ def _landing(problem: Traceable, start: Array, take_off: Located, compliance: fl
     return Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
 
 
-def _refined(states: _States, finest: Finest, compliance: float) -> _States:
-    """Both states of a jump on the finest discretisation."""
-    on = widened(finest(states.take_off).problem, float(states.take_off.point.observables[APPROACH]))
-    fold = moved(states.take_off, on)
-    source = states.landing.problem
-    target = widened(finest(states.landing).problem, float(states.landing.point.observables[APPROACH]))
-    start = transfer(source, states.landing.point.x, target)
-    return _States(fold, _landing(target, start, fold, compliance))
+def _refined(states: _States, stage: Finest, compliance: float) -> _States:
+    """Both states of a jump on another discretisation."""
+    fold = _settled(states.take_off, stage, moved)
+
+    def land(state: Located, problem: Traceable) -> Located:
+        return _landing(problem, transfer(state.problem, state.point.x, problem), fold, compliance)
+
+    return _States(fold, _settled(states.landing, stage, land))
+
+
+def _settled(state: Located, stage: Finest, solve: Callable[[Located, Traceable], Located]) -> Located:
+    """Solve for a state again, and once more where it comes to lie in the reach of another chart."""
+    found = solve(state, _wide_enough(state, stage))
+    return found if stage(found).problem is stage(state).problem else solve(found, _wide_enough(found, stage))
+
+
+def _wide_enough(state: Located, stage: Finest) -> Traceable:
+    return widened(stage(state).problem, float(state.point.observables[APPROACH]))
 
 
 def _jump(rough: _States, path: EquilibriumPath, compliance: float) -> Jump:
-    """Jump on the finest discretisation, its errors by the change from the curve's and, if there is one, a twin."""
-    fine = _refined(rough, path.finest, compliance)
-    others = (rough, _refined(rough, path.twin, compliance)) if path.twin else (rough,)
+    """Jump on the finest discretisation, its errors by the change from the rung below and, if there is one, a twin."""
+    below = _refined(rough, path.below, compliance) if path.below else rough
+    fine = _refined(below, path.finest, compliance)
+    others = (below, _refined(fine, path.twin, compliance)) if path.twin else (below,)
     energies = [states.energy(compliance) for states in (*others, fine)]
     change = max(abs(energy - energies[-1]) for energy in energies)
     return Jump(
         estimate_event("take_off", [[s.take_off, fine.take_off] for s in others], path.remaining, along=True),
-        estimate_event("landing", [[s.landing, fine.landing] for s in others], path.remaining),
+        estimate_event(
+            "landing",
+            [[s.landing, fine.landing] for s in others],
+            path.remaining,
+            least=_by_base(others, fine, compliance),
+        ),
         Estimate(energies[-1], max(path.remaining, 1.0) * change + ROUND_OFF * (1 + abs(energies[-1]))),
     )
+
+
+def _by_base(others: Sequence[_States], fine: _States, compliance: float) -> Array:
+    """Changes of the observables at a landing by that of the base, which those of the landing itself may cancel."""
+    base = _base(fine.take_off, compliance)
+    change = max(abs(_base(states.take_off, compliance) - base) for states in others)
+    rates = fine.landing.point.rates
+    return np.asarray(change * np.abs(rates / (rates[APPROACH] + compliance * rates[LOAD])))
 
 
 def _energy(state: Located, compliance: float) -> float:

@@ -6,7 +6,8 @@ corrector runs at every trial of the root finder; nothing is interpolated betwee
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -73,6 +74,44 @@ def approach_scale(approaches: Iterable[float], spacing: float = 1.0) -> float:
     """
     values = list(approaches)
     return spacing + max(values) - min(values)
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Relative accuracy asked of the loads and approaches of a path's events, and of jumps on it.
+
+    Gaps and radii, values at one point, are not asked to have it: their errors say what they are worth.
+
+    Attributes
+    ----------
+    rtol : float
+        Of a load, in its own size.
+    approach : float
+        What approaches, which have no natural zero, are measured by, in eps: see `approach_scale`.
+    """
+
+    rtol: float
+    approach: float
+
+    @classmethod
+    def on(cls, events: Mapping[str, Event], rtol: float) -> Tolerance:
+        """Tolerance on the path of these events."""
+        return cls(rtol, approach_scale(event.approach for event in events.values()))
+
+    def missed_by(self, event: Event) -> tuple[str, ...]:
+        """``approach`` and ``load`` of an event if their estimated errors exceed it, but no load that is zero."""
+        sizes = {"approach": self.approach, "load": math.inf if event.name == "zero_load" else abs(event.load)}
+        return tuple(name for name, size in sizes.items() if not getattr(event, f"{name}_error") <= self.rtol * size)
+
+    def missed(self, events: Mapping[str, Event]) -> dict[str, tuple[str, ...]]:
+        """By event, the numbers that miss it; empty if it is met."""
+        return {name: numbers for name, event in events.items() if (numbers := self.missed_by(event))}
+
+
+def tolerance_told(rtol: float, missed: Mapping[str, Sequence[str]]) -> str:
+    """Whether a tolerance was met, in words; if not, by which numbers of which states."""
+    names = [f"{name} {' and '.join(numbers)}" for name, numbers in missed.items()]
+    return f"rtol {rtol:g} not met by {', '.join(names)}" if names else f"rtol {rtol:g} met"
 
 
 @dataclass(frozen=True)
@@ -211,18 +250,23 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
     """
     condition = event.condition
     nearby = _same_place(event.point, problem, start, metric)
-    for stretch in (1.5, 6.0, 30.0):
-        step = -stretch * condition.of(nearby) / event.slope
-        if abs(step) < ARCLENGTH_TOLERANCE:
-            return Located(condition, problem, nearby, event.slope)
+    step = -PAST * condition.of(nearby) / event.slope
+    if abs(step) < ARCLENGTH_TOLERANCE:
+        return Located(condition, problem, nearby, event.slope)
+    for _ in range(TRIALS):
         beyond = correct(problem, nearby, step, nearby.x + step * nearby.tangent, metric, iterations=20)
-        if condition.of(beyond) * condition.of(nearby) <= 0:
+        left = condition.of(beyond) / condition.of(nearby)
+        if left <= 0:
             return _between(problem, nearby, beyond, condition, metric)
+        step *= min(1 + PAST * left / (1 - left), LONGER) if left < 1 else LONGER  # as far past the secant's root
     at = event.point.observables
     raise NotConverged(
         f"the event at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma is not found again on another grid; "
         "refine both grids"
     )
+
+
+TRIALS, PAST, LONGER = 4, 1.5, 3.0  # steps to beyond an event: how many, how far past it, how many times the last
 
 
 def _same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:
@@ -235,7 +279,11 @@ def _same_place(point: Point, problem: Traceable, start: Array, metric: Metric) 
 
 
 def estimate_event(
-    name: str, chains: Sequence[Sequence[Located]], remaining: float = REMAINING, along: bool = False
+    name: str,
+    chains: Sequence[Sequence[Located]],
+    remaining: float = REMAINING,
+    along: bool = False,
+    least: Array | float = 0.0,
 ) -> Event:
     """Turn an event into numbers with error estimates.
 
@@ -251,6 +299,8 @@ def estimate_event(
     along : bool
         If true, an observable's change is taken to be no less than what the event's shift along the path makes of it:
         on a single chain, one number may stand still by accident while the event moves. For stationary conditions only.
+    least : (4,) array
+        Changes of the observables that count where the chains' own are less.
     """
     values = chains[0][-1].point.observables
     changes = [
@@ -259,7 +309,7 @@ def estimate_event(
     ]
     if along and chains[0][-1].condition.stationary:
         changes += [_shifted(chains[0][-1], change) for change in changes]
-    errors = remaining * np.max(changes, axis=0) + ROUND_OFF * (1 + np.abs(values))
+    errors = remaining * np.maximum(np.max(changes, axis=0), least) + ROUND_OFF * (1 + np.abs(values))
     if along or len(chains) == 1:
         best = chains[0][-1]
         ripple = best.problem.interface.ripple(best.problem.surface_state(best.point.x))

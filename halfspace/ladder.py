@@ -26,7 +26,7 @@ from halfspace.curve import (
     trace_charts,
 )
 from halfspace.errors import InputError, NotConverged
-from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, approach_scale, estimate_event
+from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, Tolerance, estimate_event
 from halfspace.values import Valued
 
 MOST_RUNGS = 4  # above the lowest
@@ -148,12 +148,13 @@ def _climb_from(
     state: State = find_events(segments)
     for stage in lowest.stages:
         state = _on_all(state, stage)
+    higher = lowest
     for level in range(start + 1, start + most_rungs + 1):
-        higher = rung(level)
+        below, higher = higher, rung(level)
         chains = _step_up(state, higher)
         state = chains[0][-1]
         events = _estimate(chains, higher.remaining, along=higher.along)
-        if meets(events, rtol):
+        if not Tolerance.on(events, rtol).missed(events):
             break
     return EquilibriumPath(
         segments[0].problem.tabor,
@@ -164,6 +165,7 @@ def _climb_from(
         higher.stages[-1],
         time.perf_counter() - began,
         {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
+        below.stages[-1] if below.stages else None,
         higher.twin,
         higher.remaining,
     )
@@ -200,13 +202,3 @@ def _energy(chains: Sequence[Sequence[State]], remaining: float) -> Estimate:
     best = values[0][-1]
     change = max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
     return Estimate(best, remaining * change + ROUND_OFF * (1 + abs(best)))
-
-
-def meets(events: Mapping[str, Event], rtol: float) -> bool:
-    """Whether the estimates of all events of a path are within the tolerance."""
-    scale = approach_scale(event.approach for event in events.values())
-    return all(
-        (event.load_error <= rtol * abs(event.load) or event.name == "zero_load")
-        and event.approach_error <= rtol * scale
-        for event in events.values()
-    )

@@ -24,10 +24,8 @@ from halfspace.values import Valued
 
 LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the least that the other one knows
 LEAVE = 0.5  # of the first cell: the radius at which the chart centred on the axis is left
-WINDOW = 2e-3  # half the logarithmic width of the radii around an event on the lowest rung, halved on each above it
-AROUND = (
-    3  # operators in it: the operator is as good as exact in the middle, its derivative right to the window's square
-)
+WINDOW, AROUND = 2e-3, 3  # half the logarithmic width of the radii around an event on the lowest rung, operators in it
+TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
 CROWDED = 5  # cells next to the equator
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 
@@ -91,13 +89,13 @@ class SizedBody(Valued):
         moving = self._moving(1 - inner[::-1], grid.geometric(end, self.length, self.growth) / end)
         return self.centred(), self.following(moving, chebyshev_radii(least, widest, count))
 
-    def around(self, radius: float, window: float = WINDOW) -> Chart:
-        """Chart for contact radii near the given one."""
+    def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
+        """Chart for contact radii near the given one, from so many operators."""
         end, edge = float(self.outer[0]), self.coordinate.of(radius)
         lines = grid.graded(edge, self.length, end, growth=self.growth)
         inner = lines < edge * (1 + 1e-12)
         moving = self._moving(lines[inner] / edge, np.append(0, (lines[~inner] - edge) / (end - edge)))
-        return self.following(moving, chebyshev_radii(radius * np.exp(-window), radius * np.exp(window), AROUND))
+        return self.following(moving, chebyshev_radii(radius * np.exp(-window), radius * np.exp(window), count))
 
     def _moving(self, inner: Array, outside: Array) -> MovingGrid:
         """Grid from the ends of cells inside the edge, as parts of x_a, and outside, as parts of the rest."""
@@ -112,6 +110,16 @@ def to_equator(R: float) -> Array:
     return np.append(R * (1 - 0.02 * 0.3 ** np.arange(float(CROWDED))), R)
 
 
+def surroundings(rtol: float, level: int) -> tuple[float, int]:
+    """Half the logarithmic width of the radii around an event on a rung, halved on each above it, and operators in it.
+
+    In their middle the operator is as good as exact. Its derivative, by which a fold or an extremum is found, errs by
+    the window's square with three operators, some 1e-7 of the approach at pull-off, and by its fourth power with five.
+    """
+    window, count = (WINDOW, AROUND) if rtol >= TIGHT else (2 * WINDOW, AROUND + 2)
+    return window / 2**level, count
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class AroundEvents(Valued):
     """Stage of a ladder on which every event has an operator made for its own contact radius.
@@ -122,11 +130,14 @@ class AroundEvents(Valued):
         The body.
     window : float
         Half the logarithmic width of the contact radii that a chart serves. A fold is where a derivative vanishes,
-        which errs by the window's square: windows that differ from rung to rung let the error estimate see it.
+        which errs by a power of it: windows that differ from rung to rung let the error estimate see it.
+    count : int
+        Operators in it, see `surroundings`.
     """
 
     body: SizedBody
     window: float = WINDOW
+    count: int = AROUND
     charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
 
     def __call__(self, event: Located) -> Chart:
@@ -136,7 +147,7 @@ class AroundEvents(Valued):
         for made_for, chart in self.charts:
             if abs(radius - made_for) <= self.window * radius:
                 return chart
-        chart = self.body.around(radius, self.window) if follows else self.body.centred()
+        chart = self.body.around(radius, self.window, self.count) if follows else self.body.centred()
         self.charts.append((radius, chart))
         return chart
 

@@ -18,7 +18,7 @@ def made_up_path(first, seconds, unknowns):
         values = {name: start + k + 0.5 for k, name in enumerate(NUMBERS)}
         errors = {f"{name}_error": (start + k) * 1e-6 for k, name in enumerate(NUMBERS)}
         events[name] = Event(name=name, **values, **errors)
-    settings = {"degree": unknowns + 1, "panels": {"edge": unknowns + 2}}
+    settings = {"rtol": 3.7e-6, "degree": unknowns + 1, "panels": {"edge": unknowns + 2}}
     finest = SimpleNamespace(unknowns=unknowns)
     return EquilibriumPath(2.0, (), events, Estimate(first + 0.1, first * 1e-5), (), finest, seconds, settings)
 

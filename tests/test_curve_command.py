@@ -91,6 +91,43 @@ def test_the_table_has_where_the_jumps_land_and_the_notes_what_they_lose(both):
         assert abs(shown - cycle.energy_lost.value) <= bound
 
 
+def test_what_misses_its_tolerance_is_marked_where_it_stands(both):
+    """In the table, its notes, the record and the table for machines, for a tolerance that half the numbers miss."""
+    errors = [error for path in both.paths.values() for e in path.events.values() for error in relative_errors(e, path)]
+    rtol = float(np.median(errors))
+    paths = {name: replace(path, settings={**path.settings, "rtol": rtol}) for name, path in both.paths.items()}
+    curves = replace(both, question=replace(both.question, rtol=rtol), paths=paths)
+    rows, record, file = _rows(curves), curve_record.record(curves), io.StringIO()
+    curve_record.write_csv(curves, file)
+    lines = list(csv.DictReader(io.StringIO(file.getvalue())))
+    notes, marked = list(curve_terminal.notes(curves)), 0
+    for solver, path in paths.items():
+        printed = {row[0]: row[2:] for row in rows if row[1] == solver}
+        assert record["solutions"][solver]["met"] is path.met
+        told = next(line for line in notes if line.startswith(solver))
+        for name, event in path.events.items():
+            missed = [
+                n for n, error in zip(("approach", "load"), relative_errors(event, path), strict=False) if error > rtol
+            ]
+            cells = zip(NUMBERS, printed[curve_terminal.EVENTS[name]], strict=True)
+            (line,) = (line for line in lines if (line["solver"], line["event"]) == (solver, name))
+            assert [quantity for quantity, cell in cells if "*" in cell] == missed == line["missed_rtol"].split()
+            assert record["solutions"][solver]["events"][name]["missed"] == missed
+            assert (f"{name} {' and '.join(missed)}" in told) == bool(missed)
+            marked += len(missed)
+    assert 0 < marked < len(errors)
+    assert any(line.startswith(f"*: the error is above rtol = {rtol:g}") for line in notes)
+    assert not any("*" in line for line in (*curve_terminal.notes(both), *sum(_rows(both), ())))
+    assert all(line.endswith("rtol 0.0001 met") for line in curve_terminal.notes(both) if "unknowns" in line)
+
+
+def relative_errors(event, path):
+    """Of approach and load, the latter unless it is zero by definition."""
+    yield event.approach_error / path.approach_scale
+    if event.name != "zero_load":
+        yield event.load_error / abs(event.load)
+
+
 def test_a_material_gives_si(real):
     table = curve_terminal.table(real)
     assert [column.header.split("\n") for column in table.columns[2:]] == [

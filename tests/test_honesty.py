@@ -17,7 +17,7 @@ import halfspace
 from fem_adhesion import Scene
 from halfspace.accuracy import Resolution, half_space_charts, resolution_for
 from halfspace.curve import energy_released, find_events, trace_charts
-from halfspace.ladder import charted_rung, climb, meets
+from halfspace.ladder import charted_rung, climb
 
 
 class Net(NamedTuple):
@@ -126,8 +126,8 @@ def _judge_all(paths, what):
 def test_half_space_estimates(truths):
     paths = [(halfspace.trace(tabor, rtol=rtol), _truth(tabor, truths)) for tabor in NET.tabors for rtol in NET.rtols]
     for path, truth in paths:
-        rtol = path.settings["rtol"]
-        assert all(estimate <= rtol * size for estimate, _, _, size in _numbers(path, truth)), (path.tabor, rtol)
+        assert path.met, (path.tabor, path.rtol)
+        assert all(estimate <= path.rtol * size for estimate, _, _, size in _numbers(path, truth))
     _judge_all(paths, "half-space")
 
 
@@ -174,17 +174,20 @@ def test_an_estimate_is_no_less_than_twice_the_change_from_a_grid_as_coarse_as_t
 def test_a_tolerance_is_met_in_loads_relative_and_in_approaches_to_their_range():
     path = halfspace.trace(1.0, rtol=1e-1)
 
-    def met(load, approach, name="jump_on"):
+    def missed(load, approach, name="jump_on"):
         event = path.event(name)
         errors = {"load_error": load * abs(event.load), "approach_error": approach * path.approach_scale}
         exact = {n: replace(e, load_error=0.0, approach_error=0.0) for n, e in path.events.items()}
-        return meets(exact | {name: replace(event, **errors)}, 1e-4)
+        asked = replace(path, events=exact | {name: replace(event, **errors)}, settings={"rtol": 1e-4})
+        assert asked.met is not bool(asked.missed)
+        return asked.missed
 
-    assert met(0.99e-4, 0.99e-4)
-    assert not met(1.01e-4, 0.99e-4)
-    assert not met(0.99e-4, 1.01e-4)
-    assert met(math.inf, 0.99e-4, "zero_load")
-    assert not met(1.0, 1.01e-4, "zero_load")
+    assert missed(0.99e-4, 0.99e-4) == {}
+    assert missed(1.01e-4, 0.99e-4) == {"jump_on": ("load",)}
+    assert missed(0.99e-4, 1.01e-4) == {"jump_on": ("approach",)}
+    assert missed(math.nan, 1.01e-4) == {"jump_on": ("approach", "load")}
+    assert missed(math.inf, 0.99e-4, "zero_load") == {}
+    assert missed(1.0, 1.01e-4, "zero_load") == {"zero_load": ("approach",)}
 
 
 @pytest.mark.parametrize(

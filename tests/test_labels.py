@@ -11,7 +11,7 @@ from rich.console import Console
 
 from fem_adhesion import cli
 from fem_adhesion.output import report_levels
-from fem_adhesion.output.record import VERDICTS, crosscheck_record, overall_verdict
+from fem_adhesion.output.record import EVENT_NAMES, VERDICTS, crosscheck_record, overall_verdict
 from fem_adhesion.output.report import WORDS, verdict_words
 from fem_adhesion.output.report_parts import symbols
 from fem_adhesion.output.tables import COLUMNS, STYLES, crosscheck_table
@@ -58,6 +58,10 @@ def same(read, made):
             assert read[key] == pytest.approx(value, rel=0.05, abs=0), key
 
 
+MISSED = "jump_off approach, zero_load approach"  # by the first of the made-up paths
+MISSED_BY_ALL = ", ".join(f"{name} approach" for name in (*EVENT_NAMES, "zero_load"))
+
+
 def test_each_column_of_the_table_holds_what_its_header_says():
     made = case(AGREE, DISAGREE, WIDE)
     table = crosscheck_table(made)
@@ -69,7 +73,11 @@ def test_each_column_of_the_table_holds_what_its_header_says():
         same(read, row_as_made(row))
         for side in ("halfspace", "finite_element"):  # digits down to the first uncertain one
             assert abs(read[side] - getattr(row, side).value) <= getattr(row, side).error
-    assert list(table.caption) == ["half-space 111 unknowns, 7.50 s", "finite elements 222 unknowns, 9.25 s"]
+    ours, theirs = f"rtol 3.7e-06 not met by {MISSED}", f"rtol 3.7e-06 not met by {MISSED_BY_ALL}"
+    assert list(table.caption) == [
+        f"half-space 111 unknowns, 7.50 s, {ours}",
+        f"finite elements 222 unknowns, 9.25 s, {theirs}",
+    ]
 
 
 def test_a_value_that_a_solver_does_not_find_is_none_and_no_number():
@@ -92,6 +100,8 @@ def test_each_key_of_the_record_holds_what_it_says():
     for key, path, first in (("halfspace", made.halfspace, 100.0), ("finite_element", made.finite_element, 200.0)):
         assert (solved[key]["unknowns"], solved[key]["seconds"]) == (path.unknowns, path.seconds)
         assert solved[key]["settings"] == path.settings
+        assert solved[key]["rtol"] == 3.7e-6
+        assert solved[key]["missed"] == {name: list(numbers) for name, numbers in path.missed.items()}
         assert set(solved[key]["events"]) == {"pull_off", "jump_on", "jump_off"}
         for place, name in enumerate(("pull_off", "jump_on", "jump_off")):
             event = solved[key]["events"][name]
@@ -147,7 +157,9 @@ def test_settings_and_costs_stand_beside_their_solver():
     halfspace, elements = settings
     assert (halfspace["solver"], halfspace["unknowns"], halfspace["seconds"]) == ("half-space", "111", "7.50")
     assert (elements["solver"], elements["unknowns"], elements["seconds"]) == ("finite elements", "222", "9.25")
-    assert halfspace["settings"] == "degree 112, panels (edge 113)"
+    assert halfspace["settings"] == "rtol 3.7e-06, degree 112, panels (edge 113)"
+    assert halfspace["tolerance"] == f"rtol 3.7e-06 not met by {MISSED}"
+    assert elements["tolerance"] == f"rtol 3.7e-06 not met by {MISSED_BY_ALL}"
 
 
 # --- the verdict, wherever it is told ---

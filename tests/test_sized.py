@@ -13,11 +13,13 @@ from fem_adhesion import Scene
 from fem_adhesion.scene import Counter
 from fem_adhesion.sized import Discretisation, sized_body
 from halfspace import compliance, grid
+from halfspace.accuracy import _under_sphere, resolution_for
 from halfspace.breathing import Homogeneous
 from halfspace.contact import ContactProblem
 from halfspace.curve import Chart, moved
+from halfspace.devices import cycle
 from halfspace.profiles import between_spheres
-from halfspace.sized import AroundEvents
+from halfspace.sized import AroundEvents, surroundings
 
 HEMISPHERE = {"tabor": 1.0, "body": "hemisphere", "profile": "sphere", "radius_ratio": 30.0}
 
@@ -143,14 +145,56 @@ def block(spheres):
 def test_events_share_an_operator_within_its_window_alone(part, shared):
     """Beyond it the operator is extrapolated, and the error estimate could not tell."""
     made = []
-    body = SimpleNamespace(around=lambda radius, window: made.append((radius, window)) or Chart(None, 1))
-    stage = AroundEvents(body, window=2e-3)
+    body = SimpleNamespace(around=lambda radius, window, count: made.append((radius, window, count)) or Chart(None, 1))
+    stage = AroundEvents(body, window=2e-3, count=5)
     problem = ContactProblem(Homogeneous(compliance.panels(grid.graded(1.0, 0.5, 10.0), 4)), 1.0)
     for radius in (1.0, 1.0 + part * 2e-3):
         observables = np.array([0.0, 0.0, 0.0, radius])
         stage(SimpleNamespace(problem=problem, point=SimpleNamespace(observables=observables)))
     assert len(made) == (1 if shared else 2)
-    assert {window for _, window in made} == {2e-3}
+    assert {(window, count) for _, window, count in made} == {(2e-3, 5)}
+
+
+def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_tolerance():
+    """By which a fold is found; against differences of whole operators over ever narrower windows, extrapolated."""
+    body = _under_sphere(2.0, between_spheres(np.sqrt(5.0), np.inf), resolution_for(2.0, 1e-8))
+    pressure = -np.exp(-8 * (body.around(1.18).problem.operator.at(1.18).radii / 1.18 - 1) ** 2)
+
+    def derivative(window, count):
+        return body.around(1.18, window, count).problem.operator.rates(1.18, pressure)[2]
+
+    wide, middle, narrow = (derivative(window, 2) for window in (4e-2, 2e-2, 1e-2))
+    exact = (64 * narrow - 20 * middle + wide) / 45
+    errors = {rtol: np.abs(derivative(*surroundings(rtol, 1)) - exact).max() for rtol in (1e-6, 1e-9)}
+    assert 1e-9 < errors[1e-6] < 1e-6
+    assert errors[1e-9] < 1e-10
+
+
+@pytest.fixture(scope="module")
+def tight():
+    return halfspace.trace(2.0, radius_ratio=10.0, rtol=1e-9)
+
+
+def test_the_tightest_tolerance_is_met_under_a_sphere(tight):
+    """The approach at pull-off, the place of a flat extremum, is from operators four times as wide apart."""
+    assert tight.met
+    assert tight.missed == {}
+    pull_off = tight.event("pull_off")
+    assert abs(pull_off.approach - -2.083525446222) <= pull_off.approach_error < 1e-9
+    folding = halfspace.trace(0.8, radius_ratio=8.0, rtol=1e-9)  # whose folds are near, and flat
+    assert folding.met
+
+
+def test_jumps_of_a_spring_on_a_sphere_are_as_accurate_as_its_events(tight):
+    rough = halfspace.trace(2.0, radius_ratio=10.0, rtol=1e-5)
+    for stiffness in (np.inf, 0.5):
+        found, truth = (cycle(path, stiffness) for path in (rough, tight))
+        assert found.met
+        for ours, exact in ((found.jump_on, truth.jump_on), (found.jump_off, truth.jump_off)):
+            for state, known in ((ours.take_off, exact.take_off), (ours.landing, exact.landing)):
+                assert abs(state.approach - known.approach) <= state.approach_error + known.approach_error
+                assert abs(state.load - known.load) <= state.load_error + known.load_error
+            assert abs(ours.energy.value - exact.energy.value) <= ours.energy.error + exact.energy.error
 
 
 def test_the_sphere_tends_to_the_paraboloid_as_one_over_rho(spheres):

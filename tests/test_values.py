@@ -4,6 +4,7 @@ import ast
 import importlib
 import pickle
 import pkgutil
+import re
 import subprocess
 import sys
 from dataclasses import FrozenInstanceError, dataclass, fields, is_dataclass, replace
@@ -97,6 +98,9 @@ def test_a_result_is_shown_in_a_few_lines_that_say_what_it_is(path):
     assert f"pull_off at approach {pull_off.approach:.6g} +- {pull_off.approach_error:.1g} eps, load" in text
     assert f"load {pull_off.load:.6g} +- {pull_off.load_error:.1g} R dgamma" in text
     assert f"tabor {path.tabor:g}: {len(path.points)} points" in text
+    assert f"; rtol {path.rtol:g} met; {path.unknowns} unknowns" in text
+    missed = replace(path, settings={**path.settings, "rtol": 0.5 * pull_off.load_error / abs(pull_off.load)})
+    assert re.search(rf"; rtol {missed.rtol:g} not met by pull_off (approach and )?load", repr(missed))
     found = path.stages[-1]["pull_off"]
     for part in (found, found.point, found.problem, path.segments[0], path.finest, found.problem.interface.operator):
         assert len(repr(part)) < 2000

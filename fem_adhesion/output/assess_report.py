@@ -189,7 +189,11 @@ def record(assessment: Assessment) -> dict[str, object]:
         "parameters": dict(assessment.parameters),
         "regime": assessment.regime,
         "models": [
-            {"model": model.model, "values": {name: asdict(q) for name, q in model.values.items()}}
+            {
+                "model": model.model,
+                "values": {name: asdict(q) for name, q in model.values.items()},
+                "missed": {state: list(numbers) for state, numbers in model.missed.items()},
+            }
             for model in assessment.models
         ],
         "deviations": [asdict(deviation) for deviation in assessment.deviations],

@@ -13,7 +13,7 @@ from fem_adhesion.output.record import plain, versions
 from fem_adhesion.studies.curves import Curves
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.devices import Cycle, Jump
-from halfspace.events import Event
+from halfspace.events import Event, Tolerance
 
 OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
 UNITS: Mapping[str, str] = {
@@ -26,6 +26,7 @@ UNITS: Mapping[str, str] = {
     "stiffness": "R dgamma/eps",
 }
 COLUMNS = ("arclength", *OBSERVABLES)
+NUMBERS = tuple(key for name in OBSERVABLES for key in (name, f"{name}_error"))  # of an event
 
 
 def record(curves: Curves) -> dict[str, Any]:
@@ -65,8 +66,9 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
         "stable_under_dead_load": path.stable_under_dead_load.tolist(),
     }
     return {
-        "events": {name: event_record(event) for name, event in path.events.items()},
+        "events": {name: event_record(event, path.tolerance) for name, event in path.events.items()},
         "curve": points | stability,
+        "met": path.met,
         "energy_released": _estimate(path.energy),
         "unknowns": path.unknowns,
         "seconds": path.seconds,
@@ -74,9 +76,9 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
     }
 
 
-def event_record(event: Event) -> dict[str, float | None]:
-    """Numbers of an event with their errors."""
-    return {key: finite(getattr(event, key)) for name in OBSERVABLES for key in (name, f"{name}_error")}
+def event_record(event: Event, tolerance: Tolerance) -> dict[str, Any]:
+    """Numbers of an event with their errors, and which of them miss a tolerance."""
+    return {key: finite(getattr(event, key)) for key in NUMBERS} | {"missed": list(tolerance.missed_by(event))}
 
 
 def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
@@ -84,14 +86,15 @@ def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
         return None
     return {
         "stiffness": finite(cycle.stiffness),
-        "jump_on": _jump(cycle.jump_on),
-        "jump_off": _jump(cycle.jump_off),
+        "met": cycle.met,
+        "jump_on": _jump(cycle.jump_on, cycle.tolerance),
+        "jump_off": _jump(cycle.jump_off, cycle.tolerance),
         "energy_lost": _estimate(cycle.energy_lost),
     }
 
 
-def _jump(jump: Jump) -> dict[str, Any]:
-    states = {"take_off": event_record(jump.take_off), "landing": event_record(jump.landing)}
+def _jump(jump: Jump, tolerance: Tolerance) -> dict[str, Any]:
+    states = {"take_off": event_record(jump.take_off, tolerance), "landing": event_record(jump.landing, tolerance)}
     return {**states, "energy": _estimate(jump.energy)}
 
 
@@ -108,7 +111,8 @@ def write_csv(curves: Curves, file: IO[str]) -> None:
     """Write the points of each solver's curve and, in their places by arclength, its events with errors.
 
     The unit is part of a column's name; where the material is known each quantity comes in SI too. Stability is left
-    out at events, which are where it changes, and errors at points.
+    out at events, which are where it changes, and errors at points. ``missed_rtol`` names the quantities of an event
+    whose errors are above the tolerance.
     """
     writer = csv.DictWriter(file, _columns(curves), lineterminator="\n", restval="")
     writer.writeheader()
@@ -127,8 +131,9 @@ def _points(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
 
 def _events(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
     for name, event in path.events.items():
-        numbers = {key: getattr(event, key) for key in event_record(event)}
-        yield {"event": name, "arclength": path.stages[-1][name].point.arclength, **numbers}
+        numbers = {key: getattr(event, key) for key in NUMBERS}
+        missed = " ".join(path.tolerance.missed_by(event))
+        yield {"event": name, "arclength": path.stages[-1][name].point.arclength, **numbers, "missed_rtol": missed}
 
 
 def _columns(curves: Curves) -> list[str]:
@@ -137,7 +142,8 @@ def _columns(curves: Curves) -> list[str]:
         for quantity in (*OBSERVABLES, *(f"{name}_error" for name in OBSERVABLES))
         for column in _named(curves, quantity)
     ]
-    return ["solver", "event", "arclength", *names, "stable_under_fixed_grips", "stable_under_dead_load"]
+    stability = ["stable_under_fixed_grips", "stable_under_dead_load"]
+    return ["solver", "event", "arclength", *names, *stability, "missed_rtol"]
 
 
 def _named(curves: Curves, quantity: str) -> dict[str, float]:

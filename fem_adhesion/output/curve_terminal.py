@@ -17,10 +17,11 @@ from fem_adhesion.output.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.studies.curves import Curves
 from fem_adhesion.studies.quantities import Quantity
 from halfspace.devices import Cycle
-from halfspace.events import Event
+from halfspace.events import Event, Tolerance, tolerance_told
 from halfspace.reach import reaching
 
 DIGITS = 8  # significant, at most
+MISSED = "*"  # after a number whose error is above the tolerance
 WIDTH, HEIGHT = 76, 18  # of the plot, in characters
 EVENTS: Mapping[str, str] = {
     "pull_off": "pull-off",
@@ -50,7 +51,7 @@ def table(curves: Curves) -> Fitted:
     words = Column("state", [words for words, _, _ in rows], text=True, wraps=True)
     # The solver tells rows apart only where there are two.
     solver = Column("solver", [name for _, name, _ in rows], 0 if len(curves.paths) > 1 else 3, text=True, wraps=True)
-    numbers = zip(*(cells(event, units) for _, _, event in rows), strict=True)
+    numbers = zip(*(cells(event, units, curves.paths[name].tolerance) for _, name, event in rows), strict=True)
     columns = [
         Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts, RANKS[name])
         for name, texts in zip(COLUMNS, numbers, strict=True)
@@ -77,8 +78,9 @@ def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str
         yield f"{words} lands", jump.landing
 
 
-def cells(event: Event, units: Mapping[str, Scale]) -> Iterator[str]:
-    """Numbers of an event, each with the error of its last digit in brackets."""
+def cells(event: Event, units: Mapping[str, Scale], tolerance: Tolerance) -> Iterator[str]:
+    """Numbers of an event, each with the error of its last digit in brackets, and a mark if that misses a tolerance."""
+    missed = tolerance.missed_by(event)
     for name in COLUMNS:
         value, error = getattr(event, name), getattr(event, f"{name}_error")
         if np.isnan(value):
@@ -86,7 +88,7 @@ def cells(event: Event, units: Mapping[str, Scale]) -> Iterator[str]:
         elif abs(value) <= error:
             yield "0"
         else:
-            yield with_error(Quantity(value, error, ""), units[name].size, DIGITS)
+            yield with_error(Quantity(value, error, ""), units[name].size, DIGITS) + (MISSED if name in missed else "")
 
 
 def _title(curves: Curves) -> Iterator[str]:
@@ -117,7 +119,11 @@ def notes(curves: Curves) -> Iterator[str]:
         else:
             yield f"no jumps, {device}: the contact follows smoothly"
     for solver, path in curves.paths.items():
-        yield f"{solver}: {path.unknowns} unknowns, {len(path.points)} points, {path.seconds:.2f} s"
+        told = tolerance_told(path.rtol, path.missed)
+        yield f"{solver}: {path.unknowns} unknowns, {len(path.points)} points, {path.seconds:.2f} s; {told}"
+    if any(curves.paths[name].tolerance.missed_by(event) for _, name, event in _rows(curves)):
+        size = "of eps and the range of all events' approaches"
+        yield f"{MISSED}: the error is above rtol = {curves.question.rtol:g} of the load, of an approach {size}."
     yield (
         "In brackets: error of the last digit. Compression and approach are positive. Contact radius: where the gap is "
         "3^(1/6) eps, the place of the largest tension; -: no contact."

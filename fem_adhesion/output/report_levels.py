@@ -9,6 +9,8 @@ from fem_adhesion.output.record import verdict_of, versions
 from fem_adhesion.output.report_parts import Section, Table, symbols
 from fem_adhesion.output.tables import COLUMNS, cells
 from fem_adhesion.studies.crosscheck import Case, Failure, Row
+from halfspace.curve import EquilibriumPath
+from halfspace.events import tolerance_told
 
 LEVELS = {
     "operator:": "Both elastic operators under the same pressures",
@@ -75,7 +77,7 @@ def settings_section(cases: Cases, machine: Mapping[str, str]) -> Section:
     """Versions, machine and what the solvers chose."""
     facts = {**versions(), **machine}
     lines = [
-        [f"{case.scene.tabor:g}", name, _settings(path.settings), str(path.unknowns), f"{path.seconds:.2f}"]
+        [f"{case.scene.tabor:g}", name, _settings(path.settings), tolerance_told(path.rtol, path.missed), *_cost(path)]
         for case in cases
         if isinstance(case, Case)
         for name, path in (("half-space", case.halfspace), ("finite elements", case.finite_element))
@@ -85,9 +87,13 @@ def settings_section(cases: Cases, machine: Mapping[str, str]) -> Section:
         "Versions and settings",
         tables=(
             Table("Versions", ("what", "which"), list(map(list, facts.items())), open=True),
-            Table("Settings", ("Tabor parameter", "solver", "settings", "unknowns", "seconds"), lines),
+            Table("Settings", ("Tabor parameter", "solver", "settings", "tolerance", "unknowns", "seconds"), lines),
         ),
     )
+
+
+def _cost(path: EquilibriumPath) -> tuple[str, str]:
+    return str(path.unknowns), f"{path.seconds:.2f}"
 
 
 def _settings(value: object) -> str:

@@ -7,6 +7,7 @@ import math
 from fem_adhesion.output.terminal import Column, Fitted
 from fem_adhesion.studies.crosscheck import Case, Row
 from halfspace.curve import EquilibriumPath, Estimate
+from halfspace.events import tolerance_told
 
 COLUMNS = (
     "quantity",
@@ -39,7 +40,7 @@ def crosscheck_table(case: Case) -> Fitted:
     return Fitted(
         [Column(name, texts, RANKS.get(name, 0), name in WORDS, wraps=name == "quantity") for name, texts in columns],
         [f"tabor {case.scene.tabor:g}", f"poisson {case.scene.poisson:g}: [{style}]{case.verdict}[/]"],
-        [f"half-space {_cost(case.halfspace)}", f"finite elements {_cost(case.finite_element)}"],
+        [f"half-space {told(case.halfspace)}", f"finite elements {told(case.finite_element)}"],
         ["" if row.verdict == "agree" else STYLES[row.verdict] for row in case.rows],
     )
 
@@ -74,5 +75,6 @@ def _small(value: float) -> str:
     return f"{value:.1e}" if math.isfinite(value) else "-"
 
 
-def _cost(path: EquilibriumPath) -> str:
-    return f"{path.unknowns} unknowns, {path.seconds:.2f} s"
+def told(path: EquilibriumPath) -> str:
+    """Cost of a curve, and whether it has the accuracy that was asked of it."""
+    return f"{path.unknowns} unknowns, {path.seconds:.2f} s, {tolerance_told(path.rtol, path.missed)}"

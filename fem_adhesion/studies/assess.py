@@ -30,7 +30,9 @@ from fem_adhesion.studies.assess_verdict import (
     regime,
     verdict,
 )
+from halfspace.curve import EquilibriumPath
 from halfspace.errors import InputError, NotConverged
+from halfspace.events import tolerance_told
 from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
 
 HALF_SPACE, PROFILE, FINITE, PAIR = "half-space", "true profile", "finite sphere", "finite pair"
@@ -148,7 +150,7 @@ def assess(contact: Contact, progress: Progress = lambda *_: None) -> Assessment
         tuple(deviations(half_space, profile, finite, contact.spacing)),
         distances := ranked((half_space, profile, finite, *theories), contact.spacing),
         regime(contact.units.tabor),
-        (*cautions(contact, half_space), *filter(None, (reason, why_not))),
+        (*cautions(contact, half_space), *filter(None, (reason, why_not)), *_missed(half_space, profile, finite)),
         tuple(verdict(finite or half_space, distances, computed=finite is not None)),
         time.perf_counter() - began,
     )
@@ -179,6 +181,13 @@ def _tried(name: str, make: Callable[[Contact], Prediction], contact: Contact) -
         return make(contact), None
     except (InputError, NotConverged) as error:
         return None, f"{name} not solved: {error}"
+
+
+def _missed(*models: Prediction | None) -> Iterator[str]:
+    """Sentences on computed models that are less accurate than was asked of them."""
+    for model in models:
+        if model and model.missed and isinstance(model.curve, EquilibriumPath):
+            yield f"{model.model}: {tolerance_told(model.curve.rtol, model.missed)}"
 
 
 def _profile(contact: Contact) -> Prediction:

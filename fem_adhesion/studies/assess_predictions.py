@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from fem_adhesion.studies import assess_theories
@@ -69,11 +69,14 @@ class Prediction:
             In J, in a cycle of approach and separation.
     curve : EquilibriumPath, Curve or None
         Where they are read off, if a curve.
+    missed : mapping of str to tuple of str
+        By state of a computed curve or of its jumps, the numbers that are less accurate than was asked.
     """
 
     model: str
     values: Mapping[str, Quantity]
     curve: EquilibriumPath | Curve | None = field(default=None, repr=False)
+    missed: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
     @property
     def is_computed(self) -> bool:
@@ -101,7 +104,7 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
             "jump_off", round_trip.jump_off, stiffness, units
         )
         values["energy_lost"] = Quantity.of(round_trip.energy_lost, units.energy, "J")
-    return Prediction(model, _known(values), path)
+    return Prediction(model, _known(values), path, path.missed | (round_trip.missed if round_trip else {}))
 
 
 def _radius(event: Event, units: Units) -> Quantity:
