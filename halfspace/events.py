@@ -210,6 +210,7 @@ def _may_hide(a: Point, b: Point, condition: Condition) -> bool:
     return inside < little or (length > LONG and min(abs(first), abs(last)) < little)
 
 
+LEAP = 1e-3  # of what should vanish at a root in its largest value around: more is left where states leap
 NEARLY = 0.2  # of the larger rate at the two ends
 LONG = 0.05  # arclength
 
@@ -225,7 +226,11 @@ def _between(problem: Traceable, a: Point, b: Point, condition: Condition, metri
         return condition.of(trials[step])
 
     root = brentq(quantity, 0.0, length, xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
-    quantity(root)
+    if abs(quantity(root)) > LEAP * max(abs(condition.of(a)), abs(condition.of(b))) + ROUND_OFF:
+        raise NotConverged(
+            f"an event near approach {a.observables[0]:.6g} eps, load {a.observables[1]:.6g} R dgamma is lost: states "
+            "next to each other lie on different branches; refine the grid"
+        )
     return Located(condition, problem, trials[root], (condition.of(b) - condition.of(a)) / length)
 
 
@@ -278,6 +283,9 @@ def _same_place(point: Point, problem: Traceable, start: Array, metric: Metric) 
     return make_point(problem, solution, metric, weights, point.arclength)
 
 
+AT_A_POINT = [CENTRAL_GAP, CONTACT_RADIUS]
+
+
 def estimate_event(
     name: str,
     chains: Sequence[Sequence[Located]],
@@ -299,6 +307,7 @@ def estimate_event(
     along : bool
         If true, an observable's change is taken to be no less than what the event's shift along the path makes of it:
         on a single chain, one number may stand still by accident while the event moves. For stationary conditions only.
+        Nor do the gap and radius, which are at a point, then fall as averages do: the changes of all chains add up.
     least : (4,) array
         Changes of the observables that count where the chains' own are less.
     """
@@ -307,9 +316,12 @@ def estimate_event(
         sum((np.abs(b.point.observables - a.point.observables) for a, b in pairwise(chain)), np.zeros(4))
         for chain in chains
     ]
+    whole = np.sum(changes, axis=0)
     if along and chains[0][-1].condition.stationary:
         changes += [_shifted(chains[0][-1], change) for change in changes]
     errors = remaining * np.maximum(np.max(changes, axis=0), least) + ROUND_OFF * (1 + np.abs(values))
+    if along:
+        errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
     if along or len(chains) == 1:
         best = chains[0][-1]
         ripple = best.problem.interface.ripple(best.problem.surface_state(best.point.x))

@@ -1,16 +1,26 @@
 """Bodies bonded at their mid-plane, whose corner with the free surface is singular: exponent, convergence, events."""
 
+import math
+import os
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 from skfem import ElementQuadP
 
-from fem_adhesion import bodies
+import fem_adhesion
+from fem_adhesion import Scene, bodies
 from fem_adhesion.condensed import condense
 from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import clamped
 from fem_adhesion.incompressible import stiffness_for
+from fem_adhesion.scene import Counter
+from fem_adhesion.sized import Discretisation, sized_body
 from halfspace import grid
+from halfspace.curve import energy_released
+from halfspace.events import approach_scale
+from halfspace.ladder import _on_all
+from halfspace.sized import AroundEvents
 
 R = 10.0
 
@@ -49,3 +59,62 @@ def test_the_error_falls_with_the_degree_however_fine_the_contact(poisson):
     errors = [abs(pole_compliance(degree, poisson, 5, 0.1) / best - 1) for degree in (4, 6, 8)]
     assert errors[1] < errors[0] / 50
     assert errors[2] < 3e-9
+
+
+def bonded(tabor, radius_ratio, poisson, counter=None):
+    return Scene(
+        tabor,
+        poisson,
+        body="hemisphere",
+        profile="sphere",
+        radius_ratio=max(radius_ratio, 2.25 * tabor),
+        grip="bonded",
+        counter=counter,
+    )
+
+
+PAIR = Counter(0.4, 0.45, 3.0)
+USUAL = [bonded(1.0, 100.0, 0.499), bonded(0.3, 6.0, 0.0), bonded(0.3, 10.0, 0.45, PAIR)]
+FULL = [
+    *(
+        bonded(tabor, rho, poisson)
+        for rho in (6.0, 100.0, 1000.0)
+        for tabor in (0.3, 1.0, 3.0)
+        for poisson in (0.0, 0.3, 0.45, 0.499, 0.4999)
+    ),
+    *(bonded(tabor, 30.0, 0.499, counter) for tabor in (0.3, 3.0) for counter in (PAIR, Counter(0.5, 0.3))),
+]
+SCENES = {"": USUAL, "quick": USUAL[:1], "full": FULL}[os.environ.get("HONESTY", "")]
+
+
+def named(scene):
+    pair = f"-{scene.counter.radius:g}" if scene.counter else ""
+    return f"{scene.tabor:g}-{scene.radius_ratio:g}-{scene.poisson:g}{pair}"
+
+
+@pytest.fixture(scope="module", params=SCENES, ids=named)
+def traced(request):
+    """A curve, and its events on elements of a higher degree, shorter cells of another growth and more rings."""
+    path = fem_adhesion.trace(request.param, rtol=1e-5)
+    finer = Discretisation(path.settings["events"]["degree"] + 2, finest=0.45, growth=2.1, rings=6)
+    return path, _on_all(path.stages[-1], AroundEvents(sized_body(request.param, finer), 2e-4))
+
+
+def test_bonded_estimates_hold_a_tighter_solution_on_other_cells(traced):
+    path, truth = traced
+    for name, event in path.events.items():
+        values = truth[name].point.observables
+        for quantity, value in zip(("approach", "load", "central_gap", "contact_radius"), values, strict=True):
+            if math.isfinite(value):
+                error = abs(getattr(event, quantity) - value)
+                assert error <= getattr(event, f"{quantity}_error"), (name, quantity)
+    assert abs(path.energy.value - energy_released(truth)) <= path.energy.error
+
+
+def test_bonded_estimates_and_events_are_within_the_tolerance(traced):
+    path, truth = traced
+    scale = approach_scale(event.approach for event in path.events.values())
+    for name, event in path.events.items():
+        approach, load = truth[name].point.observables[:2]
+        assert max(event.approach_error, abs(event.approach - approach)) <= 1e-5 * scale, name
+        assert name == "zero_load" or max(event.load_error, abs(event.load - load)) <= 1e-5 * abs(load), name

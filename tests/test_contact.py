@@ -260,3 +260,11 @@ def test_no_step_of_newtons_method_takes_a_gap_below_a_quarter_of_its_value(prob
     dx[3] = -0.75 * (x[3] + 1)
     assert problem.longest_step(x, dx) == pytest.approx(1.0)
     assert problem.longest_step(x, -1e3 * dx) == 1.0
+
+
+def test_a_gap_is_known_no_better_than_to_the_largest_of_its_last_three_coefficients():
+    """Elements of degree 6 have 8 nodes in a cell; the last coefficient is not theirs, that before may change sign."""
+    operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 8)
+    coefficients = [0.1, 2e-2, 9e-3, 1e-3, 3e-4, 2e-5, -1e-6, 8e-10]
+    gaps = np.polynomial.legendre.legval(2 * operator.radii - 1, coefficients)
+    assert ContactProblem(operator, 1.0).ripple(np.append(gaps, [0.0, 1.0])) == pytest.approx(2e-5, rel=1e-6, abs=0)

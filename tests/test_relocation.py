@@ -1,0 +1,44 @@
+"""Events found on one discretisation and solved for again on another, far from the first."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import fem_adhesion
+from fem_adhesion import Scene
+from halfspace import events
+from halfspace.errors import NotConverged
+from halfspace.events import Condition
+
+
+@pytest.mark.parametrize("rtol", [1e-1, 1e-2])
+def test_events_are_found_again_on_a_clamped_block_three_times_as_large(rtol):
+    """The smaller one is only two attractions wide: its pull-off load is a sixth less, all events lie elsewhere."""
+    path = fem_adhesion.trace(Scene(0.1, far_field="clamped", radius=20.0), rtol=rtol)
+    for stage in path.stages:
+        for name, event in stage.items():
+            assert abs(event.condition.of(event.point)) < 1e-9, name
+    small, large = (path.stages[k]["pull_off"].point.observables[1] for k in (0, -1))
+    assert small / large < 0.9
+
+
+def point(arclength, approach):
+    return SimpleNamespace(arclength=arclength, observables=np.array([approach, 0.0, 0.0, np.nan]), rates=np.zeros(4))
+
+
+@pytest.mark.parametrize(("leap", "found"), [(0.0, True), (0.2, False)])
+def test_a_sign_that_changes_where_states_leap_is_no_event(monkeypatch, leap, found):
+    def state(_problem, a, step, *_, **__):
+        at = a.arclength + step - 0.3
+        return point(a.arclength + step, at + leap * np.sign(at))
+
+    monkeypatch.setattr(events, "correct", state)
+    monkeypatch.setattr(events, "_hermite", lambda *_: None)
+    a, b = (state(None, point(0.0, 0.0), s) for s in (0.0, 1.0))
+    if found:
+        root = events._between(None, a, b, Condition(0), None).point
+        assert root.observables[0] == pytest.approx(0.0, abs=1e-9)
+    else:
+        with pytest.raises(NotConverged, match="different branches; refine"):
+            events._between(None, a, b, Condition(0), None)
