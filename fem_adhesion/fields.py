@@ -206,8 +206,9 @@ def _spread(path: EquilibriumPath, count: int | None) -> list[tuple[Traceable, P
         return every
     if count < 0:
         raise InputError(f"points = {count} is outside 0 <= points; give how many states of the curve to take")
-    wanted = np.linspace(path.arclength[0], path.arclength[-1], count)
-    nearest = np.abs(path.arclength - wanted[:, None]).argmin(axis=1) if count else []
+    arclength = np.array([point.arclength for _, point in every])
+    wanted = np.linspace(arclength[0], arclength[-1], count)
+    nearest = np.abs(arclength - wanted[:, None]).argmin(axis=1) if count else []
     return [every[number] for number in np.unique(nearest).astype(int)]
 
 

@@ -23,9 +23,9 @@ from fem_adhesion.scene import Scene
 from halfspace import grid, newton
 from halfspace.compliance import Array
 from halfspace.contact import CENTRAL_GAP, CONTACT_RADIUS, ContactProblem
-from halfspace.curve import Chart, Segment, transfer
+from halfspace.curve import Chart, transfer
 from halfspace.newton import Traceable
-from halfspace.path import Point
+from halfspace.path import Point, Segment
 from halfspace.sized import SizedBody
 from halfspace.values import Valued
 

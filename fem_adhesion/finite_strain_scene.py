@@ -21,7 +21,6 @@ from halfspace.curve import (
     Chart,
     EquilibriumPath,
     Estimate,
-    Segment,
     find_events,
     metric_for,
     trace_charts,
@@ -29,6 +28,7 @@ from halfspace.curve import (
 from halfspace.errors import InputError
 from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, Tolerance, estimate_event
 from halfspace.limits import require_load, require_rtol
+from halfspace.path import Segment
 from halfspace.values import Valued
 
 WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a minute's work at 3

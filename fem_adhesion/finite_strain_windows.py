@@ -13,8 +13,8 @@ from fem_adhesion.finite_strain import FiniteStrainProblem
 from fem_adhesion.finite_strain_events import raised, same_contact, undeformed_radius
 from fem_adhesion.finite_strain_meshes import FARTHEST, Discretised, ScenesBody
 from halfspace import newton
-from halfspace.curve import Segment, metric_for, separated_approach
-from halfspace.path import Metric, Point, follow, loaded_to, make_point
+from halfspace.curve import metric_for, separated_approach
+from halfspace.path import Metric, Point, Segment, follow, loaded_to, make_point
 
 WINDOW = 8
 """Fine cells in a mesh: more cost more unknowns, fewer more meshes."""

@@ -67,11 +67,12 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     how, below, curve = (_with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
     settings = asdict(how) | {"curve_degree": curve.degree, "rings": len(corner_rings(scene, how))}
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
+    other = AroundEvents(sized_body(scene, twin), *surroundings(rtol, level - 1), to_load)
     return Rung(
         partial(sized_body(scene, curve).curve, to_load),
-        (AroundEvents(sized_body(scene, how), *surroundings(rtol, level)),),
+        (AroundEvents(sized_body(scene, how), *surroundings(rtol, level), to_load),),
         settings,
-        AroundEvents(sized_body(scene, twin), *surroundings(rtol, level - 1)) if level and _singular(scene) else None,
+        other if level and _singular(scene) else None,
         remaining=REMAINING,
         along=True,
     )

@@ -183,9 +183,9 @@ def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level:
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(
         partial(fine.curve, to_load),
-        (AroundEvents(fine, *surroundings(rtol, level)),),
+        (AroundEvents(fine, *surroundings(rtol, level), to_load),),
         settings,
-        AroundEvents(other, *surroundings(rtol, level - 1)) if level else None,
+        AroundEvents(other, *surroundings(rtol, level - 1), to_load) if level else None,
     )
 
 

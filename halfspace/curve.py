@@ -8,13 +8,13 @@ a single chart.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from halfspace import newton
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
@@ -32,10 +32,13 @@ from halfspace.events import (
     approach_scale,
     locate,
     relocate,
+    same_place,
     tolerance_told,
 )
+from halfspace.limits import require_points
 from halfspace.newton import Traceable
-from halfspace.path import Metric, Point, Steps, follow, loaded_to, make_point
+from halfspace.path import Metric, Point, Segment, Steps, follow, loaded_to, make_point
+from halfspace.states import FinestCurve, States, Ways, finest_curve, require_coordinate, resampled
 from halfspace.values import Valued, shown
 
 Array = NDArray[np.float64]
@@ -50,14 +53,6 @@ class Chart(Valued):
     problem: Traceable
     unknowns: int
     until: float = np.inf
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Segment(Valued):
-    """Points of the path on one chart."""
-
-    problem: Traceable
-    points: tuple[Point, ...]
 
 
 @dataclass(frozen=True)
@@ -90,7 +85,7 @@ class EquilibriumPath(Valued):
     tabor : float
         Tabor parameter.
     segments : tuple of Segment
-        Converged points in order, with the discretisation they live on.
+        Points in order on the coarsest discretisation, from which all else starts.
     events : mapping of str to Event
         ``pull_off``, ``zero_load`` and, where the curve folds, ``jump_on`` and ``jump_off``.
     energy : Estimate
@@ -110,6 +105,8 @@ class EquilibriumPath(Valued):
         A discretisation as fine as the last but one, with other cells, for the errors of what is solved for later.
     remaining : float
         Part of the change from either to the finest that may be left.
+    ways : chains of callables
+        To the finest discretisation that serves the whole curve, see `halfspace.states.Ways`.
     """
 
     tabor: float
@@ -123,6 +120,7 @@ class EquilibriumPath(Valued):
     below: Finest | None = None
     twin: Finest | None = None
     remaining: float = REMAINING
+    ways: Ways = ()
 
     @property
     def unknowns(self) -> int:
@@ -171,9 +169,10 @@ class EquilibriumPath(Valued):
     def __repr__(self) -> str:
         """What was asked and found: events with their errors, energy, effort."""
         events = "; ".join(map(_told, self.events.values()))
+        first, last = (self.segments[i].points[i].observables[APPROACH] for i in (0, -1))
         return (
-            f"<EquilibriumPath of tabor {self.tabor:g}: {len(self.points)} points on {len(self.segments)} charts, "
-            f"approach {self.approach[0]:.4g} to {self.approach[-1]:.4g} eps; {events}; energy released "
+            f"<EquilibriumPath of tabor {self.tabor:g}: {self.count} points on {len(self.segments)} charts, "
+            f"approach {first:.4g} to {last:.4g} eps; {events}; energy released "
             f"{self.energy.value:.6g} +- {self.energy.error:.1g} R dgamma eps; "
             f"{tolerance_told(self.rtol, self.missed)}; "
             f"{self.unknowns} unknowns, {self.seconds:.2g} s; settings {shown(self.settings)}>"
@@ -200,19 +199,105 @@ class EquilibriumPath(Valued):
         return self._observable(CONTACT_RADIUS)
 
     @property
+    def approach_error(self) -> Array:
+        """Estimated errors of `approach` in eps: the exact curve passes by each point within those of its numbers."""
+        return self.finest_curve.errors[:, APPROACH]
+
+    @property
+    def load_error(self) -> Array:
+        """Estimated errors of `load` in R dgamma, shape (points,)."""
+        return self.finest_curve.errors[:, LOAD]
+
+    @property
+    def central_gap_error(self) -> Array:
+        """Estimated errors of `central_gap` in eps, shape (points,)."""
+        return self.finest_curve.errors[:, CENTRAL_GAP]
+
+    @property
+    def contact_radius_error(self) -> Array:
+        """Estimated errors of `contact_radius` in beta, nan without contact, shape (points,)."""
+        return self.finest_curve.errors[:, CONTACT_RADIUS]
+
+    @property
     def arclength(self) -> Array:
         """Arclength from the first point, in the units of `halfspace.path.Metric`, shape (points,)."""
         return np.array([point.arclength for point in self.points])
 
     @property
     def points(self) -> list[Point]:
-        """All points in order."""
-        return [point for segment in self.segments for point in segment.points]
+        """All points in order, on the finest discretisation."""
+        return [point for segment in self.finest_curve.segments for point in segment.points]
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return sum(len(segment.points) for segment in self.segments)
+
+    @cached_property
+    def finest_curve(self) -> FinestCurve:
+        """The points solved for on the finest discretisation, when they are first asked for."""
+        return finest_curve(self.segments, self.ways, self.remaining, metric_for(self.tabor))
+
+    def at(
+        self,
+        *,
+        approach: ArrayLike | None = None,
+        load: ArrayLike | None = None,
+        central_gap: ArrayLike | None = None,
+        branch: str | None = None,
+    ) -> States:
+        """Solve for the states that have a given approach, load or central gap.
+
+        Parameters
+        ----------
+        approach, load, central_gap : array_like
+            One of them, in eps, R dgamma or eps; a number or an array.
+        branch : str, optional
+            Part of the curve between two places where that coordinate turns, as between the folds of the approach:
+            ``separated``, ``unstable``, ``contact``; see `branches`. Needed where there are several such states.
+
+        Returns
+        -------
+        States
+            On the finest discretisation, each number with its error at the value asked for.
+
+        Raises
+        ------
+        InputError
+            If there is no such state, or there are several.
+        """
+        asked = {"approach": approach, "load": load, "central_gap": central_gap}
+        given = {name: values for name, values in asked.items() if values is not None}
+        if len(given) != 1:
+            names = " and ".join(given) or "nothing"
+            raise InputError(f"a state is asked for by {names}, limit: one of {', '.join(asked)}; give that one")
+        ((coordinate, values),) = given.items()
+        return self.finest_curve.at(coordinate, values, branch)
+
+    def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
+        """Parts of the curve in order along which a coordinate goes in one direction, and its range on each.
+
+        Parameters
+        ----------
+        coordinate : {"approach", "load", "central_gap"}
+            Two folds of the approach make three branches; the four of a winding curve number the unstable ones.
+        """
+        return self.finest_curve.branches(require_coordinate(coordinate))
+
+    def resampled(self, points: int) -> EquilibriumPath:
+        """Return the same path with another number of points, evenly spaced in arclength.
+
+        Raises
+        ------
+        InputError
+            If there are fewer than two.
+        """
+        return replace(self, segments=resampled(self.segments, require_points(points), metric_for(self.tabor)))
 
     @cached_property
     def stable(self) -> NDArray[np.bool_]:
         """Stability under fixed grips, from the inertia of the tangent, shape (points,)."""
-        return np.concatenate([_stable(segment) for segment in self.segments])
+        return np.concatenate([_stable(segment) for segment in self.finest_curve.segments])
 
     @cached_property
     def stable_under_dead_load(self) -> NDArray[np.bool_]:
@@ -319,6 +404,15 @@ def _deflection_beyond(source: ContactProblem, x: Array, radii: Array) -> Array:
     if body.beyond.size:
         return body.values_beyond(radii, x[:-2] + x[-2] - source.tabor * source.profile.height(body.radii))
     return np.asarray(source.tabor * source.load(x) / (np.pi * radii))
+
+
+def placed(finest: Finest, problem: Traceable, point: Point) -> tuple[Traceable, Point]:
+    """Solve for a point of the path again on another discretisation, in the plane across the path at that point."""
+    target = finest(Located(FOLD, problem, point, 1.0)).problem
+    if target is problem:
+        return problem, point
+    start = transfer(problem, point.x, target)
+    return target, same_place(point, target, start, metric_for(target.tabor))
 
 
 def moved(event: Located, problem: Traceable) -> Located:

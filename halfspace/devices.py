@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD, ContactProblem
-from halfspace.curve import EquilibriumPath, Estimate, Finest, Segment, metric_for, moved, transfer
+from halfspace.curve import EquilibriumPath, Estimate, Finest, metric_for, moved, transfer
 from halfspace.errors import InputError
 from halfspace.events import ROUND_OFF, Condition, Event, Located, Tolerance, estimate_event, locate
 from halfspace.limits import require_number
 from halfspace.newton import Control, Traceable
-from halfspace.path import make_point
+from halfspace.path import Segment, make_point
 from halfspace.reach import reaching, widened
 
 Array = NDArray[np.float64]

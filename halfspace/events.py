@@ -179,7 +179,7 @@ class Located(Valued):
 def locate(problem: Traceable, points: Sequence[Point], metric: Metric, condition: Condition) -> list[Located]:
     """Find every root of a condition between successive points of one discretisation's path."""
     return [
-        _between(problem, c, d, condition, metric)
+        between(problem, c, d, condition, metric)
         for a, b in pairwise(points)
         for c, d in _watched(problem, a, b, condition, metric)
         if condition.of(c) * condition.of(d) < 0
@@ -193,7 +193,7 @@ def _watched(
     if not depth or not _may_hide(a, b, condition):
         return [(a, b)]
     length = b.arclength - a.arclength
-    middle = correct(problem, a, length / 2, _hermite(problem, a, b, 0.5), metric, iterations=20)
+    middle = correct(problem, a, length / 2, hermite(problem, a, b, 0.5), metric, iterations=20)
     rest = float((metric.weights * middle.rates)[:3] @ (b.observables - middle.observables)[:3])
     onward = replace(b, arclength=middle.arclength + rest)  # as `correct` measures it, along the first point's tangent
     halves = ((a, middle), (middle, onward))
@@ -215,14 +215,14 @@ NEARLY = 0.2  # of the larger rate at the two ends
 LONG = 0.05  # arclength
 
 
-def _between(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
+def between(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
     """Find the root between two points of which the second was reached from the first."""
     length = b.arclength - a.arclength
     trials = {0.0: a, length: b}
 
     def quantity(step: float) -> float:
         if step not in trials:
-            trials[step] = correct(problem, a, step, _hermite(problem, a, b, step / length), metric, iterations=20)
+            trials[step] = correct(problem, a, step, hermite(problem, a, b, step / length), metric, iterations=20)
         return condition.of(trials[step])
 
     root = brentq(quantity, 0.0, length, xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
@@ -234,7 +234,7 @@ def _between(problem: Traceable, a: Point, b: Point, condition: Condition, metri
     return Located(condition, problem, trials[root], (condition.of(b) - condition.of(a)) / length)
 
 
-def _hermite(problem: Traceable, a: Point, b: Point, t: float) -> Array:
+def hermite(problem: Traceable, a: Point, b: Point, t: float) -> Array:
     """State between two points, from the cubic through both with their tangents; gaps stay positive."""
     h = b.arclength - a.arclength
     x = (
@@ -254,7 +254,7 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
         If the event does not exist near `start` on that discretisation.
     """
     condition = event.condition
-    nearby = _same_place(event.point, problem, start, metric)
+    nearby = same_place(event.point, problem, start, metric)
     step = -PAST * condition.of(nearby) / event.slope
     if abs(step) < ARCLENGTH_TOLERANCE:
         return Located(condition, problem, nearby, event.slope)
@@ -262,7 +262,7 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
         beyond = correct(problem, nearby, step, nearby.x + step * nearby.tangent, metric, iterations=20)
         left = condition.of(beyond) / condition.of(nearby)
         if left <= 0:
-            return _between(problem, nearby, beyond, condition, metric)
+            return between(problem, nearby, beyond, condition, metric)
         step *= min(1 + PAST * left / (1 - left), LONGER) if left < 1 else LONGER  # as far past the secant's root
     at = event.point.observables
     raise NotConverged(
@@ -274,7 +274,7 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
 TRIALS, PAST, LONGER = 4, 1.5, 3.0  # steps to beyond an event: how many, how far past it, how many times the last
 
 
-def _same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:
+def same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:
     """Solve on another discretisation in the plane across the path at a given point."""
     weights = metric.weights * point.rates
     used = weights != 0

@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -20,13 +21,16 @@ from halfspace.curve import (
     Chart,
     EquilibriumPath,
     Estimate,
+    Finest,
     energy_released,
     find_events,
     moved,
+    placed,
     trace_charts,
 )
 from halfspace.errors import InputError, NotConverged
 from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, Tolerance, estimate_event
+from halfspace.states import Ways
 from halfspace.values import Valued
 
 MOST_RUNGS = 4  # above the lowest
@@ -40,6 +44,11 @@ class Stage(Protocol):
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event found on another discretisation."""
+        ...
+
+    @property
+    def everywhere(self) -> Finest:
+        """The same for every point of a curve, if charts for events do not serve these."""
         ...
 
     @property
@@ -64,6 +73,11 @@ class Charted(Valued):
         """Chart of the event's kind."""
         source = event.problem
         return self.charts[-1 if isinstance(source, ContactProblem) and source.follows_contact else 0]
+
+    @property
+    def everywhere(self) -> Finest:
+        """The same charts."""
+        return self
 
     @property
     def unknowns(self) -> int:
@@ -144,7 +158,8 @@ def _climb_from(
     """Trace the curve on the rung `start` and climb from there."""
     began = time.perf_counter()
     lowest = rung(start)
-    segments = trace_charts(lowest.curve(), to_load)
+    charts = lowest.curve()
+    segments = trace_charts(charts, to_load)
     state: State = find_events(segments)
     for stage in lowest.stages:
         state = _on_all(state, stage)
@@ -168,7 +183,14 @@ def _climb_from(
         below.stages[-1] if below.stages else None,
         higher.twin,
         higher.remaining,
+        _ways(below.stages[-1] if below.stages else Charted(charts), higher),
     )
+
+
+def _ways(below: Stage, higher: Rung) -> Ways:
+    """Chains from the rung below, and from its twin, to the last stage of a rung, for any point of the curve."""
+    chain = [partial(placed, stage.everywhere) for stage in (below, *higher.stages)]
+    return (tuple(chain), (partial(placed, higher.twin.everywhere), chain[-1])) if higher.twin else (tuple(chain),)
 
 
 def _step_up(state: State, higher: Rung) -> list[list[State]]:

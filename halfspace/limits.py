@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import reprlib
-from numbers import Real
+from numbers import Integral, Real
 
 from halfspace.errors import InputError
 
@@ -53,6 +53,13 @@ def require_load(to_load: float) -> float:
     to_load = require_number(to_load, "to_load")
     remedy = "the curve must pass zero load, and Hertz's theory serves above: take 5"
     return _require(to_load, "to_load", 0 < to_load <= 1000, "0 < to_load <= 1000", remedy)
+
+
+def require_points(points: int) -> int:
+    """Return the number of points of a curve, or raise InputError for fewer than its two ends."""
+    if isinstance(points, bool) or not isinstance(points, Integral) or points < 2:
+        raise InputError(f"points = {points} is outside 2 <= points; take a whole number, 2 or more")
+    return int(points)
 
 
 def require_radius(radius: float, tabor: float) -> float:

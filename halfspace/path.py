@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD
 from halfspace.errors import NotConverged
-from halfspace.newton import Control, Equilibrium
+from halfspace.newton import Control, Equilibrium, Traceable
 from halfspace.values import Valued
 
 Array = NDArray[np.float64]
@@ -59,6 +59,14 @@ class Point(Valued):
     rates: Array
     arclength: float
     iterations: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Segment(Valued):
+    """Points of the path in order on one discretisation."""
+
+    problem: Traceable
+    points: tuple[Point, ...]
 
 
 @dataclass(frozen=True)

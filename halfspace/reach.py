@@ -10,9 +10,9 @@ import numpy as np
 from halfspace import newton
 from halfspace.compliance import ElasticOperator, to_infinity
 from halfspace.contact import APPROACH, ContactProblem
-from halfspace.curve import EquilibriumPath, Segment, metric_for
+from halfspace.curve import EquilibriumPath, metric_for
 from halfspace.newton import Traceable
-from halfspace.path import Metric, Point, make_point
+from halfspace.path import Metric, Point, Segment, make_point
 
 FARTHER, NEARER = 1.5, 1.1  # margins by which the points added to a curve reach past the jump and past its beginning
 POINTS = 12  # so added

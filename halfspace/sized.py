@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from halfspace import grid
 from halfspace.breathing import Interpolated, MovingGrid, SurfaceCoordinate, chebyshev_radii
 from halfspace.compliance import Array, ElasticOperator
 from halfspace.contact import CONTACT_RADIUS, WIDEST, ContactProblem, spike_width
-from halfspace.curve import Chart
+from halfspace.curve import COMPRESSION, Chart
 from halfspace.events import Located
 from halfspace.profiles import Profile
 from halfspace.theories import jkr_radius
@@ -28,6 +29,7 @@ WINDOW, AROUND = 2e-3, 3  # half the logarithmic width of the radii around an ev
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
 CROWDED = 5  # cells next to the equator
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
+CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
 
 Made = tuple[ElasticOperator, int]
 
@@ -79,11 +81,11 @@ class SizedBody(Valued):
         operator = Interpolated(scales, [operator for operator, _ in made], moving)
         return Chart(ContactProblem(operator, self.tabor, profile=self.profile), made[0][1])
 
-    def curve(self, to_load: float) -> tuple[Chart, Chart]:
-        """Charts for the whole curve: the second from operators at radii some 1.7 times one the other."""
+    def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
+        """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
         widest = min(float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(self.tabor))), WIDEST * self.profile.end)
         least = min(LEAST * LEAVE * self.length, widest / 2)
-        count = 2 + int(np.ceil(np.log(widest / least) / np.log(APART)))
+        count = 2 + int(np.ceil(np.log(widest / least) / np.log(apart)))
         end, edge = float(self.outer[0]), self.coordinate.of(widest)
         inner = grid.geometric(1.0, 2 * self.length / edge, self.growth)
         moving = self._moving(1 - inner[::-1], grid.geometric(end, self.length, self.growth) / end)
@@ -133,11 +135,14 @@ class AroundEvents(Valued):
         which errs by a power of it: windows that differ from rung to rung let the error estimate see it.
     count : int
         Operators in it, see `surroundings`.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
     """
 
     body: SizedBody
     window: float = WINDOW
     count: int = AROUND
+    to_load: float = COMPRESSION
     charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
 
     def __call__(self, event: Located) -> Chart:
@@ -152,6 +157,46 @@ class AroundEvents(Valued):
         return chart
 
     @property
+    def everywhere(self) -> AlongCurve:
+        """The same grid for every point of a curve."""
+        apart = 1 + (CLOSER - 1) * self.window / WINDOW * 2.0 ** (AROUND - self.count)
+        return AlongCurve(self.body, self.to_load, apart)
+
+    @property
     def unknowns(self) -> int:
         """Most unknowns of a chart made so far."""
         return max(chart.unknowns for _, chart in self.charts)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AlongCurve(Valued):
+    """Charts of a body for every point of its curve, made when they are first asked for.
+
+    Attributes
+    ----------
+    body : SizedBody
+        The body.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+    apart : float
+        Ratio of the radii between which the operator is interpolated.
+    """
+
+    body: SizedBody
+    to_load: float
+    apart: float
+
+    @cached_property
+    def charts(self) -> tuple[Chart, Chart]:
+        """Chart centred on the axis, and that which follows the contact."""
+        return self.body.curve(self.to_load, self.apart)
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for a point of a curve."""
+        follows = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
+        return self.charts[1 if follows else 0]
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the larger chart."""
+        return max(chart.unknowns for chart in self.charts)

@@ -161,6 +161,7 @@ FLOORS = [
     {"halfspace.ladder", "halfspace.devices", "halfspace.sized"},
     {"halfspace.reach"},
     {"halfspace.curve"},
+    {"halfspace.states"},
     {"halfspace.events"},
     {"halfspace.path", "halfspace.relaxation"},
     {"halfspace.newton"},

@@ -215,7 +215,8 @@ def test_each_column_of_the_csv_holds_what_its_name_says(real):
     for quantity, unit in PAPER.items():
         found = [float(row[f"{quantity}_{unit}"] or "nan") for row in points]
         np.testing.assert_array_equal(found, getattr(path, quantity))
-        assert {row[f"{quantity}_error_{unit}"] for row in points} == {""}
+        errors = [float(row[f"{quantity}_error_{unit}"] or "nan") for row in points]
+        np.testing.assert_array_equal(errors, getattr(path, f"{quantity}_error"))
     dead = [row["stable_under_dead_load"] == "1" for row in points]
     np.testing.assert_array_equal(dead, path.stable_under_dead_load)
     assert {row["solver"] for row in rows} == {"half-space"}
@@ -408,7 +409,7 @@ def test_fields_inside_are_written_for_every_event(tmp_path):
         ),
         (["--tabor", "2", "--counter-share", "0.5"], "it meets a hemisphere only"),
         (["--tabor", "2", "--counter-share", "0.5", "--counter-radius", "1um"], "plain number in radii of the first"),
-        (["--tabor", "2", "--points", "5"], "--points would not be heeded, limit: with --vtk DIR"),
+        (["--tabor", "2", "--points", "5"], "--points would not be heeded, limit: with --json, --csv, --plot or --vtk"),
         (["--tabor", "2", "--revolve", "90", "--force"], "--revolve, --force would not be heeded"),
         (["--tabor", "2", "--json", "a.txt", "--csv", "other/../a.txt"], "is given for two outputs"),
         (["--tabor", "2", "--json", "-", "--csv", "-"], "standard output is given for two outputs"),

@@ -105,7 +105,9 @@ def test_the_curve_runs_from_separation_to_compression(curves):
         assert path.load[-1] >= 5
         assert path.central_gap[0] > 19
         assert np.isnan(path.contact_radius[0])
-        assert np.all(np.diff(path.contact_radius[np.isfinite(path.contact_radius)]) >= -1e-9), tabor
+        touching = np.isfinite(path.contact_radius)
+        radius, error = path.contact_radius[touching], path.contact_radius_error[touching]
+        assert np.all(np.diff(radius) >= -error[1:] - error[:-1]), tabor  # where one grid hands over to the next
         assert np.all(np.diff(path.arclength) >= 0)
 
 

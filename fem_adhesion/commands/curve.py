@@ -63,7 +63,7 @@ def _add_results(curve: Parser) -> None:
     results.add_argument("--csv", type=Path, help="write points and events as a table", metavar="FILE")
     results.add_argument("--plot", type=Path, help="draw curve, profiles and mesh: png, svg or pdf", metavar="FILE")
     results.add_argument("--vtk", type=Path, help="write the fields inside the body for ParaView", metavar="DIR")
-    points = f"of the curve in DIR, beside its events; {POINTS} unless given"
+    points = f"of the curve in JSON, CSV and plot, as traced unless given, and in DIR beside its events, {POINTS} there"
     results.add_argument("--points", type=int, help=points, metavar="N")
     results.add_argument("--revolve", type=float, help="write the solid of revolution too, degrees", metavar="ANGLE")
     results.add_argument("--render", type=Path, help="draw the body cut open, with its stress: png", metavar="FILE")
@@ -194,7 +194,10 @@ def _question(options: argparse.Namespace) -> Question:
         _require_vtk(options, scene, solver)
     _require_drawing(options, scene, solver)
     units = contact.units if contact else None
-    return Question(scene, solver, options.rtol, options.to_load, units, stiffness_of(options, contact))
+    points = options.points if options.json or options.csv or options.plot else None
+    if options.vtk and points in (0, 1):
+        points = None  # of the states in DIR alone, where there may be none between the events
+    return Question(scene, solver, options.rtol, options.to_load, units, stiffness_of(options, contact), points)
 
 
 def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverName, contact: Contact | None) -> None:
@@ -204,7 +207,9 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
     if not contact and solver == "half-space":
         refuse(options, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it")
     if not options.vtk:
-        refuse(options, ("points", "revolve", "force"), "with --vtk DIR")
+        refuse(options, ("revolve", "force"), "with --vtk DIR")
+    if not (options.json or options.csv or options.plot or options.vtk):
+        refuse(options, ("points",), "with --json, --csv, --plot or --vtk")
     if contact and math.isfinite(contact.counter_radius) and scene.body == "block" and scene.profile == "sphere":
         raise InputError("profile = sphere of two spheres, limit: a hemisphere; take --body hemisphere")
 

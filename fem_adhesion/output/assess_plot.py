@@ -19,9 +19,10 @@ from fem_adhesion.studies.assess import Assessment
 from fem_adhesion.studies.assess_theories import Curve, loop
 from halfspace.compliance import Array
 from halfspace.contact import APPROACH, LOAD
-from halfspace.curve import EquilibriumPath, Segment
+from halfspace.curve import EquilibriumPath
 from halfspace.devices import cycle
 from halfspace.errors import InputError
+from halfspace.path import Segment
 from halfspace.reach import reaching
 from halfspace.scaling import Units
 
@@ -113,7 +114,7 @@ def _line(curve: EquilibriumPath | Curve | None, assessment: Assessment) -> tupl
     """Approach and load along a curve, smooth between computed points."""
     if isinstance(curve, EquilibriumPath):
         path = reaching(curve, assessment.contact.reduced_stiffness)
-        parts = [_smooth(segment) for segment in path.segments]
+        parts = [_smooth(segment) for segment in path.finest_curve.segments]
         return np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
     if curve is None:
         return np.empty(0), np.empty(0)

@@ -11,8 +11,9 @@ from scipy.interpolate import CubicHermiteSpline
 
 from halfspace.compliance import Array
 from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD
-from halfspace.curve import EquilibriumPath, Segment, metric_for
+from halfspace.curve import EquilibriumPath, metric_for
 from halfspace.events import FOLD, locate
+from halfspace.path import Segment
 
 STABLE, GRIPS_ONLY, UNSTABLE = range(3)
 KINDS: Mapping[int, str] = {
@@ -64,10 +65,11 @@ class Frame:
 
 def smooth(path: EquilibriumPath) -> Line:
     """Lines through the points of a path with their tangents."""
-    firsts = np.cumsum([0, *(len(segment.points) for segment in path.segments)])
+    segments = path.finest_curve.segments
+    firsts = np.cumsum([0, *(len(segment.points) for segment in segments)])
     parts = [
         _smooth(segment, path.stable[first : first + len(segment.points)])
-        for segment, first in zip(path.segments, firsts, strict=False)
+        for segment, first in zip(segments, firsts, strict=False)
     ]
     values = np.concatenate([part[0] for part in parts])
     approach, load, central_gap = values.T

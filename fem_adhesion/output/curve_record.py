@@ -25,7 +25,8 @@ UNITS: Mapping[str, str] = {
     "energy": "R dgamma eps",
     "stiffness": "R dgamma/eps",
 }
-COLUMNS = ("arclength", *OBSERVABLES)
+ERRORS = tuple(f"{name}_error" for name in OBSERVABLES)
+COLUMNS = ("arclength", *OBSERVABLES, *ERRORS)
 NUMBERS = tuple(key for name in OBSERVABLES for key in (name, f"{name}_error"))  # of an event
 
 
@@ -45,7 +46,7 @@ def record(curves: Curves) -> dict[str, Any]:
         "to_load": question.to_load,
         "units": dict(UNITS),
         "si": _si(curves),
-        "solutions": {name: _solution(path) for name, path in curves.paths.items()},
+        "solutions": {name: _solution(path) for name, path in curves.sampled.items()},
         "jumps": {"fixed_grips": _cycle(curves.grips), "apparatus": _cycle(curves.apparatus)},
         "versions": versions(),
     }
@@ -111,22 +112,21 @@ def write_csv(curves: Curves, file: IO[str]) -> None:
     """Write the points of each solver's curve and, in their places by arclength, its events with errors.
 
     The unit is part of a column's name; where the material is known each quantity comes in SI too. Stability is left
-    out at events, which are where it changes, and errors at points. ``missed_rtol`` names the quantities of an event
-    whose errors are above the tolerance.
+    out at events, which are where it changes. ``missed_rtol`` names the quantities of an event whose errors are above
+    the tolerance.
     """
     writer = csv.DictWriter(file, _columns(curves), lineterminator="\n", restval="")
     writer.writeheader()
-    for solver, path in curves.paths.items():
+    for solver, path in curves.sampled.items():
         rows = sorted([*_points(path), *_events(path)], key=lambda row: row["arclength"])
         writer.writerows(_with_units(curves, {"solver": solver, **row}) for row in rows)
 
 
 def _points(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
-    stable = path.stable, path.stable_under_dead_load
-    for point, grips, dead in zip(path.points, *stable, strict=True):
-        values = dict(zip(OBSERVABLES, point.observables.tolist(), strict=True))
+    numbers = zip(*(getattr(path, name).tolist() for name in COLUMNS), strict=True)
+    for values, grips, dead in zip(numbers, path.stable, path.stable_under_dead_load, strict=True):
         flags = {"stable_under_fixed_grips": int(grips), "stable_under_dead_load": int(dead)}
-        yield {"event": "", "arclength": point.arclength, **values, **flags}
+        yield {"event": "", **dict(zip(COLUMNS, values, strict=True)), **flags}
 
 
 def _events(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
@@ -137,11 +137,7 @@ def _events(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
 
 
 def _columns(curves: Curves) -> list[str]:
-    names = [
-        column
-        for quantity in (*OBSERVABLES, *(f"{name}_error" for name in OBSERVABLES))
-        for column in _named(curves, quantity)
-    ]
+    names = [column for quantity in (*OBSERVABLES, *ERRORS) for column in _named(curves, quantity)]
     stability = ["stable_under_fixed_grips", "stable_under_dead_load"]
     return ["solver", "event", "arclength", *names, *stability, "missed_rtol"]
 

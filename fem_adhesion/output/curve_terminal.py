@@ -120,7 +120,7 @@ def notes(curves: Curves) -> Iterator[str]:
             yield f"no jumps, {device}: the contact follows smoothly"
     for solver, path in curves.paths.items():
         told = tolerance_told(path.rtol, path.missed)
-        yield f"{solver}: {path.unknowns} unknowns, {len(path.points)} points, {path.seconds:.2f} s; {told}"
+        yield f"{solver}: {path.unknowns} unknowns, {path.count} points, {path.seconds:.2f} s; {told}"
     if any(curves.paths[name].tolerance.missed_by(event) for _, name, event in _rows(curves)):
         size = "of eps and the range of all events' approaches"
         yield f"{MISSED}: the error is above rtol = {curves.question.rtol:g} of the load, of an approach {size}."

@@ -14,7 +14,7 @@ from fem_adhesion.scene import Scene
 from halfspace.curve import EquilibriumPath
 from halfspace.devices import Cycle, cycle
 from halfspace.errors import InputError
-from halfspace.limits import require_load, require_rtol
+from halfspace.limits import require_load, require_points, require_rtol
 from halfspace.scaling import Units
 
 HALF_SPACE, FINITE_ELEMENTS = "half-space", "finite elements"
@@ -42,6 +42,8 @@ class Question:
         Of the contact in SI, if its material is known.
     stiffness : float
         Of the apparatus in R dgamma/eps; infinite for fixed grips.
+    points : int, optional
+        Of each curve in files, evenly spaced in arclength; as many as its tracing takes unless given, or drawn.
 
     Raises
     ------
@@ -55,10 +57,13 @@ class Question:
     to_load: float = 5.0
     units: Units | None = None
     stiffness: float = math.inf
+    points: int | None = None
 
     def __post_init__(self) -> None:
         require_rtol(self.rtol)
         require_load(self.to_load)
+        if self.points is not None:
+            require_points(self.points)
         if not self.stiffness > 0:
             raise InputError(
                 f"stiffness = {self.stiffness:g} R dgamma/eps is outside 0 < stiffness; leave it out for fixed grips"
@@ -105,6 +110,14 @@ class Curves:
         return next(iter(self.paths))
 
     @property
+    def sampled(self) -> Mapping[str, EquilibriumPath]:
+        """The paths with the number of points asked for."""
+        if self.question.points is None:
+            return self.paths
+        points = self.question.points
+        return {name: path if path.count == points else path.resampled(points) for name, path in self.paths.items()}
+
+    @property
     def other(self) -> EquilibriumPath | None:
         """The second path."""
         return self.paths.get(HALF_SPACE) if self.solver == FINITE_ELEMENTS else None
@@ -126,11 +139,12 @@ def solve(question: Question, progress: Progress = lambda *_: None) -> Curves:
         If a curve cannot be traced.
     """
     solvers = {"fem": (FINITE_ELEMENTS,), "half-space": (HALF_SPACE,), "both": (FINITE_ELEMENTS, HALF_SPACE)}
-    names = solvers[question.solver]
+    names, points = solvers[question.solver], question.points
     paths = {}
     for done, name in enumerate(names):
         progress(name, done, len(names) + 1)
-        paths[name] = _trace(question, name)
+        path = _trace(question, name)
+        paths[name] = path.resampled(points) if points and points > path.count else path
     progress("jumps", len(names), len(names) + 1)
     path = paths[names[0]]
     apparatus = None if math.isinf(question.stiffness) else cycle(path, question.stiffness)

@@ -14,10 +14,10 @@ from halfspace import newton
 from halfspace.accuracy import half_space_charts, resolution_for
 from halfspace.compliance import Array
 from halfspace.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.curve import COMPRESSION, Segment, find_events, metric_for, trace_charts, transfer
+from halfspace.curve import COMPRESSION, find_events, metric_for, trace_charts, transfer
 from halfspace.events import ROUND_OFF, Condition, Located, locate
 from halfspace.ladder import Rung, charted_rung, climb
-from halfspace.path import Metric, Point, Steps
+from halfspace.path import Metric, Point, Segment, Steps
 
 TIGHTER = "half-space, two decades tighter"
 GRID = 1e-6  # tolerance of the grids on which single states are solved for, and so their error

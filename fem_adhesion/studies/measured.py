@@ -72,4 +72,4 @@ def _event_measures(path: EquilibriumPath, truth: EquilibriumPath, reference: st
 
 def newton_steps(path: EquilibriumPath) -> int:
     """Newton steps taken along a curve."""
-    return sum(point.iterations for point in path.points)
+    return sum(point.iterations for segment in path.segments for point in segment.points)

@@ -103,7 +103,7 @@ def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progres
     path = convergence.trace(scene, rtol=rtol)
     outer = REACH * float(np.nanmax(path.contact_radius))
     radii, places = np.linspace(0, outer, RADII), np.linspace(0, outer, ON_LINE)
-    total = (len(path.points) if states is None else states) + len(path.events)
+    total = (path.count if states is None else states) + len(path.events)
     stations = []
     for number, state in enumerate(states_along(scene, path, points=states, how=SEEN)):
         if progress:

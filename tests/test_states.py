@@ -1,0 +1,234 @@
+"""States anywhere on a curve: what was asked, on the branch that was named, within their own estimates."""
+
+import csv
+import json
+import pickle
+
+import numpy as np
+import pytest
+
+import fem_adhesion
+import halfspace
+from fem_adhesion import Scene, cli
+from halfspace.curve import metric_for
+from halfspace.errors import InputError
+from halfspace.states import COORDINATES, shift
+
+NUMBERS = ("approach", "load", "central_gap", "contact_radius")
+
+
+@pytest.fixture(scope="module")
+def paths():
+    """Curves by Tabor parameter: without a fold, with two and with four."""
+    return {tabor: halfspace.trace(tabor, rtol=1e-4) for tabor in (0.5, 2.0, 5.0)}
+
+
+# --- the interface ---
+
+
+def test_a_state_has_the_value_asked_for_in_the_shape_it_was_asked_in(paths):
+    one = paths[2.0].at(approach=-3, branch="contact")
+    assert (one.approach, np.shape(one.load)) == (pytest.approx(-3, rel=1e-12), ())
+    assert one.load_error > 0
+    many = paths[2.0].at(load=np.array([[-4.0, -3.0], [-2.0, 1.0]]), branch="contact")
+    np.testing.assert_allclose(many.load, [[-4, -3], [-2, 1]], rtol=0, atol=1e-10)
+    assert many.approach_error.shape == (2, 2)
+    gaps = paths[2.0].at(central_gap=[3.0, 0.1])
+    assert np.isnan(gaps.contact_radius[0])
+    assert gaps.contact_radius[1] > gaps.contact_radius_error[1] > 0
+
+
+def test_events_are_states_of_the_curve(paths):
+    for path in paths.values():
+        zero = path.event("zero_load")
+        state = path.at(load=0.0, branch="contact")
+        assert abs(state.approach - zero.approach) <= state.approach_error + zero.approach_error
+        for name, event in path.events.items():
+            state = path.at(central_gap=event.central_gap)
+            for number in ("approach", "load"):
+                bars = getattr(state, f"{number}_error") + getattr(event, f"{number}_error")
+                change = event.central_gap_error * abs(np.gradient(getattr(path, number), path.central_gap)).max()
+                assert abs(getattr(state, number) - getattr(event, number)) <= bars + change, (path.tabor, name)
+
+
+def test_branches_are_named_by_what_lies_between_folds(paths):
+    assert list(paths[0.5].branches("approach")) == ["whole"]
+    assert list(paths[2.0].branches("approach")) == ["separated", "unstable", "contact"]
+    winding = ["separated", "unstable 1", "unstable 2", "unstable 3", "contact"]
+    assert list(paths[5.0].branches("approach")) == winding
+    on, off = (paths[2.0].event(name).approach for name in ("jump_on", "jump_off"))
+    assert paths[2.0].branches("approach")["unstable"] == (pytest.approx(off, abs=1e-3), pytest.approx(on, abs=1e-3))
+
+
+def test_every_crossing_of_a_winding_curve_is_found(paths):
+    """Five states at one approach, the central gap falling from each to the next."""
+    path = paths[5.0]
+    states = [path.at(approach=-4.51, branch=name) for name in path.branches("approach")]
+    np.testing.assert_allclose([state.approach for state in states], -4.51, rtol=1e-12)
+    gaps = [state.central_gap for state in states]
+    assert gaps == sorted(gaps, reverse=True)
+    assert len({round(gap, 3) for gap in gaps}) == 5
+
+
+def test_either_end_of_a_curve_that_does_not_fold_means_the_whole(paths):
+    names = (None, "whole", "separated", "contact")
+    assert len({paths[0.5].at(approach=-0.5, branch=name).load for name in names}) == 1
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({}, "asked for by nothing, limit: one of approach, load, central_gap"),
+        ({"approach": 0, "load": 1}, "asked for by approach and load, limit: one of"),
+        ({"approach": -3}, "approach = -3 eps is met on separated, unstable, contact, limit: one; name it by branch"),
+        ({"approach": -3, "branch": "stable"}, 'branch = "stable" is none of separated, unstable, contact'),
+        ({"approach": -2, "branch": "separated"}, "<= approach <= -2.5519. eps on separated; take one inside"),
+        ({"load": [1.0, 1e9]}, r"load = 1e\+09 is outside -4.975.. <= load <= .* R dgamma on this curve"),
+        ({"central_gap": np.nan}, "central_gap = nan is outside"),
+    ],
+)
+def test_what_is_not_there_is_refused_in_one_line(paths, asked, message):
+    with pytest.raises(InputError, match=message) as refusal:
+        paths[2.0].at(**asked)
+    assert "\n" not in str(refusal.value)
+
+
+def test_branches_of_what_is_no_coordinate_are_refused(paths):
+    with pytest.raises(InputError, match='coordinate = "gap" is none of approach, load, central_gap'):
+        paths[2.0].branches("gap")
+
+
+def test_the_finest_curve_is_solved_for_when_it_is_asked_for_and_no_part_of_the_value():
+    path = halfspace.trace(1.0, rtol=1e-2)
+    assert "finest_curve" not in vars(path)
+    before = pickle.loads(pickle.dumps(path))
+    asked = path.at(approach=0.5), path.load
+    assert before == path == pickle.loads(pickle.dumps(path))
+    assert (before.at(approach=0.5), before.load.tolist()) == (asked[0], asked[1].tolist())
+
+
+# --- their errors ---
+
+
+def test_the_shift_that_takes_a_coordinate_back():
+    assert shift(1e-3, 2.0, 0.0) == pytest.approx(5e-4)  # far from a fold
+    root = shift(0.1, 1.0, 4.0)  # towards one
+    assert 1.0 * root - 4.0 * root**2 / 2 == pytest.approx(0.1)
+    assert shift(1e-3, 1e-6, 2.0) == pytest.approx(np.sqrt(1e-3))  # past it
+
+
+def _plane_differences(path, truth):
+    """Estimate and true error of each number of each point, in the plane across the path there."""
+    errors = path.finest_curve.errors
+    points = [(segment.problem, point) for segment in path.finest_curve.segments for point in segment.points]
+    for error, (problem, point) in zip(errors, points, strict=True):
+        exact = truth.ways[0][-1](problem, point)[1].observables
+        off = np.abs(exact - point.observables)
+        for k in np.flatnonzero(np.isfinite(off)):
+            yield error[k], off[k], 1e-11 * (1 + abs(exact[k]))
+
+
+def _differences_between(path, truth, rng):
+    """The same of states between the points, two of them next to where the coordinate turns."""
+    for coordinate in COORDINATES:
+        ranges, exact = path.branches(coordinate), truth.branches(coordinate)
+        assert ranges.keys() == exact.keys()
+        for branch, (low, high) in ranges.items():
+            low, high = max(low, exact[branch][0]), min(high, exact[branch][1])
+            values = low + (high - low) * np.array([1e-6, *rng.uniform(size=3), 1 - 1e-6])
+            ours, theirs = (p.at(**{coordinate: values}, branch=branch) for p in (path, truth))
+            for name in {*NUMBERS} - {coordinate}:
+                off = np.abs(getattr(ours, name) - getattr(theirs, name))
+                bars = getattr(ours, f"{name}_error"), getattr(theirs, f"{name}_error")
+                yield from ((e, d, known) for e, d, known in zip(bars[0], off, bars[1], strict=True) if np.isfinite(d))
+
+
+def _judge(numbers, within=0.99, close=0.9):
+    estimate, off, known = np.array(list(numbers)).T
+    assert np.mean(off <= estimate + known) >= within
+    assert np.mean(estimate <= 100 * np.maximum(off, np.maximum(known, 1e-11))) >= close
+
+
+def test_estimates_hold_the_truth_between_points_and_at_them():
+    """Against solutions a hundred times tighter; those of points count the far field, where they hold by far."""
+    rng, at_points, between = np.random.default_rng(7), [], []
+    for tabor in (0.3, 1.0, 2.0, 5.0):
+        for rtol in (1e-2, 1e-5):
+            path, truth = halfspace.trace(tabor, rtol=rtol), halfspace.trace(tabor, rtol=rtol / 100)
+            at_points += _plane_differences(path, truth)
+            between += _differences_between(path, truth, rng)
+            assert path.load_error.max() <= rtol * abs(path.event("pull_off").load)
+            assert path.approach_error.max() <= rtol * path.approach_scale
+    _judge(between)
+    _judge(at_points)
+
+
+def test_next_to_a_fold_the_load_errs_by_the_root_of_what_the_approach_does():
+    path, truth = halfspace.trace(2.0, rtol=1e-2), halfspace.trace(2.0, rtol=1e-6)
+    fold = min(p.branches("approach")["separated"][1] for p in (path, truth))
+    for distance in (1e-9, 1e-7, 1e-5, 1e-3):
+        ours, theirs = (p.at(approach=fold - distance, branch="separated") for p in (path, truth))
+        assert abs(ours.load - theirs.load) <= ours.load_error + theirs.load_error
+    assert path.at(approach=fold - 1e-9, branch="separated").load_error > 10 * path.load_error.min()
+
+
+SCENES = {
+    "block": Scene(1.0),
+    "hemisphere": Scene(1.0, body="hemisphere", profile="sphere", radius_ratio=100.0),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_finite_elements_answer_on_the_same_terms(name):
+    path, truth = (fem_adhesion.trace(SCENES[name], rtol=rtol) for rtol in (1e-3, 1e-5))
+    _judge(_differences_between(path, truth, np.random.default_rng(3)), within=0.95)
+    assert path.load_error.max() <= 1e-3 * abs(path.event("pull_off").load)
+    assert path.approach_error.max() <= 1e-3 * path.approach_scale
+
+
+# --- as many points as wanted ---
+
+
+def test_a_curve_takes_any_number_of_points(paths):
+    path = paths[5.0].resampled(150)
+    assert path.approach.shape == path.load_error.shape == path.stable.shape == (150,)
+    steps = np.diff([point.arclength for segment in path.segments for point in segment.points])
+    np.testing.assert_allclose(steps, steps.mean(), rtol=1e-9)
+    metric = metric_for(5.0)
+    chords = np.sqrt(np.diff([p.observables[:3] for p in path.points], axis=0) ** 2 @ metric.weights[:3])
+    assert chords.max() < 1.3 * steps.mean()
+    np.testing.assert_allclose(
+        path.load[1:-1], paths[5.0].at(central_gap=path.central_gap[1:-1]).load, rtol=0, atol=1e-6
+    )
+
+
+@pytest.mark.parametrize("count", [1, 0, -3, 2.5, True])
+def test_no_curve_has_less_than_two_ends(paths, count):
+    with pytest.raises(InputError, match=f"points = {count} is outside 2 <= points"):
+        paths[2.0].resampled(count)
+
+
+def test_the_command_writes_as_many_points_each_with_its_error(tmp_path):
+    files = tmp_path / "curve.csv", tmp_path / "curve.json"
+    options = ["--tabor", "2", "--rtol", "1e-3", "--points", "60", "--csv", str(files[0]), "--json", str(files[1])]
+    assert cli.main(["curve", *options]) == 0
+    curve = json.loads(files[1].read_text())["solutions"]["half-space"]["curve"]
+    rows = [row for row in csv.DictReader(files[0].read_text().splitlines()) if not row["event"]]
+    assert len(rows) == len(curve["load"]) == len(curve["load_error"]) == 60
+    assert [float(row["load_error_R_dgamma"]) for row in rows] == curve["load_error"]
+    path = halfspace.trace(2.0, rtol=1e-3).resampled(60)
+    assert curve["load_error"] == path.load_error.tolist()
+    assert curve["contact_radius_error"][-1] == path.contact_radius_error[-1]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--points", "30"], "--points"),
+        (["--points", "1", "--csv", "curve.csv"], "points = 1 is outside 2 <= points"),
+    ],
+)
+def test_points_that_are_not_to_be_had_are_refused(tmp_path, monkeypatch, capsys, options, message):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["curve", "--tabor", "2", *options]) == 2
+    assert message in capsys.readouterr().err
