@@ -25,6 +25,7 @@ from halfspace.values import Valued
 
 EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
 MOST_NODES = 16  # of a panel
+LEAVE = 0.8  # of the first cell: the contact radius at which the chart centred on the axis is left
 ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
 TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same
 
@@ -83,11 +84,9 @@ def rings(tabor: float, finest: float, growth: float, extent: float, to_load: fl
     length = finest * spike_width(tabor) / 2
     outer = extent / np.sqrt(tabor)
     widest = widest_radius(tabor, to_load)
-    return Rings(
-        grid.graded(0.0, length, outer, growth=growth),
-        grid.graded(1.0, 2 * length / widest, outer / length, growth=growth),
-        until=length,
-    )
+    centred = grid.graded(0.0, length, outer, growth=growth)
+    edge = grid.graded(1.0, 2 * length / widest, outer / length, growth=growth)
+    return Rings(centred, edge, until=LEAVE * float(centred[1]))  # the cells beyond the first may be too coarse
 
 
 def widest_radius(tabor: float, to_load: float) -> float:

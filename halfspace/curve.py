@@ -107,6 +107,9 @@ class EquilibriumPath(Valued):
         Part of the change from either to the finest that may be left.
     ways : chains of callables
         To the finest discretisation that serves the whole curve, see `halfspace.states.Ways`.
+    margin : Estimate, optional
+        How far the curve is from folding where two folds are about to be born or to merge: its least -d(alpha*)/dW in
+        eps/(R dgamma). Any apparatus of a greater compliance jumps; if it is negative, so do fixed grips.
     """
 
     tabor: float
@@ -121,6 +124,7 @@ class EquilibriumPath(Valued):
     twin: Finest | None = None
     remaining: float = REMAINING
     ways: Ways = ()
+    margin: Estimate | None = None
 
     @property
     def unknowns(self) -> int:
@@ -160,6 +164,14 @@ class EquilibriumPath(Valued):
             remedy = f'did you mean "{near[0]}"?' if near else "take one of these"
             raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}; {remedy}')
         return self.events.get(name)
+
+    @property
+    def jumps(self) -> bool | None:
+        """Whether fixed grips jump on and off; None if it cannot be told, as `margin` is within its error of zero."""
+        found = "jump_on" in self.events
+        if self.margin and (abs(self.margin.value) <= self.margin.error or found != (self.margin.value < 0)):
+            return None
+        return found
 
     @property
     def approach_scale(self) -> float:

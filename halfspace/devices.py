@@ -99,6 +99,8 @@ class _States:
 def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     """Both jumps of a cycle with an apparatus of given stiffness, or None where the contact follows it smoothly.
 
+    With fixed grips also where that cannot be told: see `halfspace.curve.EquilibriumPath.jumps`.
+
     Parameters
     ----------
     path : EquilibriumPath
@@ -118,6 +120,8 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
         raise InputError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
     if not isinstance(path.segments[0].problem, ContactProblem):
         raise InputError("strain = finite, limit: small strain, for the landings of jumps; use the events of the path")
+    if math.isinf(stiffness) and not path.jumps:
+        return None
     rough = jumps(reaching(path, stiffness).segments, 1 / stiffness)
     if rough is None:
         return None

@@ -149,7 +149,25 @@ class Condition:
         return float(point.observables[self.observable] + self.compliance * point.observables[LOAD])
 
 
+@dataclass(frozen=True)
+class Steepest(Condition):
+    """Where the curve falls most steeply: the first place to jump with a softer apparatus, or under a fold's birth."""
+
+    observable: int = APPROACH
+
+    def of(self, point: Point) -> float:
+        """Compliance -d(alpha*)/dW in eps/(R dgamma) of the apparatus that would jump here; infinite where W rises."""
+        return float(compliance(point.rates[APPROACH], point.rates[LOAD]))
+
+
+def compliance(approach: Array, load: Array) -> Array:
+    """-d(alpha*)/dW from the rates of approach and load along the path; infinite where the load rises."""
+    return np.where(np.less(load, 0), approach / -np.minimum(load, -TINY), np.inf)
+
+
+TINY = 1e-300
 FOLD = Condition(APPROACH, stationary=True)
+STEEPEST = Steepest()
 EXTREMUM = Condition(LOAD, stationary=True)
 ZERO_LOAD = Condition(LOAD)
 
@@ -255,6 +273,8 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
     """
     condition = event.condition
     nearby = same_place(event.point, problem, start, metric)
+    if isinstance(condition, Steepest):
+        return steepest_from(problem, nearby, metric)
     step = -PAST * condition.of(nearby) / event.slope
     if abs(step) < ARCLENGTH_TOLERANCE:
         return Located(condition, problem, nearby, event.slope)
@@ -272,6 +292,47 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
 
 
 TRIALS, PAST, LONGER = 4, 1.5, 3.0  # steps to beyond an event: how many, how far past it, how many times the last
+
+
+def steepest(points: Sequence[Point]) -> tuple[float, Point]:
+    """Least compliance between the points of a curve by cubics through them, and the nearest point."""
+    found = [(_least_compliance(a, b), min(a, b, key=STEEPEST.of)) for a, b in pairwise(points)]
+    return min(found, key=lambda one: one[0], default=(np.inf, points[0]))
+
+
+def _least_compliance(a: Point, b: Point) -> float:
+    """Least compliance between two points, by the cubics of approach and load."""
+    t, h = np.linspace(0, 1, 17)[:, None], b.arclength - a.arclength
+    slopes = (
+        (1 - 4 * t + 3 * t**2) * a.rates
+        + (3 * t**2 - 2 * t) * b.rates
+        + 6 * t * (1 - t) * (b.observables - a.observables) / h
+    )
+    return float(compliance(slopes[:, APPROACH], slopes[:, LOAD]).min())
+
+
+def steepest_from(problem: Traceable, point: Point, metric: Metric) -> Located:
+    """Where the curve falls most steeply near a point: the least compliance, by parabolas ever narrower.
+
+    Raises
+    ------
+    NotConverged
+        If there is no such place near.
+    """
+    for width in WIDTHS:
+        sides = [
+            correct(problem, point, h, point.x + h * point.tangent, metric, iterations=20) for h in (-width, width)
+        ]
+        before, here, after = (STEEPEST.of(p) for p in (sides[0], point, sides[1]))
+        bend = before - 2 * here + after
+        if not (np.isfinite(bend) and bend > 0):
+            raise NotConverged("the curve has no steepest fall here; take a smaller rtol")
+        step = float(np.clip((before - after) / (2 * bend), -3, 3)) * width
+        point = correct(problem, point, step, point.x + step * point.tangent, metric, iterations=20)
+    return Located(STEEPEST, problem, point, 1.0)
+
+
+WIDTHS = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
 
 
 def same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:

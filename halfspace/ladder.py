@@ -24,16 +24,32 @@ from halfspace.curve import (
     Finest,
     energy_released,
     find_events,
+    metric_for,
     moved,
     placed,
     trace_charts,
 )
 from halfspace.errors import InputError, NotConverged
-from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, Tolerance, estimate_event
+from halfspace.events import (
+    EVENTS,
+    REMAINING,
+    ROUND_OFF,
+    STEEPEST,
+    Event,
+    Located,
+    Tolerance,
+    estimate_event,
+    steepest,
+    steepest_from,
+)
+from halfspace.path import Segment
 from halfspace.states import Ways
 from halfspace.values import Valued
 
 MOST_RUNGS = 4  # above the lowest
+FOLDS = ("jump_on", "jump_off")
+IN_DOUBT = 0.02  # eps/(R dgamma), of the least -d(alpha*)/dW between the points: the Tabor parameter is 0.65 to 0.74
+FLAT = 1e-9  # eps/(R dgamma), of it: what the last of the parabolas and rounding leave
 
 Charts = Sequence[Chart]
 State = Mapping[str, Located]
@@ -146,21 +162,29 @@ def climb(
     for start in range(most_rungs):
         try:
             return _climb_from(start, rtol, rung, to_load, most_rungs)
-        except NotConverged:  # as where two folds about to merge exist on one grid but not on the next
+        except FoldsLost:  # two folds about to merge exist on one grid but not on the next
+            if start == most_rungs - 1:
+                return _climb_from(0, rtol, rung, to_load, most_rungs, folds=False)
+        except NotConverged:
             if start == most_rungs - 1:
                 raise
     raise InputError(f"most_rungs = {most_rungs} leaves nothing to climb; allow 1 or more")
 
 
+class FoldsLost(NotConverged):
+    """Folds about to merge are found on one rung but not on another."""
+
+
 def _climb_from(
-    start: int, rtol: float, rung: Callable[[int], Rung], to_load: float, most_rungs: int
+    start: int, rtol: float, rung: Callable[[int], Rung], to_load: float, most_rungs: int, *, folds: bool = True
 ) -> EquilibriumPath:
-    """Trace the curve on the rung `start` and climb from there."""
+    """Trace the curve on the rung `start` and climb from there, with its folds or without."""
     began = time.perf_counter()
     lowest = rung(start)
     charts = lowest.curve()
     segments = trace_charts(charts, to_load)
-    state: State = find_events(segments)
+    found = {**find_events(segments), **_folds_in_doubt(segments)}
+    state: State = {name: event for name, event in found.items() if folds or name not in FOLDS}
     for stage in lowest.stages:
         state = _on_all(state, stage)
     higher = lowest
@@ -171,6 +195,9 @@ def _climb_from(
         events = _estimate(chains, higher.remaining, along=higher.along)
         if not Tolerance.on(events, rtol).missed(events):
             break
+    margin = _margin(chains, higher.remaining)
+    if folds and margin and margin.value + margin.error < 0 and "jump_on" not in events:
+        raise FoldsLost("the curve folds on a finer grid, but not on its own; take a smaller rtol")
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,
@@ -184,6 +211,7 @@ def _climb_from(
         higher.twin,
         higher.remaining,
         _ways(below.stages[-1] if below.stages else Charted(charts), higher),
+        margin,
     )
 
 
@@ -191,6 +219,22 @@ def _ways(below: Stage, higher: Rung) -> Ways:
     """Chains from the rung below, and from its twin, to the last stage of a rung, for any point of the curve."""
     chain = [partial(placed, stage.everywhere) for stage in (below, *higher.stages)]
     return (tuple(chain), (partial(placed, higher.twin.everywhere), chain[-1])) if higher.twin else (tuple(chain),)
+
+
+def _folds_in_doubt(segments: Sequence[Segment]) -> State:
+    """Where the curve falls most steeply, if two folds there are about to merge or to be born; nothing otherwise."""
+    metric = metric_for(segments[0].problem.tabor)
+    least, point, problem = min(((*steepest(s.points), s.problem) for s in segments), key=lambda one: one[0])
+    return {"steepest": steepest_from(problem, point, metric)} if abs(least) < IN_DOUBT else {}
+
+
+def _margin(chains: Sequence[Sequence[State]], remaining: float) -> Estimate | None:
+    """How far the curve is from folds, with the error that the changes along the chains leave."""
+    if "steepest" not in chains[0][-1]:
+        return None
+    values = [[STEEPEST.of(state["steepest"].point) for state in chain] for chain in chains]
+    change = max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
+    return Estimate(values[0][-1], remaining * change + FLAT)
 
 
 def _step_up(state: State, higher: Rung) -> list[list[State]]:
@@ -202,7 +246,14 @@ def _step_up(state: State, higher: Rung) -> list[list[State]]:
 
 
 def _on_all(state: State, stage: Stage) -> State:
-    return {name: _moved_to(event, stage) for name, event in state.items()}
+    return {name: _found_again(name, event, stage) for name, event in state.items()}
+
+
+def _found_again(name: str, event: Located, stage: Stage) -> Located:
+    try:
+        return _moved_to(event, stage)
+    except NotConverged as error:
+        raise FoldsLost(str(error)) if name in FOLDS else error from error
 
 
 def _moved_to(event: Located, stage: Stage) -> Located:

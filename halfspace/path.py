@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD
-from halfspace.errors import NotConverged
+from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.newton import Control, Equilibrium, Traceable
 from halfspace.values import Valued
 
@@ -194,12 +194,25 @@ def follow(
                     f"{steps.shortest:.0e} or more converges ({error}); refine the grid"
                 ) from error
             continue
+        ended = stop(new)
+        if ended and step > steps.shortest and not _carried(problem, new):
+            step /= 3  # it leapt over the end into cells that need not carry a contact
+            continue
         problem.require_resolution(new.x)
         points.append(new)
-        if stop(new):
+        if ended:
             return points
         step = _next_step(step, points, metric, steps)
     raise NotConverged(f"the path did not end within {max_points} points; allow more points or longer steps")
+
+
+def _carried(problem: Equilibrium, point: Point) -> bool:
+    """Whether a discretisation is fine enough for a point."""
+    try:
+        problem.require_resolution(point.x)
+    except GridTooCoarse:
+        return False
+    return True
 
 
 def _advance(problem: Equilibrium, points: list[Point], step: float, metric: Metric, steps: Steps) -> Point:
@@ -216,15 +229,18 @@ def _advance(problem: Equilibrium, points: list[Point], step: float, metric: Met
 def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
     """Whether an observable may rise and fall between two points at whose tangents it only rises, or only falls.
 
-    Its least slope between them, in the metric's units, must clear zero by a margin that shrinks with the step.
+    Its least slope between them, in the metric's units, must clear zero by a margin that shrinks with the step, and as
+    its square where it is short: so a curve that all but folds is passed, and folds are where its slope changes sign.
     """
     length = b.arclength - a.arclength
     unit = np.sqrt(metric.weights[k])
     change = unit * (b.observables[k] - a.observables[k])
-    return least_slope(unit * a.rates[k], unit * b.rates[k], change / length) < TURNING_MARGIN * length
+    return least_slope(unit * a.rates[k], unit * b.rates[k], change / length) < TURNING_MARGIN * length * min(
+        1.0, length / SHORT
+    )
 
 
-TURNING_MARGIN = 0.3  # of the step's length
+TURNING_MARGIN, SHORT = 0.3, 0.1  # of the step's length; a step below which the cubic errs by far less than that
 
 
 def least_slope(first: float, last: float, mean: float) -> float:

@@ -43,7 +43,7 @@ def test_the_record_has_all_it_promises(compared):
     assert set(flat) == {"tabor", "poisson", "verdict", "halfspace", "finite_element", "comparison"}
     assert set(flat["halfspace"]["events"]) == {"pull_off"}
     for side in ("halfspace", "finite_element"):
-        assert set(folded[side]) == {"events", "rtol", "missed", "unknowns", "seconds", "settings"}
+        assert set(folded[side]) == {"events", "jumps", "rtol", "missed", "unknowns", "seconds", "settings"}
         assert folded[side]["missed"] == {}
         assert set(folded[side]["events"]) == {"pull_off", "jump_on", "jump_off"}
         for event in folded[side]["events"].values():

@@ -19,8 +19,10 @@ from fem_adhesion.commands import curve
 from fem_adhesion.commands.common import Parser
 from fem_adhesion.output import curve_lines, curve_record, curve_terminal, movie
 from fem_adhesion.scene import Counter, Scene
+from fem_adhesion.studies import crosscheck
 from fem_adhesion.studies import curves as study
-from halfspace.curve import EquilibriumPath
+from halfspace import devices
+from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.errors import InputError, NotConverged
 from halfspace.scaling import Units
 
@@ -126,6 +128,40 @@ def relative_errors(event, path):
     yield event.approach_error / path.approach_scale
     if event.name != "zero_load":
         yield event.load_error / abs(event.load)
+
+
+@pytest.mark.parametrize(
+    ("margin", "jumps", "said"),
+    [
+        (
+            Estimate(2e-4, 3e-5),
+            False,
+            "close to folding: it jumps with an apparatus of a compliance above 0.0002 +- 3e-05",
+        ),
+        (Estimate(2e-5, 3e-5), None, "whether it folds cannot be told, its margin being 2e-05 +- 3e-05 eps/(R dgamma)"),
+        (Estimate(-2e-4, 3e-5), True, "its folds are about to merge, by a margin of -0.0002 +- 3e-05 eps/(R dgamma)"),
+    ],
+)
+def test_how_far_the_folds_are_is_said_and_what_cannot_be_told_is_no_disagreement(both, margin, jumps, said):
+    """The half-space has its jumps, the finite elements those that the margin allows."""
+    fe, hs = both.paths.values()
+    events = {name: event for name, event in fe.events.items() if jumps or "jump" not in name}
+    path = replace(fe, margin=margin, events=events)
+    assert path.jumps is jumps
+    curves = replace(both, paths={"finite elements": path, "half-space": hs}, grips=devices.cycle(path))
+    notes, record = list(curve_terminal.notes(curves)), curve_record.record(curves)["solutions"]
+    assert any(said in note for note in notes)
+    first = {
+        True: "energy lost in a cycle",
+        None: "jumps, fixed grips: cannot be told",
+        False: "no jumps, fixed grips: the",
+    }
+    assert notes[0].startswith(first[jumps])
+    assert record["finite elements"]["jumps"] is jumps
+    assert record["finite elements"]["margin"] == {"value": margin.value, "error": margin.error}
+    assert record["half-space"]["margin"] is None
+    verdicts = {row.verdict for row in crosscheck._compare_events(hs, path, 1e-2) if "jump" in row.quantity}
+    assert verdicts == {{True: "agree", None: "inconclusive", False: "disagree"}[jumps]}
 
 
 def test_a_material_gives_si(real):

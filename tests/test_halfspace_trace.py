@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 import halfspace
+from fem_adhesion.studies.fold_birth import critical_stiffness
 from halfspace import theories
-from halfspace.accuracy import half_space_charts, resolution_for
+from halfspace.accuracy import Resolution, half_space_charts, resolution_for
 from halfspace.contact import CONTACT_RADIUS
 from halfspace.curve import find_events, metric_for, trace_charts
+from halfspace.devices import cycle
 from halfspace.errors import InputError, NotConverged
 from halfspace.events import FOLD, locate
 from halfspace.ladder import MOST_RUNGS, charted_rung, climb
@@ -235,3 +237,59 @@ def test_a_curve_that_no_grid_can_carry_is_given_up_and_says_why():
         climb(1e-2, rung)
     with pytest.raises(InputError, match="most_rungs = 0 leaves nothing to climb; allow 1 or more"):
         climb(1e-2, rung, most_rungs=0)
+
+
+# --- near the Tabor parameter at which the curve begins to fold ---
+
+CRITICAL = 0.69721461383  # `fem_adhesion.studies.fold_birth` at rtol 1e-10
+BY_TABOR = 0.459  # R dgamma/eps by which the margin falls with the Tabor parameter there
+
+
+@pytest.mark.parametrize("rtol", [1e-1, 1e-2, 1e-4, 1e-8])
+@pytest.mark.parametrize(
+    "tabor",
+    [0.6970, 0.69715, 0.6972, 0.69721, 0.6972145, 0.6972146, 0.69721461, 0.697214614, 0.69721462, 0.69722, 0.6974],
+)
+def test_a_curve_about_to_fold_is_traced_and_says_how_far_the_folds_are(tabor, rtol):
+    path = halfspace.trace(tabor, rtol=rtol)
+    margin, truth = path.margin, BY_TABOR * (CRITICAL - tabor)
+    assert abs(margin.value - truth) <= margin.error + 0.01 * abs(truth)
+    certain = abs(margin.value) > margin.error
+    assert path.jumps is ((tabor > CRITICAL) if certain else None)
+    assert margin.error < 1e-4
+    if rtol == 1e-8:
+        assert certain is (tabor != 0.697214614)  # which is 1.7e-10 from it
+
+
+def test_the_margin_is_the_compliance_of_the_stiffest_apparatus_that_jumps():
+    """By a golden search under prescribed central gaps, in `fem_adhesion.studies.fold_birth`."""
+    path = halfspace.trace(0.69, rtol=1e-8)
+    assert path.margin.value == pytest.approx(1 / critical_stiffness(0.69), rel=1e-5, abs=0)
+    assert cycle(path, 1 / (path.margin.value * 1.01)) is not None
+    assert cycle(path, 1 / (path.margin.value * 0.99)) is None
+    assert halfspace.trace(0.5).margin is halfspace.trace(1.0).margin is None
+    assert (halfspace.trace(0.5).jumps, halfspace.trace(1.0).jumps) == (False, True)
+
+
+def test_folds_that_a_finer_grid_loses_are_left_in_doubt():
+    """On the lowest rung two folds, on all above none to tell: nobody is told to refine a grid."""
+    tabor = CRITICAL - 1e-6
+
+    def rung(level):
+        resolution = resolution_for(tabor, 1e-1, level)
+        return charted_rung(half_space_charts(tabor if level else tabor + 1e-4, resolution))
+
+    path = climb(1e-2, rung, most_rungs=1)
+    assert "jump_on" not in path.events
+    assert path.jumps is None
+    assert path.margin.error > 1e-5
+    assert cycle(path) is None
+
+
+@pytest.mark.parametrize(("tabor", "nodes", "growth", "extent"), [(0.0394754, 5, 3.0, 16.11), (0.0603, 5, 2.5, 15.2)])
+def test_a_step_does_not_leap_over_the_end_of_a_chart_into_cells_too_coarse(tabor, nodes, growth, extent):
+    charts = half_space_charts(tabor, Resolution(nodes, 0.6, growth, extent))
+    segments = trace_charts(charts, 0.5)
+    last = segments[0].points[-1]
+    assert last.observables[CONTACT_RADIUS] > charts[0].until
+    segments[0].problem.require_resolution(last.x)

@@ -70,6 +70,8 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
         "events": {name: event_record(event, path.tolerance) for name, event in path.events.items()},
         "curve": points | stability,
         "met": path.met,
+        "jumps": path.jumps,
+        "margin": _estimate(path.margin) if path.margin else None,
         "energy_released": _estimate(path.energy),
         "unknowns": path.unknowns,
         "seconds": path.seconds,

@@ -16,6 +16,7 @@ from fem_adhesion.output.curve_scales import Scale, scales
 from fem_adhesion.output.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.studies.curves import Curves
 from fem_adhesion.studies.quantities import Quantity
+from halfspace.curve import Estimate
 from halfspace.devices import Cycle
 from halfspace.events import Event, Tolerance, tolerance_told
 from halfspace.reach import reaching
@@ -116,9 +117,13 @@ def notes(curves: Curves) -> Iterator[str]:
         if cycle:
             lost = with_error(Quantity(cycle.energy_lost.value, cycle.energy_lost.error, ""), energy.size, DIGITS)
             yield f"energy lost in a cycle, {device}: {lost} {energy.unit}"
+        elif device == "fixed grips" and curves.path.jumps is None:
+            yield "jumps, fixed grips: cannot be told from a contact that follows smoothly"
         else:
             yield f"no jumps, {device}: the contact follows smoothly"
     for solver, path in curves.paths.items():
+        if path.margin:
+            yield f"{solver}: {_how_far(path.margin)}"
         told = tolerance_told(path.rtol, path.missed)
         yield f"{solver}: {path.unknowns} unknowns, {path.count} points, {path.seconds:.2f} s; {told}"
     if any(curves.paths[name].tolerance.missed_by(event) for _, name, event in _rows(curves)):
@@ -128,6 +133,16 @@ def notes(curves: Curves) -> Iterator[str]:
         "In brackets: error of the last digit. Compression and approach are positive. Contact radius: where the gap is "
         "3^(1/6) eps, the place of the largest tension; -: no contact."
     )
+
+
+def _how_far(margin: Estimate) -> str:
+    """How far a curve is from folding, where that is near."""
+    known = f"{margin.value:.2g} +- {margin.error:.1g} eps/(R dgamma)"
+    if abs(margin.value) <= margin.error:
+        return f"whether it folds cannot be told, its margin being {known}; a smaller rtol may"
+    if margin.value < 0:
+        return f"its folds are about to merge, by a margin of {known}"
+    return f"close to folding: it jumps with an apparatus of a compliance above {known}"
 
 
 def _apparatus(curves: Curves) -> str:

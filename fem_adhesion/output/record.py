@@ -62,6 +62,7 @@ def _case(case: Case | Failure) -> dict[str, Any]:
 def _solution(path: EquilibriumPath) -> dict[str, Any]:
     return {
         "events": {name: _event(event) for name, event in path.events.items() if name in EVENT_NAMES},
+        "jumps": path.jumps,
         "rtol": path.rtol,
         "missed": {name: list(numbers) for name, numbers in path.missed.items()},
         "unknowns": path.unknowns,

@@ -65,7 +65,7 @@ def _value(estimate: Estimate | None) -> str:
     """Digits down to the first uncertain one; two of a residual, which is of the size of its error."""
     if estimate is None:
         return "none"
-    if abs(estimate.value) < 100 * estimate.error:
+    if not abs(estimate.value) >= 100 * estimate.error:
         return _small(estimate.value)
     digits = max(0, min(10, -math.floor(math.log10(estimate.error or 1e-10))))
     return f"{estimate.value:.{digits}f}"

@@ -8,6 +8,7 @@ budget; the estimates come from refinement and from the size of the block, never
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -27,7 +28,8 @@ from halfspace import compliance, grid
 from halfspace.compliance import Array, ElasticOperator
 from halfspace.curve import EquilibriumPath, Estimate, transfer
 from halfspace.errors import NotConverged
-from halfspace.events import ROUND_OFF, Event, Located
+from halfspace.events import ROUND_OFF, Located
+from halfspace.ladder import FOLDS
 from halfspace.limits import require_rtol
 
 Verdict = Literal["agree", "disagree", "inconclusive"]
@@ -71,7 +73,7 @@ class Row:
     @property
     def verdict(self) -> Verdict:
         """Agreement within the estimates, and estimates within the budget."""
-        if not self.difference <= self.error:
+        if not (self.difference <= self.error or self.error == math.inf):
             return "disagree"
         return "agree" if self.error <= self.budget else "inconclusive"
 
@@ -238,8 +240,8 @@ def _residual(found: Sequence[Located], equations: Located) -> Estimate:
 
 def _compare_events(hs: EquilibriumPath, fe: EquilibriumPath, rtol: float) -> Iterator[Row]:
     for event, quantity, unit, pointwise in EVENT_QUANTITIES:
-        a, b = (_number(path.event(event), quantity) for path in (hs, fe))
-        if a is None and b is None:
+        a, b = (_number(path, event, quantity) for path in (hs, fe))
+        if not (a and np.isfinite(a.value)) and not (b and np.isfinite(b.value)):
             continue
         difference = abs(a.value - b.value) if a and b else float("nan")
         budget = (POINTWISE if pointwise else 1) * rtol * _size(quantity, a.value if a else 0.0, hs)
@@ -266,5 +268,12 @@ EVENT_QUANTITIES = (
 )
 
 
-def _number(event: Event | None, quantity: str) -> Estimate | None:
-    return Estimate(getattr(event, quantity), getattr(event, f"{quantity}_error")) if event else None
+def _number(path: EquilibriumPath, name: str, quantity: str) -> Estimate | None:
+    """Number of an event, None if there is none, and one of infinite error where it cannot be told if there is."""
+    event = path.event(name)
+    if event is None:
+        return UNTOLD if name in FOLDS and path.jumps is None else None
+    return Estimate(getattr(event, quantity), getattr(event, f"{quantity}_error"))
+
+
+UNTOLD = Estimate(float("nan"), float("inf"))
