@@ -25,8 +25,8 @@ check: $(VENV)/installed-dev ## check format, style and types
 bench: $(VENV)/installed-dev ## time the solvers beside a yardstick (some minutes; QUICK=1: half a minute)
 	QUICK=$(QUICK) $(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-enable --benchmark-columns=min,median,rounds -q
 
-honesty: $(VENV)/installed-dev ## check all error estimates against tighter solutions, over a fine net (five minutes; QUICK=1: half a minute)
-	HONESTY=$(if $(QUICK),quick,full) $(BIN)/python -m pytest tests/test_honesty.py -k estimates -s
+honesty: $(VENV)/installed-dev ## hold all error estimates against the truth, by families, and the solvers against each other (QUICK=1: a minute; SEED=n)
+	$(BIN)/python tests/honesty.py $(if $(QUICK),--quick) $(if $(SEED),--seed $(SEED))
 
 clean: ## remove the environment and all caches
 	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

@@ -32,6 +32,7 @@ CURVE_DEGREE = 4  # of the elements for the curve, whose operator is interpolate
 FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
 PER_DEGREE = 15.0  # what each degree divides it by
 REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
+ABRUPT = 1.0  # the same on a block, where the attraction ends abruptly with the sphere: a degree leaves a third
 RINGS, MOST_RINGS = 0.2, 6  # ratio of the rings around a singular corner's, and as many as rounding allows
 BEYOND = 1e3  # size of the block under a sphere, in R: nothing acts on it beyond R, and its far field errs by O(L^-5)
 
@@ -73,7 +74,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
         (AroundEvents(sized_body(scene, how), *surroundings(rtol, level), to_load),),
         settings,
         other if level and _singular(scene) else None,
-        remaining=REMAINING,
+        remaining=ABRUPT if scene.body == "block" else REMAINING,
         along=True,
     )
 

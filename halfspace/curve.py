@@ -102,7 +102,8 @@ class EquilibriumPath(Valued):
     below : callable, optional
         The finest discretisation of the rung below the last, unless that is the curve's own.
     twin : callable, optional
-        A discretisation as fine as the last but one, with other cells, for the errors of what is solved for later.
+        A discretisation as fine as the last but one, with other cells, or one that differs from the finest in one
+        respect only where that differs from the curve's in two; for the errors of what is solved for later.
     remaining : float
         Part of the change from either to the finest that may be left.
     ways : chains of callables

@@ -244,7 +244,8 @@ def between(problem: Traceable, a: Point, b: Point, condition: Condition, metric
         return condition.of(trials[step])
 
     root = brentq(quantity, 0.0, length, xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
-    if abs(quantity(root)) > LEAP * max(abs(condition.of(a)), abs(condition.of(b))) + ROUND_OFF:
+    part = max(LEAP, 2 * ARCLENGTH_TOLERANCE / abs(length))  # what the root finder leaves of a short interval
+    if abs(quantity(root)) > part * max(abs(condition.of(a)), abs(condition.of(b))) + ROUND_OFF:
         raise NotConverged(
             f"an event near approach {a.observables[0]:.6g} eps, load {a.observables[1]:.6g} R dgamma is lost: states "
             "next to each other lie on different branches; refine the grid"

@@ -208,7 +208,7 @@ def _climb_from(
         time.perf_counter() - began,
         {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
         below.stages[-1] if below.stages else None,
-        higher.twin,
+        higher.twin or (higher.stages[-2] if len(higher.stages) > 1 else None),
         higher.remaining,
         _ways(below.stages[-1] if below.stages else Charted(charts), higher),
         margin,

@@ -7,7 +7,9 @@ import re
 import subprocess
 from pathlib import Path
 
+import honesty
 import pytest
+import side_by_side
 from whole_runs import BIN, ROOT, tables_in
 
 MAKEFILE = (ROOT / "Makefile").read_text()
@@ -88,16 +90,16 @@ def test_bench_times_every_solver_beside_the_yardstick(made):
     assert re.search(r"peak memory of one process: \d+ MiB", run.out)
 
 
-def test_honesty_judges_every_kind_of_estimate_of_both_solvers(made):
+def test_honesty_judges_every_family_and_both_solvers_side_by_side(made):
     run = made("honesty")
     assert run.code == 0, run.out + run.err
-    judged = re.findall(r"(half-space|finite elements), ([\w ]+): (\d+) numbers, [\d.]+% within the estimate", run.out)
-    assert [(solver, kind) for solver, kind, _ in judged] == [
-        (solver, kind)
-        for solver in ("half-space", "finite elements")
-        for kind in ("loads and approaches", "gaps and radii", "energies")
-    ]
-    assert all(int(count) >= 4 for _, _, count in judged)
+    judged = dict(re.findall(r"^(\S.*?) +(\d+) +[\d.]+% +[\d.]+% +\d+$", run.out, re.M))
+    assert judged.keys() == honesty.FAMILIES.keys()
+    assert all(int(count) >= 10 for count in judged.values())
+    assert re.search(r"both solvers side by side, \d+ scenes of seed \d+", run.out)
+    compared = dict(re.findall(r"^(\w+) +(\d+) +\d+ +\S+$", run.out, re.M))
+    assert compared.keys() == {*side_by_side.QUANTITIES, "energy"}
+    assert all(int(count) > 0 for count in compared.values())
 
 
 def test_clean_removes_what_was_made_and_nothing_else(tmp_path):

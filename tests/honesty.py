@@ -1,0 +1,443 @@
+"""Whether error estimates hold the truth and are not much larger, by families of scenes; `make honesty` runs it.
+
+A family is data: its scenes, how they are solved, which numbers are told, and their truth, which is known to what two
+truths differ by. A number is held if its true error is no more than its estimate and that, and close if its estimate is
+no more than a hundred times its true error, or that, or what rounding leaves. A table tells the shares, and the worst
+of what lies outside. `side_by_side` makes a second table.
+"""
+
+import argparse
+import math
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import partial
+from itertools import chain
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import side_by_side
+import truths
+
+import fem_adhesion
+import halfspace
+from fem_adhesion import Scene
+from fem_adhesion.commands.common import progress_bar
+from fem_adhesion.scene import Counter
+from fem_adhesion.studies.assess import assess
+from fem_adhesion.studies.assess_contact import Contact
+from fem_adhesion.studies.parallel import stream
+from halfspace.curve import Estimate, energy_released
+from halfspace.devices import cycle
+from halfspace.events import EVENTS
+
+MESHES = Path(__file__).parents[1] / "meshes"
+QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
+HELD = 0.99
+CLOSE = {"full": 0.9, "quick": 0.8}  # few scenes have few independent numbers
+CLOSENESS = 100
+ROUNDED = 1e-11
+
+Numbers = Mapping[str, Estimate]
+Values = Mapping[str, float]
+
+
+class Net(NamedTuple):
+    """Scenes of a family and the tolerances at which each is solved."""
+
+    scenes: Sequence[Any]
+    rtols: Sequence[float]
+
+
+@dataclass(frozen=True)
+class Family:
+    """Scenes of one kind.
+
+    Attributes
+    ----------
+    full, quick : Net
+        All that is looked at, and half a minute's part of it.
+    solve : callable
+        A scene at a tolerance: whatever carries its numbers.
+    numbers : callable
+        Those numbers with their estimates.
+    truth : callable
+        A scene and what was solved of it: the same numbers twice, the second time better known.
+    """
+
+    full: Net
+    quick: Net
+    solve: Callable[[Any, float], Any]
+    numbers: Callable[[Any], Numbers]
+    truth: Callable[[Any, Any], Sequence[Values]]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One number: what it is of, its estimate, its true error, and how well that is known."""
+
+    what: str
+    estimate: float
+    error: float
+    known: float
+    size: float
+
+    @property
+    def held(self):
+        """Whether the estimate holds the truth."""
+        return self.error <= self.estimate + self.known
+
+    @property
+    def close(self):
+        """Whether the estimate tells the size of the error."""
+        return self.estimate <= CLOSENESS * max(self.error, self.known, ROUNDED * (1 + self.size))
+
+
+# What is told of a curve ----------------------------------------------------------------------------------------------
+
+
+def of_path(path):
+    """Events and energy."""
+    told = {f"{name} {q}": _estimate(event, q) for name, event in path.events.items() for q in QUANTITIES}
+    return _real(told | {"energy": path.energy})
+
+
+def of_state(state):
+    """The same of located events."""
+    found = {name: state[name].point.observables for name in EVENTS if name in state}
+    told = {f"{name} {q}": float(v) for name, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}
+    return told | {"energy": energy_released(state)}
+
+
+def _estimate(event, quantity):
+    return Estimate(getattr(event, quantity), getattr(event, f"{quantity}_error"))
+
+
+def _real(numbers):
+    """Numbers that exist, but for the load that is zero by definition."""
+    return {what: n for what, n in numbers.items() if math.isfinite(n.value) and what != "zero_load load"}
+
+
+STIFFNESSES = (1e-6, 1e-2, 1.0, math.inf)
+
+
+def of_springs(path):
+    """Jumps with apparatus of several stiffnesses, where there are any."""
+    return {f"k = {k:g}, {what}": n for k in STIFFNESSES for what, n in _of_cycle(cycle(path, k)).items()}
+
+
+def _of_cycle(found):
+    if found is None:
+        return {}
+    ends = {f"{j} {e}": getattr(getattr(found, j), e) for j in ("jump_on", "jump_off") for e in ("take_off", "landing")}
+    told = {f"{where} {q}": _estimate(end, q) for where, end in ends.items() for q in QUANTITIES}
+    return _real(told | {"energy lost": found.energy_lost, "jump_on energy": found.jump_on.energy})
+
+
+def of_assessment(assessment):
+    """What the computed models say in SI."""
+    models = (m for m in assessment.models if m.is_computed)
+    return {f"{m.model}, {what}": Estimate(q.value, q.error) for m in models for what, q in m.values.items()}
+
+
+# Truths ---------------------------------------------------------------------------------------------------------------
+
+
+def traced(stages, tabor_of, scene, _):
+    return [of_state(state) for state in truths.traced(stages(tabor_of(scene)))]
+
+
+def relocated(stages, scene, path):
+    return [of_state(state) for state in truths.relocated(path.stages[-1], stages(scene))]
+
+
+def sprung(stages, scene, path):
+    """Jumps on each stage, from where they are on the curve."""
+    on = (replace(path, finest=stage, twin=None) for stage in stages(scene))
+    return [{what: n.value for what, n in of_springs(one).items()} for one in on]
+
+
+def assessed(contact, assessment):
+    """Events and jumps of each model's scene on the stages of that scene, in SI by formulas of our own."""
+    answers = ({}, {})
+    for model in assessment.models:
+        if model.is_computed:
+            for answer, stage in zip(answers, _stages_of(model, contact), strict=True):
+                answer |= {f"{model.model}, {q}": v for q, v in _in_si(contact, model.curve, stage).items()}
+    return answers
+
+
+def _stages_of(model, contact):
+    tabor, rho = contact.units.tabor, contact.units.radius_ratio
+    if model.model == "half-space":
+        return truths.half_space(tabor)
+    if model.model == "true profile":
+        return truths.under_sphere(tabor, rho)
+    return truths.elements(_sphere(tabor, rho, poisson=contact.poisson))
+
+
+def _in_si(contact, path, stage):
+    E, R, dgamma, eps = contact.units.modulus, contact.radius, contact.work_of_adhesion, contact.spacing
+    beta = (R**2 * dgamma / E) ** (1 / 3)
+    k = contact.stiffness / (R * dgamma / eps)
+    state = truths.on(stage, path.stages[-1])
+    at = {name: dict(zip(QUANTITIES, state[name].point.observables, strict=True)) for name in ("pull_off", "zero_load")}
+    told = {
+        "pull_off_force": -at["pull_off"]["load"] * R * dgamma,
+        "pull_off_radius": at["pull_off"]["contact_radius"] * beta,
+        "zero_load_radius": at["zero_load"]["contact_radius"] * beta,
+    }
+    round_trip = cycle(replace(path, finest=stage, twin=None), k)
+    for name in ("jump_on", "jump_off"):
+        off = getattr(round_trip, name).take_off
+        told[f"{name}_separation"] = (1 - off.approach) * eps
+        told[f"{name}_base"] = (off.approach + off.load / k) * eps
+    return told | {"energy_lost": round_trip.energy_lost.value * R * dgamma * eps}
+
+
+# The families ---------------------------------------------------------------------------------------------------------
+
+
+def _sphere(tabor, radius_ratio, **more):
+    return Scene(tabor, body=more.pop("body", "hemisphere"), profile="sphere", radius_ratio=radius_ratio, **more)
+
+
+def _mesh(name, tabor, radius_ratio, **more):
+    """A mesh file, and the body of ours that it is of."""
+    return Scene(tabor, body=MESHES / f"{name}.msh", radius_ratio=radius_ratio, **more)
+
+
+def _ours(scene):
+    body = {"hemisphere": "hemisphere", "sphere": "sphere"}[scene.body.stem]
+    return truths.elements(replace(scene, body=body, profile="sphere"))
+
+
+def _decades(*exponents):
+    return tuple(10.0**-n for n in exponents)
+
+
+def _silica(**changes):
+    usual = {"radius": 100e-9, "modulus": 72e9, "poisson": 0.17, "work_of_adhesion": 0.063, "spacing": 0.14e-9}
+    return Contact(**(usual | {"stiffness": 0.2} | changes))
+
+
+USUAL = (0.02, 0.1, 0.3, 0.5, 0.65, 0.75, 1, 1.5, 2, 3, 5, 8, 20, 50)
+BETWEEN = (0.05, 0.2, 0.4, 0.6, 0.69, 0.696, 0.6975, 0.7, 0.72, 0.8, 0.9, 1.2, 2.5, 3.5, 3.9, 4, 4.1, 4.5, 6, 10, 15)
+SIZES = ((0.05, 10), (0.3, 10), (0.3, 300), (1, 6), (1, 30), (1, 1000), (2, 100), (5, 30))
+POISSONS = (0, 0.3, 0.45, 0.499)
+
+
+def _sized(*sizes, truth=truths.elements, few=1, **more):
+    """Family of bodies of some sizes, each with another Poisson's ratio; `few` is the place of that which is quick."""
+    scenes = [_sphere(*size, poisson=POISSONS[n % 4], **more) for n, size in enumerate(sizes)]
+    nets = Net(scenes, _decades(4, 5, 6)), Net(scenes[few : few + 1], _decades(4, 5))
+    return Family(*nets, _by(fem_adhesion.trace), of_path, partial(relocated, truth))
+
+
+def _by(solve):
+    return partial(_solved, solve)
+
+
+def _solved(solve, scene, rtol):
+    return solve(scene, rtol=rtol)
+
+
+def _under_sphere(size, rtol):
+    return halfspace.trace(size[0], rtol=rtol, radius_ratio=size[1])
+
+
+def _stages_under_sphere(size):
+    return truths.under_sphere(*size)
+
+
+def _half_space_under(scene):
+    return truths.under_sphere(scene.tabor, scene.radius_ratio)
+
+
+def _block(tabor):
+    return Scene(tabor)
+
+
+def _itself(tabor):
+    return tabor
+
+
+def _tabor(scene):
+    return scene.tabor
+
+
+def _half_space_of(scene):
+    return truths.half_space(scene.tabor)
+
+
+def _assess(contact, _):
+    return assess(contact)
+
+
+BLOCKS = tuple(map(_block, (*USUAL[:12:2], 0.1, 0.69, 0.7, 0.8, 3, 4, 7, 10, 20)))
+FAMILIES = {
+    "half-space": Family(
+        Net((*USUAL, *BETWEEN, 30, 70, 100), _decades(*range(1, 10))),
+        Net((0.05, 0.75, 2, 20), _decades(2, 5, 8)),
+        _by(halfspace.trace),
+        of_path,
+        partial(traced, truths.half_space, _itself),
+    ),
+    "block": Family(
+        Net(BLOCKS, _decades(*range(1, 8))),
+        Net((Scene(0.1), Scene(1, poisson=0.499), Scene(3)), _decades(2, 4)),
+        _by(fem_adhesion.trace),
+        of_path,
+        partial(traced, truths.half_space, _tabor),
+    ),
+    "sphere's profile": Family(
+        Net((*SIZES, (10, 100), (2, 10)), _decades(1, 2, 3, 4, 5, 6, 7, 8, 9)),
+        Net(((0.3, 30), (2, 100)), _decades(2, 6)),
+        _under_sphere,
+        of_path,
+        partial(relocated, _stages_under_sphere),
+    ),
+    "hemisphere, sliding": _sized(
+        (0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (2, 30), truth=truths.harmonics, few=3
+    ),
+    "hemisphere, bonded": _sized(*SIZES, grip="bonded", few=3),
+    "held sphere": _sized(*SIZES[:4], body="sphere"),
+    "pair of spheres": _sized(*SIZES[2:6], counter=Counter(0.4, 0.3, 2.0)),
+    "block under a sphere": _sized(*SIZES[2:6], body="block", truth=_half_space_under),
+    "mesh from a file": Family(
+        Net([_mesh("hemisphere", 1.0, 30.0), _mesh("hemisphere", 2.0, 100.0), _mesh("sphere", 1.0, 100.0)], [1e-3]),
+        Net([_mesh("hemisphere", 1.0, 30.0)], [1e-3]),
+        _by(fem_adhesion.trace),
+        of_path,
+        partial(relocated, _ours),
+    ),
+    "springs, half-space": Family(
+        Net((0.05, 0.3, 0.75, 1, 2, 5, 20), _decades(2, 4, 6, 8)),
+        Net((0.3, 2), _decades(3, 6)),
+        _by(halfspace.trace),
+        of_springs,
+        partial(sprung, truths.half_space),
+    ),
+    "springs, block": Family(
+        Net(tuple(map(_block, (0.05, 0.3, 1, 2, 5))), _decades(2, 3, 4, 5)),
+        Net((_block(1),), _decades(3)),
+        _by(fem_adhesion.trace),
+        of_springs,
+        partial(sprung, _half_space_of),
+    ),
+    "assess": Family(
+        Net((_silica(), _silica(radius=20e-9, modulus=3e9, poisson=0.4), _silica(radius=1e-6, stiffness=20.0)), [0.0]),
+        Net((_silica(radius=5e-9),), [0.0]),
+        _assess,
+        of_assessment,
+        assessed,
+    ),
+}
+
+
+# Judging --------------------------------------------------------------------------------------------------------------
+
+
+def judged(item):
+    """All numbers of one scene of a family, at all tolerances, and the seconds that took."""
+    began = time.process_time()
+    name, scene, rtols = item
+    family = FAMILIES[name]
+    answers = {rtol: family.solve(scene, rtol) for rtol in rtols}
+    rough, best = family.truth(scene, answers[min(rtols)])
+    numbers = [n for rtol, answer in answers.items() for n in _judged(family.numbers(answer), rough, best, scene, rtol)]
+    return numbers, time.process_time() - began
+
+
+def _judged(numbers, rough, best, scene, rtol):
+    """Each number beside its truth; one that the truth lacks, or has beyond them, is held by no estimate."""
+    for what in numbers.keys() | {w for w, v in best.items() if math.isfinite(v) and w != "zero_load load"}:
+        told, truth = numbers.get(what, Estimate(math.nan, 0.0)), best.get(what, math.nan)
+        error, known = abs(told.value - truth), abs(truth - rough.get(what, math.nan))
+        lost = not math.isfinite(error)
+        yield Judged(
+            f"{what} of {_briefly(scene)} at rtol {rtol:g}", told.error, math.inf if lost else error, known, abs(truth)
+        )
+
+
+def _briefly(scene):
+    """Show of a scene or contact what is not as usual."""
+    if not is_dataclass(scene):
+        return scene
+    usual = {f.name: f.default for f in fields(scene)}
+    return ", ".join(f"{n} = {getattr(scene, n)}" for n in usual if getattr(scene, n) != usual[n])
+
+
+@dataclass(frozen=True)
+class Row:
+    """What the table says of a family."""
+
+    name: str
+    numbers: Sequence[Judged]
+    seconds: float
+
+    @property
+    def outside(self):
+        """Numbers that their estimates do not hold, the worst first."""
+        return sorted((n for n in self.numbers if not n.held), key=lambda n: n.estimate / max(n.error, 1e-300))
+
+    @property
+    def shares(self):
+        """Parts of the numbers that are held, and close."""
+        return tuple(sum(getattr(n, k) for n in self.numbers) / len(self.numbers) for k in ("held", "close"))
+
+    def honest(self, net):
+        """Whether both shares are what they should be; of a few numbers one may lie outside."""
+        few = len(self.outside) <= max(1, int((1 - HELD) * len(self.numbers)))
+        return few and self.shares[1] >= CLOSE[net]
+
+
+def rows_of(net, names=tuple(FAMILIES), jobs=None):
+    """Rows of the families as each is done, in the order in which they end."""
+    nets = {name: getattr(FAMILIES[name], net) for name in names}
+    items = [(name, scene, nets[name].rtols) for name in names for scene in nets[name].scenes]
+    done = {name: [] for name in names}
+    with progress_bar() as told:
+        for k, (item, result) in enumerate(stream(judged, items, jobs=jobs), start=1):
+            told(item[0], k, len(items))
+            done[item[0]].append(result)
+            if len(done[item[0]]) == len(nets[item[0]].scenes):
+                numbers, seconds = zip(*done[item[0]], strict=True)
+                yield Row(item[0], list(chain(*numbers)), sum(seconds))
+
+
+HEAD = f"{'family':22}{'numbers':>8}{'within':>9}{'within 100 times':>18}{'CPU s':>8}"
+MOST_SHOWN = 5
+
+
+def printed(row):
+    """One row, and the worst of its numbers that lie outside."""
+    held, close = row.shares
+    print(f"{row.name:22}{len(row.numbers):8}{held:9.1%}{close:18.1%}{row.seconds:8.0f}", flush=True)
+    for n in row.outside[:MOST_SHOWN]:
+        print(f"    {n.error:.1e}, estimated as {n.estimate:.1e}: {n.what}", flush=True)
+    return row
+
+
+def main(arguments=None):
+    """Run both tables; 1 if a family is not honest or two solvers contradict each other."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="half a minute's part")
+    parser.add_argument("--seed", type=int, help="of the scenes side by side; a new one unless given")
+    parser.add_argument("--families", nargs="+", metavar="FAMILY", default=list(FAMILIES), choices=list(FAMILIES))
+    asked = parser.parse_args(arguments)
+    net = "quick" if asked.quick else "full"
+    print(HEAD, flush=True)
+    dishonest = [row.name for row in rows_of(net, asked.families) if not printed(row).honest(net)]
+    agreed = side_by_side.searched(net, asked.seed)
+    print(
+        f"not honest: {', '.join(dishonest) or 'none'}; both solvers {'agree' if agreed else 'contradict each other'}"
+    )
+    return 0 if agreed and not dishonest else 1
+
+
+if __name__ == "__main__":
+    from honesty import main as run  # under its own name, which other processes know it by
+
+    sys.exit(run())
