@@ -14,7 +14,7 @@ from fem_adhesion.boundary import boundary_basis, trace_matrix
 from fem_adhesion.elasticity import CellStiffness, Space, cell_stiffness, ring_measure, scatter
 from fem_adhesion.far_field import Exterior, FarField, point_load
 from halfspace.compliance import Array, ElasticOperator, Index
-from halfspace.errors import InputError
+from halfspace.errors import InputError, NotConverged
 from halfspace.values import Valued
 
 
@@ -90,7 +90,10 @@ class Factorised(Valued):
     @cached_property
     def _factors(self) -> Any:
         options = {"SymmetricMode": True}
-        return splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        try:
+            return splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        except RuntimeError as error:  # SuperLU's way of saying so
+            raise NotConverged("the stiffness is singular; hold the body, and mesh it without empty cells") from error
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -115,7 +115,7 @@ class Elimination(Valued):
         """
         inside, outside = self.inside, self.outside
         K_io = cells[:, inside[:, None], outside] * self.weights[:, None]
-        inverse = np.asarray(np.linalg.inv(cells[:, inside[:, None], inside]), dtype=np.float64)
+        inverse = _inverse(cells[:, inside[:, None], inside])
         recovery: Array = inverse @ K_io
         K_oo = cells[:, outside[:, None], outside] * (self.weights[:, :, None] * self.weights[:, None, :])
         shared = K_oo - K_io.transpose(0, 2, 1) @ recovery
@@ -134,6 +134,13 @@ class Elimination(Valued):
         used = np.flatnonzero(values)
         keys = (columns[used] - self.first) * self.size + rows[used] - self.first
         data[np.searchsorted(self.keys, keys)] += values[used]
+
+
+def _inverse(blocks: Array) -> Array:
+    try:
+        return np.asarray(np.linalg.inv(blocks), dtype=np.float64)
+    except np.linalg.LinAlgError as error:
+        raise NotConverged("the tangent of a cell is singular; try another control or a nearer start") from error
 
 
 def _factors(matrix: sparse.csc_array, pivoting: float) -> Any:

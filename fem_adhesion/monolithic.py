@@ -205,7 +205,10 @@ class MonolithicProblem(Valued):
         The negative pivots of the tangent, factorised without exchanges (Sylvester's law of inertia).
         """
         tangent = self.jacobian(x)[:, :-1]
-        factors = splu(tangent, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        try:
+            factors = splu(tangent, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        except RuntimeError as error:  # SuperLU's way of saying so
+            raise NotConverged("the tangent is singular, as at a fold; take a point beside it") from error
         return int(np.sum(factors.U.diagonal() < 0))
 
     def require_resolution(self, x: Array) -> None:

@@ -19,13 +19,13 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
-from scipy.optimize import brentq
 
 from halfspace.breathing import Operator
 from halfspace.compliance import ElasticOperator
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
 from halfspace.profiles import PARABOLOID, Profile
+from halfspace.roots import root
 from halfspace.values import Valued
 
 Array = NDArray[np.float64]
@@ -167,13 +167,17 @@ class ContactProblem(Valued):
             return float(x[-1])
         H, edge, body = x[:-2], self.law.edge_gap, self.operator_at(x)
         inside = np.flatnonzero(edge > H)
-        if inside.size == 0 and body.axis_row @ H > edge:
+        if inside.size == 0 and not body.axis_row @ H <= edge:
             return float("nan")
         if inside.size and inside[-1] == H.size - 1 and body.continuous(body.extent)[0] @ H <= edge:
             return body.extent
         radii = np.append(body.radii, body.extent)
         below, above = (radii[inside[-1]], radii[inside[-1] + 1]) if inside.size else (0.0, radii[0])
-        return float(brentq(lambda r: float(body.continuous(r)[0] @ H - edge), below, above, xtol=1e-14))
+
+        def beyond(r: float) -> float:
+            return float(body.continuous(r)[0] @ H - edge)
+
+        return root(beyond, below, above, "the contact edge; refine the grid", xtol=1e-14)
 
     def ripple(self, x: Array) -> float:
         """Largest of the last three Legendre coefficients of the gap in the cell on the axis, in eps.
@@ -184,7 +188,7 @@ class ContactProblem(Valued):
         nodes = body.cell_nodes[0]
         places = 2 * body.radii[nodes] / body.cells[1] - 1
         sizes = np.abs(np.linalg.solve(legvander(places, nodes.size - 1), x[nodes]))
-        return float(sizes[sizes > ROUND_OFF * sizes.max()][-3:].max())
+        return float(sizes[sizes > ROUND_OFF * sizes.max()][-3:].max(initial=0.0))
 
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative by x of the weighted sum of the observables, shape (q + 2,)."""

@@ -11,14 +11,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, NoReturn, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from halfspace import newton
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
-from halfspace.errors import ContactTooWide, InputError
+from halfspace.errors import ContactTooWide, InputError, NotConverged
 from halfspace.events import (
     EVENTS,
     EXTREMUM,
@@ -446,8 +446,8 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
 
     Raises
     ------
-    ContactTooWide
-        If the curve ends, for want of body, before the last two.
+    NotConverged
+        If the curve ends before one of those that it must have: for want of body, it is a ContactTooWide.
     """
     tabor = segments[0].problem.tabor
     metric = metric_for(tabor)
@@ -455,22 +455,29 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     def roots(condition: Condition) -> list[Located]:
         return [e for s in segments for e in locate(s.problem, s.points, metric, condition)]
 
+    def required(name: str, condition: Condition) -> list[Located]:
+        return roots(condition) or _missing(segments[-1], name)
+
     folds = roots(FOLD)
-    found = {"pull_off": min(roots(EXTREMUM), key=lambda e: float(e.point.observables[LOAD]))}
+    found = {"pull_off": min(required("pull_off", EXTREMUM), key=lambda e: float(e.point.observables[LOAD]))}
     if folds:
         found |= {"jump_on": folds[0], "jump_off": folds[-1]}
-    found["separated"] = roots(Condition(APPROACH, value=separated_approach(tabor)))[0]
+    found["separated"] = required("separation", Condition(APPROACH, value=separated_approach(tabor)))[0]
     for name, condition in (("zero_load", ZERO_LOAD), ("zero_approach", Condition(APPROACH))):
-        places = roots(condition)
-        if not places:
-            raise _too_wide(segments[-1], name)
-        found[name] = places[-1]
+        found[name] = required(name, condition)[-1]
     return found
 
 
-def _too_wide(segment: Segment, event: str) -> ContactTooWide:
-    radius, body = segment.points[-1].observables[CONTACT_RADIUS], segment.problem.interface.profile.end
-    return ContactTooWide(
+def _missing(segment: Segment, event: str) -> NoReturn:
+    """Say why a curve ends before an event."""
+    last, body = segment.points[-1].observables, segment.problem.interface.profile.end
+    radius = last[CONTACT_RADIUS]
+    if not radius >= WIDEST * body:
+        raise NotConverged(
+            f"the curve has no {event} before it ends at approach {last[APPROACH]:.6g} eps, load {last[LOAD]:.6g} "
+            "R dgamma; take a larger to_load or a smaller rtol"
+        )
+    raise ContactTooWide(
         f"contact radius {radius:.3g} beta exceeds {WIDEST:g} of the body's radius, {body:.3g} beta, before {event} is "
         "reached; take a larger radius_ratio or a smaller tabor"
     )

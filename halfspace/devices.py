@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD, ContactProblem
 from halfspace.curve import EquilibriumPath, Estimate, Finest, metric_for, moved, transfer
-from halfspace.errors import InputError
+from halfspace.errors import InputError, NotConverged
 from halfspace.events import ROUND_OFF, Condition, Event, Located, Tolerance, estimate_event, locate
 from halfspace.limits import require_number
 from halfspace.newton import Control, Traceable
@@ -152,8 +152,14 @@ def jumps(segments: Sequence[Segment], compliance: float) -> tuple[_States, _Sta
     if not folds:
         return None
     on, off = folds[0], folds[-1]
-    contact = _roots(segments, Condition(APPROACH, value=_base(on, compliance), compliance=compliance))[-1]
-    base = _base(off, compliance)
+    landings = _roots(segments, Condition(APPROACH, value=_base(on, compliance), compliance=compliance))
+    if not landings:
+        load = segments[-1].points[-1].observables[LOAD]
+        raise NotConverged(
+            f"the landing of the jump on lies beyond the end of the curve at load {load:.3g} R dgamma; trace it to a "
+            "larger to_load"
+        )
+    contact, base = landings[-1], _base(off, compliance)
     separated = widened(segments[0].problem, base)
     start = separated.undeformed(base)
     return _States(on, contact), _States(off, _landing(separated, start, off, compliance))

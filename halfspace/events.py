@@ -13,13 +13,13 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from halfspace import newton
 from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.errors import NotConverged
 from halfspace.newton import Control, Traceable
 from halfspace.path import Metric, Point, correct, least_slope, make_point
+from halfspace.roots import root
 from halfspace.values import Valued
 
 Array = NDArray[np.float64]
@@ -200,7 +200,7 @@ def locate(problem: Traceable, points: Sequence[Point], metric: Metric, conditio
         between(problem, c, d, condition, metric)
         for a, b in pairwise(points)
         for c, d in _watched(problem, a, b, condition, metric)
-        if condition.of(c) * condition.of(d) < 0
+        if (condition.of(c) < 0) != (condition.of(d) < 0)  # their product is zero at a root, and where it underflows
     ]
 
 
@@ -243,14 +243,14 @@ def between(problem: Traceable, a: Point, b: Point, condition: Condition, metric
             trials[step] = correct(problem, a, step, hermite(problem, a, b, step / length), metric, iterations=20)
         return condition.of(trials[step])
 
-    root = brentq(quantity, 0.0, length, xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
+    step = root(quantity, 0.0, length, "an event; take a smaller rtol", xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
     part = max(LEAP, 2 * ARCLENGTH_TOLERANCE / abs(length))  # what the root finder leaves of a short interval
-    if abs(quantity(root)) > part * max(abs(condition.of(a)), abs(condition.of(b))) + ROUND_OFF:
+    if abs(quantity(step)) > part * max(abs(condition.of(a)), abs(condition.of(b))) + ROUND_OFF:
         raise NotConverged(
             f"an event near approach {a.observables[0]:.6g} eps, load {a.observables[1]:.6g} R dgamma is lost: states "
-            "next to each other lie on different branches; refine the grid"
+            "next to each other lie on different branches; take a smaller rtol"
         )
-    return Located(condition, problem, trials[root], (condition.of(b) - condition.of(a)) / length)
+    return Located(condition, problem, trials[step], (condition.of(b) - condition.of(a)) / length)
 
 
 def hermite(problem: Traceable, a: Point, b: Point, t: float) -> Array:
@@ -288,7 +288,7 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
     at = event.point.observables
     raise NotConverged(
         f"the event at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma is not found again on another grid; "
-        "refine both grids"
+        "take a smaller rtol"
     )
 
 

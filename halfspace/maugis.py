@@ -22,10 +22,10 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from halfspace.errors import InputError
 from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.roots import root
 from halfspace.theories import Array, ContactState, gap_shape
 
 TENSION_TO_MAUGIS = float(np.cbrt(9 / (2 * np.pi)))  # lambda/s, from lambda = sigma0 (9 R/(2 pi E*^2 dgamma))^(1/3)
@@ -135,7 +135,8 @@ class MaugisDugdale:
             right = z**2 / (m * (1 + m)) + dead_load * m * t**2  # the first term is 1 - 1/m, free of cancellation
             return float(self._radius(z) * (z / m + m * t) - 2 * s * right)
 
-        z = np.exp(brentq(excess, np.log(1e-3 / (1 + s)), np.log(1e12 * (1 + s**-1.5)), xtol=1e-14))
+        ends = float(np.log(1e-3 / (1 + s))), float(np.log(1e12 * (1 + s**-1.5)))
+        z = np.exp(root(excess, *ends, "the cohesive zone; take a parameter nearer 1", xtol=1e-14))
         a = self._radius(z)
         return CohesiveState(float(self._approach(a, z)), float(self._load(a, z)), float(a), float(a * np.hypot(1, z)))
 

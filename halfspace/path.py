@@ -191,7 +191,7 @@ def follow(
                 at = points[-1].observables
                 raise NotConverged(
                     f"the path ends at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma: no step of "
-                    f"{steps.shortest:.0e} or more converges ({error}); refine the grid"
+                    f"{steps.shortest:.0e} or more converges ({error}); take a smaller rtol, or a finer mesh"
                 ) from error
             continue
         ended = stop(new)

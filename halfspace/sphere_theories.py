@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from halfspace.errors import InputError
 from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.roots import root
 from halfspace.theories import Array, ContactState
 
 LEAST_RATIO = 1e-3  # of rho; the tension of smaller spheres is a small difference of large numbers
@@ -100,7 +100,8 @@ class RigidSphere:
 
     def _least(self, load: Callable[[ArrayLike], Array], slope: Callable[[Array, int], Array]) -> ContactState:
         """Solve for the zero of the load's derivative by the gap, given the derivatives of the two integrals."""
-        approach = brentq(lambda alpha: float(self._sum(alpha, slope)), -1.0, 1e-6, xtol=1e-15)
+        what = "the largest tension of a rigid sphere; take a larger radius_ratio"
+        approach = root(lambda alpha: float(self._sum(alpha, slope)), -1.0, 1e-6, what, xtol=1e-15)
         return ContactState(approach, float(load(approach)), math.nan)
 
 
@@ -171,7 +172,11 @@ class JKRSphere:
     def _state(self, shape: Callable[[Array], Array], value: float) -> ContactState:
         """State in which a^(3/2) times a shape of a/X, which rises from about 1 to infinity, has a value."""
         X = self.radius
-        x = brentq(lambda x: float((x * X) ** 1.5 * shape(np.array(x))) - value, 0.0, OUTERMOST, xtol=1e-300)
+
+        def excess(x: float) -> float:
+            return float((x * X) ** 1.5 * shape(np.array(x))) - value
+
+        x = root(excess, 0.0, OUTERMOST, "the contact radius over R; take a larger radius_ratio", xtol=1e-300)
         a = x * X
         return ContactState(float(self.approach(a)), float(self.load(a)), a)
 

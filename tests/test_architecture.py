@@ -177,6 +177,7 @@ FLOORS = [
         "halfspace.scaling",
     },
     {"halfspace.grid"},
+    {"halfspace.roots"},
     {"halfspace.errors", "halfspace.values", "fem_adhesion.writing"},
 ]
 FLOOR_OF = {module: number for number, modules in enumerate(FLOORS) for module in modules}

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import minimize_scalar
 
 from halfspace import newton
 from halfspace.accuracy import half_space_charts, resolution_for
@@ -21,6 +21,7 @@ from halfspace.curve import EquilibriumPath, metric_for
 from halfspace.errors import NotConverged
 from halfspace.newton import Traceable
 from halfspace.path import Point, make_point
+from halfspace.roots import root
 
 
 class NoBirth(NotConverged):
@@ -79,7 +80,7 @@ def born(birth: Birth, problem_at: Callable[[float], Traceable]) -> float:
     lower, upper = birth.tabors
     if least_slope(lower) * least_slope(upper) > 0:
         raise NoBirth(f"no folds are born between tabor = {lower:g} and {upper:g}; look elsewhere")
-    return float(brentq(least_slope, lower, upper, xtol=1e-11))
+    return root(least_slope, lower, upper, "the birth of folds; look elsewhere", xtol=1e-11)
 
 
 def _least_slope(birth: Birth, problem: Traceable) -> float:
