@@ -304,6 +304,7 @@ FAMILIES = {
     "hemisphere, bonded": _sized(*SIZES, grip="bonded", few=3),
     "held sphere": _sized(*SIZES[:4], body="sphere"),
     "pair of spheres": _sized(*SIZES[2:6], counter=Counter(0.4, 0.3, 2.0)),
+    "pair of spheres, bonded": _sized(*SIZES[:4], grip="bonded", counter=Counter(0.4, 0.45, 3.0)),
     "block under a sphere": _sized(*SIZES[2:6], body="block", truth=_half_space_under),
     "mesh from a file": Family(
         Net([_mesh("hemisphere", 1.0, 30.0), _mesh("hemisphere", 2.0, 100.0), _mesh("sphere", 1.0, 100.0)], [1e-3]),
