@@ -3,7 +3,8 @@
 from types import SimpleNamespace
 
 from fem_adhesion import Scene
-from fem_adhesion.studies.crosscheck import Case, Failure, Row
+from fem_adhesion.studies.comparison import Row
+from fem_adhesion.studies.crosscheck import Case, Failure
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.events import Event
 

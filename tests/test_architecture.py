@@ -91,8 +91,9 @@ FLOORS = [
         "fem_adhesion.studies.finite_sphere_table",
         "fem_adhesion.studies.assess_verdict",
     },
+    {"fem_adhesion.studies.crosscheck"},
     {
-        "fem_adhesion.studies.crosscheck",
+        "fem_adhesion.studies.from_scratch",
         "fem_adhesion.studies.speed_result",
         "fem_adhesion.studies.element_methods",
         "fem_adhesion.studies.halfspace_methods",
@@ -109,6 +110,7 @@ FLOORS = [
         "fem_adhesion.studies.assess_predictions",
     },
     {
+        "fem_adhesion.studies.comparison",
         "fem_adhesion.studies.methods",
         "fem_adhesion.studies.curves",
         "fem_adhesion.studies.machine",
@@ -178,6 +180,7 @@ FLOORS = [
     },
     {"halfspace.grid"},
     {"halfspace.roots"},
+    {"fem_adhesion.weak_form"},
     {"halfspace.errors", "halfspace.values", "fem_adhesion.writing"},
 ]
 FLOOR_OF = {module: number for number, modules in enumerate(FLOORS) for module in modules}
@@ -212,3 +215,8 @@ def test_imports_go_downwards(module):
 def test_the_half_space_imports_nothing_but_numpy_and_scipy(module):
     outside = {name.split(".")[0] for name in _imports(module)} & {"skfem", "meshio", "rich", "fem_adhesion"}
     assert not outside
+
+
+def test_the_fourth_level_imports_nothing_of_the_solvers_it_checks():
+    own = {name for name in _imports("fem_adhesion.weak_form") if name.split(".")[0] in ("halfspace", "fem_adhesion")}
+    assert own == {"halfspace.errors", "halfspace.errors.NotConverged"}

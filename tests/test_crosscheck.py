@@ -10,9 +10,10 @@ from whole_runs import tables_in
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene, cli, convergence, elasticity
-from fem_adhesion.output.tables import crosscheck_table
-from fem_adhesion.studies import crosscheck
-from fem_adhesion.studies.crosscheck import Case, Failure, Row
+from fem_adhesion.output.tables import crosscheck_tables
+from fem_adhesion.studies import comparison, crosscheck
+from fem_adhesion.studies.comparison import Row
+from fem_adhesion.studies.crosscheck import Case, Failure
 from halfspace import limits
 from halfspace.contact import ContactProblem
 from halfspace.curve import Estimate
@@ -29,12 +30,12 @@ def _rejecting(case):
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
 @pytest.mark.parametrize(("tabor", "limit"), [(0.5, 1e-5), (1, 1e-5), (2, 1e-5), (5, 5e-5)])
 def test_the_solvers_agree(tabor, poisson, limit):
-    case = crosscheck.compare(Scene(tabor=tabor, poisson=poisson), rtol=1e-5, operators=())
+    case = crosscheck.compare(Scene(tabor=tabor, poisson=poisson), rtol=1e-5, before=())
     assert _rejecting(case) == {}
     assert case.verdict == "agree"
     for row in case.rows:
         if row.quantity in ("pull_off load", "jump_on approach", "jump_off approach"):
-            assert row.difference <= limit * abs(row.halfspace.value)
+            assert row.difference <= limit * abs(row.first.value)
 
 
 def test_the_solvers_agree_on_which_states_are_stable():
@@ -185,7 +186,7 @@ def test_the_command_agrees_and_says_so_everywhere(command, record):
 
 def test_every_quantity_has_the_budget_it_should(record):
     rows = {row["quantity"]: row for row in record["cases"][1]["comparison"]}
-    assert rows.keys() == BUDGETS.keys()
+    assert {name for name, row in rows.items() if row["between"] == ["half-space", "finite elements"]} == BUDGETS.keys()
     for quantity, budget in BUDGETS.items():
         assert rows[quantity]["budget"] == pytest.approx(budget, rel=1e-4), quantity
 
@@ -195,41 +196,47 @@ def test_the_record_of_the_command_holds_both_solvers_under_their_names(record):
         hs, fe = halfspace.trace(case["tabor"], rtol=1e-5), case["finite_element"]
         assert case["halfspace"]["unknowns"] == hs.unknowns < fe["unknowns"]
         for row in case["comparison"]:
-            assert row["error"] == row["halfspace_error"] + row["finite_element_error"]
+            assert row["error"] == row["first_error"] + row["second_error"]
             assert row["verdict"] == "agree"
             assert row["difference"] <= row["error"] <= row["budget"]
+            if row["between"] != ["half-space", "finite elements"]:
+                assert row["difference"] == abs(row["first"] - row["second"])
+                continue
             if row["quantity"].startswith("cross-residual"):
-                assert row["difference"] == max(row["halfspace"], row["finite_element"])
+                assert row["difference"] == max(row["first"], row["second"])
             elif not row["quantity"].startswith("operator"):
-                assert row["difference"] == abs(row["halfspace"] - row["finite_element"])
+                assert row["difference"] == abs(row["first"] - row["second"])
             event, _, quantity = row["quantity"].partition(" ")
             if event in hs.events:
-                assert row["halfspace"] == getattr(hs.event(event), quantity)
-                assert row["halfspace_error"] == getattr(hs.event(event), f"{quantity}_error")
+                assert row["first"] == getattr(hs.event(event), quantity)
+                assert row["first_error"] == getattr(hs.event(event), f"{quantity}_error")
             if event in fe["events"] and quantity in ("load", "approach"):
-                assert row["finite_element"] == fe["events"][event][quantity]
-                assert row["finite_element_error"] == fe["events"][event][f"{quantity}_error"]
+                assert row["second"] == fe["events"][event][quantity]
+                assert row["second_error"] == fe["events"][event][f"{quantity}_error"]
 
 
 def test_the_tables_of_the_command_show_what_the_record_holds(command, record):
     tables = tables_in(command.out)
-    for case, table in zip(record["cases"], tables, strict=True):
-        for row, shown in zip(case["comparison"], table, strict=True):
+    assert len(tables) == 3 * len(record["cases"])
+    for number, table in enumerate(tables):
+        rows = record["cases"][number // 3]["comparison"]
+        between = list(table[0])[2:4]
+        for row, shown in zip([row for row in rows if row["between"] == between], table, strict=True):
             assert (shown["quantity"], shown["unit"], shown["verdict"]) == (row["quantity"], row["unit"], "agree")
-            for header, key in (("half-space", "halfspace"), ("finite elements", "finite_element")):
+            for header, key in zip(between, ("first", "second"), strict=True):
                 assert float(shown[header]) == pytest.approx(row[key], rel=0.1, abs=row[f"{key}_error"])
-            assert [shown[header] for header in ("difference", "error (hs)", "error (fe)", "budget")] == [
-                f"{row[key]:.1e}" for key in ("difference", "halfspace_error", "finite_element_error", "budget")
+            assert [shown[header] for header in list(shown)[4:8]] == [
+                f"{row[key]:.1e}" for key in ("difference", "first_error", "second_error", "budget")
             ]
 
 
 def test_a_solver_less_accurate_than_the_comparison_is_inconclusive_whatever_it_hits():
     """A hundred times less: of all rows that it has a part in, only the contact radius stays within its budget."""
     case = crosscheck.compare(
-        Scene(tabor=2.0), rtol=1e-5, operators=(), solve=lambda scene, **_: fem_adhesion.trace(scene, rtol=1e-3)
+        Scene(tabor=2.0), rtol=1e-5, before=(), solve=lambda scene, **_: fem_adhesion.trace(scene, rtol=1e-3)
     )
     assert case.verdict == "inconclusive"
-    verdicts = {row.quantity: row.verdict for row in case.rows}
+    verdicts = {row.quantity: row.verdict for row in case.rows if row.between == comparison.SOLVERS}
     assert verdicts.pop("zero_load contact_radius") == "agree"
     assert len(verdicts) == 13
     assert set(verdicts.values()) == {"inconclusive"}
@@ -289,16 +296,16 @@ def test_the_worst_verdict_reaches_table_record_and_exit_code(verdicts, overall,
     for verdict, row, shown, kept in zip(verdicts, rows, table, written, strict=True):
         assert shown["quantity"] == kept["quantity"] == row.quantity
         assert shown["verdict"] == kept["verdict"] == verdict
-        assert (kept["halfspace"], kept["finite_element"]) == (row.halfspace.value, row.finite_element.value)
-        assert (kept["halfspace_error"], kept["finite_element_error"]) == (
-            row.halfspace.error,
-            row.finite_element.error,
+        assert (kept["first"], kept["second"]) == (row.first.value, row.second.value)
+        assert (kept["first_error"], kept["second_error"]) == (
+            row.first.error,
+            row.second.error,
         )
         assert (kept["difference"], kept["budget"], kept["unit"]) == (row.difference, row.budget, "eps")
-        assert float(shown["half-space"]) == pytest.approx(row.halfspace.value, abs=0.05)
-        assert float(shown["finite elements"]) == pytest.approx(row.finite_element.value, abs=0.05)
-        assert shown["error (hs)"] == f"{row.halfspace.error:.1e}"
-        assert shown["error (fe)"] == f"{row.finite_element.error:.1e}"
+        assert float(shown["half-space"]) == pytest.approx(row.first.value, abs=0.05)
+        assert float(shown["finite elements"]) == pytest.approx(row.second.value, abs=0.05)
+        assert shown["error (hs)"] == f"{row.first.error:.1e}"
+        assert shown["error (fe)"] == f"{row.second.error:.1e}"
         assert shown["difference"] == f"{row.difference:.1e}"
         assert shown["budget"] == f"{row.budget:.1e}"
 
@@ -307,7 +314,7 @@ def test_a_verdict_has_its_colour():
     """Green means agreement and nothing else does."""
     case = Case(Scene(tabor=0.5), halfspace.trace(0.5, rtol=1e-1), halfspace.trace(0.5, rtol=1e-1), ())
     for verdict, style in (("agree", "green"), ("disagree", "bold red"), ("inconclusive", "yellow")):
-        table = crosscheck_table(replace(case, rows=(_made_up("agree"), _made_up(verdict))))
+        (table,) = crosscheck_tables(replace(case, rows=(_made_up("agree"), _made_up(verdict))))
         assert table.title == ["tabor 0.5", f"poisson 0.3: [{style}]{verdict}[/]"]
         assert table.styles == ["", "" if verdict == "agree" else style]
 
@@ -323,9 +330,9 @@ def test_agreement_by_wide_errors_is_no_agreement():
 
 
 def test_the_worst_verdict_counts():
-    assert crosscheck.worst(["agree", "inconclusive", "disagree"]) == "disagree"
-    assert crosscheck.worst(["agree", "inconclusive"]) == "inconclusive"
-    assert crosscheck.worst(["agree"]) == "agree"
+    assert comparison.worst(["agree", "inconclusive", "disagree"]) == "disagree"
+    assert comparison.worst(["agree", "inconclusive"]) == "inconclusive"
+    assert comparison.worst(["agree"]) == "agree"
 
 
 def test_a_failing_case_does_not_lose_the_others(monkeypatch):
@@ -341,7 +348,7 @@ def test_a_failing_case_does_not_lose_the_others(monkeypatch):
     results = list(crosscheck.run([Scene(tabor=1.0), Scene(tabor=0.5)], rtol=1e-2))
     assert isinstance(results[0], Failure)
     assert results[0].reason == "on purpose; try another day"
-    assert [row.quantity for row in results[0].rows] == [f"operator: {name}" for name in crosscheck.PRESSURES]
+    assert [row.quantity for row in results[0].rows[:4]] == [f"operator: {name}" for name in crosscheck.PRESSURES]
     assert isinstance(results[1], Case)
 
 

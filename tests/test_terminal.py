@@ -15,11 +15,11 @@ import pytest
 from rich.console import Console
 
 from fem_adhesion.output import hard_report
-from fem_adhesion.output.tables import COLUMNS, cells, crosscheck_table
+from fem_adhesion.output.tables import cells, columns, crosscheck_tables
 from fem_adhesion.output.terminal import WIDE, Column, Fitted, Flow, make_console, page, prose
 from fem_adhesion.scene import Scene
 from fem_adhesion.studies import crosscheck
-from fem_adhesion.studies.crosscheck import Row
+from fem_adhesion.studies.comparison import Row
 from fem_adhesion.studies.hard_bodies import Locking
 from fem_adhesion.studies.hard_run import Row as HardRow
 from halfspace.curve import Estimate
@@ -118,11 +118,11 @@ def case():
 
 
 def test_a_comparison_is_read_back_from_its_table(case):
-    text = shown(crosscheck_table(case), 150)
+    text = shown(crosscheck_tables(case)[0], 150)
     lines = [
         [cell.strip() for cell in re.split("[│┃]", line)[1:-1]] for line in text.splitlines() if line[:1] in ("│", "┃")
     ]
-    assert tuple(lines[0]) == COLUMNS
+    assert tuple(lines[0]) == columns()
     assert lines[1:] == [
         ["first load", "R dgamma", "-1.2345678", "-1.2345679", "1.1e-07", "1.0e-07", "2.0e-07", "6.6e-05", "agree"],
         [
@@ -144,7 +144,7 @@ def test_a_comparison_is_read_back_from_its_table(case):
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_the_verdicts_of_a_comparison_are_whole_at_any_width(case, width):
-    text = shown(crosscheck_table(case), width)
+    text = shown(crosscheck_tables(case)[0], width)
     for row in case.rows:
         assert re.search(rf"\b{row.verdict}\b", text)
     flat = " ".join(text.split())

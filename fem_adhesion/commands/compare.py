@@ -24,7 +24,8 @@ def add(commands: Commands) -> None:
         "compare",
         help="check that the half-space and the finite-element solver agree",
         description="Solve the adhesive contact of a paraboloid with a half-space by an integral equation and by "
-        "finite elements, and compare operators, residuals and events. "
+        "finite elements, and compare operators, residuals and events, and what both share with a problem that shares "
+        "nothing. "
         "Exit code 0: all agree, 1: some do not, 2: bad input.",
         epilog="example: fem-adhesion compare --tabor 0.5 2 --rtol 1e-4",
     )
@@ -74,14 +75,16 @@ def _compare_with_progress(scenes: Sequence[Scene], rtol: float, console: Consol
 
 
 def _show(case: Case | Failure, console: Console) -> None:
-    from fem_adhesion.output.tables import crosscheck_table
+    from fem_adhesion.output.record import told
+    from fem_adhesion.output.tables import crosscheck_tables
     from fem_adhesion.studies.crosscheck import Case
 
     if isinstance(case, Case):
-        console.print(crosscheck_table(case))
+        for table in crosscheck_tables(case):
+            console.print(table)
     else:
         name = f"tabor {case.scene.tabor:g}, poisson {case.scene.poisson:g}"
-        console.print(f"{name}: failed: {case.reason}", highlight=False, markup=False)
+        console.print(f"{name}: failed: {told(case)}", highlight=False, markup=False)
         for row in case.rows:
             console.print(f"  {row.quantity}: {row.verdict}", highlight=False, markup=False)
     console.print()

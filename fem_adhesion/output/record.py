@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
-from fem_adhesion.studies.crosscheck import Case, Failure, Row
+from fem_adhesion.studies.comparison import Row
+from fem_adhesion.studies.crosscheck import Case, Failure
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.events import Event
 
@@ -37,6 +38,11 @@ def verdict_of(case: Case | Failure) -> str:
     return "failed" if isinstance(case, Failure) else case.verdict
 
 
+def told(failure: Failure) -> str:
+    """Why a case has no solution, and which rows show what is wrong."""
+    return "; ".join([failure.reason, *(f"{quantity} disagrees" for quantity in failure.shown_by)])
+
+
 def overall_verdict(cases: Sequence[Case | Failure]) -> str:
     """The worst verdict of all."""
     return min(map(verdict_of, cases), key=VERDICTS.index)
@@ -50,7 +56,7 @@ def crosscheck_record(cases: Sequence[Case | Failure]) -> dict[str, Any]:
 def _case(case: Case | Failure) -> dict[str, Any]:
     scene = {"tabor": case.scene.tabor, "poisson": case.scene.poisson, "verdict": verdict_of(case)}
     if isinstance(case, Failure):
-        return {**scene, "reason": case.reason, "comparison": [_row(row) for row in case.rows]}
+        return {**scene, "reason": told(case), "comparison": [_row(row) for row in case.rows]}
     return {
         **scene,
         "halfspace": _solution(case.halfspace),
@@ -79,11 +85,12 @@ def _row(row: Row) -> dict[str, Any]:
     return {
         "quantity": row.quantity,
         "unit": row.unit,
-        "halfspace": _value(row.halfspace),
-        "finite_element": _value(row.finite_element),
+        "between": list(row.between),
+        "first": _value(row.first),
+        "second": _value(row.second),
         "difference": _finite(row.difference),
-        "halfspace_error": _error(row.halfspace),
-        "finite_element_error": _error(row.finite_element),
+        "first_error": _error(row.first),
+        "second_error": _error(row.second),
         "error": _finite(row.error),
         "budget": row.budget,
         "verdict": row.verdict,

@@ -1,21 +1,25 @@
-"""The cross-check in the report: its three levels, and what the solvers chose."""
+"""The cross-check in the report: its four levels, and what the solvers chose."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from fem_adhesion.output.record import verdict_of, versions
+from fem_adhesion.output.record import told, verdict_of, versions
 from fem_adhesion.output.report_parts import Section, Table, symbols
-from fem_adhesion.output.tables import COLUMNS, cells
-from fem_adhesion.studies.crosscheck import Case, Failure, Row
+from fem_adhesion.output.tables import cells, columns
+from fem_adhesion.studies.comparison import CLOSED_FORM, SOLVERS, WEAK_FORM, Row
+from fem_adhesion.studies.crosscheck import Case, Failure
 from halfspace.curve import EquilibriumPath
 from halfspace.events import tolerance_told
 
 LEVELS = {
-    "operator:": "Both elastic operators under the same pressures",
-    "cross-residual:": "The state found by one solver in the equations of the other",
-    "": "The events",
+    "operator:": ("Both elastic operators under the same pressures", SOLVERS),
+    "cross-residual:": ("The state found by one solver in the equations of the other", SOLVERS),
+    "equations:": ("What both share, at a state made up, and a weak form that shares nothing", WEAK_FORM),
+    "apart:": ("The events of the finite elements in that weak form", WEAK_FORM),
+    "limit:": ("What both share, in closed form", CLOSED_FORM),
+    "": ("The events", SOLVERS),
 }
 VERDICTS = ("agree", "inconclusive", "disagree")
 SUMMARY = ("level", "quantities", *VERDICTS, "largest difference / error", "largest error / budget")
@@ -24,12 +28,12 @@ Cases = Sequence[Case | Failure]
 
 
 def crosscheck_section(cases: Cases) -> Section:
-    """The comparison: a summary, and a table for each of its three levels."""
-    failures = [(f"{case.scene.tabor:g}", case.reason) for case in cases if isinstance(case, Failure)]
+    """The comparison: a summary, and tables of its levels."""
+    failures = [(f"{case.scene.tabor:g}", told(case)) for case in cases if isinstance(case, Failure)]
     lost = (Table("Not solved", ("Tabor parameter", "reason"), failures, open=True),) if failures else ()
     return Section(
         "levels",
-        "The three levels",
+        "The four levels",
         paragraphs=(
             "A quantity agrees only if the difference is within the sum of both error estimates and that sum within "
             "the budget. Loads in R Δγ, approaches in ε, energies in R Δγ ε.",
@@ -52,13 +56,13 @@ def _level(row: Row) -> str:
 
 
 def _summary(cases: Cases) -> Table:
-    lines = [_summary_line(LEVELS[level], [row for _, row in _rows(cases, level)]) for level in LEVELS]
+    lines = [_summary_line(LEVELS[level][0], [row for _, row in _rows(cases, level)]) for level in LEVELS]
     return Table("Summary", SUMMARY, lines, open=True)
 
 
 def _summary_line(title: str, rows: Sequence[Row]) -> list[str]:
     counts = [str(sum(row.verdict == verdict for row in rows)) for verdict in VERDICTS]
-    known = [row for row in rows if row.halfspace and row.finite_element]
+    known = [row for row in rows if row.first and row.second]
     ratios = [(_ratio(row.difference, row.error), _ratio(row.error, row.budget)) for row in known]
     largest = [f"{max(column):.2g}" for column in zip(*ratios, strict=True)] or ["none", "none"]
     return [title, str(len(rows)), *counts, *largest]
@@ -70,7 +74,8 @@ def _ratio(part: float, whole: float) -> float:
 
 def _level_table(cases: Cases, level: str) -> Table:
     lines = [[f"{tabor:g}", *map(symbols, cells(row))] for tabor, row in _rows(cases, level)]
-    return Table(LEVELS[level], ("Tabor parameter", *COLUMNS), lines)
+    title, between = LEVELS[level]
+    return Table(title, ("Tabor parameter", *columns(between)), lines)
 
 
 def settings_section(cases: Cases, machine: Mapping[str, str]) -> Section:

@@ -3,59 +3,65 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 
 from fem_adhesion.output.terminal import Column, Fitted
-from fem_adhesion.studies.crosscheck import Case, Row
+from fem_adhesion.studies.comparison import SOLVERS, Pair, Row
+from fem_adhesion.studies.crosscheck import Case
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.events import tolerance_told
 
-COLUMNS = (
-    "quantity",
-    "unit",
-    "half-space",
-    "finite elements",
-    "difference",
-    "error (hs)",
-    "error (fe)",
-    "budget",
-    "verdict",
-)
-RANKS = {
-    "unit": 1,
-    "half-space": 1,
-    "finite elements": 1,
-    "difference": 2,
-    "error (hs)": 3,
-    "error (fe)": 3,
-    "budget": 4,
+SHORT = {
+    "half-space": "hs",
+    "finite elements": "fe",
+    "weak form": "wf",
+    "closed form": "cf",
 }
 WORDS = ("quantity", "unit", "verdict")  # columns without numbers
 STYLES = {"agree": "green", "disagree": "bold red", "inconclusive": "yellow"}
 
 
-def crosscheck_table(case: Case) -> Fitted:
-    """One line for each quantity: both values, the difference, both error estimates, the budget and the verdict."""
+def columns(between: Pair = SOLVERS) -> tuple[str, ...]:
+    """Headers of a table of quantities from two sources."""
+    errors = (f"error ({SHORT[source]})" for source in between)
+    return ("quantity", "unit", *between, "difference", *errors, "budget", "verdict")
+
+
+RANKS = (0, 1, 1, 1, 2, 3, 3, 4, 0)  # of the columns
+
+
+def crosscheck_tables(case: Case) -> list[Fitted]:
+    """Tables of a case, one for each pair of sources; the first says what was compared and what it cost."""
     style = STYLES[case.verdict]
-    columns = zip(COLUMNS, zip(*map(cells, case.rows), strict=True), strict=True)
+    title = [f"tabor {case.scene.tabor:g}", f"poisson {case.scene.poisson:g}: [{style}]{case.verdict}[/]"]
+    cost = [f"half-space {told(case.halfspace)}", f"finite elements {told(case.finite_element)}"]
+    made = [crosscheck_table(case.rows, between) for between in dict.fromkeys(row.between for row in case.rows)]
+    return [replace(made[0], title=title, caption=cost), *made[1:]]
+
+
+def crosscheck_table(rows: Sequence[Row], between: Pair = SOLVERS) -> Fitted:
+    """One line for each quantity: both values, the difference, both error estimates, the budget and the verdict."""
+    own = [row for row in rows if row.between == between]
+    named = zip(columns(between), zip(*map(cells, own), strict=True), RANKS, strict=True)
     return Fitted(
-        [Column(name, texts, RANKS.get(name, 0), name in WORDS, wraps=name == "quantity") for name, texts in columns],
-        [f"tabor {case.scene.tabor:g}", f"poisson {case.scene.poisson:g}: [{style}]{case.verdict}[/]"],
-        [f"half-space {told(case.halfspace)}", f"finite elements {told(case.finite_element)}"],
-        ["" if row.verdict == "agree" else STYLES[row.verdict] for row in case.rows],
+        [Column(name, texts, rank, name in WORDS, wraps=name == "quantity") for name, texts, rank in named],
+        [" and ".join(between)],
+        styles=["" if row.verdict == "agree" else STYLES[row.verdict] for row in own],
     )
 
 
 def cells(row: Row) -> tuple[str, ...]:
-    """What stands in `COLUMNS`: values with digits down to the first uncertain one, errors with two."""
-    hs, fe = row.halfspace, row.finite_element
+    """What stands in `columns`: values with digits down to the first uncertain one, errors with two."""
+    first, second = row.first, row.second
     return (
         row.quantity,
         row.unit,
-        _value(hs),
-        _value(fe),
+        _value(first),
+        _value(second),
         _small(row.difference),
-        _small(hs.error if hs else math.nan),
-        _small(fe.error if fe else math.nan),
+        _small(first.error if first else math.nan),
+        _small(second.error if second else math.nan),
         _small(row.budget),
         row.verdict,
     )

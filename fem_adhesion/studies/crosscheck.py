@@ -1,18 +1,17 @@
 """The cross-check of the half-space solver with the finite-element solver.
 
-Three levels. Operators: both compliances under the same pressures, whole fields compared. Cross-residual: the state
-found by one solver put into the equations of the other. Events: pull-off, jumps, the zero-load state, the energy.
-A quantity agrees only if the difference is within the sum of both error estimates and that sum is within the
-budget; the estimates come from refinement and from the size of the block, never from a choice.
+Four levels. Operators: both compliances under the same pressures, whole fields compared. Cross-residual: the state
+found by one solver put into the equations of the other. Events: pull-off, jumps, the zero-load state, the energy. The
+fourth, for what both solvers share, is in `fem_adhesion.studies.from_scratch`. A quantity agrees only if the difference
+is within the sum of both error estimates and that sum is within the budget; the estimates come from refinement and from
+the size of the block, never from a choice.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
 
 import numpy as np
 from skfem import ElementQuadP
@@ -24,6 +23,8 @@ from fem_adhesion.elasticity import Space
 from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.mesh import tensor_grid
 from fem_adhesion.scene import Scene
+from fem_adhesion.studies import from_scratch
+from fem_adhesion.studies.comparison import Row, Verdict, difference, worst
 from halfspace import compliance, grid
 from halfspace.compliance import Array, ElasticOperator
 from halfspace.curve import EquilibriumPath, Estimate, transfer
@@ -32,7 +33,6 @@ from halfspace.events import ROUND_OFF, Located
 from halfspace.ladder import FOLDS
 from halfspace.limits import require_rtol
 
-Verdict = Literal["agree", "disagree", "inconclusive"]
 Solver = Callable[..., EquilibriumPath]
 
 # Budgets in those of loads, approaches and energies, which are averages over the whole contact:
@@ -41,50 +41,20 @@ RESIDUAL = 50  # of residuals, which see every wiggle of the pressure
 
 
 @dataclass(frozen=True)
-class Row:
-    """One quantity from both solvers.
-
-    Attributes
-    ----------
-    quantity, unit : str
-        What it is.
-    halfspace, finite_element : Estimate or None
-        Values with error estimates; None where a solver does not find it.
-    difference : float
-        Magnitude of the difference: of the values, or the largest over a field.
-    budget : float
-        Largest sum of both error estimates with which a comparison means something.
-    """
-
-    quantity: str
-    unit: str
-    halfspace: Estimate | None
-    finite_element: Estimate | None
-    difference: float
-    budget: float
-
-    @property
-    def error(self) -> float:
-        """Sum of both error estimates."""
-        if self.halfspace is None or self.finite_element is None:
-            return float("nan")
-        return self.halfspace.error + self.finite_element.error
-
-    @property
-    def verdict(self) -> Verdict:
-        """Agreement within the estimates, and estimates within the budget."""
-        if not (self.difference <= self.error or self.error == math.inf):
-            return "disagree"
-        return "agree" if self.error <= self.budget else "inconclusive"
-
-
-@dataclass(frozen=True)
 class Failure:
-    """A scene that a solver could not solve, with the reason and the level-1 rows; it does not stop the others."""
+    """A scene that a solver could not solve, with the reason and the rows that need no solution.
+
+    It does not stop the others. A row that disagrees says what is wrong with the solver.
+    """
 
     scene: Scene
     reason: str
     rows: tuple[Row, ...] = ()
+
+    @property
+    def shown_by(self) -> tuple[str, ...]:
+        """Rows that disagree."""
+        return tuple(row.quantity for row in self.rows if row.verdict == "disagree")
 
 
 @dataclass(frozen=True)
@@ -102,22 +72,14 @@ class Case:
         return worst([row.verdict for row in self.rows])
 
 
-def worst(verdicts: Sequence[Verdict]) -> Verdict:
-    """Return ``disagree`` if there is one, else ``inconclusive`` if there is one, else ``agree``."""
-    for bad in ("disagree", "inconclusive"):
-        if bad in verdicts:
-            return bad
-    return "agree"
-
-
 def compare(
     scene: Scene,
     *,
     rtol: float = 1e-5,
-    operators: Sequence[Row] | None = None,
+    before: Sequence[Row] | None = None,
     solve: Solver = convergence.trace,
 ) -> Case:
-    """Solve a scene with both solvers and compare on all three levels.
+    """Solve a scene with both solvers and compare on all four levels.
 
     Parameters
     ----------
@@ -125,8 +87,8 @@ def compare(
         The contact; the half-space solver knows its Tabor parameter only.
     rtol : float
         Accuracy of the comparison: budgets are this relative to each quantity.
-    operators : sequence of Row, optional
-        Level-1 rows computed before by `compare_operators` for the same body.
+    before : sequence of Row, optional
+        What `unsolved` found before for the same body.
     solve : callable
         Finite-element solver, ``solve(scene, rtol=...)``.
 
@@ -140,34 +102,41 @@ def compare(
     require_rtol(rtol)
     hs = halfspace.trace(scene.tabor, rtol=max(rtol / 10, 1e-9))
     fe = solve(scene, rtol=0.9 * rtol)
-    level_1 = compare_operators(scene, rtol=rtol) if operators is None else operators
-    return Case(scene, hs, fe, (*level_1, *_cross_residuals(hs, fe, rtol), *_compare_events(hs, fe, rtol)))
+    before = unsolved(scene, rtol=rtol) if before is None else before
+    compared = (*_cross_residuals(hs, fe, rtol), *_compare_events(hs, fe, rtol), *from_scratch.events(scene, fe))
+    return Case(scene, hs, fe, (*before, *compared))
 
 
 def run(scenes: Sequence[Scene], *, rtol: float = 1e-5) -> Iterator[Case | Failure]:
-    """Compare scenes of one material one after the other; the level-1 rows, which are the same for all, only once."""
-    operators: Sequence[Row] | None = None
+    """Compare scenes of one material one after the other; what needs no solution is the same for all, and done once."""
+    before: Sequence[Row] | None = None
     for scene in scenes:
         try:
-            if operators is None:
-                operators = compare_operators(scene, rtol=rtol)
-            yield compare(scene, rtol=rtol, operators=operators)
+            if before is None:
+                before = unsolved(scene, rtol=rtol)
+            yield compare(scene, rtol=rtol, before=before)
         except NotConverged as error:
-            yield Failure(scene, str(error), tuple(operators or ()))
+            yield Failure(scene, str(error), tuple(before or ()))
+
+
+def unsolved(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
+    """Rows that need no solution of the scene: operators, equations and closed forms."""
+    hs, fe = _operators(scene, rtol)
+    operators = [_compare_fields(name, pressure, hs, fe, rtol) for name, pressure in PRESSURES.items()]
+    return [*operators, *from_scratch.equations(scene, fe[1:]), *from_scratch.closed_forms()]
 
 
 # Level 1: operators
 
 
-def compare_operators(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
-    """Compare the deflections under given pressures, on meshes graded towards their edge at radius 1."""
+def _operators(scene: Scene, rtol: float) -> tuple[list[ElasticOperator], list[ElasticOperator]]:
+    """Half-spaces and blocks, the finest last, on meshes graded towards the edge of the pressures at radius 1."""
     degree = convergence.resolution_for(scene, rtol, 0).degree
     lines = grid.graded(1.0, FINEST, 40.0 if scene.radius is None else scene.radius)
     wider = grid.graded(1.0, FINEST, 2 * lines[-1])
     fe = [_block_operator(scene, lines, degree), _block_operator(scene, wider, degree)]
     fe.append(_block_operator(scene, wider, degree + 1))
-    hs = [compliance.panels(wider, k) for k in (degree + 3, degree + 5)]
-    return [_compare_fields(name, pressure, hs, fe, rtol) for name, pressure in PRESSURES.items()]
+    return [compliance.panels(wider, k) for k in (degree + 3, degree + 5)], fe
 
 
 FINEST = 1e-4  # cells at the edge, where the deflection under a disc has a vertical tangent
@@ -243,11 +212,10 @@ def _compare_events(hs: EquilibriumPath, fe: EquilibriumPath, rtol: float) -> It
         a, b = (_number(path, event, quantity) for path in (hs, fe))
         if not (a and np.isfinite(a.value)) and not (b and np.isfinite(b.value)):
             continue
-        difference = abs(a.value - b.value) if a and b else float("nan")
         budget = (POINTWISE if pointwise else 1) * rtol * _size(quantity, a.value if a else 0.0, hs)
-        yield Row(f"{event} {quantity}", unit, a, b, difference, budget)
-    difference = abs(hs.energy.value - fe.energy.value)
-    yield Row("energy released", "R dgamma eps", hs.energy, fe.energy, difference, rtol * abs(hs.energy.value))
+        yield Row(f"{event} {quantity}", unit, a, b, difference(a, b), budget)
+    off, budget = difference(hs.energy, fe.energy), rtol * abs(hs.energy.value)
+    yield Row("energy released", "R dgamma eps", hs.energy, fe.energy, off, budget)
 
 
 def _size(quantity: str, value: float, path: EquilibriumPath) -> float:

@@ -1,0 +1,439 @@
+"""The contact problem as a textbook writes it: a law, a profile, a weak form, Newton's method and a determinant.
+
+It checks the solvers, so it shares nothing with them: it imports NumPy, SciPy and scikit-fem alone, forms every
+integral by scikit-fem's quadrature, keeps every displacement among its unknowns, condenses nothing, and has no far
+field but a clamp so far away that what it leaves out is small. Clarity comes first: it is right to 1e-3.
+
+Displacements u = (u_r, u_z) are in beta^2/R = mu eps, radii in beta, the gap h and the approach alpha in eps, E* = 1.
+The potential energy over mu, with the elastic form a, the energy w(h) of the surfaces per area and 2 pi r dr = dA,
+
+    a(u, u)/2 + int w(h) dA,        h = 1 - alpha + mu (z(r) - u_z),
+
+is stationary in u where, for all v, with w' = sigma the tension,
+
+    a(u, v) - mu int sigma(h) v_z dA = 0;        tangent:  a(u, v) + mu^2 int sigma'(h) u_z v_z dA.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
+from skfem import Basis, BilinearForm, ElementQuadP, ElementVector, FacetBasis, MeshQuad
+from skfem.helpers import ddot, div, sym_grad
+
+from halfspace.errors import NotConverged
+
+Array = NDArray[np.float64]
+Heights = Callable[[Array], Array]
+
+# The law: Lennard-Jones 3-9. The attraction of two bodies does the work dgamma = 1 from h = 1 to infinity.
+
+
+def tension(h: Any) -> Any:
+    """Return sigma in dgamma/eps at the gap h in eps."""
+    return 8 / 3 * (h**-3 - h**-9)
+
+
+def tension_slope(h: Any) -> Any:
+    """Return sigma', in dgamma/eps^2."""
+    return 8 / 3 * (-3 * h**-4 + 9 * h**-10)
+
+
+def surface_energy(h: Any) -> Any:
+    """Return w = -int_h^inf sigma, in dgamma."""
+    return 8 / 3 * (h**-8 / 8 - h**-2 / 2)
+
+
+def energy_beyond(h: Any) -> Any:
+    """Integral of w from h to infinity, in dgamma eps."""
+    return 8 / 3 * (h**-7 / 56 - h**-1 / 2)
+
+
+# The profile
+
+
+def paraboloid(r: Array) -> Array:
+    """Height z of the undeformed surface over its pole in beta^2/R, at radii in beta."""
+    return r**2 / 2
+
+
+# The weak form
+
+
+def elasticity(poisson: float) -> Any:
+    """a(u, v) of a body of revolution without twist, whose hoop strain is u_r/r."""
+    E = 1 - poisson**2
+    lam, G = E * poisson / ((1 + poisson) * (1 - 2 * poisson)), E / (2 * (1 + poisson))
+
+    def form(u: Any, v: Any, w: Any) -> Any:
+        r = w.x[0]
+        hoop_u, hoop_v = u[0] / r, v[0] / r
+        dilatations = (div(u) + hoop_u) * (div(v) + hoop_v)
+        strains = ddot(sym_grad(u), sym_grad(v)) + hoop_u * hoop_v
+        return (lam * dilatations + 2 * G * strains) * 2 * np.pi * r
+
+    return BilinearForm(form)
+
+
+# The body
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Body:
+    """An elastic body of revolution on a mesh, with n unknowns and q points on its contact surface.
+
+    Attributes
+    ----------
+    stiffness : (n, n) sparse array
+        Of the form a, in E* beta.
+    values : (q, n) sparse array
+        u_z at the points from the unknowns.
+    radii, area : (q,) array
+        Of the points, in beta, and their parts of dA, projected on the plane of the contact.
+    rim : float
+        Radius at which the surface ends.
+    reaction : (n,) array
+        Upward force, per unknown, of what holds the body.
+    model, size : Body, float
+        The body that this one is so many times as large as, if it is.
+    """
+
+    stiffness: sparse.csc_array
+    values: sparse.csr_array
+    radii: Array
+    area: Array
+    rim: float
+    reaction: Array
+    model: Body | None = None
+    size: float = 1.0
+
+    @cached_property
+    def factors(self) -> Any:
+        """Of the stiffness."""
+        return factorise(self.stiffness)
+
+    def yielding(self, forces: Array) -> Array:
+        """Displacements (n,) under given forces."""
+        return np.asarray((self.model or self).factors.solve(forces) / self.size)
+
+    def rise(self, u: Array) -> Array:
+        """u_z at the points of the surface."""
+        return np.asarray(self.values @ u)
+
+    def integral(self, density: Array) -> float:
+        """Integral of a density by dA."""
+        return float(self.area @ density)
+
+    def forces(self, tension: Array) -> Array:
+        """Forces (n,) of a tension on the surface: int tension v_z dA."""
+        return np.asarray(self.values.T @ (self.area * tension))
+
+    def softened(self, slope: Array) -> sparse.csc_array:
+        """Matrix (n, n) of a(u, v) + int slope u_z v_z dA."""
+        return sparse.csc_array(self.stiffness + self.values.T @ sparse.diags_array(self.area * slope) @ self.values)
+
+    def scaled(self, a: float) -> Body:
+        """The same body a times as large: its stiffness grows as its size."""
+        lengths = self.stiffness * a, self.values, self.radii * a, self.area * a**2, self.rim * a, self.reaction * a
+        return Body(*lengths, self, a)
+
+
+def discretise(mesh: Any, degree: int, poisson: float, *, slides: bool = False, plate: bool = False) -> Body:
+    """Assemble a body on a mesh that names its boundaries axis, contact and far, and is held at the far one.
+
+    Parameters
+    ----------
+    mesh : skfem.MeshQuad
+        In beta, the body below its contact surface.
+    degree : int
+        Of the elements, 3 or more.
+    poisson : float
+        Poisson's ratio.
+    slides : bool
+        Whether the far boundary may move along r.
+    plate : bool
+        Whether it may move as a whole along z, on a spring of stiffness 1; that is then the last unknown.
+    """
+    element = ElementVector(ElementQuadP(degree))
+    basis = Basis(mesh, element, intorder=2 * degree + 1)
+    # The law is steeper than any polynomial: 2 p + 2 points on each facet.
+    surface = FacetBasis(mesh, element, mapping=_mapping(mesh), facets="contact", intorder=4 * degree + 3)
+    axis, far = basis.get_dofs("axis").all(["u^1"]), basis.get_dofs("far")
+    held = np.concatenate([axis, far.all(["u^2"] if slides else ["u^1", "u^2"])])
+    T = sparse.eye_array(basis.N, format="csc")[:, np.setdiff1d(np.arange(basis.N), held)]
+    # A translation: of these elements' functions those of the vertices alone add up to 1.
+    moved = sparse.csc_array(np.isin(np.arange(basis.N), far.nodal["u^2"]).astype(float)[:, None])
+    T = sparse.csc_array(sparse.hstack([T, moved])) if plate else T
+    K = sparse.csr_array(elasticity(poisson).assemble(basis))
+    reaction = 0 * last(T.shape[1]) if plate else (moved.T @ K @ T).toarray()[0]
+    radii, area = surface.global_coordinates()[0], 2 * np.pi * surface.normals[1] * surface.dx
+    values, rim = sparse.csr_array(surface_values(surface) @ T), float(mesh.p[0, mesh.facets[:, surface.find]].max())
+    body = Body(sparse.csc_array(T.T @ K @ T), values, radii.ravel(), (radii * area).ravel(), rim, reaction)
+    return on_spring(body, 1.0) if plate else body
+
+
+def _mapping(mesh: Any) -> Any:
+    """Mapping of the mesh, inverted only as far as the rounded coordinates of thin cells allow."""
+    mapping = mesh.mapping()
+    mapping.invF = partial(mapping.invF, newton_tol=1e-6)
+    return mapping
+
+
+def surface_values(surface: Any) -> sparse.csr_array:
+    """u_z at the points of a boundary basis of displacements, facet by facet, from all unknowns."""
+    u_z = [np.asarray(function[0])[1] for function in surface.basis]
+    points = np.arange(u_z[0].size).reshape(u_z[0].shape)
+    places = [(points, np.broadcast_to(dofs[:, None], points.shape)) for dofs in surface.element_dofs]
+    rows, columns = (np.concatenate([place[k].ravel() for place in places]) for k in (0, 1))
+    entries = np.concatenate([values.ravel() for values in u_z])
+    found = sparse.coo_array((entries, (rows, columns)), shape=(points.size, surface.N)).tocsr()
+    found.eliminate_zeros()
+    return sparse.csr_array(found)
+
+
+def on_spring(body: Body, stiffness: float) -> Body:
+    """Add a spring under the last unknown, the plate that the body stands on."""
+    foot = last(body.reaction.size)
+    K = body.stiffness + sparse.diags_array(stiffness * foot)
+    return replace(body, stiffness=sparse.csc_array(K), reaction=body.reaction - stiffness * foot)
+
+
+def half_space(finest: float, size: float, degree: int, poisson: float) -> Body:
+    """Box of a half-space as wide and deep as its size, whose cells grow from `finest` at radius 1 of the surface on.
+
+    It stands on a spring that yields as what is beyond would: Hertz's pressure sqrt(1 - r^2), of the load 2 pi/3, does
+    the work 4 pi^2/15 on a half-space, and what it falls short of that on the box is done on the spring.
+    """
+    body = discretise(half_space_mesh(finest, size), degree, poisson, plate=True)
+    forces = body.forces(np.sqrt(np.maximum(1 - body.radii**2, 0)))
+    missed = 1 + (4 * np.pi**2 / 15 - float(forces @ body.yielding(forces))) / (2 * np.pi / 3) ** 2
+    return on_spring(body, 1 / missed - 1)
+
+
+def last(size: int) -> Array:
+    """Unit vector of the last of some unknowns."""
+    return np.asarray(np.eye(1, size, size - 1)[0])
+
+
+def half_space_mesh(finest: float, size: float) -> Any:
+    """Mesh of that box."""
+    r_steps, z_steps = _graded(finest, size, EVEN), _graded(finest, size, 1)
+    r = np.concatenate([[0.0], 1 - r_steps[r_steps < INNER][::-1], [1.0], 1 + r_steps])
+    mesh = MeshQuad.init_tensor(r, np.append(-z_steps[::-1], 0.0))
+    far = {"far": lambda x: (x[0] == r[-1]) | (x[1] == -z_steps[-1])}
+    return mesh.with_boundaries({"axis": lambda x: x[0] == 0, "contact": lambda x: x[1] == 0} | far)
+
+
+def _graded(finest: float, size: float, even: int) -> Array:
+    """Ends of cells, some equal and then growing."""
+    count = even + int(np.ceil(np.log(size / finest) / np.log(GROWTH)))
+    return np.asarray(np.cumsum(finest * GROWTH ** np.maximum(np.arange(count) - even + 1, 0)))
+
+
+EVEN, GROWTH, INNER = 3, 3.0, 0.7  # cells next to the edge, ratio of the others, and how far they go inwards
+
+
+# Newton's method
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Contact:
+    """A body under a rigid surface that attracts it.
+
+    Attributes
+    ----------
+    body : Body
+        In beta.
+    tabor : float
+        Tabor parameter mu.
+    heights : callable
+        z of the undeformed surface at radii in beta.
+    endless : bool
+        Whether the surfaces go on beyond the mesh, undeformed: a paraboloid over a half-space. As dh = mu r dr, the
+        load left out is 2 pi w and the energy 2 pi int w dh, both from the gap at the rim on.
+    """
+
+    body: Body
+    tabor: float
+    heights: Heights = paraboloid
+    endless: bool = True
+
+    @cached_property
+    def height(self) -> Array:
+        """Height z at the points."""
+        return self.heights(self.body.radii)
+
+    def gap(self, u: Array | None, approach: float) -> Array:
+        """Gap h at the points under displacements u, or of the undeformed surfaces."""
+        return np.asarray(1 - approach + self.tabor * (self.height - (0.0 if u is None else self.body.rise(u))))
+
+    def _rim(self, approach: float) -> float:
+        """Gap where the mesh ends; infinite, so that nothing is left out, where the surfaces do."""
+        rim = self.heights(np.array(self.body.rim))
+        return 1 - approach + self.tabor * float(rim) if self.endless else np.inf
+
+    def load(self, tension: Array, approach: float) -> float:
+        """W in R dgamma, positive in compression, of the tension at the points."""
+        return -self.tabor * self.body.integral(tension) + self.load_beyond(approach)
+
+    def load_beyond(self, approach: float) -> float:
+        """Part of the load that is beyond the mesh."""
+        return 2 * np.pi * float(surface_energy(self._rim(approach)))
+
+    def load_slope(self, rate: Array, approach: float) -> float:
+        """dW/dalpha in R dgamma/eps of the rate -dsigma/dalpha."""
+        return self.tabor * self.body.integral(rate) - 2 * np.pi * float(tension(self._rim(approach)))
+
+    def displacement(self, h: Array) -> Array:
+        """What the tensions of given gaps make of the body, whether or not it leaves those gaps."""
+        return np.asarray(self.body.yielding(self.tabor * self.body.forces(tension(h))))
+
+    def energy(self, u: Array, approach: float) -> float:
+        """Potential energy in R dgamma eps."""
+        inside = float(u @ (self.body.stiffness @ u)) / 2 + self.body.integral(surface_energy(self.gap(u, approach)))
+        return self.tabor * inside + 2 * np.pi * float(energy_beyond(self._rim(approach)))
+
+    def far_reaction(self, u: Array) -> float:
+        """Upward force of what holds the body: the load, in equilibrium."""
+        return float(self.body.reaction @ u)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Equilibrium:
+    """A state of equilibrium.
+
+    Attributes
+    ----------
+    gap, approach, load
+        h at the points and alpha in eps, W in R dgamma.
+    gap_rate, stiffness
+        dh/dalpha, and dW/dalpha in R dgamma/eps, along the equilibria.
+    sign, log : float
+        Of the tangent's determinant, and the logarithm of its magnitude.
+    """
+
+    gap: Array
+    approach: float
+    load: float
+    gap_rate: Array
+    stiffness: float
+    sign: float
+    log: float
+
+
+MOST_STEPS, NEAR = 20, 1e-5  # relative change of the gaps by the last step; the next would be its square
+
+
+def newton(contact: Contact, h: Array, approach: float, *, load: float | None = None) -> Equilibrium:
+    """Solve for the equilibrium at an approach, or at a load if one is given, from gaps nearby.
+
+    Each step solves the problem with the law's straight line, sigma(h) + sigma' (h_new - h), in the place of the law.
+
+    Raises
+    ------
+    NotConverged
+        If the steps run out.
+    """
+    body, mu = contact.body, contact.tabor
+    for _ in range(MOST_STEPS):
+        slope = tension_slope(h)
+        factors = factorise(body.softened(mu**2 * slope))
+        straight = tension(h) + slope * (contact.gap(None, approach) - h)
+        u, rate = (factors.solve(mu * body.forces(line)) for line in (straight, -slope))  # rate is du/dalpha
+        change, gap_rate = contact.gap(u, approach) - h, -1 - mu * body.rise(rate)
+        stiffness = contact.load_slope(slope * -gap_rate, approach)
+        missing = 0.0 if load is None else load - contact.load(tension(h) + slope * change, approach)
+        d = missing / stiffness
+        change += d * gap_rate
+        part = min(1.0, 0.75 / max(float((-change / h).max()), 0.75))  # lest the surfaces pass through each other
+        h, approach = h + part * change, approach + part * d
+        if part == 1 and np.abs(change / h).max() < NEAR:
+            found = contact.load(tension(h), approach)
+            return Equilibrium(h, approach, found, gap_rate, stiffness, *determinant(factors))
+    raise NotConverged(f"no equilibrium in {MOST_STEPS} Newton steps of the weak form; try a nearer start")
+
+
+# The determinant
+
+
+def factorise(matrix: Any) -> Any:
+    """Factors L U of a symmetric sparse matrix, with pivots off the diagonal only where those on it are tiny."""
+    options = {"SymmetricMode": True}
+    return splu(sparse.csc_array(matrix), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options=options)
+
+
+def determinant(factors: Any) -> tuple[float, float]:
+    """Sign of a determinant, and the logarithm of its magnitude, from the factors L U of the permuted matrix."""
+    pivots = factors.U.diagonal()
+    sign = np.prod(np.sign(pivots)) * _parity(factors.perm_r) * _parity(factors.perm_c)
+    return float(sign), float(np.log(np.abs(pivots)).sum())
+
+
+def _parity(permutation: NDArray[np.int32]) -> int:
+    """1 if a permutation is an even number of exchanges, -1 if odd: it has as many as it is short of cycles."""
+    size = permutation.size
+    links = sparse.csr_array((np.ones(size), (np.arange(size), permutation)), shape=(size, size))
+    cycles, _ = connected_components(links)
+    return 1 if (size - int(cycles)) % 2 == 0 else -1
+
+
+# Turning points
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Where a determinant changes its sign: load in R dgamma, approach in eps."""
+
+    load: float
+    approach: float
+
+
+FLAT, NEARBY = 1e-2, 2e-3  # first steps, of approach and load
+FARTHEST, TRIES = 50.0, 6  # the farthest in such steps, how many are tried
+
+
+def turning_point(contact: Contact, h: Array, approach: float, load: float, *, under_load: bool) -> Turn | None:
+    """Where the equilibria near a state turn, or None where they do not.
+
+    Under fixed grips, at the fold of a jump, the determinant of the tangent changes its sign; that is passed at given
+    loads. Under a dead load, at an extremum of the load, that of the tangent bordered by the load does, det A times
+    dW/dalpha; it is passed at given approaches. The root is the secant's, the other coordinate that of the cubic
+    through both states.
+    """
+    place = approach if under_load else load
+    # The extremum of the load is flat; along the load an edge moves by a spike's width soon.
+    step = FLAT * (1 + abs(place)) if under_load else NEARBY * (1 + abs(place)) * min(1.0, 9 / contact.tabor**2)
+    a = _at(contact, place - step, h, approach, under_load=under_load)
+    place, step = place - step, 2 * step
+    for _ in range(TRIES):
+        change = step if under_load else step / a.stiffness
+        b = _at(contact, place + step, a.gap + change * a.gap_rate, a.approach + change, under_load=under_load)
+        values = [state.sign * np.exp(state.log - a.log) * (state.stiffness if under_load else 1) for state in (a, b)]
+        part = float(values[0] / (values[0] - values[1]))
+        if 0 <= part <= 1:
+            ends = [(s.load, s.stiffness) if under_load else (s.approach, 1 / s.stiffness) for s in (a, b)]
+            turned, place = _cubic(part, step, *ends), place + part * step
+            return Turn(turned, place) if under_load else Turn(place, turned)
+        if not abs(part) < FARTHEST:
+            return None
+        step *= 1.3 * part  # past the root
+    return None
+
+
+def _at(contact: Contact, place: float, h: Array, approach: float, *, under_load: bool) -> Equilibrium:
+    """Equilibrium at an approach or a load, from gaps and an approach nearby."""
+    return newton(contact, h, place) if under_load else newton(contact, h, approach, load=place)
+
+
+def _cubic(t: float, length: float, a: tuple[float, float], b: tuple[float, float]) -> float:
+    """Value at the part t of a length of the cubic with given values and slopes at its ends."""
+    ends = (1 + 2 * t) * (1 - t) ** 2 * a[0] + t**2 * (3 - 2 * t) * b[0]
+    return ends + length * t * (1 - t) * ((1 - t) * a[1] - t * b[1])

@@ -1,0 +1,212 @@
+"""The fourth level: what both solvers share, against closed forms and against a weak form that shares nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import fem_adhesion
+from fem_adhesion import Scene, cli, weak_form
+from fem_adhesion.studies import crosscheck, from_scratch
+from fem_adhesion.studies.comparison import CLOSED_FORM, WEAK_FORM
+from fem_adhesion.studies.crosscheck import Failure
+from fem_adhesion.weak_form import Contact, half_space, newton, turning_point
+from halfspace import events as halfspace_events
+from halfspace.contact import LOAD, ContactProblem
+from halfspace.errors import NotConverged
+from halfspace.events import FOLD
+from halfspace.lennard_jones import SurfaceLaw
+from halfspace.profiles import Paraboloid
+
+# --- the weak form ---
+
+
+@pytest.fixture(scope="module")
+def box():
+    return half_space(0.04, 30.0, 4, 0.3)
+
+
+def test_tension_slope_and_energies_are_derivatives_of_each_other():
+    h, d = np.array([0.9, 1.0, 1.3, 4.0]), 1e-5
+    for function, derivative in (
+        (weak_form.surface_energy, weak_form.tension),
+        (weak_form.tension, weak_form.tension_slope),
+        (weak_form.energy_beyond, lambda h: -weak_form.surface_energy(h)),
+    ):
+        np.testing.assert_allclose((function(h + d) - function(h - d)) / (2 * d), derivative(h), rtol=1e-7, atol=1e-7)
+    assert quad(weak_form.tension, 1, np.inf)[0] == pytest.approx(1, rel=1e-10)
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.499])
+def test_the_box_is_a_half_space(poisson):
+    """Under the pressure (1 + r^2)^-3, whose work is 945 pi^3/24576, and under Hertz's, whose deflection is known."""
+    body = half_space(0.04, 30.0, 4, poisson)
+    forces = body.forces((1 + body.radii**2) ** -3)
+    assert forces @ body.yielding(forces) == pytest.approx(945 * np.pi**3 / 24576, rel=3e-5)
+    inside = body.radii < 0.9
+    hertz = -body.rise(body.yielding(-body.forces(np.sqrt(np.maximum(1 - body.radii**2, 0)))))
+    np.testing.assert_allclose(hertz[inside], np.pi / 4 * (2 - body.radii[inside] ** 2), rtol=1e-3)
+
+
+def test_a_body_twice_as_large_is_twice_as_stiff(box):
+    larger = box.scaled(2.0)
+    forces = box.forces(np.exp(-(box.radii**2)))
+    np.testing.assert_allclose(larger.yielding(forces), box.yielding(forces) / 2)
+    assert larger.integral(np.ones_like(larger.radii)) == pytest.approx(np.pi * larger.rim**2)
+    assert box.reaction @ box.yielding(forces) == pytest.approx(-box.integral(np.exp(-(box.radii**2))), rel=1e-10)
+
+
+@pytest.fixture(scope="module")
+def in_contact(box):
+    contact = Contact(box.scaled(2.0), 1.0)
+    start = 1 + np.maximum(contact.body.radii**2 / 2 - 1.5, 0.0)
+    return contact, newton(contact, start, 1.0)
+
+
+def test_an_equilibrium_balances_and_its_energy_falls_by_the_load(in_contact):
+    contact, found = in_contact
+    u = contact.displacement(found.gap)
+    np.testing.assert_allclose(contact.gap(u, found.approach), found.gap, rtol=0, atol=1e-8)
+    assert contact.far_reaction(u) + contact.load_beyond(1.0) == pytest.approx(found.load, rel=1e-7)
+    d = 1e-3
+    beside = [newton(contact, found.gap, 1.0 + step) for step in (-d, d)]
+    energies = [contact.energy(contact.displacement(state.gap), state.approach) for state in beside]
+    assert (energies[1] - energies[0]) / (2 * d) == pytest.approx(found.load, rel=1e-5)
+    assert (beside[1].load - beside[0].load) / (2 * d) == pytest.approx(found.stiffness, rel=1e-4)
+    rate = (beside[1].gap - beside[0].gap) / (2 * d)
+    np.testing.assert_allclose(rate, found.gap_rate, rtol=0, atol=1e-4)
+    assert newton(contact, found.gap, 1.0, load=beside[1].load).approach == pytest.approx(1.0 + d, rel=1e-7)
+
+
+def test_newton_says_when_it_ends_without_an_equilibrium(box):
+    with pytest.raises(NotConverged, match="no equilibrium in 20 Newton steps"):
+        newton(Contact(box, 1.0), 1 + box.radii**2, 0.0, load=-50.0)
+
+
+@pytest.mark.parametrize("size", [7, 8])
+def test_the_determinant_is_that_of_a_dense_matrix(size):
+    rng = np.random.default_rng(size)
+    for _ in range(5):
+        matrix = rng.normal(size=(size, size))
+        matrix += matrix.T
+        found = weak_form.determinant(weak_form.factorise(matrix))
+        np.testing.assert_allclose(found, np.linalg.slogdet(matrix), rtol=1e-9, atol=1e-9)
+
+
+def test_where_nothing_turns_no_turning_point_is_found(in_contact):
+    contact, found = in_contact
+    assert turning_point(contact, found.gap, found.approach, found.load, under_load=False) is None
+    assert turning_point(contact, found.gap, found.approach, found.load, under_load=True) is None
+
+
+# --- the rows ---
+
+RTOL = 1e-3  # the fourth level looks for mistakes
+
+
+@pytest.mark.parametrize(("tabor", "poisson"), [(0.02, 0.3), (0.75, 0.499), (1.5, 0.0), (8.0, 0.45)])
+def test_the_fourth_level_agrees(tabor, poisson):
+    scene = Scene(tabor, poisson)
+    rows = from_scratch.events(scene, fem_adhesion.trace(scene, rtol=1e-5))
+    assert {row.quantity: row.verdict for row in rows if row.verdict != "agree"} == {}
+    assert {row.between for row in rows} == {WEAK_FORM}
+    folds = 13 if tabor > 0.7 else 6
+    assert len(rows) == folds
+
+
+def test_closed_forms_agree():
+    rows = from_scratch.closed_forms()
+    assert [row.verdict for row in rows] == ["agree"] * 3
+    assert {row.between for row in rows} == {CLOSED_FORM}
+    assert [row.first.value for row in rows] == pytest.approx([1, -2 * np.pi, -1.5 * np.pi])
+
+
+# --- defects that both solvers share ---
+
+
+def _amplitude(monkeypatch):
+    original = SurfaceLaw.amplitude.fget
+    monkeypatch.setattr(SurfaceLaw, "amplitude", property(lambda law: 1.01 * original(law)))
+
+
+def _profile(monkeypatch):
+    for name in ("height", "slope"):
+        original = getattr(Paraboloid, name)
+        monkeypatch.setattr(Paraboloid, name, lambda self, radii, of=original: 1.01 * of(self, radii))
+
+
+def _load(monkeypatch):
+    load, gradient = ContactProblem.load, ContactProblem.gradient
+
+    def scaled(self, x, weights):
+        return gradient(self, x, weights * np.where(np.arange(4) == LOAD, 1.01, 1.0))
+
+    monkeypatch.setattr(ContactProblem, "load", lambda self, x: 1.01 * load(self, x))
+    monkeypatch.setattr(ContactProblem, "gradient", scaled)
+
+
+def _jumps_on_a_spring(monkeypatch):
+    from halfspace import curve
+
+    soft = replace(FOLD, compliance=0.1)
+    for module in (curve, halfspace_events):
+        monkeypatch.setattr(module, "FOLD", soft)
+
+
+def _energy(monkeypatch):
+    def energy(self, x):
+        deflection = x[:-2] + x[-2] - self.tabor * self.profile.height(self.operator_at(x).radii)
+        density = self.law.energy(x[:-2], self.tabor) + self.pressure(x) * deflection
+        return float(self.operator_at(x).weights @ density)
+
+    monkeypatch.setattr(ContactProblem, "energy", energy)
+
+
+def _elastic_term(monkeypatch):
+    residual = ContactProblem.residual
+
+    def stiffer(self, x):
+        F = residual(self, x)
+        F[:-1] -= 0.01 * self.tabor * (self.operator_at(x).compliance @ self.pressure(x))
+        return F
+
+    monkeypatch.setattr(ContactProblem, "residual", stiffer)
+
+
+def _slope_of_the_load(monkeypatch):
+    gradient = ContactProblem.gradient
+
+    def short(self, x, weights):
+        return gradient(self, x, weights * np.where(np.arange(4) == LOAD, 0.95, 1.0))
+
+    monkeypatch.setattr(ContactProblem, "gradient", short)
+
+
+SHARED = {
+    "law": (_amplitude, {"limit: integral of tension", "equations: load", "apart: pull_off balance"}),
+    "profile": (_profile, {"equations: residual", "limit: Bradley pull_off load", "apart: zero_load balance"}),
+    "load": (_load, {"equations: load", "limit: JKR pull_off load", "apart: pull_off reaction"}),
+    "spring": (_jumps_on_a_spring, {"apart: jump_on load"}),
+    "energy": (_energy, {"apart: energy released"}),
+    "elastic term": (_elastic_term, {"equations: residual"}),
+    "slope of the load": (_slope_of_the_load, {"equations: load's slope"}),
+}
+
+
+@pytest.mark.parametrize("defect", SHARED)
+def test_a_defect_that_both_solvers_share_is_rejected_by_the_row_that_should(defect, monkeypatch, capsys):
+    inject, shown_by = SHARED[defect]
+    inject(monkeypatch)
+    (case,) = crosscheck.run([Scene(1.0)], rtol=RTOL)
+    rejecting = {row.quantity for row in case.rows if row.verdict == "disagree"}
+    assert shown_by <= rejecting
+    assert isinstance(case, Failure) or case.verdict == "disagree"
+    # Nothing but the fourth level sees it: the two solvers, which share it, agree.
+    assert {name for name in rejecting if name.split(":")[0] not in ("limit", "equations", "apart")} == set()
+    monkeypatch.setattr(crosscheck, "run", lambda scenes, rtol: iter([case]))  # noqa: ARG005
+    assert cli.main(["compare", "--tabor", "1"]) == 1
+    out = capsys.readouterr().out
+    if isinstance(case, Failure):
+        line = next(line for line in out.splitlines() if "failed: " in line)
+        assert all(f"; {name} disagrees" in line for name in shown_by)
