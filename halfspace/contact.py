@@ -32,7 +32,6 @@ Array = NDArray[np.float64]
 
 APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
 
-ROUND_OFF = 1e-13  # of the largest coefficient of a polynomial, what is left of those that it does not have
 WIDEST = 0.95  # of the radius of a body, that a contact may reach
 
 
@@ -180,15 +179,17 @@ class ContactProblem(Valued):
         return root(beyond, below, above, "the contact edge; refine the grid", xtol=1e-14)
 
     def ripple(self, x: Array) -> float:
-        """Largest of the last three Legendre coefficients of the gap in the cell on the axis, in eps.
+        """Largest of the last three Legendre coefficients of the deflection in the cell on the axis, in eps.
 
         On finite elements of degree p, with p + 2 nodes, the last is none of theirs, and one may be small by accident.
+        The profile is exact: of few coefficients of the gap, the last three would have its parabola among them.
         """
         body = self.operator_at(x)
         nodes = body.cell_nodes[0]
         places = 2 * body.radii[nodes] / body.cells[1] - 1
-        sizes = np.abs(np.linalg.solve(legvander(places, nodes.size - 1), x[nodes]))
-        return float(sizes[sizes > ROUND_OFF * sizes.max()][-3:].max(initial=0.0))
+        deflection = x[nodes] - self.tabor * self.profile.height(body.radii[nodes])
+        sizes = np.abs(np.linalg.solve(legvander(places, nodes.size - 1), deflection))
+        return float(sizes[-3:].max())
 
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative by x of the weighted sum of the observables, shape (q + 2,)."""

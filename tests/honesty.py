@@ -28,7 +28,7 @@ from fem_adhesion.scene import Counter
 from fem_adhesion.studies.assess import assess
 from fem_adhesion.studies.assess_contact import Contact
 from fem_adhesion.studies.parallel import stream
-from halfspace.curve import Estimate, energy_released
+from halfspace.curve import Estimate, energy_released, placed
 from halfspace.devices import cycle
 from halfspace.events import EVENTS
 
@@ -64,6 +64,8 @@ class Family:
         Those numbers with their estimates.
     truth : callable
         A scene and what was solved of it: the same numbers twice, the second time better known.
+    anew : bool
+        Whether the numbers are of places that no two tolerances share, so that each has truths of its own.
     """
 
     full: Net
@@ -71,6 +73,7 @@ class Family:
     solve: Callable[[Any, float], Any]
     numbers: Callable[[Any], Numbers]
     truth: Callable[[Any, Any], Sequence[Values]]
+    anew: bool = False
 
 
 @dataclass(frozen=True)
@@ -135,6 +138,20 @@ def _of_cycle(found):
     return _real(told | {"energy lost": found.energy_lost, "jump_on energy": found.jump_on.energy})
 
 
+EVERY = 2  # points of a curve
+
+
+def of_curve(path):
+    """Every second point."""
+    columns = [(q, getattr(path, q), getattr(path, f"{q}_error")) for q in QUANTITIES]
+    told = {f"point {k} {q}": Estimate(float(v[k]), float(e[k])) for q, v, e in columns for k in _places(path)}
+    return _real(told)
+
+
+def _places(path):
+    return range(0, path.count, EVERY)
+
+
 def of_assessment(assessment):
     """What the computed models say in SI."""
     models = (m for m in assessment.models if m.is_computed)
@@ -150,6 +167,17 @@ def traced(stages, tabor_of, scene, _):
 
 def relocated(stages, scene, path):
     return [of_state(state) for state in truths.relocated(path.stages[-1], stages(scene))]
+
+
+def beside(stages, scene, path):
+    """The same points of a curve on each stage, in the plane across the path."""
+    points = [(part.problem, point) for part in path.finest_curve.segments for point in part.points]
+    return [_curve_on(stage, [(k, *points[k]) for k in _places(path)]) for stage in stages(scene)]
+
+
+def _curve_on(stage, points):
+    found = {k: placed(stage, problem, point)[1].observables for k, problem, point in points}
+    return {f"point {k} {q}": float(v) for k, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}
 
 
 def sprung(stages, scene, path):
@@ -313,6 +341,27 @@ FAMILIES = {
         of_path,
         partial(relocated, _ours),
     ),
+    "curve, half-space": Family(
+        Net((0.05, 0.3, 0.75, 1, 2, 5), _decades(2, 4, 6, 8)),
+        Net(
+            (0.3, 2),
+            _decades(
+                3,
+            ),
+        ),
+        _by(halfspace.trace),
+        of_curve,
+        partial(beside, truths.half_space),
+        anew=True,
+    ),
+    "curve, block": Family(
+        Net(tuple(map(_block, (0.05, 0.3, 1, 2, 5))), _decades(2, 3, 4, 5)),
+        Net(tuple(map(_block, (0.3, 1, 3))), _decades(4)),
+        _by(fem_adhesion.trace),
+        of_curve,
+        partial(beside, _half_space_of),
+        anew=True,
+    ),
     "springs, half-space": Family(
         Net((0.05, 0.3, 0.75, 1, 2, 5, 20), _decades(2, 4, 6, 8)),
         Net((0.3, 2), _decades(3, 6)),
@@ -346,8 +395,11 @@ def judged(item):
     name, scene, rtols = item
     family = FAMILIES[name]
     answers = {rtol: family.solve(scene, rtol) for rtol in rtols}
-    rough, best = family.truth(scene, answers[min(rtols)])
-    numbers = [n for rtol, answer in answers.items() for n in _judged(family.numbers(answer), rough, best, scene, rtol)]
+    shared = None if family.anew else family.truth(scene, answers[min(rtols)])
+    numbers = []
+    for rtol, answer in answers.items():
+        rough, best = shared or family.truth(scene, answer)
+        numbers += _judged(family.numbers(answer), rough, best, scene, rtol)
     return numbers, time.process_time() - began
 
 

@@ -268,3 +268,9 @@ def test_a_gap_is_known_no_better_than_to_the_largest_of_its_last_three_coeffici
     coefficients = [0.1, 2e-2, 9e-3, 1e-3, 3e-4, 2e-5, -1e-6, 8e-10]
     gaps = np.polynomial.legendre.legval(2 * operator.radii - 1, coefficients)
     assert ContactProblem(operator, 1.0).ripple(np.append(gaps, [0.0, 1.0])) == pytest.approx(2e-5, rel=1e-6, abs=0)
+
+
+def test_the_profile_adds_nothing_to_what_a_gap_is_known_to():
+    """Of five coefficients, elements of degree 3, the third from the end is that of a parabola."""
+    problem = ContactProblem(compliance.panels(np.array([0.0, 1.0, 2.0]), 5), 1.0)
+    assert problem.ripple(problem.undeformed(-5.0)) < 1e-13
