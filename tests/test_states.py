@@ -208,15 +208,27 @@ def test_no_curve_has_less_than_two_ends(paths, count):
         paths[2.0].resampled(count)
 
 
-def test_the_command_writes_as_many_points_each_with_its_error(tmp_path):
+@pytest.mark.parametrize("count", [20, 60])  # fewer than the curve takes to be traced, and more
+def test_the_command_writes_as_many_points_each_with_its_error(tmp_path, count):
     files = tmp_path / "curve.csv", tmp_path / "curve.json"
-    options = ["--tabor", "2", "--rtol", "1e-3", "--points", "60", "--csv", str(files[0]), "--json", str(files[1])]
+    options = [
+        "--tabor",
+        "2",
+        "--rtol",
+        "1e-3",
+        "--points",
+        str(count),
+        "--csv",
+        str(files[0]),
+        "--json",
+        str(files[1]),
+    ]
     assert cli.main(["curve", *options]) == 0
     curve = json.loads(files[1].read_text())["solutions"]["half-space"]["curve"]
     rows = [row for row in csv.DictReader(files[0].read_text().splitlines()) if not row["event"]]
-    assert len(rows) == len(curve["load"]) == len(curve["load_error"]) == 60
+    assert len(rows) == len(curve["load"]) == len(curve["load_error"]) == count
     assert [float(row["load_error_R_dgamma"]) for row in rows] == curve["load_error"]
-    path = halfspace.trace(2.0, rtol=1e-3).resampled(60)
+    path = halfspace.trace(2.0, rtol=1e-3).resampled(count)
     assert curve["load_error"] == path.load_error.tolist()
     assert curve["contact_radius_error"][-1] == path.contact_radius_error[-1]
 
