@@ -233,8 +233,8 @@ class EquilibriumPath(Valued):
 
     @property
     def arclength(self) -> Array:
-        """Arclength from the first point, in the units of `halfspace.path.Metric`, shape (points,)."""
-        return np.array([point.arclength for point in self.points])
+        """Arclength from the first point as it was traced, in the units of `halfspace.path.Metric`, shape (points,)."""
+        return np.array([point.arclength for segment in self.segments for point in segment.points])
 
     @property
     def points(self) -> list[Point]:
