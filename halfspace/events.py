@@ -380,7 +380,7 @@ def estimate_event(
     ]
     whole = np.sum(changes, axis=0)
     if along and chains[0][-1].condition.stationary:
-        changes += [_shifted(chains[0][-1], change) for change in changes]
+        changes += [shift for change in changes for shift in _shifted(chains[0][-1], change)]
     errors = remaining * np.maximum(np.max(changes, axis=0), least) + ROUND_OFF * (1 + np.abs(values))
     if along:
         errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
@@ -391,10 +391,14 @@ def estimate_event(
     return Event(name, *map(float, values), *map(float, errors))
 
 
-def _shifted(event: Located, change: Array) -> Array:
+def _shifted(event: Located, change: Array) -> tuple[Array, Array]:
     """Changes of the observables by a shift along the path, to which an event is sensitive where a rate must vanish.
 
-    The shift is read off the contact radius, or off the central gap where there is no contact.
+    For all of them the shift is read off the contact radius, or off the central gap where there is no contact; for
+    these two, which are at a point and may stand still by accident, also off the load or approach that has a rate.
     """
     rates, tell = event.point.rates, CONTACT_RADIUS if np.isfinite(change[CONTACT_RADIUS]) else CENTRAL_GAP
-    return np.asarray(np.abs(rates) * (change[tell] / np.abs(rates[tell])))
+    other = LOAD if event.condition.observable == APPROACH else APPROACH
+    by_point, by_average = (np.abs(rates) * (change[k] / np.abs(rates[k])) for k in (tell, other))
+    by_average[[APPROACH, LOAD]] = 0.0
+    return by_point, by_average

@@ -42,3 +42,22 @@ def test_a_sign_that_changes_where_states_leap_is_no_event(monkeypatch, leap, fo
     else:
         with pytest.raises(NotConverged, match="different branches; take a smaller rtol"):
             events.between(None, a, b, Condition(0), None)
+
+
+@pytest.mark.parametrize(("own", "other"), [(events.FOLD, 1), (events.EXTREMUM, 0)])
+def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, other):
+    """A radius that stands still by accident, while the approach or the load that is not stationary says otherwise."""
+    rates = np.array([2.0, 2.0, 1.0, 0.5])
+    rates[own.observable] = 0.0
+    values = np.array([[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
+    values[0, other] = 4e-6
+    interface = SimpleNamespace(ripple=lambda _: 0.0)
+    problem = SimpleNamespace(interface=interface, surface_state=lambda x: x)
+    chain = [
+        SimpleNamespace(condition=own, problem=problem, point=SimpleNamespace(observables=v, rates=rates, x=None))
+        for v in values
+    ]
+    event = events.estimate_event("any", [chain], 0.5, along=True)
+    assert event.contact_radius_error == pytest.approx(0.5 * 4e-6 / 2.0 * 0.5, rel=1e-4)
+    assert event.central_gap_error == pytest.approx(0.5 * 4e-6 / 2.0 * 1.0, rel=1e-4)
+    assert (event.approach_error, event.load_error)[own.observable] < 1e-10
