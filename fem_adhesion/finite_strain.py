@@ -78,8 +78,7 @@ class FiniteStrainProblem(Valued):
     @property
     def traction(self) -> Traction:
         """Forces of the surface law."""
-        stretch = self.stretch if self.convention.deformed_area else 0.0
-        return Traction(self.surface, self.tabor, stretch, self.convention.surface_stress)
+        return Traction(self.surface, self.tabor, self.stretch, self.convention)
 
     def stretched(self, stretch: float) -> FiniteStrainProblem:
         """Return the same problem at another delta, the undeformed shape unchanged."""
@@ -178,7 +177,7 @@ class FiniteStrainProblem(Valued):
     def state_from_surface(self, state: Array) -> Array:
         """State of the linear body under the pressure that the gaps of an interface's state make."""
         pressure, nothing = self.interface.pressure(state), np.zeros(self.exterior.reduction.shape[1])
-        forces = Traction(self.surface, self.tabor, 0.0, 0.0).forces(nothing, pressure, np.zeros(pressure.size))
+        forces = replace(self.traction, stretch=0.0).forces(nothing, pressure, np.zeros(pressure.size))
         return np.append(self._undeformed.solve(-np.append(forces, 0.0))[:-1], state[-2])
 
     def _surface_change(self, dx: Array) -> Array:
@@ -257,9 +256,10 @@ class FiniteStrainProblem(Valued):
         return self.tabor * (self.body.energy(self.exterior.reduction @ y) + float(outside))
 
     def energy(self, x: Array) -> float:
-        """Elastic and surface energy in R dgamma eps, the latter int Phi(H) dA.
+        """Elastic and surface energy in R dgamma eps, the latter int Phi(H) dA; nan unless conservative.
 
-        If the convention is conservative its gradient by y is mu times the residual and its derivative by the approach
-        along the equilibria is the load; else neither.
+        Its gradient by y is mu times the residual and its derivative by the approach along the equilibria is the load.
         """
+        if not self.convention.conservative:
+            return float("nan")
         return self.elastic_energy(x) + float(self.areas(x) @ self.interface.law.energy(self.gaps(x), self.tabor))

@@ -11,7 +11,7 @@ from fem_adhesion.finite_strain import FiniteStrainProblem
 from fem_adhesion.finite_strain_bodies import Body, displacement_body
 from fem_adhesion.finite_strain_mixed import mixed_body
 from fem_adhesion.finite_strain_surface import contact_surface, rigid_operator
-from fem_adhesion.finite_strain_traction import CONVENTIONS, Convention
+from fem_adhesion.finite_strain_traction import Convention
 from fem_adhesion.incompressible import REMEDY_FROM
 from halfspace.contact import ContactProblem
 from halfspace.errors import InputError
@@ -32,7 +32,7 @@ def finite_strain_problem(
     tabor: float,
     *,
     profile: Profile = PARABOLOID,
-    convention: Convention = CONVENTIONS["vertical"],
+    convention: Convention,
     points: int | None = None,
     law: SurfaceLaw = LENNARD_JONES,
 ) -> FiniteStrainProblem:

@@ -17,7 +17,7 @@ from fem_adhesion.far_field import with_interiors
 from fem_adhesion.finite_strain import FiniteStrainProblem
 from fem_adhesion.finite_strain_assembly import finite_strain_problem, material_body
 from fem_adhesion.finite_strain_events import undeformed_radius
-from fem_adhesion.finite_strain_traction import Convention
+from fem_adhesion.finite_strain_traction import convention_of
 from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.scene import Scene
 from halfspace import grid, newton
@@ -96,16 +96,13 @@ class ScenesBody(Valued):
     Attributes
     ----------
     scene : Scene
-        A hemisphere.
+        A hemisphere at finite strain.
     how : Discretisation
         Degree of the elements and size of their cells.
-    convention : Convention
-        Of the law's traction.
     """
 
     scene: Scene
     how: sized.Discretisation
-    convention: Convention
 
     @property
     def length(self) -> float:
@@ -114,7 +111,7 @@ class ScenesBody(Valued):
 
     @property
     def _sized(self) -> SizedBody:
-        return sized.sized_body(self.scene, self.how)
+        return sized.sized_body(linear(self.scene), self.how)
 
     def richer(self) -> ScenesBody:
         """Return the same with elements of one degree more."""
@@ -132,13 +129,17 @@ class ScenesBody(Valued):
         scene, far_field = self.scene, sized.GRIPS[self.scene.grip]
         space = Space(mesh, ElementQuadP(self.how.degree))
         condensed = condense(space, scene.poisson, far_field=far_field, stiffness=stiffness_for(scene.poisson))
-        linear = ContactProblem(condensed.operator, scene.tabor, profile=sized_body.profile)
+        under_wall = ContactProblem(condensed.operator, scene.tabor, profile=sized_body.profile)
         exterior = with_interiors(far_field(space, scene.poisson), space)
         body = material_body(space, scene.poisson, 1 / scene.sphere_radius)
-        problem = finite_strain_problem(
-            body, exterior, scene.tabor, profile=sized_body.profile, convention=self.convention
-        )
-        return Discretised(condensed, linear, problem)
+        convention = convention_of(scene.traction, scene.poisson)
+        problem = finite_strain_problem(body, exterior, scene.tabor, profile=sized_body.profile, convention=convention)
+        return Discretised(condensed, under_wall, problem)
+
+
+def linear(scene: Scene) -> Scene:
+    """Return the scene at small strain."""
+    return replace(scene, strain="small", traction="projected")
 
 
 def enriched(u: Array, lower: Space, higher: Space) -> Array:

@@ -11,22 +11,24 @@ import numpy as np
 from fem_adhesion import sized
 from fem_adhesion.finite_strain import FiniteStrainProblem
 from fem_adhesion.finite_strain_events import corrected, undeformed_radius
-from fem_adhesion.finite_strain_meshes import Discretised, ScenesBody, enriched
-from fem_adhesion.finite_strain_traction import CONVENTIONS, ConventionName
+from fem_adhesion.finite_strain_meshes import Discretised, ScenesBody, enriched, linear
+from fem_adhesion.finite_strain_traction import convention_of
 from fem_adhesion.finite_strain_windows import trace_windows
-from fem_adhesion.scene import Scene
-from halfspace.contact import APPROACH, spike_width
+from fem_adhesion.scene import Scene, TractionName
+from halfspace.contact import APPROACH
 from halfspace.curve import (
     COMPRESSION,
     Chart,
     EquilibriumPath,
     Estimate,
+    energy_released,
     find_events,
     metric_for,
     trace_charts,
 )
-from halfspace.errors import InputError
+from halfspace.errors import InputError, NotConverged
 from halfspace.events import EVENTS, REMAINING, ROUND_OFF, Event, Located, Tolerance, estimate_event
+from halfspace.lennard_jones import LENNARD_JONES
 from halfspace.limits import require_load, require_rtol
 from halfspace.path import Segment
 from halfspace.values import Valued
@@ -36,14 +38,9 @@ TIGHTEST = 1e-6  # relative tolerance
 MOST_LEVELS = 2
 NEARBY = 0.01  # relative difference of contact radii that one mesh serves
 LITTLE = 0.5  # R dgamma: a load past every event
-LEAST_FOR_NORMAL = (10.0, 20.0)
-"""Least R/eps for a traction normal to the deformed surface, and least R/eps over tabor/(width of the spike in beta).
-
-A surface stress -dgamma wants waves shorter than some dgamma/E* = beta^2/R^2 beta; where the spike is not many times as
-wide they are let loose. Below a fourth to a half of either number events are lost, or differ from degree to degree.
-"""
-
 JUMPS = ("pull_off", "jump_on", "jump_off")
+NUMBERS = ("approach", "load", "central_gap", "contact_radius")
+CONSERVATIVE: tuple[TractionName, ...] = ("projected", "reference", "normal")
 
 State = Mapping[str, Located]
 
@@ -110,9 +107,7 @@ class AroundEvents(Valued):
         return max(mesh.problem.body.unknowns for _, mesh in self.made)
 
 
-def trace(
-    scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION, *, convention: ConventionName = "vertical"
-) -> EquilibriumPath:
+def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> EquilibriumPath:
     """Trace the load-approach curve of a scene at finite strain and solve for its events.
 
     Parameters
@@ -123,17 +118,14 @@ def trace(
         Relative accuracy asked of loads and approaches, 1e-6 to 1e-1.
     to_load : float
         Compressive load at which the curve ends, in R dgamma.
-    convention : {"vertical", "normal", "reference"}
-        What the traction of the surface law is counted per: see `fem_adhesion.finite_strain_traction`. The first and
-        the last serve spheres of any size, the second such that R/eps is at least 10 and 20 tabor over the width of the
-        spike of tension in beta, that is 20 tabor^3 or, for tabor below 0.79, 29 tabor^(3/2).
 
     Returns
     -------
     EquilibriumPath
         Each event has a mesh of its own; its error estimate is half the larger of the changes from elements one degree
-        lower, on the same mesh and on that of the curve. The energy is nan with the vertical traction, which has none;
-        stability is as said at `FiniteStrainProblem.negative_directions`. `halfspace.devices` does not apply.
+        lower, on the same mesh and on that of the curve. Its spread is that between the tractions ``reference`` and
+        ``normal``. The energy is nan with the vertical traction, which has none; stability is as said at
+        `FiniteStrainProblem.negative_directions`.
 
     Raises
     ------
@@ -142,37 +134,58 @@ def trace(
     halfspace.errors.NotConverged
         If the curve or an event is lost, as where the material is squeezed or torn beyond what Newton's method follows.
     """
-    _require(scene, rtol, to_load, convention)
+    _require(scene, rtol, to_load)
     if scene.tabor > WIDEST_TABOR:
         raise InputError(
             f"tabor = {scene.tabor:g} is outside tabor <= {WIDEST_TABOR:g} for a curve at finite strain; "
             'take strain = "small"'
         )
     began = time.perf_counter()
-    lowest = _lowest(scene, rtol, convention, _linear_curve(scene, to_load))
+    lowest = _lowest(scene, rtol, _linear_curve(scene, to_load))
     segments = trace_windows(lowest.body, lowest.linear, to_load)
-    found: State = find_events(segments)
-    if not lowest.body.convention.conservative:
-        found = {name: found[name] for name in EVENTS if name in found}
-    climbed = _climb(rtol, lowest, found, compare=True)
+    climbed = _climb(rtol, lowest, find_events(segments), compare=True)
     curve, events = (asdict(rung.body.how) for rung in (lowest, climbed.finest))
-    settings = {"rtol": rtol, "convention": convention, "curve": curve, "events": events}
-    seconds = time.perf_counter() - began
+    settings = {"rtol": rtol, "traction": scene.traction, "curve": curve, "events": events}
     return EquilibriumPath(
-        scene.tabor, segments, climbed.events, _energy(climbed), climbed.states, climbed.finest, seconds, settings
+        scene.tabor,
+        segments,
+        climbed.events,
+        _energy(climbed),
+        climbed.states,
+        climbed.finest,
+        seconds=time.perf_counter() - began,
+        settings=settings,
+        spread={
+            name: _spread(event, event.problem, scene)
+            for name, event in climbed.states[0].items()
+            if name in climbed.events and isinstance(event.problem, FiniteStrainProblem)
+        },
     )
 
 
-def find_jumps(scene: Scene, rtol: float = 1e-4, *, convention: ConventionName = "vertical") -> dict[str, Event]:
+def _spread(event: Located, problem: FiniteStrainProblem, scene: Scene) -> dict[str, float]:
+    """How far the conservative tractions lie apart in the numbers of an event; nan if one does not have it."""
+    found = []
+    for name in CONSERVATIVE:
+        counted = replace(problem, convention=convention_of(name, scene.poisson))
+        try:
+            require_well_posed(replace(scene, traction=name))
+            found.append(corrected(event, counted, event.point.x, metric_for(problem.tabor)).point.observables)
+        except (InputError, NotConverged):
+            found.append(np.full(len(NUMBERS), np.nan))
+    return dict(zip(NUMBERS, np.ptp(found, axis=0).tolist(), strict=True))
+
+
+def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
     """Solve for pull-off and jumps alone, without the curve between: corrected from those of the linear body.
 
     Parameters and errors as of `trace`, without the limit of the Tabor parameter. The error estimates are half the
     changes from elements one degree lower.
     """
-    _require(scene, rtol, COMPRESSION, convention)
-    linear = _linear_curve(scene, LITTLE)
-    found = {name: event for name, event in find_events(linear).items() if name in JUMPS}
-    return dict(_climb(rtol, _lowest(scene, rtol, convention, linear), found).events)
+    _require(scene, rtol, COMPRESSION)
+    curve = _linear_curve(scene, LITTLE)
+    found = {name: event for name, event in find_events(curve).items() if name in JUMPS}
+    return dict(_climb(rtol, _lowest(scene, rtol, curve), found).events)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -184,10 +197,14 @@ class _Climbed(Valued):
     finest: AroundEvents
 
 
-def _lowest(scene: Scene, rtol: float, convention: ConventionName, linear: Sequence[Segment]) -> AroundEvents:
-    """Discretisation by elements of a degree that suits the tolerance."""
+def _lowest(scene: Scene, rtol: float, curve: Sequence[Segment]) -> AroundEvents:
+    """Discretisation by elements of a degree that suits the tolerance.
+
+    The spike of tension is as wide as the surface is stiff.
+    """
     degree = int(np.clip(np.ceil(-np.log10(rtol)), 4, 6))
-    return AroundEvents(ScenesBody(scene, sized.Discretisation(degree), CONVENTIONS[convention]), linear)
+    finest = sized.FINEST * (1 - softening(scene))
+    return AroundEvents(ScenesBody(scene, sized.Discretisation(degree, finest)), curve)
 
 
 def _climb(rtol: float, rung: AroundEvents, found: State, *, compare: bool = False) -> _Climbed:
@@ -204,48 +221,50 @@ def _climb(rtol: float, rung: AroundEvents, found: State, *, compare: bool = Fal
 
 
 def _energy(climbed: _Climbed) -> Estimate:
-    """Potential energy between the states ``separated`` and ``zero_approach``, or nan where there is none."""
-    values = [_energy_released(state) for state in climbed.states[-2:]]
+    """Potential energy between the states ``separated`` and ``zero_approach``."""
+    values = [energy_released(state) for state in climbed.states[-2:]]
     change = abs(values[1] - values[0])
     return Estimate(values[1], REMAINING * change + ROUND_OFF * (1 + abs(values[1])))
 
 
-def _energy_released(state: State) -> float:
-    if "separated" not in state:
-        return float("nan")
-    before, after = state["separated"], state["zero_approach"]
-    return before.problem.energy(before.point.x) - after.problem.energy(after.point.x)
-
-
 def _linear_curve(scene: Scene, to_load: float) -> tuple[Segment, ...]:
     """Curve of the linear body."""
-    body = sized.sized_body(replace(scene, strain="small"), sized.Discretisation(sized.CURVE_DEGREE))
+    body = sized.sized_body(linear(scene), sized.Discretisation(sized.CURVE_DEGREE))
     return trace_charts(body.curve(to_load), to_load)
 
 
-def _require(scene: Scene, rtol: float, to_load: float, convention: ConventionName) -> None:
+def _require(scene: Scene, rtol: float, to_load: float) -> None:
     """Refuse what is out of range or has no meaning at finite strain."""
     require_rtol(rtol)
     require_load(to_load)
     if rtol < TIGHTEST:
         raise InputError(f"rtol = {rtol:g} is outside {TIGHTEST:g} <= rtol for finite strain; take 1e-4")
-    if convention == "normal":
-        require_stiff_surface(scene)
-    for name, value, wanted in (
-        ("body", scene.body, "hemisphere"),
-        ("traction", scene.traction, "projected"),
-        ("counter", scene.counter, None),
-    ):
-        if value != wanted:
-            raise InputError(f"{name} = {value!r} does not go with finite strain; take {name} = {wanted!r}")
+    require_well_posed(scene)
+    if scene.counter is not None:
+        raise InputError(f"counter = {scene.counter!r} does not go with finite strain; take counter = None")
 
 
-def require_stiff_surface(scene: Scene) -> None:
-    """Refuse a sphere whose surface a stress -dgamma would crumple."""
-    least, spikes = LEAST_FOR_NORMAL
-    least = max(least, spikes * scene.tabor / spike_width(scene.tabor))
-    if scene.radius_ratio is not None and scene.radius_ratio < least:
+def softening(scene: Scene) -> float:
+    """Part of the surface's stiffness to short waves that the surface stress takes at the contact edge; 1 is too much.
+
+    That is c sigma, at the law's largest tension, over 2 G/(3 - 4 nu): see `fem_adhesion.finite_strain_traction`.
+    """
+    c, nu = convention_of(scene.traction, scene.poisson).surface_stress, scene.poisson
+    return c * _edge_tension(scene) * (3 - 4 * nu) / (1 - nu)
+
+
+def _edge_tension(scene: Scene) -> float:
+    """Largest tension of the law over E*."""
+    law = LENNARD_JONES
+    return -float(law.pressure(np.array(law.edge_gap), scene.tabor)) / scene.sphere_radius
+
+
+def require_well_posed(scene: Scene) -> None:
+    """Refuse a sphere whose surface stress would let waves of any length loose at the contact edge."""
+    part, ratio = softening(scene), scene.tabor * scene.sphere_radius**2
+    if part >= 1:
         raise InputError(
-            f"radius_ratio = {scene.radius_ratio:g} is outside {least:.3g} <= radius_ratio for convention = 'normal' "
-            f"and tabor {scene.tabor:g}: its surface stress would crumple the surface; take 'vertical' or 'reference'"
+            f"radius_ratio = {ratio:g} is outside {ratio * part**2:.3g} < radius_ratio for traction = "
+            f"{scene.traction!r}, tabor {scene.tabor:g}, poisson {scene.poisson:g}: the equations are ill-posed under "
+            f"an edge tension of {_edge_tension(scene):.2g} E*; take traction = 'reference'"
         )

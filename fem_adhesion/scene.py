@@ -23,7 +23,7 @@ FarFieldName = Literal["point_load", "clamped", "free"]
 BodyName = Literal["block", "hemisphere", "sphere"]
 ProfileName = Literal["paraboloid", "sphere"]
 GripName = Literal["sliding", "bonded"]
-TractionName = Literal["projected", "surface"]
+TractionName = Literal["projected", "surface", "reference", "normal", "vertical"]
 StrainName = Literal["small", "finite"]
 
 
@@ -107,8 +107,11 @@ class Scene:
         Whether the held surface of a body may slide without friction, u_z = 0, or not at all, u = 0.
     cap_angle : float
         Half-angle in degrees of the cap over which a sphere is held.
-    traction : {"projected", "surface"}
-        Whether the law's traction acts on the projected area, exact for rigid shapes, or on that of the surface itself.
+    traction : {"projected", "surface", "reference", "normal", "vertical"}
+        What the law's traction is counted per. At small strain: the projected area, exact for rigid shapes, or that of
+        the surface itself. At finite strain, where the projected area is stretched, "projected" is the blend that
+        conserves matter of "reference", per undeformed area, and "normal", per deformed area and normal to the surface;
+        "vertical", per deformed area, does not. See `fem_adhesion.finite_strain_traction`.
     counter : Counter, optional
         An elastic counter-body; the wall is rigid unless given. R and E* are then those of the pair.
     strain : {"small", "finite"}
@@ -178,11 +181,18 @@ class Scene:
             "counter": (self.counter is not None and not hemisphere, "it meets a hemisphere only"),
             "strain": (self.strain == "finite" and not hemisphere, "finite strain is for the hemisphere"),
             "profile": (self.profile == "sphere" and isinstance(self.body, Path), "the mesh has a surface of its own"),
-            "traction": (self.traction == "surface" and not sphere, "it differs on a curved surface only"),
+            "traction": self._unheeded_traction(sphere),
         }
         for name, (ignored, why) in unheeded.items():
             if ignored:
                 raise InputError(f"{name} = {getattr(self, name)} does not go with {self._what()}; {why}")
+
+    def _unheeded_traction(self, sphere: bool) -> tuple[bool, str]:
+        if self.strain == "finite":
+            return self.traction == "surface", "it is for small strain"
+        if self.traction == "surface":
+            return not sphere, "it differs on a curved surface only"
+        return self.traction != "projected", "areas differ at finite strain only"
 
     def _what(self) -> str:
         return f'body = "{self.body}" and profile = "{self.profile}"'

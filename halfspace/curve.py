@@ -111,6 +111,9 @@ class EquilibriumPath(Valued):
     margin : Estimate, optional
         How far the curve is from folding where two folds are about to be born or to merge: its least -d(alpha*)/dW in
         eps/(R dgamma). Any apparatus of a greater compliance jumps; if it is negative, so do fixed grips.
+    spread : mapping of str to mapping of str to float
+        By event, how far apart its numbers are in models between which the assumptions leave a choice; of no event if
+        they leave none.
     """
 
     tabor: float
@@ -126,6 +129,7 @@ class EquilibriumPath(Valued):
     remaining: float = REMAINING
     ways: Ways = ()
     margin: Estimate | None = None
+    spread: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @property
     def unknowns(self) -> int:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from halfspace import newton
-from halfspace.contact import APPROACH, LOAD, ContactProblem
+from halfspace.contact import APPROACH, LOAD
 from halfspace.curve import EquilibriumPath, Estimate, Finest, metric_for, moved, transfer
 from halfspace.errors import InputError, NotConverged
 from halfspace.events import ROUND_OFF, Condition, Event, Located, Tolerance, estimate_event, locate
@@ -118,8 +118,6 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     stiffness = require_number(stiffness, "stiffness")
     if not stiffness > 0:
         raise InputError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
-    if not isinstance(path.segments[0].problem, ContactProblem):
-        raise InputError("strain = finite, limit: small strain, for the landings of jumps; use the events of the path")
     if math.isinf(stiffness) and not path.jumps:
         return None
     rough = jumps(reaching(path, stiffness).segments, 1 / stiffness)

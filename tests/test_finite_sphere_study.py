@@ -583,8 +583,8 @@ SCENES = {
     "bonded": {**SPHERE, "grip": "bonded"},
     "surface_traction": {**SPHERE, "traction": "surface"},
 }
-CONVENTIONS = {
-    "finite_strain": "vertical",
+TRACTIONS = {
+    "finite_strain": "projected",
     "finite_strain_normal": "normal",
     "finite_strain_reference": "reference",
 }
@@ -603,15 +603,15 @@ def pull_off_of(path):
 
 
 def test_every_model_solves_its_own_scene(solved_once):
-    assert set(solved_once) == {"half_space", "true_profile", *SCENES, *CONVENTIONS}
+    assert set(solved_once) == {"half_space", "true_profile", *SCENES, *TRACTIONS}
     wanted = {
         "half_space": pull_off_of(halfspace.trace(0.3, rtol=1e-2, to_load=0.5)),
         "true_profile": pull_off_of(halfspace.trace(0.3, rtol=1e-2, to_load=0.5, radius_ratio=30.0)),
     }
     for name, scene in SCENES.items():
         wanted[name] = pull_off_of(fem_adhesion.trace(Scene(0.3, **scene), rtol=1e-2, to_load=0.5))
-    for name, convention in CONVENTIONS.items():
-        event = find_jumps(Scene(0.3, **SPHERE, strain="finite"), 1e-4, convention=convention)["pull_off"]
+    for name, traction in TRACTIONS.items():
+        event = find_jumps(Scene(0.3, **SPHERE, strain="finite", traction=traction), 1e-4)["pull_off"]
         wanted[name] = Estimate(event.load, event.load_error)
     assert solved_once == wanted
 
@@ -622,7 +622,7 @@ def test_no_two_models_are_one(solved_once):
 
 
 def test_the_grip_of_a_model_is_that_by_which_its_yield_is_taken_out():
-    grips = {name: Scene(0.3, **scene).grip for name, scene in SCENES.items()} | dict.fromkeys(CONVENTIONS, "sliding")
+    grips = {name: Scene(0.3, **scene).grip for name, scene in SCENES.items()} | dict.fromkeys(TRACTIONS, "sliding")
     for name, model in MODELS.items():
         if not name.startswith("first_jump"):
             assert model.grip == grips.get(name)

@@ -12,9 +12,9 @@ from fem_adhesion.elasticity import Space
 from fem_adhesion.finite_strain_events import corrected, raised, undeformed_radius
 from fem_adhesion.finite_strain_meshes import FARTHEST, ScenesBody, enriched, fine_between
 from fem_adhesion.finite_strain_scene import LITTLE, AroundEvents, find_jumps, trace
-from fem_adhesion.finite_strain_traction import CONVENTIONS, Convention
+from fem_adhesion.finite_strain_traction import Convention
 from fem_adhesion.mesh import block_grid
-from fem_adhesion.scene import Scene
+from fem_adhesion.scene import Counter, Scene
 from fem_adhesion.sized import Discretisation
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD
@@ -82,17 +82,12 @@ def test_events_are_where_the_curve_says(path):
     assert path.events["pull_off"].load == pytest.approx(path.load.min(), abs=5e-2)
     assert path.events["pull_off"].load <= path.load.min() + 1e-4
     assert path.events["zero_load"].load == pytest.approx(0, abs=1e-9)
-    assert path.settings["convention"] == "vertical"
+    assert path.settings["traction"] == "projected"
     assert path.settings["events"]["degree"] > path.settings["curve"]["degree"]
 
 
-def test_a_vertical_traction_has_no_energy_to_report(path):
-    assert np.isnan(path.energy.value)
-    assert np.isnan(path.energy.error)
-
-
 def test_energy_released_is_the_work_of_the_load():
-    path = trace(scene(0.3, 30.0), 1e-4, LITTLE, convention="reference")
+    path = trace(scene(0.3, 30.0), 1e-4, LITTLE)
     problem = path.stages[0]["zero_approach"].problem
     first = path.stages[-1]["separated"].point.observables[APPROACH]
     x, released = problem.undeformed(first), 0.0
@@ -112,19 +107,20 @@ def test_energy_released_is_the_work_of_the_load():
 # --- spheres as small as their contact ---
 
 
-SMALLEST = {"vertical": 2.0, "normal": 10.0, "reference": 2.0}
-"""R/eps of the smallest spheres that the conventions serve at tabor 0.1."""
-
-
-@pytest.fixture(scope="module", params=CONVENTIONS)
-def smallest(request):
-    """The smallest sphere there is, by each convention."""
-    small = scene(0.1, SMALLEST[request.param])
-    return request.param, trace(small, 1e-2, LITTLE, convention=request.param)
-
-
-EXPLICIT = {"vertical": Convention(0.0), "normal": Convention(1.0), "reference": Convention(deformed_area=False)}
+BLEND = 0.3 / (1 - 0.3)
+EXPLICIT = {
+    "projected": Convention(BLEND, BLEND),
+    "vertical": Convention(1.0, 0.0),
+    "normal": Convention(1.0, 1.0),
+    "reference": Convention(0.0, 0.0),
+}
 """As in the documentation of `fem_adhesion.finite_strain_traction`."""
+
+
+@pytest.fixture(scope="module", params=EXPLICIT)
+def smallest(request):
+    """The smallest sphere there is, by each way of counting the traction."""
+    return request.param, trace(scene(0.1, 2.0, traction=request.param), 1e-2, LITTLE)
 
 
 def test_the_smallest_sphere_is_traced_by_the_convention_asked_for(smallest):
@@ -141,8 +137,8 @@ def test_pull_off_of_the_smallest_sphere_is_the_least_load_of_its_own_convention
     name, path = smallest
     event, found = path.events["pull_off"], path.stages[-1]["pull_off"]
     loads = {}
-    for other, convention in EXPLICIT.items():
-        on = ScenesBody(scene(0.1, SMALLEST[name]), Discretisation(5), convention).meshed(0.3, 3.0)
+    for other in EXPLICIT:
+        on = ScenesBody(scene(0.1, 2.0, traction=other), Discretisation(5)).meshed(0.3, 3.0)
         x = on.problem.state_from_surface(transfer(found.problem, found.point.x, on.linear))
         for part in (1.0, 0.98, 1.02) if other == name else (1.0,):
             x = raised(on.problem, x, newton.contact_radius(part * event.contact_radius)).x
@@ -155,7 +151,7 @@ def test_pull_off_of_the_smallest_sphere_is_the_least_load_of_its_own_convention
 
 def test_jumps_alone_are_by_the_convention_asked_for(smallest):
     name, path = smallest
-    found = find_jumps(scene(0.1, SMALLEST[name]), 1e-2, convention=name)
+    found = find_jumps(scene(0.1, 2.0, traction=name), 1e-2)
     curve, alone = (events["pull_off"] for events in (path.events, found))
     assert abs(alone.load - curve.load) <= alone.load_error + curve.load_error
     assert curve.load_error < 1e-3
@@ -175,7 +171,7 @@ def test_a_sphere_of_one_contact_radius_is_traced_until_it_is_all_in_contact(tab
 
 @pytest.mark.parametrize("outer", [0.95, 1.0, 1.5, 30.0])
 def test_a_window_wider_than_the_sphere_ends_on_it(outer):
-    body = ScenesBody(scene(1.0, 6.0), Discretisation(4), EXPLICIT["vertical"])
+    body = ScenesBody(scene(1.0, 6.0), Discretisation(4))
     R = body.scene.sphere_radius
     for inner in (0.0, 0.5, 0.94):
         surface = body.meshed(inner * R, outer * R).problem.surface
@@ -205,9 +201,9 @@ def test_a_richer_rung_keeps_the_mesh_of_an_event_that_moved_on_it():
 
 FINER = {
     # Approach and load of find_jumps at rtol 1e-6, elements of degree 7, whose estimates are below 1e-6.
-    "pull_off": (-0.73934829, -5.27492422),
-    "jump_on": (-1.57247052, -2.14531233),
-    "jump_off": (-1.66868453, -3.14030170),
+    "pull_off": (-0.75162949, -5.16540409),
+    "jump_on": (-1.57307758, -2.14532197),
+    "jump_off": (-1.66168298, -3.09547149),
 }
 
 
@@ -219,9 +215,21 @@ def test_estimates_hold_against_a_finer_computation(jumps, path):
             assert event.load_error <= 1e-4 * abs(event.load)
 
 
+@pytest.mark.parametrize(
+    ("traction", "pull_off", "jump_on"),
+    [("normal", -5.1751362, -1.5902027), ("reference", -5.17281255, -1.5623241)],
+)
+def test_a_code_of_its_own_with_curved_elements_of_high_order_has_the_same_digits(traction, pull_off, jump_on):
+    """Load of the pull-off and approach of the jump on, printed to the last digit that it knows."""
+    found = find_jumps(scene(traction=traction), 1e-6)
+    load, approach = found["pull_off"].load, found["jump_on"].approach
+    assert abs(load - pull_off) <= found["pull_off"].load_error + 1e-8 < 1e-7
+    assert abs(approach - jump_on) <= found["jump_on"].approach_error + 5e-8 < 1e-7
+
+
 def test_as_the_stretch_vanishes_pull_off_is_that_of_the_linear_body():
     expected = linear(0.3, 1e8, grip="bonded").events["pull_off"]
-    event = find_jumps(scene(0.3, 1e8, grip="bonded"), 1e-4, convention="reference")["pull_off"]
+    event = find_jumps(scene(0.3, 1e8, grip="bonded", traction="reference"), 1e-4)["pull_off"]
     assert abs(event.approach - expected.approach) <= event.approach_error + expected.approach_error
     assert abs(event.load - expected.load) <= event.load_error + expected.load_error
 
@@ -231,7 +239,7 @@ def test_as_the_stretch_vanishes_pull_off_is_that_of_the_linear_body():
 
 def test_attraction_per_deformed_area_grows_with_the_area_that_it_stretches():
     radius_ratio, nu = 1e3, 0.3
-    pulls = {name: find_jumps(scene(0.3, radius_ratio), 1e-4, convention=name)["pull_off"].load for name in CONVENTIONS}
+    pulls = {n: find_jumps(scene(0.3, radius_ratio, traction=n), 1e-4)["pull_off"].load for n in EXPLICIT}
     state = linear(0.3, radius_ratio).stages[-1]["pull_off"]
     problem, x = state.problem, state.point.x
     tension = problem.pressure(x)
@@ -277,7 +285,13 @@ def test_cells_are_fine_where_the_edge_passes_and_grow_beyond(inner, outer):
     [
         ({"tabor": 4.0}, 1e-4, "tabor = 4 is outside tabor <= 3"),
         ({}, 1e-7, "rtol = 1e-07 is outside 1e-06 <= rtol"),
-        ({"traction": "surface"}, 1e-4, "traction = 'surface' does not go with finite strain"),
+        ({"traction": "surface"}, 1e-4, "traction = surface does not go with .*; it is for small strain"),
+        (
+            {"strain": "small", "traction": "normal"},
+            1e-4,
+            "traction = normal does not go with .*; areas differ",
+        ),
+        ({"counter": Counter(0.5)}, 1e-4, "counter = Counter.* does not go with finite strain"),
     ],
 )
 def test_what_finite_strain_cannot_do_is_refused(options, rtol, message):
@@ -286,11 +300,21 @@ def test_what_finite_strain_cannot_do_is_refused(options, rtol, message):
 
 
 @pytest.mark.parametrize("solve", [trace, find_jumps])
-@pytest.mark.parametrize(("tabor", "radius_ratio", "least"), [(2.0, 159.0, 160), (0.1, 9.9, 10), (0.6, 13.0, 13.3)])
-def test_a_surface_that_its_stress_crumples_is_refused_before_work(solve, tabor, radius_ratio, least, monkeypatch):
+@pytest.mark.parametrize(
+    ("tabor", "radius_ratio", "options", "least"),
+    [
+        (3.0, 100.0, {"traction": "normal"}, 188),
+        (3.0, 30.0, {"traction": "normal"}, 188),
+        (3.0, 30.0, {}, 34.5),
+        (2.0, 20.0, {"poisson": 0.499}, 33.6),
+    ],
+)
+def test_an_edge_that_makes_the_equations_ill_posed_is_refused_before_work(
+    solve, tabor, radius_ratio, options, least, monkeypatch
+):
     monkeypatch.setattr(finite_strain_scene, "_linear_curve", None)
-    with pytest.raises(InputError, match=f"radius_ratio = {radius_ratio:g} is outside {least} <= .*; take 'vertical'"):
-        solve(scene(tabor, radius_ratio), 1e-3, convention="normal")
+    with pytest.raises(InputError, match=f"= {radius_ratio:g} is outside {least} < .*; take traction = 'reference'"):
+        solve(scene(tabor, radius_ratio, **options), 1e-3)
 
 
 @pytest.mark.parametrize("name", ["pull_off", "jump_on", "jump_off", "zero_load"])

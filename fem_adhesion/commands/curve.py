@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -22,7 +23,7 @@ from halfspace.errors import InputError
 
 if TYPE_CHECKING:
     from fem_adhesion.commands.common import Commands, Parser
-    from fem_adhesion.scene import BodyName, GripName, ProfileName, Scene
+    from fem_adhesion.scene import BodyName, ProfileName, Scene
     from fem_adhesion.studies.assess_contact import Contact
     from fem_adhesion.studies.curves import Curves, Question, SolverName
 
@@ -51,6 +52,10 @@ def _add_body(curve: Parser) -> None:
     body.add_argument("--body", choices=("block", "hemisphere", "sphere"), help="what is elastic; block unless given")
     body.add_argument("--mesh", type=Path, help="file with the mesh of the body", metavar="FILE")
     body.add_argument("--profile", choices=("paraboloid", "sphere"), help="undeformed gap; paraboloid unless given")
+    body.add_argument("--strain", choices=("small", "finite"), help="linear or neo-Hookean; small unless given")
+    counted = "what the surface law is counted per; projected unless given, at finite strain with matter conserved"
+    tractions = ("projected", "surface", "reference", "normal", "vertical")
+    body.add_argument("--traction", choices=tractions, help=counted)
     ratio = "with --tabor: R/eps of a body with a size, or of a true profile"
     body.add_argument("--radius-ratio", type=float, help=ratio, metavar="RHO")
     body.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy, 1e-9 to 1e-1")
@@ -222,14 +227,20 @@ def _scene(options: argparse.Namespace, contact: Contact | None) -> Scene:
     body: BodyName | Path = options.mesh or options.body or "block"
     profile: ProfileName = options.profile or "paraboloid"
     sized = body != "block" or profile == "sphere"
-    grip: GripName = options.grip or "sliding"
+    made = partial(
+        Scene,
+        body=body,
+        profile=profile,
+        grip=options.grip or "sliding",
+        traction=options.traction or "projected",
+        strain=options.strain or "small",
+    )
     if contact is None:
         poisson = POISSON if options.poisson is None else options.poisson
-        ratio, counter = options.radius_ratio, counter_of(options)
-        return Scene(options.tabor, poisson, body=body, profile=profile, radius_ratio=ratio, grip=grip, counter=counter)
+        return made(options.tabor, poisson, radius_ratio=options.radius_ratio, counter=counter_of(options))
     refuse(options, ("radius_ratio",), f"with --tabor, as the material has its own {contact.units.radius_ratio:.4g}")
     units = contact.units
     counter = contact.counter if body != "block" else None  # two half-spaces are one, of their contact modulus
     poisson = contact.smaller_poisson if counter else contact.poisson
     ratio = units.radius_ratio if sized else None
-    return Scene(units.tabor, poisson, body=body, profile=profile, radius_ratio=ratio, grip=grip, counter=counter)
+    return made(units.tabor, poisson, radius_ratio=ratio, counter=counter)

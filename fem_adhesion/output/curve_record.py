@@ -72,11 +72,16 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
         "met": path.met,
         "jumps": path.jumps,
         "margin": _estimate(path.margin) if path.margin else None,
+        "model_uncertainty": {name: _finite(spread) for name, spread in path.spread.items()},
         "energy_released": _estimate(path.energy),
         "unknowns": path.unknowns,
         "seconds": path.seconds,
         "settings": dict(path.settings),
     }
+
+
+def _finite(numbers: Mapping[str, float]) -> dict[str, float | None]:
+    return {name: finite(value) for name, value in numbers.items()}
 
 
 def event_record(event: Event, tolerance: Tolerance) -> dict[str, Any]:

@@ -121,6 +121,7 @@ def notes(curves: Curves) -> Iterator[str]:
             yield "jumps, fixed grips: cannot be told from a contact that follows smoothly"
         else:
             yield f"no jumps, {device}: the contact follows smoothly"
+    yield from _uncertainty(curves)
     for solver, path in curves.paths.items():
         if path.margin:
             yield f"{solver}: {_how_far(path.margin)}"
@@ -143,6 +144,19 @@ def _how_far(margin: Estimate) -> str:
     if margin.value < 0:
         return f"its folds are about to merge, by a margin of {known}"
     return f"close to folding: it jumps with an apparatus of a compliance above {known}"
+
+
+def _uncertainty(curves: Curves) -> Iterator[str]:
+    """How far models lie apart between which the assumptions leave a choice."""
+    units = scales(curves)
+    for name, spread in curves.path.spread.items():
+        numbers = (
+            f"{number.replace('_', ' ')} {value * units[number].size:.2g} {units[number].unit}"
+            for number, value in spread.items()
+            if np.isfinite(value) and not (name == "zero_load" and number == "load")
+        )
+        words = ", ".join(numbers) or "unknown, as one of them has none"
+        yield f"model uncertainty of {EVENTS[name]}, by what the traction at finite strain is counted per: {words}"
 
 
 def _apparatus(curves: Curves) -> str:

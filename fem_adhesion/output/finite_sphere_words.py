@@ -136,6 +136,13 @@ def _changes(rows: Sequence[Row], poisson: float | None) -> Iterator[str]:
         shares = np.abs(_ratios(samples(rows, cause, "pull_off_load", poisson), whole))
         if shares.size:
             yield f"{name} changes the force by {_span(100 * shares)} % of the whole deviation{_at(shares.size)}."
+    others = [_ratios(samples(rows, cause, "pull_off_load", poisson), whole) for cause in ("reference", "normal")]
+    spread = np.abs(np.concatenate(others))
+    if spread.size:
+        yield (
+            f"What its traction is counted per, a model uncertainty, leaves {_span(100 * spread)} % of it "
+            f"open{_at(spread.size)}."
+        )
 
 
 def _given_back(rows: Sequence[Row], poisson: float | None) -> Iterator[str]:

@@ -13,8 +13,7 @@ from functools import partial
 
 import halfspace
 from fem_adhesion import Scene, trace
-from fem_adhesion.finite_strain_scene import find_jumps, require_stiff_surface
-from fem_adhesion.finite_strain_traction import ConventionName
+from fem_adhesion.finite_strain_scene import find_jumps, require_well_posed
 from fem_adhesion.scene import GripName, ProfileName, TractionName
 from fem_adhesion.sized import Discretisation, sized_body
 from fem_adhesion.studies.finite_sphere_records import APPROACH_SCALE, CRITICAL, Case, InputName, Record, Values
@@ -143,10 +142,13 @@ def _elastic(
     return quantities_of(trace(scene, rtol=case.rtol, to_load=TO_LOAD))
 
 
-def _finite_strain(case: Case, convention: ConventionName) -> Values:
+def _neo_hookean(case: Case, traction: TractionName) -> Scene:
+    return replace(hemisphere(case), strain="finite", traction=traction)
+
+
+def _finite_strain(case: Case, traction: TractionName) -> Values:
     """A neo-Hookean hemisphere: pull-off and jumps only, to a tolerance of 1e-4 or more."""
-    scene = replace(hemisphere(case), strain="finite")
-    events = find_jumps(scene, max(case.rtol, FINITE_STRAIN_RTOL), convention=convention)
+    events = find_jumps(_neo_hookean(case, traction), max(case.rtol, FINITE_STRAIN_RTOL))
     pull_off = events["pull_off"]
     return {"pull_off_load": Estimate(pull_off.load, pull_off.load_error)} | _jumps(events)
 
@@ -179,6 +181,13 @@ def _first_jump_half_space(case: Case) -> Values:
 
 SPHERE: tuple[InputName, ...] = ("tabor", "radius_ratio", "poisson")
 
+
+def _model_of(traction: TractionName) -> Model:
+    """Finite strain, its traction counted in one way."""
+    solve, check = partial(_finite_strain, traction=traction), partial(_neo_hookean, traction=traction)
+    return Model(solve, SPHERE, "sliding", lambda case: require_well_posed(check(case)))
+
+
 MODELS: Mapping[str, Model] = {
     "half_space": Model(_half_space, ("tabor",)),
     "true_profile": Model(_true_profile, ("tabor", "radius_ratio")),
@@ -186,14 +195,9 @@ MODELS: Mapping[str, Model] = {
     "sphere": Model(_elastic, SPHERE, "sliding"),
     "bonded": Model(partial(_elastic, grip="bonded"), SPHERE, "bonded"),
     "surface_traction": Model(partial(_elastic, traction="surface"), SPHERE, "sliding"),
-    "finite_strain": Model(partial(_finite_strain, convention="vertical"), SPHERE, "sliding"),
-    "finite_strain_normal": Model(
-        partial(_finite_strain, convention="normal"),
-        SPHERE,
-        "sliding",
-        lambda case: require_stiff_surface(hemisphere(case)),
-    ),
-    "finite_strain_reference": Model(partial(_finite_strain, convention="reference"), SPHERE, "sliding"),
+    "finite_strain": _model_of("projected"),
+    "finite_strain_normal": _model_of("normal"),
+    "finite_strain_reference": _model_of("reference"),
     "first_jump": Model(_first_jump, ("radius_ratio", "poisson"), "sliding"),
     "first_jump_half_space": Model(_first_jump_half_space, ()),
 }
@@ -204,9 +208,9 @@ CAUSES = {
     "all": Cause("sphere", "half_space", "hemisphere on a sliding mid-plane, with the sphere's profile"),
     "grip": Cause("bonded", "sphere", "bonded for sliding mid-plane"),
     "traction": Cause("surface_traction", "sphere", "surface law per true for per projected area"),
-    "strain": Cause("finite_strain", "sphere", "neo-Hookean for linear, traction vertical per deformed area"),
-    "direction": Cause("finite_strain_normal", "finite_strain", "traction normal to the deformed surface for vertical"),
-    "area": Cause("finite_strain_reference", "finite_strain", "vertical traction per undeformed for per deformed area"),
+    "strain": Cause("finite_strain", "sphere", "neo-Hookean for linear, the attracted matter conserved"),
+    "normal": Cause("finite_strain_normal", "finite_strain", "model uncertainty: all per deformed area"),
+    "reference": Cause("finite_strain_reference", "finite_strain", "model uncertainty: all per undeformed area"),
 }
 
 
