@@ -671,6 +671,13 @@ def test_a_caution_stands_beyond_its_limit_only(what, contact, values, figure):
     assert list(cautions(Contact(**SILICA), Prediction("fine", fine))) == []
 
 
+def test_the_yield_of_the_attracted_layer_corrects_the_work_of_adhesion_of_one_sphere(silica):
+    units = silica.contact.units
+    more = 0.273797 * units.tabor * np.sqrt(units.tabor / units.radius_ratio) * (1 - 2 * 0.17) / (1 - 0.17) ** 2
+    (line,) = (line for line in silica.cautions if "attracted layer" in line)
+    assert f"by {100 * more:.3g} %, to {units.work_of_adhesion * (1 + more):.4g} J/m^2" in line
+
+
 def test_the_contact_radius_says_what_it_is_beside_others(silica, bead):
     """Of a computed curve the state at the largest tension, of a theory its own; only of those that stand there."""
     assert contact_radius(bead).startswith("Contact radius: of JKR with reach, JKR on the sphere, JKR")

@@ -29,6 +29,7 @@ from fem_adhesion.studies.assess_verdict import (
     ranked,
     regime,
     verdict,
+    yielding,
 )
 from halfspace.curve import EquilibriumPath
 from halfspace.errors import InputError, NotConverged
@@ -150,7 +151,12 @@ def assess(contact: Contact, progress: Progress = lambda *_: None) -> Assessment
         tuple(deviations(half_space, profile, finite, contact.spacing)),
         distances := ranked((half_space, profile, finite, *theories), contact.spacing),
         regime(contact.units.tabor),
-        (*cautions(contact, half_space), *filter(None, (reason, why_not)), *_missed(half_space, profile, finite)),
+        (
+            *cautions(contact, half_space),
+            *yielding(contact),
+            *filter(None, (reason, why_not)),
+            *_missed(half_space, profile, finite),
+        ),
         tuple(verdict(finite or half_space, distances, computed=finite is not None)),
         time.perf_counter() - began,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from fem_adhesion.finite_strain_traction import yielded_adhesion
 from fem_adhesion.studies.assess_contact import Contact
 from fem_adhesion.studies.assess_predictions import QUANTITIES, RADII, WORDS, Prediction, relative
 from fem_adhesion.studies.quantities import Quantity
@@ -125,6 +126,18 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
     for what, value, limit, meaning in judged:
         if value > limit:
             yield f"{what} is {value:.2g}, limit {limit:g}: {meaning}"
+
+
+def yielding(contact: Contact) -> Iterator[str]:
+    """What the yield of the attracted layer, which no surface law has, does to the work of adhesion of one sphere."""
+    units = contact.units
+    ratio = yielded_adhesion(units.tabor, units.radius_ratio, contact.poisson)
+    if contact.pair:
+        return
+    yield (
+        "yield of the attracted layer is left out: to the first order it deepens the work of adhesion by "
+        f"{_percent(ratio - 1)}, to {units.work_of_adhesion * ratio:.4g} J/m^2; give that to include it"
+    )
 
 
 def _over(quantity: Quantity | None, R: float) -> float:
