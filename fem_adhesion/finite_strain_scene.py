@@ -142,9 +142,10 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
         )
     began = time.perf_counter()
     lowest = _lowest(scene, rtol, _linear_curve(scene, to_load))
-    segments = trace_windows(lowest.body, lowest.linear, to_load)
+    along = replace(lowest.body, how=replace(lowest.body.how, finest=sized.FINEST))
+    segments = trace_windows(along, lowest.linear, to_load)
     climbed = _climb(rtol, lowest, find_events(segments), compare=True)
-    curve, events = (asdict(rung.body.how) for rung in (lowest, climbed.finest))
+    curve, events = (asdict(how) for how in (along.how, climbed.finest.body.how))
     settings = {"rtol": rtol, "traction": scene.traction, "curve": curve, "events": events}
     return EquilibriumPath(
         scene.tabor,

@@ -288,8 +288,8 @@ MADE_OF = {
     "grip": ("bonded", "sphere"),
     "traction": ("surface_traction", "sphere"),
     "strain": ("finite_strain", "sphere"),
-    "direction": ("finite_strain_normal", "finite_strain"),
-    "area": ("finite_strain_reference", "finite_strain"),
+    "normal": ("finite_strain_normal", "finite_strain"),
+    "reference": ("finite_strain_reference", "finite_strain"),
 }
 
 
