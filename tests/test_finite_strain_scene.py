@@ -14,8 +14,10 @@ from fem_adhesion.finite_strain_meshes import FARTHEST, ScenesBody, enriched, fi
 from fem_adhesion.finite_strain_scene import LITTLE, AroundEvents, find_jumps, trace
 from fem_adhesion.finite_strain_traction import Convention
 from fem_adhesion.mesh import block_grid
+from fem_adhesion.output import curve_record, curve_terminal
 from fem_adhesion.scene import Counter, Scene
 from fem_adhesion.sized import Discretisation
+from fem_adhesion.studies.curves import FINITE_ELEMENTS, Curves, Question
 from halfspace import newton
 from halfspace.contact import APPROACH, LOAD
 from halfspace.curve import moved, transfer
@@ -84,6 +86,24 @@ def test_events_are_where_the_curve_says(path):
     assert path.events["zero_load"].load == pytest.approx(0, abs=1e-9)
     assert path.settings["traction"] == "projected"
     assert path.settings["events"]["degree"] > path.settings["curve"]["degree"]
+
+
+def test_the_spread_between_the_conservative_tractions_is_the_models_uncertainty(path):
+    """Between the values that the tests below hold, of each traction on meshes of its own."""
+    assert set(path.spread) == set(path.events)
+    assert path.spread["jump_on"]["approach"] == pytest.approx(1.5902027 - 1.5623241, rel=2e-3)
+    assert path.spread["pull_off"]["load"] == pytest.approx(5.1751362 - 5.1654041, rel=2e-3)
+
+
+def test_the_models_uncertainty_stands_beside_the_numbers(path):
+    question = Question(scene(), "fem", 1e-4, LITTLE)
+    curves = Curves(question, {FINITE_ELEMENTS: path}, None, None)
+    plain = curve_record.record(curves)["solutions"][FINITE_ELEMENTS]["model_uncertainty"]
+    assert plain["pull_off"]["load"] == path.spread["pull_off"]["load"]
+    assert plain["jump_on"]["contact_radius"] is None
+    said = [line for line in curve_terminal.notes(curves) if line.startswith("model uncertainty of pull-off")]
+    assert len(said) == 1
+    assert "load 0.0097 R dgamma" in said[0]
 
 
 def test_energy_released_is_the_work_of_the_load():
