@@ -326,6 +326,10 @@ def drawn(results, stem):
     return picture.draw(results).axes
 
 
+ILL_POSED = {("strain", 3.0, 10.0)}
+"""Cause and sphere too small for its Tabor parameter at finite strain, as `finite_sphere_cases` says."""
+
+
 def test_the_axes_of_the_causes_say_what_is_drawn(distinct):
     axes = drawn(distinct, "causes")
     assert [panel.get_title() for panel in axes] == [rf"$\mu = {mu:g}$" for mu in TABORS]
@@ -338,7 +342,9 @@ def test_the_axes_of_the_causes_say_what_is_drawn(distinct):
             assert label.startswith(f"{cause}: ")
             at = sorted(np.transpose(line_of(panel, label)).tolist(), reverse=True)
             wanted = [
-                (np.sqrt(mu / rho), abs(expected_deviation(cause, "pull_off_load", mu, rho, 0.3))) for rho in RATIOS
+                (np.sqrt(mu / rho), abs(expected_deviation(cause, "pull_off_load", mu, rho, 0.3)))
+                for rho in RATIOS
+                if (cause, mu, rho) not in ILL_POSED
             ]
             np.testing.assert_allclose(at, wanted, rtol=1e-9)
         low, high = panel.get_ylim()
