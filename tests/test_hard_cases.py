@@ -171,7 +171,7 @@ def _made_up(points=7, **events):
     names = ("load", "load_error", "approach", "approach_error")
     numbers = {name: SimpleNamespace(**dict(zip(names, event, strict=True))) for name, event in events.items()}
     steps = [SimpleNamespace(iterations=2)] * points
-    return SimpleNamespace(events=numbers, event=numbers.get, points=steps)
+    return SimpleNamespace(events=numbers, event=numbers.get, segments=[SimpleNamespace(points=steps)])
 
 
 @pytest.mark.parametrize(
