@@ -30,6 +30,7 @@ from skfem import Basis, BilinearForm, ElementQuadP, ElementVector, FacetBasis, 
 from skfem.helpers import ddot, div, sym_grad
 
 from halfspace.errors import NotConverged
+from halfspace.values import Valued
 
 Array = NDArray[np.float64]
 Heights = Callable[[Array], Array]
@@ -87,7 +88,7 @@ def elasticity(poisson: float) -> Any:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Body:
+class Body(Valued):
     """An elastic body of revolution on a mesh, with n unknowns and q points on its contact surface.
 
     Attributes
@@ -245,7 +246,7 @@ EVEN, GROWTH, INNER = 3, 3.0, 0.7  # cells next to the edge, ratio of the others
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Contact:
+class Contact(Valued):
     """A body under a rigid surface that attracts it.
 
     Attributes
@@ -307,7 +308,7 @@ class Contact:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Equilibrium:
+class Equilibrium(Valued):
     """A state of equilibrium.
 
     Attributes

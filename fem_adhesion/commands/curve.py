@@ -68,7 +68,7 @@ def _add_results(curve: Parser) -> None:
     results.add_argument("--csv", type=Path, help="write points and events as a table", metavar="FILE")
     results.add_argument("--plot", type=Path, help="draw curve, profiles and mesh: png, svg or pdf", metavar="FILE")
     results.add_argument("--vtk", type=Path, help="write the fields inside the body for ParaView", metavar="DIR")
-    points = f"of the curve in JSON, CSV and plot, as traced unless given, and in DIR beside its events, {POINTS} there"
+    points = f"in JSON, CSV and plot, as traced unless given; in DIR beside the events, {POINTS} unless given"
     results.add_argument("--points", type=int, help=points, metavar="N")
     results.add_argument("--revolve", type=float, help="write the solid of revolution too, degrees", metavar="ANGLE")
     results.add_argument("--render", type=Path, help="draw the body cut open, with its stress: png", metavar="FILE")
