@@ -180,6 +180,15 @@ def test_a_figure_of_an_earlier_study_does_not_stay_beside_the_new_page(tmp_path
 # --- ended from outside ---
 
 
+@pytest.fixture
+def interruptible():
+    """What a shell without job control starts in the background ignores SIGINT, and so would the study."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize(
     ("number", "to", "word", "code"),
     [

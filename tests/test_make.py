@@ -22,7 +22,7 @@ TARGETS = {
     "test": "make --dry-run test",
     "check": "make check",
     "bench": "make bench QUICK=1",
-    "honesty": "make honesty QUICK=1",
+    "honesty": "make honesty QUICK=1 SEED=77",  # a new seed each time finds what is not known yet: no test's verdict
     "clean": "make clean",
 }
 
@@ -54,7 +54,7 @@ def test_compare_prints_six_tables_and_agrees(made):
     for table in tables_in(run.out):
         for row in table:
             assert row["verdict"] == "agree"
-            error = float(row["error (hs)"]) + float(row["error (fe)"])
+            error = sum(float(cell) for name, cell in row.items() if name.startswith("error"))
             assert float(row["difference"]) <= error * 1.1  # two digits are printed
             assert error <= float(row["budget"]) * 1.1
 

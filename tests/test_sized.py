@@ -34,7 +34,7 @@ REFUSED = [
     ({"profile": "cone"}, "profile = 'cone' is not one of paraboloid, sphere"),
     ({"grip": "glued"}, "grip = 'glued' is not one of sliding, bonded"),
     ({"body": Path("any.msh")}, "profile = sphere does not go with"),
-    ({"traction": "normal"}, "traction = 'normal' is not one of projected, surface"),
+    ({"traction": "tilted"}, "traction = 'tilted' is not one of projected, surface, reference, normal, vertical"),
     ({"strain": "large"}, "strain = 'large' is not one of small, finite"),
     ({"far_field": "hinged"}, "far_field = 'hinged' is not one of point_load, clamped, free"),
     ({"radius_ratio": None}, 'radius_ratio = None for body = "hemisphere" and profile = "sphere", limit: a number'),
