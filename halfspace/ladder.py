@@ -233,8 +233,12 @@ def _margin(chains: Sequence[Sequence[State]], remaining: float) -> Estimate | N
     if "steepest" not in chains[0][-1]:
         return None
     values = [[STEEPEST.of(state["steepest"].point) for state in chain] for chain in chains]
-    change = max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
-    return Estimate(values[0][-1], remaining * change + FLAT)
+    return Estimate(values[0][-1], remaining * _change(values) + FLAT)
+
+
+def _change(values: Sequence[Sequence[float]]) -> float:
+    """Sum of the changes along a chain, the largest of all chains."""
+    return max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
 
 
 def _step_up(state: State, higher: Rung) -> list[list[State]]:
@@ -273,5 +277,4 @@ def _estimate(chains: Sequence[Sequence[State]], remaining: float, *, along: boo
 def _energy(chains: Sequence[Sequence[State]], remaining: float) -> Estimate:
     values = [[energy_released(state) for state in chain] for chain in chains]
     best = values[0][-1]
-    change = max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
-    return Estimate(best, remaining * change + ROUND_OFF * (1 + abs(best)))
+    return Estimate(best, remaining * _change(values) + ROUND_OFF * (1 + abs(best)))
