@@ -73,9 +73,14 @@ FLOORS = [
         "fem_adhesion.output.greenwood_tables",
         "fem_adhesion.output.finite_sphere_chart",
     },
-    {"fem_adhesion.output.greenwood_style", "fem_adhesion.output.greenwood_remarks"},
+    {
+        "fem_adhesion.output.greenwood_plot",
+        "fem_adhesion.output.greenwood_style",
+        "fem_adhesion.output.greenwood_remarks",
+    },
     {"fem_adhesion.output.greenwood_captions", "fem_adhesion.output.greenwood_trend_captions"},
     {"fem_adhesion.output.greenwood_text"},
+    {"fem_adhesion.output.numbers", "fem_adhesion.output.facts", "fem_adhesion.output.page_tables"},
     {
         "fem_adhesion.studies.speed",
         "fem_adhesion.studies.hard_cases",

@@ -16,16 +16,9 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import cli
 from fem_adhesion.output import assess_plot
-from fem_adhesion.output.assess_report import (
-    PREFIXES,
-    contact_radius,
-    engineering,
-    exponent_of,
-    record,
-    report,
-    with_error,
-)
+from fem_adhesion.output.assess_report import contact_radius, record, report
 from fem_adhesion.output.files import written_aside
+from fem_adhesion.output.numbers import PREFIXES, engineering, exponent_of, with_error
 from fem_adhesion.scene import Counter, Scene
 from fem_adhesion.studies import assess as study
 from fem_adhesion.studies import assess_theories

@@ -18,8 +18,9 @@ from matplotlib import rc_context
 import halfspace
 from fem_adhesion import cli
 from fem_adhesion.output import greenwood_plots, greenwood_report
-from fem_adhesion.output.greenwood_tables import tables, typeset
+from fem_adhesion.output.greenwood_tables import tables
 from fem_adhesion.output.greenwood_text import NOTHING
+from fem_adhesion.output.page_tables import typeset
 from fem_adhesion.studies import greenwood1997, greenwood_ripple, greenwood_tables
 from fem_adhesion.studies.greenwood_criteria import CriteriaStudy, JumpOn, fit
 from fem_adhesion.studies.greenwood_tables import LAST_DIGIT, ROUNDED

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from scipy.interpolate import CubicHermiteSpline
 
 from fem_adhesion.output import greenwood_style as style
-from fem_adhesion.output.assess_report import PREFIXES, engineering, exponent_of
+from fem_adhesion.output.numbers import PREFIXES, engineering, exponent_of
 from fem_adhesion.studies.assess import Assessment
 from fem_adhesion.studies.assess_theories import Curve, loop
 from halfspace.compliance import Array

@@ -9,28 +9,14 @@ from dataclasses import asdict
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from fem_adhesion.output.record import plain, versions
+from fem_adhesion.output.facts import plain, versions
+from fem_adhesion.output.numbers import PREFIXES, engineering, exponent_of, with_error
 from fem_adhesion.output.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.studies.assess import Assessment
 from fem_adhesion.studies.assess_predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction
 from fem_adhesion.studies.quantities import Quantity
 
-PREFIXES = {
-    -24: "y",
-    -21: "z",
-    -18: "a",
-    -15: "f",
-    -12: "p",
-    -9: "n",
-    -6: "µ",
-    -3: "m",
-    0: "",
-    3: "k",
-    6: "M",
-    9: "G",
-    12: "T",
-}
-DIGITS, DIGITS_OF_RATIO = 6, 4  # significant, at most
+DIGITS_OF_RATIO = 4  # significant, at most
 RANKS = {"both": 0, "true profile": 1, "finite body": 1}  # by which columns of the differences are left out
 
 
@@ -141,40 +127,6 @@ def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
     words = Column("quantity", [WORDS[d.quantity] for d in known], text=True, wraps=True)
     yield Fitted([words, *columns], [f"difference from the {assessment.half_space.model}, in % of it, by cause"])
     yield Text()
-
-
-def with_error(quantity: Quantity, scale: float = 1.0, digits: int = DIGITS) -> str:
-    """Number with the error of its last digit in brackets, rounded up: 60.4440(1).
-
-    Parameters
-    ----------
-    quantity : Quantity
-        With its error.
-    scale : float
-        By which both are multiplied first.
-    digits : int
-        Significant ones, at most.
-    """
-    value, error = quantity.value * scale, quantity.error * scale
-    most = digits - 1 - _decade(value)
-    decimals = max(0, min(most, -_decade(error)) if error else most)
-    uncertain = max(1, math.ceil(error * 10**decimals * (1 - 1e-9)))
-    return f"{value:.{decimals}f}({uncertain})"
-
-
-def engineering(value: float, unit: str, digits: int = 4) -> str:
-    """Number with an engineering prefix: 57.1 GPa."""
-    exponent = exponent_of(value)
-    return f"{value / 10.0**exponent:.{digits}g} {PREFIXES[exponent]}{unit}"
-
-
-def _decade(value: float) -> int:
-    return math.floor(math.log10(abs(value))) if value else 0
-
-
-def exponent_of(value: float) -> int:
-    """Power of 1000 below a value, as an exponent of ten, among those that have a prefix."""
-    return min(max(3 * (_decade(value) // 3), min(PREFIXES)), max(PREFIXES))
 
 
 def record(assessment: Assessment) -> dict[str, object]:

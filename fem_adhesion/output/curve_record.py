@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import IO, Any
 
 from fem_adhesion.output.curve_scales import si_sizes
-from fem_adhesion.output.record import plain, versions
+from fem_adhesion.output.facts import plain, versions
 from fem_adhesion.studies.curves import Curves
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.devices import Cycle, Jump

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from fem_adhesion.output.assess_report import PREFIXES, exponent_of
+from fem_adhesion.output.numbers import PREFIXES, exponent_of
 from fem_adhesion.studies.curves import Curves
 from halfspace.compliance import Array
 from halfspace.scaling import Units

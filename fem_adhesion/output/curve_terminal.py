@@ -10,9 +10,9 @@ from rich.markup import escape
 from rich.text import Text
 
 from fem_adhesion.output import curve_lines as lines
-from fem_adhesion.output.assess_report import engineering, with_error
 from fem_adhesion.output.braille import Canvas
 from fem_adhesion.output.curve_scales import Scale, scales
+from fem_adhesion.output.numbers import engineering, with_error
 from fem_adhesion.output.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.studies.curves import Curves
 from fem_adhesion.studies.quantities import Quantity

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 from fem_adhesion.output.finite_sphere_plots import PICTURES, Picture
 from fem_adhesion.output.finite_sphere_words import caption
-from fem_adhesion.output.greenwood_tables import Table
-from fem_adhesion.output.greenwood_text import with_error
+from fem_adhesion.output.numbers import plus_minus
+from fem_adhesion.output.page_tables import Table
 from fem_adhesion.studies import finite_sphere_fit
 from fem_adhesion.studies.bulk import coefficients
 from fem_adhesion.studies.finite_sphere_chart import LEVELS, Rule, field_of, rule
@@ -92,7 +92,7 @@ def _finding(finding: Finding) -> tuple[str, ...]:
 
 
 def _fit(fit: Fit) -> tuple[str, ...]:
-    terms = "; ".join(f"({with_error(c)}) {name}" for name, c in fit.coefficients.items())
+    terms = "; ".join(f"({plus_minus(c)}) {name}" for name, c in fit.coefficients.items())
     return (terms, f"{fit.holds_to:.2g}", str(fit.points), f"{fit.worst:.1e}")
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from fem_adhesion.output.greenwood_text import with_error
+from fem_adhesion.output.numbers import plus_minus
 from fem_adhesion.studies.finite_sphere_chart import LEVELS, contour, field_of
 from fem_adhesion.studies.finite_sphere_fit import Samples, samples
 from fem_adhesion.studies.finite_sphere_points import (
@@ -70,8 +70,8 @@ def _borders(borders: Sequence[Border]) -> Iterator[str]:
     spheres = [(b.radius_ratio, b.tabor) for b in borders if b.tabor and b.radius_ratio]
     flat = [b.tabor for b in borders if b.tabor and b.radius_ratio is None]
     ends = dict(sorted(spheres, key=lambda pair: pair[0]))
-    shown = [f"{with_error(ends[ratio])} at R/eps = {ratio:g}" for ratio in dict.fromkeys([*ends][:1] + [*ends][-1:])]
-    shown += [f"{with_error(tabor)} on the half-space" for tabor in flat]
+    shown = [f"{plus_minus(ends[ratio])} at R/eps = {ratio:g}" for ratio in dict.fromkeys([*ends][:1] + [*ends][-1:])]
+    shown += [f"{plus_minus(tabor)} on the half-space" for tabor in flat]
     if shown:
         yield f"Jumps under fixed grips begin at mu = {', '.join(shown)}."
 

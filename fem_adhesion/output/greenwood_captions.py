@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fem_adhesion.output.greenwood_text import farthest, gap_falls, joined, listed, rises, told, with_error
+from fem_adhesion.output.greenwood_text import farthest, gap_falls, joined, listed, rises, told
+from fem_adhesion.output.numbers import plus_minus
 from fem_adhesion.studies.fold_birth import count_folds
 from fem_adhesion.studies.greenwood1997 import JUMPS_AT, WINDING_AT, Greenwood1997
 from halfspace import dmt
@@ -141,7 +142,7 @@ def figure_3a(study: Greenwood1997) -> str:
     critical = study.critical_tabor
     return joined(
         f"The approach turns so many times: {listed(folds)}." if finite else "",
-        told(f"It first turns at mu = {with_error(critical)}.", critical.value, critical.error),
+        told(f"It first turns at mu = {plus_minus(critical)}.", critical.value, critical.error),
     )
 
 

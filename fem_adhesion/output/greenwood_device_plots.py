@@ -9,8 +9,9 @@ from matplotlib.figure import Figure
 
 from fem_adhesion.output import greenwood_style as style
 from fem_adhesion.output import greenwood_trend_captions as captions
-from fem_adhesion.output.greenwood_style import Plot, dress, note, panels, plain_ticks
-from fem_adhesion.output.greenwood_text import digits
+from fem_adhesion.output.greenwood_plot import Plot
+from fem_adhesion.output.greenwood_style import dress, note, panels, plain_ticks
+from fem_adhesion.output.numbers import digits
 from fem_adhesion.studies.greenwood1997 import Greenwood1997
 from halfspace.devices import Cycle, Jump
 

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from fem_adhesion.output import greenwood_captions as captions
 from fem_adhesion.output import greenwood_style as style
 from fem_adhesion.output.greenwood_captions import DMT_TABOR, RIGID, SCALED, SOFT
-from fem_adhesion.output.greenwood_style import Plot, curve, dress, note, panels, theory
+from fem_adhesion.output.greenwood_plot import Plot
+from fem_adhesion.output.greenwood_style import curve, dress, note, panels, theory
 from fem_adhesion.studies.greenwood1997 import JUMPS_AT, Greenwood1997
 from halfspace import dmt
 from halfspace.compliance import Array

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fem_adhesion.output.greenwood_text import joined, rises, told, with_error
+from fem_adhesion.output.greenwood_text import joined, rises, told
 from fem_adhesion.output.greenwood_trend_captions import closed_ratios
+from fem_adhesion.output.numbers import plus_minus
 from fem_adhesion.studies.greenwood1997 import Greenwood1997, PullOff
 from fem_adhesion.studies.greenwood_criteria import CriteriaStudy
 from fem_adhesion.studies.greenwood_devices import DeviceStudy
@@ -38,8 +39,8 @@ def table_1(entries: Sequence[Printed], asymptote: tuple[Estimate, Estimate]) ->
     """Agreement, and the constants of the asymptote."""
     a, b = asymptote
     fit = (
-        f"The asymptote f = a alpha*^(3/2) - b alpha*^2, fitted between 2e-5 and 1e-4, has a = {with_error(a)} and b = "
-        f"{with_error(b)} (standard errors of the fit; the paper: 1.84 and 7.7)."
+        f"The asymptote f = a alpha*^(3/2) - b alpha*^2, fitted between 2e-5 and 1e-4, has a = {plus_minus(a)} and b = "
+        f"{plus_minus(b)} (standard errors of the fit; the paper: 1.84 and 7.7)."
     )
     return joined(agreement(entries), told(fit, a.value, b.value))
 

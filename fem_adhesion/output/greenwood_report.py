@@ -7,11 +7,12 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from fem_adhesion.output.facts import versions
+from fem_adhesion.output.greenwood_plot import Plot
 from fem_adhesion.output.greenwood_plots import PLOTS, draw
-from fem_adhesion.output.greenwood_style import Plot
-from fem_adhesion.output.greenwood_tables import Table, html, tables, typeset, write_csv
-from fem_adhesion.output.greenwood_text import with_error
-from fem_adhesion.output.record import versions
+from fem_adhesion.output.greenwood_tables import tables
+from fem_adhesion.output.numbers import plus_minus
+from fem_adhesion.output.page_tables import Table, html, typeset, write_csv
 from fem_adhesion.studies.greenwood1997 import Greenwood1997
 from fem_adhesion.studies.machine import machine
 
@@ -80,7 +81,7 @@ def _head(study: Greenwood1997, written: Sequence[Table]) -> Iterator[str]:
         "together; radii in beta; pressures P in dgamma/(mu eps). Errors are estimated by refinement."
     ).join(("<p>", "</p>"))
     if math.isfinite(study.critical_tabor.value):
-        critical = typeset(f"mu = {with_error(study.critical_tabor)}")
+        critical = typeset(f"mu = {plus_minus(study.critical_tabor)}")
         yield f"<p>The curve under fixed grips first has a vertical tangent at <strong>{critical}</strong>; "
         yield "the paper says about 1.</p>"
     links = [f'<a href="#{plot.stem}">{plot.number}</a>' for plot in PLOTS]

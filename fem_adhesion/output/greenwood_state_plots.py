@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from fem_adhesion.output import greenwood_captions as captions
 from fem_adhesion.output import greenwood_style as style
 from fem_adhesion.output.greenwood_captions import GAPS_AT, RADII_AT
-from fem_adhesion.output.greenwood_style import Plot, branches, curve, dress, note, panels, theory
+from fem_adhesion.output.greenwood_plot import Plot
+from fem_adhesion.output.greenwood_style import branches, curve, dress, note, panels, theory
 from fem_adhesion.studies.greenwood1997 import WINDING_AT, Greenwood1997
 from halfspace.compliance import Array
 from halfspace.maugis import MaugisDugdale, carpick_radius

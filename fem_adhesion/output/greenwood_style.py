@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fem_adhesion.studies.greenwood1997 import Greenwood1997
 from halfspace.compliance import Array
 from halfspace.curve import EquilibriumPath
 
@@ -51,33 +49,6 @@ APPROACH = r"approach $\alpha^*$"
 SCALED_APPROACH = r"scaled approach $\alpha^*/\mu$"
 CENTRAL_GAP = r"central gap $H(0)$"
 RADIUS = r"radius $u = r/\beta$"
-
-
-@dataclass(frozen=True)
-class Plot:
-    """One figure of the paper.
-
-    Attributes
-    ----------
-    number : str
-        As in the paper.
-    title : str
-        What is drawn.
-    see : callable
-        Says what is to be seen in it, from the study.
-    draw : callable
-        Draws it from the study.
-    """
-
-    number: str
-    title: str
-    see: Callable[[Greenwood1997], str]
-    draw: Callable[[Greenwood1997], Figure]
-
-    @property
-    def stem(self) -> str:
-        """File name without its suffix."""
-        return f"fig_{self.number}"
 
 
 def panels(columns: int = 1, height: float = 5.0) -> tuple[Figure, Sequence[Any]]:

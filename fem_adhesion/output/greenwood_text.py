@@ -8,7 +8,7 @@ import numpy as np
 
 from halfspace.compliance import Array
 from halfspace.contact import CENTRAL_GAP
-from halfspace.curve import EquilibriumPath, Estimate
+from halfspace.curve import EquilibriumPath
 
 NOTHING = "No numbers were found to tell of."
 
@@ -27,19 +27,6 @@ def joined(*sentences: str) -> str:
 def listed(names: list[str]) -> str:
     """Names with commas and an `and`."""
     return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
-
-
-def with_error(estimate: Estimate) -> str:
-    """Value with its error behind it."""
-    return f"{digits(estimate)} +- {estimate.error:.1g}"
-
-
-def digits(estimate: Estimate) -> str:
-    """Value to one digit beyond the first uncertain one, ten decimals at most; what is not finite as such."""
-    if not (math.isfinite(estimate.value) and math.isfinite(estimate.error)):
-        return f"{estimate.value:g}"
-    decimals = 1 - math.floor(math.log10(estimate.error)) if estimate.error > 0 else 10
-    return f"{estimate.value:.{min(max(decimals, 1), 10)}f}"
 
 
 def rises(values: Array) -> bool:

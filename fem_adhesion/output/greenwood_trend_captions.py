@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fem_adhesion.output.greenwood_text import joined, rises, told, with_error
+from fem_adhesion.output.greenwood_text import joined, rises, told
+from fem_adhesion.output.numbers import plus_minus
 from fem_adhesion.studies.greenwood1997 import Greenwood1997
 from fem_adhesion.studies.greenwood_criteria import CriteriaStudy, Criterion
 from fem_adhesion.studies.greenwood_ripple import Ripple
@@ -124,7 +125,7 @@ def figure_8(study: Greenwood1997) -> str:
             pull,
         ),
         _border(study.devices.border),
-        told(f"Fixed grips jump from mu = {with_error(critical)} on.", critical.value, critical.error),
+        told(f"Fixed grips jump from mu = {plus_minus(critical)} on.", critical.value, critical.error),
     )
 
 

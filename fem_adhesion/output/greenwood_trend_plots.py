@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from fem_adhesion.output import greenwood_style as style
 from fem_adhesion.output import greenwood_trend_captions as captions
-from fem_adhesion.output.greenwood_style import Plot, dress, panels, plain_ticks
+from fem_adhesion.output.greenwood_plot import Plot
+from fem_adhesion.output.greenwood_style import dress, panels, plain_ticks
 from fem_adhesion.studies.greenwood1997 import RIPPLE_AT, Greenwood1997, PullOff
 from fem_adhesion.studies.greenwood_criteria import Criterion
 from halfspace.compliance import Array

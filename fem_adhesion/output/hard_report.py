@@ -12,7 +12,7 @@ from typing import Any
 
 from rich.markup import escape
 
-from fem_adhesion.output.record import versions
+from fem_adhesion.output.facts import versions
 from fem_adhesion.output.terminal import Column, Fitted
 from fem_adhesion.studies.hard_bodies import Locking
 from fem_adhesion.studies.hard_run import Row

@@ -10,9 +10,9 @@ import numpy as np
 
 from fem_adhesion.output import curve_lines as lines
 from fem_adhesion.output import greenwood_style as style
-from fem_adhesion.output.assess_report import engineering
 from fem_adhesion.output.curve_lines import Frame
 from fem_adhesion.output.curve_scales import Scale, scales
+from fem_adhesion.output.numbers import engineering
 from fem_adhesion.output.profile_plots import LEGEND, STATES
 from fem_adhesion.studies.curves import Curves
 from halfspace.compliance import Array

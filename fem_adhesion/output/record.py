@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-import platform
 from collections.abc import Sequence
-from importlib.metadata import version
 from typing import Any
 
+from fem_adhesion.output.facts import finite, versions
 from fem_adhesion.studies.comparison import Row
 from fem_adhesion.studies.crosscheck import Case, Failure
 from halfspace.curve import EquilibriumPath, Estimate
@@ -16,21 +14,6 @@ from halfspace.events import Event
 VERDICTS = ("failed", "disagree", "inconclusive", "agree")  # worst first
 EVENT_KEYS = ("approach", "load", "central_gap", "contact_radius", "approach_error", "load_error")
 EVENT_NAMES = ("pull_off", "jump_on", "jump_off")
-
-
-def versions() -> dict[str, str]:
-    """Versions that decide the numbers."""
-    packages = ("fem-adhesion", "numpy", "scipy", "scikit-fem")
-    return {"python": platform.python_version(), **{name: version(name) for name in packages}}
-
-
-def plain(value: object) -> object:
-    """What JSON has: None for what is infinite or not a number, a name for a file."""
-    if isinstance(value, dict):
-        return {name: plain(part) for name, part in value.items()}
-    if isinstance(value, float):
-        return _finite(value)
-    return value if value is None or isinstance(value, (str, int)) else str(value)
 
 
 def verdict_of(case: Case | Failure) -> str:
@@ -78,7 +61,7 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
 
 
 def _event(event: Event) -> dict[str, float | None]:
-    return {key: _finite(getattr(event, key)) for key in EVENT_KEYS}
+    return {key: finite(getattr(event, key)) for key in EVENT_KEYS}
 
 
 def _row(row: Row) -> dict[str, Any]:
@@ -88,22 +71,18 @@ def _row(row: Row) -> dict[str, Any]:
         "between": list(row.between),
         "first": _value(row.first),
         "second": _value(row.second),
-        "difference": _finite(row.difference),
+        "difference": finite(row.difference),
         "first_error": _error(row.first),
         "second_error": _error(row.second),
-        "error": _finite(row.error),
+        "error": finite(row.error),
         "budget": row.budget,
         "verdict": row.verdict,
     }
 
 
 def _value(estimate: Estimate | None) -> float | None:
-    return _finite(estimate.value) if estimate else None
+    return finite(estimate.value) if estimate else None
 
 
 def _error(estimate: Estimate | None) -> float | None:
-    return _finite(estimate.error) if estimate else None
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
+    return finite(estimate.error) if estimate else None

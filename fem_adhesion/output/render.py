@@ -15,10 +15,10 @@ from matplotlib.figure import Figure
 
 from fem_adhesion.fields import State, state_at
 from fem_adhesion.output import curve_lines as lines
-from fem_adhesion.output.assess_report import engineering, with_error
 from fem_adhesion.output.curve_scales import scales
 from fem_adhesion.output.cutaway import View, view_of
 from fem_adhesion.output.load_plots import KINDS
+from fem_adhesion.output.numbers import engineering, with_error
 from fem_adhesion.output.plots import LOOK
 from fem_adhesion.output.profile_plots import STATES
 from fem_adhesion.output.solid_view import COLOURS, Pixels, solid_image

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from fem_adhesion.output.record import told, verdict_of, versions
+from fem_adhesion.output.facts import versions
+from fem_adhesion.output.record import told, verdict_of
 from fem_adhesion.output.report_parts import Section, Table, symbols
 from fem_adhesion.output.tables import cells, columns
 from fem_adhesion.studies.comparison import CLOSED_FORM, SOLVERS, WEAK_FORM, Row

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from html import unescape
 from pathlib import Path
 
-from fem_adhesion.output.greenwood_tables import typeset
+from fem_adhesion.output.page_tables import typeset
 from fem_adhesion.output.report_figures import Figure
 from halfspace.errors import InputError
 

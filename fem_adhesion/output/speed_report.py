@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from fem_adhesion.output.record import versions
+from fem_adhesion.output.facts import versions
 from fem_adhesion.output.speed_plots import draw
 from fem_adhesion.studies.machine import machine
 from fem_adhesion.studies.methods import QUANTITIES

@@ -11,8 +11,8 @@ import numpy as np
 from fem_adhesion import stress as stresses
 from fem_adhesion.beside import Beside, is_same_contact
 from fem_adhesion.fields import State
+from fem_adhesion.output.facts import plain
 from fem_adhesion.output.lattice import Cut
-from fem_adhesion.output.record import plain
 from fem_adhesion.output.revolve import Solid
 from fem_adhesion.scene import Scene
 from halfspace.compliance import Array
