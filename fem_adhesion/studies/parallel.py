@@ -119,6 +119,8 @@ def _pool(
     """Generator of the results with their numbers, as they come."""
     # Each process keeps to one thread of BLAS: the cores are taken by the others.
     settings: dict[str, Any] = {"backend": "loky", "inner_max_num_threads": 1} if jobs > 1 else {}
+    # A worker is made anew when it has grown by 300 MB, which large bodies make it do: no trouble of the user's.
+    warnings.filterwarnings("ignore", message="A worker stopped while some jobs were given", category=UserWarning)
     with joblib.parallel_config(**settings):
         pool = joblib.Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
     results: Generator[tuple[int, Result], None, None] = pool(
