@@ -15,8 +15,7 @@ from fem_adhesion.output.finite_sphere_findings import QUANTITIES, line
 from fem_adhesion.output.finite_sphere_plots import PICTURES, Picture, draw
 from fem_adhesion.output.finite_sphere_tables import write_tables
 from fem_adhesion.output.finite_sphere_words import caption, headline
-from fem_adhesion.output.greenwood_report import STYLE
-from fem_adhesion.output.page_tables import Table, html, typeset, write_csv
+from fem_adhesion.output.page_tables import STYLE, Table, html, typeset, write_csv
 from fem_adhesion.studies.bulk import bulk_compliance
 from fem_adhesion.studies.finite_sphere_cases import CAUSES
 from fem_adhesion.studies.finite_sphere_chart import Field, field_of, rule, safe_from

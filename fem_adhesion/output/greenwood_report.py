@@ -12,24 +12,12 @@ from fem_adhesion.output.greenwood_plot import Plot
 from fem_adhesion.output.greenwood_plots import PLOTS, draw
 from fem_adhesion.output.greenwood_tables import tables
 from fem_adhesion.output.numbers import plus_minus
-from fem_adhesion.output.page_tables import Table, html, typeset, write_csv
+from fem_adhesion.output.page_tables import STYLE, Table, html, typeset, write_csv
 from fem_adhesion.studies.greenwood1997 import Greenwood1997
 from fem_adhesion.studies.machine import machine
 
 PAPER = "J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1277-1297"
 DOI = "10.1098/rspa.1997.0070"
-STYLE = """
-:root { color-scheme: light dark; }
-body { font: 1rem/1.5 system-ui, sans-serif; max-width: 62rem; margin: 0 auto; padding: 1rem; }
-figure { margin: 2rem 0; }
-figure img { display: block; width: 100%; height: auto; background: white; border-radius: 6px; }
-figcaption, .wide { margin-top: .5rem; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: .85rem; }
-th, td { padding: .2rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid #8886; }
-td { white-space: nowrap; }
-.number { text-align: right; font-variant-numeric: tabular-nums; }
-"""
 
 
 def write(study: Greenwood1997, directory: Path, progress: Callable[[str], None] | None = None) -> None:

@@ -1,4 +1,4 @@
-"""Tables of a page: cells with names, as CSV files and as HTML."""
+"""Pages and their tables: cells with names, as CSV files and as HTML."""
 
 from __future__ import annotations
 
@@ -19,6 +19,18 @@ SYMBOLS = {
 }
 
 WORDS = re.compile(rf"\b({'|'.join(SYMBOLS)})\b")
+STYLE = """
+:root { color-scheme: light dark; }
+body { font: 1rem/1.5 system-ui, sans-serif; max-width: 62rem; margin: 0 auto; padding: 1rem; }
+figure { margin: 2rem 0; }
+figure img { display: block; width: 100%; height: auto; background: white; border-radius: 6px; }
+figcaption, .wide { margin-top: .5rem; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: .85rem; }
+th, td { padding: .2rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid #8886; }
+td { white-space: nowrap; }
+.number { text-align: right; font-variant-numeric: tabular-nums; }
+"""
 
 
 @dataclass(frozen=True)
