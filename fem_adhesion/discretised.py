@@ -20,12 +20,12 @@ from fem_adhesion.mesh_file import read_body
 from fem_adhesion.pairs import radii_of
 from fem_adhesion.refinement import refined
 from fem_adhesion.scene import Counter, Scene
-from fem_adhesion.sized import GRIPS, Discretisation, corner_rings, sized_body
+from fem_adhesion.sized import GRIPS, Discretisation, block_under_sphere, corner_rings, sized_body
 from halfspace import grid
 from halfspace.compliance import Array
 from halfspace.contact import ContactProblem, spike_width
 from halfspace.profiles import PARABOLOID, Profile, Tabulated
-from halfspace.sized import CROWDED, SizedBody
+from halfspace.sized import SizedBody
 from halfspace.values import Valued
 
 RTOL = 1e-5
@@ -74,25 +74,19 @@ def discretised(scene: Scene, source: ContactProblem, contact_radius: float, how
     if isinstance(scene.body, Path):
         return _meshed(scene, source)
     if not scene.sized:
-        lines = _graded(radius, _finest(scene, how), _size_of_block(scene, source), how.growth)
+        finest = how.finest * spike_width(scene.tabor) / 2
+        edge = radius if radius > finest else 0.0
+        lines = grid.graded(edge, finest, _size_of_block(scene, source), growth=how.growth)
         return _block(scene, how, lines, FAR_FIELDS[scene.far_field])
     body = sized_body(scene, how)
-    inner = _graded(body.coordinate.of(radius), body.length, float(body.outer[0]), how.growth)
-    lines = np.concatenate([inner, body.outer[1:]])
+    edge = body.coordinate.of(radius)
+    lines = body.lines(edge if edge > body.length else 0.0)
+    inner = lines[: len(lines) - len(body.outer) + 1]
     if scene.body == "block":
         return _block_under_sphere(scene, how, lines, body.profile)
     if scene.counter is None:
         return _of(scene, _hemisphere(scene, how, scene.sphere_radius, inner), body.profile)
     return _first_of_pair(scene, scene.counter, how, lines, inner, body)
-
-
-def _finest(scene: Scene, how: Discretisation) -> float:
-    return how.finest * spike_width(scene.tabor) / 2
-
-
-def _graded(edge: float, finest: float, end: float, growth: float) -> Array:
-    """Lines finest at an edge, or on the axis unless it is further from it than a cell is long."""
-    return grid.graded(edge if edge > finest else 0.0, finest, end, growth=growth)
 
 
 def _size_of_block(scene: Scene, source: ContactProblem) -> float:
@@ -111,10 +105,7 @@ def _block(scene: Scene, how: Discretisation, lines: Array, far_field: FarField)
 
 def _block_under_sphere(scene: Scene, how: Discretisation, lines: Array, profile: Profile) -> Discretised:
     """Block whose surface the law acts on as far as the sphere reaches."""
-    R = float(lines[-1])
-    beyond = R + grid.geometric((BEYOND - 1) * R, R - float(lines[-CROWDED - 1]), how.growth)[1:]
-    depths = grid.graded(0.0, float(np.diff(lines[:-CROWDED]).min()), BEYOND * R, growth=how.growth)
-    mesh = bodies.with_contact_to(tensor_grid(np.concatenate([lines, beyond]), depths), R)
+    mesh = block_under_sphere(scene, how, lines, BEYOND)
     return _of(scene, _condensed(scene, how, mesh, point_load), profile)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from skfem import ElementQuadP
@@ -21,9 +22,10 @@ from halfspace import grid
 from halfspace.accuracy import TWIN
 from halfspace.breathing import FlatCoordinate
 from halfspace.compliance import Array
+from halfspace.contact import spike_width
 from halfspace.ladder import Rung
 from halfspace.profiles import Paraboloid, Profile, Sphere
-from halfspace.sized import CROWDED, AroundEvents, Made, SizedBody, surroundings, to_equator
+from halfspace.sized import AroundEvents, Made, SizedBody, at_equator, surroundings
 
 GRIPS = {"sliding": sliding, "bonded": clamped}
 
@@ -32,9 +34,9 @@ CURVE_DEGREE = 4  # of the elements for the curve, whose operator is interpolate
 FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
 PER_DEGREE = 15.0  # what each degree divides it by
 REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
-ABRUPT = 1.0  # the same on a block, where the attraction ends abruptly with the sphere: a degree leaves a third
 RINGS, MOST_RINGS = 0.2, 6  # ratio of the rings around a singular corner's, and as many as rounding allows
 BEYOND = 1e3  # size of the block under a sphere, in R: nothing acts on it beyond R, and its far field errs by O(L^-5)
+PAST_EQUATOR = 0.02  # length of its first cell there, in R
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
         (AroundEvents(sized_body(scene, how), *surroundings(rtol, level), to_load),),
         settings,
         other if level and _singular(scene) else None,
-        remaining=ABRUPT if scene.body == "block" else REMAINING,
+        remaining=REMAINING,
         along=True,
     )
 
@@ -93,9 +95,8 @@ def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
     R = scene.sphere_radius
     profile: Profile = Sphere(R) if scene.profile == "sphere" else Paraboloid(R)
     if scene.body == "block":
-        return SizedBody(
-            scene.tabor, profile, partial(_block, scene, how), how.finest, how.growth, to_equator(R), FlatCoordinate()
-        )
+        make, last = partial(_block, scene, how), at_equator(scene.tabor, profile, how.degree + 2)
+        return SizedBody(scene.tabor, profile, make, how.finest, how.growth, np.array([R]), FlatCoordinate(), last)
     return _pair(scene, how, R, scene.counter) if scene.counter else _sphere(scene, how, R, profile)
 
 
@@ -147,14 +148,17 @@ def corner_rings(scene: Scene, how: Discretisation) -> Array:
 
 def _block(scene: Scene, how: Discretisation, lines: Array) -> Made:
     """Block whose surface the law acts on as far as the sphere reaches."""
-    R = float(lines[-1])
-    finest = float(np.diff(lines[:-CROWDED]).min())
-    beyond = grid.geometric((BEYOND - 1) * R, R - float(lines[-CROWDED - 1]), how.growth)[1:]
-    depths = grid.graded(0.0, finest, BEYOND * R, growth=how.growth)
-    mesh = tensor_grid(np.concatenate([lines, R + beyond]), depths)
-    space = Space(bodies.with_contact_to(mesh, R), ElementQuadP(how.degree))
+    space = Space(block_under_sphere(scene, how, lines, BEYOND), ElementQuadP(how.degree))
     body = condense(space, scene.poisson, far_field=point_load, stiffness=stiffness_for(scene.poisson))
     return body.operator, body.unknowns
+
+
+def block_under_sphere(scene: Scene, how: Discretisation, lines: Array, size: float) -> Any:
+    """Mesh of a block whose surface cells have these ends up to the sphere's equator, of a size in R."""
+    R = float(lines[-1])
+    beyond = grid.geometric((size - 1) * R, PAST_EQUATOR * R, how.growth)[1:]
+    depths = grid.graded(0.0, how.finest * spike_width(scene.tabor) / 2, size * R, growth=how.growth)
+    return bodies.with_contact_to(tensor_grid(np.concatenate([lines, R + beyond]), depths), R)
 
 
 def _condensed(scene: Scene, how: Discretisation, mesh: object) -> Made:

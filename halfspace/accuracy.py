@@ -19,7 +19,7 @@ from halfspace.events import REMAINING
 from halfspace.ladder import Charted, Rung, climb
 from halfspace.limits import require_counter_radius, require_load, require_radius_ratio, require_rtol, require_tabor
 from halfspace.profiles import Profile, between_spheres
-from halfspace.sized import AroundEvents, Made, SizedBody, surroundings, to_equator
+from halfspace.sized import AroundEvents, Made, SizedBody, at_equator, surroundings
 from halfspace.theories import jkr_radius
 from halfspace.values import Valued
 
@@ -189,8 +189,9 @@ def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level:
 
 
 def _under_sphere(tabor: float, gap: Profile, resolution: Resolution) -> SizedBody:
-    make = partial(_made, resolution.nodes)
-    return SizedBody(tabor, gap, make, resolution.finest, resolution.growth, to_equator(gap.end), FlatCoordinate())
+    make, last = partial(_made, resolution.nodes), at_equator(tabor, gap, resolution.nodes)
+    outer = np.array([gap.end])
+    return SizedBody(tabor, gap, make, resolution.finest, resolution.growth, outer, FlatCoordinate(), last)
 
 
 def _made(nodes: int, lines: compliance.Array) -> Made:

@@ -19,7 +19,7 @@ def uniform(extent: float, spacing: float) -> Array:
     return np.linspace(0, extent, int(np.ceil(extent / spacing - 1e-9)) + 1)
 
 
-def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0) -> Array:
+def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0, last: float = np.inf) -> Array:
     """Breakpoints from 0 to `extent`, finest at `radius` and growing geometrically away from it on both sides.
 
     Parameters
@@ -32,6 +32,8 @@ def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0) 
         Outer end.
     growth : float
         Ratio of the lengths of neighbouring intervals, above 1.
+    last : float
+        Length of the interval that touches `extent`, or less, if they are to be fine there too.
     """
     _require_positive(finest=finest, extent=extent)
     if not 0 <= radius < extent:
@@ -40,11 +42,23 @@ def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0) 
         raise InputError(f"growth {growth:g} is not above 1; take about 2")
     inner = radius - geometric(radius, finest, growth)[::-1] if radius else np.zeros(1)
     inner[0] = 0.0  # not what rounding leaves of it
-    return np.concatenate([inner, (radius + geometric(extent - radius, finest, growth))[1:]])
+    return np.concatenate([inner, (radius + geometric(extent - radius, finest, growth, last))[1:]])
 
 
-def geometric(length: float, finest: float, growth: float) -> Array:
-    """Breakpoints from 0 to `length`: geometric with at most the given growth, the first at `finest` or less."""
+def geometric(length: float, finest: float, growth: float, last: float = np.inf) -> Array:
+    """Breakpoints from 0 to `length`: geometric with at most the given growth, the first at `finest` or less.
+
+    The last interval is `last` long, or less: they grow from both ends to where they are equally long.
+    """
+    if (growth - 1) * length + finest <= growth * last:
+        return _growing(length, finest, growth)
+    met = float(np.clip((length + (last - finest) / (growth - 1)) / 2, 0.0, length))
+    from_last = length - _growing(length - met, last, growth)[::-1]
+    from_last[-1] = length
+    return np.concatenate([_growing(met, finest, growth)[:-1], from_last]) if met else from_last
+
+
+def _growing(length: float, finest: float, growth: float) -> Array:
     count = int(np.ceil(np.log1p((growth - 1) * length / finest) / np.log(growth) - 1e-9))
     steps = growth ** np.arange(max(count, 1))
     return np.concatenate([[0.0], np.cumsum(steps) * (length / steps.sum())])

@@ -27,7 +27,6 @@ LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the
 LEAVE = 0.5  # of the first cell: the radius at which the chart centred on the axis is left
 WINDOW, AROUND = 2e-3, 3  # half the logarithmic width of the radii around an event on the lowest rung, operators in it
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
-CROWDED = 5  # cells next to the equator
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
 
@@ -54,6 +53,8 @@ class SizedBody(Valued):
         The last cells' ends, ascending, which do not move with the contact: their first is where the others end.
     coordinate : SurfaceCoordinate
         Along the surface.
+    last : float
+        Length of the last of the others, in beta, if they are to be fine there too; see `at_equator`.
     """
 
     tabor: float
@@ -63,16 +64,23 @@ class SizedBody(Valued):
     growth: float
     outer: Array
     coordinate: SurfaceCoordinate
+    last: float = np.inf
 
     @property
     def length(self) -> float:
         """Length of the cells at the contact edge in beta, and the contact radius up to which they do at the centre."""
         return self.finest * spike_width(self.tabor) / 2
 
+    def lines(self, edge: float = 0.0) -> Array:
+        """Ends of all cells that are finest at a contact edge, in the surface's coordinate, or on the axis."""
+        return np.concatenate([self._graded(edge), self.outer[1:]])
+
+    def _graded(self, edge: float) -> Array:
+        return grid.graded(edge, self.length, float(self.outer[0]), growth=self.growth, last=self.last)
+
     def centred(self) -> Chart:
         """Chart fine on the axis."""
-        lines = grid.graded(0.0, self.length, float(self.outer[0]), growth=self.growth)
-        operator, unknowns = self.make(np.concatenate([lines, self.outer[1:]]))
+        operator, unknowns = self.make(self.lines())
         return Chart(ContactProblem(operator, self.tabor, profile=self.profile), unknowns, LEAVE * self.length)
 
     def following(self, moving: MovingGrid, scales: Array) -> Chart:
@@ -88,13 +96,14 @@ class SizedBody(Valued):
         count = 2 + int(np.ceil(np.log(widest / least) / np.log(apart)))
         end, edge = float(self.outer[0]), self.coordinate.of(widest)
         inner = grid.geometric(1.0, 2 * self.length / edge, self.growth)
-        moving = self._moving(1 - inner[::-1], grid.geometric(end, self.length, self.growth) / end)
+        outside = grid.geometric(end, self.length, self.growth, self.last)
+        moving = self._moving(1 - inner[::-1], outside / end)
         return self.centred(), self.following(moving, chebyshev_radii(least, widest, count))
 
     def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
         """Chart for contact radii near the given one, from so many operators."""
         end, edge = float(self.outer[0]), self.coordinate.of(radius)
-        lines = grid.graded(edge, self.length, end, growth=self.growth)
+        lines = self._graded(edge)
         inner = lines < edge * (1 + 1e-12)
         moving = self._moving(lines[inner] / edge, np.append(0, (lines[~inner] - edge) / (end - edge)))
         return self.following(moving, chebyshev_radii(radius * np.exp(-window), radius * np.exp(window), count))
@@ -107,9 +116,15 @@ class SizedBody(Valued):
         return MovingGrid(fixed, moving, self.coordinate)
 
 
-def to_equator(R: float) -> Array:
-    """Ends of cells that crowd to the equator, r = R, where the profile of a sphere has a vertical tangent."""
-    return np.append(R * (1 - 0.02 * 0.3 ** np.arange(float(CROWDED))), R)
+def at_equator(tabor: float, profile: Profile, nodes: int) -> float:
+    """Length in beta of the last cell at the equator of a sphere, r = R, where its profile has a vertical tangent.
+
+    Cells that grow from there on as they do from the contact edge leave as little of the root of the distance as of
+    anything else, but for the last. What a rule of its nodes leaves there is of the order d^(3/2) of its length d in R,
+    times h^-2 in the load, h the gap: a decade less with each node more, as everywhere.
+    """
+    h = 1 + tabor * float(profile.height(np.array(profile.end)))
+    return float(profile.end * (10.0 ** (1 - nodes) * h**2) ** (2 / 3))
 
 
 def surroundings(rtol: float, level: int) -> tuple[float, int]:

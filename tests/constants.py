@@ -39,7 +39,6 @@ CONSTANTS = (
     Constant(halfspace.accuracy, "REMAINING", ("half-space",)),
     Constant(halfspace.accuracy, "EXTENT", ("half-space",)),
     Constant(fem_adhesion.sized, "REMAINING", ("hemisphere, sliding",)),
-    Constant(fem_adhesion.sized, "ABRUPT", ("block under a sphere",)),
     Constant(fem_adhesion.sized, "FINEST", ("hemisphere, sliding",)),
 )
 

@@ -142,6 +142,16 @@ def test_every_graded_grid_begins_on_the_axis_itself():
         assert grid.graded(radius, finest, 10.0, growth=growth)[0] == 0.0
 
 
+@pytest.mark.parametrize(("finest", "last"), [(0.01, 0.001), (0.001, 0.5), (3.0, 0.01), (0.01, 50.0), (20.0, 30.0)])
+def test_a_grid_that_is_fine_at_both_ends_grows_from_either_to_where_they_meet(finest, last):
+    steps = np.diff(ends := grid.geometric(10.0, finest, 3.0, last))
+    assert (ends[0], ends[-1]) == (0.0, 10.0)
+    assert 0 < steps[0] <= finest
+    assert 0 < steps[-1] <= last
+    assert np.all(steps <= 2 * np.minimum(ends[:-1] + finest, 10.0 - ends[1:] + last) * (1 + 1e-9))
+    assert np.array_equal(ends, grid.geometric(10.0, finest, 3.0)) == (last > 10.0)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [

@@ -4,8 +4,10 @@ import re
 from pathlib import Path
 from types import SimpleNamespace
 
+import honesty
 import numpy as np
 import pytest
+import truths
 
 import fem_adhesion
 import halfspace
@@ -139,6 +141,33 @@ def block(spheres):
     names = ("pull_off", "jump_on", "jump_off")
     states = {name: moved(found[name], stage(found[name]).problem) for name in names}
     return {name: state.point.observables[:2] for name, state in states.items()}
+
+
+@pytest.fixture(scope="module")
+def small():
+    """A sphere on the half-space whose equator the attraction reaches, and what its events are."""
+    path = halfspace.trace(1.0, rtol=1e-9, radius_ratio=6.0)
+    return path, truths.relocated(path.stages[-1], truths.under_sphere(1.0, 6.0))
+
+
+def test_the_vertical_tangent_at_the_equator_leaves_no_more_than_the_estimates(small):
+    """At rtol 1e-9 cells that were long beside the equator left four times as much."""
+    path, states = small
+    rough, best = map(honesty.of_state, states)
+    told = honesty.of_path(path)
+    assert len(told) == 15
+    for what, number in told.items():
+        assert abs(number.value - best[what]) <= number.error + abs(rough[what] - best[what]), what
+
+
+def test_a_degree_more_leaves_a_tenth_where_the_attraction_of_a_block_ends_with_the_sphere(small):
+    """A quarter, where cells that are long beside the equator carry the root in its profile."""
+    (_, states), scene = small, Scene(1.0, profile="sphere", radius_ratio=6.0)
+    event = states[-1]["jump_on"]
+    stages = [truths.Standing(sized_body(scene, Discretisation(degree))) for degree in (4, 5)]
+    found = [moved(event, stage(event).problem).point.observables for stage in stages]
+    fourth, fifth = (np.abs(observables - event.point.observables)[:3] for observables in found)
+    assert np.all(fifth < fourth / 10)
 
 
 @pytest.mark.parametrize(("part", "shared"), [(0.99, True), (1.01, False)])

@@ -11,7 +11,7 @@ import numpy as np
 from legendre_sphere import sphere_operator
 
 from fem_adhesion import sized
-from halfspace import compliance, grid
+from halfspace import compliance
 from halfspace.accuracy import Resolution, half_space_charts, widened
 from halfspace.breathing import FlatCoordinate
 from halfspace.contact import CONTACT_RADIUS, ContactProblem
@@ -32,8 +32,7 @@ class Standing:
         body, radius = self.body, float(event.point.observables[CONTACT_RADIUS])
         if not radius > body.length:
             return body.centred()
-        lines = grid.graded(body.coordinate.of(radius), body.length, float(body.outer[0]), growth=body.growth)
-        operator, unknowns = body.make(np.concatenate([lines, body.outer[1:]]))
+        operator, unknowns = body.make(body.lines(body.coordinate.of(radius)))
         return Chart(ContactProblem(operator, body.tabor, profile=body.profile), unknowns)
 
 
@@ -67,10 +66,10 @@ def on(stage, state):
 def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
     """The half-space under a sphere or two."""
     gap = between_spheres(float(np.sqrt(radius_ratio / tabor)), counter_radius)
-    outer = np.append(gap.end * (1 - 0.03 * 0.2 ** np.arange(5.0)), gap.end)
+    outer = np.array([gap.end])
     return [
-        Standing(SizedBody(tabor, gap, partial(_panels, nodes), finest, growth, outer, FlatCoordinate()))
-        for nodes, finest, growth in ((14, 0.45, 2.5), (16, 0.35, 2.2))
+        Standing(SizedBody(tabor, gap, partial(_panels, nodes), *how, outer, FlatCoordinate(), last * gap.end))
+        for nodes, *how, last in ((14, 0.45, 2.5, 1e-7), (16, 0.35, 2.2, 1e-8))
     ]
 
 
