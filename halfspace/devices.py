@@ -206,10 +206,11 @@ def _jump(rough: _States, path: EquilibriumPath, compliance: float) -> Jump:
     below = _refined(rough, path.below, compliance) if path.below else rough
     fine = _refined(below, path.finest, compliance)
     others = (below, _refined(fine, path.twin, compliance)) if path.twin else (below,)
+    alone = len(path.ways) < 2  # no chain from a twin guards against chance
     energies = [states.energy(compliance) for states in (*others, fine)]
     change = max(abs(energy - energies[-1]) for energy in energies)
     return Jump(
-        estimate_event("take_off", [[s.take_off, fine.take_off] for s in others], path.remaining, along=True),
+        estimate_event("take_off", [[s.take_off, fine.take_off] for s in others], path.remaining, along=alone),
         estimate_event(
             "landing",
             [[s.landing, fine.landing] for s in others],

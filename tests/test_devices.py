@@ -45,6 +45,19 @@ def test_stiff_and_soft_limits(path):
     assert soft.jump_off.take_off.load == pytest.approx(path.event("pull_off").load, rel=1e-5)
 
 
+def test_a_take_off_has_the_errors_of_the_event_that_it_is(path):
+    """Under fixed grips that of the fold, under a soft spring that of pull-off, where a radius is shifted at once."""
+    taken_off = {
+        "jump_on": cycle(path).jump_on,
+        "jump_off": cycle(path).jump_off,
+        "pull_off": cycle(path, 1e-8).jump_off,
+    }
+    for name, jump in taken_off.items():
+        for quantity in ("approach", "load", "central_gap", "contact_radius"):
+            own, event = (getattr(state, f"{quantity}_error") for state in (jump.take_off, path.event(name)))
+            assert own == pytest.approx(event, rel=0.05, abs=1e-10, nan_ok=True), (name, quantity)
+
+
 def test_the_loss_on_one_discretisation_is_that_of_the_cycle_under_fixed_grips(path):
     assert energy_lost(path.segments, find_events(path.segments)) == pytest.approx(
         cycle(path).energy_lost.value, rel=1e-5
