@@ -172,12 +172,8 @@ def _twin(resolution: Resolution) -> Resolution:
 
 
 def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level: int) -> Rung:
-    """Rung of a level for a sphere or two, whose surface ends at the smaller one's equator: two nodes more at each."""
-    lowest = math.ceil(3.5 - 0.75 * math.log10(rtol) - 1e-9)
-    usual = resolution_for(tabor, rtol)
-    resolution, below = (
-        replace(usual, nodes=min(max(lowest + 2 * max(n, 0), 5), MOST_NODES)) for n in (level, level - 1)
-    )
+    """Rung of a level for a sphere or two, whose surface ends at the smaller one's equator."""
+    resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
     fine, other = (_under_sphere(tabor, gap, r) for r in (resolution, _twin(below)))
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(
@@ -185,6 +181,7 @@ def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level:
         (AroundEvents(fine, *surroundings(rtol, level), to_load),),
         settings,
         AroundEvents(other, *surroundings(rtol, level - 1), to_load) if level else None,
+        ONE_NODE if level == 1 else REMAINING,
     )
 
 
