@@ -209,26 +209,47 @@ class FinestCurve(Valued):
 
         They are a part of the largest change along a chain of discretisations.
         """
+        return self._in_plane(problem, point, part * _largest(self._steps(problem, point)))
+
+    def _steps(self, problem: Traceable, point: Point) -> Sequence[Array]:
+        """Changes of the observables from each discretisation of a chain to the next, (steps, 4) for every chain."""
+        found = [[again(problem, point)[1].observables for again in way[:-1]] for way in self.ways]
+        return [np.diff([*others, point.observables], axis=0) for others in found]
+
+    def _in_plane(self, problem: Traceable, point: Point, change: Array) -> Array:
+        """Errors in the plane by changes there, (4,)."""
         here = point.observables
         if not self.ways:
             return np.full(4, np.nan)
-        changes = [self._change(way, problem, point) for way in self.ways]
-        errors = part * np.max(changes, axis=0) + ROUND_OFF * (1 + np.abs(here))
+        errors = change + ROUND_OFF * (1 + np.abs(here))
         if len(self.ways) == 1:
             errors[CENTRAL_GAP] = max(errors[CENTRAL_GAP], problem.interface.ripple(problem.surface_state(point.x)))
         return np.where(np.isnan(errors), np.abs(here), errors)  # a contact that only one discretisation has
 
-    def _change(self, way: Sequence[Again], problem: Traceable, point: Point) -> Array:
-        """Sum of the changes along a chain of discretisations, (4,)."""
-        others = [again(problem, point)[1].observables for again in way[:-1]]
-        return np.asarray(np.sum(np.abs(np.diff([*others, point.observables], axis=0)), axis=0))
-
     def _errors_given(self, k: int, problem: Traceable, point: Point, bend: float) -> Array:
-        """Errors where an observable is prescribed: those in the plane and those by a shift along the path, (4,)."""
-        errors = self._errors(problem, point, max(self.remaining, 1.0))
-        errors += np.abs(point.rates) * shift(errors[k], abs(point.rates[k]), bend)
+        """Errors where an observable is prescribed: those in the plane and those by a shift along the path, (4,).
+
+        What a change of the others in the plane owes to that of the prescribed one, as all do to that of a gap, which
+        errs most, a shift takes back; but for what the path's bend, or the gap's ripple, adds to it. On a single chain,
+        where one change may be small by accident, both count in full.
+        """
+        steps, part, rates = self._steps(problem, point), max(self.remaining, 1.0), point.rates
+        change = part * _largest(steps)
+        errors = self._in_plane(problem, point, change)
+        whole, straight = shift(errors[k], abs(rates[k]), bend), change[k] / abs(rates[k])
+        if len(self.ways) > 1 and whole > straight:
+            back = part * _largest([step - np.outer(step[:, k], rates / rates[k]) for step in steps])
+            rest = self._in_plane(problem, point, back) + np.abs(rates) * (whole - straight)
+            errors = np.minimum(errors + np.abs(rates) * whole, rest)
+        else:
+            errors = errors + np.abs(rates) * whole
         errors[k] = ROUND_OFF * (1 + abs(point.observables[k]))
         return errors
+
+
+def _largest(steps: Sequence[Array]) -> Array:
+    """Sum of the changes along a chain, the largest of all chains, (4,)."""
+    return np.asarray(np.max([np.sum(np.abs(chain), axis=0) for chain in steps], axis=0)) if steps else np.zeros(4)
 
 
 def shift(change: float, rate: float, bend: float) -> float:
