@@ -20,7 +20,6 @@ from functools import cached_property
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from fem_adhesion.far_field import Exterior
 from fem_adhesion.finite_strain_bodies import Body
@@ -32,6 +31,8 @@ from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, Conta
 from halfspace.profiles import Profile
 from halfspace.values import Valued
 
+MOST_STEPS, ENOUGH = 12, 1e-4  # to a start under a given pressure, and its relative accuracy
+SLOW = 0.5  # ratio of two such steps from which the stiffness is computed again
 LEAST_VOLUME = 0.1
 """J below which no step may take a cell in one go, unless it was there already: before it is turned inside out."""
 
@@ -88,12 +89,6 @@ class FiniteStrainProblem(Valued):
         """State without deformation, as a start for Newton's method."""
         return np.append(np.zeros(self.exterior.reduction.shape[1]), approach)
 
-    def state_from(self, approach: float, displacement: Array) -> Array:
-        """State from all N displacements, in beta^2/R, such as `CondensedBody.displacement` of a pressure P."""
-        T = self.exterior.reduction
-        y = splu(sparse.csc_array(T.T @ T)).solve(T.T @ self.body.lifted(displacement))
-        return np.append(y, approach)
-
     def displacement(self, x: Array) -> Array:
         """All N displacements of a state, in beta^2/R."""
         return np.asarray((self.exterior.reduction @ x[:-1])[: self.body.space.unknowns])
@@ -116,15 +111,24 @@ class FiniteStrainProblem(Valued):
 
     def residual(self, x: Array) -> Array:
         """Forces on the reduced unknowns that are out of balance, in R dgamma, shape (n,)."""
-        T, S, y = self.exterior.reduction, self.exterior.stiffness, x[:-1]
-        return np.asarray(T.T @ self.body.forces(T @ y) + S @ y + self.traction.forces(y, *self._law(x)))
+        return self._unbalanced(x[:-1], *self._law(x))
+
+    def _unbalanced(self, y: Array, P: Array, Phi: Array) -> Array:
+        """Forces of body, exterior, and a pressure and energy at the surface's points, (n,)."""
+        T, S = self.exterior.reduction, self.exterior.stiffness
+        return np.asarray(T.T @ self.body.forces(T @ y) + S @ y + self.traction.forces(y, P, Phi))
 
     def jacobian(self, x: Array) -> sparse.csc_array:
         """Derivative of the residual, (n, n + 1)."""
         T = self.exterior.reduction
         body = T.T @ self.body.tangent(T @ x[:-1]) @ T
         return sparse.csc_array(
-            sparse.hstack([body + self._outer_tangent(x), sparse.csc_array(self._by_approach(x)[:, None])])
+            sparse.hstack(
+                [
+                    body + self._surface_tangent(x) + self.exterior.stiffness,
+                    sparse.csc_array(self._by_approach(x)[:, None]),
+                ]
+            )
         )
 
     def _law(self, x: Array) -> tuple[Array, Array]:
@@ -137,10 +141,10 @@ class FiniteStrainProblem(Valued):
         slope = self.interface.law.slope(self.gaps(x), self.tabor)
         return self.traction.forces(x[:-1], -slope, self.pressure(x))
 
-    def _outer_tangent(self, x: Array) -> sparse.csr_array:
-        """Derivative by y of the forces of surface law and exterior, (n, n)."""
+    def _surface_tangent(self, x: Array) -> sparse.csr_array:
+        """Derivative by y of the surface law's forces, (n, n)."""
         slope = self.interface.law.slope(self.gaps(x), self.tabor)
-        return sparse.csr_array(self.traction.tangent(x[:-1], *self._law(x), slope) + self.exterior.stiffness)
+        return self.traction.tangent(x[:-1], *self._law(x), slope)
 
     @cached_property
     def _elimination(self) -> Elimination:
@@ -149,7 +153,9 @@ class FiniteStrainProblem(Valued):
     def bordered_solver(self, x: Array, row: Array) -> Callable[[Array], Array]:
         """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
         cells = self.body.cell_tangents(self.exterior.reduction @ x[:-1])
-        return self._elimination.factorise(cells, self._outer_tangent(x), self._by_approach(x), row).solve
+        return self._elimination.factorise(
+            cells, self._surface_tangent(x) + self.exterior.stiffness, self._by_approach(x), row
+        ).solve
 
     def negative_directions(self, x: Array) -> int:
         """Number of directions in which the body moves on by itself at fixed approach; 0 means stable.
@@ -159,26 +165,44 @@ class FiniteStrainProblem(Valued):
         law of inertia. The tangent of the vertical traction per deformed area is not symmetric, but is so up to terms
         of the order of delta; then the number changes where the determinant does its sign, that is at the folds.
         """
-        cells = self.body.cell_tangents(self.exterior.reduction @ x[:-1])
-        apart = np.zeros(x.size - 1), np.eye(1, x.size, x.size - 1)[0]
-        step = self._elimination.factorise(cells, self._outer_tangent(x), *apart, pivoting=0.0)
+        step = self._held(x[:-1], self._surface_tangent(x), pivoting=0.0)
         return step.negative_pivots() - (self.body.unknowns - self.body.space.unknowns)
 
     @cached_property
     def _undeformed(self) -> Step:
         """Factors of the undeformed body's tangent, positive definite or a saddle point; for norms."""
-        cells, n = self.body.cell_tangents(np.zeros(self.body.unknowns)), self.exterior.reduction.shape[1]
-        return self._elimination.factorise(cells, self.exterior.stiffness.tocsr(), np.zeros(n), np.eye(1, n + 1, n)[0])
+        n = self.exterior.reduction.shape[1]
+        return self._held(np.zeros(n), sparse.csr_array((n, n)))
 
     def surface_state(self, x: Array) -> Array:
         """State as the interface knows it: H, alpha*, and the radii's fixed scale 1."""
         return np.append(self.gaps(x), [x[-1], 1.0])
 
-    def state_from_surface(self, state: Array) -> Array:
-        """State of the linear body under the pressure that the gaps of an interface's state make."""
-        pressure, nothing = self.interface.pressure(state), np.zeros(self.exterior.reduction.shape[1])
-        forces = replace(self.traction, stretch=0.0).forces(nothing, pressure, np.zeros(pressure.size))
-        return np.append(self._undeformed.solve(-np.append(forces, 0.0))[:-1], state[-2])
+    def state_from_surface(self, state: Array, near: Array | None = None) -> Array:
+        """State of the body under the pressure that the gaps of an interface's state make, as a start.
+
+        By steps with the undeformed body's stiffness as long as they converge, else with that of where they led; the
+        first alone gives the linear body.
+        """
+        law, mu, y = self.interface.law, self.tabor, self.undeformed(0.0)[:-1] if near is None else near[:-1]
+        acting = law.pressure(state[:-2], mu), law.energy(state[:-2], mu)
+        stiffness, last = self._undeformed, np.inf
+        for _ in range(MOST_STEPS):
+            unbalanced = np.append(self._unbalanced(y, *acting), 0.0)
+            dy = -stiffness.solve(unbalanced)[:-1]
+            if not np.abs(dy).max() < SLOW * last:
+                stiffness = self._held(y, self.traction.tangent(y, *acting, np.zeros(acting[0].size)))
+                dy = -stiffness.solve(unbalanced)[:-1]
+            y, last = y + self._unturned(y, dy, 1.0) * dy, float(np.abs(dy).max())
+            if last < ENOUGH * np.abs(y).max():
+                break
+        return np.append(y, state[-2])
+
+    def _held(self, y: Array, surface: sparse.csr_array, pivoting: float = 0.01) -> Step:
+        """Factorise the tangent at a fixed approach, for that of the surface's forces."""
+        cells = self.body.cell_tangents(self.exterior.reduction @ y)
+        apart = np.zeros(y.size), np.eye(1, y.size + 1, y.size)[0]
+        return self._elimination.factorise(cells, surface + self.exterior.stiffness, *apart, pivoting=pivoting)
 
     def _surface_change(self, dx: Array) -> Array:
         return np.append(-self.tabor * (self.surface.vertical @ dx[:-1]) - dx[-1], [dx[-1], 0.0])
@@ -229,9 +253,13 @@ class FiniteStrainProblem(Valued):
     def longest_step(self, x: Array, dx: Array) -> float:
         """Fraction of the step dx that takes no gap h below a quarter of its value, nor any J below a tenth."""
         fraction = self.interface.longest_step(self.surface_state(x), self._surface_change(dx))
+        return self._unturned(x[:-1], dx[:-1], fraction)
+
+    def _unturned(self, y: Array, dy: Array, fraction: float) -> float:
+        """Part of a step, a fraction of it at most, that turns no cell inside out."""
         T = self.exterior.reduction
-        least = min(LEAST_VOLUME, self.body.least_volume_ratio(T @ x[:-1]) / 2)
-        while self.body.least_volume_ratio(T @ (x + fraction * dx)[:-1]) < least:
+        least = min(LEAST_VOLUME, self.body.least_volume_ratio(T @ y) / 2)
+        while self.body.least_volume_ratio(T @ (y + fraction * dy)) < least:
             fraction /= 2
         return fraction
 

@@ -1,92 +1,34 @@
-"""A sphere of a scene on meshes fine for some range of contact radii: linear and at finite strain, on the same mesh."""
+"""A sphere of a scene at finite strain, on meshes fine for some range of contact radii."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 from skfem import ElementQuadP
-from skfem.quadrature import get_quadrature
 
 from fem_adhesion import bodies, sized
-from fem_adhesion.condensed import CondensedBody, condense
 from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import with_interiors
 from fem_adhesion.finite_strain import FiniteStrainProblem
 from fem_adhesion.finite_strain_assembly import finite_strain_problem, material_body
-from fem_adhesion.finite_strain_events import undeformed_radius
 from fem_adhesion.finite_strain_traction import convention_of
-from fem_adhesion.incompressible import stiffness_for
 from fem_adhesion.scene import Scene
-from halfspace import grid, newton
+from halfspace import grid
 from halfspace.compliance import Array
-from halfspace.contact import CENTRAL_GAP, CONTACT_RADIUS, ContactProblem
-from halfspace.curve import Chart, transfer
-from halfspace.newton import Traceable
-from halfspace.path import Point, Segment
-from halfspace.sized import SizedBody
+from halfspace.contact import spike_width
+from halfspace.curve import Chart, undeformed_radius
+from halfspace.events import Located
 from halfspace.values import Valued
 
 FARTHEST = 0.98
 """Undeformed radius in R up to which a contact may spread; small slopes end before, see `halfspace.contact.WIDEST`."""
 
+WINDOW = 8
+"""Fine cells in a mesh of the curve: more cost more unknowns, fewer more meshes."""
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Discretised(Valued):
-    """A body on one mesh.
-
-    Attributes
-    ----------
-    condensed : CondensedBody
-        The linear body.
-    linear : ContactProblem
-        Its contact.
-    problem : FiniteStrainProblem
-        That at finite strain.
-    """
-
-    condensed: CondensedBody
-    linear: ContactProblem
-    problem: FiniteStrainProblem
-
-    @property
-    def chart(self) -> Chart:
-        """Chart for the curve."""
-        return Chart(self.problem, self.problem.body.unknowns)
-
-    def near(self, segments: Sequence[Segment], problem: Traceable, point: Point) -> Array:
-        """State of the linear body whose contact has the same edge on the undeformed surface, or the same central gap.
-
-        Parameters
-        ----------
-        segments : sequence of Segment
-            Curve of the linear body on any discretisation.
-        problem : Traceable
-            Any discretisation of the body, at finite strain or not.
-        point : Point
-            A state of it.
-
-        Raises
-        ------
-        NotConverged
-            If Newton's method does not reach it from the curve's nearest point.
-        """
-        radius = undeformed_radius(problem, point)
-        touching = bool(np.isfinite(radius))
-        observable = CONTACT_RADIUS if touching else CENTRAL_GAP
-        value = radius if touching else float(point.observables[CENTRAL_GAP])
-        control = newton.contact_radius(value) if touching else newton.central_gap(value)
-        states = [(s.problem, p) for s in segments for p in s.points]
-        source, nearest = min(states, key=lambda s: _distance(s[1].observables[observable], value))
-        x = newton.solve(self.linear, transfer(source, nearest.x, self.linear), control).x
-        displacement = self.condensed.displacement(self.linear.pressure(x))
-        return self.problem.state_from(float(x[-2]), displacement)
-
-
-def _distance(value: float, target: float) -> float:
-    return float("inf") if np.isnan(value) else abs(value - target)
+NEARBY = 0.01  # relative difference of contact radii that one mesh of an event serves
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -104,56 +46,132 @@ class ScenesBody(Valued):
     scene: Scene
     how: sized.Discretisation
 
+    def meshed(self, inner: float, outer: float) -> FiniteStrainProblem:
+        """Discretise with cells that are fine for contact radii between these, as far as a contact may reach."""
+        scene, R = self.scene, self.scene.sphere_radius
+        coordinate = bodies.Stereographic(R)
+        first, last = (coordinate.of(min(radius, FARTHEST * R)) for radius in (inner, outer))
+        lines = fine_between(first, last, self.length, bodies.CORE * R, self.how.growth)
+        depths = grid.graded(0.0, float(np.diff(lines).min()), bodies.DEPTH * R, growth=self.how.growth)
+        mesh = bodies.hemisphere(R, lines, depths, rings=sized.corner_rings(scene, self.how))
+        space = Space(mesh, ElementQuadP(self.how.degree))
+        exterior = with_interiors(sized.GRIPS[scene.grip](space, scene.poisson), space)
+        return finite_strain_problem(
+            material_body(space, scene.poisson, 1 / R),
+            exterior,
+            scene.tabor,
+            profile=sized.profile_of(scene),
+            convention=convention_of(scene.traction, scene.poisson),
+        )
+
     @property
     def length(self) -> float:
         """Length in beta of the cells at the contact edge."""
-        return self._sized.length
+        return self.how.finest * spike_width(self.scene.tabor) / 2
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Windows(Valued):
+    """Charts for the whole curve, each fine for a window of contact radii, made when they are first asked for.
+
+    Attributes
+    ----------
+    body : ScenesBody
+        How they are meshed.
+    """
+
+    body: ScenesBody
+    made: dict[int, Chart] = field(default_factory=dict, compare=False, repr=False)
+
+    def __iter__(self) -> Iterator[Chart]:
+        """All of them in order."""
+        return map(self._chart, range(self._count))
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for a point of the curve."""
+        radius = float(np.nan_to_num(undeformed_radius(event.problem, event.point)))
+        return self._chart(min(int(radius / self._width), self._count - 1))
+
+    def _chart(self, number: int) -> Chart:
+        if number not in self.made:
+            first, last = self._width * number, self._width * (number + 1)
+            problem = self.body.meshed(first, last)
+            self.made[number] = Chart(problem, problem.body.unknowns, min(last, self._farthest))
+        return self.made[number]
 
     @property
-    def _sized(self) -> SizedBody:
-        return sized.sized_body(linear(self.scene), self.how)
+    def _width(self) -> float:
+        return WINDOW * self.body.length
 
-    def richer(self) -> ScenesBody:
-        """Return the same with elements of one degree more."""
-        return replace(self, how=replace(self.how, degree=self.how.degree + 1))
+    @property
+    def _farthest(self) -> float:
+        return FARTHEST * self.body.scene.sphere_radius
 
-    def meshed(self, inner: float, outer: float) -> Discretised:
-        """Discretise with cells that are fine for contact radii between these, as far as a contact may reach."""
-        body, R = self._sized, self.scene.sphere_radius
-        first, last = (body.coordinate.of(min(radius, FARTHEST * R)) for radius in (inner, outer))
-        lines = fine_between(first, last, body.length, bodies.CORE * R, self.how.growth)
-        depths = grid.graded(0.0, float(np.diff(lines).min()), bodies.DEPTH * R, growth=self.how.growth)
-        return self._on(bodies.hemisphere(R, lines, depths, rings=sized.corner_rings(self.scene, self.how)), body)
+    @property
+    def _count(self) -> int:
+        return int(np.ceil(self._farthest / self._width))
 
-    def _on(self, mesh: Any, sized_body: SizedBody) -> Discretised:
-        scene, far_field = self.scene, sized.GRIPS[self.scene.grip]
-        space = Space(mesh, ElementQuadP(self.how.degree))
-        condensed = condense(space, scene.poisson, far_field=far_field, stiffness=stiffness_for(scene.poisson))
-        under_wall = ContactProblem(condensed.operator, scene.tabor, profile=sized_body.profile)
-        exterior = with_interiors(far_field(space, scene.poisson), space)
-        body = material_body(space, scene.poisson, 1 / scene.sphere_radius)
-        convention = convention_of(scene.traction, scene.poisson)
-        problem = finite_strain_problem(body, exterior, scene.tabor, profile=sized_body.profile, convention=convention)
-        return Discretised(condensed, under_wall, problem)
+    @property
+    def everywhere(self) -> Windows:
+        """The same."""
+        return self
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a mesh made so far."""
+        return max(chart.unknowns for chart in self.made.values())
 
 
-def linear(scene: Scene) -> Scene:
-    """Return the scene at small strain."""
-    return replace(scene, strain="small", traction="projected")
+@dataclass(frozen=True, eq=False, repr=False)
+class AroundEvents(Valued):
+    """A discretisation on which every event has a mesh made for its own contact radius.
 
+    Attributes
+    ----------
+    body : ScenesBody
+        The body, and how it is meshed.
+    everywhere : Windows
+        For the points of a curve.
+    below : AroundEvents, optional
+        With elements of a lower degree, whose meshes are shared.
+    """
 
-def enriched(u: Array, lower: Space, higher: Space) -> Array:
-    """Return the displacements u, (N,), of a space in one of a higher degree on the same mesh, exactly."""
-    X, _ = get_quadrature(higher.element, 2 * higher.degree)
-    at = [
-        np.array([space.element.lbasis(X, i)[0] for i in range(len(space.scalar_dofs.element_dofs))])
-        for space in (lower, higher)
-    ]
-    change = np.linalg.lstsq(at[1].T, at[0].T)[0]
-    result = np.empty(higher.unknowns)
-    for old, new in zip(lower.components, higher.components, strict=True):
-        result[new[higher.scalar_dofs.element_dofs]] = change @ u[old[lower.scalar_dofs.element_dofs]]
-    return result
+    body: ScenesBody
+    everywhere: Windows
+    below: AroundEvents | None = None
+    made: list[tuple[float, FiniteStrainProblem]] = field(default_factory=list, compare=False, repr=False)
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event."""
+        _, problem = self.mesh(event)
+        return Chart(problem, problem.body.unknowns)
+
+    def mesh(self, event: Located) -> tuple[float, FiniteStrainProblem]:
+        """Mesh for an event and the contact radius that it is made for, unless one made before will do."""
+        radius, apart = self._place(event)
+        for made in self.made:
+            if abs(radius - made[0]) <= apart:
+                return made
+        self.made.append((radius, self.body.meshed(radius, radius)))
+        return self.made[-1]
+
+    def _place(self, event: Located) -> tuple[float, float]:
+        """Contact radius that a mesh is wanted for, and how far off it may be: not at all from that of the one below.
+
+        An event may have moved on its mesh by more than meshes serve; it is the mesh that counts, not the event.
+        """
+        own = [radius for stage in (self, self.below) if stage for radius, at in stage.made if at is event.problem]
+        if own:
+            return own[0], 0.0
+        if self.below:
+            return self.below.mesh(event)[0], 0.0
+        radius = float(np.nan_to_num(undeformed_radius(event.problem, event.point)))
+        return radius, NEARBY * radius
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a mesh made so far."""
+        return max(problem.body.unknowns for _, problem in self.made)
 
 
 def fine_between(inner: float, outer: float, finest: float, end: float, growth: float) -> Array:

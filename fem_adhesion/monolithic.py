@@ -165,7 +165,7 @@ class MonolithicProblem(Valued):
         state[:-2] += self.tabor * (self.deflection_rows @ x[:-1])
         return state
 
-    def state_from_surface(self, state: Array) -> Array:
+    def state_from_surface(self, state: Array, near: Array | None = None) -> Array:  # noqa: ARG002 (it is linear)
         """State under the pressure that the gaps of an interface's state make."""
         return self.state_from(float(state[-2]), self.interface.pressure(state))
 

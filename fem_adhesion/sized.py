@@ -92,12 +92,16 @@ def _singular(scene: Scene) -> bool:
 
 def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
     """Body of a scene, to be discretised on any grid of its surface."""
-    R = scene.sphere_radius
-    profile: Profile = Sphere(R) if scene.profile == "sphere" else Paraboloid(R)
+    R, profile = scene.sphere_radius, profile_of(scene)
     if scene.body == "block":
         make, last = partial(_block, scene, how), at_equator(scene.tabor, profile, how.degree + 2)
         return SizedBody(scene.tabor, profile, make, how.finest, how.growth, np.array([R]), FlatCoordinate(), last)
     return _pair(scene, how, R, scene.counter) if scene.counter else _sphere(scene, how, R, profile)
+
+
+def profile_of(scene: Scene) -> Profile:
+    """Undeformed gap under a rigid wall."""
+    return Sphere(scene.sphere_radius) if scene.profile == "sphere" else Paraboloid(scene.sphere_radius)
 
 
 def _pair(scene: Scene, how: Discretisation, R: float, counter: Counter) -> SizedBody:

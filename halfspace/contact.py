@@ -81,7 +81,7 @@ class ContactProblem(Valued):
         """Return the state itself."""
         return x
 
-    def state_from_surface(self, state: Array) -> Array:
+    def state_from_surface(self, state: Array, near: Array | None = None) -> Array:  # noqa: ARG002 (it is all there is)
         """Return the state itself."""
         return state
 

@@ -7,7 +7,7 @@ a single chart.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cached_property
@@ -37,7 +37,7 @@ from halfspace.events import (
 )
 from halfspace.limits import require_points
 from halfspace.newton import Traceable
-from halfspace.path import Metric, Point, Segment, Steps, follow, loaded_to, make_point
+from halfspace.path import WHOLE_BODY, Metric, Point, Segment, Steps, follow, loaded_to, make_point
 from halfspace.states import FinestCurve, States, Ways, finest_curve, require_coordinate, resampled
 from halfspace.values import Valued, shown
 
@@ -48,7 +48,7 @@ COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwi
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Chart(Valued):
-    """A discretisation, its unknowns, and the contact radius (beta) up to which it serves; infinite for the last."""
+    """A discretisation, its unknowns, and the undeformed contact radius (beta) up to which it serves, or infinity."""
 
     problem: Traceable
     unknowns: int
@@ -348,44 +348,56 @@ def separated_approach(tabor: float) -> float:
 
 
 def trace_charts(
-    charts: Sequence[Chart],
+    charts: Iterable[Chart],
     to_load: float = COMPRESSION,
     steps: Steps | None = None,
 ) -> tuple[Segment, ...]:
-    """Trace the curve from far separation to a compressive load over the charts in order.
+    """Trace the curve from far separation to a compressive load over the charts in order, as many as it takes.
 
     Raises
     ------
     NotConverged
         If the continuation gets stuck.
     """
-    tabor = charts[0].problem.tabor
-    metric = metric_for(tabor)
-    point = _far_separation(charts[0].problem, separated_approach(tabor) - 10, metric)
     segments: list[Segment] = []
     for chart in charts:
-        if segments:
-            point = _hand_over(segments[-1], chart.problem, metric)
-        last = _ended(to_load, chart.problem.interface.profile.end)
-        stop = last if np.isinf(chart.until) else _beyond(chart.until)
-        segments.append(Segment(chart.problem, tuple(follow(chart.problem, point, metric, stop, steps=steps))))
+        problem, metric = chart.problem, metric_for(chart.problem.tabor)
+        point = _hand_over(segments[-1], problem, metric) if segments else _far_separation(problem, metric)
+        radius = WIDEST * problem.interface.profile.end if np.isinf(chart.until) else chart.until
+        stop = _ended(problem, to_load, radius)
+        pace = steps or _pace(problem, segments)
+        segments.append(Segment(problem, tuple(follow(problem, point, metric, stop, steps=pace))))
+        if loaded_to(to_load)(segments[-1].points[-1]):
+            break
     return tuple(segments)
 
 
-def _ended(to_load: float, end: float) -> Callable[[Point], bool]:
-    """Stop under a compressive load, or where the contact fills as much of the body as is allowed."""
-    loaded, filled = loaded_to(to_load), _beyond(WIDEST * end)
-    return lambda point: loaded(point) or filled(point)
+def _ended(problem: Traceable, to_load: float, radius: float) -> Callable[[Point], bool]:
+    """Stop under a compressive load, or where the contact leaves what a chart serves or fills the body as allowed."""
+    loaded = loaded_to(to_load)
+    return lambda point: loaded(point) or undeformed_radius(problem, point) > radius
 
 
-def _beyond(radius: float) -> Callable[[Point], bool]:
-    return lambda point: bool(point.observables[CONTACT_RADIUS] > radius)
+def _pace(problem: Traceable, before: Sequence[Segment]) -> Steps | None:
+    """Steps to begin with on a body of whose unknowns the surface is but a part: half as long as the last."""
+    if problem.interface is problem or not before:
+        return None
+    last = [point.arclength for point in before[-1].points[-2:]]
+    return replace(WHOLE_BODY, first=(last[-1] - last[0]) / 2 or WHOLE_BODY.first)
 
 
-def _far_separation(problem: Traceable, approach: float, metric: Metric) -> Point:
+def undeformed_radius(problem: Traceable, point: Point) -> float:
+    """Radius in beta that the point at the contact edge has on the undeformed body; nan without contact."""
+    if problem.interface is problem:
+        return float(point.observables[CONTACT_RADIUS])
+    return problem.interface.contact_radius(problem.surface_state(point.x))
+
+
+def _far_separation(problem: Traceable, metric: Metric) -> Point:
     """First point of the path, heading towards contact."""
-    solution = newton.solve(problem, problem.undeformed(approach), newton.approach(approach))
-    return make_point(problem, solution, metric, newton.approach(approach).weights, 0.0)
+    control = newton.approach(separated_approach(problem.tabor) - 10)
+    solution = newton.solve(problem, problem.undeformed(control.target), control)
+    return make_point(problem, solution, metric, control.weights, 0.0)
 
 
 def _hand_over(segment: Segment, problem: Traceable, metric: Metric) -> Point:

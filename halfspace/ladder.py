@@ -8,7 +8,7 @@ half of it where the higher rung leaves a third of that error at most, more wher
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
@@ -108,7 +108,7 @@ class Rung(Valued):
     Attributes
     ----------
     curve : callable
-        Makes the charts for tracing the curve on this rung.
+        Makes the charts for tracing the curve on this rung; they need not all be made before.
     stages : tuple of Stage
         On each of which every event is solved for; each differs from the one before in one respect, the last is the
         finest. The changes add up to the error. On the lowest rung they only prepare, and there may be none.
@@ -123,7 +123,7 @@ class Rung(Valued):
         the contact, whose radius tells it precisely, and where there is no twin to guard against chance.
     """
 
-    curve: Callable[[], Charts]
+    curve: Callable[[], Iterable[Chart]]
     stages: tuple[Stage, ...]
     settings: Mapping[str, object]
     twin: Stage | None = None
@@ -210,14 +210,15 @@ def _climb_from(
         below.stages[-1] if below.stages else None,
         higher.twin or (higher.stages[-2] if len(higher.stages) > 1 else None),
         higher.remaining,
-        _ways(below.stages[-1] if below.stages else Charted(charts), higher),
+        _ways(below.stages[-1] if below.stages else Charted(tuple(charts)), higher),
         margin,
     )
 
 
 def _ways(below: Stage, higher: Rung) -> Ways:
     """Chains from the rung below, and from its twin, to the last stage of a rung, for any point of the curve."""
-    chain = [partial(placed, stage.everywhere) for stage in (below, *higher.stages)]
+    stages = [stage.everywhere for stage in (below, *higher.stages)]
+    chain = [partial(placed, b) for a, b in zip([None, *stages], stages, strict=False) if a is not b]
     return (tuple(chain), (partial(placed, higher.twin.everywhere), chain[-1])) if higher.twin else (tuple(chain),)
 
 
@@ -262,7 +263,8 @@ def _found_again(name: str, event: Located, stage: Stage) -> Located:
 
 def _moved_to(event: Located, stage: Stage) -> Located:
     """Solve for an event again, and once more where it comes to lie in the reach of another chart."""
-    found = moved(event, stage(event).problem)
+    problem = stage(event).problem
+    found = event if event.problem is problem else moved(event, problem)
     better = stage(found).problem
     return found if better is found.problem else moved(found, better)
 

@@ -77,8 +77,8 @@ class Traceable(Equilibrium, Protocol):
         """State as `interface` knows it: gaps, approach, scale of the grid."""
         ...
 
-    def state_from_surface(self, state: Array) -> Array:
-        """State whose surface is about that of a state of `interface`, as a start for Newton's method."""
+    def state_from_surface(self, state: Array, near: Array | None = None) -> Array:
+        """State whose surface is about that of a state of `interface`, as a start, from one near it if there is one."""
         ...
 
     def undeformed(self, approach: float) -> Array:

@@ -79,8 +79,8 @@ class Steps:
         First trial, bounds; a step below `shortest` ends the path with an error.
     turn : float
         Largest angle between the tangents at a step's two ends, in radians.
-    iterations : int
-        Newton steps allowed for one continuation step.
+    iterations, usual : int
+        Newton steps allowed for one continuation step, and those that one of the right length takes.
     """
 
     first: float = 0.05
@@ -88,6 +88,10 @@ class Steps:
     shortest: float = 1e-7
     turn: float = 0.35
     iterations: int = 8
+    usual: int = 4
+
+
+WHOLE_BODY = Steps(iterations=10, usual=6)  # where a Newton step is worth many of the surface's alone
 
 
 def make_point(
@@ -133,16 +137,42 @@ def correct(
     return make_point(problem, solution, metric, weights, point.arclength + step)
 
 
-def predict(problem: Equilibrium, point: Point, step: float, before: Point | None = None) -> Array:
-    """Extrapolate along the tangent, to second order where the point before is known (Adams and Bashforth)."""
+def predict(problem: Traceable, point: Point, step: float, before: Point | None = None) -> Array:
+    """Extrapolate along the tangent, to second order where the point before is known (Adams and Bashforth).
+
+    Where a body's grid stands still the spike of tension at the contact edge moves over it: then see `with_edge`.
+    """
+    if before is not None and problem.interface is not problem and step > NUDGE:
+        moved = with_edge(problem, before, point, step)
+        if moved is not None:
+            return moved
     slope = point.tangent
     if before is not None:
         slope = slope + (point.tangent - before.tangent) * (step / (2 * (point.arclength - before.arclength)))
     return np.asarray(point.x + problem.longest_step(point.x, step * slope) * step * slope)
 
 
+NUDGE = 1e-3  # of arclength: a step too short for the contact edge to leave its place
+
+
+def with_edge(problem: Traceable, before: Point, point: Point, step: float) -> Array | None:
+    """State a step past the second of two, gaps extrapolated in parts of the contact radius; None without contact."""
+    surface, part = problem.interface, step / (point.arclength - before.arclength)
+    states = [problem.surface_state(p.x) for p in (before, point)]
+    last, radii = states[1], [surface.contact_radius(state) for state in states]
+    radius = radii[1] + part * (radii[1] - radii[0])
+    if not np.min([*radii, radius]) > 0:  # nor nan
+        return None
+    body = surface.operator_at(last)
+    inside = [np.minimum(body.radii * (old / radius), body.extent) for old in radii]
+    H0, H1 = (body.values_at(r, state[:-2]) for r, state in zip(inside, states, strict=True))
+    H = np.maximum(H1 + part * (H1 - H0), 0.25 * (1 + H1) - 1)  # no gap h falls below a quarter of its value
+    alpha = last[-2] + part * (last[-2] - states[0][-2])
+    return problem.state_from_surface(np.append(H, [alpha, 1.0]), point.x)
+
+
 def follow(
-    problem: Equilibrium,
+    problem: Traceable,
     start: Point,
     metric: Metric,
     stop: Callable[[Point], bool],
@@ -179,7 +209,7 @@ def follow(
     GridTooCoarse
         If the contact edge comes to a place where the grid is too coarse for the spike of tension there.
     """
-    steps = steps or Steps()
+    steps = steps or (Steps() if problem.interface is problem else WHOLE_BODY)
     points = [start]
     step = steps.first
     while len(points) < max_points:
@@ -215,7 +245,7 @@ def _carried(problem: Equilibrium, point: Point) -> bool:
     return True
 
 
-def _advance(problem: Equilibrium, points: list[Point], step: float, metric: Metric, steps: Steps) -> Point:
+def _advance(problem: Traceable, points: list[Point], step: float, metric: Metric, steps: Steps) -> Point:
     """One step, refused if the path turns too far in it for its folds to be seen."""
     point, before = points[-1], points[-2] if len(points) > 1 else None
     new = correct(problem, point, step, predict(problem, point, step, before), metric, steps.iterations)
@@ -267,7 +297,7 @@ def _turn(a: Point, b: Point, metric: Metric) -> float:
 def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -> float:
     """Lengthen the step while Newton's method and the curvature allow, shorten it where they do not."""
     by_turn = steps.turn / max(_turn(points[-2], points[-1], metric), 1e-6)
-    by_effort = 4 / points[-1].iterations
+    by_effort = steps.usual / points[-1].iterations
     return float(min(step * np.clip(min(by_turn, by_effort), 0.3, 2.0), steps.longest))
 
 

@@ -263,6 +263,25 @@ def _sized(*sizes, truth=truths.elements, few=1, **more):
     return Family(*nets, _by(fem_adhesion.trace), of_path, partial(relocated, truth))
 
 
+def _finite_strain():
+    """Spheres at finite strain, by each way of counting the traction, down to one as small as its contact."""
+    scenes = [
+        _sphere(tabor, ratio, strain="finite", **more)
+        for tabor, ratio, more in (
+            (0.3, 30, {"poisson": 0.0}),
+            (1, 100, {}),
+            (0.1, 2, {"traction": "vertical"}),
+            (1, 6, {"traction": "reference"}),
+            (0.5, 30, {"poisson": 0.45, "traction": "normal"}),
+            (1, 1000, {"grip": "bonded"}),
+            (2, 100, {"poisson": 0.2}),
+            (1.5, 300, {"poisson": 0.499, "grip": "bonded"}),
+        )
+    ]
+    nets = Net(scenes, _decades(3, 4, 5)), Net(scenes[:1], _decades(3, 4))
+    return Family(*nets, _by(fem_adhesion.trace), of_path, partial(relocated, truths.finite_strain))
+
+
 def _by(solve):
     return partial(_solved, solve)
 
@@ -334,6 +353,7 @@ FAMILIES = {
     "pair of spheres": _sized(*SIZES[2:6], counter=Counter(0.4, 0.3, 2.0)),
     "pair of spheres, bonded": _sized(*SIZES[:4], grip="bonded", counter=Counter(0.4, 0.45, 3.0)),
     "block under a sphere": _sized(*SIZES[2:6], body="block", truth=_half_space_under),
+    "finite strain": _finite_strain(),
     "mesh from a file": Family(
         Net([_mesh("hemisphere", 1.0, 30.0), _mesh("hemisphere", 2.0, 100.0), _mesh("sphere", 1.0, 100.0)], [1e-3]),
         Net([_mesh("hemisphere", 1.0, 30.0)], [1e-3]),
@@ -352,6 +372,14 @@ FAMILIES = {
         _by(halfspace.trace),
         of_curve,
         partial(beside, truths.half_space),
+        anew=True,
+    ),
+    "curve, finite strain": replace(
+        _finite_strain(),
+        full=Net([_sphere(0.3, 30, strain="finite"), _sphere(1, 100, strain="finite", poisson=0.45)], _decades(3, 4)),
+        quick=Net([_sphere(0.3, 30, strain="finite")], [1e-3]),
+        numbers=of_curve,
+        truth=partial(beside, truths.along_at_finite_strain),
         anew=True,
     ),
     "curve, block": Family(

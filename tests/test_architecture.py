@@ -139,9 +139,8 @@ FLOORS = [
     {"fem_adhesion.convergence"},
     {"fem_adhesion.stress"},
     {"fem_adhesion.meshed", "fem_adhesion.finite_strain_scene"},
-    {"fem_adhesion.finite_strain_windows"},
     {"fem_adhesion.finite_strain_meshes"},
-    {"fem_adhesion.sized", "fem_adhesion.finite_strain_events", "fem_adhesion.finite_strain_assembly"},
+    {"fem_adhesion.sized", "fem_adhesion.finite_strain_assembly"},
     {
         "fem_adhesion.pairs",
         "fem_adhesion.monolithic",

@@ -15,12 +15,11 @@ from fem_adhesion.elasticity import Space, cell_quadrature, reference_functions
 from fem_adhesion.far_field import sliding, with_interiors
 from fem_adhesion.finite_strain_assembly import finite_strain_problem
 from fem_adhesion.finite_strain_bodies import displacement_body
-from fem_adhesion.finite_strain_events import corrected
 from fem_adhesion.finite_strain_meshes import fine_between
 from fem_adhesion.finite_strain_traction import convention_of
 from halfspace import grid
-from halfspace.contact import APPROACH, LOAD, ContactProblem
-from halfspace.curve import Chart, find_events, metric_for, trace_charts
+from halfspace.contact import LOAD, ContactProblem
+from halfspace.curve import Chart, find_events, moved, trace_charts
 from halfspace.profiles import Sphere
 
 TABOR, POISSON = 1.0, 0.3
@@ -48,15 +47,13 @@ def hemisphere(ratio):
     exterior, body = with_interiors(sliding(space, POISSON), space), displacement_body(space, POISSON, 1 / R)
     convention = convention_of("projected", POISSON)
     problem = finite_strain_problem(body, exterior, TABOR, profile=Sphere(R), convention=convention)
-    displacement = condensed.displacement(linear.pressure(event.point.x))
-    start = problem.state_from(event.point.observables[APPROACH], displacement)
-    return SimpleNamespace(problem=problem, start=start, event=event, stretch=1 / R)
+    return SimpleNamespace(problem=problem, event=event, stretch=1 / R)
 
 
 def pull_off_by(case, traction):
     """Pull-off on the same cells by a surface law."""
     problem = replace(case.problem, convention=convention_of(traction, POISSON))
-    return corrected(case.event, problem, case.start, metric_for(TABOR)).point
+    return moved(case.event, problem).point
 
 
 class Summed:

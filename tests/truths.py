@@ -10,7 +10,8 @@ from functools import partial
 import numpy as np
 from legendre_sphere import sphere_operator
 
-from fem_adhesion import sized
+from fem_adhesion import finite_strain_meshes, sized
+from fem_adhesion.finite_strain_scene import softening
 from halfspace import compliance
 from halfspace.accuracy import Resolution, half_space_charts, widened
 from halfspace.breathing import FlatCoordinate
@@ -80,6 +81,19 @@ def _panels(nodes, lines):
 def elements(scene):
     """The body of a scene by finite elements of high degree."""
     return [Standing(sized.sized_body(scene, sized.Discretisation(*how))) for how in ((8, 0.55, 2.0), (9, 0.5, 2.2))]
+
+
+def finite_strain(scene):
+    """A sphere at finite strain by elements of higher degree than its events are given, on cells of its own."""
+    finest = 1 - softening(scene)
+    hows = ((7, 0.55 * finest, 2.2), (8, 0.45 * finest, 2.0))
+    found = [finite_strain_meshes.ScenesBody(scene, sized.Discretisation(*how)) for how in hows]
+    return [finite_strain_meshes.AroundEvents(body, finite_strain_meshes.Windows(body)) for body in found]
+
+
+def along_at_finite_strain(scene):
+    """The same on meshes that each serve a stretch of the curve."""
+    return [stage.everywhere for stage in finite_strain(scene)]
 
 
 def harmonics(scene):

@@ -27,6 +27,7 @@ UNITS: Mapping[str, str] = {
 }
 ERRORS = tuple(f"{name}_error" for name in OBSERVABLES)
 COLUMNS = ("arclength", *OBSERVABLES, *ERRORS)
+SPREAD = "_model_uncertainty"  # after an observable's name: how far apart models lie between which there is a choice
 NUMBERS = tuple(key for name in OBSERVABLES for key in (name, f"{name}_error"))  # of an event
 
 
@@ -120,7 +121,7 @@ def write_csv(curves: Curves, file: IO[str]) -> None:
 
     The unit is part of a column's name; where the material is known each quantity comes in SI too. Stability is left
     out at events, which are where it changes. ``missed_rtol`` names the quantities of an event whose errors are above
-    the tolerance.
+    the tolerance. At finite strain the ``model_uncertainty`` of an event's numbers has columns of its own.
     """
     writer = csv.DictWriter(file, _columns(curves), lineterminator="\n", restval="")
     writer.writeheader()
@@ -139,19 +140,21 @@ def _points(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
 def _events(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
     for name, event in path.events.items():
         numbers = {key: getattr(event, key) for key in NUMBERS}
+        numbers |= {name_of + SPREAD: apart for name_of, apart in path.spread.get(name, {}).items()}
         missed = " ".join(path.tolerance.missed_by(event))
         yield {"event": name, "arclength": path.stages[-1][name].point.arclength, **numbers, "missed_rtol": missed}
 
 
 def _columns(curves: Curves) -> list[str]:
-    names = [column for quantity in (*OBSERVABLES, *ERRORS) for column in _named(curves, quantity)]
+    spread = [name + SPREAD for name in OBSERVABLES if any(path.spread for path in curves.paths.values())]
+    names = [column for quantity in (*OBSERVABLES, *ERRORS, *spread) for column in _named(curves, quantity)]
     stability = ["stable_under_fixed_grips", "stable_under_dead_load"]
     return ["solver", "event", "arclength", *names, *stability, "missed_rtol"]
 
 
 def _named(curves: Curves, quantity: str) -> dict[str, float]:
     """Columns of a quantity, unit included, and what its values are multiplied by in them."""
-    name = quantity.removesuffix("_error")
+    name = _observable(quantity)
     columns = {f"{quantity}_{UNITS[name].replace(' ', '_')}": 1.0}
     if units := curves.question.units:
         size, unit = si_sizes(units)[name]
@@ -159,11 +162,16 @@ def _named(curves: Curves, quantity: str) -> dict[str, float]:
     return columns
 
 
+def _observable(quantity: str) -> str:
+    """Observable that a quantity is the value, the error or the model uncertainty of."""
+    return quantity.removesuffix("_error").removesuffix(SPREAD)
+
+
 def _with_units(curves: Curves, row: Mapping[str, Any]) -> dict[str, Any]:
     """Row under the names of the columns; without contact the contact radius is left empty."""
     named: dict[str, Any] = {}
     for key, value in row.items():
-        if key.removesuffix("_error") not in OBSERVABLES:
+        if _observable(key) not in OBSERVABLES:
             named[key] = value
         elif math.isfinite(value):
             named |= {column: repr(float(value * factor)) for column, factor in _named(curves, key).items()}
