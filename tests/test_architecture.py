@@ -115,7 +115,8 @@ FLOORS = [
         "fem_adhesion.studies.assess_predictions",
     },
     {
-        "fem_adhesion.studies.comparison",
+        "fem_adhesion.studies.references",
+        "fem_adhesion.studies.weak_bodies",
         "fem_adhesion.studies.methods",
         "fem_adhesion.studies.curves",
         "fem_adhesion.studies.machine",
@@ -131,13 +132,13 @@ FLOORS = [
         "fem_adhesion.studies.assess_contact",
         "fem_adhesion.studies.assess_theories",
     },
-    {"fem_adhesion.studies.quantities"},
+    {"fem_adhesion.studies.comparison", "fem_adhesion.studies.quantities"},
     {"fem_adhesion.studies.walk"},
     {"fem_adhesion.beside"},
     {"fem_adhesion.fields"},
     {"fem_adhesion.discretised"},
     {"fem_adhesion.convergence"},
-    {"fem_adhesion.stress"},
+    {"fem_adhesion.stress", "fem_adhesion.harmonics"},
     {"fem_adhesion.meshed", "fem_adhesion.finite_strain_scene"},
     {"fem_adhesion.finite_strain_meshes"},
     {"fem_adhesion.sized", "fem_adhesion.finite_strain_assembly"},
@@ -225,3 +226,8 @@ def test_the_fourth_level_imports_nothing_of_the_solvers_it_checks():
     own = {name for name in _imports("fem_adhesion.weak_form") if name.split(".")[0] in ("halfspace", "fem_adhesion")}
     plumbing = {"errors", "errors.NotConverged", "values", "values.Valued"}  # no physics, no numbers
     assert own == {f"halfspace.{name}" for name in plumbing}
+
+
+def test_the_harmonics_import_nothing_of_the_finite_elements_they_check():
+    own = {name for name in _imports("fem_adhesion.harmonics") if name.split(".")[0] in ("skfem", "fem_adhesion")}
+    assert own == {"fem_adhesion.scene", "fem_adhesion.scene.Scene"}

@@ -7,7 +7,7 @@ from math import log, pi
 
 import numpy as np
 import pytest
-from legendre_sphere import sphere_operator
+from whole_sphere import sphere_operator
 
 from fem_adhesion.output import finite_sphere_chart, finite_sphere_plots, finite_sphere_report
 from fem_adhesion.output.finite_sphere_findings import QUANTITIES
@@ -20,6 +20,7 @@ from fem_adhesion.studies.finite_sphere_chart import Field, contour, field_of, r
 from fem_adhesion.studies.finite_sphere_records import APPROACH_SCALE, CRITICAL, Record, Study
 from fem_adhesion.studies.finite_sphere_table import borders, results, rows
 from fem_adhesion.studies.finite_sphere_terms import FIXED_GRIPS, leading_terms
+from halfspace import grid
 from halfspace.curve import Estimate
 
 TABORS, RATIOS = (0.3, 1.0, 3.0), (10.0, 100.0, 1e3, 1e4)
@@ -537,7 +538,7 @@ def test_the_terms_are_those_of_the_cause():
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.499])
 def test_the_sliding_body_yields_as_the_sphere_in_legendre_polynomials(poisson):
     R = 5.0
-    sphere = sphere_operator(R, poisson, 500)
+    sphere = sphere_operator(R, poisson, 500, grid.graded(1.0, 0.02, R))
     force = sphere.weights * np.sqrt(np.maximum(1 - sphere.radii**2, 0))
     mean = force @ sphere.compliance @ (force / sphere.weights) / force.sum() ** 2
     assert excess_compliance("sliding", poisson, R, FINE) == pytest.approx((mean - 0.6) * R, abs=2e-3)

@@ -4,37 +4,22 @@ An event is taken from where it was found and solved for again. Bodies with a le
 around each, on a grid that stands still: neither the window of contact radii nor the interpolation in it is shared.
 """
 
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from legendre_sphere import sphere_operator
 
 from fem_adhesion import finite_strain_meshes, sized
 from fem_adhesion.finite_strain_scene import softening
+from fem_adhesion.harmonics import Resolution as Series
+from fem_adhesion.harmonics import Standing
+from fem_adhesion.harmonics import sized_body as series
 from halfspace import compliance
 from halfspace.accuracy import Resolution, half_space_charts, widened
 from halfspace.breathing import FlatCoordinate
-from halfspace.contact import CONTACT_RADIUS, ContactProblem
-from halfspace.curve import Chart, find_events, moved, trace_charts
+from halfspace.curve import find_events, moved, trace_charts
 from halfspace.ladder import Charted
-from halfspace.profiles import Sphere, between_spheres
+from halfspace.profiles import between_spheres
 from halfspace.sized import SizedBody
-
-
-@dataclass(frozen=True)
-class Standing:
-    """Stage of a body on a grid of its own for each event, that stands still and is finest where its contact ends."""
-
-    body: SizedBody
-
-    def __call__(self, event):
-        """Chart of an event."""
-        body, radius = self.body, float(event.point.observables[CONTACT_RADIUS])
-        if not radius > body.length:
-            return body.centred()
-        operator, unknowns = body.make(body.lines(body.coordinate.of(radius)))
-        return Chart(ContactProblem(operator, body.tabor, profile=body.profile), unknowns)
 
 
 def half_space(tabor, *_):
@@ -98,9 +83,5 @@ def along_at_finite_strain(scene):
 
 def harmonics(scene):
     """The whole sphere by spherical harmonics, whose upper half is the hemisphere in the sliding grip."""
-    R = scene.sphere_radius
-    most = np.clip(60 * np.ceil(R * max(1.0, scene.tabor) ** 2), 240, 600)
-    return [
-        Charted((Chart(ContactProblem(sphere_operator(R, scene.poisson, n), scene.tabor, profile=Sphere(R)), n),))
-        for n in (int(0.75 * most), int(most))
-    ]
+    hows = [Series(nodes, number, finest=0.35, growth=1.8) for nodes, number in ((13, 30.0), (15, 40.0))]
+    return [Standing(series(scene, how)) for how in hows]

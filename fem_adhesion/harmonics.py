@@ -1,0 +1,349 @@
+"""The whole elastic sphere in Legendre polynomials: a solver that shares no operator with the finite elements.
+
+Axisymmetric Navier solutions regular at the centre, A. I. Lur'e, Three-dimensional Problems of the Theory of Elasticity
+(1964), for a sphere of radius 1 and each degree n, with x = cos(theta), P = P_n(x) and D = dP_n/dtheta:
+
+    u_r = [A (n + 1)(n - 2 + 4 nu) + B n] P,    sigma_r / 2 G = [A (n + 1)(n^2 - n - 2 - 2 nu) + B n (n - 1)] P,
+    u_t = [A (n + 5 - 4 nu) + B] D,             tau_rt / 2 G = [A (n^2 + 2 n - 1 + 2 nu) + B (n - 1)] D.
+
+Vertical tractions that mirror each other in the equator's plane need even n alone; that plane then moves without
+friction and with u_z = 0, as the mid-plane of a hemisphere in the sliding grip does.
+
+A pressure is a polynomial in each cell of the surface, as on a half-space; its coefficients are integrals by Gauss's
+rule. The harmonics must resolve the spike of tension at the edge of a contact.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import count, islice, pairwise
+
+import numpy as np
+
+from fem_adhesion.scene import Scene
+from halfspace import compliance, grid
+from halfspace.breathing import FlatCoordinate
+from halfspace.compliance import Array, ElasticOperator
+from halfspace.contact import CONTACT_RADIUS, ContactProblem, spike_width
+from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.errors import InputError
+from halfspace.events import Located
+from halfspace.ladder import Rung, climb
+from halfspace.limits import require_load, require_rtol
+from halfspace.profiles import Paraboloid, Profile, between_spheres
+from halfspace.sized import AlongCurve, Made, SizedBody
+from halfspace.values import Valued
+
+# The sphere
+
+
+def legendre(harmonics: int, x: Array) -> tuple[Array, Array]:
+    """P_n and dP_n/dtheta at x = cos(theta) of the first even n, each (harmonics, x.size)."""
+    P, odd = np.array(list(islice(_even(x), harmonics))).swapaxes(0, 1)
+    sine = np.sqrt((1 - x) * (1 + x))
+    return P, 2.0 * np.arange(harmonics)[:, None] * (x * P - odd) / np.where(sine > 0, sine, 1.0)
+
+
+def _even(x: Array) -> Iterator[tuple[Array, Array]]:
+    """P_n and P_(n - 1) at x of the even n one after the other."""
+    even, odd = np.ones(x.size), x
+    yield even, odd
+    for n in count(2, 2):
+        even = ((2 * n - 1) * x * odd - (n - 1) * even) / n
+        yield even, odd
+        odd = ((2 * n + 1) * x * even - n * odd) / (n + 1)
+
+
+def _traction(p: Array) -> tuple[Array, Array]:
+    """Coefficients of t_r = -p x^2 by P_n and of t_theta = p x sin(theta) by D_n, from int_0^1 p P_n dx of the even n.
+
+    They are (2 n + 1) int t_r P_n dx and (2 n + 1)/(n (n + 1)) int t_theta D_n dx, and x^2 P_n and x sin(theta) D_n are
+    sums of three P_n; so there is one n less.
+    """
+    n = 2.0 * np.arange(len(p) - 1)[:, None]
+    above, here, below = p[1:], p[:-1], np.concatenate([0 * p[:1], p[:-2]])
+    up, down = (n + 1) / (2 * n + 3), n / (2 * n - 1)
+    normal = up * ((n + 2) * above + (n + 1) * here) + down * (n * here + (n - 1) * below)
+    shear = ((n + 2) * above + (n + 1) * here) / (2 * n + 3) - (n * here + (n - 1) * below) / (2 * n - 1)
+    return -normal, shear
+
+
+def _displacements(poisson: float, normal: Array, shear: Array) -> tuple[Array, Array]:
+    """Coefficients of u_r by P_n and of u_theta by D_n, from those of the traction; 2 G = 1 - nu."""
+    nu, n = poisson, 2.0 * np.arange(1, len(normal))[:, None]
+    a, b = (n + 1) * (n**2 - n - 2 - 2 * nu), n * (n - 1)
+    c, d = n**2 + 2 * n - 1 + 2 * nu, n - 1
+    A = (d * normal[1:] - b * shear[1:]) / (a * d - b * c)
+    B = (a * shear[1:] - c * normal[1:]) / (a * d - b * c)
+    uniform = normal[:1] * (1 - 2 * nu) / (1 + nu)  # n = 0: hydrostatic
+    radial = np.concatenate([uniform, A * (n + 1) * (n - 2 + 4 * nu) + B * n])
+    polar = np.concatenate([0 * uniform, A * (n + 5 - 4 * nu) + B])
+    return radial / (1 - nu), polar / (1 - nu)
+
+
+def _deflections(R: float, poisson: float, radii: Array, p: Array) -> Array:
+    """Deflections -u_z = -u_r cos(theta) + u_theta sin(theta) at radii, one column for each of the coefficients."""
+    sine = radii / R
+    x = np.sqrt((1 - sine) * (1 + sine))
+    radial, polar = _displacements(poisson, *_traction(p))
+    P, D = legendre(len(radial), x)
+    return np.asarray(R * ((D * sine).T @ polar - (P * x).T @ radial))
+
+
+# Its surface in cells
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Cells(Valued):
+    """Cells of a surface with Gauss's points as nodes, in which a pressure is a polynomial of the radius.
+
+    Parameters
+    ----------
+    lines : (m + 1,) array
+        Radii of their ends in beta, from 0.
+    nodes : int
+        Of each.
+    """
+
+    lines: Array
+    nodes: int
+
+    @property
+    def places(self) -> Array:
+        """Radii of the nodes, (m, nodes)."""
+        t, _ = grid.gauss_legendre(self.nodes)
+        return np.asarray(self.lines[:-1, None] + np.diff(self.lines)[:, None] / 2 * (1 + t))
+
+    def operator(self, compliance: Array) -> ElasticOperator:
+        """Operator with a compliance (q, q)."""
+        (_, w), radii = grid.gauss_legendre(self.nodes), self.places
+        weights = np.pi * radii * np.diff(self.lines)[:, None] * w
+        number = np.arange(radii.size).reshape(radii.shape)
+        return ElasticOperator(radii.ravel(), weights.ravel(), compliance, self.lines, number)
+
+    def coefficients(self, R: float, harmonics: int) -> Array:
+        """Integrals by dx = d cos(theta) of the nodes' polynomials by the even P_n on a sphere of radius R.
+
+        One more than asked for, (harmonics + 1, q). Each cell has Gauss's points enough for the last.
+        """
+        ends = np.arcsin(np.minimum(self.lines / R, 1.0))
+        rules = [_gauss(a, b, self.nodes, harmonics) for a, b in pairwise(ends)]
+        theta = np.concatenate([points for points, _ in rules])
+        parts = [
+            (np.sin(points) * weights)[:, None] * _lagrange(nodes, R * np.sin(points))
+            for (points, weights), nodes in zip(rules, self.places, strict=True)
+        ]
+        cuts = np.cumsum([len(points) for points, _ in rules])[:-1]
+        rows, found = _even(np.cos(theta)), []
+        for first in range(0, harmonics + 1, BLOCK):
+            block = np.array([P for P, _ in islice(rows, min(BLOCK, harmonics + 1 - first))])
+            of_cells = np.split(block, cuts, axis=1)
+            found.append(np.hstack([values @ part for values, part in zip(of_cells, parts, strict=True)]))
+        return np.concatenate(found)
+
+
+BLOCK = 256  # harmonics at a time
+
+
+def _gauss(a: float, b: float, nodes: int, harmonics: int) -> tuple[Array, Array]:
+    """Gauss's points and weights from a to b, for polynomials of so many nodes times the harmonics."""
+    pieces = 1 + int(harmonics * (b - a) / PIECE)
+    half, middles = (b - a) / pieces / 2, a + (b - a) * (np.arange(pieces) + 0.5) / pieces
+    t, w = grid.gauss_legendre(nodes + MORE + math.ceil(2 * harmonics * half))
+    return (middles[:, None] + half * t).ravel(), np.tile(half * w, pieces)
+
+
+PIECE, MORE = 30.0, 8  # largest phase of the last harmonic over a rule, in 2 rad, and points that make it converge
+
+
+def _lagrange(places: Array, x: Array) -> Array:
+    """Values (p, k) at x (p,) of the Lagrange polynomials through places (k,)."""
+    others = (np.delete(places, k) for k in range(places.size))
+    ratios = ((x[:, None] - rest) / (place - rest) for place, rest in zip(places, others, strict=True))
+    return np.stack([ratio.prod(axis=1) for ratio in ratios], axis=1)
+
+
+def sphere_compliance(R: float, poisson: float, cells: Cells, harmonics: int, radii: Array | None = None) -> Array:
+    """Compliance of a sphere, E* = 1: deflections at some radii by pressures on the projected area at the nodes.
+
+    Parameters
+    ----------
+    R : float
+        Radius in beta.
+    poisson : float
+        Poisson's ratio.
+    cells : Cells
+        Of the surface of this sphere, or of another one under which it lies.
+    harmonics : int
+        How many even n.
+    radii : (k,) array, optional
+        In beta; those of the nodes unless given.
+    """
+    at = cells.places.ravel() if radii is None else radii
+    return _deflections(R, poisson, at, cells.coefficients(R, harmonics))
+
+
+# The solver
+
+# Harmonics in R over the width of the spike of tension: for each digit asked for, for each rung more, of the curve
+PER_DIGIT, PER_RUNG, OF_CURVE = 2.5, 6.0, 10.0
+MOST = 5000  # harmonics on the first rung above the lowest
+FINEST, GROWTH = 0.4, 2.0  # of the cells: at the contact edge in widths of the spike of tension, and of their lengths
+TWIN = (0.75, 0.87)  # both of a twin, in those of its sibling
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How finely the sphere is discretised.
+
+    Attributes
+    ----------
+    nodes : int
+        Of each cell.
+    harmonics : float
+        How many, in R over the width of the spike of tension at the contact edge.
+    finest, growth : float
+        Of the cells: length at the contact edge in widths of the spike, and ratio of neighbours.
+    """
+
+    nodes: int
+    harmonics: float
+    finest: float = FINEST
+    growth: float = GROWTH
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Standing(Valued):
+    """Stage of a ladder on which every event has cells of its own that stand still, finest where its contact ends.
+
+    Parameters
+    ----------
+    body : SizedBody
+        The body.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+    charts : list
+        Those made so far, with the contact radii that they were made for.
+    """
+
+    body: SizedBody
+    to_load: float = COMPRESSION
+    charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event, made unless one made before will do."""
+        body, radius = self.body, float(event.point.observables[CONTACT_RADIUS])
+        radius = radius if radius > body.length else 0.0
+        for made_for, chart in self.charts:
+            if abs(radius - made_for) <= NEAR * body.length:
+                return chart
+        operator, unknowns = body.make(body.lines(body.coordinate.of(radius)))
+        chart = Chart(ContactProblem(operator, body.tabor, profile=body.profile), unknowns)
+        self.charts.append((radius, chart))
+        return chart
+
+    @property
+    def everywhere(self) -> AlongCurve:
+        """Cells that follow the contact, for every point of a curve."""
+        return AlongCurve(self.body, self.to_load, APART)
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a chart made so far."""
+        return max(chart.unknowns for _, chart in self.charts)
+
+
+NEAR = 0.1  # of the finest cell, that a contact may end beside the place for which a grid was made
+APART = 1.7  # ratio of the radii between which the operator of a curve is interpolated
+
+
+def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> EquilibriumPath:
+    """Trace the load-approach curve of a sphere in the sliding grip and solve for its events by spherical harmonics.
+
+    Parameters
+    ----------
+    scene : Scene
+        A hemisphere in the sliding grip at small strain, with a counter-body or without.
+    rtol, to_load : float
+        As in `halfspace.trace`.
+
+    Raises
+    ------
+    InputError
+        If an input is out of range, or it takes too many harmonics.
+    halfspace.errors.NotConverged
+        If the curve cannot be traced.
+    """
+    rtol, to_load = require_rtol(rtol), require_load(to_load)
+    require_few(scene, rtol)
+
+    def rung(level: int) -> Rung:
+        above, below = (resolution_for(rtol, max(n, 0)) for n in (level, level - 1))
+        twin = Resolution(below.nodes, below.harmonics, FINEST * TWIN[0], GROWTH * TWIN[1])
+        curve = sized_body(scene, Resolution(above.nodes, OF_CURVE))
+        stage, other = (Standing(sized_body(scene, how), to_load) for how in (above, twin))
+        settings = {"nodes": above.nodes, "harmonics": counts(scene, above)}
+        return Rung(partial(curve.curve, to_load), (stage,), settings, other if level else None)
+
+    return climb(rtol, rung, to_load=to_load, most_rungs=2)
+
+
+def resolution_for(rtol: float, level: int) -> Resolution:
+    """Resolution of a level, whose events are right to about `rtol` at level 0 and a decade better at each above it."""
+    digits = -math.log10(rtol)
+    nodes = min(math.ceil(3 + digits - 1e-9) + 2 * level, 16)
+    return Resolution(nodes, PER_DIGIT * digits + PER_RUNG * level)
+
+
+def counts(scene: Scene, how: Resolution) -> list[int]:
+    """Harmonics of each sphere."""
+    return [math.ceil(how.harmonics * R / spike_width(scene.tabor)) for R in _radii(scene) if math.isfinite(R)]
+
+
+def require_few(scene: Scene, rtol: float) -> None:
+    """Refuse a scene that takes too many harmonics; raise InputError."""
+    most = max(counts(scene, resolution_for(rtol, 1)))
+    if most > MOST:
+        raise InputError(
+            f"radius_ratio = {scene.radius_ratio:g} at tabor {scene.tabor:g} takes {most} harmonics of the sphere, "
+            f"limit {MOST}; take a smaller one, a smaller tabor or a larger rtol"
+        )
+
+
+def _radii(scene: Scene) -> tuple[float, ...]:
+    """Radii of the bodies in beta, infinite for a half-space."""
+    R, counter = scene.sphere_radius, scene.counter
+    return (R,) if counter is None else (R * (1 + 1 / counter.radius), R * (1 + counter.radius))
+
+
+RIM = 1.7 / (1 + 1.7**2 / 4)
+"""Part of the smaller sphere's radius beyond which both bodies of a pair are taken as rigid."""
+CROWDED = 0.3 ** np.arange(5)
+"""Cells crowd to the equator, where the profile of a sphere has a vertical tangent, in parts of the last six."""
+
+
+def sized_body(scene: Scene, how: Resolution) -> SizedBody:
+    """Body of a scene, to be discretised on any cells of its surface."""
+    R, counter = _radii(scene)[0], scene.counter
+    gap = between_spheres(scene.sphere_radius, counter.radius if counter else math.inf)
+    profile: Profile = Paraboloid(R) if scene.profile == "paraboloid" else gap
+    outer = R * np.append(1 - (1 - (RIM if counter else 0.98)) * CROWDED, 1.0)
+    make = partial(_made, scene, how.nodes, counts(scene, how))
+    return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, FlatCoordinate())
+
+
+def _made(scene: Scene, nodes: int, harmonics: list[int], lines: Array) -> Made:
+    """Sphere, or two bodies whose compliances add."""
+    (R, *others), cells, counter = _radii(scene), Cells(lines, nodes), scene.counter
+    found = sphere_compliance(R, scene.poisson, cells, harmonics[0])
+    if counter:
+        if math.isinf(others[0]):
+            other = compliance.panels(lines, nodes).compliance
+        else:
+            other = sphere_compliance(others[0], counter.poisson, cells, harmonics[1])
+        yields = cells.places.ravel() < RIM * R
+        found = ((1 - counter.share) * found + counter.share * other) * np.outer(yields, yields)
+    return cells.operator(found), found.shape[0]
