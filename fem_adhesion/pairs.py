@@ -69,24 +69,26 @@ def pair_operator(
     rings : (k,) array
         Sizes of the rings around their equators.
     """
-    R1, R2 = radii_of(R, counter)
-    end = float(bodies.Stereographic(R1).radius(lines[-1:])[0][0])
-    first = bodies.hemisphere(R1, lines, depths(bodies.DEPTH * R1), rings=rings)
-    second, held = (
-        (_block(lines, R1, depths), point_load) if np.isinf(R2) else (_larger(lines, R1, R2, depths, rings), grip)
-    )
+    first, second = pair_meshes(lines, depths, R, counter, rings)
+    held = point_load if np.isinf(counter.radius) else grip
     one, other = (
-        condense(
-            Space(bodies.with_contact_to(mesh, end), ElementQuadP(degree)),
-            nu,
-            far_field=far,
-            stiffness=stiffness_for(nu),
-        )
+        condense(Space(mesh, ElementQuadP(degree)), nu, far_field=far, stiffness=stiffness_for(nu))
         for mesh, nu, far in ((first, poisson, grip), (second, counter.poisson, held))
     )
     a, b = one.operator, other.operator
     compliance = (1 - counter.share) * a.compliance + counter.share * b.compliance
     return ElasticOperator(a.radii, a.weights, compliance, a.cells, a.cell_nodes), one.unknowns + other.unknowns
+
+
+def pair_meshes(
+    lines: Array, depths: Callable[[float], Array], R: float, counter: Counter, rings: Array
+) -> tuple[Any, Any]:
+    """Meshes of both bodies for `pair_operator`, whose contact ends with the cells that are given."""
+    R1, R2 = radii_of(R, counter)
+    end = float(bodies.Stereographic(R1).radius(lines[-1:])[0][0])
+    first = bodies.hemisphere(R1, lines, depths(bodies.DEPTH * R1), rings=rings)
+    second = _block(lines, R1, depths) if np.isinf(R2) else _larger(lines, R1, R2, depths, rings)
+    return bodies.with_contact_to(first, end), bodies.with_contact_to(second, end)
 
 
 def with_rigid_rim(operator: ElasticOperator, lines: Array, coordinate: bodies.Stereographic) -> ElasticOperator:

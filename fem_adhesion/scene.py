@@ -158,6 +158,24 @@ class Scene:
         """R/beta, infinite for a paraboloid on a half-space."""
         return math.sqrt(self.radius_ratio / self.tabor) if self.radius_ratio else math.inf
 
+    @property
+    def told(self) -> list[str]:
+        """What it is, in words: Tabor parameter, material and body, and what else is not as usual."""
+        parts = {
+            "under a sphere": self.body == "block" and self.profile == "sphere",
+            "bonded": self.grip == "bonded",
+            f"cap of {self.cap_angle:g} degrees": self.body == "sphere",
+            f"traction per {self.traction}": self.traction != "projected",
+            "finite strain": self.strain == "finite",
+        }
+        words = [f"tabor {self.tabor:g}", f"poisson {self.poisson:g}", str(self.body)]
+        words += [f"R/eps {self.radius_ratio:.4g}"] if self.radius_ratio else []
+        words += [word for word, holds in parts.items() if holds]
+        if self.counter:
+            share, radius = self.counter.share, self.counter.radius
+            words.append(f"counter-body with {share:.4g} of the compliance, radius {radius:.4g}")
+        return words
+
     def _require_radius_ratio(self) -> None:
         if self.sized and self.radius_ratio is None:
             raise InputError(f"radius_ratio = None for {self._what()}, limit: a number; give R/eps")

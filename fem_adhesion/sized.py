@@ -66,8 +66,8 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
 
     Where a body is held the stress may be singular, which a degree more does not tell: other cells are a twin there.
     """
-    degree = int(np.clip(4 + np.ceil(np.log(FOURTH / rtol) / np.log(PER_DEGREE) - 1e-9), 4, 8)) + level
-    how, below, curve = (_with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
+    degree = degree_for(rtol) + level
+    how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
     settings = asdict(how) | {"curve_degree": curve.degree, "rings": len(corner_rings(scene, how))}
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
     other = AroundEvents(sized_body(scene, twin), *surroundings(rtol, level - 1), to_load)
@@ -81,7 +81,12 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     )
 
 
-def _with_rings(degree: int) -> Discretisation:
+def degree_for(rtol: float) -> int:
+    """Degree of the elements on the lowest rung."""
+    return int(np.clip(4 + np.ceil(np.log(FOURTH / rtol) / np.log(PER_DEGREE) - 1e-9), 4, 8))
+
+
+def with_rings(degree: int) -> Discretisation:
     """Discretisation whose rings leave less than its degree does."""
     return Discretisation(degree, rings=min(degree - 2, MOST_RINGS))
 

@@ -26,8 +26,17 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
-from skfem import Basis, BilinearForm, ElementQuadP, ElementVector, FacetBasis, MeshQuad
-from skfem.helpers import ddot, div, sym_grad
+from skfem import (
+    Basis,
+    BilinearForm,
+    ElementQuadP,
+    ElementTriP3,
+    ElementTriP4,
+    ElementVector,
+    FacetBasis,
+    MeshQuad,
+    MeshTri,
+)
 
 from halfspace.errors import NotConverged
 from halfspace.values import Valued
@@ -66,7 +75,18 @@ def paraboloid(r: Array) -> Array:
     return r**2 / 2
 
 
+def sphere(r: Array, R: float) -> Array:
+    """The same of a sphere of radius R (beta): R (R - sqrt(R^2 - r^2))."""
+    return np.asarray(r**2 / (1 + np.sqrt((1 - r / R) * (1 + r / R))))
+
+
 # The weak form
+
+
+def strains(u: Any, r: Array) -> tuple[Array, Array, Array, Array]:
+    """Radial, vertical and hoop strain, and twice the shear strain, of displacements at radii r."""
+    (u_rr, u_rz), (u_zr, u_zz) = u.grad
+    return u_rr, u_zz, u[0] / r, u_rz + u_zr
 
 
 def elasticity(poisson: float) -> Any:
@@ -76,10 +96,10 @@ def elasticity(poisson: float) -> Any:
 
     def form(u: Any, v: Any, w: Any) -> Any:
         r = w.x[0]
-        hoop_u, hoop_v = u[0] / r, v[0] / r
-        dilatations = (div(u) + hoop_u) * (div(v) + hoop_v)
-        strains = ddot(sym_grad(u), sym_grad(v)) + hoop_u * hoop_v
-        return (lam * dilatations + 2 * G * strains) * 2 * np.pi * r
+        (u_r, u_z, hoop_u, shear_u), (v_r, v_z, hoop_v, shear_v) = strains(u, r), strains(v, r)
+        dilatations = (u_r + u_z + hoop_u) * (v_r + v_z + hoop_v)
+        normal = u_r * v_r + u_z * v_z + hoop_u * hoop_v
+        return (lam * dilatations + 2 * G * normal + G * shear_u * shear_v) * 2 * np.pi * r
 
     return BilinearForm(form)
 
@@ -99,6 +119,8 @@ class Body(Valued):
         u_z at the points from the unknowns.
     radii, area : (q,) array
         Of the points, in beta, and their parts of dA, projected on the plane of the contact.
+    depths : (q,) array
+        How deep the points are under the pole, in beta.
     rim : float
         Radius at which the surface ends.
     reaction : (n,) array
@@ -111,6 +133,7 @@ class Body(Valued):
     values: sparse.csr_array
     radii: Array
     area: Array
+    depths: Array
     rim: float
     reaction: Array
     model: Body | None = None
@@ -143,42 +166,52 @@ class Body(Valued):
 
     def scaled(self, a: float) -> Body:
         """The same body a times as large: its stiffness grows as its size."""
-        lengths = self.stiffness * a, self.values, self.radii * a, self.area * a**2, self.rim * a, self.reaction * a
-        return Body(*lengths, self, a)
+        points = self.values, self.radii * a, self.area * a**2, self.depths * a
+        return Body(self.stiffness * a, *points, self.rim * a, self.reaction * a, self, a)
 
 
-def discretise(mesh: Any, degree: int, poisson: float, *, slides: bool = False, plate: bool = False) -> Body:
+def discretise(
+    mesh: Any, degree: int, poisson: float, *, slides: bool = False, plate: bool = False, on_surface: bool = False
+) -> Body:
     """Assemble a body on a mesh that names its boundaries axis, contact and far, and is held at the far one.
 
     Parameters
     ----------
-    mesh : skfem.MeshQuad
-        In beta, the body below its contact surface.
+    mesh : skfem.Mesh
+        In beta, the body below its contact surface, of quadrilaterals or triangles.
     degree : int
-        Of the elements, 3 or more.
+        Of the elements, 3 or more; 4 at most of triangles.
     poisson : float
         Poisson's ratio.
     slides : bool
         Whether the far boundary may move along r.
     plate : bool
         Whether it may move as a whole along z, on a spring of stiffness 1; that is then the last unknown.
+    on_surface : bool
+        Whether dA is the area of the surface itself, not that projected on the plane of the contact.
     """
-    element = ElementVector(ElementQuadP(degree))
+    triangles = isinstance(mesh, MeshTri)
+    element = ElementVector(TRIANGLES[degree]() if triangles else ElementQuadP(degree))
     basis = Basis(mesh, element, intorder=2 * degree + 1)
     # The law is steeper than any polynomial: 2 p + 2 points on each facet.
     surface = FacetBasis(mesh, element, mapping=_mapping(mesh), facets="contact", intorder=4 * degree + 3)
     axis, far = basis.get_dofs("axis").all(["u^1"]), basis.get_dofs("far")
     held = np.concatenate([axis, far.all(["u^2"] if slides else ["u^1", "u^2"])])
     T = sparse.eye_array(basis.N, format="csc")[:, np.setdiff1d(np.arange(basis.N), held)]
-    # A translation: of these elements' functions those of the vertices alone add up to 1.
-    moved = sparse.csc_array(np.isin(np.arange(basis.N), far.nodal["u^2"]).astype(float)[:, None])
+    # A translation of what is held: of quadrilaterals' functions those of the vertices alone add up to 1.
+    upwards = far.all(["u^2"]) if triangles else far.nodal["u^2"]
+    moved = sparse.csc_array(np.isin(np.arange(basis.N), upwards).astype(float)[:, None])
     T = sparse.csc_array(sparse.hstack([T, moved])) if plate else T
     K = sparse.csr_array(elasticity(poisson).assemble(basis))
     reaction = 0 * last(T.shape[1]) if plate else (moved.T @ K @ T).toarray()[0]
-    radii, area = surface.global_coordinates()[0], 2 * np.pi * surface.normals[1] * surface.dx
-    values, rim = sparse.csr_array(surface_values(surface) @ T), float(mesh.p[0, mesh.facets[:, surface.find]].max())
-    body = Body(sparse.csc_array(T.T @ K @ T), values, radii.ravel(), (radii * area).ravel(), rim, reaction)
+    (radii, heights), rim = surface.global_coordinates(), float(mesh.p[0, mesh.facets[:, surface.find]].max())
+    area = 2 * np.pi * radii * surface.dx * (1.0 if on_surface else surface.normals[1])
+    points = sparse.csr_array(surface_values(surface) @ T), radii.ravel(), area.ravel(), -heights.ravel()
+    body = Body(sparse.csc_array(T.T @ K @ T), *points, rim, reaction)
     return on_spring(body, 1.0) if plate else body
+
+
+TRIANGLES = {3: ElementTriP3, 4: ElementTriP4}  # by the degree; the vertices of each cell ascend
 
 
 def _mapping(mesh: Any) -> Any:
@@ -214,9 +247,26 @@ def half_space(finest: float, size: float, degree: int, poisson: float) -> Body:
     the work 4 pi^2/15 on a half-space, and what it falls short of that on the box is done on the spring.
     """
     body = discretise(half_space_mesh(finest, size), degree, poisson, plate=True)
-    forces = body.forces(np.sqrt(np.maximum(1 - body.radii**2, 0)))
-    missed = 1 + (4 * np.pi**2 / 15 - float(forces @ body.yielding(forces))) / (2 * np.pi / 3) ** 2
+    return on_ground(body, np.sqrt(np.maximum(1 - body.radii**2, 0)), 2 * np.pi / 3, 4 * np.pi**2 / 15)
+
+
+def on_ground(body: Body, pressure: Array, load: float, work: float) -> Body:
+    """A body on a plate, on a spring with which a pressure of this load does the work that it does on a half-space."""
+    forces = body.forces(pressure)
+    missed = 1 + (work - float(forces @ body.yielding(forces))) / load**2
     return on_spring(body, 1 / missed - 1)
+
+
+def opposed(first: Body, second: Body, share: float) -> Body:
+    """Two bodies that face each other at points of the same radii, the second with this share of the compliance."""
+    (a, K, by_first), (b, L, _) = (
+        (np.argsort(body.radii), body.stiffness / part, body.reaction / part)
+        for body, part in ((first, 1 - share), (second, share))
+    )
+    values = sparse.csr_array(sparse.hstack([first.values[a], second.values[b]]))
+    points = values, first.radii[a], first.area[a], first.depths[a]
+    stiffness = sparse.csc_array(sparse.block_diag([K, L]))
+    return Body(stiffness, *points, first.rim, np.append(by_first, 0 * second.reaction))
 
 
 def last(size: int) -> Array:
@@ -260,12 +310,15 @@ class Contact(Valued):
     endless : bool
         Whether the surfaces go on beyond the mesh, undeformed: a paraboloid over a half-space. As dh = mu r dr, the
         load left out is 2 pi w and the energy 2 pi int w dh, both from the gap at the rim on.
+    rigid : pair of (k,) arrays
+        Radii and parts of dA of points beyond the mesh that attract and do not yield.
     """
 
     body: Body
     tabor: float
     heights: Heights = paraboloid
     endless: bool = True
+    rigid: tuple[Array, Array] = (np.empty(0), np.empty(0))
 
     @cached_property
     def height(self) -> Array:
@@ -278,8 +331,11 @@ class Contact(Valued):
 
     def _rim(self, approach: float) -> float:
         """Gap where the mesh ends; infinite, so that nothing is left out, where the surfaces do."""
-        rim = self.heights(np.array(self.body.rim))
-        return 1 - approach + self.tabor * float(rim) if self.endless else np.inf
+        return 1 - approach + self.tabor * float(self.heights(np.array(self.body.rim))) if self.endless else np.inf
+
+    def _beyond(self, approach: float) -> Array:
+        """Gaps at the rigid points."""
+        return np.asarray(1 - approach + self.tabor * self.heights(self.rigid[0]))
 
     def load(self, tension: Array, approach: float) -> float:
         """W in R dgamma, positive in compression, of the tension at the points."""
@@ -287,11 +343,13 @@ class Contact(Valued):
 
     def load_beyond(self, approach: float) -> float:
         """Part of the load that is beyond the mesh."""
-        return 2 * np.pi * float(surface_energy(self._rim(approach)))
+        rigid = self.tabor * float(self.rigid[1] @ tension(self._beyond(approach)))
+        return 2 * np.pi * float(surface_energy(self._rim(approach))) - rigid
 
     def load_slope(self, rate: Array, approach: float) -> float:
         """dW/dalpha in R dgamma/eps of the rate -dsigma/dalpha."""
-        return self.tabor * self.body.integral(rate) - 2 * np.pi * float(tension(self._rim(approach)))
+        rigid = self.tabor * float(self.rigid[1] @ tension_slope(self._beyond(approach)))
+        return self.tabor * self.body.integral(rate) - 2 * np.pi * float(tension(self._rim(approach))) + rigid
 
     def displacement(self, h: Array) -> Array:
         """What the tensions of given gaps make of the body, whether or not it leaves those gaps."""
@@ -300,6 +358,7 @@ class Contact(Valued):
     def energy(self, u: Array, approach: float) -> float:
         """Potential energy in R dgamma eps."""
         inside = float(u @ (self.body.stiffness @ u)) / 2 + self.body.integral(surface_energy(self.gap(u, approach)))
+        inside += float(self.rigid[1] @ surface_energy(self._beyond(approach)))
         return self.tabor * inside + 2 * np.pi * float(energy_beyond(self._rim(approach)))
 
     def far_reaction(self, u: Array) -> float:
@@ -401,17 +460,20 @@ FLAT, NEARBY = 1e-2, 2e-3  # first steps, of approach and load
 FARTHEST, TRIES = 50.0, 6  # the farthest in such steps, how many are tried
 
 
-def turning_point(contact: Contact, h: Array, approach: float, load: float, *, under_load: bool) -> Turn | None:
+def turning_point(
+    contact: Contact, h: Array, approach: float, load: float, *, under_load: bool, finer: float = 1.0
+) -> Turn | None:
     """Where the equilibria near a state turn, or None where they do not.
 
     Under fixed grips, at the fold of a jump, the determinant of the tangent changes its sign; that is passed at given
     loads. Under a dead load, at an extremum of the load, that of the tangent bordered by the load does, det A times
     dW/dalpha; it is passed at given approaches. The root is the secant's, the other coordinate that of the cubic
-    through both states.
+    through both states; both err by powers of the steps, which may be that much finer.
     """
     place = approach if under_load else load
     # The extremum of the load is flat; along the load an edge moves by a spike's width soon.
     step = FLAT * (1 + abs(place)) if under_load else NEARBY * (1 + abs(place)) * min(1.0, 9 / contact.tabor**2)
+    step /= finer
     a = _at(contact, place - step, h, approach, under_load=under_load)
     place, step = place - step, 2 * step
     for _ in range(TRIES):

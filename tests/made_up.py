@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 from fem_adhesion import Scene
-from fem_adhesion.studies.comparison import Row
+from fem_adhesion.studies.comparison import SOLVERS, Row
 from fem_adhesion.studies.crosscheck import Case, Failure
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.events import Event
@@ -32,7 +32,8 @@ MISSING = Row("jump_off load", "R dgamma", Estimate(-2.25, 1e-5), None, float("n
 
 
 def case(*rows, tabor=2.0):
-    return Case(Scene(tabor), made_up_path(100.0, 7.5, 111), made_up_path(200.0, 9.25, 222), rows)
+    paths = made_up_path(100.0, 7.5, 111), made_up_path(200.0, 9.25, 222)
+    return Case(Scene(tabor), dict(zip(SOLVERS, paths, strict=True)), rows)
 
 
 FAILED = Failure(Scene(3.0), "no convergence in 40 steps; try a nearer start", (WIDE,))

@@ -11,7 +11,7 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Scene, cli, convergence, elasticity
 from fem_adhesion.output.tables import crosscheck_tables
-from fem_adhesion.studies import comparison, crosscheck
+from fem_adhesion.studies import comparison, crosscheck, references
 from fem_adhesion.studies.comparison import Row
 from fem_adhesion.studies.crosscheck import Case, Failure
 from halfspace import limits
@@ -282,7 +282,8 @@ def test_agreement_is_within_the_estimates_and_they_within_the_budget_to_the_las
 def test_the_worst_verdict_reaches_table_record_and_exit_code(verdicts, overall, code, monkeypatch, tmp_path, capsys):
     solved = fem_adhesion.trace(Scene(tabor=0.5), rtol=1e-1)
     rows = tuple(_made_up(verdict) for verdict in verdicts)
-    case = Case(Scene(tabor=0.5), halfspace.trace(0.5, rtol=1e-1), solved, rows)
+    paths = halfspace.trace(0.5, rtol=1e-1), solved
+    case = Case(Scene(tabor=0.5), dict(zip(comparison.SOLVERS, paths, strict=True)), rows)
     monkeypatch.setattr(crosscheck, "run", lambda *_, **__: iter([case]))
     assert case.verdict == overall
     assert cli.main(["compare", "--tabor", "0.5", "--json", str(tmp_path / "made-up.json")]) == code
@@ -312,7 +313,7 @@ def test_the_worst_verdict_reaches_table_record_and_exit_code(verdicts, overall,
 
 def test_a_verdict_has_its_colour():
     """Green means agreement and nothing else does."""
-    case = Case(Scene(tabor=0.5), halfspace.trace(0.5, rtol=1e-1), halfspace.trace(0.5, rtol=1e-1), ())
+    case = Case(Scene(tabor=0.5), dict.fromkeys(comparison.SOLVERS, halfspace.trace(0.5, rtol=1e-1)), ())
     for verdict, style in (("agree", "green"), ("disagree", "bold red"), ("inconclusive", "yellow")):
         (table,) = crosscheck_tables(replace(case, rows=(_made_up("agree"), _made_up(verdict))))
         assert table.title == ["tabor 0.5", f"poisson 0.3: [{style}]{verdict}[/]"]
@@ -348,7 +349,7 @@ def test_a_failing_case_does_not_lose_the_others(monkeypatch):
     results = list(crosscheck.run([Scene(tabor=1.0), Scene(tabor=0.5)], rtol=1e-2))
     assert isinstance(results[0], Failure)
     assert results[0].reason == "on purpose; try another day"
-    assert [row.quantity for row in results[0].rows[:4]] == [f"operator: {name}" for name in crosscheck.PRESSURES]
+    assert [row.quantity for row in results[0].rows[:4]] == [f"operator: {name}" for name in references.PRESSURES]
     assert isinstance(results[1], Case)
 
 

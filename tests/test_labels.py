@@ -99,7 +99,8 @@ def test_each_key_of_the_record_holds_what_it_says():
         assert read == row_as_made(row)
     missing = solved["comparison"][3]
     assert (missing["first"], missing["second"], missing["error"]) == (-2.25, None, None)
-    for key, path, first in (("halfspace", made.halfspace, 100.0), ("finite_element", made.finite_element, 200.0)):
+    hs, fe = made.solutions.values()
+    for key, path, first in (("halfspace", hs, 100.0), ("finite_element", fe, 200.0)):
         assert (solved[key]["unknowns"], solved[key]["seconds"]) == (path.unknowns, path.seconds)
         assert solved[key]["settings"] == path.settings
         assert solved[key]["rtol"] == 3.7e-6

@@ -8,14 +8,19 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
     from fem_adhesion.commands.common import Parser
-    from fem_adhesion.scene import Counter
+    from fem_adhesion.scene import BodyName, Counter, Scene
     from fem_adhesion.studies.assess_contact import Contact
+
+    Group = argparse._ArgumentGroup
 
 POISSON = 0.3  # with a Tabor parameter
 MATERIAL = ("radius", "modulus", "poisson", "work_of_adhesion")
@@ -39,6 +44,14 @@ def add_contact(command: Parser, *, in_si_only: bool = False) -> None:
     hamaker = "material: Hamaker constant in the place of the spacing, A = 16 pi dgamma eps^2, as 65zJ or 6.5e-20J"
     contact.add_argument("--hamaker", help=hamaker, metavar="ENERGY")
     contact.add_argument("--counter-modulus", help="of the other body; rigid unless given", metavar="MODULUS")
+    add_other_body(contact, given, plain, in_si_only=in_si_only)
+    spring = "" if in_si_only else ", with --tabor in R dgamma/eps"
+    help_text = f"of the cantilever, as 0.2N/m{spring}; fixed grips unless given"
+    contact.add_argument("--stiffness", help=help_text, metavar="K")
+
+
+def add_other_body(contact: Group, given: str, plain: str, *, in_si_only: bool = False) -> None:
+    """Add the options of a counter-body that are not in SI, and how bodies are held."""
     contact.add_argument("--counter-poisson", type=float, help=f"of the other body: {given}", metavar="NU")
     contact.add_argument("--counter-radius", help=f"of the other body{plain}; flat unless given", metavar="RADIUS")
     if not in_si_only:
@@ -46,9 +59,42 @@ def add_contact(command: Parser, *, in_si_only: bool = False) -> None:
         contact.add_argument("--counter-share", type=float, help=share, metavar="PART")
     grip = "how a sphere is held at its mid-plane or a body at its far side; sliding unless given"
     contact.add_argument("--grip", choices=("sliding", "bonded"), help=grip)
-    spring = "" if in_si_only else ", with --tabor in R dgamma/eps"
-    help_text = f"of the cantilever, as 0.2N/m{spring}; fixed grips unless given"
-    contact.add_argument("--stiffness", help=help_text, metavar="K")
+
+
+def add_body(body: Group) -> None:
+    """Add the options of what is elastic."""
+    body.add_argument("--body", choices=("block", "hemisphere", "sphere"), help="what is elastic; block unless given")
+    body.add_argument("--mesh", type=Path, help="file with the mesh of the body", metavar="FILE")
+    body.add_argument("--profile", choices=("paraboloid", "sphere"), help="undeformed gap; paraboloid unless given")
+    cap = "half-angle of the cap over which a sphere is held, degrees; 30 unless given"
+    body.add_argument("--cap-angle", type=float, help=cap, metavar="ANGLE")
+    body.add_argument("--strain", choices=("small", "finite"), help="linear or neo-Hookean; small unless given")
+    counted = "what the surface law is counted per; projected unless given, at finite strain with matter conserved"
+    tractions = ("projected", "surface", "reference", "normal", "vertical")
+    body.add_argument("--traction", choices=tractions, help=counted)
+    ratio = "with --tabor: R/eps of a body with a size, or of a true profile"
+    body.add_argument("--radius-ratio", type=float, help=ratio, metavar="RHO")
+
+
+def body_of(options: argparse.Namespace) -> Callable[..., Scene]:
+    """What makes a scene of the body given, from the other arguments of `fem_adhesion.Scene`."""
+    from fem_adhesion.scene import Scene
+
+    if options.mesh and options.body:
+        raise InputError(f"mesh = {options.mesh} with body = {options.body}, limit: one of both; leave out --body")
+    if options.body != "sphere":
+        refuse(options, ("cap_angle",), "with --body sphere, which is held over a cap")
+    cap = {} if options.cap_angle is None else {"cap_angle": options.cap_angle}
+    body: BodyName | Path = options.mesh or options.body or "block"
+    return partial(
+        Scene,
+        body=body,
+        profile=options.profile or "paraboloid",
+        grip=options.grip or "sliding",
+        traction=options.traction or "projected",
+        strain=options.strain or "small",
+        **cap,
+    )
 
 
 def given(options: argparse.Namespace, *names: str) -> list[str]:

@@ -6,14 +6,15 @@ import argparse
 import json
 import math
 from contextlib import ExitStack
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from fem_adhesion.commands.common import AGREE, console_beside, progress_bar, require_distinct, written
 from fem_adhesion.commands.contact import (
     POISSON,
+    add_body,
     add_contact,
+    body_of,
     counter_of,
     material_unless_tabor,
     refuse,
@@ -23,7 +24,7 @@ from halfspace.errors import InputError
 
 if TYPE_CHECKING:
     from fem_adhesion.commands.common import Commands, Parser
-    from fem_adhesion.scene import BodyName, ProfileName, Scene
+    from fem_adhesion.scene import Scene
     from fem_adhesion.studies.assess_contact import Contact
     from fem_adhesion.studies.curves import Curves, Question, SolverName
 
@@ -49,15 +50,7 @@ def _add_body(curve: Parser) -> None:
     body = curve.add_argument_group("body and solver")
     solvers = ("half-space", "fem", "both")
     body.add_argument("--solver", choices=solvers, help="half-space unless the body is another, fem then")
-    body.add_argument("--body", choices=("block", "hemisphere", "sphere"), help="what is elastic; block unless given")
-    body.add_argument("--mesh", type=Path, help="file with the mesh of the body", metavar="FILE")
-    body.add_argument("--profile", choices=("paraboloid", "sphere"), help="undeformed gap; paraboloid unless given")
-    body.add_argument("--strain", choices=("small", "finite"), help="linear or neo-Hookean; small unless given")
-    counted = "what the surface law is counted per; projected unless given, at finite strain with matter conserved"
-    tractions = ("projected", "surface", "reference", "normal", "vertical")
-    body.add_argument("--traction", choices=tractions, help=counted)
-    ratio = "with --tabor: R/eps of a body with a size, or of a true profile"
-    body.add_argument("--radius-ratio", type=float, help=ratio, metavar="RHO")
+    add_body(body)
     body.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy, 1e-9 to 1e-1")
     body.add_argument("--to-load", type=float, default=5.0, help="load in R dgamma at which it ends", metavar="W")
 
@@ -220,27 +213,14 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
 
 
 def _scene(options: argparse.Namespace, contact: Contact | None) -> Scene:
-    from fem_adhesion.scene import Scene
-
-    if options.mesh and options.body:
-        raise InputError(f"mesh = {options.mesh} with body = {options.body}, limit: one of both; leave out --body")
-    body: BodyName | Path = options.mesh or options.body or "block"
-    profile: ProfileName = options.profile or "paraboloid"
-    sized = body != "block" or profile == "sphere"
-    made = partial(
-        Scene,
-        body=body,
-        profile=profile,
-        grip=options.grip or "sliding",
-        traction=options.traction or "projected",
-        strain=options.strain or "small",
-    )
+    made = body_of(options)
     if contact is None:
         poisson = POISSON if options.poisson is None else options.poisson
         return made(options.tabor, poisson, radius_ratio=options.radius_ratio, counter=counter_of(options))
     refuse(options, ("radius_ratio",), f"with --tabor, as the material has its own {contact.units.radius_ratio:.4g}")
     units = contact.units
-    counter = contact.counter if body != "block" else None  # two half-spaces are one, of their contact modulus
+    block = not options.mesh and options.body in (None, "block")
+    counter = None if block else contact.counter  # two half-spaces are one, of their contact modulus
     poisson = contact.smaller_poisson if counter else contact.poisson
-    ratio = units.radius_ratio if sized else None
+    ratio = None if block and options.profile != "sphere" else units.radius_ratio
     return made(units.tabor, poisson, radius_ratio=ratio, counter=counter)

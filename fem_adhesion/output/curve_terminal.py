@@ -94,13 +94,7 @@ def cells(event: Event, units: Mapping[str, Scale], tolerance: Tolerance) -> Ite
 
 def _title(curves: Curves) -> Iterator[str]:
     scene, units = curves.question.scene, curves.question.units
-    yield f"tabor {scene.tabor:.6g}"
-    yield f"poisson {scene.poisson:g}"
-    yield escape(str(scene.body))
-    if scene.radius_ratio:
-        yield f"R/eps {scene.radius_ratio:.4g}"
-    if scene.counter:
-        yield f"counter-body with {scene.counter.share:.4g} of the compliance, radius {scene.counter.radius:.4g}"
+    yield from map(escape, scene.told)
     if units:
         sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
         yield from (f"{name} = {engineering(value, unit)}" for name, value, unit in sizes)

@@ -40,12 +40,11 @@ def _case(case: Case | Failure) -> dict[str, Any]:
     scene = {"tabor": case.scene.tabor, "poisson": case.scene.poisson, "verdict": verdict_of(case)}
     if isinstance(case, Failure):
         return {**scene, "reason": told(case), "comparison": [_row(row) for row in case.rows]}
-    return {
-        **scene,
-        "halfspace": _solution(case.halfspace),
-        "finite_element": _solution(case.finite_element),
-        "comparison": [_row(row) for row in case.rows],
-    }
+    solutions = {KEYS[name]: _solution(path) for name, path in case.solutions.items()}
+    return {**scene, **solutions, "comparison": [_row(row) for row in case.rows]}
+
+
+KEYS = {"half-space": "halfspace", "harmonics": "harmonics", "finite elements": "finite_element"}
 
 
 def _solution(path: EquilibriumPath) -> dict[str, Any]:

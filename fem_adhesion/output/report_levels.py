@@ -86,7 +86,7 @@ def settings_section(cases: Cases, machine: Mapping[str, str]) -> Section:
         [f"{case.scene.tabor:g}", name, _settings(path.settings), tolerance_told(path.rtol, path.missed), *_cost(path)]
         for case in cases
         if isinstance(case, Case)
-        for name, path in (("half-space", case.halfspace), ("finite elements", case.finite_element))
+        for name, path in case.solutions.items()
     ]
     return Section(
         "settings",

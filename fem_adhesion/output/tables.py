@@ -6,7 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from rich.markup import escape
+
 from fem_adhesion.output.terminal import Column, Fitted
+from fem_adhesion.scene import Scene
 from fem_adhesion.studies.comparison import SOLVERS, Pair, Row
 from fem_adhesion.studies.crosscheck import Case
 from halfspace.curve import EquilibriumPath, Estimate
@@ -14,6 +17,7 @@ from halfspace.events import tolerance_told
 
 SHORT = {
     "half-space": "hs",
+    "harmonics": "ha",
     "finite elements": "fe",
     "weak form": "wf",
     "closed form": "cf",
@@ -34,10 +38,16 @@ RANKS = (0, 1, 1, 1, 2, 3, 3, 4, 0)  # of the columns
 def crosscheck_tables(case: Case) -> list[Fitted]:
     """Tables of a case, one for each pair of sources; the first says what was compared and what it cost."""
     style = STYLES[case.verdict]
-    title = [f"tabor {case.scene.tabor:g}", f"poisson {case.scene.poisson:g}: [{style}]{case.verdict}[/]"]
-    cost = [f"half-space {told(case.halfspace)}", f"finite elements {told(case.finite_element)}"]
+    *parts, last = scene_parts(case.scene)
+    title = [*parts, f"{last}: [{style}]{case.verdict}[/]"]
+    cost = [f"{name} {told(path)}" for name, path in case.solutions.items()]
     made = [crosscheck_table(case.rows, between) for between in dict.fromkeys(row.between for row in case.rows)]
     return [replace(made[0], title=title, caption=cost), *made[1:]]
+
+
+def scene_parts(scene: Scene) -> list[str]:
+    """What is compared, in rich's markup; a block, as usual, is not named."""
+    return [escape(part) for part in scene.told if part != "block"]
 
 
 def crosscheck_table(rows: Sequence[Row], between: Pair = SOLVERS) -> Fitted:

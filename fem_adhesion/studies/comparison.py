@@ -13,6 +13,7 @@ Verdict = Literal["agree", "disagree", "inconclusive"]
 Pair = tuple[str, str]
 
 SOLVERS: Pair = ("half-space", "finite elements")
+HARMONICS: Pair = ("harmonics", "finite elements")
 WEAK_FORM: Pair = ("weak form", "finite elements")
 CLOSED_FORM: Pair = ("closed form", "half-space")
 

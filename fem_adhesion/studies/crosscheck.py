@@ -1,4 +1,7 @@
-"""The cross-check of the half-space solver with the finite-element solver.
+"""The cross-check of the finite-element solver with one that shares no operator with it.
+
+That is the half-space's for blocks, and the whole sphere by harmonics for hemispheres in the sliding grip. For other
+bodies the fourth level stands alone.
 
 Four levels. Operators: both compliances under the same pressures, whole fields compared. Cross-residual: the state
 found by one solver put into the equations of the other. Events: pull-off, jumps, the zero-load state, the energy. The
@@ -9,24 +12,27 @@ the size of the block, never from a choice.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from skfem import ElementQuadP
 
-import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space
-from fem_adhesion.incompressible import stiffness_for
-from fem_adhesion.mesh import tensor_grid
 from fem_adhesion.scene import Scene
 from fem_adhesion.studies import from_scratch
-from fem_adhesion.studies.comparison import Row, Verdict, difference, worst
-from halfspace import compliance, grid
+from fem_adhesion.studies.comparison import SOLVERS, Pair, Row, Verdict, difference, worst
+from fem_adhesion.studies.from_scratch import gaps_at
+from fem_adhesion.studies.references import (
+    elements_of,
+    pressures_for,
+    radius_of,
+    reference_for,
+    require_comparable,
+    tighter,
+)
 from halfspace.compliance import Array, ElasticOperator
+from halfspace.contact import ContactProblem
 from halfspace.curve import EquilibriumPath, Estimate, transfer
 from halfspace.errors import NotConverged
 from halfspace.events import ROUND_OFF, Located
@@ -59,11 +65,10 @@ class Failure:
 
 @dataclass(frozen=True)
 class Case:
-    """Both solutions of one scene and their comparison."""
+    """Solutions of one scene, by the names of their solvers, and their comparison."""
 
     scene: Scene
-    halfspace: EquilibriumPath
-    finite_element: EquilibriumPath
+    solutions: Mapping[str, EquilibriumPath]
     rows: tuple[Row, ...]
 
     @property
@@ -84,7 +89,7 @@ def compare(
     Parameters
     ----------
     scene : Scene
-        The contact; the half-space solver knows its Tabor parameter only.
+        The contact, at small strain; the half-space solver knows its Tabor parameter and profile only.
     rtol : float
         Accuracy of the comparison: budgets are this relative to each quantity.
     before : sequence of Row, optional
@@ -95,77 +100,68 @@ def compare(
     Raises
     ------
     InputError
-        If an input is out of range.
+        If an input is out of range, or there is nothing to compare with.
     halfspace.errors.NotConverged
         If a solver fails.
     """
     require_rtol(rtol)
-    hs = halfspace.trace(scene.tabor, rtol=max(rtol / 10, 1e-9))
+    require_comparable(scene, rtol)
+    reference = reference_for(scene)
+    other = reference.trace(rtol=tighter(rtol)) if reference else None
     fe = solve(scene, rtol=0.9 * rtol)
-    before = unsolved(scene, rtol=rtol) if before is None else before
-    compared = (*_cross_residuals(hs, fe, rtol), *_compare_events(hs, fe, rtol), *from_scratch.events(scene, fe))
-    return Case(scene, hs, fe, (*before, *compared))
+    rows = list(unsolved(scene, rtol=rtol) if before is None else before)
+    solutions = {"finite elements": fe}
+    if reference and other:
+        solutions = {reference.between[0]: other, **solutions}
+        rows += [*_cross_residuals(other, fe, rtol, reference.between)]
+        rows += [*_compare_events(other, fe, rtol, reference.between)]
+    return Case(scene, solutions, (*rows, *from_scratch.events(scene, fe)))
 
 
 def run(scenes: Sequence[Scene], *, rtol: float = 1e-5) -> Iterator[Case | Failure]:
-    """Compare scenes of one material one after the other; what needs no solution is the same for all, and done once."""
-    before: Sequence[Row] | None = None
+    """Compare scenes one after the other; what needs no solution is the same for all blocks of a material."""
+    before: dict[Scene, Sequence[Row]] = {}
     for scene in scenes:
+        body = scene if scene.sized else replace(scene, tabor=1.0)
         try:
-            if before is None:
-                before = unsolved(scene, rtol=rtol)
-            yield compare(scene, rtol=rtol, before=before)
+            if body not in before:
+                before[body] = unsolved(scene, rtol=rtol)
+            yield compare(scene, rtol=rtol, before=before[body])
         except NotConverged as error:
-            yield Failure(scene, str(error), tuple(before or ()))
+            yield Failure(scene, str(error), tuple(before.get(body, ())))
 
 
 def unsolved(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
     """Rows that need no solution of the scene: operators, equations and closed forms."""
-    hs, fe = _operators(scene, rtol)
-    operators = [_compare_fields(name, pressure, hs, fe, rtol) for name, pressure in PRESSURES.items()]
-    return [*operators, *from_scratch.equations(scene, fe[1:]), *from_scratch.closed_forms()]
+    reference, problems, edge = reference_for(scene), elements_of(scene, rtol), radius_of(scene)
+    rows: list[Row] = []
+    if reference:
+        both = reference.operators(rtol), [problem.operator.at(1.0) for problem in problems]
+        under = pressures_for(scene).items()
+        rows = [_compare_fields(name, pressure, *both, rtol, edge, reference.between) for name, pressure in under]
+    return [*rows, *from_scratch.equations(scene, problems[-2:], edge), *from_scratch.closed_forms()]
 
 
 # Level 1: operators
 
 
-def _operators(scene: Scene, rtol: float) -> tuple[list[ElasticOperator], list[ElasticOperator]]:
-    """Half-spaces and blocks, the finest last, on meshes graded towards the edge of the pressures at radius 1."""
-    degree = convergence.resolution_for(scene, rtol, 0).degree
-    lines = grid.graded(1.0, FINEST, 40.0 if scene.radius is None else scene.radius)
-    wider = grid.graded(1.0, FINEST, 2 * lines[-1])
-    fe = [_block_operator(scene, lines, degree), _block_operator(scene, wider, degree)]
-    fe.append(_block_operator(scene, wider, degree + 1))
-    return [compliance.panels(wider, k) for k in (degree + 3, degree + 5)], fe
-
-
-FINEST = 1e-4  # cells at the edge, where the deflection under a disc has a vertical tangent
-
-PRESSURES: dict[str, Callable[[Array], Array]] = {
-    "uniform disc": lambda r: np.where(r < 1, 1.0, 0.0),
-    "Hertz": lambda r: np.sqrt(np.maximum(1 - r**2, 0)),
-    "spike": lambda r: -1 / (1 + ((r - 1) / 0.05) ** 2) ** 3,
-    "ring": lambda r: r**2 / (1 + r**2) ** 4,
-}
-
-
-def _block_operator(scene: Scene, lines: Array, degree: int) -> ElasticOperator:
-    space = Space(tensor_grid(lines, grid.graded(0.0, FINEST, lines[-1])), ElementQuadP(degree))
-    far_field, stiffness = convergence.FAR_FIELDS[scene.far_field], stiffness_for(scene.poisson)
-    return condense(space, scene.poisson, far_field=far_field, stiffness=stiffness).operator
-
-
 def _compare_fields(
     name: str,
     pressure: Callable[[Array], Array],
-    hs: Sequence[ElasticOperator],
+    other: Sequence[ElasticOperator],
     fe: Sequence[ElasticOperator],
     rtol: float,
+    edge: float,
+    between: Pair,
 ) -> Row:
-    """Compare deflections at radii up to 3, root mean square over the area."""
-    radii = np.linspace(0.02, 3.0, 150)
+    """Compare deflections at radii up to three times that of the pressure's edge, root mean square over the area."""
+    radii = edge * np.linspace(0.02, 3.0, 150)
     area = radii / radii.sum()
-    w_hs, w_fe = ([op.values_at(radii, op.compliance @ pressure(op.radii)) for op in ops] for ops in (hs, fe))
+
+    def deflections(operators: Sequence[ElasticOperator]) -> list[Array]:
+        return [op.values_at(radii, op.compliance @ pressure(op.radii / edge)) for op in operators]
+
+    w_other, w_fe = deflections(other), deflections(fe)
 
     def rms(w: Array) -> float:
         return float(np.sqrt(area @ w**2))
@@ -173,21 +169,21 @@ def _compare_fields(
     def estimate(w: Sequence[Array]) -> Estimate:
         return Estimate(rms(w[-1]), sum(rms(b - a) for a, b in pairwise(w)) + 1e-12 * rms(w[-1]))
 
-    budget = POINTWISE * rtol * rms(w_hs[-1])
-    return Row(f"operator: {name}", "beta", estimate(w_hs), estimate(w_fe), rms(w_fe[-1] - w_hs[-1]), budget)
+    off, budget = rms(w_fe[-1] - w_other[-1]), POINTWISE * rtol * rms(w_other[-1])
+    return Row(f"operator: {name}", "beta", estimate(w_other), estimate(w_fe), off, budget, between)
 
 
 # Level 2: cross-residuals
 
 
-def _cross_residuals(hs: EquilibriumPath, fe: EquilibriumPath, rtol: float) -> Iterator[Row]:
+def _cross_residuals(other: EquilibriumPath, fe: EquilibriumPath, rtol: float, between: Pair) -> Iterator[Row]:
     """Residual, in eps, of each solver's gaps in the other's equations, at every event that both have."""
-    for name in hs.events:
+    for name in other.events:
         if name in fe.events:
-            of_hs = _residual([stage[name] for stage in hs.stages], fe.stages[-1][name])
-            of_fe = _residual([stage[name] for stage in fe.stages], hs.stages[-1][name])
-            largest = max(of_hs.value, of_fe.value)
-            yield Row(f"cross-residual: {name}", "eps", of_hs, of_fe, largest, RESIDUAL * rtol)
+            of_other = _residual([stage[name] for stage in other.stages], fe.stages[-1][name])
+            of_fe = _residual([stage[name] for stage in fe.stages], other.stages[-1][name])
+            largest = max(of_other.value, of_fe.value)
+            yield Row(f"cross-residual: {name}", "eps", of_other, of_fe, largest, RESIDUAL * rtol, between)
 
 
 def _residual(found: Sequence[Located], equations: Located) -> Estimate:
@@ -196,7 +192,7 @@ def _residual(found: Sequence[Located], equations: Located) -> Estimate:
     The error is the mean change of the residual from stage to stage: what the state itself is uncertain by.
     """
     target = equations.problem.interface
-    states = [transfer(event.problem, event.point.x, target) for event in found]
+    states = [_carried(event, target) for event in found]
     residuals = [target.residual(x)[:-1] for x in states]
     weight = target.operator_at(states[-1]).weights * np.abs(target.pressure(states[-1]))
     weight /= weight.sum()
@@ -204,18 +200,26 @@ def _residual(found: Sequence[Located], equations: Located) -> Estimate:
     return Estimate(float(weight @ np.abs(residuals[-1])), float(sum(changes)) + ROUND_OFF)
 
 
+def _carried(event: Located, target: ContactProblem) -> Array:
+    """State of an event on another solver's nodes."""
+    x = transfer(event.problem, event.point.x, target)
+    if np.isfinite(target.profile.end):  # its profile is no polynomial
+        x[:-2] = gaps_at(event, target.operator_at(x).radii)
+    return x
+
+
 # Level 3: events
 
 
-def _compare_events(hs: EquilibriumPath, fe: EquilibriumPath, rtol: float) -> Iterator[Row]:
+def _compare_events(other: EquilibriumPath, fe: EquilibriumPath, rtol: float, between: Pair = SOLVERS) -> Iterator[Row]:
     for event, quantity, unit, pointwise in EVENT_QUANTITIES:
-        a, b = (_number(path, event, quantity) for path in (hs, fe))
+        a, b = (_number(path, event, quantity) for path in (other, fe))
         if not (a and np.isfinite(a.value)) and not (b and np.isfinite(b.value)):
             continue
-        budget = (POINTWISE if pointwise else 1) * rtol * _size(quantity, a.value if a else 0.0, hs)
-        yield Row(f"{event} {quantity}", unit, a, b, difference(a, b), budget)
-    off, budget = difference(hs.energy, fe.energy), rtol * abs(hs.energy.value)
-    yield Row("energy released", "R dgamma eps", hs.energy, fe.energy, off, budget)
+        budget = (POINTWISE if pointwise else 1) * rtol * _size(quantity, a.value if a else 0.0, other)
+        yield Row(f"{event} {quantity}", unit, a, b, difference(a, b), budget, between)
+    off, budget = difference(other.energy, fe.energy), rtol * abs(other.energy.value)
+    yield Row("energy released", "R dgamma eps", other.energy, fe.energy, off, budget, between)
 
 
 def _size(quantity: str, value: float, path: EquilibriumPath) -> float:

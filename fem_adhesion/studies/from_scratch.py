@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from scipy.integrate import quad
@@ -19,18 +18,9 @@ from scipy.integrate import quad
 import halfspace
 from fem_adhesion.scene import Scene
 from fem_adhesion.studies.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
-from fem_adhesion.weak_form import (
-    Body,
-    Contact,
-    Turn,
-    half_space,
-    newton,
-    paraboloid,
-    tension,
-    tension_slope,
-    turning_point,
-)
-from halfspace.compliance import Array, ElasticOperator
+from fem_adhesion.studies.weak_bodies import SHARP, AtRadius, contacts
+from fem_adhesion.weak_form import Contact, Turn, newton, tension, tension_slope, turning_point
+from halfspace.compliance import Array
 from halfspace.contact import LOAD, ContactProblem
 from halfspace.curve import EquilibriumPath, Estimate
 from halfspace.errors import NotConverged
@@ -38,7 +28,6 @@ from halfspace.events import Located
 from halfspace.lennard_jones import LENNARD_JONES
 
 BUDGET = 1e-3  # of each quantity
-FINENESS = ((3, 10.0), (4, 30.0))  # degree of the elements, size of the box in contact radii: coarse, fine
 ROUND_OFF = 1e-10
 
 # Closed forms
@@ -72,14 +61,14 @@ def _limit(quantity: str, value: float, tabors: Sequence[float]) -> Row:
 APPROACH, CHANGE = -0.5, 0.3  # in eps, of the state made up and of its change
 
 
-def equations(scene: Scene, operators: Sequence[ElasticOperator]) -> Iterator[Row]:
+def equations(scene: Scene, problems: Sequence[ContactProblem], radius: float) -> Iterator[Row]:
     """Residual, tangent, load and its slope at a state made up, by the shared code and by the weak form.
 
-    The shared code is given the elastic operators of two degrees, the finer one last. Residual and tangent are means
-    over the contact; what is off counts relative to what in them is elastic.
+    The shared code is given the problem on elastic operators of two degrees, the finer one last. Residual and tangent
+    are means over a contact of the radius given; what is off counts relative to what in them is elastic.
     """
-    apart = np.array([_apart(Contact(body, scene.tabor)) for body in bodies(scene)])
-    shared = np.array([_shared(ContactProblem(operator, scene.tabor)) for operator in operators])
+    apart = np.array([_apart(contact(radius), radius) for contact in contacts(scene)])
+    shared = np.array([_shared(problem, radius) for problem in problems])
     sizes = np.abs(apart[1, 4:])
     for n, (name, unit) in enumerate(EQUATIONS.items()):
         first, second = (_estimate(side[:, n].tolist()) for side in (apart, shared))
@@ -89,36 +78,34 @@ def equations(scene: Scene, operators: Sequence[ElasticOperator]) -> Iterator[Ro
 EQUATIONS = {"residual": "eps", "tangent": "eps", "load": "R dgamma", "load's slope": "R dgamma"}
 
 
-def _made_up(r: Array) -> tuple[Array, Array]:
-    """Gap and its change in eps; the attraction ends where the contact does."""
-    return 0.2 + r**2 / 2 + r**4 / 8, _weight(r)
+def _made_up(r: Array) -> tuple[Array, Array, Array]:
+    """Gap and its change in eps, and a weight, at radii in that of the contact; the attraction ends where that does."""
+    weight = np.exp(-(r**2)) / np.pi
+    return 0.2 + r**2 / 2 + r**4 / 8, weight, weight
 
 
-def _weight(r: Array) -> Array:
-    return np.exp(-(r**2)) / np.pi
-
-
-def _shared(problem: ContactProblem) -> list[float]:
+def _shared(problem: ContactProblem, radius: float) -> list[float]:
     """What the shared code has for the state made up."""
     operator = problem.operator_at(np.ones(1))
-    H, dH = _made_up(operator.radii)
+    H, dH, weight = _made_up(operator.radii / radius)
     x, dx = np.append(H, [APPROACH, 1.0]), np.append(dH, [CHANGE, 0.0])
-    mean = operator.weights * _weight(operator.radii)
+    mean = operator.weights * weight / radius**2
     residual, tangent = (float(mean @ field[:-1]) for field in (problem.residual(x), problem.jacobian(x) @ dx))
     return [residual, tangent, problem.load(x), float(problem.gradient(x, np.eye(4)[LOAD]) @ dx)]
 
 
-def _apart(contact: Contact) -> list[float]:
+def _apart(contact: Contact, radius: float) -> list[float]:
     """The same by the weak form, and of each the elastic part alone."""
     body, mu = contact.body, contact.tabor
-    H, dH = _made_up(body.radii)
+    H, dH, weight = _made_up(body.radii / radius)
     tensions = mu * tension(1 + H), mu * tension_slope(1 + H) * dH
 
     def mean(field: Array) -> float:
-        return body.integral(field * _weight(body.radii))
+        return body.integral(field * weight) / radius**2
 
     rise, further = (mu * mean(body.rise(body.yielding(body.forces(values)))) for values in tensions)
     load, slope = (-body.integral(values) for values in tensions)
+    load -= mu * float(contact.rigid[1] @ tension(1 + _made_up(contact.rigid[0] / radius)[0]))
     residual, tangent = mean(H + APPROACH - mu * contact.height) + rise, mean(dH + CHANGE) + further
     return [residual, tangent, load, slope, rise, further, load, slope]
 
@@ -162,23 +149,23 @@ def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
     The weak form errs by less than its coarse and its fine body differ. As they may agree by chance on one number, the
     largest of their differences counts for all, relative to the sizes.
     """
-    coarse, fine = bodies(scene)
-    found = [row for name in path.events for row in _of_event(name, path, coarse, fine)]
-    both = _energy_released(coarse, path), _energy_released(fine, path)
-    found.append(Compared("energy released", "R dgamma eps", both, path.energy, abs(path.energy.value)))
+    both = contacts(scene)
+    found = [row for name in path.events for row in _of_event(name, path, *both)]
+    energies = _energy_released(both[0], path), _energy_released(both[1], path)
+    found.append(Compared("energy released", "R dgamma eps", energies, path.energy, abs(path.energy.value)))
     doubt = max(compared.change for compared in found)
     return [compared.row(doubt) for compared in found]
 
 
-def _of_event(name: str, path: EquilibriumPath, coarse_body: Body, fine_body: Body) -> Iterator[Compared]:
+def _of_event(name: str, path: EquilibriumPath, on_coarse: AtRadius, on_fine: AtRadius) -> Iterator[Compared]:
     event, located = path.events[name], path.stages[-1][name]
-    coarse, fine = _state(coarse_body, located), _state(fine_body, located)
+    coarse, fine = (_state(contact(_size(located)), located) for contact in (on_coarse, on_fine))
     approach, load = (Estimate(getattr(event, key), getattr(event, f"{key}_error")) for key in ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
     balances, reactions = (coarse.balance, fine.balance), (coarse.reaction, fine.reaction)
     yield Compared(f"{name} balance", "eps", balances, Estimate(0.0, approach.error), width)
     if name != "zero_load":
-        doubt = abs(_state(fine_body, path.stages[-2][name]).reaction - fine.reaction)
+        doubt = abs(_state(fine.contact, path.stages[-2][name]).reaction - fine.reaction)
         doubted = Estimate(load.value, load.error + doubt)
         yield Compared(f"{name} reaction", "R dgamma", reactions, doubted, force)
     # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
@@ -222,36 +209,51 @@ class State:
         return self.contact.far_reaction(self.u) + self.contact.load_beyond(self.approach)
 
 
-def _state(body: Body, event: Located) -> State:
-    """Take over the gaps, on a mesh of the size of the contact or of the attraction."""
-    mu = event.problem.tabor
-    approach, load, central_gap, radius = (float(value) for value in event.point.observables)
-    attraction = 0.7 * float(np.sqrt(2 * (1 + central_gap) / mu))
-    contact = Contact(body.scaled(float(np.fmax(radius, attraction))), mu)
-    h = 1 + _gaps(event, contact.body.radii)
+def _size(event: Located) -> float:
+    """Radius in beta of the contact or, where that is larger, of the attraction."""
+    _, _, central_gap, radius = (float(value) for value in event.point.observables)
+    return float(np.fmax(radius, 0.7 * np.sqrt(2 * (1 + central_gap) / event.problem.tabor)))
+
+
+def _state(contact: Contact, event: Located) -> State:
+    """Take over the gaps."""
+    approach, load = (float(value) for value in event.point.observables[:2])
+    h = 1 + _gaps(event, contact)
     u, weight = contact.displacement(h), np.abs(tension(h))
     off = (contact.gap(u, approach) - h) * weight
     return State(contact, h, approach, load, u, contact.body.integral(off) / contact.body.integral(weight))
 
 
-def _gaps(event: Located, radii: Array) -> Array:
-    """Gaps H of a state of the finite elements; beyond their cells they deflect as under a point load."""
-    mu, (approach, load) = event.problem.tabor, event.point.observables[:2]
+def _gaps(event: Located, contact: Contact) -> Array:
+    """Gaps H of a state of the finite elements; beyond the cells of a block it deflects as under a point load."""
+    radii, (approach, load) = contact.body.radii, event.point.observables[:2]
+    inside = gaps_at(event, radii)
+    beyond = -approach + event.problem.tabor * (contact.height + load / (np.pi * radii))
+    extent = event.problem.interface.operator_at(event.problem.surface_state(event.point.x)).extent
+    return np.where((radii < extent) | (not contact.endless), inside, beyond)
+
+
+def gaps_at(event: Located, radii: Array) -> Array:
+    """Gaps H of a state at radii on its cells: where the deflection is interpolated, a sphere's profile need not be."""
     problem, x = event.problem.interface, event.problem.surface_state(event.point.x)
-    operator, beyond = problem.operator_at(x), -approach + mu * (paraboloid(radii) + load / (np.pi * radii))
-    inside = np.minimum(radii, operator.extent)
-    values = operator.values_at(inside.ravel(), x[:-2]).reshape(radii.shape)
-    return np.where(radii < operator.extent, values, beyond)
+    operator, mu, height = problem.operator_at(x), problem.tabor, problem.profile.height
+    within = np.minimum(radii, operator.extent)
+    return np.asarray(operator.values_at(within, x[:-2] - mu * height(operator.radii)) + mu * height(within))
 
 
 def _turn(name: str, state: State) -> Turn | None:
     """Load and approach of the event in the weak form, or None where there is none nearby."""
     if name == "zero_load":
         return _beside(name, state)
+    contact, start = state.contact, (state.gap, state.approach, state.load)
+    finer = 1.0 if contact.endless else FINER
     try:
-        return turning_point(state.contact, state.gap, state.approach, state.load, under_load=name == "pull_off")
+        return turning_point(contact, *start, under_load=name == "pull_off", finer=finer)
     except NotConverged:
         return None
+
+
+FINER = 3.0  # steps past a turning point where there is a body with a length, which the weak form knows better
 
 
 def _beside(name: str, state: State) -> Turn | None:
@@ -263,26 +265,8 @@ def _beside(name: str, state: State) -> Turn | None:
     return Turn(found.load, found.approach)
 
 
-def _energy_released(body: Body, path: EquilibriumPath) -> float:
+def _energy_released(on: AtRadius, path: EquilibriumPath) -> float:
     """Potential energy between the two states of `EquilibriumPath.energy`; its error is of second order in theirs."""
-    before, after = (_state(body, path.stages[-1][name]) for name in ("separated", "zero_approach"))
+    ends = (path.stages[-1][name] for name in ("separated", "zero_approach"))
+    before, after = (_state(on(_size(event)), event) for event in ends)
     return before.contact.energy(before.u, before.approach) - after.contact.energy(after.u, after.approach)
-
-
-# Bodies
-
-
-SHARP = 6.0
-"""Tabor parameter beyond which the spike of tension is too narrow for the weak form to show where a contact turns."""
-
-
-def bodies(scene: Scene) -> tuple[Body, ...]:
-    """Half-spaces, coarse and fine, with cells at the contact edge finer than the spike of tension there."""
-    finest = 0.04 * 3.0 ** -max(0.0, np.ceil(np.log(scene.tabor**2 / 4) / np.log(3)))
-    more = int(scene.tabor > SHARP) + int(scene.tabor > 3 * SHARP)
-    return tuple(_half_space(float(finest), size, degree + more, scene.poisson) for degree, size in FINENESS)
-
-
-@lru_cache(maxsize=8)
-def _half_space(finest: float, size: float, degree: int, poisson: float) -> Body:
-    return half_space(finest, size, degree, poisson)

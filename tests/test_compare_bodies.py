@@ -1,0 +1,181 @@
+"""`compare` of bodies with a length: each agrees with what shares no operator with it, and a defect is rejected."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fem_adhesion import Scene, cli, elasticity, harmonics, sized
+from fem_adhesion.bodies import Stereographic
+from fem_adhesion.scene import Counter
+from fem_adhesion.studies import crosscheck, from_scratch
+from fem_adhesion.studies.comparison import HARMONICS, SOLVERS, WEAK_FORM
+from fem_adhesion.studies.weak_bodies import contacts
+from halfspace.errors import InputError
+
+MESH = Path(__file__).parents[1] / "meshes" / "hemisphere.msh"
+
+
+def sphere(**more):
+    return Scene(1.0, radius_ratio=30.0, **({"body": "hemisphere", "profile": "sphere"} | more))
+
+
+@pytest.fixture
+def _without_limits(monkeypatch):
+    """Closed forms are those of the half-space, whatever the body."""
+    monkeypatch.setattr(from_scratch, "closed_forms", list)
+
+
+# --- the command ---
+
+HEMISPHERE = ["--body", "hemisphere", "--profile", "sphere", "--radius-ratio", "30"]
+
+
+def test_the_command_compares_a_hemisphere_with_the_whole_sphere(tmp_path, capsys):
+    file = tmp_path / "result.json"
+    assert cli.main(["compare", "--tabor", "1", *HEMISPHERE, "--json", str(file)]) == 0
+    (case,), out = json.loads(file.read_text())["cases"], capsys.readouterr().out
+    assert "tabor 1; poisson 0.3; hemisphere; R/eps 30: agree" in out
+    assert "error (ha)" in out
+    rows = {row["quantity"]: row for row in case["comparison"] if row["between"] == list(HARMONICS)}
+    assert {"operator: spike", "cross-residual: pull_off", "jump_off load", "energy released"} <= rows.keys()
+    for quantity, row in rows.items():
+        event, _, number = quantity.partition(" ")
+        if event in case["finite_element"]["events"]:
+            assert row["first"] == pytest.approx(row["second"], rel=1e-4)
+            if number in ("load", "approach"):
+                assert row["first"] == case["harmonics"]["events"][event][number]
+                assert row["budget"] <= 5e-5
+    assert {row["verdict"] for row in case["comparison"]} == {"agree"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([*HEMISPHERE, "--strain", "finite"], "strain = finite is compared with nothing, limit: small"),
+        ([*HEMISPHERE, "--cap-angle", "20"], "--cap-angle would not be heeded, limit: with --body sphere"),
+        (["--grip", "bonded"], "--grip would not be heeded"),
+        (["--body", "hemisphere"], 'radius_ratio = None for body = "hemisphere"'),
+        (["--counter-radius", "2"], "--counter-radius would not be heeded, limit: with --counter-share"),
+        (["--body", "hemisphere", "--mesh", "a.msh"], "mesh = a.msh with body = hemisphere, limit: one of both"),
+        ([*HEMISPHERE[:-1], "1e6", "--tabor", "5"], "radius_ratio = 1e+06 at tabor 5 takes"),
+    ],
+)
+def test_the_command_refuses_in_one_line(arguments, message, capsys):
+    assert cli.main(["compare", "--tabor", "1", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert message in err
+    assert err.count("\n") == 1
+
+
+def test_a_cap_is_heeded(monkeypatch):
+    asked = []
+    monkeypatch.setattr(crosscheck, "run", lambda scenes, **_: asked.extend(scenes) or iter(()))
+    with pytest.raises(StopIteration):
+        cli.main(["compare", "--tabor", "2", "--body", "sphere", "--radius-ratio", "50", "--cap-angle", "20"])
+    assert asked == [Scene(2.0, body="sphere", radius_ratio=50.0, cap_angle=20.0)]
+
+
+# --- what needs no solution ---
+
+BODIES = {
+    "under a sphere": (sphere(body="block"), SOLVERS),
+    "hemisphere": (sphere(), HARMONICS),
+    "nearly incompressible": (sphere(poisson=0.4999), HARMONICS),
+    "under a paraboloid": (sphere(profile="paraboloid"), HARMONICS),
+    "two spheres": (sphere(counter=Counter(0.3, 0.45, 2.0)), HARMONICS),
+    "sphere on a half-space": (sphere(counter=Counter(0.5, 0.2)), HARMONICS),
+    "traction on the surface": (sphere(traction="surface"), None),
+    "bonded": (sphere(grip="bonded"), None),
+    "bonded pair": (sphere(grip="bonded", counter=Counter(0.3, 0.45, 2.0)), None),
+    "held over a cap": (sphere(body="sphere"), None),
+    "a mesh": (Scene(1.0, radius_ratio=30.0, body=MESH, grip="bonded"), None),
+}
+
+
+@pytest.mark.usefixtures("_without_limits")
+@pytest.mark.parametrize("body", BODIES)
+def test_operators_and_equations_agree(body):
+    scene, between = BODIES[body]
+    rows = crosscheck.unsolved(scene, rtol=1e-4)
+    assert {row.quantity: row.verdict for row in rows if row.verdict != "agree"} == {}
+    assert {row.between for row in rows} == {WEAK_FORM} | ({between} if between else set())
+    assert len(rows) == (6 if between else 4)
+
+
+def test_a_bonded_hemisphere_agrees_with_the_weak_form():
+    case = crosscheck.compare(sphere(grip="bonded"), rtol=1e-4, before=())
+    assert case.verdict == "agree"
+    assert list(case.solutions) == ["finite elements"]
+    assert {row.between for row in case.rows} == {WEAK_FORM}
+    assert len(case.rows) == 13
+    for row in case.rows:  # it knows a body with a length better than its budget
+        assert row.first.error < 1e-4 * (1 + abs(row.first.value)), row.quantity
+
+
+# --- defects of the finite elements ---
+
+
+def _stiffer(monkeypatch):
+    original = elasticity.elastic_matrix
+    monkeypatch.setattr(elasticity, "elastic_matrix", lambda nu: 1.01 * original(nu))
+
+
+def _another(**change):
+    """Finite elements that solve another scene."""
+
+    def inject(monkeypatch):
+        original = sized.sized_body
+        monkeypatch.setattr(sized, "sized_body", lambda scene, how: original(replace(scene, **change), how))
+
+    return inject
+
+
+DEFECTS = {
+    "1 % stiffer": (_stiffer, {"operator: ring", "equations: residual", "equations: tangent"}),
+    "R/eps 1 % larger": (_another(radius_ratio=30.3), {"operator: ring", "equations: residual"}),
+    "Poisson's ratio 0.31": (_another(poisson=0.31), {"operator: ring", "equations: residual"}),
+    "profile of the paraboloid": (_another(profile="paraboloid"), {"equations: residual"}),
+    "another grip": (None, {"operator: ring", "equations: residual", "equations: tangent"}),
+}
+
+
+@pytest.mark.usefixtures("_without_limits")
+@pytest.mark.parametrize("grip", ["sliding", "bonded"])
+@pytest.mark.parametrize("defect", DEFECTS)
+def test_a_defect_of_the_finite_elements_is_rejected(defect, grip, monkeypatch):
+    """Bonded by the weak form alone."""
+    inject, shown_by = DEFECTS[defect]
+    inject = inject or _another(grip="sliding" if grip == "bonded" else "bonded")
+    inject(monkeypatch)
+    rows = crosscheck.unsolved(sphere(grip=grip), rtol=1e-4)
+    rejecting = {row.quantity for row in rows if row.verdict == "disagree"}
+    assert {name for name in shown_by if grip == "sliding" or not name.startswith("operator")} <= rejecting
+
+
+# --- the solvers they are compared with ---
+
+
+def test_harmonics_take_the_rim_of_a_pair_as_the_finite_elements_do():
+    from fem_adhesion.bodies import CORE
+
+    assert Stereographic(3.0).radius(np.array(3.0 * CORE))[0] == pytest.approx(3.0 * harmonics.RIM, rel=1e-12)
+
+
+def test_harmonics_refuse_a_spike_that_takes_too_many():
+    with pytest.raises(InputError, match="harmonics of the sphere, limit 5000; take a smaller one"):
+        harmonics.trace(Scene(5.0, body="hemisphere", profile="sphere", radius_ratio=1e5))
+
+
+@pytest.mark.parametrize("counter", [None, Counter(0.4, 0.3, 3.0)])
+def test_the_weak_form_of_a_body_with_a_length_has_its_whole_surface(counter):
+    scene = sphere(counter=counter)
+    R = scene.sphere_radius * (1 if counter is None else 1 + 1 / counter.radius)
+    for contact in (make(1.2) for make in contacts(scene)):
+        area = contact.body.integral(np.ones_like(contact.body.radii)) + contact.rigid[1].sum()
+        assert area == pytest.approx(np.pi * R**2, rel=1e-9)
+        assert contact.load(0 * contact.body.radii, -5.0) == contact.load_beyond(-5.0)
+        assert (contact.load_beyond(-5.0) < 0) == (counter is not None)
