@@ -178,18 +178,29 @@ class ContactProblem(Valued):
 
         return root(beyond, below, above, "the contact edge; refine the grid", xtol=1e-14)
 
-    def ripple(self, x: Array) -> float:
-        """Largest of the last three Legendre coefficients of the deflection in the cell on the axis, in eps.
+    def ripples(self, x: Array) -> Array:
+        """What the deflection's polynomials end with on the axis, in eps, and at the contact edge, in beta, (2,).
 
-        On finite elements of degree p, with p + 2 nodes, the last is none of theirs, and one may be small by accident.
-        The profile is exact: of few coefficients of the gap, the last three would have its parabola among them.
+        No better are values at a point known: the central gap by the last three Legendre coefficients in the first
+        cell, as one may be small by accident; the contact radius, nan without contact, by the last but one in the cells
+        on both sides of the edge. On finite elements of degree p, with p + 2 nodes, the last is none of theirs.
         """
+        body, radius = self.operator_at(x), self.contact_radius(x)
+        nodes = body.cell_nodes.shape[1]
+        gap = self._coefficients(x, 0)[max(min(2, nodes - 1), nodes - 3) :].max()  # but no displacement, and no slope
+        if np.isnan(radius):
+            return np.array([gap, np.nan])
+        cells = {body.cell_of(radius * (1 + side)) for side in (-1e-9, 1e-9)}
+        slope = abs(body.continuous(radius)[1] @ x[:-2])
+        return np.array([gap, max(self._coefficients(x, cell)[-2:][0] for cell in cells) / slope])
+
+    def _coefficients(self, x: Array, cell: int) -> Array:
+        """Sizes of the Legendre coefficients of the deflection in a cell, whereas the profile is exact, in eps."""
         body = self.operator_at(x)
-        nodes = body.cell_nodes[0]
-        places = 2 * body.radii[nodes] / body.cells[1] - 1
+        nodes, (first, last) = body.cell_nodes[cell], body.cells[cell : cell + 2]
+        places = 2 * (body.radii[nodes] - first) / (last - first) - 1
         deflection = x[nodes] - self.tabor * self.profile.height(body.radii[nodes])
-        sizes = np.abs(np.linalg.solve(legvander(places, nodes.size - 1), deflection))
-        return float(sizes[-3:].max())
+        return np.abs(np.linalg.solve(legvander(places, nodes.size - 1), deflection))
 
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative by x of the weighted sum of the observables, shape (q + 2,)."""

@@ -362,8 +362,8 @@ def estimate_event(
     chains : sequence of sequences of Located
         The event on discretisations that differ in one respect from one to the next, all chains ending with the best.
         Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
-        share by accident is not taken for exact. Where there is but one, or `along`, the central gap, which at a point
-        without area errs more than the rest and in turns, is known no better than to what its polynomial ends with.
+        share by accident is not taken for exact. Where there is but one, or `along`, gap and radius, which at a point
+        err more than the rest and in turns, are known no better than to what the polynomials there end with.
     remaining : float
         Part of that change that may be left.
     along : bool
@@ -386,8 +386,8 @@ def estimate_event(
         errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
     if along or len(chains) == 1:
         best = chains[0][-1]
-        ripple = best.problem.interface.ripple(best.problem.surface_state(best.point.x))
-        errors[CENTRAL_GAP] = max(errors[CENTRAL_GAP], ripple)
+        ripples = best.problem.interface.ripples(best.problem.surface_state(best.point.x))
+        errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], ripples)
     return Event(name, *map(float, values), *map(float, errors))
 
 

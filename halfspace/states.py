@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from halfspace import newton
 from halfspace.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.errors import InputError
-from halfspace.events import ROUND_OFF, Condition, between, hermite, locate
+from halfspace.events import AT_A_POINT, ROUND_OFF, Condition, between, hermite, locate
 from halfspace.newton import Traceable
 from halfspace.path import Metric, Point, Segment, correct, make_point
 from halfspace.values import Valued
@@ -109,16 +109,17 @@ class FinestCurve(Valued):
     def errors(self) -> Array:
         """Estimated errors of approach, load, central gap and contact radius at each point, (points, 4).
 
-        No less than at the points beside it: along the path a change passes through zero, where it tells nothing. With
-        a twin that leaves nothing to chance; the finest discretisation errs less than what it is compared with.
+        No less than between those at the points beside it, in the geometric mean: along the path a change passes
+        through zero, where it tells nothing.
         """
-        part = 1.0 if len(self.ways) > 1 else max(self.remaining, 1.0)
+        part = max(self.remaining, 1.0)
         return np.concatenate([self._errors_along(segment, part) for segment in self.segments])
 
     def _errors_along(self, segment: Segment, part: float) -> Array:
         own = np.array([self._errors(segment.problem, point, part) for point in segment.points])
         padded = np.pad(own, ((1, 1), (0, 0)), mode="edge")
-        return np.where(np.isnan(own), own, np.fmax(own, np.fmax(padded[:-2], padded[2:])))
+        beside = np.sqrt(padded[:-2] * padded[2:])
+        return np.where(np.isnan(own), own, np.fmax(own, beside))
 
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Range of a coordinate on each of its branches, by name."""
@@ -223,7 +224,10 @@ class FinestCurve(Valued):
             return np.full(4, np.nan)
         errors = change + ROUND_OFF * (1 + np.abs(here))
         if len(self.ways) == 1:
-            errors[CENTRAL_GAP] = max(errors[CENTRAL_GAP], problem.interface.ripple(problem.surface_state(point.x)))
+            ripples, rates = problem.interface.ripples(problem.surface_state(point.x)), point.rates
+            doubt = max(ripples[0] - errors[CENTRAL_GAP], 0.0)  # that the changes do not tell; the plane goes with it
+            errors += np.abs(rates) * (self.metric.weights[CENTRAL_GAP] * abs(rates[CENTRAL_GAP]) * doubt)
+            errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], ripples)
         return np.where(np.isnan(errors), np.abs(here), errors)  # a contact that only one discretisation has
 
     def _errors_given(self, k: int, problem: Traceable, point: Point, bend: float) -> Array:

@@ -267,10 +267,35 @@ def test_a_gap_is_known_no_better_than_to_the_largest_of_its_last_three_coeffici
     operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 8)
     coefficients = [0.1, 2e-2, 9e-3, 1e-3, 3e-4, 2e-5, -1e-6, 8e-10]
     gaps = np.polynomial.legendre.legval(2 * operator.radii - 1, coefficients)
-    assert ContactProblem(operator, 1.0).ripple(np.append(gaps, [0.0, 1.0])) == pytest.approx(2e-5, rel=1e-6, abs=0)
+    ripples = ContactProblem(operator, 1.0).ripples(np.append(gaps, [0.0, 1.0]))
+    assert ripples[0] == pytest.approx(2e-5, rel=1e-6, abs=0)
+    assert np.isnan(ripples[1]) == (gaps.min() > LENNARD_JONES.edge_gap)
 
 
 def test_the_profile_adds_nothing_to_what_a_gap_is_known_to():
     """Of five coefficients, elements of degree 3, the third from the end is that of a parabola."""
     problem = ContactProblem(compliance.panels(np.array([0.0, 1.0, 2.0]), 5), 1.0)
-    assert problem.ripple(problem.undeformed(-5.0)) < 1e-13
+    assert problem.ripples(problem.undeformed(-5.0))[0] < 1e-13
+
+
+@pytest.mark.parametrize(("edge", "cells"), [(1.0, (0, 1)), (0.7, (0,))])
+def test_a_radius_is_known_no_better_than_to_the_last_coefficient_but_one_beside_the_edge_over_the_slope(edge, cells):
+    operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 6)
+    problem, last = ContactProblem(operator, 0.5), (2e-6, 5e-6)
+    places = 2 * (operator.radii % 1.0) - 1
+    wave = np.polynomial.legendre.legval(places, [-1, 0, 0, 0, 1, 0])  # none where cells meet
+    deflection = 0.3 * (operator.radii - edge) + wave * np.where(operator.radii < 1.0, *last)
+    height = problem.profile.height(operator.radii)
+    gaps = LENNARD_JONES.edge_gap + deflection + 0.5 * (height - edge**2 / 2)
+    ripple = problem.ripples(np.append(gaps, [0.0, 1.0]))[1]
+    assert ripple == pytest.approx(max(last[k] for k in cells) / (0.3 + 0.5 * edge), rel=1e-3, abs=0)
+
+
+@pytest.mark.parametrize("nodes", [1, 2, 3, 4])
+def test_of_few_coefficients_a_displacement_and_a_slope_are_no_ripple(nodes):
+    lines = np.array([0.0, 1.0, 2.0])
+    operator = compliance.panels(lines, nodes) if nodes > 1 else compliance.bands(lines)
+    tilted = np.append(3.0 + 0.5 * operator.radii, [0.0, 1.0])
+    flat = ContactProblem(operator, 1.0)
+    tilted[:-2] += flat.profile.height(operator.radii)
+    assert (flat.ripples(tilted)[0] < 1e-12) == (nodes > 2)

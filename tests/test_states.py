@@ -10,7 +10,7 @@ import pytest
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene, cli
-from halfspace.curve import metric_for
+from halfspace.curve import metric_for, placed
 from halfspace.errors import InputError
 from halfspace.states import COORDINATES, shift
 
@@ -170,6 +170,36 @@ def test_next_to_a_fold_the_load_errs_by_the_root_of_what_the_approach_does():
         ours, theirs = (p.at(approach=fold - distance, branch="separated") for p in (path, truth))
         assert abs(ours.load - theirs.load) <= ours.load_error + theirs.load_error
     assert path.at(approach=fold - 1e-9, branch="separated").load_error > 10 * path.load_error.min()
+
+
+def test_a_state_at_a_load_is_not_as_uncertain_as_the_gap_that_shifts_it_along_the_path():
+    """Counted on top of the shift that the load takes back, its radius seemed up to 700 times as uncertain as it is."""
+    path, truth = (halfspace.trace(2.0, rtol=rtol) for rtol in (1e-4, 1e-8))
+    loads = np.linspace(-4.6, -1.75, 7)
+    ours, theirs = (p.at(load=loads, branch="unstable 2") for p in (path, truth))
+    times = ours.contact_radius_error / np.abs(ours.contact_radius - theirs.contact_radius)
+    assert times.min() >= 1
+    assert times.max() < 40
+
+
+def test_a_point_is_as_uncertain_as_the_gap_by_which_the_plane_across_the_path_is_placed():
+    """At a rigid contact in which the radius grows at once, a gap known to its polynomial's end alone shifts it."""
+    path = fem_adhesion.trace(Scene(0.05), rtol=1e-3)
+    finest = halfspace.trace(0.05, rtol=1e-7)
+    points = [(s.problem, p, e) for s, e in _segments(path) for p, e in zip(s.points, e, strict=True)]
+    touching = [(problem, p, e[3]) for problem, p, e in points if p.observables[3] > 2.8]
+    assert len(touching) > 10
+    for problem, point, error in touching:
+        exact = placed(finest.finest, problem, point)[1].observables[3]
+        assert abs(point.observables[3] - exact) <= error
+
+
+def _segments(path):
+    """Segments of the finest curve, each with the errors of its points."""
+    segments, start = path.finest_curve.segments, 0
+    for segment in segments:
+        yield segment, path.finest_curve.errors[start : start + len(segment.points)]
+        start += len(segment.points)
 
 
 SCENES = {
