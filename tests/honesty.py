@@ -30,7 +30,8 @@ from fem_adhesion.studies.assess_contact import Contact
 from fem_adhesion.studies.parallel import stream
 from halfspace.curve import Estimate, energy_released, placed
 from halfspace.devices import cycle
-from halfspace.events import EVENTS
+from halfspace.events import EVENTS, Condition, Located
+from halfspace.states import COORDINATES
 
 MESHES = Path(__file__).parents[1] / "meshes"
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
@@ -152,6 +153,32 @@ def _places(path):
     return range(0, path.count, EVERY)
 
 
+PLACES = (0.02, 0.3, 0.8)  # on a branch, in its range
+SHORT = 0.05  # eps or R dgamma: a branch that another tolerance may not have
+
+
+def of_states(path):
+    """What `path.at` says at some places of every branch."""
+    told = {}
+    for coordinate, branch, values in _asked(path):
+        states = path.at(**{coordinate: values}, branch=branch)
+        columns = [(q, getattr(states, q), getattr(states, f"{q}_error")) for q in QUANTITIES if q != coordinate]
+        for q, v, e in columns:
+            told |= {_place(coordinate, n, branch, q): Estimate(float(v[n]), float(e[n])) for n in range(len(PLACES))}
+    return _real(told)
+
+
+def _asked(path):
+    for coordinate in COORDINATES:
+        for branch, (low, high) in path.branches(coordinate).items():
+            if high - low > SHORT:
+                yield coordinate, branch, [low + part * (high - low) for part in PLACES]
+
+
+def _place(coordinate, n, branch, quantity):
+    return f"{quantity} at {PLACES[n]:g} of the {coordinate} on {branch}"
+
+
 def of_assessment(assessment):
     """What the computed models say in SI."""
     models = (m for m in assessment.models if m.is_computed)
@@ -178,6 +205,27 @@ def beside(stages, scene, path):
 def _curve_on(stage, points):
     found = {k: placed(stage, problem, point)[1].observables for k, problem, point in points}
     return {f"point {k} {q}": float(v) for k, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}
+
+
+def at_places(stages, scene, path):
+    """The states at the same values on each stage."""
+    curve, found = path.finest_curve, {}
+    for coordinate, branch, values in _asked(path):
+        k, _ = COORDINATES[coordinate]
+        for n, value in enumerate(values):
+            problem, point, _ = curve._solved(k, value, curve._branches[coordinate][branch])
+            found[coordinate, n, branch] = Located(Condition(k, value=value), problem, point, float(point.rates[k]))
+    return [_at_places(stage, found) for stage in stages(scene)]
+
+
+def _at_places(stage, located):
+    found = {place: state.point.observables for place, state in truths.on(stage, located).items()}
+    return {
+        _place(*place, q): float(v)
+        for place, all_ in found.items()
+        for q, v in zip(QUANTITIES, all_, strict=True)
+        if q != place[0]
+    }
 
 
 def sprung(stages, scene, path):
@@ -322,6 +370,7 @@ def _assess(contact, _):
     return assess(contact)
 
 
+SLIDING = _sphere(1, 30, poisson=0.3), _sphere(0.3, 30), _sphere(2, 100, poisson=0.45)
 BLOCKS = tuple(map(_block, (*USUAL[:12:2], 0.1, 0.69, 0.7, 0.8, 3, 4, 7, 10, 20)))
 FAMILIES = {
     "half-space": Family(
@@ -363,12 +412,7 @@ FAMILIES = {
     ),
     "curve, half-space": Family(
         Net((0.05, 0.3, 0.75, 1, 2, 5), _decades(2, 4, 6, 8)),
-        Net(
-            (0.3, 2),
-            _decades(
-                3,
-            ),
-        ),
+        Net((0.3, 2), _decades(3)),
         _by(halfspace.trace),
         of_curve,
         partial(beside, truths.half_space),
@@ -384,7 +428,7 @@ FAMILIES = {
     ),
     "curve, block": Family(
         Net(tuple(map(_block, (0.05, 0.3, 1, 2, 5))), _decades(2, 3, 4, 5)),
-        Net(tuple(map(_block, (0.3, 1, 3))), _decades(4)),
+        Net(tuple(map(_block, (0.05, 2))), _decades(3)),
         _by(fem_adhesion.trace),
         of_curve,
         partial(beside, _half_space_of),
@@ -403,6 +447,44 @@ FAMILIES = {
         _by(fem_adhesion.trace),
         of_springs,
         partial(sprung, _half_space_of),
+    ),
+    "springs, sphere's profile": Family(
+        Net(((0.3, 30), (1, 6), (2, 100)), _decades(2, 4, 6, 8)),
+        Net(((2, 100),), _decades(4)),
+        _under_sphere,
+        of_springs,
+        partial(sprung, _stages_under_sphere),
+    ),
+    "springs, hemisphere": Family(
+        Net(SLIDING, _decades(3, 5)),
+        Net(SLIDING[:1], _decades(4)),
+        _by(fem_adhesion.trace),
+        of_springs,
+        partial(sprung, truths.harmonics),
+    ),
+    "states, half-space": Family(
+        Net((0.05, 0.3, 0.75, 1, 2, 5), _decades(2, 4, 6, 8)),
+        Net((0.3, 2), _decades(3)),
+        _by(halfspace.trace),
+        of_states,
+        partial(at_places, truths.half_space),
+        anew=True,
+    ),
+    "states, hemisphere": Family(
+        Net(SLIDING, _decades(3, 5)),
+        Net(SLIDING[:1], _decades(3)),
+        _by(fem_adhesion.trace),
+        of_states,
+        partial(at_places, truths.harmonics),
+        anew=True,
+    ),
+    "curve, hemisphere": Family(
+        Net(SLIDING, _decades(3, 5)),
+        Net(SLIDING[:1], _decades(3)),
+        _by(fem_adhesion.trace),
+        of_curve,
+        partial(beside, truths.harmonics),
+        anew=True,
     ),
     "assess": Family(
         Net((_silica(), _silica(radius=20e-9, modulus=3e9, poisson=0.4), _silica(radius=1e-6, stiffness=20.0)), [0.0]),
