@@ -8,8 +8,7 @@ from skfem import ElementQuadP
 from fem_adhesion.elasticity import Space
 from fem_adhesion.far_field import Exterior
 from fem_adhesion.finite_strain import FiniteStrainProblem
-from fem_adhesion.finite_strain_bodies import Body, displacement_body
-from fem_adhesion.finite_strain_mixed import mixed_body
+from fem_adhesion.finite_strain_bodies import Body, displacement_body, mixed_body
 from fem_adhesion.finite_strain_surface import contact_surface, rigid_operator
 from fem_adhesion.finite_strain_traction import Convention
 from fem_adhesion.incompressible import REMEDY_FROM
@@ -41,7 +40,7 @@ def finite_strain_problem(
     Parameters
     ----------
     body : Body
-        From `finite_strain_bodies.displacement_body` or `finite_strain_mixed.mixed_body`.
+        From `finite_strain_bodies.displacement_body` or `mixed_body`.
     exterior : Exterior
         Of all displacement unknowns of its space, interior ones included: see `far_field.with_interiors`.
     tabor, law

@@ -9,45 +9,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
 
 from fem_adhesion.elasticity import Space, cell_strains
 from fem_adhesion.neo_hookean import Deformation
 from halfspace.compliance import Array, Index
 from halfspace.values import Valued
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Pattern(Valued):
-    """Positions of cell matrices in a sparse matrix, sorted once for all.
-
-    Attributes
-    ----------
-    shape : (int, int)
-        Of the matrix.
-    slots : (entries,) int array
-        Place of each entry of the cell matrices among the matrix's own.
-    indices, indptr : int arrays
-        Of the matrix in compressed columns.
-    """
-
-    shape: tuple[int, int]
-    slots: Index
-    indices: Index
-    indptr: Index
-
-    @classmethod
-    def of(cls, row_dofs: Index, column_dofs: Index, shape: tuple[int, int]) -> Pattern:
-        """Pattern of (cells, m, n) blocks that couple (m, cells) row with (n, cells) column unknowns."""
-        keys = column_dofs.T[:, None, :] * shape[0] + row_dofs.T[:, :, None]
-        places, slots = np.unique(keys.ravel(), return_inverse=True)
-        counts = np.bincount(places // shape[0], minlength=shape[1])
-        return cls(shape, slots, places % shape[0], np.concatenate([[0], np.cumsum(counts)]))
-
-    def assemble(self, blocks: Array) -> sparse.csc_array:
-        """Add up the blocks."""
-        data = np.bincount(self.slots, weights=blocks.ravel(), minlength=self.indices.size)
-        return sparse.csc_array((data, self.indices, self.indptr), shape=self.shape)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,7 +73,7 @@ class Cells(Valued):
 
 def _rows(values: Array) -> Array:
     """Merge points and components, (cells, q, c, n) to (cells, q c, n)."""
-    return values.reshape(len(values), -1, values.shape[3])
+    return values.reshape(len(values), values.shape[1] * values.shape[2], values.shape[3])
 
 
 def cells_of(space: Space) -> tuple[Cells, ...]:
@@ -122,31 +88,9 @@ def _batches(space: Space) -> Iterator[Cells]:
         yield Cells(space.cell_dofs[:, cells].T, np.stack([hoop, rr, zz], axis=2), np.stack([rr, zz], axis=2), measure)
 
 
-def interior_positions(space: Space) -> Index:
-    """Positions, among a cell's 2 n displacement unknowns, of those that no other cell shares."""
-    n, own = len(space.cell_dofs) // 2, space.element.interior_dofs
-    return np.concatenate([np.arange(n - own, n), np.arange(2 * n - own, 2 * n)])
-
-
-def displacement_pattern(space: Space, batches: tuple[Cells, ...]) -> Pattern:
-    """Pattern of the (N, N) matrix of the displacements."""
-    dofs = np.concatenate([cells.dofs for cells in batches]).T
-    return Pattern.of(dofs, dofs, (space.unknowns, space.unknowns))
-
-
-def states(batches: tuple[Cells, ...], u: Array, stretch: float) -> Iterator[tuple[Cells, Deformation]]:
-    """Batches with their deformations; u starts with the N displacements."""
-    return ((cells, cells.deformation(u, stretch)) for cells in batches)
-
-
 def summed(parts: Iterable[tuple[Index, Array]], size: int) -> Array:
     """Add up values of any shape to the unknowns of the same shape, (size,)."""
     total = np.zeros(size)
     for dofs, values in parts:
         total += np.bincount(dofs.ravel(), weights=values.ravel(), minlength=size)
     return total
-
-
-def least_volume_ratio(batches: tuple[Cells, ...], u: Array, stretch: float) -> float:
-    """Least J at any quadrature point."""
-    return float(min(state.volume_ratio.min() for _, state in states(batches, u, stretch)))

@@ -102,8 +102,14 @@ def _log_remainder(x: Array) -> Array:
     return np.asarray(np.where(np.abs(x) < SMALL, by_quadrature, (far - np.log1p(far)) / far**2))
 
 
-def shear_stress(state: Deformation, shear: float) -> Array:
-    """Stress G (F - F^-T)/delta = G (A + F^-T A^T) of the shear energy, (5, ...), in E*."""
+def stress(state: Deformation, shear: float, pressure: Array | float) -> Array:
+    """First Piola-Kirchhoff stress over delta, (5, ...), in E*: G (A + F^-T A^T) of the shear energy and p F^-T.
+
+    Parameters
+    ----------
+    pressure : array
+        p = lambda ln(J)/delta, or the pressure of the mixed form: positive in tension.
+    """
     A, f = state.gradient, state.inverse_transpose
     stress = np.empty_like(A)
     stress[0] = A[0] * (1 + f[0])
@@ -111,7 +117,7 @@ def shear_stress(state: Deformation, shear: float) -> Array:
         for j in range(2):
             turned = sum(f[TRANSPOSED[i][k]] * A[TRANSPOSED[j][k]] for k in range(2))
             stress[TRANSPOSED[i][j]] = A[TRANSPOSED[i][j]] + turned
-    return np.asarray(shear * stress)
+    return np.asarray(shear * stress + pressure * f)
 
 
 def geometric_moduli(state: Deformation) -> Array:
@@ -125,30 +131,8 @@ def geometric_moduli(state: Deformation) -> Array:
 
 
 def moduli(state: Deformation, shear: float, pressure: Array | float) -> Array:
-    """Derivative of shear stress + pressure F^-T by A at a fixed pressure, (5, 5, ...), in E*.
-
-    Parameters
-    ----------
-    pressure : array
-        lambda ln(J)/delta, or the pressure of the mixed form: positive in tension.
-    """
+    """Derivative of the stress by A at a fixed pressure, (5, 5, ...), in E*: symmetric."""
     result = (shear - state.stretch * np.asarray(pressure)) * geometric_moduli(state)
     for k in range(5):
         result[k, k] += shear
     return result
-
-
-def stress(state: Deformation, lam: float, shear: float) -> Array:
-    """First Piola-Kirchhoff stress over delta, (5, ...), in E*."""
-    return shear_stress(state, shear) + lam * state.log_volume * state.inverse_transpose
-
-
-def tangent(state: Deformation, lam: float, shear: float) -> Array:
-    """Derivative of the stress by A, (5, 5, ...), in E*: symmetric."""
-    f = state.inverse_transpose
-    return moduli(state, shear, lam * state.log_volume) + lam * f[:, None] * f
-
-
-def energy(state: Deformation, lam: float, shear: float) -> Array:
-    """Energy per reference volume over delta^2, in E*."""
-    return shear_energy(state, shear) + lam / 2 * state.log_volume**2

@@ -146,7 +146,6 @@ FLOORS = [
         "fem_adhesion.pairs",
         "fem_adhesion.monolithic",
         "fem_adhesion.finite_strain",
-        "fem_adhesion.finite_strain_mixed",
     },
     {"fem_adhesion.incompressible", "fem_adhesion.finite_strain_solve", "fem_adhesion.finite_strain_traction"},
     {"fem_adhesion.condensed", "fem_adhesion.finite_strain_bodies", "fem_adhesion.finite_strain_surface"},
