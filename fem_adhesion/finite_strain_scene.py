@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 
@@ -28,6 +30,7 @@ WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a min
 TIGHTEST = 1e-6  # relative tolerance
 MOST_RUNGS = 2  # above the lowest
 LITTLE = 0.5  # R dgamma: a load past every event
+SOFT = 0.9  # part of the surface's stiffness to short waves, gone, from which solutions get lost
 SMALLEST_PART = 0.005  # of delta, in which it is raised where the linear body's events are too far away
 JUMPS = ("pull_off", "jump_on", "jump_off")
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
@@ -68,7 +71,8 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
             'take strain = "small"'
         )
     began = time.perf_counter()
-    path = climb(rtol, partial(Stages(scene).rung, _lowest_degree(rtol)), to_load=to_load, most_rungs=MOST_RUNGS)
+    with _cause_told(scene):
+        path = climb(rtol, partial(Stages(scene).rung, _lowest_degree(rtol)), to_load=to_load, most_rungs=MOST_RUNGS)
     spread = {name: _spread(path.stages[-2][name], scene) for name in path.events}
     settings = {**path.settings, "traction": scene.traction}
     return replace(path, spread=spread, settings=settings, seconds=time.perf_counter() - began)
@@ -144,14 +148,31 @@ def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
     stages, lowest = Stages(scene), _lowest_degree(rtol)
     stage = stages.around(lowest, lowest)
     found = {name: event for name, event in find_events(_linear_curve(scene, LITTLE)).items() if name in JUMPS}
-    state = {name: raised(event, stage.mesh(event)[1]) for name, event in found.items()}
-    for degree in range(lowest + 1, lowest + 1 + MOST_RUNGS):
-        below, stage = state, stages.around(degree, lowest)
-        state = {name: moved(event, stage(event).problem) for name, event in below.items()}
-        events = {name: estimate_event(name, [[below[name], state[name]]]) for name in EVENTS if name in found}
-        if not Tolerance.on(events, rtol).missed(events):
-            break
+    with _cause_told(scene):
+        state = {name: raised(event, stage.mesh(event)[1]) for name, event in found.items()}
+        for degree in range(lowest + 1, lowest + 1 + MOST_RUNGS):
+            below, stage = state, stages.around(degree, lowest)
+            state = {name: moved(event, stage(event).problem) for name, event in below.items()}
+            events = {name: estimate_event(name, [[below[name], state[name]]]) for name in EVENTS if name in found}
+            if not Tolerance.on(events, rtol).missed(events):
+                break
     return events
+
+
+@contextmanager
+def _cause_told(scene: Scene) -> Iterator[None]:
+    """Say, where no solution is found close to the limit of ill-posedness, that this is why."""
+    try:
+        yield
+    except NotConverged as error:
+        part, ratio = softening(scene), scene.tabor * scene.sphere_radius**2
+        if part < SOFT:
+            raise
+        raise NotConverged(
+            f"radius_ratio = {ratio:g} is close to its limit {ratio * part**2:.3g} for traction = {scene.traction!r}: "
+            f"the edge tension leaves {1 - part:.1%} of the surface's stiffness to short waves ({error}); take "
+            f"traction = 'reference', or radius_ratio above {ratio * (part / SOFT) ** 2:.3g}"
+        ) from error
 
 
 def raised(event: Located, problem: FiniteStrainProblem, done: float = 0.0) -> Located:
