@@ -125,6 +125,8 @@ class Body(Valued):
         Radius at which the surface ends.
     reaction : (n,) array
         Upward force, per unknown, of what holds the body.
+    borne : (q,) array
+        Part of the tension at the points that it bears directly: at the corner where the surface is held.
     model, size : Body, float
         The body that this one is so many times as large as, if it is.
     """
@@ -136,6 +138,7 @@ class Body(Valued):
     depths: Array
     rim: float
     reaction: Array
+    borne: Array
     model: Body | None = None
     size: float = 1.0
 
@@ -167,7 +170,7 @@ class Body(Valued):
     def scaled(self, a: float) -> Body:
         """The same body a times as large: its stiffness grows as its size."""
         points = self.values, self.radii * a, self.area * a**2, self.depths * a
-        return Body(self.stiffness * a, *points, self.rim * a, self.reaction * a, self, a)
+        return Body(self.stiffness * a, *points, self.rim * a, self.reaction * a, self.borne, self, a)
 
 
 def discretise(
@@ -206,8 +209,10 @@ def discretise(
     reaction = 0 * last(T.shape[1]) if plate else (moved.T @ K @ T).toarray()[0]
     (radii, heights), rim = surface.global_coordinates(), float(mesh.p[0, mesh.facets[:, surface.find]].max())
     area = 2 * np.pi * radii * surface.dx * (1.0 if on_surface else surface.normals[1])
-    points = sparse.csr_array(surface_values(surface) @ T), radii.ravel(), area.ravel(), -heights.ravel()
-    body = Body(sparse.csc_array(T.T @ K @ T), *points, rim, reaction)
+    values = surface_values(surface)
+    borne = np.zeros(radii.size) if plate else (values @ moved).toarray()[:, 0]
+    points = sparse.csr_array(values @ T), radii.ravel(), area.ravel(), -heights.ravel()
+    body = Body(sparse.csc_array(T.T @ K @ T), *points, rim, reaction, borne)
     return on_spring(body, 1.0) if plate else body
 
 
@@ -266,7 +271,7 @@ def opposed(first: Body, second: Body, share: float) -> Body:
     values = sparse.csr_array(sparse.hstack([first.values[a], second.values[b]]))
     points = values, first.radii[a], first.area[a], first.depths[a]
     stiffness = sparse.csc_array(sparse.block_diag([K, L]))
-    return Body(stiffness, *points, first.rim, np.append(by_first, 0 * second.reaction))
+    return Body(stiffness, *points, first.rim, np.append(by_first, 0 * second.reaction), first.borne[a])
 
 
 def last(size: int) -> Array:
@@ -361,9 +366,9 @@ class Contact(Valued):
         inside += float(self.rigid[1] @ surface_energy(self._beyond(approach)))
         return self.tabor * inside + 2 * np.pi * float(energy_beyond(self._rim(approach)))
 
-    def far_reaction(self, u: Array) -> float:
-        """Upward force of what holds the body: the load, in equilibrium."""
-        return float(self.body.reaction @ u)
+    def far_reaction(self, u: Array, h: Array) -> float:
+        """Upward force of what holds the body, displaced by the tensions of given gaps: their load, in equilibrium."""
+        return float(self.body.reaction @ u) - self.tabor * self.body.integral(self.body.borne * tension(h))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -13,6 +13,7 @@ from fem_adhesion.scene import Counter
 from fem_adhesion.studies import crosscheck, from_scratch
 from fem_adhesion.studies.comparison import HARMONICS, SOLVERS, WEAK_FORM
 from fem_adhesion.studies.weak_bodies import contacts
+from fem_adhesion.weak_form import tension
 from halfspace.errors import InputError
 
 MESH = Path(__file__).parents[1] / "meshes" / "hemisphere.msh"
@@ -30,24 +31,24 @@ def _without_limits(monkeypatch):
 
 # --- the command ---
 
-HEMISPHERE = ["--body", "hemisphere", "--profile", "sphere", "--radius-ratio", "30"]
+HEMISPHERE = ["--body", "hemisphere", "--profile", "sphere", "--radius-ratio", "10"]
 
 
 def test_the_command_compares_a_hemisphere_with_the_whole_sphere(tmp_path, capsys):
     file = tmp_path / "result.json"
-    assert cli.main(["compare", "--tabor", "1", *HEMISPHERE, "--json", str(file)]) == 0
+    assert cli.main(["compare", "--tabor", "3", *HEMISPHERE, "--json", str(file)]) == 0
     (case,), out = json.loads(file.read_text())["cases"], capsys.readouterr().out
-    assert "tabor 1; poisson 0.3; hemisphere; R/eps 30: agree" in out
+    assert "tabor 3; poisson 0.3; hemisphere; R/eps 10: agree" in out
     assert "error (ha)" in out
     rows = {row["quantity"]: row for row in case["comparison"] if row["between"] == list(HARMONICS)}
     assert {"operator: spike", "cross-residual: pull_off", "jump_off load", "energy released"} <= rows.keys()
     for quantity, row in rows.items():
         event, _, number = quantity.partition(" ")
         if event in case["finite_element"]["events"]:
-            assert row["first"] == pytest.approx(row["second"], rel=1e-4)
+            assert row["first"] == pytest.approx(row["second"], rel=1e-4, abs=1e-4)
             if number in ("load", "approach"):
                 assert row["first"] == case["harmonics"]["events"][event][number]
-                assert row["budget"] <= 5e-5
+                assert row["budget"] <= 1e-4
     assert {row["verdict"] for row in case["comparison"]} == {"agree"}
 
 
@@ -179,3 +180,12 @@ def test_the_weak_form_of_a_body_with_a_length_has_its_whole_surface(counter):
         assert area == pytest.approx(np.pi * R**2, rel=1e-9)
         assert contact.load(0 * contact.body.radii, -5.0) == contact.load_beyond(-5.0)
         assert (contact.load_beyond(-5.0) < 0) == (counter is not None)
+
+
+@pytest.mark.parametrize("scene", [sphere(), sphere(body="sphere"), sphere(counter=Counter(0.4, 0.3, 3.0))])
+def test_what_holds_a_body_bears_the_whole_load(scene):
+    """Also the tension at the corner where the surface is held, which deforms nothing."""
+    contact = contacts(scene)[0](1.2)
+    h = 1.1 + 0.2 * contact.body.radii
+    load = contact.load(tension(h), -5.0) - contact.load_beyond(-5.0)
+    assert contact.far_reaction(contact.displacement(h), h) == pytest.approx(load, rel=1e-9)

@@ -68,7 +68,7 @@ def test_an_equilibrium_balances_and_its_energy_falls_by_the_load(in_contact):
     contact, found = in_contact
     u = contact.displacement(found.gap)
     np.testing.assert_allclose(contact.gap(u, found.approach), found.gap, rtol=0, atol=1e-8)
-    assert contact.far_reaction(u) + contact.load_beyond(1.0) == pytest.approx(found.load, rel=1e-7)
+    assert contact.far_reaction(u, found.gap) + contact.load_beyond(1.0) == pytest.approx(found.load, rel=1e-7)
     d = 1e-3
     beside = [newton(contact, found.gap, 1.0 + step) for step in (-d, d)]
     energies = [contact.energy(contact.displacement(state.gap), state.approach) for state in beside]

@@ -10,7 +10,7 @@ its budget is a part in a thousand, whatever the tolerance.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.integrate import quad
@@ -150,16 +150,18 @@ def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
     largest of their differences counts for all, relative to the sizes.
     """
     both = contacts(scene)
-    found = [row for name in path.events for row in _of_event(name, path, *both)]
-    energies = _energy_released(both[0], path), _energy_released(both[1], path)
-    found.append(Compared("energy released", "R dgamma eps", energies, path.energy, abs(path.energy.value)))
+    found = [row for name in path.events for row in _of_event(name, path, *both, sized=scene.sized)]
+    coarse, fine = (_energy_released(contact, path, sized=scene.sized) for contact in both)
+    found.append(Compared("energy released", "R dgamma eps", (coarse, fine), path.energy, abs(path.energy.value)))
     doubt = max(compared.change for compared in found)
     return [compared.row(doubt) for compared in found]
 
 
-def _of_event(name: str, path: EquilibriumPath, on_coarse: AtRadius, on_fine: AtRadius) -> Iterator[Compared]:
+def _of_event(
+    name: str, path: EquilibriumPath, on_coarse: AtRadius, on_fine: AtRadius, *, sized: bool
+) -> Iterator[Compared]:
     event, located = path.events[name], path.stages[-1][name]
-    coarse, fine = (_state(contact(_size(located)), located) for contact in (on_coarse, on_fine))
+    coarse, fine = (_state(contact(_size(located, sized=sized)), located) for contact in (on_coarse, on_fine))
     approach, load = (Estimate(getattr(event, key), getattr(event, f"{key}_error")) for key in ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
     balances, reactions = (coarse.balance, fine.balance), (coarse.reaction, fine.reaction)
@@ -206,13 +208,20 @@ class State:
     @property
     def reaction(self) -> float:
         """Far reaction in R dgamma, and what is pulled at beyond the mesh."""
-        return self.contact.far_reaction(self.u) + self.contact.load_beyond(self.approach)
+        return self.contact.far_reaction(self.u, self.gap) + self.contact.load_beyond(self.approach)
 
 
-def _size(event: Located) -> float:
-    """Radius in beta of the contact or, where that is larger, of the attraction."""
+def _size(event: Located, *, sized: bool) -> float:
+    """Radius in beta at which cells are finest: of the contact or, where that is larger, of the attraction.
+
+    A half-space has fine cells inside as well; on a body with a length the contact comes first, unless it is small.
+    """
     _, _, central_gap, radius = (float(value) for value in event.point.observables)
-    return float(np.fmax(radius, 0.7 * np.sqrt(2 * (1 + central_gap) / event.problem.tabor)))
+    attraction = 0.7 * float(np.sqrt(2 * (1 + central_gap) / event.problem.tabor))
+    return radius if sized and radius > SMALL * attraction else float(np.fmax(radius, attraction))
+
+
+SMALL = 0.25  # contact, in the radius of the attraction
 
 
 def _state(contact: Contact, event: Located) -> State:
@@ -234,11 +243,23 @@ def _gaps(event: Located, contact: Contact) -> Array:
 
 
 def gaps_at(event: Located, radii: Array) -> Array:
-    """Gaps H of a state at radii on its cells: where the deflection is interpolated, a sphere's profile need not be."""
+    """Gaps H of a state at radii on its cells.
+
+    Under a sphere it is the deflection that is interpolated, by the angle sin(theta) = r/R: its profile is no
+    polynomial of the radius, and at the equator nor is what it leaves.
+    """
     problem, x = event.problem.interface, event.problem.surface_state(event.point.x)
-    operator, mu, height = problem.operator_at(x), problem.tabor, problem.profile.height
+    operator, mu, profile = problem.operator_at(x), problem.tabor, problem.profile
     within = np.minimum(radii, operator.extent)
-    return np.asarray(operator.values_at(within, x[:-2] - mu * height(operator.radii)) + mu * height(within))
+    if np.isinf(profile.end):
+        return operator.values_at(within, x[:-2])
+
+    def angle(r: Array) -> Array:
+        return np.asarray(np.arcsin(np.minimum(r / profile.end, 1.0)))
+
+    by_angle = replace(operator, radii=angle(operator.radii), cells=angle(operator.cells))
+    deflection = by_angle.values_at(angle(within), x[:-2] - mu * profile.height(operator.radii))
+    return np.asarray(deflection + mu * profile.height(within))
 
 
 def _turn(name: str, state: State) -> Turn | None:
@@ -265,8 +286,8 @@ def _beside(name: str, state: State) -> Turn | None:
     return Turn(found.load, found.approach)
 
 
-def _energy_released(on: AtRadius, path: EquilibriumPath) -> float:
+def _energy_released(on: AtRadius, path: EquilibriumPath, *, sized: bool) -> float:
     """Potential energy between the two states of `EquilibriumPath.energy`; its error is of second order in theirs."""
     ends = (path.stages[-1][name] for name in ("separated", "zero_approach"))
-    before, after = (_state(on(_size(event)), event) for event in ends)
+    before, after = (_state(on(_size(event, sized=sized)), event) for event in ends)
     return before.contact.energy(before.u, before.approach) - after.contact.energy(after.u, after.approach)

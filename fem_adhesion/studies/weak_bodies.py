@@ -38,8 +38,8 @@ AtRadius = Callable[[float], Contact]
 """The contact on cells that are finest at a radius in beta."""
 
 FINENESS = ((3, 10.0), (4, 30.0))  # degree of the elements, size of the box in contact radii: coarse, fine
-DEGREES = (3, 4)  # of the elements of a body with a length; one more if nothing else checks it, or if it is
-NEARLY = 0.45  # incompressible: Poisson's ratio beyond
+DEGREES = (3, 4)  # of the elements of a body with a length; one more of spheres if nothing else checks them, or if
+NEARLY = 0.45  # they are nearly incompressible: Poisson's ratio beyond
 SHARP = 6.0
 """Tabor parameter beyond which the spike of tension is too narrow for the weak form to show where a contact turns."""
 
@@ -50,7 +50,7 @@ def contacts(scene: Scene) -> tuple[AtRadius, AtRadius]:
         boxes = half_spaces(scene)
         return partial(_on_half_space, scene, boxes[0]), partial(_on_half_space, scene, boxes[1])
     alone = scene.grip == "bonded" or scene.body == "sphere"
-    more = int(alone or scene.poisson > NEARLY)
+    more = int(not isinstance(scene.body, Path) and (alone or scene.poisson > NEARLY))
     return partial(_sized, scene, DEGREES[0] + more), partial(_sized, scene, DEGREES[1] + more)
 
 
@@ -84,8 +84,9 @@ def _sized(scene: Scene, degree: int, radius: float) -> Contact:
     """Contact of a sphere, of a pair or of a user's mesh."""
     R = float(np.sqrt(scene.radius_ratio / scene.tabor)) if scene.radius_ratio else np.inf
     if isinstance(scene.body, Path):
-        body = discretise(_of_file(scene.body).scaled(R), min(degree, 4), scene.poisson, slides=scene.grip == "sliding")
+        body = discretise(_of_file(scene.body).scaled(R), degree, scene.poisson, slides=scene.grip == "sliding")
         return Contact(body, scene.tabor, lambda _: R * body.depths, endless=False)
+    radius = min(radius, WIDEST * R)  # what attracts from afar may be wider
     if scene.counter:
         return _pair(scene, scene.counter, R, degree, radius)
     if scene.body == "block":
@@ -111,7 +112,7 @@ def _heights(scene: Scene, R: float) -> Heights:
     return lambda r: sum((R / each * sphere(r, each) for each in radii), 0 * r)
 
 
-GROWTH = 2.5
+GROWTH, WIDEST = 2.5, 0.95  # ratio of neighbouring cells; the place in R beyond which they are finest nowhere
 RINGS = 0.2 ** np.arange(1.0, 5.0)  # sizes of rings of cells around a corner where the stress is singular
 
 
