@@ -340,7 +340,8 @@ class Contact(Valued):
 
     def _beyond(self, approach: float) -> Array:
         """Gaps at the rigid points."""
-        return np.asarray(1 - approach + self.tabor * self.heights(self.rigid[0]))
+        r = self.rigid[0]
+        return np.asarray(1 - approach + self.tabor * self.heights(r)) if r.size else r
 
     def load(self, tension: Array, approach: float) -> float:
         """W in R dgamma, positive in compression, of the tension at the points."""

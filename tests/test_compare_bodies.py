@@ -182,7 +182,10 @@ def test_the_weak_form_of_a_body_with_a_length_has_its_whole_surface(counter):
         assert (contact.load_beyond(-5.0) < 0) == (counter is not None)
 
 
-@pytest.mark.parametrize("scene", [sphere(), sphere(body="sphere"), sphere(counter=Counter(0.4, 0.3, 3.0))])
+HELD = [sphere(), sphere(body="sphere"), sphere(counter=Counter(0.4, 0.3, 3.0)), BODIES["a mesh"][0]]
+
+
+@pytest.mark.parametrize("scene", HELD)
 def test_what_holds_a_body_bears_the_whole_load(scene):
     """Also the tension at the corner where the surface is held, which deforms nothing."""
     contact = contacts(scene)[0](1.2)
