@@ -326,7 +326,7 @@ def _finite_strain():
             (1.5, 300, {"poisson": 0.499, "grip": "bonded"}),
         )
     ]
-    nets = Net(scenes, _decades(3, 4, 5)), Net(scenes[:1], _decades(3, 4))
+    nets = Net(scenes, _decades(3, 4, 5)), Net(scenes[:1], _decades(3))
     return Family(*nets, _by(fem_adhesion.trace), of_path, partial(relocated, truths.finite_strain))
 
 
@@ -421,7 +421,7 @@ FAMILIES = {
     "curve, finite strain": replace(
         _finite_strain(),
         full=Net([_sphere(0.3, 30, strain="finite"), _sphere(1, 100, strain="finite", poisson=0.45)], _decades(3, 4)),
-        quick=Net([_sphere(0.3, 30, strain="finite")], [1e-3]),
+        quick=Net([], []),
         numbers=of_curve,
         truth=partial(beside, truths.along_at_finite_strain),
         anew=True,

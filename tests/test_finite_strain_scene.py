@@ -10,7 +10,7 @@ import pytest
 
 from fem_adhesion import convergence, finite_strain_scene
 from fem_adhesion.finite_strain_meshes import FARTHEST, AroundEvents, ScenesBody, Windows, fine_between
-from fem_adhesion.finite_strain_scene import LITTLE, find_jumps, raised, trace
+from fem_adhesion.finite_strain_scene import LITTLE, Stages, find_jumps, raised, trace
 from fem_adhesion.finite_strain_traction import Convention
 from fem_adhesion.output import curve_record, curve_terminal
 from fem_adhesion.scene import Counter, Scene
@@ -342,6 +342,13 @@ def test_an_edge_that_makes_the_equations_ill_posed_is_refused_before_work(
         monkeypatch.setattr(finite_strain_scene, work, None)
     with pytest.raises(InputError, match=f"= {radius_ratio:g} is outside {least} < .*; take traction = 'reference'"):
         solve(scene(tabor, radius_ratio, **options), 1e-3)
+
+
+@pytest.mark.parametrize(("traction", "left"), [("normal", 0.2082), ("reference", 1.0)])
+def test_meshes_of_events_are_as_much_finer_as_the_surface_is_softened(traction, left):
+    """At tabor 3, R/eps 300 and degree 4 that leaves a fifth of the error in the approach of the pull-off."""
+    stages = Stages(scene(3.0, 300.0, traction=traction))
+    assert stages.around(5, 4).body.length == pytest.approx(left * stages.windows(4).body.length, rel=1e-3)
 
 
 @pytest.mark.parametrize(("radius_ratio", "told"), [(38.0, True), (50.0, False)])
