@@ -16,16 +16,18 @@ from types import ModuleType
 from typing import Any
 
 import honesty
+import numpy as np
 
 import fem_adhesion.sized
 import halfspace.accuracy
 import halfspace.contact
 import halfspace.sized
 from fem_adhesion import Scene, weak_form
-from fem_adhesion.studies import from_scratch
+from fem_adhesion.studies import from_scratch, weak_bodies
 from halfspace import compliance, grid
 from halfspace.contact import CONTACT_RADIUS, LOAD, ContactProblem, spike_width
 from halfspace.curve import moved
+from halfspace.errors import NotConverged
 
 FACTORS = (0.5, 1.0, 2.0)
 
@@ -79,12 +81,12 @@ def fourth_level(*tabors):
     """Whether events agree with those of the weak form."""
 
     def told():
-        from_scratch._half_space.cache_clear()
+        weak_bodies._half_space.cache_clear()
         rows = [row for tabor in tabors for row in from_scratch.events(Scene(tabor), _solved(tabor))]
         agree = sum(row.verdict == "agree" for row in rows)
         largest = max(row.error / row.budget for row in rows if row.first)
         yield f"tabor {', '.join(map(str, tabors))}: {agree} of {len(rows)} rows agree, {largest:.1%} of the budget"
-        from_scratch._half_space.cache_clear()
+        weak_bodies._half_space.cache_clear()
 
     return told
 
@@ -96,7 +98,7 @@ def _solved(tabor):
 
 def pull_off_on_wide_cells():
     """By how much the load is off on cells as wide as is allowed."""
-    for nodes in (2, 3, 5, 9, 13):
+    for nodes in (4, 6, 9, 13):
         off = [_off(tabor, nodes) for tabor in (1.0, 3.0)]
         yield f"{nodes} nodes a cell: pull-off load off by {', '.join(f'{one:.0e}' for one in off)} at tabor 1, 3"
 
@@ -105,8 +107,10 @@ def _off(tabor, nodes):
     event = _on_the_half_space(tabor)
     finest = halfspace.contact.widest_interval(nodes) * spike_width(tabor) * (nodes - 1)
     lines = grid.graded(float(event.point.observables[CONTACT_RADIUS]), finest, 60.0, growth=1.5)
-    operator = compliance.triangles(lines) if nodes == 2 else compliance.panels(lines, nodes)
-    found = moved(event, ContactProblem(operator, tabor))
+    try:
+        found = moved(event, ContactProblem(compliance.panels(lines, nodes), tabor))
+    except NotConverged:
+        return np.nan
     return abs(found.point.observables[LOAD] / event.point.observables[LOAD] - 1)
 
 
@@ -152,9 +156,9 @@ CONSTANTS = (
     Constant(fem_adhesion.sized, "PER_DEGREE", estimates("hemisphere, sliding"), to_the_power),
     Constant(fem_adhesion.sized, "RINGS", estimates("hemisphere, bonded"), to_the_power),
     Constant(fem_adhesion.sized, "PAST_EQUATOR", estimates("block under a sphere")),
-    Constant(from_scratch, "FINENESS", fourth_level(0.5, 2.0), larger_boxes),
-    Constant(from_scratch, "FINENESS", fourth_level(0.5, 2.0), higher_degrees),
-    Constant(from_scratch, "SHARP", fourth_level(5.0, 8.0)),
+    Constant(weak_bodies, "FINENESS", fourth_level(0.5, 2.0), larger_boxes),
+    Constant(weak_bodies, "FINENESS", fourth_level(0.5, 2.0), higher_degrees),
+    Constant(weak_bodies, "SHARP", fourth_level(5.0, 8.0)),
     Constant(weak_form, "EVEN", fourth_level(0.5, 2.0)),
     Constant(weak_form, "GROWTH", fourth_level(0.5, 2.0), to_the_power),
     Constant(weak_form, "INNER", fourth_level(0.5, 2.0), from_one),

@@ -307,7 +307,7 @@ POISSONS = (0, 0.3, 0.45, 0.499)
 def _sized(*sizes, truth=truths.elements, few=1, **more):
     """Family of bodies of some sizes, each with another Poisson's ratio; `few` is the place of that which is quick."""
     scenes = [_sphere(*size, poisson=POISSONS[n % 4], **more) for n, size in enumerate(sizes)]
-    nets = Net(scenes, _decades(4, 5, 6)), Net(scenes[few : few + 1], _decades(4, 5))
+    nets = Net(scenes, _decades(4, 5, 6)), Net(scenes[few : few + 1], _decades(4))
     return Family(*nets, _by(fem_adhesion.trace), of_path, partial(relocated, truth))
 
 
@@ -398,9 +398,9 @@ FAMILIES = {
         (0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (2, 30), truth=truths.harmonics, few=3
     ),
     "hemisphere, bonded": _sized(*SIZES, grip="bonded", few=3),
-    "held sphere": _sized(*SIZES[:4], body="sphere"),
+    "held sphere": _sized(*SIZES[:4], body="sphere", few=3),
     "pair of spheres": _sized(*SIZES[2:6], counter=Counter(0.4, 0.3, 2.0)),
-    "pair of spheres, bonded": _sized(*SIZES[:4], grip="bonded", counter=Counter(0.4, 0.45, 3.0)),
+    "pair of spheres, bonded": _sized(*SIZES[:4], grip="bonded", counter=Counter(0.4, 0.45, 3.0), few=3),
     "block under a sphere": _sized(*SIZES[2:6], body="block", truth=_half_space_under),
     "finite strain": _finite_strain(),
     "mesh from a file": Family(
@@ -480,7 +480,7 @@ FAMILIES = {
     ),
     "curve, hemisphere": Family(
         Net(SLIDING, _decades(3, 5)),
-        Net(SLIDING[:1], _decades(3)),
+        Net(SLIDING[1:2], _decades(3, 4)),
         _by(fem_adhesion.trace),
         of_curve,
         partial(beside, truths.harmonics),

@@ -19,7 +19,7 @@ from fem_adhesion.studies.parallel import stream
 from halfspace.errors import NotConverged
 
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
-SCENES = {"full": 60, "quick": 6}
+SCENES = {"full": 60, "quick": 4}
 TABORS, RTOLS, FE_RTOLS = (0.02, 30.0), (1e-9, 1e-1), (1e-6, 1e-1)
 LEAST_COMPRESSIBLE = 1e-6  # of 1/2 - poisson
 SHARE = 0.99  # of the numbers that must lie within, as of the estimates of either solver
