@@ -5,9 +5,16 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from fem_adhesion.commands import assess, compare, curve, finite_sphere, greenwood, hard, report, speed
-from fem_adhesion.commands.common import BAD_INPUT, DISAGREE, NOT_WRITTEN, Parser, Version, ended, ended_by_signal
-from fem_adhesion.writing import NotWritten
+from fem_adhesion.assess import command as assess
+from fem_adhesion.common.options import BAD_INPUT, DISAGREE, NOT_WRITTEN, Parser, Version, ended, ended_by_signal
+from fem_adhesion.common.writing import NotWritten
+from fem_adhesion.crosscheck import command as compare
+from fem_adhesion.curve import command as curve
+from fem_adhesion.finite_sphere import command as finite_sphere
+from fem_adhesion.greenwood import command as greenwood
+from fem_adhesion.hard import command as hard
+from fem_adhesion.report import command as report
+from fem_adhesion.speed import command as speed
 from halfspace.errors import InputError, NotConverged
 
 COMMANDS = (compare, curve, assess, finite_sphere, speed, hard, greenwood, report)

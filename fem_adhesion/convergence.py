@@ -9,19 +9,22 @@ from pathlib import Path
 import numpy as np
 from skfem import ElementQuadP
 
-from fem_adhesion import far_field, finite_strain_scene, meshed, sized
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space
-from fem_adhesion.incompressible import stiffness_for
-from fem_adhesion.mesh import graded_breaks, tensor_grid
+from fem_adhesion.bodies import sized
+from fem_adhesion.bodies import user_mesh as meshed
+from fem_adhesion.elasticity import far_field
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.incompressible import stiffness_for
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain import scene as finite_strain_scene
+from fem_adhesion.mesh.block import graded_breaks, tensor_grid
 from fem_adhesion.scene import Scene
-from halfspace import grid
-from halfspace.accuracy import rings, widened, widest_radius
-from halfspace.breathing import Homogeneous
-from halfspace.compliance import to_infinity
-from halfspace.contact import ContactProblem, spike_width
-from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
-from halfspace.ladder import MOST_RUNGS, Charted, Charts, Rung, climb
+from halfspace.accuracy.refinement import MOST_RUNGS, Charted, Charts, Rung, climb
+from halfspace.accuracy.trace import rings, widened, widest_radius
+from halfspace.elastic import grid
+from halfspace.elastic.compliance import to_infinity
+from halfspace.elastic.operators import Homogeneous
+from halfspace.equilibrium.contact import ContactProblem, spike_width
+from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
 from halfspace.limits import require_load, require_rtol
 
 FAR_FIELDS = {"point_load": far_field.point_load, "clamped": far_field.clamped, "free": far_field.free}

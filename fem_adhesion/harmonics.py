@@ -24,17 +24,17 @@ from itertools import count, islice, pairwise
 import numpy as np
 
 from fem_adhesion.scene import Scene
-from halfspace import compliance, grid
-from halfspace.breathing import FlatCoordinate
-from halfspace.compliance import Array, ElasticOperator
-from halfspace.contact import CONTACT_RADIUS, ContactProblem, spike_width
-from halfspace.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.accuracy.finite_bodies import AlongCurve, Made, SizedBody
+from halfspace.accuracy.refinement import Rung, climb
+from halfspace.elastic import compliance, grid
+from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.operators import FlatCoordinate
+from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem, spike_width
+from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.equilibrium.events import Located
 from halfspace.errors import InputError
-from halfspace.events import Located
-from halfspace.ladder import Rung, climb
 from halfspace.limits import require_load, require_rtol
 from halfspace.profiles import Paraboloid, Profile, between_spheres
-from halfspace.sized import AlongCurve, Made, SizedBody
 from halfspace.values import Valued
 
 # The sphere

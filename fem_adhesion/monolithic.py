@@ -1,13 +1,14 @@
 """The whole contact problem by finite elements: Newton's method on every displacement unknown at once.
 
-Unknowns x = (y, alpha*): reduced displacements y with u = T y, see `fem_adhesion.far_field`, and the approach in eps.
-The equations say that the body's forces balance the pressure P on the contact surface, for all v = T z:
+Unknowns x = (y, alpha*): reduced displacements y with u = T y, see `fem_adhesion.elasticity.far_field`, and the
+approach in eps. The equations say that the body's forces balance the pressure P on the contact surface, for all v = T
+z:
 
     a(u, v) + c(u, v) = -int P(H) v_z 2 pi r dr,        H = -alpha* + mu r^2/2 - mu u_z,
 
 a the strain energy's form in the block, c that of the exterior. Displacements are in mu eps = beta^2/R, pressures in
 dgamma/(mu eps), so forces come in R dgamma. scikit-fem assembles every form; nothing is condensed, which makes this the
-reference for `fem_adhesion.condensed`.
+reference for `fem_adhesion.elasticity.condensation`.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ from scipy.sparse.linalg import splu
 from skfem import BilinearForm, CellBasis, ElementVector, LinearForm
 from skfem.helpers import ddot, sym_grad, trace
 
-from fem_adhesion.boundary import boundary_basis
-from fem_adhesion.condensed import contact_surface
-from fem_adhesion.elasticity import Space, cell_quadrature, lame_parameters
-from fem_adhesion.far_field import Exterior, FarField, point_load, with_interiors
-from halfspace.compliance import Array, ElasticOperator
-from halfspace.contact import ContactProblem
+from fem_adhesion.elasticity.boundaries import boundary_basis
+from fem_adhesion.elasticity.condensation import contact_surface
+from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load, with_interiors
+from fem_adhesion.elasticity.space import Space, cell_quadrature, lame_parameters
+from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
 from halfspace.values import Valued
@@ -70,7 +71,7 @@ pressure_work, pressure_change_work = LinearForm(_pressure_work), BilinearForm(_
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MonolithicProblem(Valued):
-    """Equilibrium of a surface law with a block of N displacement unknowns; a `halfspace.newton.Traceable`.
+    """Equilibrium of a surface law with a block of N displacement unknowns; a `halfspace.equilibrium.newton.Traceable`.
 
     Attributes
     ----------
@@ -251,9 +252,9 @@ def assemble(
     Parameters
     ----------
     space, poisson, points
-        As in `fem_adhesion.condensed.condense`.
+        As in `fem_adhesion.elasticity.condensation.condense`.
     tabor, law
-        As in `halfspace.contact.ContactProblem`.
+        As in `halfspace.equilibrium.contact.ContactProblem`.
     far_field : callable
         `point_load` or `clamped`.
 

@@ -98,7 +98,7 @@ class Scene:
         or nothing but the uniform traction that balances the load.
     body : {"block", "hemisphere", "sphere"} or path
         What is elastic: the half-space as a block of finite elements, a hemisphere held at its mid-plane, a sphere held
-        over a cap, or the body meshed in a file, see `fem_adhesion.mesh_file`.
+        over a cap, or the body meshed in a file, see `fem_adhesion.mesh.file`.
     profile : {"paraboloid", "sphere"}
         Undeformed gap: r^2/2R or R - sqrt(R^2 - r^2). The body of a file has the profile of its own surface.
     radius_ratio : float, optional
@@ -111,7 +111,7 @@ class Scene:
         What the law's traction is counted per. At small strain: the projected area, exact for rigid shapes, or that of
         the surface itself. At finite strain, where the projected area is stretched, "projected" is the blend that
         conserves matter of "reference", per undeformed area, and "normal", per deformed area and normal to the surface;
-        "vertical", per deformed area, does not. See `fem_adhesion.finite_strain_traction`.
+        "vertical", per deformed area, does not. See `fem_adhesion.finite_strain.traction`.
     counter : Counter, optional
         An elastic counter-body; the wall is rigid unless given. R and E* are then those of the pair.
     strain : {"small", "finite"}

@@ -8,10 +8,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from halfspace.accuracy import trace
-    from halfspace.curve import EquilibriumPath, Estimate
+    from halfspace.accuracy.trace import trace
+    from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+    from halfspace.equilibrium.events import Event
     from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
-    from halfspace.events import Event
 
 __all__ = [
     "ContactTooWide",
@@ -25,10 +25,10 @@ __all__ = [
 ]
 
 _HOMES = {
-    "trace": "accuracy",
-    "EquilibriumPath": "curve",
-    "Estimate": "curve",
-    "Event": "events",
+    "trace": "accuracy.trace",
+    "EquilibriumPath": "equilibrium.curve",
+    "Estimate": "equilibrium.curve",
+    "Event": "equilibrium.events",
     **dict.fromkeys(("ContactTooWide", "GridTooCoarse", "InputError", "NotConverged"), "errors"),
 }
 

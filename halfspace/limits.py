@@ -27,8 +27,16 @@ def require_tabor(tabor: float) -> float:
     """Return the Tabor parameter, or raise InputError unless 1e-12 <= tabor <= 300: beyond, a closed form will do."""
     tabor = require_number(tabor, "tabor")
     _require(tabor, "tabor", 0 < tabor < math.inf, "0 < tabor", "give the Tabor parameter of the contact")
-    _require(tabor, "tabor", tabor >= 1e-12, "1e-12 <= tabor", "the body is rigid: use halfspace.theories.bradley_load")
-    return _require(tabor, "tabor", tabor <= 300, "tabor <= 300", "JKR's theory holds: use halfspace.theories.jkr_load")
+    _require(
+        tabor,
+        "tabor",
+        tabor >= 1e-12,
+        "1e-12 <= tabor",
+        "the body is rigid: use halfspace.theories.closed_forms.bradley_load",
+    )
+    return _require(
+        tabor, "tabor", tabor <= 300, "tabor <= 300", "JKR's theory holds: use halfspace.theories.closed_forms.jkr_load"
+    )
 
 
 def require_poisson(poisson: float) -> float:

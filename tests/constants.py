@@ -18,15 +18,15 @@ from typing import Any
 import honesty
 import numpy as np
 
-import fem_adhesion.sized
-import halfspace.accuracy
-import halfspace.contact
-import halfspace.sized
+import fem_adhesion.bodies.sized
+import halfspace.accuracy.finite_bodies
+import halfspace.accuracy.trace
+import halfspace.equilibrium.contact
 from fem_adhesion import Scene, weak_form
-from fem_adhesion.studies import from_scratch, weak_bodies
-from halfspace import compliance, grid
-from halfspace.contact import CONTACT_RADIUS, LOAD, ContactProblem, spike_width
-from halfspace.curve import moved
+from fem_adhesion.crosscheck import from_scratch, weak_bodies
+from halfspace.elastic import compliance, grid
+from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem, spike_width
+from halfspace.equilibrium.curve import moved
 from halfspace.errors import NotConverged
 
 FACTORS = (0.5, 1.0, 2.0)
@@ -105,7 +105,7 @@ def pull_off_on_wide_cells():
 
 def _off(tabor, nodes):
     event = _on_the_half_space(tabor)
-    finest = halfspace.contact.widest_interval(nodes) * spike_width(tabor) * (nodes - 1)
+    finest = halfspace.equilibrium.contact.widest_interval(nodes) * spike_width(tabor) * (nodes - 1)
     lines = grid.graded(float(event.point.observables[CONTACT_RADIUS]), finest, 60.0, growth=1.5)
     try:
         found = moved(event, ContactProblem(compliance.panels(lines, nodes), tabor))
@@ -140,22 +140,22 @@ class Constant:
 
 
 CONSTANTS = (
-    Constant(halfspace.accuracy, "ONE_NODE", estimates("half-space", "springs, half-space")),
-    Constant(halfspace.accuracy, "REMAINING", estimates("half-space", "sphere's profile")),
-    Constant(halfspace.accuracy, "TWIN", estimates("half-space", "sphere's profile"), from_one),
-    Constant(halfspace.accuracy, "EXTENT", estimates("half-space")),
-    Constant(halfspace.accuracy, "at_equator", estimates("sphere's profile"), of_its_values),
-    Constant(halfspace.sized, "WINDOW", estimates("sphere's profile")),
-    Constant(halfspace.sized, "APART", estimates("sphere's profile"), to_the_power),
-    Constant(halfspace.sized, "CLOSER", estimates("states, hemisphere"), to_the_power),
-    Constant(halfspace.contact, "widest_interval", pull_off_on_wide_cells, of_its_values),
-    Constant(fem_adhesion.sized, "REMAINING", estimates("hemisphere, sliding", "block under a sphere")),
-    Constant(fem_adhesion.sized, "FINEST", estimates("hemisphere, sliding")),
-    Constant(fem_adhesion.sized, "GROWTH", estimates("hemisphere, sliding"), to_the_power),
-    Constant(fem_adhesion.sized, "FOURTH", estimates("hemisphere, sliding")),
-    Constant(fem_adhesion.sized, "PER_DEGREE", estimates("hemisphere, sliding"), to_the_power),
-    Constant(fem_adhesion.sized, "RINGS", estimates("hemisphere, bonded"), to_the_power),
-    Constant(fem_adhesion.sized, "PAST_EQUATOR", estimates("block under a sphere")),
+    Constant(halfspace.accuracy.trace, "ONE_NODE", estimates("half-space", "springs, half-space")),
+    Constant(halfspace.accuracy.trace, "REMAINING", estimates("half-space", "sphere's profile")),
+    Constant(halfspace.accuracy.trace, "TWIN", estimates("half-space", "sphere's profile"), from_one),
+    Constant(halfspace.accuracy.trace, "EXTENT", estimates("half-space")),
+    Constant(halfspace.accuracy.trace, "at_equator", estimates("sphere's profile"), of_its_values),
+    Constant(halfspace.accuracy.finite_bodies, "WINDOW", estimates("sphere's profile")),
+    Constant(halfspace.accuracy.finite_bodies, "APART", estimates("sphere's profile"), to_the_power),
+    Constant(halfspace.accuracy.finite_bodies, "CLOSER", estimates("states, hemisphere"), to_the_power),
+    Constant(halfspace.equilibrium.contact, "widest_interval", pull_off_on_wide_cells, of_its_values),
+    Constant(fem_adhesion.bodies.sized, "REMAINING", estimates("hemisphere, sliding", "block under a sphere")),
+    Constant(fem_adhesion.bodies.sized, "FINEST", estimates("hemisphere, sliding")),
+    Constant(fem_adhesion.bodies.sized, "GROWTH", estimates("hemisphere, sliding"), to_the_power),
+    Constant(fem_adhesion.bodies.sized, "FOURTH", estimates("hemisphere, sliding")),
+    Constant(fem_adhesion.bodies.sized, "PER_DEGREE", estimates("hemisphere, sliding"), to_the_power),
+    Constant(fem_adhesion.bodies.sized, "RINGS", estimates("hemisphere, bonded"), to_the_power),
+    Constant(fem_adhesion.bodies.sized, "PAST_EQUATOR", estimates("block under a sphere")),
     Constant(weak_bodies, "FINENESS", fourth_level(0.5, 2.0), larger_boxes),
     Constant(weak_bodies, "FINENESS", fourth_level(0.5, 2.0), higher_degrees),
     Constant(weak_bodies, "SHARP", fourth_level(5.0, 8.0)),

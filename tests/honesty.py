@@ -23,15 +23,15 @@ import truths
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
-from fem_adhesion.commands.common import progress_bar
+from fem_adhesion.assess.study import assess
+from fem_adhesion.common.contact import Contact
+from fem_adhesion.common.jobs import stream
+from fem_adhesion.common.options import progress_bar
 from fem_adhesion.scene import Counter
-from fem_adhesion.studies.assess import assess
-from fem_adhesion.studies.assess_contact import Contact
-from fem_adhesion.studies.parallel import stream
-from halfspace.curve import Estimate, energy_released, placed
-from halfspace.devices import cycle
-from halfspace.events import EVENTS, Condition, Located
-from halfspace.states import COORDINATES
+from halfspace.equilibrium.curve import Estimate, energy_released, placed
+from halfspace.equilibrium.devices import cycle
+from halfspace.equilibrium.events import EVENTS, Condition, Located
+from halfspace.equilibrium.states import COORDINATES
 
 MESHES = Path(__file__).parents[1] / "meshes"
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")

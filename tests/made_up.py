@@ -3,10 +3,10 @@
 from types import SimpleNamespace
 
 from fem_adhesion import Scene
-from fem_adhesion.studies.comparison import SOLVERS, Row
-from fem_adhesion.studies.crosscheck import Case, Failure
-from halfspace.curve import EquilibriumPath, Estimate
-from halfspace.events import Event
+from fem_adhesion.crosscheck.comparison import SOLVERS, Row
+from fem_adhesion.crosscheck.study import Case, Failure
+from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.events import Event
 
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 

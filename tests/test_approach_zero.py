@@ -5,16 +5,16 @@ from dataclasses import replace
 import pytest
 
 import halfspace
-from fem_adhesion.studies import crosscheck
-from fem_adhesion.studies.assess_predictions import Prediction
-from fem_adhesion.studies.assess_verdict import ranked
-from fem_adhesion.studies.finite_sphere_cases import case_of, quantities_of
-from fem_adhesion.studies.finite_sphere_records import Record
-from fem_adhesion.studies.finite_sphere_table import rows
-from fem_adhesion.studies.greenwood_tables import table_2
-from fem_adhesion.studies.quantities import Quantity
-from fem_adhesion.studies.speed import _truth
-from halfspace.events import Tolerance, approach_scale
+from fem_adhesion.assess.predictions import Prediction
+from fem_adhesion.assess.verdict import ranked
+from fem_adhesion.common.units import Quantity
+from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.finite_sphere.cases import case_of, quantities_of
+from fem_adhesion.finite_sphere.records import Record
+from fem_adhesion.finite_sphere.table import rows
+from fem_adhesion.greenwood.tables import table_2
+from fem_adhesion.speed.study import _truth
+from halfspace.equilibrium.events import Tolerance, approach_scale
 
 ZEROS = (0.0, 1e3, -1e3)  # eps
 

@@ -15,24 +15,24 @@ from scipy.optimize import brentq, minimize_scalar
 import fem_adhesion
 import halfspace
 from fem_adhesion import cli
-from fem_adhesion.output import assess_plot
-from fem_adhesion.output.assess_report import contact_radius, record, report
-from fem_adhesion.output.files import written_aside
-from fem_adhesion.output.numbers import PREFIXES, engineering, exponent_of, with_error
+from fem_adhesion.assess import figure as assess_plot
+from fem_adhesion.assess import study
+from fem_adhesion.assess import theories as assess_theories
+from fem_adhesion.assess.predictions import QUANTITIES, WORDS, Prediction, computed, large_tabor
+from fem_adhesion.assess.study import Assessment, assess
+from fem_adhesion.assess.terminal import contact_radius, record, report
+from fem_adhesion.assess.verdict import Distance, cautions, deviations, ranked, regime, verdict
+from fem_adhesion.common.contact import Contact
+from fem_adhesion.common.files import written_aside
+from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of, with_error
+from fem_adhesion.common.units import KINDS, Quantity, parse
 from fem_adhesion.scene import Counter, Scene
-from fem_adhesion.studies import assess as study
-from fem_adhesion.studies import assess_theories
-from fem_adhesion.studies.assess import Assessment, assess
-from fem_adhesion.studies.assess_contact import Contact
-from fem_adhesion.studies.assess_predictions import QUANTITIES, WORDS, Prediction, computed, large_tabor
-from fem_adhesion.studies.assess_verdict import Distance, cautions, deviations, ranked, regime, verdict
-from fem_adhesion.studies.quantities import KINDS, Quantity, parse
-from halfspace import theories
-from halfspace.devices import cycle
+from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
-from halfspace.maugis import MaugisDugdale
 from halfspace.scaling import Units, spacing_of
-from halfspace.sphere_theories import JKRSphere
+from halfspace.theories import closed_forms as theories
+from halfspace.theories.exact_sphere import JKRSphere
+from halfspace.theories.maugis import MaugisDugdale
 
 SILICA = {"radius": 100e-9, "modulus": 70e9, "poisson": 0.17, "work_of_adhesion": 0.1, "spacing": 0.3e-9}
 BEAD = {"radius": 50e-6, "modulus": 2e6, "poisson": 0.49, "work_of_adhesion": 0.05, "spacing": 0.3e-9}

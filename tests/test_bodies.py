@@ -5,14 +5,14 @@ import pytest
 from skfem import CellBasis, ElementQuadP
 from whole_sphere import sphere_operator, surface_deflection
 
-from fem_adhesion import bodies, curved
-from fem_adhesion.boundary import boundary_basis
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space, cell_quadrature, cell_stiffness, ring_measure, scatter
-from fem_adhesion.far_field import clamped, sliding
+from fem_adhesion.elasticity.boundaries import boundary_basis
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import clamped, sliding
+from fem_adhesion.elasticity.incompressible import stiffness_for
+from fem_adhesion.elasticity.space import Space, cell_quadrature, cell_stiffness, ring_measure, scatter
 from fem_adhesion.harmonics import legendre
-from fem_adhesion.incompressible import stiffness_for
-from halfspace import grid
+from fem_adhesion.mesh import curved, spheres
+from halfspace.elastic import grid
 from halfspace.profiles import Sphere
 
 R = 2.5
@@ -21,8 +21,8 @@ GRIPS = {"sliding": sliding, "bonded": clamped}
 
 def space(degree, *, finest=0.15, growth=2.0):
     """Hemisphere graded to the pole with cells of a length there, in R."""
-    lines, depths = (grid.graded(0.0, finest * R, size * R, growth=growth) for size in (bodies.CORE, bodies.DEPTH))
-    return Space(bodies.hemisphere(R, lines, depths), ElementQuadP(degree))
+    lines, depths = (grid.graded(0.0, finest * R, size * R, growth=growth) for size in (spheres.CORE, spheres.DEPTH))
+    return Space(spheres.hemisphere(R, lines, depths), ElementQuadP(degree))
 
 
 def condensed(degree, poisson=0.3, grip="sliding", traction="projected", **mesh):
@@ -82,19 +82,19 @@ def test_normals_point_out_of_the_body(fine):
 
 def test_the_meridian_map_is_that_of_the_sphere():
     x = np.linspace(0.01, 2 * R, 50)
-    r, z = bodies.stereographic(x + 0j, R)
+    r, z = spheres.stereographic(x + 0j, R)
     np.testing.assert_allclose(np.hypot(r, z + R), R, rtol=1e-14)
-    radius, slope = bodies.Stereographic(R).radius(x)
+    radius, slope = spheres.Stereographic(R).radius(x)
     np.testing.assert_allclose(radius, r, rtol=1e-14)
     h = 1e-5
-    ahead, behind = (bodies.Stereographic(R).radius(x + s)[0] for s in (h, -h))
+    ahead, behind = (spheres.Stereographic(R).radius(x + s)[0] for s in (h, -h))
     np.testing.assert_allclose(slope, (ahead - behind) / (2 * h), atol=1e-9)
 
 
 @pytest.mark.parametrize("area", ["projected", "surface"])
 def test_the_density_of_a_ring_and_its_derivative(area):
     x, h = np.linspace(0.01, 2 * R, 50), 1e-5
-    coordinate = bodies.Stereographic(R, area)
+    coordinate = spheres.Stereographic(R, area)
     (r, slope), (ring, bend) = coordinate.radius(x), coordinate.ring(x)
     arc = slope if area == "projected" else 1 / (1 + (x / (2 * R)) ** 2)  # dr/dx or ds/dx
     np.testing.assert_allclose(ring, r * arc, rtol=1e-12, atol=1e-14)

@@ -9,25 +9,26 @@ from skfem import ElementQuadP
 from truths import Standing, on
 
 import fem_adhesion
-from fem_adhesion import Scene, bodies
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space
-from fem_adhesion.far_field import clamped
-from fem_adhesion.incompressible import stiffness_for
+from fem_adhesion import Scene
+from fem_adhesion.bodies.sized import Discretisation, sized_body
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import clamped
+from fem_adhesion.elasticity.incompressible import stiffness_for
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.mesh import spheres
 from fem_adhesion.scene import Counter
-from fem_adhesion.sized import Discretisation, sized_body
-from halfspace import grid
-from halfspace.curve import energy_released
-from halfspace.events import approach_scale
+from halfspace.elastic import grid
+from halfspace.equilibrium.curve import energy_released
+from halfspace.equilibrium.events import approach_scale
 
 R = 10.0
 
 
 def pole_compliance(degree, poisson, rings, finest=0.3, growth=2.5):
     """Deflection of a hemisphere's pole under a pressure as wide as a contact, on cells as short as that asks."""
-    x = grid.graded(0.8, finest, bodies.CORE * R, growth=growth)
-    depths = grid.graded(0.0, np.diff(x).min(), bodies.DEPTH * R, growth=growth)
-    mesh = bodies.hemisphere(R, x, depths, rings=0.2 ** np.arange(1.0, rings + 1))
+    x = grid.graded(0.8, finest, spheres.CORE * R, growth=growth)
+    depths = grid.graded(0.0, np.diff(x).min(), spheres.DEPTH * R, growth=growth)
+    mesh = spheres.hemisphere(R, x, depths, rings=0.2 ** np.arange(1.0, rings + 1))
     space = Space(mesh, ElementQuadP(degree))
     operator = condense(space, poisson, far_field=clamped, stiffness=stiffness_for(poisson)).operator
     return operator.axis_row @ (operator.compliance @ np.exp(-(operator.radii**2)))

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from skfem import ElementQuadP
 
-from fem_adhesion import bodies
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space
-from fem_adhesion.far_field import sliding
-from halfspace import compliance, grid
-from halfspace.accuracy import half_space_charts, resolution_for
-from halfspace.breathing import FlatCoordinate, Homogeneous, Interpolated, MovingGrid, chebyshev_radii
-from halfspace.contact import ContactProblem
-from halfspace.curve import Chart, find_events, trace_charts
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import sliding
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.mesh import spheres
+from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.elastic import compliance, grid
+from halfspace.elastic.operators import FlatCoordinate, Homogeneous, Interpolated, MovingGrid, chebyshev_radii
+from halfspace.equilibrium.contact import ContactProblem
+from halfspace.equilibrium.curve import Chart, find_events, trace_charts
 from halfspace.profiles import Sphere
 
 R = 4.0
@@ -30,18 +30,18 @@ def half_space(lines):
 
 
 def hemisphere_grid(area):
-    core, outer = bodies.CORE * R, R * np.linspace(bodies.CORE, 2, bodies.LAYERS + 1)[1:]
+    core, outer = spheres.CORE * R, R * np.linspace(spheres.CORE, 2, spheres.LAYERS + 1)[1:]
     inner, beyond = np.array([0.0, 0.6, 1.0]), np.array([0.1, 0.25, 0.5, 1.0])
     fixed = np.concatenate([0 * inner, core * beyond, outer])
     moving = np.concatenate([inner, 1 - beyond, 0 * outer])
-    return MovingGrid(fixed, moving, bodies.Stereographic(R, area))
+    return MovingGrid(fixed, moving, spheres.Stereographic(R, area))
 
 
 def hemisphere(area):
-    depths = grid.graded(0.0, 0.5, bodies.DEPTH * R, growth=2.5)
+    depths = grid.graded(0.0, 0.5, spheres.DEPTH * R, growth=2.5)
 
     def make(lines):
-        mesh = bodies.hemisphere(R, lines[: -bodies.LAYERS], depths)
+        mesh = spheres.hemisphere(R, lines[: -spheres.LAYERS], depths)
         return condense(Space(mesh, ElementQuadP(4)), 0.3, far_field=sliding, traction=area).operator
 
     return make

@@ -8,7 +8,7 @@ from importlib.metadata import version
 import pytest
 
 from fem_adhesion import cli
-from fem_adhesion.output.files import written_aside
+from fem_adhesion.common.files import written_aside
 from halfspace.errors import NotConverged
 
 
@@ -103,7 +103,7 @@ def test_no_command_is_refused():
 
 def test_disagreement_exits_with_1(monkeypatch, capsys):
     """An elastic body twice as stiff: the finite elements solve another problem."""
-    from fem_adhesion import elasticity
+    from fem_adhesion.elasticity import space as elasticity
 
     original = elasticity.elastic_matrix
     monkeypatch.setattr(elasticity, "elastic_matrix", lambda nu: 2 * original(nu))
@@ -112,7 +112,7 @@ def test_disagreement_exits_with_1(monkeypatch, capsys):
 
 
 def test_a_failure_is_reported_with_its_reason_and_exits_with_1(monkeypatch, capsys, tmp_path):
-    from fem_adhesion.studies import crosscheck
+    from fem_adhesion.crosscheck import study as crosscheck
     from halfspace.errors import NotConverged
 
     def fail(*_args, **_kwargs):
@@ -137,7 +137,7 @@ def test_a_failure_is_reported_with_its_reason_and_exits_with_1(monkeypatch, cap
 
 
 def test_an_interrupt_leaves_no_file(monkeypatch, tmp_path, capsys):
-    from fem_adhesion.studies import crosscheck
+    from fem_adhesion.crosscheck import study as crosscheck
 
     def interrupt(*_args, **_kwargs):
         raise KeyboardInterrupt
@@ -246,7 +246,7 @@ MATERIAL = ["--radius", "100nm", "--modulus", "70GPa", "--poisson", "0.17", "--w
 )
 def test_assess_refuses_in_one_line_before_any_work(arguments, message, monkeypatch, capsys, tmp_path):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("fem_adhesion.studies.assess.assess", lambda *_: pytest.fail("work was begun"))
+    monkeypatch.setattr("fem_adhesion.assess.study.assess", lambda *_: pytest.fail("work was begun"))
     try:
         code = cli.main(["assess", *arguments])
     except SystemExit as ended:  # refused by the parser itself
@@ -261,7 +261,7 @@ def test_assess_refuses_in_one_line_before_any_work(arguments, message, monkeypa
 def test_the_command_line_of_a_contact_is_heeded_to_the_last_option(monkeypatch):
     """Every number distinct, read back from the contact that is assessed."""
     asked = []
-    monkeypatch.setattr("fem_adhesion.studies.assess.assess", lambda contact, _: asked.append(contact))
+    monkeypatch.setattr("fem_adhesion.assess.study.assess", lambda contact, _: asked.append(contact))
     other = ["--counter-modulus", "3GPa", "--counter-poisson", "0.41", "--counter-radius", "0.7um"]
     with pytest.raises(AttributeError):
         cli.main(["assess", *MATERIAL, "--spacing", "1nm", *other, "--grip", "bonded", "--stiffness", "0.2N/m"])
@@ -291,7 +291,7 @@ def test_what_fails_leaves_nothing_on_standard_output(monkeypatch, capsys):
     def fail(*_, **__):
         raise NotConverged("on purpose")
 
-    monkeypatch.setattr("fem_adhesion.studies.curves.solve", fail)
+    monkeypatch.setattr("fem_adhesion.curve.solve.solve", fail)
     assert cli.main(["curve", "--tabor", "1", "--json", "-"]) == 1
     assert capsys.readouterr().out == ""
 
@@ -308,7 +308,7 @@ def test_what_does_not_converge_is_one_line_and_exit_code_1(monkeypatch, capsys)
     def fail(*_, **__):
         raise NotConverged("no convergence in 40 Newton steps; try a nearer start")
 
-    monkeypatch.setattr("fem_adhesion.studies.curves.solve", fail)
+    monkeypatch.setattr("fem_adhesion.curve.solve.solve", fail)
     assert cli.main(["curve", "--tabor", "1"]) == 1
     said = capsys.readouterr().err.strip()
     assert said == "fem-adhesion: no convergence in 40 Newton steps; try a nearer start; nothing was written"

@@ -8,17 +8,17 @@ from pathlib import Path
 
 import pytest
 
-from fem_adhesion.studies import code_digest as digests
-from fem_adhesion.studies.code_digest import code_digest, sources
+from fem_adhesion.common import code_digest as digests
+from fem_adhesion.common.code_digest import code_digest, sources
 
-CASES = "fem_adhesion.studies.finite_sphere_cases"
+CASES = "fem_adhesion.finite_sphere.cases"
 ROOT = Path(__file__).parents[1]
 
 
 def digest_in(tree):
     """Digest of the code in a copy of the sources, by a fresh interpreter; and whether NumPy was loaded for it."""
     code = (
-        f"import sys; from fem_adhesion.studies.code_digest import code_digest; print(code_digest({CASES!r}), "
+        f"import sys; from fem_adhesion.common.code_digest import code_digest; print(code_digest({CASES!r}), "
         "'numpy' in sys.modules)"
     )
     done = subprocess.run(
@@ -51,11 +51,11 @@ def test_it_is_the_same_in_another_place_and_loads_nothing_heavy(tree):
 @pytest.mark.parametrize(
     ("name", "counts"),
     [
-        ("halfspace/kernel.py", True),
-        ("fem_adhesion/neo_hookean.py", True),  # through four others
+        ("halfspace/elastic/kernel.py", True),
+        ("fem_adhesion/finite_strain/material.py", True),  # through four others
         ("fem_adhesion/convergence.py", True),  # through __getattr__ of the package
-        ("fem_adhesion/studies/finite_sphere_cases.py", True),
-        ("fem_adhesion/output/finite_sphere_words.py", False),
+        ("fem_adhesion/finite_sphere/cases.py", True),
+        ("fem_adhesion/finite_sphere/words.py", False),
         ("fem_adhesion/cli.py", False),
     ],
 )
@@ -68,8 +68,8 @@ def test_it_changes_with_the_code_that_computes_and_with_no_other(tree, name, co
 def test_it_knows_every_module_of_this_project_that_computing_a_case_loads():
     code = (
         "import sys, halfspace, fem_adhesion\n"
-        "from fem_adhesion.studies.finite_sphere import plan\n"
-        "from fem_adhesion.studies.finite_sphere_cases import compute, case_of\n"
+        "from fem_adhesion.finite_sphere.study import plan\n"
+        "from fem_adhesion.finite_sphere.cases import compute, case_of\n"
         "for name in ('half_space', 'sphere'):\n"
         "    compute(case_of(name, 0.3, 100.0, 0.3, 1e-2))\n"
         "print(sorted(sys.modules))"
@@ -77,7 +77,7 @@ def test_it_knows_every_module_of_this_project_that_computing_a_case_loads():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = {name for name in ast.literal_eval(done.stdout) if name.split(".")[0] in ("halfspace", "fem_adhesion")}
     store = {f"fem_adhesion.studies.{name}" for name in ("finite_sphere", "store", "parallel", "code_digest")}
-    assert loaded - store - {"fem_adhesion.writing"} <= set(sources(CASES))
+    assert loaded - store - {"fem_adhesion.common.writing"} <= set(sources(CASES))
 
 
 def test_it_changes_with_the_version_of_a_library(monkeypatch):

@@ -7,12 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem_adhesion import Scene, cli, elasticity, harmonics, sized
-from fem_adhesion.bodies import Stereographic
+from fem_adhesion import Scene, cli, harmonics
+from fem_adhesion.bodies import sized
+from fem_adhesion.crosscheck import from_scratch
+from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
+from fem_adhesion.crosscheck.weak_bodies import contacts
+from fem_adhesion.elasticity import space as elasticity
+from fem_adhesion.mesh.spheres import Stereographic
 from fem_adhesion.scene import Counter
-from fem_adhesion.studies import crosscheck, from_scratch
-from fem_adhesion.studies.comparison import HARMONICS, SOLVERS, WEAK_FORM
-from fem_adhesion.studies.weak_bodies import contacts
 from fem_adhesion.weak_form import tension
 from halfspace.errors import InputError
 
@@ -161,7 +164,7 @@ def test_a_defect_of_the_finite_elements_is_rejected(defect, grip, monkeypatch):
 
 
 def test_harmonics_take_the_rim_of_a_pair_as_the_finite_elements_do():
-    from fem_adhesion.bodies import CORE
+    from fem_adhesion.mesh.spheres import CORE
 
     assert Stereographic(3.0).radius(np.array(3.0 * CORE))[0] == pytest.approx(3.0 * harmonics.RIM, rel=1e-12)
 

@@ -3,8 +3,8 @@ import itertools
 import numpy as np
 import pytest
 
-from halfspace import compliance, grid
-from halfspace.kernel import band_deflection
+from halfspace.elastic import compliance, grid
+from halfspace.elastic.kernel import band_deflection
 
 
 @pytest.fixture(scope="module")

@@ -2,14 +2,16 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from fem_adhesion.studies.fold_birth import approached
-from halfspace import compliance, grid, newton, theories
-from halfspace.accuracy import half_space_charts, resolution_for, rings
-from halfspace.breathing import Homogeneous
-from halfspace.contact import ContactProblem, count_negative
-from halfspace.curve import transfer
+from halfspace.accuracy.fold_birth import approached
+from halfspace.accuracy.trace import half_space_charts, resolution_for, rings
+from halfspace.elastic import compliance, grid
+from halfspace.elastic.operators import Homogeneous
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import ContactProblem, count_negative
+from halfspace.equilibrium.curve import transfer
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
+from halfspace.theories import closed_forms
 
 CENTRED = compliance.panels(grid.graded(0.0, 0.3, 400.0), 10)
 EDGE = compliance.panels(grid.graded(1.0, 0.1, 400.0), 10)
@@ -221,7 +223,7 @@ def test_rigid_limit_is_bradleys_along_the_whole_path():
     for approach in (-3.0, -2.0, -1.0, -0.5, 0.0, 0.05, 0.1):
         solution = newton.solve(problem, x, newton.approach(approach))
         x = solution.x
-        assert solution.observables[1] == pytest.approx(float(theories.bradley_load(approach)), rel=2e-3)
+        assert solution.observables[1] == pytest.approx(float(closed_forms.bradley_load(approach)), rel=2e-3)
 
 
 @pytest.mark.parametrize("central_gap", [2.0, 11.0, 50.0])

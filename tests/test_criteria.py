@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from halfspace import criteria
+from halfspace.theories import criteria
 
 DATA = Path(__file__).parent / "data"
 JUMPS = {  # tabor: alpha*, H0, the jump_on rows of reference_events.csv

@@ -9,14 +9,16 @@ from whole_runs import tables_in
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene, cli, convergence, elasticity
-from fem_adhesion.output.tables import crosscheck_tables
-from fem_adhesion.studies import comparison, crosscheck, references
-from fem_adhesion.studies.comparison import Row
-from fem_adhesion.studies.crosscheck import Case, Failure
+from fem_adhesion import Scene, cli, convergence
+from fem_adhesion.crosscheck import comparison, references
+from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.crosscheck.comparison import Row
+from fem_adhesion.crosscheck.study import Case, Failure
+from fem_adhesion.crosscheck.table import crosscheck_tables
+from fem_adhesion.elasticity import space as elasticity
 from halfspace import limits
-from halfspace.contact import ContactProblem
-from halfspace.curve import Estimate
+from halfspace.equilibrium.contact import ContactProblem
+from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import NotConverged
 from halfspace.lennard_jones import SurfaceLaw
 

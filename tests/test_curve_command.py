@@ -15,14 +15,17 @@ from PIL import Image
 from rich.console import Console
 
 from fem_adhesion import cli
-from fem_adhesion.commands import curve
-from fem_adhesion.commands.common import Parser
-from fem_adhesion.output import curve_lines, curve_record, curve_terminal, movie
+from fem_adhesion.common.options import Parser
+from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.curve import command as curve
+from fem_adhesion.curve import lines as curve_lines
+from fem_adhesion.curve import movie
+from fem_adhesion.curve import record as curve_record
+from fem_adhesion.curve import solve as study
+from fem_adhesion.curve import terminal as curve_terminal
 from fem_adhesion.scene import Counter, Scene
-from fem_adhesion.studies import crosscheck
-from fem_adhesion.studies import curves as study
-from halfspace import devices
-from halfspace.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium import devices
+from halfspace.equilibrium.curve import EquilibriumPath, Estimate
 from halfspace.errors import InputError, NotConverged
 from halfspace.scaling import Units
 

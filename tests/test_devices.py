@@ -9,12 +9,13 @@ from numpy.polynomial.legendre import leggauss
 from scipy.optimize import brentq
 
 import halfspace
-from fem_adhesion.studies.fold_birth import critical_stiffness
-from halfspace import newton, theories
-from halfspace.contact import LOAD
-from halfspace.curve import find_events, moved
-from halfspace.devices import cycle, energy_lost, jumps
-from halfspace.reach import reaching, rigid_jump_on
+from halfspace.accuracy.fold_birth import critical_stiffness
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import LOAD
+from halfspace.equilibrium.curve import find_events, moved
+from halfspace.equilibrium.devices import cycle, energy_lost, jumps
+from halfspace.equilibrium.reach import reaching, rigid_jump_on
+from halfspace.theories import closed_forms
 
 
 @pytest.fixture(scope="module")
@@ -189,9 +190,9 @@ def test_a_soft_cantilever_jumps_on_from_beyond_the_traced_curve():
     assert 1 - gap < path.approach[0]
     on = found.jump_on.take_off
     assert on.approach == pytest.approx(1 - gap, rel=1e-5)
-    assert on.load == pytest.approx(float(theories.bradley_load(1 - gap)), rel=1e-4)
+    assert on.load == pytest.approx(float(closed_forms.bradley_load(1 - gap)), rel=1e-4)
     assert abs(on.approach - (1 - gap)) < on.approach_error + 1e-6 * gap
-    assert abs(on.load - float(theories.bradley_load(1 - gap))) < on.load_error + 1e-6 * abs(on.load)
+    assert abs(on.load - float(closed_forms.bradley_load(1 - gap))) < on.load_error + 1e-6 * abs(on.load)
     assert rigid_jump_on(stiffness) == pytest.approx(1 - gap, rel=1e-6)
 
 

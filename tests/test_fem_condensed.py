@@ -6,12 +6,12 @@ from scipy.sparse.linalg import spsolve
 from scipy.special import ellipe, ellipk, j0, kv
 from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
-from fem_adhesion import elasticity
-from fem_adhesion.boundary import boundary_basis, trace_matrix
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space, cell_stiffness, ring_measure, scatter
-from fem_adhesion.far_field import boussinesq_displacement, clamped, free, point_load
-from fem_adhesion.mesh import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
+from fem_adhesion.elasticity import space as elasticity
+from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import boussinesq_displacement, clamped, free, point_load
+from fem_adhesion.elasticity.space import Space, cell_stiffness, ring_measure, scatter
+from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
 
 NU = 0.3
 

@@ -19,8 +19,9 @@ from skfem import (
 )
 from skfem.helpers import ddot, div, sym_grad
 
-from fem_adhesion.boundary import boundary_basis, trace_matrix
-from fem_adhesion.elasticity import (
+from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
+from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress, trace_projection
+from fem_adhesion.elasticity.space import (
     Space,
     cell_quadrature,
     cell_stiffness,
@@ -30,8 +31,7 @@ from fem_adhesion.elasticity import (
     scatter,
     strain_displacement,
 )
-from fem_adhesion.far_field import boussinesq_displacement, boussinesq_stress, trace_projection
-from fem_adhesion.mesh import (
+from fem_adhesion.mesh.block import (
     block_grid,
     graded_breaks,
     graded_size,

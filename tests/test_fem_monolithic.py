@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space, cell_stiffness, scatter
-from fem_adhesion.far_field import clamped, free, point_load
-from fem_adhesion.mesh import block_grid, graded_size, quarter_disc
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import clamped, free, point_load
+from fem_adhesion.elasticity.space import Space, cell_stiffness, scatter
+from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 from fem_adhesion.monolithic import assemble, block_stiffness
-from halfspace import newton
-from halfspace.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.curve import Chart, energy_released, find_events, metric_for, trace_charts
-from halfspace.devices import energy_lost
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.equilibrium.curve import Chart, energy_released, find_events, metric_for, trace_charts
+from halfspace.equilibrium.devices import energy_lost
+from halfspace.equilibrium.events import EXTREMUM, FOLD, locate, relocate
+from halfspace.equilibrium.path import follow, make_point
 from halfspace.errors import NotConverged
-from halfspace.events import EXTREMUM, FOLD, locate, relocate
-from halfspace.path import follow, make_point
 
 NU = 0.3
 EVENTS = {0.5: ["pull_off"], 1.0: ["pull_off", "jump_on", "jump_off"], 2.0: ["pull_off", "jump_on", "jump_off"]}

@@ -6,15 +6,16 @@ from scipy.sparse.linalg import spsolve
 from skfem import CellBasis, ElementQuad2, ElementQuadP
 
 import fem_adhesion
-from fem_adhesion import fields, stress
-from fem_adhesion.beside import half_space_beside
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space, cell_quadrature, cell_stiffness, elastic_matrix, ring_measure, scatter
-from fem_adhesion.far_field import boussinesq_displacement, boussinesq_stress, point_load, trace_projection
-from fem_adhesion.incompressible import projected_stiffness
-from fem_adhesion.mesh import tensor_grid
+from fem_adhesion.elasticity import stress
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress, point_load, trace_projection
+from fem_adhesion.elasticity.incompressible import projected_stiffness
+from fem_adhesion.elasticity.space import Space, cell_quadrature, cell_stiffness, elastic_matrix, ring_measure, scatter
+from fem_adhesion.fields import state as fields
+from fem_adhesion.fields.beside import half_space_beside
+from fem_adhesion.mesh.block import tensor_grid
 from fem_adhesion.scene import Counter, Scene
-from halfspace import grid
+from halfspace.elastic import grid
 
 PLACES = np.stack(np.meshgrid(np.linspace(0, 1, 5), np.linspace(0, 1, 5))).reshape(2, -1)
 HEMISPHERE = {"body": "hemisphere", "profile": "sphere", "radius_ratio": 100.0}

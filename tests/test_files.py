@@ -12,10 +12,10 @@ from types import SimpleNamespace
 import pytest
 
 from fem_adhesion import cli
-from fem_adhesion.output.files import directory_written_aside, written_aside
-from fem_adhesion.studies import curves
-from fem_adhesion.studies.store import open_store
-from fem_adhesion.writing import ELSEWHERE, REMEDIES, NotWritten, writing
+from fem_adhesion.common.files import directory_written_aside, written_aside
+from fem_adhesion.common.store import open_store
+from fem_adhesion.common.writing import ELSEWHERE, REMEDIES, NotWritten, writing
+from fem_adhesion.curve import solve as curves
 
 CURVE = ["curve", "--tabor", "0.5", "--rtol", "1e-2"]
 MATERIAL = ["--radius", "100nm", "--modulus", "1GPa", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm"]
@@ -105,8 +105,15 @@ def _full(*_args, **_kwargs):
 
 @pytest.mark.parametrize("command", ["speed", "greenwood", "hard", "finite-sphere"])
 def test_a_full_disk_ends_each_study_in_one_line_and_leaves_nothing(command, tmp_path, monkeypatch, capsys):
-    from fem_adhesion.output import finite_sphere_report, greenwood_report, hard_report, speed_report
-    from fem_adhesion.studies import finite_sphere, greenwood1997, hard_bodies, hard_run, speed
+    from fem_adhesion.finite_sphere import page as finite_sphere_report
+    from fem_adhesion.finite_sphere import study as finite_sphere
+    from fem_adhesion.greenwood import page as greenwood_report
+    from fem_adhesion.greenwood import study as greenwood1997
+    from fem_adhesion.hard import bodies as hard_bodies
+    from fem_adhesion.hard import run as hard_run
+    from fem_adhesion.hard import table as hard_report
+    from fem_adhesion.speed import page as speed_report
+    from fem_adhesion.speed import study as speed
 
     for module, name in (
         (speed_report, "write"),
@@ -128,7 +135,7 @@ def test_a_full_disk_ends_each_study_in_one_line_and_leaves_nothing(command, tmp
 
 
 def test_a_defect_that_is_an_oserror_is_not_taken_for_a_full_disk(tmp_path, monkeypatch):
-    monkeypatch.setattr("fem_adhesion.studies.speed.measure", _full)
+    monkeypatch.setattr("fem_adhesion.speed.study.measure", _full)
     with pytest.raises(OSError, match="No space left"):
         cli.main(["speed", "--out", str(tmp_path / "out")])
     assert not list(tmp_path.iterdir())
@@ -146,7 +153,7 @@ def test_a_case_that_cannot_be_stored_leaves_the_others(tmp_path, monkeypatch):
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root writes where it likes")
 def test_a_folder_that_may_only_be_read_is_refused_before_any_work(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("fem_adhesion.studies.curves.solve", lambda *_: pytest.fail("worked"))
+    monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda *_: pytest.fail("worked"))
     tmp_path.chmod(0o500)
     for option in ("--json", "--vtk"):
         assert cli.main([*CURVE, option, str(tmp_path / "a")]) == 2
@@ -160,7 +167,7 @@ def test_what_is_refused_at_once_is_bad_input(number, words, tmp_path, monkeypat
     def refuse(*_args, **_kwargs):
         raise OSError(number, os.strerror(number))
 
-    monkeypatch.setattr("fem_adhesion.studies.curves.solve", lambda *_: pytest.fail("worked"))
+    monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda *_: pytest.fail("worked"))
     monkeypatch.setattr("tempfile.mkstemp", refuse)
     monkeypatch.setattr("tempfile.mkdtemp", refuse)
     for option in ("--json", "--vtk"):

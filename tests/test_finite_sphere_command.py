@@ -14,11 +14,11 @@ import pytest
 from processes import PATIENCE, alive, wait_until
 
 from fem_adhesion import cli
-from fem_adhesion.output import finite_sphere_report
-from fem_adhesion.studies import finite_sphere_cases
-from fem_adhesion.studies.finite_sphere_cases import MODELS
-from fem_adhesion.studies.finite_sphere_records import CRITICAL
-from halfspace.curve import Estimate
+from fem_adhesion.finite_sphere import cases as finite_sphere_cases
+from fem_adhesion.finite_sphere import page as finite_sphere_report
+from fem_adhesion.finite_sphere.cases import MODELS
+from fem_adhesion.finite_sphere.records import CRITICAL
+from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import ContactTooWide, NotConverged
 
 QUICK = "fem-adhesion finite-sphere --out sphere --quick"
@@ -225,7 +225,7 @@ def test_a_signal_ends_the_study_in_one_line_and_its_workers_with_it(tmp_path, n
 
 
 def test_a_signal_ends_any_command(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("fem_adhesion.studies.curves.solve", lambda *_: os.kill(os.getpid(), signal.SIGTERM))
+    monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda *_: os.kill(os.getpid(), signal.SIGTERM))
     before = signal.getsignal(signal.SIGTERM)
     assert cli.main(["curve", "--tabor", "1", "--json", str(tmp_path / "curve.json")]) == 143
     assert capsys.readouterr().err.strip().endswith("fem-adhesion: terminated; nothing was written")

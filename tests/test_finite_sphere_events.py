@@ -14,7 +14,7 @@ from whole_sphere import surface_deflection
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene, harmonics
-from halfspace.sphere_theories import RigidSphere
+from halfspace.theories.exact_sphere import RigidSphere
 
 POISSON = 0.3
 DATA = Path(__file__).parent / "data" / "finite_sphere_events.csv"

@@ -9,19 +9,21 @@ import numpy as np
 import pytest
 from whole_sphere import sphere_operator
 
-from fem_adhesion.output import finite_sphere_chart, finite_sphere_plots, finite_sphere_report
-from fem_adhesion.output.finite_sphere_findings import QUANTITIES
-from fem_adhesion.output.finite_sphere_tables import write_tables
-from fem_adhesion.output.finite_sphere_words import caption
-from fem_adhesion.studies.bulk import FINE, bulk_compliance, coefficients, excess_compliance
-from fem_adhesion.studies.finite_sphere import plan
-from fem_adhesion.studies.finite_sphere_cases import CAUSES, MODELS, case_of
-from fem_adhesion.studies.finite_sphere_chart import Field, contour, field_of, rule, safe_from
-from fem_adhesion.studies.finite_sphere_records import APPROACH_SCALE, CRITICAL, Record, Study
-from fem_adhesion.studies.finite_sphere_table import borders, results, rows
-from fem_adhesion.studies.finite_sphere_terms import FIXED_GRIPS, leading_terms
-from halfspace import grid
-from halfspace.curve import Estimate
+from fem_adhesion.finite_sphere import chart_figure as finite_sphere_chart
+from fem_adhesion.finite_sphere import figures as finite_sphere_plots
+from fem_adhesion.finite_sphere import page as finite_sphere_report
+from fem_adhesion.finite_sphere.bulk import FINE, bulk_compliance, coefficients, excess_compliance
+from fem_adhesion.finite_sphere.cases import CAUSES, MODELS, case_of
+from fem_adhesion.finite_sphere.chart import Field, contour, field_of, rule, safe_from
+from fem_adhesion.finite_sphere.findings import QUANTITIES
+from fem_adhesion.finite_sphere.records import APPROACH_SCALE, CRITICAL, Record, Study
+from fem_adhesion.finite_sphere.study import plan
+from fem_adhesion.finite_sphere.table import borders, results, rows
+from fem_adhesion.finite_sphere.tables import write_tables
+from fem_adhesion.finite_sphere.terms import FIXED_GRIPS, leading_terms
+from fem_adhesion.finite_sphere.words import caption
+from halfspace.elastic import grid
+from halfspace.equilibrium.curve import Estimate
 
 TABORS, RATIOS = (0.3, 1.0, 3.0), (10.0, 100.0, 1e3, 1e4)
 TABLES = ("rules", "first_jumps", "fits", "theories", "bulk", "failures", "captions")

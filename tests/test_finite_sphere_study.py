@@ -20,13 +20,16 @@ from processes import alive, wait_until
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
-from fem_adhesion.finite_strain_scene import find_jumps
-from fem_adhesion.output.finite_sphere_tables import COLUMNS, NO_PARQUET, TEXTS, write_tables
-from fem_adhesion.studies import finite_sphere, finite_sphere_cases, finite_sphere_fit, store
-from fem_adhesion.studies.finite_sphere import plan, run, seconds_left
-from fem_adhesion.studies.finite_sphere_cases import CAUSES, MODELS, case_of, quantities_of
-from fem_adhesion.studies.finite_sphere_fit import SOFT_PULL_OFF, Samples, fit
-from fem_adhesion.studies.finite_sphere_records import (
+from fem_adhesion.common import store
+from fem_adhesion.common.store import open_store
+from fem_adhesion.common.writing import NotWritten
+from fem_adhesion.finite_sphere import cases as finite_sphere_cases
+from fem_adhesion.finite_sphere import fit as finite_sphere_fit
+from fem_adhesion.finite_sphere import study as finite_sphere
+from fem_adhesion.finite_sphere.cases import CAUSES, MODELS, case_of, quantities_of
+from fem_adhesion.finite_sphere.fit import SOFT_PULL_OFF, Samples, fit
+from fem_adhesion.finite_sphere.materials import materials
+from fem_adhesion.finite_sphere.records import (
     APPROACH_SCALE,
     CRITICAL,
     QUANTITIES,
@@ -35,15 +38,15 @@ from fem_adhesion.studies.finite_sphere_records import (
     from_plain,
     to_plain,
 )
-from fem_adhesion.studies.finite_sphere_table import Row, borders, rows
-from fem_adhesion.studies.materials import materials
-from fem_adhesion.studies.store import open_store
-from fem_adhesion.writing import NotWritten
-from halfspace.curve import Estimate
+from fem_adhesion.finite_sphere.study import plan, run, seconds_left
+from fem_adhesion.finite_sphere.table import Row, borders, rows
+from fem_adhesion.finite_sphere.tables import COLUMNS, NO_PARQUET, TEXTS, write_tables
+from fem_adhesion.finite_strain.scene import find_jumps
+from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
 from halfspace.lennard_jones import LENNARD_JONES
-from halfspace.sphere_theories import JKRSphere
-from halfspace.theories import JKR_PULL_OFF
+from halfspace.theories.closed_forms import JKR_PULL_OFF
+from halfspace.theories.exact_sphere import JKRSphere
 
 CASES = [Case("half_space", tabor, rtol=1e-2) for tabor in (0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0)]
 

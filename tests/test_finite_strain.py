@@ -8,19 +8,19 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2
 
-from fem_adhesion import neo_hookean as material
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space, lame_parameters
-from fem_adhesion.far_field import clamped, free, point_load, sliding, with_interiors
-from fem_adhesion.finite_strain_assembly import finite_strain_problem
-from fem_adhesion.finite_strain_bodies import displacement_body, mixed_body
-from fem_adhesion.finite_strain_traction import Convention, convention_of, yielded_adhesion
-from fem_adhesion.incompressible import taylor_hood
-from fem_adhesion.mesh import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import clamped, free, point_load, sliding, with_interiors
+from fem_adhesion.elasticity.incompressible import taylor_hood
+from fem_adhesion.elasticity.space import Space, lame_parameters
+from fem_adhesion.finite_strain import material
+from fem_adhesion.finite_strain.assembly import finite_strain_problem
+from fem_adhesion.finite_strain.bodies import displacement_body, mixed_body
+from fem_adhesion.finite_strain.traction import Convention, convention_of, yielded_adhesion
+from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
 from fem_adhesion.monolithic import assemble
-from halfspace import newton
-from halfspace.contact import CENTRAL_GAP, ContactProblem
-from halfspace.curve import Chart, find_events, moved, trace_charts, transfer
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem
+from halfspace.equilibrium.curve import Chart, find_events, moved, trace_charts, transfer
 from halfspace.profiles import Sphere
 
 LAM, G = 0.7, 0.4

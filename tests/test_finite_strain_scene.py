@@ -8,17 +8,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fem_adhesion import convergence, finite_strain_scene
-from fem_adhesion.finite_strain_meshes import FARTHEST, AroundEvents, ScenesBody, Windows, fine_between
-from fem_adhesion.finite_strain_scene import LITTLE, Stages, find_jumps, raised, trace
-from fem_adhesion.finite_strain_traction import Convention
-from fem_adhesion.output import curve_record, curve_terminal
+from fem_adhesion import convergence
+from fem_adhesion.bodies.sized import Discretisation
+from fem_adhesion.curve import record as curve_record
+from fem_adhesion.curve import terminal as curve_terminal
+from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves, Question
+from fem_adhesion.finite_strain import scene as finite_strain_scene
+from fem_adhesion.finite_strain.meshes import FARTHEST, AroundEvents, ScenesBody, Windows, fine_between
+from fem_adhesion.finite_strain.scene import LITTLE, Stages, find_jumps, raised, trace
+from fem_adhesion.finite_strain.traction import Convention
 from fem_adhesion.scene import Counter, Scene
-from fem_adhesion.sized import Discretisation
-from fem_adhesion.studies.curves import FINITE_ELEMENTS, Curves, Question
-from halfspace import newton
-from halfspace.contact import APPROACH, LOAD
-from halfspace.curve import energy_released, moved, placed, transfer, undeformed_radius
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.curve import energy_released, moved, placed, transfer, undeformed_radius
 from halfspace.errors import InputError, NotConverged
 
 
@@ -152,7 +154,7 @@ EXPLICIT = {
     "normal": Convention(1.0, 1.0),
     "reference": Convention(0.0, 0.0),
 }
-"""As in the documentation of `fem_adhesion.finite_strain_traction`."""
+"""As in the documentation of `fem_adhesion.finite_strain.traction`."""
 
 
 @pytest.fixture(scope="module", params=EXPLICIT)

@@ -9,17 +9,17 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 from skfem import ElementQuadP
 
-from fem_adhesion import bodies
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space, cell_quadrature, reference_functions
-from fem_adhesion.far_field import sliding, with_interiors
-from fem_adhesion.finite_strain_assembly import finite_strain_problem
-from fem_adhesion.finite_strain_bodies import displacement_body
-from fem_adhesion.finite_strain_meshes import fine_between
-from fem_adhesion.finite_strain_traction import convention_of
-from halfspace import grid
-from halfspace.contact import LOAD, ContactProblem
-from halfspace.curve import Chart, find_events, moved, trace_charts
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import sliding, with_interiors
+from fem_adhesion.elasticity.space import Space, cell_quadrature, reference_functions
+from fem_adhesion.finite_strain.assembly import finite_strain_problem
+from fem_adhesion.finite_strain.bodies import displacement_body
+from fem_adhesion.finite_strain.meshes import fine_between
+from fem_adhesion.finite_strain.traction import convention_of
+from fem_adhesion.mesh import spheres
+from halfspace.elastic import grid
+from halfspace.equilibrium.contact import LOAD, ContactProblem
+from halfspace.equilibrium.curve import Chart, find_events, moved, trace_charts
 from halfspace.profiles import Sphere
 
 TABOR, POISSON = 1.0, 0.3
@@ -38,9 +38,9 @@ def potential(H):
 def hemisphere(ratio):
     """A hemisphere with cells fine at the contact edge and in the attracted layer, and its linear pull-off."""
     R = np.sqrt(ratio / TABOR)
-    lines = fine_between(1.35, 1.6, 0.25, bodies.CORE * R, 2.0)
-    depths = grid.graded(0.0, 0.35 / (TABOR * R), bodies.DEPTH * R, growth=2.0)
-    space = Space(bodies.hemisphere(R, lines, depths), ElementQuadP(4))
+    lines = fine_between(1.35, 1.6, 0.25, spheres.CORE * R, 2.0)
+    depths = grid.graded(0.0, 0.35 / (TABOR * R), spheres.DEPTH * R, growth=2.0)
+    space = Space(spheres.hemisphere(R, lines, depths), ElementQuadP(4))
     condensed = condense(space, POISSON, far_field=sliding)
     linear = ContactProblem(condensed.operator, TABOR, profile=Sphere(R))
     event = find_events(trace_charts((Chart(linear, condensed.unknowns),), 0.5))["pull_off"]

@@ -8,14 +8,15 @@ from scipy.integrate import quad
 
 import fem_adhesion
 from fem_adhesion import Scene, cli, weak_form
-from fem_adhesion.studies import crosscheck, from_scratch
-from fem_adhesion.studies.comparison import CLOSED_FORM, WEAK_FORM
-from fem_adhesion.studies.crosscheck import Failure
+from fem_adhesion.crosscheck import from_scratch
+from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM
+from fem_adhesion.crosscheck.study import Failure
 from fem_adhesion.weak_form import Contact, half_space, newton, turning_point
-from halfspace import events as halfspace_events
-from halfspace.contact import LOAD, ContactProblem
+from halfspace.equilibrium import events as halfspace_events
+from halfspace.equilibrium.contact import LOAD, ContactProblem
+from halfspace.equilibrium.events import FOLD
 from halfspace.errors import NotConverged
-from halfspace.events import FOLD
 from halfspace.lennard_jones import SurfaceLaw
 from halfspace.profiles import Paraboloid
 
@@ -147,7 +148,7 @@ def _load(monkeypatch):
 
 
 def _jumps_on_a_spring(monkeypatch):
-    from halfspace import curve
+    from halfspace.equilibrium import curve
 
     soft = replace(FOLD, compliance=0.1)
     for module in (curve, halfspace_events):

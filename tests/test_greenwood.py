@@ -17,19 +17,22 @@ from matplotlib import rc_context
 
 import halfspace
 from fem_adhesion import cli
-from fem_adhesion.output import greenwood_plots, greenwood_report
-from fem_adhesion.output.greenwood_tables import tables
-from fem_adhesion.output.greenwood_text import NOTHING
-from fem_adhesion.output.page_tables import typeset
-from fem_adhesion.studies import greenwood1997, greenwood_ripple, greenwood_tables
-from fem_adhesion.studies.greenwood_criteria import CriteriaStudy, JumpOn, fit
-from fem_adhesion.studies.greenwood_tables import LAST_DIGIT, ROUNDED
-from halfspace import criteria, dmt
-from halfspace.contact import CENTRAL_GAP
-from halfspace.curve import Estimate
+from fem_adhesion.common.page_tables import typeset
+from fem_adhesion.greenwood import figures as greenwood_plots
+from fem_adhesion.greenwood import page as greenwood_report
+from fem_adhesion.greenwood import ripple as greenwood_ripple
+from fem_adhesion.greenwood import study as greenwood1997
+from fem_adhesion.greenwood import tables as greenwood_tables
+from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, fit
+from fem_adhesion.greenwood.record import tables
+from fem_adhesion.greenwood.tables import LAST_DIGIT, ROUNDED
+from fem_adhesion.greenwood.text import NOTHING
+from halfspace.equilibrium.contact import CENTRAL_GAP
+from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import NotConverged
-from halfspace.maugis import MaugisDugdale, carpick_pull_off
-from halfspace.theories import bradley_load
+from halfspace.theories import criteria, dmt
+from halfspace.theories.closed_forms import bradley_load
+from halfspace.theories.maugis import MaugisDugdale, carpick_pull_off
 
 DATA = Path(__file__).parent / "data"
 FIGURES = ("1a", "1b", "1c", "2a", "2b", "3a", "3b", "3c", "4a", "4b", "5", "6a", "6b", "7", "8")

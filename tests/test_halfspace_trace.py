@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 
 import halfspace
-from fem_adhesion.studies.fold_birth import critical_stiffness
-from halfspace import theories
-from halfspace.accuracy import Resolution, half_space_charts, resolution_for
-from halfspace.contact import CONTACT_RADIUS
-from halfspace.curve import find_events, metric_for, trace_charts
-from halfspace.devices import cycle
+from halfspace.accuracy.fold_birth import critical_stiffness
+from halfspace.accuracy.refinement import MOST_RUNGS, charted_rung, climb
+from halfspace.accuracy.trace import Resolution, half_space_charts, resolution_for
+from halfspace.equilibrium.contact import CONTACT_RADIUS
+from halfspace.equilibrium.curve import find_events, metric_for, trace_charts
+from halfspace.equilibrium.devices import cycle
+from halfspace.equilibrium.events import FOLD, locate
+from halfspace.equilibrium.path import Steps, correct
 from halfspace.errors import InputError, NotConverged
-from halfspace.events import FOLD, locate
-from halfspace.ladder import MOST_RUNGS, charted_rung, climb
-from halfspace.path import Steps, correct
+from halfspace.theories import closed_forms
 
 DATA = Path(__file__).parent / "data"
 
@@ -141,37 +141,37 @@ def test_the_work_along_the_curve_is_the_energy_between_its_ends():
 
 def test_jkr_limit():
     path = halfspace.trace(50, rtol=1e-4)
-    assert path.event("pull_off").load == pytest.approx(theories.JKR_PULL_OFF, rel=2e-3)
+    assert path.event("pull_off").load == pytest.approx(closed_forms.JKR_PULL_OFF, rel=2e-3)
     assert path.event("jump_off").approach / 50 == pytest.approx(-0.75 * np.pi ** (2 / 3), rel=0.01)
     zero = path.event("zero_load")
-    assert zero.contact_radius == pytest.approx(float(theories.jkr_radius(0.0)), rel=2e-3)
-    assert zero.approach == pytest.approx(float(theories.jkr_approach(zero.contact_radius, 50)), rel=0.02)
+    assert zero.contact_radius == pytest.approx(float(closed_forms.jkr_radius(0.0)), rel=2e-3)
+    assert zero.approach == pytest.approx(float(closed_forms.jkr_approach(zero.contact_radius, 50)), rel=0.02)
 
 
 def test_the_neck_outside_a_soft_contact_is_jkrs():
     """Gap outside the contact: Hertz's and that of a flat punch pulled by sqrt(2 pi a dgamma/E*)."""
     mu = 100.0
     state = halfspace.trace(mu, rtol=1e-4).stages[-1]["zero_load"]
-    a = float(theories.jkr_radius(0.0))
+    a = float(closed_forms.jkr_radius(0.0))
     r = np.linspace(1.1, 2.0, 10) * a
     gap = state.problem.operator_at(state.point.x).values_at(r, state.point.x[:-2])
-    jkr = theories.hertz_gap(r, a, mu) + mu * np.sqrt(2 * np.pi * a) * 2 / np.pi * np.arccos(a / r)
+    jkr = closed_forms.hertz_gap(r, a, mu) + mu * np.sqrt(2 * np.pi * a) * 2 / np.pi * np.arccos(a / r)
     np.testing.assert_allclose(gap, jkr, rtol=0.02)
 
 
 def test_jkr_forms_agree_with_each_other():
-    radius = theories.jkr_radius(np.array([-4.0, 0.0, 10.0]))
-    np.testing.assert_allclose(theories.jkr_load(radius), [-4.0, 0.0, 10.0], atol=1e-12)
+    radius = closed_forms.jkr_radius(np.array([-4.0, 0.0, 10.0]))
+    np.testing.assert_allclose(closed_forms.jkr_load(radius), [-4.0, 0.0, 10.0], atol=1e-12)
     s = np.linspace(0.3, 1.5, 400001) * np.cbrt(9 * np.pi / 2)
-    assert theories.jkr_load(s).min() == pytest.approx(theories.JKR_PULL_OFF, rel=1e-9)
-    assert theories.jkr_approach(s, 1.0).min() == pytest.approx(-0.75 * np.pi ** (2 / 3), rel=1e-9)
-    assert theories.hertz_load(theories.jkr_radius(1e6)) == pytest.approx(1e6, rel=0.01)
+    assert closed_forms.jkr_load(s).min() == pytest.approx(closed_forms.JKR_PULL_OFF, rel=1e-9)
+    assert closed_forms.jkr_approach(s, 1.0).min() == pytest.approx(-0.75 * np.pi ** (2 / 3), rel=1e-9)
+    assert closed_forms.hertz_load(closed_forms.jkr_radius(1e6)) == pytest.approx(1e6, rel=0.01)
 
 
 def test_pull_off_lies_between_bradley_and_jkr_and_falls_with_tabor(curves):
     loads = [path.event("pull_off").load for path in curves.values()]
-    assert min(loads) > theories.BRADLEY_PULL_OFF
-    assert max(loads) < theories.JKR_PULL_OFF
+    assert min(loads) > closed_forms.BRADLEY_PULL_OFF
+    assert max(loads) < closed_forms.JKR_PULL_OFF
     assert np.all(np.diff(loads) > 0)
 
 
@@ -241,7 +241,7 @@ def test_a_curve_that_no_grid_can_carry_is_given_up_and_says_why():
 
 # --- near the Tabor parameter at which the curve begins to fold ---
 
-CRITICAL = 0.69721461383  # `fem_adhesion.studies.fold_birth` at rtol 1e-10
+CRITICAL = 0.69721461383  # `halfspace.accuracy.fold_birth` at rtol 1e-10
 BY_TABOR = 0.459  # R dgamma/eps by which the margin falls with the Tabor parameter there
 
 
@@ -262,7 +262,7 @@ def test_a_curve_about_to_fold_is_traced_and_says_how_far_the_folds_are(tabor, r
 
 
 def test_the_margin_is_the_compliance_of_the_stiffest_apparatus_that_jumps():
-    """By a golden search under prescribed central gaps, in `fem_adhesion.studies.fold_birth`."""
+    """By a golden search under prescribed central gaps, in `halfspace.accuracy.fold_birth`."""
     path = halfspace.trace(0.69, rtol=1e-8)
     assert path.margin.value == pytest.approx(1 / critical_stiffness(0.69), rel=1e-5, abs=0)
     assert cycle(path, 1 / (path.margin.value * 1.01)) is not None

@@ -10,13 +10,15 @@ from rich.console import Console
 from skfem import MeshTri
 
 from fem_adhesion import cli
-from fem_adhesion.mesh import graded_size, quarter_disc
-from fem_adhesion.output.hard_report import cases_table, locking_table, summary, write_hard
-from fem_adhesion.studies import hard_bodies, hard_cases, hard_run
-from fem_adhesion.studies.fold_birth import FIRST, SECOND, tabor_of
-from fem_adhesion.studies.hard_bodies import Locking, flattened
-from fem_adhesion.studies.hard_run import WITHIN, Case, Refusal, Row
-from fem_adhesion.studies.measured import Measured, compare_events, worst
+from fem_adhesion.common.measured import Measured, compare_events, worst
+from fem_adhesion.hard import bodies as hard_bodies
+from fem_adhesion.hard import cases as hard_cases
+from fem_adhesion.hard import run as hard_run
+from fem_adhesion.hard.bodies import Locking, flattened
+from fem_adhesion.hard.run import WITHIN, Case, Refusal, Row
+from fem_adhesion.hard.table import cases_table, locking_table, summary, write_hard
+from fem_adhesion.mesh.block import graded_size, quarter_disc
+from halfspace.accuracy.fold_birth import FIRST, SECOND, tabor_of
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 
 CASES = {case.name: case for case in hard_cases.cases()}

@@ -7,16 +7,16 @@ import pytest
 from scipy import sparse
 from skfem import Basis, ElementQuadP, ElementTriP2
 
-from fem_adhesion import held_sphere as module
-from fem_adhesion.bodies import CORE, DEPTH, Stereographic, contact_ends, hemisphere
-from fem_adhesion.boundary import boundary_basis, trace_matrix
-from fem_adhesion.condensed import condense, contact_surface, eliminate_interiors, factorise
-from fem_adhesion.elasticity import Space, cell_stiffness, cell_strains, ring_measure
-from fem_adhesion.far_field import Exterior, clamped, sliding
-from fem_adhesion.held_sphere import held_sphere, rings_at_equator
-from fem_adhesion.mesh_file import read_body
-from fem_adhesion.nested import refined_towards
-from halfspace import grid
+from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
+from fem_adhesion.elasticity.condensation import condense, contact_surface, eliminate_interiors, factorise
+from fem_adhesion.elasticity.far_field import Exterior, clamped, sliding
+from fem_adhesion.elasticity.space import Space, cell_stiffness, cell_strains, ring_measure
+from fem_adhesion.mesh import held_sphere as module
+from fem_adhesion.mesh.file import read_body
+from fem_adhesion.mesh.held_sphere import held_sphere, rings_at_equator
+from fem_adhesion.mesh.nested import refined_towards
+from fem_adhesion.mesh.spheres import CORE, DEPTH, Stereographic, contact_ends, hemisphere
+from halfspace.elastic import grid
 
 NU, R = 0.3, 30.0
 CAPS = (1.0, 30.0, 75.0, 88.0, 90.0)  # by lines, in the core, beside it, by rings about the equator, at the equator

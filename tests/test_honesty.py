@@ -18,8 +18,8 @@ from honesty import FAMILIES, Judged, Net, Row
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
-from halfspace.accuracy import Resolution, half_space_charts
-from halfspace.curve import Estimate, energy_released, find_events, trace_charts
+from halfspace.accuracy.trace import Resolution, half_space_charts
+from halfspace.equilibrium.curve import Estimate, energy_released, find_events, trace_charts
 
 
 def _number(estimate, error, known=0.0):

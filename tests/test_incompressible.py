@@ -8,8 +8,17 @@ from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import (
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import clamped, free, point_load, with_interiors
+from fem_adhesion.elasticity.incompressible import (
+    REMEDY_FROM,
+    dilatation,
+    pressure_modes,
+    projected_stiffness,
+    stiffness_for,
+    taylor_hood,
+)
+from fem_adhesion.elasticity.space import (
     Space,
     cell_quadrature,
     cell_stiffness,
@@ -19,17 +28,8 @@ from fem_adhesion.elasticity import (
     shear_matrix,
     strain_products,
 )
-from fem_adhesion.far_field import clamped, free, point_load, with_interiors
-from fem_adhesion.incompressible import (
-    REMEDY_FROM,
-    dilatation,
-    pressure_modes,
-    projected_stiffness,
-    stiffness_for,
-    taylor_hood,
-)
-from fem_adhesion.mesh import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
-from fem_adhesion.studies.hard_bodies import smooth_deflection, smooth_pressure
+from fem_adhesion.hard.bodies import smooth_deflection, smooth_pressure
+from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
 
 
 def deflection_error(operator):

@@ -9,7 +9,7 @@ import pytest
 import fem_adhesion
 import halfspace
 from fem_adhesion import Counter, Scene
-from halfspace.devices import cycle
+from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 
 KINDS = [np.float32, np.float16, np.longdouble, np.int64, np.uint8, int, Fraction]

@@ -4,7 +4,7 @@ import pytest
 from numpy.polynomial.legendre import leggauss
 from scipy.integrate import quad
 
-from halfspace.kernel import band_deflection, panel_integrals, ring_kernel
+from halfspace.elastic.kernel import band_deflection, panel_integrals, ring_kernel
 
 
 def test_ring_kernel_is_symmetric_and_homogeneous():

@@ -10,15 +10,15 @@ from page_tables import tables
 from rich.console import Console
 
 from fem_adhesion import cli
-from fem_adhesion.output import report_levels
-from fem_adhesion.output.record import EVENT_NAMES, VERDICTS, crosscheck_record, overall_verdict
-from fem_adhesion.output.report import WORDS, verdict_words
-from fem_adhesion.output.report_parts import symbols
-from fem_adhesion.output.tables import STYLES, columns, crosscheck_table, crosscheck_tables
-from fem_adhesion.studies import crosscheck
-from fem_adhesion.studies.comparison import Row
-from fem_adhesion.studies.crosscheck import Failure
-from halfspace.curve import Estimate
+from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.crosscheck.comparison import Row
+from fem_adhesion.crosscheck.record import EVENT_NAMES, VERDICTS, crosscheck_record, overall_verdict
+from fem_adhesion.crosscheck.study import Failure
+from fem_adhesion.crosscheck.table import STYLES, columns, crosscheck_table, crosscheck_tables
+from fem_adhesion.report import levels as report_levels
+from fem_adhesion.report.page import WORDS, verdict_words
+from fem_adhesion.report.parts import symbols
+from halfspace.equilibrium.curve import Estimate
 
 
 def row_as_read(cells):

@@ -11,16 +11,16 @@ from hypothesis import strategies as st
 from scipy import sparse
 
 import halfspace
-from fem_adhesion.condensed import Factorised
-from fem_adhesion.finite_strain_solve import _inverse
-from halfspace import newton
-from halfspace.accuracy import half_space_charts, resolution_for
-from halfspace.contact import LOAD
-from halfspace.curve import find_events, trace_charts
-from halfspace.devices import cycle, jumps
+from fem_adhesion.elasticity.condensation import Factorised
+from fem_adhesion.finite_strain.solve import _inverse
+from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import LOAD
+from halfspace.equilibrium.curve import find_events, trace_charts
+from halfspace.equilibrium.devices import cycle, jumps
+from halfspace.equilibrium.events import ZERO_LOAD, locate
+from halfspace.equilibrium.path import Metric
 from halfspace.errors import ContactTooWide, NotConverged
-from halfspace.events import ZERO_LOAD, locate
-from halfspace.path import Metric
 from halfspace.profiles import Paraboloid
 from halfspace.roots import root
 

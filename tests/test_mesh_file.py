@@ -9,12 +9,12 @@ import pytest
 from scipy.spatial import cKDTree
 from skfem import CellBasis, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2, MeshTri, MeshTri2
 
-from fem_adhesion.boundary import boundary_basis
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space
-from fem_adhesion.far_field import clamped
-from fem_adhesion.mesh_checks import facet_nodes
-from fem_adhesion.mesh_file import read_body, read_scaled
+from fem_adhesion.elasticity.boundaries import boundary_basis
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import clamped
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.mesh.checks import facet_nodes
+from fem_adhesion.mesh.file import read_body, read_scaled
 
 MESHES = Path(__file__).parents[1] / "meshes"
 EXAMPLES = ["hemisphere", "sphere", "tip"]

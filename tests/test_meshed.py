@@ -10,9 +10,9 @@ from skfem import CellBasis, ElementQuad2, MeshQuad, MeshQuad2
 
 import fem_adhesion
 from fem_adhesion import Scene
-from fem_adhesion.mesh_file import read_body
-from fem_adhesion.refinement import refined
-from halfspace.contact import spike_width
+from fem_adhesion.mesh.file import read_body
+from fem_adhesion.mesh.refinement import refined
+from halfspace.equilibrium.contact import spike_width
 from halfspace.errors import GridTooCoarse
 
 MESHES = Path(__file__).parents[1] / "meshes"

@@ -6,8 +6,8 @@ import pytest
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
+from fem_adhesion.bodies.sized import Discretisation, sized_body
 from fem_adhesion.scene import Counter
-from fem_adhesion.sized import Discretisation, sized_body
 
 RHO = 30.0
 RTOL = 1e-4

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from fem_adhesion.studies import parallel
-from fem_adhesion.studies.parallel import ATTEMPTS, CONNECTION_SECONDS, Died, stream
+from fem_adhesion.common import jobs as parallel
+from fem_adhesion.common.jobs import ATTEMPTS, CONNECTION_SECONDS, Died, stream
 from halfspace.errors import InputError
 
 

@@ -8,15 +8,19 @@ from matplotlib import rc_context
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from fem_adhesion.fields import state_at
-from fem_adhesion.output import curve_lines, load_plots, mesh_plots, plots, profile_plots
+from fem_adhesion.curve import figure as plots
+from fem_adhesion.curve import lines as curve_lines
+from fem_adhesion.curve import load as load_plots
+from fem_adhesion.curve import mesh as mesh_plots
+from fem_adhesion.curve import profiles as profile_plots
+from fem_adhesion.curve.solve import Question, solve
+from fem_adhesion.fields.state import state_at
 from fem_adhesion.scene import Scene
-from fem_adhesion.studies.curves import Question, solve
-from halfspace.accuracy import half_space_charts, resolution_for
-from halfspace.contact import LOAD
-from halfspace.curve import trace_charts
+from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.equilibrium.contact import LOAD
+from halfspace.equilibrium.curve import trace_charts
+from halfspace.equilibrium.path import Steps
 from halfspace.lennard_jones import LENNARD_JONES
-from halfspace.path import Steps
 from halfspace.scaling import Units
 
 UNITS = Units(100e-9, 1.1e9, 0.05, 0.3e-9)

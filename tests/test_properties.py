@@ -11,16 +11,16 @@ from skfem import ElementQuadP
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space
-from fem_adhesion.incompressible import stiffness_for
-from fem_adhesion.mesh import block_grid
-from halfspace.contact import APPROACH, LOAD, ContactProblem
-from halfspace.curve import metric_for
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.incompressible import stiffness_for
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.mesh.block import block_grid
+from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
+from halfspace.equilibrium.curve import metric_for
+from halfspace.equilibrium.path import correct, predict
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol, require_tabor
-from halfspace.path import correct, predict
-from halfspace.theories import BRADLEY_PULL_OFF, JKR_PULL_OFF
+from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 
 tabors = st.floats(-12, math.log10(200)).map(lambda x: 10.0**x) | st.floats(0.05, 10)
 poissons = st.floats(0, 0.499999)

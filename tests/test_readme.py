@@ -18,7 +18,7 @@ from pyarrow import parquet
 from whole_runs import ROOT, tables_in
 
 from fem_adhesion import cli
-from fem_adhesion.studies import hard_cases
+from fem_adhesion.hard import cases as hard_cases
 
 README = (ROOT / "README.md").read_text()
 

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from halfspace import compliance, grid, newton
-from halfspace.breathing import Homogeneous
-from halfspace.contact import ContactProblem
+from halfspace.elastic import compliance, grid
+from halfspace.elastic.operators import Homogeneous
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import ContactProblem
+from halfspace.equilibrium.relaxation import CHECKED_EVERY, greenwood, simple
 from halfspace.errors import NotConverged
-from halfspace.relaxation import CHECKED_EVERY, greenwood, simple
 
 
 def problem_at(tabor, nodes=60):

@@ -7,9 +7,9 @@ import pytest
 
 import fem_adhesion
 from fem_adhesion import Scene
-from halfspace import events
+from halfspace.equilibrium import events
+from halfspace.equilibrium.events import Condition
 from halfspace.errors import NotConverged
-from halfspace.events import Condition
 
 
 @pytest.mark.parametrize("rtol", [1e-1, 1e-2])

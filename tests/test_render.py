@@ -7,17 +7,19 @@ import pytest
 from PIL import Image
 from scipy.interpolate import CubicSpline
 
-from fem_adhesion.commands import curve
-from fem_adhesion.commands.common import Parser
-from fem_adhesion.output import movie, render, solid_view
-from fem_adhesion.output.curve_lines import smooth
-from fem_adhesion.output.cutaway import section, surfaces, view_of
-from fem_adhesion.output.files import written_aside
-from fem_adhesion.output.load_plots import KINDS
-from fem_adhesion.output.profile_plots import STATES
+from fem_adhesion.common.files import written_aside
+from fem_adhesion.common.options import Parser
+from fem_adhesion.curve import command as curve
+from fem_adhesion.curve import movie
+from fem_adhesion.curve import still as render
+from fem_adhesion.curve.lines import smooth
+from fem_adhesion.curve.load import KINDS
+from fem_adhesion.curve.profiles import STATES
+from fem_adhesion.curve.solve import Question, solve
+from fem_adhesion.paraview import solid as solid_view
+from fem_adhesion.paraview.cutaway import section, surfaces, view_of
 from fem_adhesion.scene import Scene
-from fem_adhesion.studies.curves import Question, solve
-from halfspace.contact import APPROACH, LOAD
+from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.scaling import Units
 
 SMALL = (240, 150)
@@ -188,7 +190,7 @@ def test_the_command_draws_and_prints(tmp_path, capsys):
 )
 def test_what_cannot_be_drawn_is_refused_in_one_line_before_any_work(tmp_path, monkeypatch, arguments, words):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("fem_adhesion.studies.curves.solve", lambda *_: pytest.fail("worked"))
+    monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda *_: pytest.fail("worked"))
     with pytest.raises(ValueError, match=words) as refused:
         _run("--tabor", 2, *arguments)
     assert "\n" not in str(refused.value)

@@ -12,14 +12,14 @@ from made_up import ENDINGS
 from page_tables import tables
 
 from fem_adhesion import Scene, cli
-from fem_adhesion.beside import Beside
-from fem_adhesion.fields import state_at
-from fem_adhesion.output.report import WORDS, Contents, page, walk_data
-from fem_adhesion.output.report_figures import figure
-from fem_adhesion.output.report_parts import MOST_LINES, cell, read_table
-from fem_adhesion.studies import crosscheck
-from fem_adhesion.studies.curves import Question, solve
-from fem_adhesion.studies.walk import SEEN, _station, walk
+from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.curve.solve import Question, solve
+from fem_adhesion.fields.beside import Beside
+from fem_adhesion.fields.state import state_at
+from fem_adhesion.report.figures import figure
+from fem_adhesion.report.page import WORDS, Contents, page, walk_data
+from fem_adhesion.report.parts import MOST_LINES, cell, read_table
+from fem_adhesion.report.walk import SEEN, _station, walk
 from halfspace.errors import NotConverged
 from halfspace.lennard_jones import LENNARD_JONES
 
@@ -172,8 +172,8 @@ def test_the_page_tells_the_verdict_of_its_cases_and_no_other(contents, verdict)
 @pytest.mark.parametrize("verdict", ENDINGS)
 def test_the_command_tells_the_verdict_of_its_page_in_its_exit_code(contents, verdict, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(crosscheck, "run", lambda scenes, rtol: iter(ENDINGS[verdict]))  # noqa: ARG005
-    monkeypatch.setattr("fem_adhesion.studies.curves.solve", lambda *_: contents.curves)
-    monkeypatch.setattr("fem_adhesion.studies.walk.walk", lambda *_, **__: contents.walk)
+    monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda *_: contents.curves)
+    monkeypatch.setattr("fem_adhesion.report.walk.walk", lambda *_, **__: contents.walk)
     code = cli.main(["report", "--out", str(tmp_path / "a.html"), "--tabor", "2"])
     assert code == (0 if verdict == "agree" else 1)
     assert capsys.readouterr().out == f"verdict: {verdict}; written: {tmp_path / 'a.html'}\n"
@@ -185,7 +185,7 @@ def test_a_curve_that_cannot_be_solved_is_said_to_be_missing(tmp_path, monkeypat
         raise NotConverged("no convergence on purpose; try another day")
 
     monkeypatch.setattr(crosscheck, "run", lambda scenes, rtol: iter(ENDINGS["agree"]))  # noqa: ARG005
-    monkeypatch.setattr("fem_adhesion.studies.curves.solve", fail)
+    monkeypatch.setattr("fem_adhesion.curve.solve.solve", fail)
     assert cli.main(["report", "--out", str(tmp_path / "a.html"), "--tabor", "2"]) == 1
     assert "verdict: failed" in capsys.readouterr().out
     html = (tmp_path / "a.html").read_text()
@@ -281,7 +281,7 @@ def test_the_first_profile_is_of_the_elements_and_the_second_of_the_half_space(c
     found = path.stages[-1]["pull_off"]
     state = state_at(Scene(2.0), found.problem, found.point, how=SEEN)
     other = Beside(np.full(state.radii.size, 7.0), np.full(state.radii.size, 9.0), np.zeros(4))
-    monkeypatch.setattr("fem_adhesion.studies.walk.half_space_beside", lambda _: other)
+    monkeypatch.setattr("fem_adhesion.report.walk.half_space_beside", lambda _: other)
     radii = np.array([0.0, 0.5, 1.0])
     station = _station(state, radii, radii)
     assert station.pressure[1] == pytest.approx([7.0] * 3)

@@ -12,16 +12,16 @@ import truths
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
+from fem_adhesion.bodies.sized import Discretisation, sized_body
 from fem_adhesion.scene import Counter
-from fem_adhesion.sized import Discretisation, sized_body
-from halfspace import compliance, grid
-from halfspace.accuracy import _under_sphere, resolution_for
-from halfspace.breathing import Homogeneous
-from halfspace.contact import ContactProblem
-from halfspace.curve import Chart, moved
-from halfspace.devices import cycle
+from halfspace.accuracy.finite_bodies import AroundEvents, surroundings
+from halfspace.accuracy.trace import _under_sphere, resolution_for
+from halfspace.elastic import compliance, grid
+from halfspace.elastic.operators import Homogeneous
+from halfspace.equilibrium.contact import ContactProblem
+from halfspace.equilibrium.curve import Chart, moved
+from halfspace.equilibrium.devices import cycle
 from halfspace.profiles import between_spheres
-from halfspace.sized import AroundEvents, surroundings
 
 HEMISPHERE = {"tabor": 1.0, "body": "hemisphere", "profile": "sphere", "radius_ratio": 30.0}
 

@@ -14,21 +14,23 @@ from numpy.polynomial.legendre import leggauss
 import fem_adhesion
 import halfspace
 from fem_adhesion import cli
-from fem_adhesion.elasticity import Space
-from fem_adhesion.output import speed_plots, speed_report
-from fem_adhesion.output.files import directory_written_aside
+from fem_adhesion.common.files import directory_written_aside
+from fem_adhesion.elasticity.space import Space
 from fem_adhesion.scene import Scene
-from fem_adhesion.studies import element_methods as element_methods_module
-from fem_adhesion.studies import halfspace_methods as halfspace_methods_module
-from fem_adhesion.studies import speed
-from fem_adhesion.studies.element_methods import element_methods
-from fem_adhesion.studies.halfspace_methods import MOST_NODES, _affordable, halfspace_methods
-from fem_adhesion.studies.methods import QUANTITIES, Method, Solved, Step
-from fem_adhesion.studies.speed import measure
-from fem_adhesion.studies.speed_result import Rung, SpeedStudy, Truth, best, cheapest, pareto_front, slope
-from halfspace import compliance, newton, relaxation
-from halfspace.curve import Estimate, transfer
-from halfspace.devices import cycle
+from fem_adhesion.speed import element_methods as element_methods_module
+from fem_adhesion.speed import figures as speed_plots
+from fem_adhesion.speed import halfspace_methods as halfspace_methods_module
+from fem_adhesion.speed import page as speed_report
+from fem_adhesion.speed import study as speed
+from fem_adhesion.speed.element_methods import element_methods
+from fem_adhesion.speed.halfspace_methods import MOST_NODES, _affordable, halfspace_methods
+from fem_adhesion.speed.methods import QUANTITIES, Method, Solved, Step
+from fem_adhesion.speed.result import Rung, SpeedStudy, Truth, best, cheapest, pareto_front, slope
+from fem_adhesion.speed.study import measure
+from halfspace.elastic import compliance
+from halfspace.equilibrium import newton, relaxation
+from halfspace.equilibrium.curve import Estimate, transfer
+from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 
 METHODS = [*halfspace_methods(), *element_methods()]

@@ -5,9 +5,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from halfspace import theories
 from halfspace.lennard_jones import LENNARD_JONES
-from halfspace.sphere_theories import JKRSphere, RigidSphere
+from halfspace.theories import closed_forms
+from halfspace.theories.exact_sphere import JKRSphere, RigidSphere
 
 RATIOS = [0.01, 1.0, 5.0, 30.0, 1e3, 1e6]
 
@@ -56,16 +56,16 @@ def test_rigid_whole_sphere_by_the_divergence_theorem():
 def test_a_wide_rigid_sphere_is_bradleys():
     approach = np.array([-40.0, -3.0, -0.2, 0.0, 0.05])
     for body in (RigidSphere(1e9), RigidSphere(1e9, whole=True)):
-        np.testing.assert_allclose(body.load(approach), theories.bradley_load(approach), rtol=2e-7)
-        np.testing.assert_allclose(body.surface_load(approach), theories.bradley_load(approach), rtol=1e-12)
+        np.testing.assert_allclose(body.load(approach), closed_forms.bradley_load(approach), rtol=2e-7)
+        np.testing.assert_allclose(body.surface_load(approach), closed_forms.bradley_load(approach), rtol=1e-12)
 
 
 @pytest.mark.parametrize(("whole", "c"), [(False, 4 / 3), (True, 1.0)])
 def test_expansions_at_contact_and_at_pull_off(whole, c):
     rho = np.array([300.0, 1000.0, 3000.0])
     bodies = [RigidSphere(r, whole) for r in rho]
-    at_contact = np.array([float(body.load(0.0)) for body in bodies]) / theories.BRADLEY_PULL_OFF
-    least = np.array([body.pull_off().load for body in bodies]) / theories.BRADLEY_PULL_OFF
+    at_contact = np.array([float(body.load(0.0)) for body in bodies]) / closed_forms.BRADLEY_PULL_OFF
+    least = np.array([body.pull_off().load for body in bodies]) / closed_forms.BRADLEY_PULL_OFF
     np.testing.assert_allclose((at_contact - 1 + 9 / 7 / rho) * rho**2, c, atol=4 / 300)
     np.testing.assert_allclose((least - 1 + 9 / 7 / rho) * rho**2, c + 1 / 32, atol=4 / 300)
     shift = np.array([-body.pull_off().approach for body in bodies]) * rho
@@ -76,7 +76,9 @@ def test_expansions_at_contact_and_at_pull_off(whole, c):
 def test_the_two_conventions_differ_by_nine_sevenths_of_the_spacing_over_the_radius(whole, c):
     for rho in (300.0, 3000.0):
         body = RigidSphere(rho, whole)
-        surface, projected = (s.load / theories.BRADLEY_PULL_OFF for s in (body.surface_pull_off(), body.pull_off()))
+        surface, projected = (
+            s.load / closed_forms.BRADLEY_PULL_OFF for s in (body.surface_pull_off(), body.pull_off())
+        )
         assert (1 - surface) * rho**2 == pytest.approx(c, abs=5 / rho)
         assert (surface - projected) * rho == pytest.approx(9 / 7, abs=3 / rho)
 
@@ -123,12 +125,12 @@ STATES = ("pull_off", "jump_off", "zero_load", "zero_approach")
 @pytest.mark.parametrize("name", STATES)
 def test_jkr_is_the_limit_and_the_excess_its_leading_correction(name):
     mu, rho = 3.0, 3e6
-    ours, limit = getattr(JKRSphere(mu, rho), name)(), getattr(theories, f"jkr_{name}")(mu)
+    ours, limit = getattr(JKRSphere(mu, rho), name)(), getattr(closed_forms, f"jkr_{name}")(mu)
     X2 = rho / mu
     assert ours.contact_radius == pytest.approx(limit.contact_radius, rel=5 / X2)
     a = limit.contact_radius
-    assert (JKRSphere(mu, rho).load(a) - theories.jkr_load(a)) * X2 == pytest.approx(8 * a**5 / 15, rel=1e-4)
-    assert (JKRSphere(mu, rho).approach(a) - theories.jkr_approach(a, mu)) * X2 / mu == pytest.approx(
+    assert (JKRSphere(mu, rho).load(a) - closed_forms.jkr_load(a)) * X2 == pytest.approx(8 * a**5 / 15, rel=1e-4)
+    assert (JKRSphere(mu, rho).approach(a) - closed_forms.jkr_approach(a, mu)) * X2 / mu == pytest.approx(
         a**4 / 3, rel=1e-4
     )
 
@@ -171,7 +173,7 @@ def test_griffiths_balance():
     [
         (lambda: RigidSphere(0.0), "radius_ratio = 0 is outside 0.001 <= radius_ratio < inf; give R/eps"),
         (lambda: RigidSphere(float("nan")), "radius_ratio = nan"),
-        (lambda: RigidSphere(float("inf")), "take halfspace.theories for the paraboloid"),
+        (lambda: RigidSphere(float("inf")), "take halfspace.theories.closed_forms for the paraboloid"),
         (lambda: JKRSphere(3.0, 2.0), "radius_ratio = 2 is outside 3 <= radius_ratio < inf"),
         (lambda: JKRSphere(-1.0, 2.0), "tabor = -1 is outside 0 < tabor < inf"),
     ],

@@ -10,9 +10,9 @@ import pytest
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene, cli
-from halfspace.curve import metric_for, placed
+from halfspace.equilibrium.curve import metric_for, placed
+from halfspace.equilibrium.states import COORDINATES, shift
 from halfspace.errors import InputError
-from halfspace.states import COORDINATES, shift
 
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 

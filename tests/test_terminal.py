@@ -14,15 +14,15 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from fem_adhesion.output import hard_report
-from fem_adhesion.output.tables import cells, columns, crosscheck_tables
-from fem_adhesion.output.terminal import WIDE, Column, Fitted, Flow, make_console, page, prose
+from fem_adhesion.common.terminal import WIDE, Column, Fitted, Flow, make_console, page, prose
+from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.crosscheck.comparison import Row
+from fem_adhesion.crosscheck.table import cells, columns, crosscheck_tables
+from fem_adhesion.hard import table as hard_report
+from fem_adhesion.hard.bodies import Locking
+from fem_adhesion.hard.run import Row as HardRow
 from fem_adhesion.scene import Scene
-from fem_adhesion.studies import crosscheck
-from fem_adhesion.studies.comparison import Row
-from fem_adhesion.studies.hard_bodies import Locking
-from fem_adhesion.studies.hard_run import Row as HardRow
-from halfspace.curve import Estimate
+from halfspace.equilibrium.curve import Estimate
 
 WIDTHS = [150, 100, 80, 60, 40, 20]
 

@@ -11,9 +11,9 @@ from scipy.optimize import brentq
 from scipy.special import gamma
 
 import halfspace
-from halfspace import dmt, maugis, theories
 from halfspace.lennard_jones import LENNARD_JONES
-from halfspace.maugis import MaugisDugdale
+from halfspace.theories import closed_forms, dmt, maugis
+from halfspace.theories.maugis import MaugisDugdale
 
 DATA = Path(__file__).parent / "data"
 
@@ -47,7 +47,7 @@ def _outside(alpha, integrand):
     scale = max(1.0, alpha**-0.5)
 
     def over(x):
-        return integrand(x, theories.hertz_gap(x, 1.0, alpha)) * x
+        return integrand(x, closed_forms.hertz_gap(x, 1.0, alpha)) * x
 
     ends = 1 + scale * np.array([0, 0.1, 1, 3, 10, 100, 1e5])
     return sum(quad(over, *pair, epsrel=1e-11, limit=200)[0] for pair in pairwise(ends))
@@ -73,9 +73,9 @@ def test_the_three_dmt_theories_part_once_the_bodies_are_pressed_together():
     alpha, tabor = np.array([0.0, 1e-3, 0.1, 1.0, 100.0]), 0.1
     by_force, simplest = dmt.force_load(alpha, tabor), dmt.maugis_load(alpha, tabor)
     thermodynamic = dmt.thermodynamic_load(alpha, tabor)
-    assert by_force[0] == pytest.approx(theories.BRADLEY_PULL_OFF, abs=1e-12)
-    assert simplest[0] == pytest.approx(theories.bradley_load(0.0), abs=1e-12)
-    assert thermodynamic[0] == pytest.approx(theories.BRADLEY_PULL_OFF, abs=1e-5)
+    assert by_force[0] == pytest.approx(closed_forms.BRADLEY_PULL_OFF, abs=1e-12)
+    assert simplest[0] == pytest.approx(closed_forms.bradley_load(0.0), abs=1e-12)
+    assert thermodynamic[0] == pytest.approx(closed_forms.BRADLEY_PULL_OFF, abs=1e-5)
     assert np.all(by_force[1:] < simplest[1:])
     assert np.all(simplest[1:] < thermodynamic[1:])
     np.testing.assert_allclose(simplest, 4 / 3 * (alpha / tabor) ** 1.5 - 2 * np.pi)
@@ -90,56 +90,56 @@ def test_thermodynamic_tension_halves_as_the_contact_grows():
 
 def test_no_contact_is_nan_and_shapes_are_kept():
     alpha = np.array([[-3.5, -0.1], [0.0, 2.0]])
-    for load in (dmt.force_load, dmt.maugis_load, dmt.thermodynamic_load, theories.jkr_load_at):
+    for load in (dmt.force_load, dmt.maugis_load, dmt.thermodynamic_load, closed_forms.jkr_load_at):
         assert load(alpha, 2.0).shape == alpha.shape
         assert load(1.0, 2.0).shape == ()
     np.testing.assert_array_equal(np.isnan(dmt.force_load(alpha, 2.0)), alpha < 0)
     np.testing.assert_array_equal(np.isnan(dmt.thermodynamic_load(alpha, 2.0)), alpha < 0)
-    np.testing.assert_array_equal(np.isnan(theories.jkr_load_at(alpha, 2.0)), alpha < -3.3)
-    np.testing.assert_array_equal(np.isnan(theories.jkr_radius([-5.0, theories.JKR_PULL_OFF])), [True, False])
+    np.testing.assert_array_equal(np.isnan(closed_forms.jkr_load_at(alpha, 2.0)), alpha < -3.3)
+    np.testing.assert_array_equal(np.isnan(closed_forms.jkr_radius([-5.0, closed_forms.JKR_PULL_OFF])), [True, False])
 
 
 def test_jkr_by_load_by_approach_and_by_radius_agree():
-    off = theories.jkr_jump_off(3.0)
+    off = closed_forms.jkr_jump_off(3.0)
     radius = np.geomspace(off.contact_radius, 1e4, 300)
     np.testing.assert_allclose(
-        theories.jkr_radius_at(theories.jkr_approach(radius, 3.0), 3.0)[1:], radius[1:], rtol=1e-9
+        closed_forms.jkr_radius_at(closed_forms.jkr_approach(radius, 3.0), 3.0)[1:], radius[1:], rtol=1e-9
     )
-    assert theories.jkr_radius_at(off.approach, 3.0) == pytest.approx(off.contact_radius, rel=1e-7)
-    wide = radius[radius > theories.jkr_pull_off(3.0).contact_radius]
-    np.testing.assert_allclose(theories.jkr_radius(theories.jkr_load(wide)), wide, rtol=1e-7)
+    assert closed_forms.jkr_radius_at(off.approach, 3.0) == pytest.approx(off.contact_radius, rel=1e-7)
+    wide = radius[radius > closed_forms.jkr_pull_off(3.0).contact_radius]
+    np.testing.assert_allclose(closed_forms.jkr_radius(closed_forms.jkr_load(wide)), wide, rtol=1e-7)
 
 
 def test_turning_points_and_landings_of_jkr():
-    pull_off, off = theories.jkr_pull_off(2.0), theories.jkr_jump_off(2.0)
-    assert pull_off.load == pytest.approx(theories.JKR_PULL_OFF)
+    pull_off, off = closed_forms.jkr_pull_off(2.0), closed_forms.jkr_jump_off(2.0)
+    assert pull_off.load == pytest.approx(closed_forms.JKR_PULL_OFF)
     assert off.approach == pytest.approx(-0.75 * np.pi ** (2 / 3) * 2)
     assert off.load == pytest.approx(-5 * np.pi / 6)
     radius = np.linspace(0.1, 4, 40001)
-    assert pull_off.contact_radius == pytest.approx(radius[np.argmin(theories.jkr_load(radius))], abs=1e-4)
-    assert off.contact_radius == pytest.approx(radius[np.argmin(theories.jkr_approach(radius, 2.0))], abs=1e-4)
-    assert theories.jkr_zero_load(2.0).load == 0
-    assert theories.jkr_zero_load(2.0).approach == pytest.approx(
-        2 / 3 * theories.hertz_approach(np.cbrt(4.5 * np.pi), 1.0)
+    assert pull_off.contact_radius == pytest.approx(radius[np.argmin(closed_forms.jkr_load(radius))], abs=1e-4)
+    assert off.contact_radius == pytest.approx(radius[np.argmin(closed_forms.jkr_approach(radius, 2.0))], abs=1e-4)
+    assert closed_forms.jkr_zero_load(2.0).load == 0
+    assert closed_forms.jkr_zero_load(2.0).approach == pytest.approx(
+        2 / 3 * closed_forms.hertz_approach(np.cbrt(4.5 * np.pi), 1.0)
     )
-    assert theories.jkr_zero_approach(2.0).load == pytest.approx(-4 * np.pi / 3)
-    assert theories.jkr_zero_approach(2.0).approach == pytest.approx(0, abs=1e-12)
+    assert closed_forms.jkr_zero_approach(2.0).load == pytest.approx(-4 * np.pi / 3)
+    assert closed_forms.jkr_zero_approach(2.0).approach == pytest.approx(0, abs=1e-12)
 
 
 def test_adhesion_fades_from_jkr_under_great_load():
-    assert theories.jkr_radius(1e8) == pytest.approx(float(theories.hertz_radius(1e8)), rel=1e-3)
-    assert theories.jkr_load_at(1e6, 2.0) == pytest.approx(
-        float(theories.hertz_load(theories.hertz_radius_at(1e6, 2.0))), rel=1e-3
+    assert closed_forms.jkr_radius(1e8) == pytest.approx(float(closed_forms.hertz_radius(1e8)), rel=1e-3)
+    assert closed_forms.jkr_load_at(1e6, 2.0) == pytest.approx(
+        float(closed_forms.hertz_load(closed_forms.hertz_radius_at(1e6, 2.0))), rel=1e-3
     )
 
 
 def test_gap_around_a_hertz_contact():
     """It closes at the edge and is the undeformed one, lifted by the load on a point, far away."""
     a, r = 1.5, 200.0
-    load = float(theories.hertz_load(a))
-    undeformed = r**2 / 2 - theories.hertz_approach(a, 1.0)
-    assert theories.hertz_gap(a, a, 2.0) == 0
-    assert theories.hertz_gap(r, a, 2.0) == pytest.approx(2 * (undeformed + load / (np.pi * r)), rel=1e-9)
+    load = float(closed_forms.hertz_load(a))
+    undeformed = r**2 / 2 - closed_forms.hertz_approach(a, 1.0)
+    assert closed_forms.hertz_gap(a, a, 2.0) == 0
+    assert closed_forms.hertz_gap(r, a, 2.0) == pytest.approx(2 * (undeformed + load / (np.pi * r)), rel=1e-9)
 
 
 @pytest.mark.parametrize("lam", [1e-6, 1e-3, 0.3, 1.0, 10.0, 100.0])
@@ -162,11 +162,11 @@ def test_maugis_equations_as_he_printed_them(lam):
 
 def test_maugis_becomes_jkr():
     theory, radius = MaugisDugdale(1e4, tabor=2.0), np.geomspace(0.1, 10, 30)
-    np.testing.assert_allclose(theory.load(radius), theories.jkr_load(radius), atol=1e-2)
-    np.testing.assert_allclose(theory.approach(radius), theories.jkr_approach(radius, 2.0), atol=1e-3)
+    np.testing.assert_allclose(theory.load(radius), closed_forms.jkr_load(radius), atol=1e-2)
+    np.testing.assert_allclose(theory.approach(radius), closed_forms.jkr_approach(radius, 2.0), atol=1e-3)
     for found, limit in (
-        (theory.pull_off(), theories.jkr_pull_off(2.0)),
-        (theory.jump_off(), theories.jkr_jump_off(2.0)),
+        (theory.pull_off(), closed_forms.jkr_pull_off(2.0)),
+        (theory.jump_off(), closed_forms.jkr_jump_off(2.0)),
     ):
         assert found.load == pytest.approx(limit.load, rel=1e-4)
         assert found.approach == pytest.approx(limit.approach, rel=1e-4)
@@ -176,8 +176,8 @@ def test_maugis_becomes_jkr():
 def test_maugis_becomes_his_dmt():
     theory, radius = MaugisDugdale(1e-6, tabor=0.1), np.geomspace(0.1, 3, 30)
     np.testing.assert_allclose(theory.load(radius), dmt.maugis_load(theory.approach(radius), 0.1), atol=0.05)
-    np.testing.assert_allclose(theory.load(radius), theories.hertz_load(radius) - 2 * np.pi, atol=0.03)
-    assert theory.pull_off().load == pytest.approx(theories.BRADLEY_PULL_OFF, rel=1e-6)
+    np.testing.assert_allclose(theory.load(radius), closed_forms.hertz_load(radius) - 2 * np.pi, atol=0.03)
+    assert theory.pull_off().load == pytest.approx(closed_forms.BRADLEY_PULL_OFF, rel=1e-6)
 
 
 @pytest.mark.parametrize("lam", [1e-4, 0.1, 1.0, 5.0, 100.0])
@@ -250,7 +250,7 @@ def test_carpicks_transition_parameter_by_the_formula_that_they_print():
 def test_carpick_runs_from_dmt_to_jkr():
     loads = np.array([0.0, 5.0, 20.0])
     np.testing.assert_allclose(maugis.carpick_radius(loads, 1e-6), np.cbrt(3 / 4 * (loads + 2 * np.pi)), rtol=2e-3)
-    np.testing.assert_allclose(maugis.carpick_radius(loads, 1e6), theories.jkr_radius(loads), rtol=1e-2)
+    np.testing.assert_allclose(maugis.carpick_radius(loads, 1e6), closed_forms.jkr_radius(loads), rtol=1e-2)
     assert maugis.carpick_transition(0.0) == 0
 
 
@@ -265,10 +265,10 @@ def test_matched_maugis_against_the_converged_lennard_jones_contact():
 def test_soft_sphere_follows_jkr_and_maugis():
     path = halfspace.trace(20.0, rtol=1e-4)
     fine = np.isfinite(path.contact_radius) & (path.contact_radius > 1)
-    jkr = theories.jkr_load_at(path.approach[fine], 20.0)
+    jkr = closed_forms.jkr_load_at(path.approach[fine], 20.0)
     np.testing.assert_allclose(path.load[fine], jkr, atol=0.06)
     pull_off, off = path.event("pull_off"), path.event("jump_off")
     matched = MaugisDugdale.matched(20.0)
     assert matched.pull_off().load == pytest.approx(pull_off.load, rel=3e-3)
     assert matched.jump_off().approach == pytest.approx(off.approach, rel=3e-3)
-    assert theories.jkr_jump_off(20.0).contact_radius == pytest.approx(off.contact_radius, rel=1e-2)
+    assert closed_forms.jkr_jump_off(20.0).contact_radius == pytest.approx(off.contact_radius, rel=1e-2)

@@ -19,10 +19,10 @@ from skfem import ElementQuadP, Mesh
 import fem_adhesion
 import halfspace
 from fem_adhesion import Counter, Scene
-from fem_adhesion.condensed import condense
-from fem_adhesion.elasticity import Space
-from fem_adhesion.finite_strain_scene import LITTLE
-from fem_adhesion.mesh import block_grid
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain.scene import LITTLE
+from fem_adhesion.mesh.block import block_grid
 from fem_adhesion.monolithic import assemble
 from halfspace.errors import InputError
 from halfspace.values import Valued, same, shown

@@ -10,17 +10,18 @@ import numpy as np
 import pytest
 
 import fem_adhesion
-from fem_adhesion import Scene, stress
-from fem_adhesion.elasticity import cell_quadrature
-from fem_adhesion.far_field import boussinesq_displacement, boussinesq_stress
-from fem_adhesion.fields import states_along
-from fem_adhesion.output.lattice import QUAD9, TRIANGLE6, Cut, Lattice, cut_for
-from fem_adhesion.output.revolve import revolved
-from fem_adhesion.output.vtk import TOLERANCE, write_path
-from fem_adhesion.output.vtk_arrays import COMPONENTS, MEANINGS, UNITS, in_si, inside, numbers, unit_of
+from fem_adhesion import Scene
+from fem_adhesion.bodies.sized import Discretisation
+from fem_adhesion.elasticity import stress
+from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress
+from fem_adhesion.elasticity.space import cell_quadrature
+from fem_adhesion.elasticity.stress import sampled
+from fem_adhesion.fields.state import states_along
+from fem_adhesion.paraview.arrays import COMPONENTS, MEANINGS, UNITS, in_si, inside, numbers, unit_of
+from fem_adhesion.paraview.lattice import QUAD9, TRIANGLE6, Cut, Lattice, cut_for
+from fem_adhesion.paraview.revolve import revolved
+from fem_adhesion.paraview.write import TOLERANCE, write_path
 from fem_adhesion.scene import Counter
-from fem_adhesion.sized import Discretisation
-from fem_adhesion.stress import sampled
 from halfspace.lennard_jones import LENNARD_JONES
 from halfspace.scaling import Units
 

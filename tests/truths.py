@@ -8,18 +8,19 @@ from functools import partial
 
 import numpy as np
 
-from fem_adhesion import finite_strain_meshes, sized
-from fem_adhesion.finite_strain_scene import softening
+from fem_adhesion.bodies import sized
+from fem_adhesion.finite_strain import meshes as finite_strain_meshes
+from fem_adhesion.finite_strain.scene import softening
 from fem_adhesion.harmonics import Resolution as Series
 from fem_adhesion.harmonics import Standing
 from fem_adhesion.harmonics import sized_body as series
-from halfspace import compliance
-from halfspace.accuracy import Resolution, half_space_charts, widened
-from halfspace.breathing import FlatCoordinate
-from halfspace.curve import find_events, moved, trace_charts
-from halfspace.ladder import Charted
+from halfspace.accuracy.finite_bodies import SizedBody
+from halfspace.accuracy.refinement import Charted
+from halfspace.accuracy.trace import Resolution, half_space_charts, widened
+from halfspace.elastic import compliance
+from halfspace.elastic.operators import FlatCoordinate
+from halfspace.equilibrium.curve import find_events, moved, trace_charts
 from halfspace.profiles import between_spheres
-from halfspace.sized import SizedBody
 
 
 def half_space(tabor, *_):

@@ -12,7 +12,7 @@ from scipy.linalg.lapack import dgesv
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
-from fem_adhesion.studies import crosscheck
+from fem_adhesion.crosscheck import study as crosscheck
 
 QUICK = bool(os.environ.get("QUICK"))  # one of each kind, once
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from fem_adhesion import Scene
-from fem_adhesion.output.report import Contents, page
-from fem_adhesion.studies import crosscheck
-from fem_adhesion.studies.curves import Question, solve
-from fem_adhesion.studies.walk import walk
+from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.curve.solve import Question, solve
+from fem_adhesion.report.page import Contents, page
+from fem_adhesion.report.walk import walk
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine; .ci/run installs it")

@@ -1,0 +1,1 @@
+"""What holds for one contact given in SI: theories, predictions, verdict, and the command `assess`."""

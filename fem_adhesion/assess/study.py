@@ -1,0 +1,235 @@
+"""A real contact assessed: what each model says of it in SI, how wrong the half-space is and why, what to trust."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+import fem_adhesion
+import halfspace
+from fem_adhesion.assess import theories as assess_theories
+from fem_adhesion.assess.predictions import (
+    REFERENCE_TABOR,
+    Prediction,
+    closed,
+    computed,
+    large_tabor,
+    rigid_sphere,
+    soft_sphere,
+)
+from fem_adhesion.assess.verdict import (
+    Deviation,
+    Distance,
+    cautions,
+    deviations,
+    ranked,
+    regime,
+    verdict,
+    yielding,
+)
+from fem_adhesion.common.contact import Contact
+from fem_adhesion.scene import Scene
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import tolerance_told
+from halfspace.errors import InputError, NotConverged
+from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
+
+HALF_SPACE, PROFILE, FINITE, PAIR = "half-space", "true profile", "finite sphere", "finite pair"
+RIGID_TABOR = 1e-12  # below it the rigid sphere is taken; above REFERENCE_TABOR, JKR
+RTOL, FINITE_RTOL = 1e-6, 1e-4  # of the half-space, and of the finite sphere beside it
+FINITE_TABOR = 10.0  # up to which the finite sphere takes a few seconds
+TO_LOAD = 2.0  # R dgamma
+MAUGIS_RANGE = (1e-6, 1e6)
+THEORIES = {
+    "JKR": assess_theories.jkr,
+    "Maugis-Dugdale": assess_theories.maugis_dugdale,
+    "DMT-M": assess_theories.dmt_maugis,
+    "rigid": assess_theories.bradley,
+}
+PARAMETERS = {
+    "Tabor mu": None,
+    "Maugis lambda": MAUGIS,
+    "Muller-Yushchenko-Derjaguin mu_D": MYD,
+    "Muller-Yushchenko-Derjaguin mu_T": MYD_AMPLIFICATION,
+    "Attard-Parker sigma": ATTARD_PARKER,
+}
+
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """What is known of a contact.
+
+    Attributes
+    ----------
+    contact : Contact
+        As asked for.
+    half_space : Prediction
+        The paraboloid on the half-space, computed, or a closed theory where that is as good.
+    profile, finite : Prediction or None
+        The true profile of sphere or spheres on the half-space, and the elastic hemisphere held at its mid-plane, with
+        its counter-body if that is more than a rigid wall.
+    theories : tuple of Prediction
+        Closed theories.
+    deviations : tuple of Deviation
+        Of the finite sphere from the half-space, by cause.
+    distances : tuple of Distance
+        Of every other model from the best one, the nearest first.
+    regime : str
+        In words.
+    cautions, verdict : tuple of str
+        What is left out of account, and which model to trust.
+    seconds : float
+        Wall time.
+    """
+
+    contact: Contact
+    half_space: Prediction
+    profile: Prediction | None
+    finite: Prediction | None
+    theories: tuple[Prediction, ...]
+    deviations: tuple[Deviation, ...]
+    distances: tuple[Distance, ...]
+    regime: str
+    cautions: tuple[str, ...]
+    verdict: tuple[str, ...]
+    seconds: float = field(compare=False)
+
+    @property
+    def models(self) -> tuple[Prediction, ...]:
+        """All predictions, the half-space first."""
+        ours = (self.half_space, self.profile, self.finite)
+        return (*(model for model in ours if model is not None), *self.theories)
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """The Tabor parameter and the others' names for it."""
+        mu = self.contact.units.tabor
+        return {name: float(other.of(mu)) if other else mu for name, other in PARAMETERS.items()}
+
+
+def assess(contact: Contact, progress: Progress = lambda *_: None) -> Assessment:
+    """Assess a contact.
+
+    Parameters
+    ----------
+    contact : Contact
+        In SI.
+    progress : callable
+        Told what begins, how much is done and of how much.
+
+    Raises
+    ------
+    halfspace.errors.NotConverged
+        If the half-space's curve cannot be traced.
+    """
+    began = time.perf_counter()
+    steps = ("half-space", "closed theories", "sphere's profile", "finite sphere")
+    stages = iter(enumerate(steps))
+
+    def begin() -> None:
+        done, name = next(stages)
+        progress(name, done, len(steps))
+
+    begin()
+    half_space = _half_space(contact)
+    begin()
+    theories = tuple(_theories(contact))
+    begin()
+    profile, reason = _tried(PROFILE, _profile, contact)
+    begin()
+    finite, why_not = _tried(PAIR if contact.pair else FINITE, _finite, contact)
+    return Assessment(
+        contact,
+        half_space,
+        profile,
+        finite,
+        theories,
+        tuple(deviations(half_space, profile, finite, contact.spacing)),
+        distances := ranked((half_space, profile, finite, *theories), contact.spacing),
+        regime(contact.units.tabor),
+        (
+            *cautions(contact, half_space),
+            *yielding(contact),
+            *filter(None, (reason, why_not)),
+            *_missed(half_space, profile, finite),
+        ),
+        tuple(verdict(finite or half_space, distances, computed=finite is not None)),
+        time.perf_counter() - began,
+    )
+
+
+def _half_space(contact: Contact) -> Prediction:
+    """The computed half-space, or the closed theory that is as good."""
+    units, stiffness = contact.units, contact.reduced_stiffness
+    if units.tabor > REFERENCE_TABOR:
+        return large_tabor(units.tabor, stiffness, units)
+    if units.tabor < RIGID_TABOR:
+        return closed("rigid half-space", assess_theories.bradley, units.tabor, stiffness, units)
+    path = halfspace.trace(units.tabor, rtol=RTOL, to_load=TO_LOAD)
+    return computed(HALF_SPACE, path, stiffness, units)
+
+
+def _theories(contact: Contact) -> Iterator[Prediction]:
+    """Closed theories in their range."""
+    tabor = contact.units.tabor
+    for name, make in THEORIES.items():
+        if make is not assess_theories.maugis_dugdale or MAUGIS_RANGE[0] <= MAUGIS.of(tabor) <= MAUGIS_RANGE[1]:
+            yield closed(name, make, tabor, contact.reduced_stiffness, contact.units)
+
+
+def _tried(name: str, make: Callable[[Contact], Prediction], contact: Contact) -> tuple[Prediction | None, str | None]:
+    """Prediction, or why there is none: the sphere is outside what the solver serves, or the solver gave up."""
+    try:
+        return make(contact), None
+    except (InputError, NotConverged) as error:
+        return None, f"{name} not solved: {error}"
+
+
+def _missed(*models: Prediction | None) -> Iterator[str]:
+    """Sentences on computed models that are less accurate than was asked of them."""
+    for model in models:
+        if model and model.missed and isinstance(model.curve, EquilibriumPath):
+            yield f"{model.model}: {tolerance_told(model.curve.rtol, model.missed)}"
+
+
+def _profile(contact: Contact) -> Prediction:
+    """The true profile of sphere or spheres on the half-space."""
+    units, larger = contact.units, contact.larger_radius
+    if not RIGID_TABOR <= units.tabor <= REFERENCE_TABOR and math.isfinite(larger):
+        raise InputError(
+            f"tabor = {units.tabor:.4g} of two spheres is outside {RIGID_TABOR:g} <= tabor <= {REFERENCE_TABOR:g}; "
+            "the paraboloid serves"
+        )
+    if units.tabor > REFERENCE_TABOR:
+        return soft_sphere(units)
+    if units.tabor < RIGID_TABOR:
+        return rigid_sphere(units)
+    path = halfspace.trace(
+        units.tabor, rtol=RTOL, to_load=TO_LOAD, radius_ratio=units.radius_ratio, counter_radius=larger
+    )
+    return computed(PROFILE, path, contact.reduced_stiffness, units)
+
+
+def _finite(contact: Contact) -> Prediction:
+    """The elastic hemisphere held at its mid-plane, against a rigid wall or its counter-body."""
+    units = contact.units
+    if units.tabor > FINITE_TABOR:
+        raise InputError(
+            f"tabor = {units.tabor:.4g} is outside tabor <= {FINITE_TABOR:g}, beyond which it takes long; "
+            "trace a Scene with body hemisphere"
+        )
+    scene = Scene(
+        tabor=units.tabor,
+        poisson=contact.smaller_poisson,
+        body="hemisphere",
+        profile="sphere",
+        radius_ratio=units.radius_ratio,
+        grip=contact.grip,
+        counter=contact.counter,
+    )
+    path = fem_adhesion.trace(scene, rtol=FINITE_RTOL, to_load=TO_LOAD)
+    return computed(PAIR if contact.pair else FINITE, path, contact.reduced_stiffness, units)

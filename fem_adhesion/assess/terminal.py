@@ -1,0 +1,158 @@
+"""The assessment of a contact for the terminal and as a record, in SI."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction
+from fem_adhesion.assess.study import Assessment
+from fem_adhesion.common.facts import plain, versions
+from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of, with_error
+from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
+from fem_adhesion.common.units import Quantity
+
+DIGITS_OF_RATIO = 4  # significant, at most
+RANKS = {"both": 0, "true profile": 1, "finite body": 1}  # by which columns of the differences are left out
+
+
+def report(assessment: Assessment) -> RenderableType:
+    """Everything for the terminal."""
+    return Group(
+        *_head(assessment),
+        models_table(assessment),
+        *map(prose, _legend(assessment)),
+        Text(),
+        *_deviations(assessment),
+        *(prose(f"caution: {line}") for line in assessment.cautions),
+        *map(prose, assessment.verdict),
+    )
+
+
+def _head(assessment: Assessment) -> Iterator[RenderableType]:
+    contact, units = assessment.contact, assessment.contact.units
+    yield prose(f"regime: {assessment.regime}")
+    yield Flow([f"{name} = {value:.4g}" for name, value in assessment.parameters.items()])
+    sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
+    ratios = (f"R/eps = {units.radius_ratio:.4g}", f"beta/R = {units.length / units.radius:.2g}")
+    yield Flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in sizes), *ratios])
+    law = (("spacing eps", units.spacing, "m"), ("work of adhesion", units.work_of_adhesion, "J/m^2"))
+    implied = f"with them the Hamaker constant 16 pi dgamma eps^2 = {engineering(units.hamaker, 'J')}"
+    yield Flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in law), implied])
+    fixed = math.isinf(contact.stiffness)
+    yield Text("fixed grips" if fixed else f"cantilever: {engineering(contact.stiffness, 'N/m')}")
+    yield Text()
+
+
+def _legend(assessment: Assessment) -> Iterator[str]:
+    """How to read the table of models; only what stands in it."""
+    shown = {name for model in assessment.models for name in model.values}
+    if shown & {name for names in POSITIONS for name in names}:
+        yield (
+            "Separation: of the undeformed surfaces where the jump takes off, negative if they overlap. Base: position "
+            "of the cantilever's far end there, zero where the undeformed surfaces would be one spacing apart, "
+            "negative away from the wall."
+        )
+    if shown & set(RADII):
+        yield contact_radius(assessment)
+    if assessment.finite:
+        yield f"Of the {assessment.finite.model} what is round is held at its mid-plane, {assessment.contact.grip}."
+    yield (
+        "In brackets: error of the last digit, for closed theories that of the reading only. -: not in the model. "
+        "Differences of a position are parts of the spacing and the distance between both jumps, others of the value."
+    )
+
+
+def contact_radius(assessment: Assessment) -> str:
+    """What each model means by it."""
+    named = [model for model in assessment.models if set(model.values) & set(RADII)]
+    edge = "where the gap is 3^(1/6) eps, the place of the largest tension"
+    meanings = {edge: True, "the edge of the theory's own contact, without the ring of attraction around it": False}
+    said = {
+        meaning: [model.model for model in named if model.is_computed == computed]
+        for meaning, computed in meanings.items()
+    }
+    return (
+        "Contact radius: " + "; ".join(f"of {', '.join(names)}, {what}" for what, names in said.items() if names) + "."
+    )
+
+
+def models_table(assessment: Assessment) -> Fitted:
+    """A line for each quantity, a column for each model; the last ones are left out first."""
+    rows = [name for name in QUANTITIES if any(name in model.values for model in assessment.models)]
+    scales = {name: _scale([model.values.get(name) for model in assessment.models]) for name in rows}
+    # What was computed first, the best of it last to be left out; theories by their distance from it.
+    kept = [model.model for model in (assessment.half_space, assessment.finite, assessment.profile) if model]
+    order = [*kept, *(d.model for d in assessment.distances if d.model not in kept)]
+    columns = [
+        Column(model.model, [_cell(model, name, scales[name][0]) for name in rows], order.index(model.model))
+        for model in assessment.models
+    ]
+    words = Column("quantity", [WORDS[name] for name in rows], text=True, wraps=True)
+    units = Column("unit", [scales[name][1] for name in rows], text=True)
+    return Fitted([words, units, *columns], ["what each model says"])
+
+
+def _scale(quantities: Sequence[Quantity | None]) -> tuple[int, str]:
+    """Exponent of ten and unit that suit the largest of them."""
+    largest = max((q for q in quantities if q), key=lambda q: abs(q.value))
+    exponent = exponent_of(largest.value)
+    return exponent, PREFIXES[exponent] + largest.unit
+
+
+def _cell(model: Prediction, name: str, exponent: int) -> str:
+    quantity = model.values.get(name)
+    return with_error(quantity, 10.0**-exponent) if quantity else "-"
+
+
+def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
+    """Table of how far the finite bodies are from the half-space, by cause, if that is known."""
+    known = [d for d in assessment.deviations if d.profile or d.total]
+    if not known:
+        return
+    causes = {
+        "true profile": [d.profile for d in known],
+        "finite body": [d.body for d in known],
+        "both": [d.total for d in known],
+    }
+    columns = [
+        Column(f"{name}\n%", [with_error(q, 100, DIGITS_OF_RATIO) if q else "-" for q in found], RANKS[name])
+        for name, found in causes.items()
+        if any(found)
+    ]
+    words = Column("quantity", [WORDS[d.quantity] for d in known], text=True, wraps=True)
+    yield Fitted([words, *columns], [f"difference from the {assessment.half_space.model}, in % of it, by cause"])
+    yield Text()
+
+
+def record(assessment: Assessment) -> dict[str, object]:
+    """Everything as plain data for JSON, without infinities: a quantity is a value, an error and a unit in SI."""
+    contact = assessment.contact
+    return {
+        "input": plain(asdict(contact)),
+        "equivalent_radius": contact.units.radius,
+        "contact_modulus": contact.units.modulus,
+        "hamaker": contact.units.hamaker,
+        "radius_ratio": contact.units.radius_ratio,
+        "parameters": dict(assessment.parameters),
+        "regime": assessment.regime,
+        "models": [
+            {
+                "model": model.model,
+                "values": {name: asdict(q) for name, q in model.values.items()},
+                "missed": {state: list(numbers) for state, numbers in model.missed.items()},
+            }
+            for model in assessment.models
+        ],
+        "deviations": [asdict(deviation) for deviation in assessment.deviations],
+        "distances": [asdict(distance) for distance in assessment.distances],
+        "definitions": {"contact_radius": contact_radius(assessment)},
+        "cautions": list(assessment.cautions),
+        "verdict": list(assessment.verdict),
+        "seconds": assessment.seconds,
+        "versions": versions(),
+    }

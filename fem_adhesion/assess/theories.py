@@ -1,0 +1,210 @@
+"""Closed theories on a cantilever: their curves as dense samples, on which states, jumps and losses are read off.
+
+A theory's curve is one line from far separation to compression; it may leap, as from a branch that ends. The base of a
+cantilever of stiffness k stands at b = alpha* + W/k. Loads in R dgamma, approaches in eps, radii in beta.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from halfspace.elastic.compliance import Array
+from halfspace.equilibrium.curve import Estimate
+from halfspace.theories import closed_forms, dmt
+from halfspace.theories.closed_forms import ContactState
+from halfspace.theories.maugis import MaugisDugdale
+
+SAMPLES = 100_001  # of each stretch; odd, so that every second one has the same ends
+COMPRESSED = 2.0  # load to which the curves go
+PRESSED = 0.25  # approach to which a rigid sphere's goes; it bears no load at 0.206
+ROUNDED = 1e-3  # root of the contact radius below which Maugis's approach is the sum of rounding errors
+SMALLEST = 1e-4  # of the coordinate along a stretch
+REACH = 3 * math.pi**2 / (2.5 * 1.4**3.5)  # in the bulge of `jkr_with_reach`, so that the fit of [G97] App. C comes out
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Samples along the curve of a theory, each array of shape (n,).
+
+    Attributes
+    ----------
+    approach, load : array
+        In eps and R dgamma.
+    radius : array
+        Contact radius in beta, nan where there is none.
+    """
+
+    approach: Array
+    load: Array
+    radius: Array
+
+    @classmethod
+    def apart(cls, approach: Array, load: Array) -> Curve:
+        """Stretch without contact."""
+        return cls(approach, load, np.full_like(load, np.nan))
+
+    def then(self, other: Curve) -> Curve:
+        """Curve that goes on with another, whose first sample repeats this one's last or lies across a leap."""
+        return Curve(*(np.append(a, b[1:]) for a, b in zip(self.columns, other.columns, strict=True)))
+
+    def part(self, samples: slice) -> Curve:
+        """Some of the samples."""
+        return Curve(*(column[samples] for column in self.columns))
+
+    def state(self, index: int) -> ContactState:
+        """State at a sample."""
+        return ContactState(*(float(column[index]) for column in self.columns))
+
+    def state_where(self, quantity: Array, value: float) -> ContactState:
+        """State where a quantity of the samples last rises through a value; linear in between."""
+        i = int(np.flatnonzero((quantity[:-1] <= value) & (quantity[1:] > value))[-1])
+        t = (value - quantity[i]) / (quantity[i + 1] - quantity[i])
+        return ContactState(*(float((1 - t) * column[i] + t * column[i + 1]) for column in self.columns))
+
+    @property
+    def columns(self) -> tuple[Array, Array, Array]:
+        """Approach, load and radius."""
+        return self.approach, self.load, self.radius
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A cycle on a curve.
+
+    Attributes
+    ----------
+    jump_on, jump_off : pair of ContactState
+        Take-off and landing.
+    energy_lost : float
+        In R dgamma eps.
+    spacing : float
+        Of the samples at the take-offs, in eps: they may lie that far beside the true ones.
+    """
+
+    jump_on: tuple[ContactState, ContactState]
+    jump_off: tuple[ContactState, ContactState]
+    energy_lost: float
+    spacing: float
+
+
+def bradley(tabor: float, stiffness: float) -> Curve:
+    """Rigid sphere, [G97] (1.3), at any Tabor parameter."""
+    del tabor
+    return _rigid(stiffness, PRESSED)
+
+
+def dmt_maugis(tabor: float, stiffness: float) -> Curve:
+    """Rigid until it touches, then after Hertz with a constant tension, [G97] (4.2b)."""
+    a = np.linspace(0.0, float(closed_forms.hertz_radius(COMPRESSED + 2 * np.pi)), SAMPLES)
+    alpha = closed_forms.hertz_approach(a, tabor)
+    return _rigid(stiffness, 0.0).then(Curve(alpha, dmt.maugis_load(alpha, tabor), a))
+
+
+def jkr(tabor: float, stiffness: float) -> Curve:
+    """JKR: no attraction before contact."""
+    return _free(tabor, stiffness, 0.0).then(_jkr_contact(tabor))
+
+
+def jkr_with_reach(tabor: float, stiffness: float) -> Curve:
+    """JKR in contact; before it the far attraction and the bulge that it raises. Fit for large Tabor parameters.
+
+    With y = h0/eps the gap at the pole, B mu^(3/2) y^(-5/2) is the bulge, as in `halfspace.theories.criteria`, and
+
+        alpha* = 1 - y - B mu^(3/2) y^(-5/2),    W = -(8 pi/3) y^-2.
+
+    B makes the jump under fixed grips that of [G97]'s fit, (|alpha*| + 1)^(7/2) = 3 pi^2 mu^(3/2).
+    """
+    bulge = REACH * tabor**1.5
+    past_the_jump = 0.5 * (2.5 * bulge) ** (2 / 7)
+    y = np.geomspace(_beyond(tabor, stiffness), past_the_jump, SAMPLES)
+    return Curve.apart(1 - y - bulge * y**-2.5, -8 * np.pi / 3 * y**-2).then(_jkr_contact(tabor))
+
+
+def maugis_dugdale(tabor: float, stiffness: float) -> Curve:
+    """Maugis-Dugdale with the largest tension of the Lennard-Jones law."""
+    theory = MaugisDugdale.matched(tabor)
+    c = theory.touching_radius * np.linspace(0.0, 1.0, SAMPLES)
+    disc = Curve.apart(theory.separated_approach(c), theory.separated_load(c))
+    a = _widest() * np.linspace(ROUNDED, 1.0, SAMPLES) ** 2
+    contact = Curve(theory.approach(a), theory.load(a), a)
+    return _free(tabor, stiffness, float(disc.approach[0])).then(disc).then(contact)
+
+
+def _jkr_contact(tabor: float) -> Curve:
+    """Contact branch from a point contact on."""
+    a = _widest() * np.linspace(0.0, 1.0, SAMPLES) ** 2
+    return Curve(closed_forms.jkr_approach(a, tabor), closed_forms.jkr_load(a), a)
+
+
+def _widest() -> float:
+    """Contact radius at which every theory is in compression."""
+    return float(closed_forms.jkr_radius(COMPRESSED))
+
+
+def _beyond(tabor: float, stiffness: float) -> float:
+    """Gap wider than any at which a jump off lands, which is (|W|/k - alpha*) at most."""
+    return 10 + 4 * tabor + 10 / stiffness
+
+
+def _free(tabor: float, stiffness: float, last: float) -> Curve:
+    """Approach without attraction up to a value."""
+    approach = _towards(last, _beyond(tabor, stiffness))
+    return Curve.apart(approach, np.zeros(SAMPLES))
+
+
+def _rigid(stiffness: float, last: float) -> Curve:
+    """Rigid sphere up to an approach."""
+    approach = _towards(last, _beyond(0.0, stiffness))
+    return Curve.apart(approach, closed_forms.bradley_load(approach))
+
+
+def _towards(last: float, distance: float) -> Array:
+    """Approaches from afar to a value, the closer the nearer to it."""
+    approach = last - np.geomspace(distance, SMALLEST, SAMPLES)
+    approach[-1] = last
+    return np.asarray(approach)
+
+
+def estimated(curve: Curve, quantity: Callable[[Curve], float]) -> Estimate:
+    """Number read off a curve, its error taken to be its change from half the samples."""
+    value = quantity(curve)
+    return Estimate(value, abs(value - quantity(curve.part(slice(None, None, 2)))) + 1e-12 * abs(value))
+
+
+def pull_off(curve: Curve) -> ContactState:
+    """State of least load."""
+    return curve.state(int(np.argmin(curve.load)))
+
+
+def zero_load(curve: Curve) -> ContactState:
+    """State in contact that bears no load."""
+    return curve.state_where(curve.load, 0.0)
+
+
+def loop(curve: Curve, stiffness: float) -> Loop | None:
+    """Cycle on a cantilever of a stiffness in R dgamma/eps, or None where the contact follows it smoothly."""
+    base = curve.approach + curve.load / stiffness
+    falls = np.diff(base) < 0
+    tops = np.flatnonzero(~falls[:-1] & falls[1:]) + 1
+    bottoms = np.flatnonzero(falls[:-1] & ~falls[1:]) + 1
+    if not tops.size:
+        return None
+    on, off = int(tops[0]), int(bottoms[-1])
+    apart, contact = curve.part(slice(on + 1)), curve.part(slice(off, None))
+    landed = contact.state_where(base[off:], base[on])
+    parted = apart.state_where(base[: on + 1], base[off])
+    ends = float(base[off]), float(base[on])
+    lost = _work(apart, base[: on + 1], *ends) - _work(contact, base[off:], *ends)
+    spacing = float(np.max(np.abs(np.diff(curve.approach)[[on - 1, off]])))
+    return Loop((curve.state(on), landed), (curve.state(off), parted), lost, spacing)
+
+
+def _work(branch: Curve, base: Array, low: float, high: float) -> float:
+    """Integral of W db between two bases along a branch on which the base rises."""
+    inside = base[(base > low) & (base < high)]
+    b = np.concatenate([[low], inside, [high]])
+    return float(np.trapezoid(np.interp(b, base, branch.load), b))

@@ -1,0 +1,183 @@
+"""The assessment in words, derived from its numbers: regime, cautions, and which model to trust."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from fem_adhesion.assess.predictions import QUANTITIES, RADII, WORDS, Prediction, relative
+from fem_adhesion.common.contact import Contact
+from fem_adhesion.common.units import Quantity
+from fem_adhesion.finite_strain.traction import yielded_adhesion
+
+# Tabor parameters between which neither limit serves, [G97] and Johnson & Greenwood 1997.
+RIGID_TO, SOFT_FROM = 0.1, 5.0
+GOOD = 0.01  # largest difference of a model that does in the place of the best one
+
+WIDEST_CONTACT = 0.3  # of the radius: beyond, neither the parabola nor linear elasticity hold
+LARGEST_STRAIN = 0.2  # beta/R, the strain of a contact beta wide
+LARGEST_SPACING = 0.1  # eps/R: a sphere of ten atoms is no continuum
+FARTHEST_JUMP = 0.3  # of the radius: the law between planes is meant for gaps small against it
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """Relative difference of a quantity from the half-space's, by cause.
+
+    Attributes
+    ----------
+    quantity : str
+        One of `fem_adhesion.assess.predictions.QUANTITIES`.
+    profile, body, total : Quantity or None
+        By the true shape on the half-space, by the finite bodies under it, and by both; as a part of the half-space's
+        value, with errors, see `fem_adhesion.assess.predictions.relative`. None where not known.
+    """
+
+    quantity: str
+    profile: Quantity | None
+    body: Quantity | None
+    total: Quantity | None
+
+
+@dataclass(frozen=True)
+class Distance:
+    """How far a model is from the best one at most.
+
+    Attributes
+    ----------
+    model : str
+        Its name.
+    worst : str or None
+        The quantity in which it is farthest; None if it has none of the best one's.
+    size : float
+        Relative difference there, both errors included.
+    missing : tuple of str
+        Those quantities of the best model that it lacks.
+    """
+
+    model: str
+    worst: str | None
+    size: float
+    missing: tuple[str, ...]
+
+
+def deviations(
+    half_space: Prediction, profile: Prediction | None, finite: Prediction | None, spacing: float
+) -> Iterator[Deviation]:
+    """Split the difference between the half-space and the finite bodies, for each quantity of the half-space."""
+    for name in QUANTITIES:
+        if name in half_space.values:
+            by_profile = relative(profile, half_space, name, spacing) if profile else None
+            total = relative(finite, half_space, name, spacing) if finite else None
+            yield Deviation(name, by_profile, _rest(total, by_profile), total)
+
+
+def _rest(total: Quantity | None, part: Quantity | None) -> Quantity | None:
+    return Quantity(total.value - part.value, total.error + part.error, "1") if total and part else None
+
+
+def ranked(models: Sequence[Prediction | None], spacing: float) -> tuple[Distance, ...]:
+    """Distances from the best model, the nearest first, those that lack quantities last.
+
+    Parameters
+    ----------
+    models : sequence of Prediction or None
+        Half-space, true profile and finite bodies, then the closed theories. The finite bodies are the best model, or
+        if they were not solved the half-space.
+    spacing : float
+        In m.
+    """
+    best = models[2] or models[0]
+    found = [_distance(model, best, spacing) for model in models if best and model and model is not best]
+    return tuple(sorted(found, key=lambda distance: (len(distance.missing), distance.size)))
+
+
+def _distance(model: Prediction, best: Prediction, spacing: float) -> Distance:
+    """Distance in all that both mean alike: the contact radius of a closed theory is another than a computed one."""
+    names = [n for n in best.values if n not in RADII or model.is_computed == best.is_computed]
+    known = {name: d for name in names if (d := relative(model, best, name, spacing))}
+    sizes = {name: abs(d.value) + d.error for name, d in known.items()}
+    worst = max(sizes, key=sizes.__getitem__, default=None)
+    missing = tuple(name for name in best.values if name not in model.values)
+    return Distance(model.model, worst, sizes[worst] if worst else 0.0, missing)
+
+
+def regime(tabor: float) -> str:
+    """Regime of a Tabor parameter, with its limits."""
+    limits = f"rigid below tabor {RIGID_TO:g}, JKR above {SOFT_FROM:g}"
+    if tabor < RIGID_TO:
+        return f"rigid: Bradley's and DMT's theories ({limits})"
+    if tabor > SOFT_FROM:
+        return f"soft: JKR's theory ({limits})"
+    return f"transition between rigid and JKR ({limits})"
+
+
+def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
+    """Sentences on what the numbers leave out of account."""
+    units = contact.units
+    R = units.radius
+    wide, far = (half_space.values.get(name) for name in ("zero_load_radius", "jump_on_separation"))
+    judged = (
+        ("contact radius over R", _over(wide, R), WIDEST_CONTACT, "linear elasticity no longer holds"),
+        ("strain beta/R", units.length / R, LARGEST_STRAIN, "finite strain matters"),
+        ("spacing over R", units.spacing / R, LARGEST_SPACING, "a law between continuous planes is doubtful"),
+        ("jump-on distance over R", _over(far, R), FARTHEST_JUMP, "the law between planes is doubtful"),
+    )
+    for what, value, limit, meaning in judged:
+        if value > limit:
+            yield f"{what} is {value:.2g}, limit {limit:g}: {meaning}"
+
+
+def yielding(contact: Contact) -> Iterator[str]:
+    """What the yield of the attracted layer, which no surface law has, does to the work of adhesion of one sphere."""
+    units = contact.units
+    ratio = yielded_adhesion(units.tabor, units.radius_ratio, contact.poisson)
+    if contact.pair:
+        return
+    yield (
+        "yield of the attracted layer is left out: to the first order it deepens the work of adhesion by "
+        f"{_percent(ratio - 1)}, to {units.work_of_adhesion * ratio:.4g} J/m^2; give that to include it"
+    )
+
+
+def _over(quantity: Quantity | None, R: float) -> float:
+    return quantity.value / R if quantity else 0.0
+
+
+def verdict(best: Prediction, distances: Sequence[Distance], *, computed: bool) -> Iterator[str]:
+    """Sentences on which model to trust.
+
+    Parameters
+    ----------
+    best : Prediction
+        The one from which the others' distances are.
+    distances : sequence of Distance
+        As from `ranked`.
+    computed : bool
+        Whether the best model is that of the finite bodies.
+    """
+    yield from (f"beside the {best.model}: {_judged(distance)}" for distance in distances)
+    if not computed:
+        yield f"the finite body is not known: judge the {best.model} by the cautions"
+        return
+    whole = [distance for distance in distances if distance.worst and not distance.missing]
+    good = [distance.model for distance in whole if distance.size <= GOOD]
+    if good:
+        yield f"trust the {best.model}; within {_percent(GOOD)} in every quantity: {', '.join(good)}"
+    elif whole:
+        nearest = f"the {whole[0].model} is nearest, off by up to {_percent(whole[0].size)}"
+        yield f"trust the {best.model}; no other model is within {_percent(GOOD)} in every quantity, {nearest}"
+    else:
+        yield f"trust the {best.model}; no other model has all its quantities"
+
+
+def _judged(distance: Distance) -> str:
+    """How far off a model is, in what, and what it lacks."""
+    lacks = f"; has no {', '.join(WORDS[name] for name in distance.missing)}" if distance.missing else ""
+    if distance.worst is None:
+        return f"{distance.model} has none of its quantities"
+    return f"{distance.model} off by up to {_percent(distance.size)}, in {WORDS[distance.worst]}{lacks}"
+
+
+def _percent(part: float) -> str:
+    return f"{100 * part:.3g} %"

@@ -1,0 +1,1 @@
+"""Bodies with a size as elastic operators: the sphere in its grips, a pair of them, a mesh of the user's."""

@@ -1,0 +1,158 @@
+"""What the commands share: exit codes, help, the options for results, the progress bar."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from io import StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
+
+from halfspace.errors import InputError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    Commands = argparse._SubParsersAction["Parser"]
+
+AGREE, DISAGREE, BAD_INPUT, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
+NOT_WRITTEN = DISAGREE
+
+
+STANDARD = Path("-")  # stands for standard output
+
+
+class Help(argparse.HelpFormatter):
+    """Shows defaults, where there are any."""
+
+    def _get_help_string(self, action: argparse.Action) -> str | None:
+        text, default = action.help, action.default
+        if not text or default in (None, False, argparse.SUPPRESS) or "%(default)" in text:
+            return text
+        shown = " ".join(f"{value:g}" for value in default) if isinstance(default, list) else "%(default)s"
+        return f"{text} (default: {shown})"
+
+
+class Version(argparse.Action):
+    """Prints the version, which is looked up only then."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option_string: str | None = None,
+    ) -> None:
+        """Print and exit."""
+        from importlib.metadata import version
+
+        del namespace, values, option_string
+        print(f"fem-adhesion {version('fem-adhesion')}")
+        parser.exit(AGREE)
+
+
+class Terminated(KeyboardInterrupt):
+    """The process was asked to end by SIGTERM, as batch systems and ``timeout`` do."""
+
+
+@contextmanager
+def ended_by_signal() -> Iterator[None]:
+    """Let SIGTERM end the block as Ctrl-C does, so that workers are stopped and nothing is left half-written.
+
+    A second one changes nothing: the first is being heeded. Signals reach the main thread alone.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, _terminate)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _terminate(number: int, _: object) -> NoReturn:
+    signal.signal(number, signal.SIG_IGN)
+    raise Terminated
+
+
+def ended(how: KeyboardInterrupt, what: str) -> int:
+    """Say in one line that the command was ended from outside, and give its exit code."""
+    word, code = ("terminated", TERMINATED) if isinstance(how, Terminated) else ("interrupted", INTERRUPTED)
+    print(f"fem-adhesion: {word}; {what}", file=sys.stderr)
+    return code
+
+
+class Parser(argparse.ArgumentParser):
+    """Refuses bad arguments in one line, and shows defaults."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**{"formatter_class": Help, **settings})
+
+    def error(self, message: str) -> NoReturn:
+        """Exit with code 2."""
+        self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def add_output(command: Parser) -> None:
+    """Add the options of a command that writes a directory."""
+    results = command.add_argument_group("results")
+    results.add_argument("--out", type=Path, required=True, help="directory for the results", metavar="DIR")
+    results.add_argument("--force", action="store_true", help="replace files in a directory that is not empty")
+
+
+def require_distinct(*paths: Path | None) -> None:
+    """Refuse two outputs under one name."""
+    seen: set[Path] = set()
+    for path in filter(None, paths):
+        where = path if path == STANDARD else path.resolve()
+        if where in seen:
+            name = "standard output" if path == STANDARD else str(path)
+            raise InputError(f"{name} is given for two outputs, limit: one; give each a name of its own")
+        seen.add(where)
+
+
+@contextmanager
+def written(path: Path | None) -> Iterator[TextIO | None]:
+    """Open the file of an output, whole or not at all; standard output for ``-``, nothing for None."""
+    from fem_adhesion.common.files import written_aside
+    from fem_adhesion.common.writing import writing
+
+    if path is None:
+        yield None
+    elif path == STANDARD:
+        text = StringIO()
+        yield text
+        with writing(Path("standard output")):
+            sys.stdout.write(text.getvalue())
+            sys.stdout.flush()
+    else:
+        with written_aside(path) as file:
+            yield file
+
+
+def console_beside(*paths: Path | None) -> Console:
+    """Console for what is said to a person: on standard error where standard output is for a machine."""
+    from fem_adhesion.common.terminal import make_console
+
+    return make_console(to_error=STANDARD in paths)
+
+
+@contextmanager
+def progress_bar() -> Iterator[Callable[[str, int, int], None]]:
+    """Bar on standard error if that is a terminal.
+
+    The function it gives says what is under way, how much is done and of how much.
+    """
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("", total=None)
+        yield lambda name, done, total: progress.update(task, description=name, completed=done, total=total)

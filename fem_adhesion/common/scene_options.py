@@ -1,0 +1,186 @@
+"""The options that say what the contact is, the same for every command that takes one.
+
+A contact is a material in SI or a Tabor parameter. One rule holds for Poisson's ratios: they belong to the material and
+are asked for with it; with a Tabor parameter, which has them in it, they are 0.3 unless given.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from halfspace.errors import InputError
+
+if TYPE_CHECKING:
+    from fem_adhesion.common.contact import Contact
+    from fem_adhesion.common.options import Parser
+    from fem_adhesion.scene import BodyName, Counter, Scene
+
+    Group = argparse._ArgumentGroup
+
+POISSON = 0.3  # with a Tabor parameter
+MATERIAL = ("radius", "modulus", "poisson", "work_of_adhesion")
+LAW = ("spacing", "hamaker")  # one of both
+COUNTER = ("counter_modulus", "counter_poisson", "counter_radius")
+SI_ONLY = ("radius", "modulus", "work_of_adhesion", *LAW, "counter_modulus")
+
+
+def add_contact(command: Parser, *, in_si_only: bool = False) -> None:
+    """Add the options of a contact: of a material only, or of a material or a Tabor parameter."""
+    contact = command.add_argument_group("contact", "Quantities carry units; none is guessed.")
+    given = "asked for" if in_si_only else f"asked for with a material, {POISSON:g} unless given with --tabor"
+    plain = "" if in_si_only else ", with --tabor in radii of the first"
+    if not in_si_only:
+        contact.add_argument("--tabor", type=float, help="Tabor parameter, or a material instead", metavar="MU")
+    contact.add_argument("--radius", help="material: radius of the sphere, as 100nm")
+    contact.add_argument("--modulus", help="material: its Young's modulus, as 72GPa")
+    contact.add_argument("--poisson", type=float, help=f"its Poisson's ratio, 0 <= nu < 0.5: {given}", metavar="NU")
+    contact.add_argument("--work-of-adhesion", help="material: as 0.063J/m^2 or 63mN/m", metavar="ENERGY")
+    contact.add_argument("--spacing", help="material: equilibrium spacing of the surface law, as 0.143nm")
+    hamaker = "material: Hamaker constant in the place of the spacing, A = 16 pi dgamma eps^2, as 65zJ or 6.5e-20J"
+    contact.add_argument("--hamaker", help=hamaker, metavar="ENERGY")
+    contact.add_argument("--counter-modulus", help="of the other body; rigid unless given", metavar="MODULUS")
+    add_other_body(contact, given, plain, in_si_only=in_si_only)
+    spring = "" if in_si_only else ", with --tabor in R dgamma/eps"
+    help_text = f"of the cantilever, as 0.2N/m{spring}; fixed grips unless given"
+    contact.add_argument("--stiffness", help=help_text, metavar="K")
+
+
+def add_other_body(contact: Group, given: str, plain: str, *, in_si_only: bool = False) -> None:
+    """Add the options of a counter-body that are not in SI, and how bodies are held."""
+    contact.add_argument("--counter-poisson", type=float, help=f"of the other body: {given}", metavar="NU")
+    contact.add_argument("--counter-radius", help=f"of the other body{plain}; flat unless given", metavar="RADIUS")
+    if not in_si_only:
+        share = "with --tabor: its part of the compliance, 0 to 1; rigid unless given"
+        contact.add_argument("--counter-share", type=float, help=share, metavar="PART")
+    grip = "how a sphere is held at its mid-plane or a body at its far side; sliding unless given"
+    contact.add_argument("--grip", choices=("sliding", "bonded"), help=grip)
+
+
+def add_body(body: Group) -> None:
+    """Add the options of what is elastic."""
+    body.add_argument("--body", choices=("block", "hemisphere", "sphere"), help="what is elastic; block unless given")
+    body.add_argument("--mesh", type=Path, help="file with the mesh of the body", metavar="FILE")
+    body.add_argument("--profile", choices=("paraboloid", "sphere"), help="undeformed gap; paraboloid unless given")
+    cap = "half-angle of the cap over which a sphere is held, degrees; 30 unless given"
+    body.add_argument("--cap-angle", type=float, help=cap, metavar="ANGLE")
+    body.add_argument("--strain", choices=("small", "finite"), help="linear or neo-Hookean; small unless given")
+    counted = "what the surface law is counted per; projected unless given, at finite strain with matter conserved"
+    tractions = ("projected", "surface", "reference", "normal", "vertical")
+    body.add_argument("--traction", choices=tractions, help=counted)
+    ratio = "with --tabor: R/eps of a body with a size, or of a true profile"
+    body.add_argument("--radius-ratio", type=float, help=ratio, metavar="RHO")
+
+
+def body_of(options: argparse.Namespace) -> Callable[..., Scene]:
+    """What makes a scene of the body given, from the other arguments of `fem_adhesion.Scene`."""
+    from fem_adhesion.scene import Scene
+
+    if options.mesh and options.body:
+        raise InputError(f"mesh = {options.mesh} with body = {options.body}, limit: one of both; leave out --body")
+    if options.body != "sphere":
+        refuse(options, ("cap_angle",), "with --body sphere, which is held over a cap")
+    cap = {} if options.cap_angle is None else {"cap_angle": options.cap_angle}
+    body: BodyName | Path = options.mesh or options.body or "block"
+    return partial(
+        Scene,
+        body=body,
+        profile=options.profile or "paraboloid",
+        grip=options.grip or "sliding",
+        traction=options.traction or "projected",
+        strain=options.strain or "small",
+        **cap,
+    )
+
+
+def given(options: argparse.Namespace, *names: str) -> list[str]:
+    """Those of some options that were given, as they are written."""
+    return [f"--{name.replace('_', '-')}" for name in names if getattr(options, name, None) is not None]
+
+
+def refuse(options: argparse.Namespace, names: tuple[str, ...], why: str) -> None:
+    """Refuse options that would not be heeded."""
+    unheeded = given(options, *names)
+    if unheeded:
+        raise InputError(f"{', '.join(unheeded)} would not be heeded, limit: {why}; leave it out")
+
+
+def material_unless_tabor(options: argparse.Namespace) -> Contact | None:
+    """The contact in SI, or None with a Tabor parameter."""
+    present = given(options, *SI_ONLY)
+    if options.tabor is not None:
+        if present:
+            raise InputError(
+                f"tabor = {options.tabor:g} with {present[0]}, limit: one of both; leave out --tabor or the material"
+            )
+        return None
+    if not present:
+        raise InputError("tabor = None and no material, limit: one of both; give --tabor 2, say, or --radius 100nm ...")
+    refuse(options, ("counter_share",), "with --tabor, as the part follows from the moduli")
+    return material_of(options)
+
+
+def material_of(options: argparse.Namespace) -> Contact:
+    """The contact in SI."""
+    _require_whole(options)
+    return _contact(options)
+
+
+def _require_whole(options: argparse.Namespace) -> None:
+    """Refuse a material that lacks something, or whose law is given twice."""
+    missing = [f"--{name.replace('_', '-')}" for name in MATERIAL if getattr(options, name) is None]
+    laws = given(options, *LAW)
+    if not laws:
+        missing.append("--spacing or --hamaker")
+    if missing:
+        raise InputError(f"{', '.join(missing)} missing, limit: a whole material; give it too")
+    if len(laws) == 2:
+        raise InputError(f"{' with '.join(laws)}, limit: one of both, as each follows from the other; leave one out")
+
+
+def _contact(options: argparse.Namespace) -> Contact:
+    from fem_adhesion.common.contact import Contact
+    from fem_adhesion.common.units import KINDS, parse
+    from halfspace.scaling import spacing_of
+
+    named = {name: text for name in KINDS if (text := getattr(options, name)) is not None}
+    quantities = {name: parse(text, name) for name, text in named.items()}
+    if "hamaker" in quantities:
+        quantities["spacing"] = spacing_of(quantities.pop("hamaker"), quantities["work_of_adhesion"])
+    return Contact(
+        **quantities,
+        poisson=options.poisson,
+        counter_poisson=options.counter_poisson,
+        grip=options.grip or "sliding",
+    )
+
+
+def counter_of(options: argparse.Namespace) -> Counter | None:
+    """The counter-body given with a Tabor parameter, or None for a rigid wall."""
+    from fem_adhesion.scene import Counter
+
+    if options.counter_share is None:
+        refuse(options, COUNTER, "with --counter-share where there is --tabor")
+        return None
+    poisson = POISSON if options.counter_poisson is None else options.counter_poisson
+    radius = math.inf if options.counter_radius is None else _plain(options, "counter_radius", "radii of the first")
+    return Counter(options.counter_share, poisson, radius)
+
+
+def stiffness_of(options: argparse.Namespace, contact: Contact | None) -> float:
+    """Stiffness of the apparatus in R dgamma/eps."""
+    if contact:
+        return contact.reduced_stiffness
+    return math.inf if options.stiffness is None else _plain(options, "stiffness", "R dgamma/eps")
+
+
+def _plain(options: argparse.Namespace, name: str, unit: str) -> float:
+    text = getattr(options, name)
+    try:
+        return float(text)
+    except ValueError as error:
+        raise InputError(f"{name} = {text} is not a plain number in {unit}; give one, or a material") from error

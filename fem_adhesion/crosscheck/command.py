@@ -1,0 +1,104 @@
+"""``fem-adhesion compare``: whether two solvers agree."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_adhesion.common.options import AGREE, DISAGREE, console_beside, progress_bar, written
+from fem_adhesion.common.scene_options import POISSON, add_body, add_other_body, body_of, counter_of, refuse
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from fem_adhesion.common.options import Commands
+    from fem_adhesion.crosscheck.study import Case, Failure
+    from fem_adhesion.scene import Scene
+
+
+def add(commands: Commands) -> None:
+    """Add the command."""
+    compare = commands.add_parser(
+        "compare",
+        help="check that two solvers which share no elasticity agree",
+        description="Solve the adhesive contact of a body by finite elements and by a solver that shares no operator "
+        "with them: a block by an integral equation, a hemisphere that slides by spherical harmonics. Compare "
+        "operators, residuals and events, and what both share, or all of a body that only finite elements can solve, "
+        "with a problem that shares nothing. "
+        "Exit code 0: all agree, 1: some do not, 2: bad input.",
+        epilog="example: fem-adhesion compare --tabor 0.5 2 --rtol 1e-4",
+    )
+    scenes, body, results = map(compare.add_argument_group, ("scenes", "body", "results"))
+    tabors = [0.05, 0.5, 1, 2, 3, 5]
+    scenes.add_argument("--tabor", nargs="+", type=float, default=tabors, help="Tabor parameters", metavar="MU")
+    scenes.add_argument(
+        "--poisson", type=float, default=POISSON, help="Poisson's ratio of the elements, 0 <= nu < 0.5", metavar="NU"
+    )
+    scenes.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy of the comparison, 1e-9 to 1e-1")
+    add_body(body)
+    add_other_body(body, f"{POISSON:g} unless given", " in radii of the first")
+    file = "also write the result to this file, - for standard output"
+    results.add_argument("--json", type=Path, help=file, metavar="FILE")
+    compare.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Compare all scenes asked for, print a table each, and write the record."""
+    from fem_adhesion.crosscheck.references import require_comparable
+    from halfspace.limits import require_rtol
+
+    require_rtol(options.rtol)
+    scenes = _scenes(options)
+    for scene in scenes:
+        require_comparable(scene, options.rtol)
+    console = console_beside(options.json)
+    with written(options.json) as file:
+        cases = _compare_with_progress(scenes, options.rtol, console)
+        from fem_adhesion.crosscheck.record import crosscheck_record
+
+        record = crosscheck_record(cases)
+        if file:
+            json.dump(record, file, indent=1, allow_nan=False)
+    console.print(f"verdict: {record['verdict']}", highlight=False)
+    return AGREE if record["verdict"] == "agree" else DISAGREE
+
+
+def _scenes(options: argparse.Namespace) -> list[Scene]:
+    """Scenes asked for, with nothing given that would not be heeded."""
+    made, counter = body_of(options), counter_of(options)
+    if not options.mesh and options.body in (None, "block"):
+        refuse(options, ("grip",), "with a body that has a size, as a half-space is held far away")
+    return [made(mu, options.poisson, radius_ratio=options.radius_ratio, counter=counter) for mu in options.tabor]
+
+
+def _compare_with_progress(scenes: Sequence[Scene], rtol: float, console: Console) -> list[Case | Failure]:
+    """Run the cases with a bar on standard error and tables on the console."""
+    from fem_adhesion.crosscheck import study as crosscheck
+
+    cases: list[Case | Failure] = []
+    solved = crosscheck.run(scenes, rtol=rtol)
+    for done, scene in enumerate(scenes):
+        with progress_bar() as step:  # it is gone when a table is printed, which would break it
+            step(f"tabor {scene.tabor:g}", done, len(scenes))
+            cases.append(next(solved))
+        _show(cases[-1], console)
+    return cases
+
+
+def _show(case: Case | Failure, console: Console) -> None:
+    from fem_adhesion.crosscheck.record import told
+    from fem_adhesion.crosscheck.study import Case
+    from fem_adhesion.crosscheck.table import crosscheck_tables
+
+    if isinstance(case, Case):
+        for table in crosscheck_tables(case):
+            console.print(table)
+    else:
+        name = ", ".join(part for part in case.scene.told if part != "block")
+        console.print(f"{name}: failed: {told(case)}", highlight=False, markup=False)
+        for row in case.rows:
+            console.print(f"  {row.quantity}: {row.verdict}", highlight=False, markup=False)
+    console.print()

@@ -1,0 +1,293 @@
+"""The fourth level of the cross-check: what both solvers share, against closed forms and a problem that shares nothing.
+
+Law, profile, load, energy, Newton's method, the path and its events are the same code on either side. Three kinds of
+rows look for mistakes there. Closed forms: the work of adhesion, the rigid and the soft limit. Equations: residual,
+tangent, load and its slope at a state made up, so that nothing has to converge. Events: each state of the finite
+elements in `fem_adhesion.weak_form`, on two degrees, whose difference is the error. It looks for mistakes, not digits:
+its budget is a part in a thousand, whatever the tolerance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.integrate import quad
+
+import halfspace
+from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
+from fem_adhesion.crosscheck.weak_bodies import SHARP, AtRadius, contacts
+from fem_adhesion.scene import Scene
+from fem_adhesion.weak_form import Contact, Turn, newton, tension, tension_slope, turning_point
+from halfspace.elastic.compliance import Array
+from halfspace.equilibrium.contact import LOAD, ContactProblem
+from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.events import Located
+from halfspace.errors import NotConverged
+from halfspace.lennard_jones import LENNARD_JONES
+
+BUDGET = 1e-3  # of each quantity
+ROUND_OFF = 1e-10
+
+# Closed forms
+
+
+def closed_forms() -> list[Row]:
+    """Law and limits: what the shared code makes of them, beside what is known."""
+    work, error = quad(lambda H: -float(LENNARD_JONES.pressure(np.array(H), 1.0)), 0, np.inf, epsabs=0, epsrel=1e-9)
+    adhesion = Estimate(1.0, 0.0), Estimate(work, error)
+    return [
+        Row("limit: integral of tension", "dgamma", *adhesion, difference(*adhesion), 1e-6, CLOSED_FORM),
+        _limit("limit: Bradley pull_off load", -2 * np.pi, (1e-9,)),
+        _limit("limit: JKR pull_off load", -1.5 * np.pi, (50.0, 100.0)),
+    ]
+
+
+def _limit(quantity: str, value: float, tabors: Sequence[float]) -> Row:
+    """Pull-off load towards a limit: what is left is less than the last step towards it."""
+    known, loads = Estimate(value, 0.0), []
+    try:
+        loads = [halfspace.trace(tabor, rtol=1e-3).events["pull_off"] for tabor in tabors]
+    except NotConverged:
+        return Row(quantity, "R dgamma", known, None, float("nan"), BUDGET * abs(value), CLOSED_FORM)
+    step = float(np.abs(np.diff([event.load for event in loads])).sum())
+    found = Estimate(loads[-1].load, loads[-1].load_error + step)
+    return Row(quantity, "R dgamma", known, found, difference(known, found), BUDGET * abs(value), CLOSED_FORM)
+
+
+# Equations
+
+APPROACH, CHANGE = -0.5, 0.3  # in eps, of the state made up and of its change
+
+
+def equations(scene: Scene, problems: Sequence[ContactProblem], radius: float) -> Iterator[Row]:
+    """Residual, tangent, load and its slope at a state made up, by the shared code and by the weak form.
+
+    The shared code is given the problem on elastic operators of two degrees, the finer one last. Residual and tangent
+    are means over a contact of the radius given; what is off counts relative to what in them is elastic.
+    """
+    apart = np.array([_apart(contact(radius), radius) for contact in contacts(scene)])
+    shared = np.array([_shared(problem, radius) for problem in problems])
+    sizes = np.abs(apart[1, 4:])
+    for n, (name, unit) in enumerate(EQUATIONS.items()):
+        first, second = (_estimate(side[:, n].tolist()) for side in (apart, shared))
+        yield Row(f"equations: {name}", unit, first, second, difference(first, second), BUDGET * sizes[n], WEAK_FORM)
+
+
+EQUATIONS = {"residual": "eps", "tangent": "eps", "load": "R dgamma", "load's slope": "R dgamma"}
+
+
+def _made_up(r: Array) -> tuple[Array, Array, Array]:
+    """Gap and its change in eps, and a weight, at radii in that of the contact; the attraction ends where that does."""
+    weight = np.exp(-(r**2)) / np.pi
+    return 0.2 + r**2 / 2 + r**4 / 8, weight, weight
+
+
+def _shared(problem: ContactProblem, radius: float) -> list[float]:
+    """What the shared code has for the state made up."""
+    operator = problem.operator_at(np.ones(1))
+    H, dH, weight = _made_up(operator.radii / radius)
+    x, dx = np.append(H, [APPROACH, 1.0]), np.append(dH, [CHANGE, 0.0])
+    mean = operator.weights * weight / radius**2
+    residual, tangent = (float(mean @ field[:-1]) for field in (problem.residual(x), problem.jacobian(x) @ dx))
+    return [residual, tangent, problem.load(x), float(problem.gradient(x, np.eye(4)[LOAD]) @ dx)]
+
+
+def _apart(contact: Contact, radius: float) -> list[float]:
+    """The same by the weak form, and of each the elastic part alone."""
+    body, mu = contact.body, contact.tabor
+    H, dH, weight = _made_up(body.radii / radius)
+    tensions = mu * tension(1 + H), mu * tension_slope(1 + H) * dH
+
+    def mean(field: Array) -> float:
+        return body.integral(field * weight) / radius**2
+
+    rise, further = (mu * mean(body.rise(body.yielding(body.forces(values)))) for values in tensions)
+    load, slope = (-body.integral(values) for values in tensions)
+    load -= mu * float(contact.rigid[1] @ tension(1 + _made_up(contact.rigid[0] / radius)[0]))
+    residual, tangent = mean(H + APPROACH - mu * contact.height) + rise, mean(dH + CHANGE) + further
+    return [residual, tangent, load, slope, rise, further, load, slope]
+
+
+def _estimate(values: Sequence[float]) -> Estimate:
+    """The last of some values, each of which errs by less than the one before differs from it."""
+    change = float(np.abs(np.diff(values)).sum())
+    return Estimate(float(values[-1]), change + ROUND_OFF * (1 + abs(float(values[-1]))))
+
+
+# Events
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A number of the finite elements beside those of the coarse and the fine body, None where they have none."""
+
+    quantity: str
+    unit: str
+    both: tuple[float | None, float | None]
+    second: Estimate
+    size: float
+
+    @property
+    def change(self) -> float:
+        """Difference of both bodies relative to the size."""
+        coarse, fine = self.both
+        return 0.0 if coarse is None or fine is None else abs(fine - coarse) / self.size
+
+    def row(self, doubt: float) -> Row:
+        """Row, if what the weak form errs by is so much of the size."""
+        coarse, fine = self.both
+        first = None if coarse is None or fine is None else Estimate(fine, doubt * self.size)
+        off, budget = difference(first, self.second), BUDGET * self.size
+        return Row(f"apart: {self.quantity}", self.unit, first, self.second, off, budget, WEAK_FORM)
+
+
+def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
+    """Balance, reaction, turning points and energy of every event of the finite elements, in the weak form.
+
+    The weak form errs by less than its coarse and its fine body differ. As they may agree by chance on one number, the
+    largest of their differences counts for all, relative to the sizes.
+    """
+    both = contacts(scene)
+    found = [row for name in path.events for row in _of_event(name, path, *both, sized=scene.sized)]
+    coarse, fine = (_energy_released(contact, path, sized=scene.sized) for contact in both)
+    found.append(Compared("energy released", "R dgamma eps", (coarse, fine), path.energy, abs(path.energy.value)))
+    doubt = max(compared.change for compared in found)
+    return [compared.row(doubt) for compared in found]
+
+
+def _of_event(
+    name: str, path: EquilibriumPath, on_coarse: AtRadius, on_fine: AtRadius, *, sized: bool
+) -> Iterator[Compared]:
+    event, located = path.events[name], path.stages[-1][name]
+    coarse, fine = (_state(contact(_size(located, sized=sized)), located) for contact in (on_coarse, on_fine))
+    approach, load = (Estimate(getattr(event, key), getattr(event, f"{key}_error")) for key in ("approach", "load"))
+    width, force = 1 + abs(approach.value), abs(load.value)
+    balances, reactions = (coarse.balance, fine.balance), (coarse.reaction, fine.reaction)
+    yield Compared(f"{name} balance", "eps", balances, Estimate(0.0, approach.error), width)
+    if name != "zero_load":
+        doubt = abs(_state(fine.contact, path.stages[-2][name]).reaction - fine.reaction)
+        doubted = Estimate(load.value, load.error + doubt)
+        yield Compared(f"{name} reaction", "R dgamma", reactions, doubted, force)
+    # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
+    smooth = name == "jump_on"
+    a = (_turn if smooth else _beside)(name, coarse)
+    b = (_turn if smooth or fine.contact.tabor <= SHARP else _beside)(name, fine)
+    if name != "pull_off":
+        yield Compared(f"{name} approach", "eps", _numbers(a, b, lambda turn: turn.approach), approach, width)
+    if name in ("pull_off", "jump_on"):
+        yield Compared(f"{name} load", "R dgamma", _numbers(a, b, lambda turn: turn.load), load, force)
+
+
+def _numbers(a: Turn | None, b: Turn | None, of: Callable[[Turn], float]) -> tuple[float | None, float | None]:
+    return None if a is None else of(a), None if b is None else of(b)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class State:
+    """A state of the finite elements in the weak form: the displacements that its gaps would make.
+
+    Attributes
+    ----------
+    contact, gap, approach, load
+        The problem, and h, alpha and W of the finite elements.
+    u : (n,) array
+        The displacements.
+    balance : float
+        By how much the gaps that the displacements leave differ from those in eps, weighted by the tension.
+    """
+
+    contact: Contact
+    gap: Array
+    approach: float
+    load: float
+    u: Array
+    balance: float
+
+    @property
+    def reaction(self) -> float:
+        """Far reaction in R dgamma, and what is pulled at beyond the mesh."""
+        return self.contact.far_reaction(self.u, self.gap) + self.contact.load_beyond(self.approach)
+
+
+def _size(event: Located, *, sized: bool) -> float:
+    """Radius in beta at which cells are finest: of the contact or, where that is larger, of the attraction.
+
+    A half-space has fine cells inside as well; on a body with a length the contact comes first, unless it is small.
+    """
+    _, _, central_gap, radius = (float(value) for value in event.point.observables)
+    attraction = 0.7 * float(np.sqrt(2 * (1 + central_gap) / event.problem.tabor))
+    return radius if sized and radius > SMALL * attraction else float(np.fmax(radius, attraction))
+
+
+SMALL = 0.25  # contact, in the radius of the attraction
+
+
+def _state(contact: Contact, event: Located) -> State:
+    """Take over the gaps."""
+    approach, load = (float(value) for value in event.point.observables[:2])
+    h = 1 + _gaps(event, contact)
+    u, weight = contact.displacement(h), np.abs(tension(h))
+    off = (contact.gap(u, approach) - h) * weight
+    return State(contact, h, approach, load, u, contact.body.integral(off) / contact.body.integral(weight))
+
+
+def _gaps(event: Located, contact: Contact) -> Array:
+    """Gaps H of a state of the finite elements; beyond the cells of a block it deflects as under a point load."""
+    radii, (approach, load) = contact.body.radii, event.point.observables[:2]
+    inside = gaps_at(event, radii)
+    beyond = -approach + event.problem.tabor * (contact.height + load / (np.pi * radii))
+    extent = event.problem.interface.operator_at(event.problem.surface_state(event.point.x)).extent
+    return np.where((radii < extent) | (not contact.endless), inside, beyond)
+
+
+def gaps_at(event: Located, radii: Array) -> Array:
+    """Gaps H of a state at radii on its cells.
+
+    Under a sphere it is the deflection that is interpolated, by the angle sin(theta) = r/R: its profile is no
+    polynomial of the radius, and at the equator nor is what it leaves.
+    """
+    problem, x = event.problem.interface, event.problem.surface_state(event.point.x)
+    operator, mu, profile = problem.operator_at(x), problem.tabor, problem.profile
+    within = np.minimum(radii, operator.extent)
+    if np.isinf(profile.end):
+        return operator.values_at(within, x[:-2])
+
+    def angle(r: Array) -> Array:
+        return np.asarray(np.arcsin(np.minimum(r / profile.end, 1.0)))
+
+    by_angle = replace(operator, radii=angle(operator.radii), cells=angle(operator.cells))
+    deflection = by_angle.values_at(angle(within), x[:-2] - mu * profile.height(operator.radii))
+    return np.asarray(deflection + mu * profile.height(within))
+
+
+def _turn(name: str, state: State) -> Turn | None:
+    """Load and approach of the event in the weak form, or None where there is none nearby."""
+    if name == "zero_load":
+        return _beside(name, state)
+    contact, start = state.contact, (state.gap, state.approach, state.load)
+    finer = 1.0 if contact.endless else FINER
+    try:
+        return turning_point(contact, *start, under_load=name == "pull_off", finer=finer)
+    except NotConverged:
+        return None
+
+
+FINER = 3.0  # steps past a turning point where there is a body with a length, which the weak form knows better
+
+
+def _beside(name: str, state: State) -> Turn | None:
+    """Equilibrium at the approach of pull-off, or at the load of another event: what turns there is stationary."""
+    try:
+        found = newton(state.contact, state.gap, state.approach, load=None if name == "pull_off" else state.load)
+    except NotConverged:
+        return None
+    return Turn(found.load, found.approach)
+
+
+def _energy_released(on: AtRadius, path: EquilibriumPath, *, sized: bool) -> float:
+    """Potential energy between the two states of `EquilibriumPath.energy`; its error is of second order in theirs."""
+    ends = (path.stages[-1][name] for name in ("separated", "zero_approach"))
+    before, after = (_state(on(_size(event, sized=sized)), event) for event in ends)
+    return before.contact.energy(before.u, before.approach) - after.contact.energy(after.u, after.approach)

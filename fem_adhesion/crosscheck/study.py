@@ -1,0 +1,251 @@
+"""The cross-check of the finite-element solver with one that shares no operator with it.
+
+That is the half-space's for blocks, and the whole sphere by harmonics for hemispheres in the sliding grip. For other
+bodies the fourth level stands alone.
+
+Four levels. Operators: both compliances under the same pressures, whole fields compared. Cross-residual: the state
+found by one solver put into the equations of the other. Events: pull-off, jumps, the zero-load state, the energy. The
+fourth, for what both solvers share, is in `fem_adhesion.crosscheck.from_scratch`. A quantity agrees only if the
+difference is within the sum of both error estimates and that sum is within the budget; the estimates come from
+refinement and from the size of the block, never from a choice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from fem_adhesion import convergence
+from fem_adhesion.crosscheck import from_scratch
+from fem_adhesion.crosscheck.comparison import SOLVERS, Pair, Row, Verdict, difference, worst
+from fem_adhesion.crosscheck.from_scratch import gaps_at
+from fem_adhesion.crosscheck.references import (
+    elements_of,
+    pressures_for,
+    radius_of,
+    reference_for,
+    require_comparable,
+    tighter,
+)
+from fem_adhesion.scene import Scene
+from halfspace.accuracy.refinement import FOLDS
+from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.equilibrium.contact import ContactProblem
+from halfspace.equilibrium.curve import EquilibriumPath, Estimate, transfer
+from halfspace.equilibrium.events import ROUND_OFF, Located
+from halfspace.errors import NotConverged
+from halfspace.limits import require_rtol
+
+Solver = Callable[..., EquilibriumPath]
+
+# Budgets in those of loads, approaches and energies, which are averages over the whole contact:
+POINTWISE = 10  # of gaps, radii and deflections
+RESIDUAL = 50  # of residuals, which see every wiggle of the pressure
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A scene that a solver could not solve, with the reason and the rows that need no solution.
+
+    It does not stop the others. A row that disagrees says what is wrong with the solver.
+    """
+
+    scene: Scene
+    reason: str
+    rows: tuple[Row, ...] = ()
+
+    @property
+    def shown_by(self) -> tuple[str, ...]:
+        """Rows that disagree."""
+        return tuple(row.quantity for row in self.rows if row.verdict == "disagree")
+
+
+@dataclass(frozen=True)
+class Case:
+    """Solutions of one scene, by the names of their solvers, and their comparison."""
+
+    scene: Scene
+    solutions: Mapping[str, EquilibriumPath]
+    rows: tuple[Row, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """The worst of the rows' verdicts."""
+        return worst([row.verdict for row in self.rows])
+
+
+def compare(
+    scene: Scene,
+    *,
+    rtol: float = 1e-5,
+    before: Sequence[Row] | None = None,
+    solve: Solver = convergence.trace,
+) -> Case:
+    """Solve a scene with both solvers and compare on all four levels.
+
+    Parameters
+    ----------
+    scene : Scene
+        The contact, at small strain; the half-space solver knows its Tabor parameter and profile only.
+    rtol : float
+        Accuracy of the comparison: budgets are this relative to each quantity.
+    before : sequence of Row, optional
+        What `unsolved` found before for the same body.
+    solve : callable
+        Finite-element solver, ``solve(scene, rtol=...)``.
+
+    Raises
+    ------
+    InputError
+        If an input is out of range, or there is nothing to compare with.
+    halfspace.errors.NotConverged
+        If a solver fails.
+    """
+    require_rtol(rtol)
+    require_comparable(scene, rtol)
+    reference = reference_for(scene)
+    other = reference.trace(rtol=tighter(rtol)) if reference else None
+    fe = solve(scene, rtol=0.9 * rtol)
+    rows = list(unsolved(scene, rtol=rtol) if before is None else before)
+    solutions = {"finite elements": fe}
+    if reference and other:
+        solutions = {reference.between[0]: other, **solutions}
+        rows += [*_cross_residuals(other, fe, rtol, reference.between)]
+        rows += [*_compare_events(other, fe, rtol, reference.between)]
+    return Case(scene, solutions, (*rows, *from_scratch.events(scene, fe)))
+
+
+def run(scenes: Sequence[Scene], *, rtol: float = 1e-5) -> Iterator[Case | Failure]:
+    """Compare scenes one after the other; what needs no solution is the same for all blocks of a material."""
+    before: dict[Scene, Sequence[Row]] = {}
+    for scene in scenes:
+        body = scene if scene.sized else replace(scene, tabor=1.0)
+        try:
+            if body not in before:
+                before[body] = unsolved(scene, rtol=rtol)
+            yield compare(scene, rtol=rtol, before=before[body])
+        except NotConverged as error:
+            yield Failure(scene, str(error), tuple(before.get(body, ())))
+
+
+def unsolved(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
+    """Rows that need no solution of the scene: operators, equations and closed forms."""
+    reference, problems, edge = reference_for(scene), elements_of(scene, rtol), radius_of(scene)
+    rows: list[Row] = []
+    if reference:
+        both = reference.operators(rtol), [problem.operator.at(1.0) for problem in problems]
+        under = pressures_for(scene).items()
+        rows = [_compare_fields(name, pressure, *both, rtol, edge, reference.between) for name, pressure in under]
+    return [*rows, *from_scratch.equations(scene, problems[-2:], edge), *from_scratch.closed_forms()]
+
+
+# Level 1: operators
+
+
+def _compare_fields(
+    name: str,
+    pressure: Callable[[Array], Array],
+    other: Sequence[ElasticOperator],
+    fe: Sequence[ElasticOperator],
+    rtol: float,
+    edge: float,
+    between: Pair,
+) -> Row:
+    """Compare deflections at radii up to three times that of the pressure's edge, root mean square over the area."""
+    radii = edge * np.linspace(0.02, 3.0, 150)
+    area = radii / radii.sum()
+
+    def deflections(operators: Sequence[ElasticOperator]) -> list[Array]:
+        return [op.values_at(radii, op.compliance @ pressure(op.radii / edge)) for op in operators]
+
+    w_other, w_fe = deflections(other), deflections(fe)
+
+    def rms(w: Array) -> float:
+        return float(np.sqrt(area @ w**2))
+
+    def estimate(w: Sequence[Array]) -> Estimate:
+        return Estimate(rms(w[-1]), sum(rms(b - a) for a, b in pairwise(w)) + 1e-12 * rms(w[-1]))
+
+    off, budget = rms(w_fe[-1] - w_other[-1]), POINTWISE * rtol * rms(w_other[-1])
+    return Row(f"operator: {name}", "beta", estimate(w_other), estimate(w_fe), off, budget, between)
+
+
+# Level 2: cross-residuals
+
+
+def _cross_residuals(other: EquilibriumPath, fe: EquilibriumPath, rtol: float, between: Pair) -> Iterator[Row]:
+    """Residual, in eps, of each solver's gaps in the other's equations, at every event that both have."""
+    for name in other.events:
+        if name in fe.events:
+            of_other = _residual([stage[name] for stage in other.stages], fe.stages[-1][name])
+            of_fe = _residual([stage[name] for stage in fe.stages], other.stages[-1][name])
+            largest = max(of_other.value, of_fe.value)
+            yield Row(f"cross-residual: {name}", "eps", of_other, of_fe, largest, RESIDUAL * rtol, between)
+
+
+def _residual(found: Sequence[Located], equations: Located) -> Estimate:
+    """Mean residual of a state in the other solver's equilibrium, weighted by the magnitude of the pressure, in eps.
+
+    The error is the mean change of the residual from stage to stage: what the state itself is uncertain by.
+    """
+    target = equations.problem.interface
+    states = [_carried(event, target) for event in found]
+    residuals = [target.residual(x)[:-1] for x in states]
+    weight = target.operator_at(states[-1]).weights * np.abs(target.pressure(states[-1]))
+    weight /= weight.sum()
+    changes = [weight @ np.abs(b - a) for a, b in pairwise(residuals)]
+    return Estimate(float(weight @ np.abs(residuals[-1])), float(sum(changes)) + ROUND_OFF)
+
+
+def _carried(event: Located, target: ContactProblem) -> Array:
+    """State of an event on another solver's nodes."""
+    x = transfer(event.problem, event.point.x, target)
+    if np.isfinite(target.profile.end):  # its profile is no polynomial
+        x[:-2] = gaps_at(event, target.operator_at(x).radii)
+    return x
+
+
+# Level 3: events
+
+
+def _compare_events(other: EquilibriumPath, fe: EquilibriumPath, rtol: float, between: Pair = SOLVERS) -> Iterator[Row]:
+    for event, quantity, unit, pointwise in EVENT_QUANTITIES:
+        a, b = (_number(path, event, quantity) for path in (other, fe))
+        if not (a and np.isfinite(a.value)) and not (b and np.isfinite(b.value)):
+            continue
+        budget = (POINTWISE if pointwise else 1) * rtol * _size(quantity, a.value if a else 0.0, other)
+        yield Row(f"{event} {quantity}", unit, a, b, difference(a, b), budget, between)
+    off, budget = difference(other.energy, fe.energy), rtol * abs(other.energy.value)
+    yield Row("energy released", "R dgamma eps", other.energy, fe.energy, off, budget, between)
+
+
+def _size(quantity: str, value: float, path: EquilibriumPath) -> float:
+    """What a budget is relative to; gaps count from the spacing and radii from the axis."""
+    return {"load": abs(value), "approach": path.approach_scale}.get(quantity, 1 + abs(value))
+
+
+EVENT_QUANTITIES = (
+    ("pull_off", "load", "R dgamma", False),
+    ("jump_on", "approach", "eps", False),
+    ("jump_on", "load", "R dgamma", False),
+    ("jump_on", "central_gap", "eps", True),
+    ("jump_off", "approach", "eps", False),
+    ("jump_off", "load", "R dgamma", False),
+    ("jump_off", "central_gap", "eps", True),
+    ("zero_load", "approach", "eps", False),
+    ("zero_load", "contact_radius", "beta", True),
+)
+
+
+def _number(path: EquilibriumPath, name: str, quantity: str) -> Estimate | None:
+    """Number of an event, None if there is none, and one of infinite error where it cannot be told if there is."""
+    event = path.event(name)
+    if event is None:
+        return UNTOLD if name in FOLDS and path.jumps is None else None
+    return Estimate(getattr(event, quantity), getattr(event, f"{quantity}_error"))
+
+
+UNTOLD = Estimate(float("nan"), float("inf"))

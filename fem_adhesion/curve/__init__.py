@@ -1,0 +1,1 @@
+"""Load-approach curves: solved, listed, drawn, filmed, and the command `curve`."""

@@ -1,0 +1,227 @@
+"""``fem-adhesion curve``: one load-approach curve, to be looked at or read by machines."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
+
+from fem_adhesion.common.options import AGREE, console_beside, progress_bar, require_distinct, written
+from fem_adhesion.common.scene_options import (
+    POISSON,
+    add_body,
+    add_contact,
+    body_of,
+    counter_of,
+    material_unless_tabor,
+    refuse,
+    stiffness_of,
+)
+from halfspace.errors import InputError
+
+if TYPE_CHECKING:
+    from fem_adhesion.common.contact import Contact
+    from fem_adhesion.common.options import Commands, Parser
+    from fem_adhesion.curve.solve import Curves, Question, SolverName
+    from fem_adhesion.scene import Scene
+
+POINTS = 20  # of a curve for ParaView
+
+
+def add(commands: Commands) -> None:
+    """Add the command."""
+    curve = commands.add_parser(
+        "curve",
+        help="trace one load-approach curve: events, stability, jumps, plots and data",
+        description="Trace the load-approach curve of one contact, dimensionless or, with a material, in SI; print its "
+        "events with their errors, and a small plot unless piped.",
+        epilog="example: fem-adhesion curve --tabor 2 --plot curve.svg --json curve.json",
+    )
+    add_contact(curve)
+    _add_body(curve)
+    _add_results(curve)
+    curve.set_defaults(run=run)
+
+
+def _add_body(curve: Parser) -> None:
+    body = curve.add_argument_group("body and solver")
+    solvers = ("half-space", "fem", "both")
+    body.add_argument("--solver", choices=solvers, help="half-space unless the body is another, fem then")
+    add_body(body)
+    body.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy, 1e-9 to 1e-1")
+    body.add_argument("--to-load", type=float, default=5.0, help="load in R dgamma at which it ends", metavar="W")
+
+
+def _add_results(curve: Parser) -> None:
+    results = curve.add_argument_group("results", "A FILE may be - for standard output where it is text.")
+    results.add_argument("--json", type=Path, help="write points, events, units and settings", metavar="FILE")
+    results.add_argument("--csv", type=Path, help="write points and events as a table", metavar="FILE")
+    results.add_argument("--plot", type=Path, help="draw curve, profiles and mesh: png, svg or pdf", metavar="FILE")
+    results.add_argument("--vtk", type=Path, help="write the fields inside the body for ParaView", metavar="DIR")
+    points = f"in JSON, CSV and plot, as traced unless given; in DIR beside the events, {POINTS} unless given"
+    results.add_argument("--points", type=int, help=points, metavar="N")
+    results.add_argument("--revolve", type=float, help="write the solid of revolution too, degrees", metavar="ANGLE")
+    results.add_argument("--render", type=Path, help="draw the body cut open, with its stress: png", metavar="FILE")
+    events = ("pull_off", "jump_on", "jump_off", "zero_load")
+    results.add_argument("--at", choices=events, help="event that is drawn; pull_off unless given")
+    results.add_argument(
+        "--movie", type=Path, help="draw it up to the wall, onto it and off again: gif", metavar="FILE"
+    )
+    results.add_argument("--force", action="store_true", default=None, help="replace files in a DIR that is not empty")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Trace the curve, write what is asked for and print the events."""
+    from fem_adhesion.common.files import directory_written_aside, written_aside
+    from fem_adhesion.curve import record as curve_record
+    from fem_adhesion.curve import terminal as curve_terminal
+    from fem_adhesion.curve.solve import solve
+
+    question = _question(options)
+    form = _form_of(options.plot)
+    require_distinct(options.json, options.csv, options.plot, options.render, options.movie, options.vtk)
+    with ExitStack() as stack:
+        fields = options.vtk and stack.enter_context(directory_written_aside(options.vtk, force=bool(options.force)))
+        data, points = (stack.enter_context(written(path)) for path in (options.json, options.csv))
+        figure, picture, movie = (
+            stack.enter_context(written_aside(path)) if path else None
+            for path in (options.plot, options.render, options.movie)
+        )
+        with progress_bar() as step:
+            curves = solve(question, step)
+        if data:
+            json.dump(curve_record.record(curves), data, indent=1, allow_nan=False)
+        if points:
+            curve_record.write_csv(curves, points)
+        if figure:
+            from fem_adhesion.curve import figure as plots
+
+            plots.write(curves, figure, form)
+        if fields:
+            _write_vtk(options, curves, fields)
+        _draw_body(curves, picture, options.at or "pull_off", movie)
+        for file in filter(None, (data, points, figure, picture, movie)):
+            file.flush()  # all on disk before the first takes its place
+    curve_terminal.show(curves, console_beside(options.json, options.csv))
+    return AGREE
+
+
+def _write_vtk(options: argparse.Namespace, curves: Curves, aside: Path) -> None:
+    from fem_adhesion.fields.state import states_along
+    from fem_adhesion.paraview.write import write_states
+
+    question = curves.question
+    states = states_along(question.scene, curves.path, points=_points(options))
+    write_states(states, aside, options.vtk, units=question.units, revolve=options.revolve)
+
+
+def _draw_body(curves: Curves, picture: TextIO | None, at: str, movie: TextIO | None) -> None:
+    if picture:
+        from fem_adhesion.curve import still as render
+
+        render.write_picture(curves, picture, at)
+    if movie:
+        from fem_adhesion.curve.movie import write_movie
+
+        write_movie(curves, movie)
+
+
+def _require_drawing(options: argparse.Namespace, scene: Scene, solver: SolverName) -> None:
+    """Refuse what cannot be drawn of the body before any work."""
+    for path, suffix in ((options.render, ".png"), (options.movie, ".gif")):
+        if path and path.suffix != suffix:
+            raise InputError(f"{path} ends in {path.suffix!r}, limit: {suffix}; rename it")
+    if options.at and not options.render:
+        raise InputError(f"at = {options.at} without a picture, limit: with --render; give --render FILE.png too")
+    if not (options.render or options.movie):
+        return
+    if solver == "half-space":
+        raise InputError(
+            "picture with solver = half-space, which has no fields inside, limit: fem or both; take --solver fem"
+        )
+    from fem_adhesion.fields.state import require_fields
+    from fem_adhesion.paraview.solid import require_drawing
+
+    require_fields(scene)
+    require_drawing()
+
+
+def _require_vtk(options: argparse.Namespace, scene: Scene, solver: SolverName) -> None:
+    """Refuse what cannot be written for ParaView before any work."""
+    from fem_adhesion.fields.state import require_fields
+    from fem_adhesion.paraview.revolve import require_angle
+    from fem_adhesion.paraview.write import require_pyvista
+
+    if solver == "half-space":
+        raise InputError(
+            "vtk with solver = half-space, which has no fields inside, limit: fem or both; take --solver fem"
+        )
+    if _points(options) < 0:
+        raise InputError(f"points = {options.points} is outside 0 <= points; 0 writes the events only")
+    if options.revolve is not None:
+        require_angle(options.revolve)
+    require_fields(scene)
+    require_pyvista()
+
+
+def _form_of(plot: Path | None) -> str:
+    """Format of the figure; matplotlib is not loaded without one."""
+    if plot is None:
+        return ""
+    from fem_adhesion.curve.figure import require_suffix
+
+    return require_suffix(plot)
+
+
+def _points(options: argparse.Namespace) -> int:
+    return POINTS if options.points is None else int(options.points)
+
+
+def _question(options: argparse.Namespace) -> Question:
+    """What is asked, with nothing given that would not be heeded."""
+    from fem_adhesion.curve.solve import Question
+
+    contact = material_unless_tabor(options)
+    scene = _scene(options, contact)
+    inside = options.vtk or options.render or options.movie
+    solver: SolverName = options.solver or ("half-space" if scene.body == "block" and not inside else "fem")
+    _require_heeded(options, scene, solver, contact)
+    if options.vtk:
+        _require_vtk(options, scene, solver)
+    _require_drawing(options, scene, solver)
+    units = contact.units if contact else None
+    points = options.points if options.json or options.csv or options.plot else None
+    if options.vtk and points in (0, 1):
+        points = None  # of the states in DIR alone, where there may be none between the events
+    return Question(scene, solver, options.rtol, options.to_load, units, stiffness_of(options, contact), points)
+
+
+def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverName, contact: Contact | None) -> None:
+    """Refuse what the question would not depend on."""
+    if scene.body == "block":
+        refuse(options, ("grip",), "with a body that has a size, as a half-space is held far away")
+    if not contact and solver == "half-space":
+        refuse(options, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it")
+    if not options.vtk:
+        refuse(options, ("revolve", "force"), "with --vtk DIR")
+    if not (options.json or options.csv or options.plot or options.vtk):
+        refuse(options, ("points",), "with --json, --csv, --plot or --vtk")
+    if contact and math.isfinite(contact.counter_radius) and scene.body == "block" and scene.profile == "sphere":
+        raise InputError("profile = sphere of two spheres, limit: a hemisphere; take --body hemisphere")
+
+
+def _scene(options: argparse.Namespace, contact: Contact | None) -> Scene:
+    made = body_of(options)
+    if contact is None:
+        poisson = POISSON if options.poisson is None else options.poisson
+        return made(options.tabor, poisson, radius_ratio=options.radius_ratio, counter=counter_of(options))
+    refuse(options, ("radius_ratio",), f"with --tabor, as the material has its own {contact.units.radius_ratio:.4g}")
+    units = contact.units
+    block = not options.mesh and options.body in (None, "block")
+    counter = None if block else contact.counter  # two half-spaces are one, of their contact modulus
+    poisson = contact.smaller_poisson if counter else contact.poisson
+    ratio = None if block and options.profile != "sphere" else units.radius_ratio
+    return made(units.tabor, poisson, radius_ratio=ratio, counter=counter)

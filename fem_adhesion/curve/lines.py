@@ -1,0 +1,124 @@
+"""A load-approach curve as lines to be drawn: smooth between the computed points, and cut where stability changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+from halfspace.elastic.compliance import Array
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
+from halfspace.equilibrium.curve import EquilibriumPath, metric_for
+from halfspace.equilibrium.events import FOLD, locate
+from halfspace.equilibrium.path import Segment
+
+STABLE, GRIPS_ONLY, UNSTABLE = range(3)
+KINDS: Mapping[int, str] = {
+    STABLE: "stable under dead load",
+    GRIPS_ONLY: "stable under fixed grips only",
+    UNSTABLE: "unstable",
+}
+BETWEEN = 12  # points drawn from one computed point to the next
+FADED = 0.04  # of the pull-off force: the attraction at which a frame begins
+MARGIN = 0.08  # of the frame, around what it shows
+HIGHEST = 0.5  # load in pull-off forces that is shown around the events
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Line:
+    """A curve, dimensionless, all arrays (n,).
+
+    Attributes
+    ----------
+    approach, load, central_gap : array
+        In eps, R dgamma and eps.
+    kind : int array
+        `STABLE`, `GRIPS_ONLY` or `UNSTABLE`.
+    """
+
+    approach: Array
+    load: Array
+    central_gap: Array
+    kind: NDArray[np.int8]
+
+    def parts(self, y: Array) -> Iterator[tuple[int, Array]]:
+        """Each kind that occurs, with y where the curve is of it and nan elsewhere; the parts join."""
+        for kind in KINDS:
+            mask = self.kind == kind
+            if mask.any():
+                mask[1:] |= mask[:-1].copy()
+                yield kind, np.where(mask, y, np.nan)
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Ranges of approach (eps) and load (R dgamma) that are shown."""
+
+    approach: Range
+    load: Range
+
+
+def smooth(path: EquilibriumPath) -> Line:
+    """Lines through the points of a path with their tangents."""
+    segments = path.finest_curve.segments
+    firsts = np.cumsum([0, *(len(segment.points) for segment in segments)])
+    parts = [
+        _smooth(segment, path.stable[first : first + len(segment.points)])
+        for segment, first in zip(segments, firsts, strict=False)
+    ]
+    values = np.concatenate([part[0] for part in parts])
+    approach, load, central_gap = values.T
+    return Line(approach, load, central_gap, np.concatenate([part[1] for part in parts]))
+
+
+def _smooth(segment: Segment, stable: NDArray[np.bool_]) -> tuple[Array, NDArray[np.int8]]:
+    """Approach, load and central gap, (n, 3), along one segment, and the kind of each point."""
+    s = np.array([point.arclength for point in segment.points])
+    index = np.arange(BETWEEN * (s.size - 1) + 1) / BETWEEN
+    used = [APPROACH, LOAD, CENTRAL_GAP]
+    values = np.array([point.observables[used] for point in segment.points])
+    rates = np.array([point.rates[used] for point in segment.points])
+    spline, fine = CubicHermiteSpline(s, values, rates), np.interp(index, np.arange(s.size), s)
+    d_approach, d_load, _ = spline(fine, 1).T
+    kind = np.where(d_load * d_approach > 0, STABLE, GRIPS_ONLY).astype(np.int8)
+    kind[~_stable_between(stable, d_approach)] = UNSTABLE
+    return np.asarray(spline(fine)), kind
+
+
+def _stable_between(stable: NDArray[np.bool_], rate: Array) -> NDArray[np.bool_]:
+    """Stability of the points in between: it changes where the approach turns, the rate d(alpha*)/ds its sign."""
+    fine = np.repeat(stable, BETWEEN)[: rate.size]
+    for i in np.flatnonzero(stable[1:] != stable[:-1]):
+        inside = slice(BETWEEN * i, BETWEEN * (i + 1))
+        turned = np.sign(rate[inside]) != np.sign(rate[BETWEEN * i])
+        fine[inside] = np.where(turned, stable[i + 1], stable[i])
+    return fine
+
+
+def folds(path: EquilibriumPath) -> Array:
+    """Approach, load, central gap and contact radius at every fold under fixed grips, in order, (n, 4)."""
+    metric = metric_for(path.tabor)
+    found = [e.point.observables for s in path.segments for e in locate(s.problem, s.points, metric, FOLD)]
+    return np.array(found).reshape(-1, 4)
+
+
+def around_events(path: EquilibriumPath) -> Frame:
+    """Frame from where attraction is felt to a load about half the pull-off force."""
+    return frame(path, -HIGHEST * path.events["pull_off"].load)
+
+
+def frame(path: EquilibriumPath, highest: float) -> Frame:
+    """Frame from where attraction is felt to a load in R dgamma."""
+    lowest, line = path.events["pull_off"].load, smooth(path)
+    shown = ((line.load < FADED * lowest) | (line.load > 0)) & (line.load <= highest)
+    x = np.append(line.approach[shown], path.events["zero_load"].approach)
+    return Frame(_padded(float(x.min()), float(x.max())), _padded(lowest, highest))
+
+
+def _padded(low: float, high: float) -> Range:
+    return low - MARGIN * (high - low), high + MARGIN * (high - low) / 2

@@ -1,0 +1,213 @@
+"""Load and central gap against approach: branches by stability, folds, jumps, load lines, and the closed theories."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from fem_adhesion.common import style
+from fem_adhesion.common.numbers import engineering
+from fem_adhesion.curve import lines
+from fem_adhesion.curve.lines import Frame
+from fem_adhesion.curve.profiles import LEGEND, STATES
+from fem_adhesion.curve.scales import Scale, scales
+from fem_adhesion.curve.solve import Curves
+from halfspace.elastic.compliance import Array
+from halfspace.equilibrium.devices import Cycle
+from halfspace.equilibrium.reach import reaching
+from halfspace.scaling import MAUGIS
+from halfspace.theories.closed_forms import bradley_load, hertz_radius, jkr_approach, jkr_load
+from halfspace.theories.maugis import MaugisDugdale
+
+KINDS: Mapping[int, dict[str, Any]] = {
+    lines.STABLE: {"color": style.BLUE, "linewidth": 2.4, "linestyle": "-"},
+    lines.GRIPS_ONLY: {"color": style.SKY, "linewidth": 2.4, "linestyle": style.DASHED},
+    lines.UNSTABLE: {"color": style.RED, "linewidth": 1.8, "linestyle": style.DOTTED},
+}
+THEORIES: Mapping[str, dict[str, Any]] = {
+    "JKR": {"color": "0.35", "linewidth": 1.1, "linestyle": style.LONG, "zorder": 1.5},
+    "Bradley": {"color": "0.55", "linewidth": 1.1, "linestyle": style.CHAIN, "zorder": 1.5},
+    "Maugis-Dugdale": {"color": style.PINK, "linewidth": 1.3, "linestyle": "-", "zorder": 1.4},
+}
+GRIPS: dict[str, Any] = {"color": "black", "linestyle": "-"}
+APPARATUS: dict[str, Any] = {"color": style.GREEN, "linestyle": "-"}
+SAMPLES = 600
+APART = 0.06  # least distance of points drawn on a line, of the frame
+FAR_BEYOND = 3  # the highest load, in that of the frame around the events, from which on they are enlarged
+
+Ends = tuple[float, float]
+
+
+def draw_load(axes: Any, curves: Curves) -> str:
+    """Load against approach, with the events enlarged where they would be hard to see; returns the title."""
+    highest = min(float(curves.path.load.max()), curves.question.to_load)
+    _draw_frame(axes, curves, lines.frame(curves.path, highest))
+    units = scales(curves)
+    style.dress(axes, units["approach"].label, units["load"].label, legend=None)
+    below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 4, "columnspacing": 1.2}
+    axes.legend(handles=_seen(axes), **below, **LEGEND | {"handlelength": 2.5})
+    close = lines.around_events(curves.path)
+    if highest > FAR_BEYOND * close.load[1]:
+        inset = axes.inset_axes((0.08, 0.4, 0.42, 0.5))
+        _draw_frame(inset, curves, close)
+        inset.tick_params(labelsize=7.5)
+        inset.set_title("enlarged around the events", fontsize=8)
+    return _title(curves)
+
+
+def _seen(axes: Any) -> list[Any]:
+    """What has a name and is inside the frame; arrows are, of which the named line has no points."""
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    named = {line: line.get_xydata() for line in axes.get_legend_handles_labels()[0]}
+    return [line for line, at in named.items() if not len(at) or np.any(np.all((low <= at) & (at <= high), axis=1))]
+
+
+def _draw_frame(axes: Any, curves: Curves, frame: Frame) -> None:
+    x, y = scales(curves)["approach"], scales(curves)["load"]
+    for name, (approach, load) in _theories(curves.path.tabor, frame):
+        axes.plot(x.of(approach), y.of(load), label=name, **THEORIES[name])
+    line = lines.smooth(reaching(curves.path, curves.question.stiffness))
+    for kind, load in line.parts(line.load):
+        axes.plot(x.of(line.approach), y.of(load), label=lines.KINDS[kind], **KINDS[kind])
+    _draw_other(axes, curves, frame)
+    _draw_states(axes, curves, x, y)
+    _draw_jumps(axes, curves, frame)
+    axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
+    axes.set(xlim=tuple(x.size * value for value in frame.approach), ylim=tuple(y.size * v for v in frame.load))
+
+
+def _draw_other(axes: Any, curves: Curves, frame: Frame) -> None:
+    """The half-space beside the finite elements: points on the same contact, a line for another."""
+    if curves.other is None:
+        return
+    x, y = scales(curves)["approach"], scales(curves)["load"]
+    if curves.question.same_contact:
+        points = {"linestyle": "none", "marker": "o", "markersize": 4, "markerfacecolor": "white", "zorder": 4}
+        points |= {"color": "black", "markeredgewidth": 0.8, "label": "half-space"}
+        approach, load = _spread(curves.other.approach, curves.other.load, frame)
+        axes.plot(x.of(approach), y.of(load), **points)
+    else:
+        line = lines.smooth(curves.other)
+        look: dict[str, Any] = {"color": style.ORANGE, "linewidth": 1.5, "linestyle": style.CHAIN, "zorder": 1.8}
+        axes.plot(x.of(line.approach), y.of(line.load), label="half-space", **look)
+
+
+def _spread(approach: Array, load: Array, frame: Frame) -> tuple[Array, Array]:
+    """Points of a curve that are far enough apart to leave sight of the line below."""
+    places = np.column_stack([approach / np.ptp(frame.approach), load / np.ptp(frame.load)])
+    kept = [0]
+    for i in range(1, len(places)):
+        if np.hypot(*(places[i] - places[kept[-1]])) > APART:
+            kept.append(i)
+    return approach[kept], load[kept]
+
+
+def _draw_states(axes: Any, curves: Curves, x: Scale, y: Scale) -> None:
+    """Markers at the events whose profiles are shown below, and at the folds."""
+    turns = lines.folds(curves.path)
+    if len(turns):
+        square = {"linestyle": "none", "marker": "|", "markersize": 13, "color": "black", "zorder": 4.5}
+        axes.plot(x.of(turns[:, 0]), y.of(turns[:, 1]), label="fold", **square)
+    for name, look in STATES.items():
+        if event := curves.path.event(name):
+            marker = {"linestyle": "none", "marker": look.marker, "markersize": 6.5, "color": look.color, "zorder": 5}
+            marker |= {"markeredgecolor": "black", "markeredgewidth": 0.7}
+            axes.plot(x.of(np.array([event.approach])), y.of(np.array([event.load])), label=look.words, **marker)
+
+
+def _draw_jumps(axes: Any, curves: Curves, frame: Frame) -> None:
+    """Arrows of the jumps, under fixed grips and along the load lines of an apparatus."""
+    units = scales(curves)
+    for cycle, look in ((curves.grips, GRIPS), (curves.apparatus, APPARATUS)):
+        jumps = (cycle.jump_on, cycle.jump_off) if cycle else ()
+        ends = [[(state.approach, state.load) for state in (jump.take_off, jump.landing)] for jump in jumps]
+        seen = list(filter(None, (_clipped(tail, head, frame) for tail, head in ends)))
+        for tail, head in seen:
+            _arrow(axes, _scaled(tail, units), _scaled(head, units), look)
+        if cycle and seen:
+            words = "jumps under fixed grips" if math.isinf(cycle.stiffness) else f"jumps, {_stiffness(curves)}"
+            axes.plot([], [], label=words, linewidth=1.4, **look)
+    if curves.apparatus:
+        _load_lines(axes, curves.apparatus, units)
+
+
+def _arrow(axes: Any, tail: Ends, head: Ends, look: dict[str, Any]) -> None:
+    arrow = {"arrowstyle": "-|>", "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11, **look}
+    axes.annotate("", head, tail, arrowprops=arrow, zorder=3)
+
+
+def _load_lines(axes: Any, cycle: Cycle, units: Any) -> None:
+    """Lines of slope -k, the loads that an apparatus exerts with its base held where it jumps."""
+    slope = -cycle.stiffness * units["load"].size / units["approach"].size
+    for jump in (cycle.jump_on, cycle.jump_off):
+        at = _scaled((jump.take_off.approach, jump.take_off.load), units)
+        axes.axline(at, slope=slope, color=style.GREEN, linewidth=0.8, linestyle=style.DASHED, zorder=1.2)
+
+
+def _scaled(at: Ends, units: Any) -> Ends:
+    return at[0] * units["approach"].size, at[1] * units["load"].size
+
+
+def _clipped(tail: Ends, head: Ends, frame: Frame) -> tuple[Ends, Ends] | None:
+    """Ends of the part of an arrow that is inside the frame, or None if it is outside."""
+    first, last = 0.0, 1.0
+    for start, end, (low, high) in zip(tail, head, (frame.approach, frame.load), strict=True):
+        if start == end:
+            continue
+        crossings = sorted(((low - start) / (end - start), (high - start) / (end - start)))
+        first, last = max(first, crossings[0]), min(last, crossings[1])
+    ends = [(tail[0] + t * (head[0] - tail[0]), tail[1] + t * (head[1] - tail[1])) for t in (first, last)]
+    return (ends[0], ends[1]) if first < last else None
+
+
+def _theories(tabor: float, frame: Frame) -> Iterator[tuple[str, tuple[Array, Array]]]:
+    """Approach and load of the closed theories, inside a frame."""
+    widest = float(hertz_radius(frame.load[1]) + 3)
+    a = np.linspace(1e-3, widest, SAMPLES)
+    yield "JKR", (jkr_approach(a, tabor), jkr_load(a))
+    apart = np.linspace(frame.approach[0], min(0.6, frame.approach[1]), SAMPLES)
+    yield "Bradley", (apart, bradley_load(apart))
+    if 1e-6 <= MAUGIS.of(tabor) <= 1e6:
+        yield "Maugis-Dugdale", _maugis(tabor, a)
+
+
+def _maugis(tabor: float, radius: Array) -> tuple[Array, Array]:
+    """From where its attraction reaches across, through the disc of tension, to contact."""
+    theory = MaugisDugdale.matched(tabor)
+    c = np.linspace(0, theory.touching_radius, SAMPLES)
+    approach = np.concatenate([theory.separated_approach(c), theory.approach(radius)])
+    return approach, np.concatenate([theory.separated_load(c), theory.load(radius)])
+
+
+def _title(curves: Curves) -> str:
+    scene, units = curves.question.scene, curves.question.units
+    body = "" if scene.body == "block" else f", {scene.body if isinstance(scene.body, str) else scene.body.name}"
+    rho = f", $R/\\epsilon$ = {scene.radius_ratio:.4g}" if scene.radius_ratio else ""
+    size = f"$R$ = {engineering(units.radius, 'm')}, " if units else ""
+    return f"{size}$\\mu$ = {scene.tabor:.4g}{rho}{body}; {curves.solver}"
+
+
+def _stiffness(curves: Curves) -> str:
+    k, units = curves.question.stiffness, curves.question.units
+    return f"$k$ = {engineering(k * units.stiffness, 'N/m')}" if units else f"$k = {k:g}\\,R\\Delta\\gamma/\\epsilon$"
+
+
+def draw_central_gap(axes: Any, curves: Curves) -> str:
+    """Central gap against approach, along which the unstable branch is easiest to follow; returns the title."""
+    units, line = scales(curves), lines.smooth(curves.path)
+    x, y = units["approach"], units["central_gap"]
+    for kind, gap in line.parts(line.central_gap):
+        axes.plot(x.of(line.approach), y.of(gap), label=lines.KINDS[kind], **KINDS[kind])
+    for name, look in STATES.items():
+        if event := curves.path.event(name):
+            at = x.of(np.array([event.approach])), y.of(np.array([event.central_gap]))
+            axes.plot(*at, linestyle="none", marker=look.marker, color=look.color, markeredgecolor="black", zorder=5)
+    left, right = lines.around_events(curves.path).approach
+    style.dress(axes, x.label, y.label, legend=None, xlim=(x.size * left, x.size * right))
+    top = 1.1 * float(line.central_gap[line.approach > left].max())
+    axes.set_ylim(-0.15 * top * y.size, top * y.size)
+    axes.legend(loc="upper right", **LEGEND)
+    return "central gap"

@@ -1,0 +1,178 @@
+"""A curve as plain data for machines: JSON with everything, CSV with the points and events."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
+from typing import IO, Any
+
+from fem_adhesion.common.facts import plain, versions
+from fem_adhesion.curve.scales import si_sizes
+from fem_adhesion.curve.solve import Curves
+from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.devices import Cycle, Jump
+from halfspace.equilibrium.events import Event, Tolerance
+
+OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
+UNITS: Mapping[str, str] = {
+    "arclength": "1",
+    "approach": "eps",
+    "load": "R dgamma",
+    "central_gap": "eps",
+    "contact_radius": "beta",
+    "energy": "R dgamma eps",
+    "stiffness": "R dgamma/eps",
+}
+ERRORS = tuple(f"{name}_error" for name in OBSERVABLES)
+COLUMNS = ("arclength", *OBSERVABLES, *ERRORS)
+SPREAD = "_model_uncertainty"  # after an observable's name: how far apart models lie between which there is a choice
+NUMBERS = tuple(key for name in OBSERVABLES for key in (name, f"{name}_error"))  # of an event
+
+
+def record(curves: Curves) -> dict[str, Any]:
+    """Everything, ready for JSON: no NaN, and None for the contact radius without contact.
+
+    Returns
+    -------
+    dict
+        ``units`` names the units of all numbers in ``solutions`` and ``jumps``; where the material is known ``si`` has
+        the factor that takes each into SI, and the SI unit.
+    """
+    question = curves.question
+    return {
+        "scene": plain(asdict(question.scene)),
+        "rtol": question.rtol,
+        "to_load": question.to_load,
+        "units": dict(UNITS),
+        "si": _si(curves),
+        "solutions": {name: _solution(path) for name, path in curves.sampled.items()},
+        "jumps": {"fixed_grips": _cycle(curves.grips), "apparatus": _cycle(curves.apparatus)},
+        "versions": versions(),
+    }
+
+
+def _si(curves: Curves) -> dict[str, Any] | None:
+    units = curves.question.units
+    if units is None:
+        return None
+    sizes = {name: {"factor": size, "unit": unit} for name, (size, unit) in si_sizes(units).items() if name in UNITS}
+    return {"material": asdict(units), "units": sizes}
+
+
+def _solution(path: EquilibriumPath) -> dict[str, Any]:
+    points = {name: [finite(value) for value in getattr(path, name)] for name in COLUMNS}
+    stability = {
+        "stable_under_fixed_grips": path.stable.tolist(),
+        "stable_under_dead_load": path.stable_under_dead_load.tolist(),
+    }
+    return {
+        "events": {name: event_record(event, path.tolerance) for name, event in path.events.items()},
+        "curve": points | stability,
+        "met": path.met,
+        "jumps": path.jumps,
+        "margin": _estimate(path.margin) if path.margin else None,
+        "model_uncertainty": {name: _finite(spread) for name, spread in path.spread.items()},
+        "energy_released": _estimate(path.energy),
+        "unknowns": path.unknowns,
+        "seconds": path.seconds,
+        "settings": dict(path.settings),
+    }
+
+
+def _finite(numbers: Mapping[str, float]) -> dict[str, float | None]:
+    return {name: finite(value) for name, value in numbers.items()}
+
+
+def event_record(event: Event, tolerance: Tolerance) -> dict[str, Any]:
+    """Numbers of an event with their errors, and which of them miss a tolerance."""
+    return {key: finite(getattr(event, key)) for key in NUMBERS} | {"missed": list(tolerance.missed_by(event))}
+
+
+def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
+    if cycle is None:
+        return None
+    return {
+        "stiffness": finite(cycle.stiffness),
+        "met": cycle.met,
+        "jump_on": _jump(cycle.jump_on, cycle.tolerance),
+        "jump_off": _jump(cycle.jump_off, cycle.tolerance),
+        "energy_lost": _estimate(cycle.energy_lost),
+    }
+
+
+def _jump(jump: Jump, tolerance: Tolerance) -> dict[str, Any]:
+    states = {"take_off": event_record(jump.take_off, tolerance), "landing": event_record(jump.landing, tolerance)}
+    return {**states, "energy": _estimate(jump.energy)}
+
+
+def _estimate(estimate: Estimate) -> dict[str, float | None]:
+    return {"value": finite(estimate.value), "error": finite(estimate.error)}
+
+
+def finite(value: float) -> float | None:
+    """Number for JSON, None for what is not finite."""
+    return float(value) if math.isfinite(value) else None
+
+
+def write_csv(curves: Curves, file: IO[str]) -> None:
+    """Write the points of each solver's curve and, in their places by arclength, its events with errors.
+
+    The unit is part of a column's name; where the material is known each quantity comes in SI too. Stability is left
+    out at events, which are where it changes. ``missed_rtol`` names the quantities of an event whose errors are above
+    the tolerance. At finite strain the ``model_uncertainty`` of an event's numbers has columns of its own.
+    """
+    writer = csv.DictWriter(file, _columns(curves), lineterminator="\n", restval="")
+    writer.writeheader()
+    for solver, path in curves.sampled.items():
+        rows = sorted([*_points(path), *_events(path)], key=lambda row: row["arclength"])
+        writer.writerows(_with_units(curves, {"solver": solver, **row}) for row in rows)
+
+
+def _points(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
+    numbers = zip(*(getattr(path, name).tolist() for name in COLUMNS), strict=True)
+    for values, grips, dead in zip(numbers, path.stable, path.stable_under_dead_load, strict=True):
+        flags = {"stable_under_fixed_grips": int(grips), "stable_under_dead_load": int(dead)}
+        yield {"event": "", **dict(zip(COLUMNS, values, strict=True)), **flags}
+
+
+def _events(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
+    for name, event in path.events.items():
+        numbers = {key: getattr(event, key) for key in NUMBERS}
+        numbers |= {name_of + SPREAD: apart for name_of, apart in path.spread.get(name, {}).items()}
+        missed = " ".join(path.tolerance.missed_by(event))
+        yield {"event": name, "arclength": path.stages[-1][name].point.arclength, **numbers, "missed_rtol": missed}
+
+
+def _columns(curves: Curves) -> list[str]:
+    spread = [name + SPREAD for name in OBSERVABLES if any(path.spread for path in curves.paths.values())]
+    names = [column for quantity in (*OBSERVABLES, *ERRORS, *spread) for column in _named(curves, quantity)]
+    stability = ["stable_under_fixed_grips", "stable_under_dead_load"]
+    return ["solver", "event", "arclength", *names, *stability, "missed_rtol"]
+
+
+def _named(curves: Curves, quantity: str) -> dict[str, float]:
+    """Columns of a quantity, unit included, and what its values are multiplied by in them."""
+    name = _observable(quantity)
+    columns = {f"{quantity}_{UNITS[name].replace(' ', '_')}": 1.0}
+    if units := curves.question.units:
+        size, unit = si_sizes(units)[name]
+        columns[f"{quantity}_{unit}"] = size
+    return columns
+
+
+def _observable(quantity: str) -> str:
+    """Observable that a quantity is the value, the error or the model uncertainty of."""
+    return quantity.removesuffix("_error").removesuffix(SPREAD)
+
+
+def _with_units(curves: Curves, row: Mapping[str, Any]) -> dict[str, Any]:
+    """Row under the names of the columns; without contact the contact radius is left empty."""
+    named: dict[str, Any] = {}
+    for key, value in row.items():
+        if _observable(key) not in OBSERVABLES:
+            named[key] = value
+        elif math.isfinite(value):
+            named |= {column: repr(float(value * factor)) for column, factor in _named(curves, key).items()}
+    return named

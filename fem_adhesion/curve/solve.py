@@ -1,0 +1,161 @@
+"""The load-approach curve of one contact by one solver or both, and the jumps of an apparatus on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import halfspace
+from fem_adhesion import convergence
+from fem_adhesion.scene import Scene
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.devices import Cycle, cycle
+from halfspace.errors import InputError
+from halfspace.limits import require_load, require_points, require_rtol
+from halfspace.scaling import Units
+
+HALF_SPACE, FINITE_ELEMENTS = "half-space", "finite elements"
+SolverName = Literal["half-space", "fem", "both"]
+
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked of a contact.
+
+    Parameters
+    ----------
+    scene : Scene
+        The contact.
+    solver : {"half-space", "fem", "both"}
+        Which solver. Of a body that is no half-space the integral equation solves the half-space under the same
+        profile, so that it serves for comparison only.
+    rtol : float
+        Relative accuracy asked of loads and approaches, 1e-9 to 1e-1.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+    units : Units, optional
+        Of the contact in SI, if its material is known.
+    stiffness : float
+        Of the apparatus in R dgamma/eps; infinite for fixed grips.
+    points : int, optional
+        Of each curve in files, evenly spaced in arclength; as many as its tracing takes unless given, or drawn.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or the solver does not serve the scene.
+    """
+
+    scene: Scene
+    solver: SolverName = "half-space"
+    rtol: float = 1e-5
+    to_load: float = 5.0
+    units: Units | None = None
+    stiffness: float = math.inf
+    points: int | None = None
+
+    def __post_init__(self) -> None:
+        require_rtol(self.rtol)
+        require_load(self.to_load)
+        if self.points is not None:
+            require_points(self.points)
+        if not self.stiffness > 0:
+            raise InputError(
+                f"stiffness = {self.stiffness:g} R dgamma/eps is outside 0 < stiffness; leave it out for fixed grips"
+            )
+        if self.solver == "half-space" and self.scene.body != "block":
+            raise InputError(
+                f'solver = half-space does not serve body = "{self.scene.body}", limit: block; take fem or both'
+            )
+
+    @property
+    def same_contact(self) -> bool:
+        """Whether the half-space is the body that is asked for, and not only one to compare with."""
+        return self.scene.body == "block" and self.scene.far_field == "point_load"
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Curves of a contact.
+
+    Attributes
+    ----------
+    question : Question
+        What was asked.
+    paths : mapping of str to EquilibriumPath
+        By solver, `FINITE_ELEMENTS` first if it was asked.
+    grips, apparatus : Cycle or None
+        Jumps on the first path under fixed grips and with the apparatus, if the contact jumps; with fixed grips there
+        is no apparatus.
+    """
+
+    question: Question
+    paths: Mapping[str, EquilibriumPath]
+    grips: Cycle | None
+    apparatus: Cycle | None
+
+    @property
+    def path(self) -> EquilibriumPath:
+        """The first path, whose states and jumps are shown."""
+        return next(iter(self.paths.values()))
+
+    @property
+    def solver(self) -> str:
+        """What the first path was solved with."""
+        return next(iter(self.paths))
+
+    @property
+    def sampled(self) -> Mapping[str, EquilibriumPath]:
+        """The paths with the number of points asked for."""
+        if self.question.points is None:
+            return self.paths
+        points = self.question.points
+        return {name: path if path.count == points else path.resampled(points) for name, path in self.paths.items()}
+
+    @property
+    def other(self) -> EquilibriumPath | None:
+        """The second path."""
+        return self.paths.get(HALF_SPACE) if self.solver == FINITE_ELEMENTS else None
+
+
+def solve(question: Question, progress: Progress = lambda *_: None) -> Curves:
+    """Trace the curve by each solver asked for, and find its jumps.
+
+    Parameters
+    ----------
+    question : Question
+        The contact.
+    progress : callable
+        Told what is under way, how much is done and of how much.
+
+    Raises
+    ------
+    halfspace.errors.NotConverged
+        If a curve cannot be traced.
+    """
+    solvers = {"fem": (FINITE_ELEMENTS,), "half-space": (HALF_SPACE,), "both": (FINITE_ELEMENTS, HALF_SPACE)}
+    names, points = solvers[question.solver], question.points
+    paths = {}
+    for done, name in enumerate(names):
+        progress(name, done, len(names) + 1)
+        path = _trace(question, name)
+        paths[name] = path.resampled(points) if points and points > path.count else path
+    progress("jumps", len(names), len(names) + 1)
+    path = paths[names[0]]
+    apparatus = None if math.isinf(question.stiffness) else cycle(path, question.stiffness)
+    return Curves(question, paths, cycle(path), apparatus)
+
+
+def _trace(question: Question, solver: str) -> EquilibriumPath:
+    scene, wanted = question.scene, {"rtol": question.rtol, "to_load": question.to_load}
+    if solver == FINITE_ELEMENTS:
+        return convergence.trace(scene, **wanted)
+    curved = scene.profile == "sphere" or isinstance(scene.body, Path)
+    larger = scene.counter.radius if scene.counter and curved else math.inf
+    ratio = scene.radius_ratio if curved else None
+    return halfspace.trace(scene.tabor, radius_ratio=ratio, counter_radius=larger, **wanted)

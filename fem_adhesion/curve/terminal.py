@@ -1,0 +1,198 @@
+"""A curve for the terminal: its events with units and errors, and a small plot in characters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+from rich.console import Console
+from rich.markup import escape
+from rich.text import Text
+
+from fem_adhesion.common.numbers import engineering, with_error
+from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
+from fem_adhesion.common.units import Quantity
+from fem_adhesion.curve import lines
+from fem_adhesion.curve.braille import Canvas
+from fem_adhesion.curve.scales import Scale, scales
+from fem_adhesion.curve.solve import Curves
+from halfspace.equilibrium.curve import Estimate
+from halfspace.equilibrium.devices import Cycle
+from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
+from halfspace.equilibrium.reach import reaching
+
+DIGITS = 8  # significant, at most
+MISSED = "*"  # after a number whose error is above the tolerance
+WIDTH, HEIGHT = 76, 18  # of the plot, in characters
+EVENTS: Mapping[str, str] = {
+    "pull_off": "pull-off",
+    "jump_on": "jump on",
+    "jump_off": "jump off",
+    "zero_load": "zero load",
+}
+LETTERS: Mapping[str, str] = {"pull_off": "P", "jump_on": "A", "jump_off": "C", "zero_load": "Z"}
+COLOURS = {lines.STABLE: "bright_blue", lines.GRIPS_ONLY: "cyan", lines.UNSTABLE: "yellow"}
+COLUMNS = ("approach", "load", "central_gap", "contact_radius")
+RANKS = {"approach": 0, "load": 0, "contact_radius": 1, "central_gap": 2}  # by which columns are left out
+
+
+def show(curves: Curves, console: Console) -> None:
+    """Print everything; the plot only in a terminal."""
+    console.print(table(curves))
+    for line in notes(curves):
+        console.print(prose(line), highlight=False)
+    if console.is_terminal:
+        console.print(plot(curves, min(WIDTH, console.width - Canvas.MARGIN)))
+        console.print(Flow(_key(curves), ", "))
+
+
+def table(curves: Curves) -> Fitted:
+    """A line for each event of each solver, and for where each jump lands."""
+    units, rows = scales(curves), list(_rows(curves))
+    words = Column("state", [words for words, _, _ in rows], text=True, wraps=True)
+    # The solver tells rows apart only where there are two.
+    solver = Column("solver", [name for _, name, _ in rows], 0 if len(curves.paths) > 1 else 3, text=True, wraps=True)
+    numbers = zip(*(cells(event, units, curves.paths[name].tolerance) for _, name, event in rows), strict=True)
+    columns = [
+        Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts, RANKS[name])
+        for name, texts in zip(COLUMNS, numbers, strict=True)
+    ]
+    return Fitted([words, solver, *columns], list(_title(curves)))
+
+
+def _rows(curves: Curves) -> Iterator[tuple[str, str, Event]]:
+    """What each row is, by which solver, and its numbers."""
+    for solver, path in curves.paths.items():
+        for name, words in EVENTS.items():
+            if event := path.event(name):
+                yield words, solver, event
+    for device, cycle in (("fixed grips", curves.grips), ("apparatus", curves.apparatus)):
+        for words, state in _landings(cycle, with_take_off=device == "apparatus"):
+            yield f"{words}, {device}", curves.solver, state
+
+
+def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str, Event]]:
+    """Where jumps land; where they take off too, unless that is an event of the curve."""
+    for words, jump in (("jump on", cycle.jump_on), ("jump off", cycle.jump_off)) if cycle else ():
+        if with_take_off:
+            yield words, jump.take_off
+        yield f"{words} lands", jump.landing
+
+
+def cells(event: Event, units: Mapping[str, Scale], tolerance: Tolerance) -> Iterator[str]:
+    """Numbers of an event, each with the error of its last digit in brackets, and a mark if that misses a tolerance."""
+    missed = tolerance.missed_by(event)
+    for name in COLUMNS:
+        value, error = getattr(event, name), getattr(event, f"{name}_error")
+        if np.isnan(value):
+            yield "-"
+        elif abs(value) <= error:
+            yield "0"
+        else:
+            yield with_error(Quantity(value, error, ""), units[name].size, DIGITS) + (MISSED if name in missed else "")
+
+
+def _title(curves: Curves) -> Iterator[str]:
+    scene, units = curves.question.scene, curves.question.units
+    yield from map(escape, scene.told)
+    if units:
+        sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
+        yield from (f"{name} = {engineering(value, unit)}" for name, value, unit in sizes)
+        yield f"Hamaker constant {engineering(units.hamaker, 'J')}"
+
+
+def notes(curves: Curves) -> Iterator[str]:
+    """Energies lost, how the curve is told to be smooth, cost, and how to read the table."""
+    energy = scales(curves)["energy"]
+    devices = [("fixed grips", curves.grips)]
+    if not np.isinf(curves.question.stiffness):
+        devices.append((_apparatus(curves), curves.apparatus))
+    for device, cycle in devices:
+        if cycle:
+            lost = with_error(Quantity(cycle.energy_lost.value, cycle.energy_lost.error, ""), energy.size, DIGITS)
+            yield f"energy lost in a cycle, {device}: {lost} {energy.unit}"
+        elif device == "fixed grips" and curves.path.jumps is None:
+            yield "jumps, fixed grips: cannot be told from a contact that follows smoothly"
+        else:
+            yield f"no jumps, {device}: the contact follows smoothly"
+    yield from _uncertainty(curves)
+    for solver, path in curves.paths.items():
+        if path.margin:
+            yield f"{solver}: {_how_far(path.margin)}"
+        told = tolerance_told(path.rtol, path.missed)
+        yield f"{solver}: {path.unknowns} unknowns, {path.count} points, {path.seconds:.2f} s; {told}"
+    if any(curves.paths[name].tolerance.missed_by(event) for _, name, event in _rows(curves)):
+        size = "of eps and the range of all events' approaches"
+        yield f"{MISSED}: the error is above rtol = {curves.question.rtol:g} of the load, of an approach {size}."
+    yield (
+        "In brackets: error of the last digit. Compression and approach are positive. Contact radius: where the gap is "
+        "3^(1/6) eps, the place of the largest tension; -: no contact."
+    )
+
+
+def _how_far(margin: Estimate) -> str:
+    """How far a curve is from folding, where that is near."""
+    known = f"{margin.value:.2g} +- {margin.error:.1g} eps/(R dgamma)"
+    if abs(margin.value) <= margin.error:
+        return f"whether it folds cannot be told, its margin being {known}; a smaller rtol may"
+    if margin.value < 0:
+        return f"its folds are about to merge, by a margin of {known}"
+    return f"close to folding: it jumps with an apparatus of a compliance above {known}"
+
+
+def _uncertainty(curves: Curves) -> Iterator[str]:
+    """How far models lie apart between which the assumptions leave a choice."""
+    units = scales(curves)
+    for name, spread in curves.path.spread.items():
+        numbers = (
+            f"{number.replace('_', ' ')} {value * units[number].size:.2g} {units[number].unit}"
+            for number, value in spread.items()
+            if np.isfinite(value) and not (name == "zero_load" and number == "load")
+        )
+        words = ", ".join(numbers) or "unknown, as one of them has none"
+        yield f"model uncertainty of {EVENTS[name]}, by what the traction at finite strain is counted per: {words}"
+
+
+def _apparatus(curves: Curves) -> str:
+    k, units = curves.question.stiffness, curves.question.units
+    return f"k = {engineering(k * units.stiffness, 'N/m')}" if units else f"k = {k:g} R dgamma/eps"
+
+
+def plot(curves: Curves, width: int = WIDTH) -> Text:
+    """Load against approach around the events, unstable stretches thinned, events and landings as letters.
+
+    Parameters
+    ----------
+    curves : Curves
+        The curve, of which the first path is drawn.
+    width : int
+        In characters, without the figures beside it.
+    """
+    units, path = scales(curves), curves.path
+    frame = lines.around_events(path)
+    canvas = Canvas(width, HEIGHT, frame.approach, frame.load)
+    line = lines.smooth(reaching(path, curves.question.stiffness))
+    for kind, load in line.parts(line.load):
+        canvas.line(line.approach, load, COLOURS[kind], thinned=kind == lines.UNSTABLE)
+    for name, letter in LETTERS.items():
+        if event := path.event(name):
+            canvas.letter(letter, event.approach, event.load)
+    for letter, jump in (("B", curves.grips.jump_on), ("D", curves.grips.jump_off)) if curves.grips else ():
+        canvas.letter(letter, jump.landing.approach, jump.landing.load)
+    x, y = units["approach"], units["load"]
+    text = Text(f"load, {y.unit}\n")
+    text.append_text(canvas.text(_ticks(frame.load, y)))
+    low, high = _ticks(frame.approach, x)
+    return text.append(f"{low:>{Canvas.MARGIN}}{f'approach, {x.unit}':^{width - 10}}{high:>10}")
+
+
+def _key(curves: Curves) -> list[str]:
+    """What the letters and dots of the plot mean."""
+    words = [f"{LETTERS[name]} {words}" for name, words in EVENTS.items() if curves.path.event(name)]
+    landings = ["B, D where the jumps from A and C land"] if curves.grips else []
+    thinned = ["dots thinned: unstable"] if not curves.path.stable.all() else []
+    return [*words, *landings, *thinned]
+
+
+def _ticks(span: Sequence[float], scale: Scale) -> tuple[str, str]:
+    return f"{span[0] * scale.size:.3g}", f"{span[1] * scale.size:.3g}"

@@ -1,0 +1,264 @@
+"""Static condensation: the block's stiffness, reduced exactly to the compliance of its contact surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
+from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load
+from fem_adhesion.elasticity.space import CellStiffness, Space, cell_stiffness, ring_measure, scatter
+from halfspace.elastic.compliance import Array, ElasticOperator, Index
+from halfspace.errors import InputError, NotConverged
+from halfspace.values import Valued
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Skeleton(Valued):
+    """Stiffness of the unknowns shared between cells; those interior to one cell are eliminated.
+
+    Attributes
+    ----------
+    stiffness : (N, N) sparse array
+        Numbered as all N unknowns; rows and columns of interior unknowns are empty.
+    inner, outer : (n_i,) and (n_o,) int arrays
+        Positions of the interior and of the shared unknowns among those of a cell.
+    recovery : (cells, n_i, n_o) array
+        Interior unknowns of each cell from its shared ones.
+    """
+
+    stiffness: sparse.csc_array
+    inner: Index
+    outer: Index
+    recovery: Array
+
+    def recovered(self, u: Array, space: Space) -> Array:
+        """Return the displacement u, (N,), with its interior unknowns filled in."""
+        full = u.copy()
+        outer, inner = space.cell_dofs[self.outer], space.cell_dofs[self.inner]
+        full[inner.T] = np.einsum("cio,oc->ci", self.recovery, u[outer])
+        return full
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Surface(Valued):
+    """Quadrature points of the contact surface, facet by facet outwards; q = facets * k points.
+
+    Attributes
+    ----------
+    radii, weights : (q,) array
+        Radii in beta and weights of 2 pi r dr in beta^2.
+    unknowns : (m,) int array
+        The vertical unknowns that do not vanish on the surface.
+    values : (q, m) array
+        Their functions at the points.
+    cells : (facets + 1,) array
+        End radii of the facets, from 0.
+    depths, slopes : (q,) array
+        Depth of the undeformed surface under z = 0, in beta, and its derivative by the radius.
+    """
+
+    radii: Array
+    weights: Array
+    unknowns: Index
+    values: sparse.csr_array
+    cells: Array
+    depths: Array
+    slopes: Array
+
+    @property
+    def cell_nodes(self) -> Index:
+        """Points of each facet, (facets, k)."""
+        return np.arange(len(self.radii)).reshape(len(self.cells) - 1, -1)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Factorised(Valued):
+    """A symmetric, positive definite sparse matrix (n, n), factorised without pivoting when it is first solved with."""
+
+    matrix: sparse.csc_array
+
+    def solve(self, rhs: Array) -> Array:
+        """Solution for a right-hand side (n,) or (n, k)."""
+        return np.asarray(self._factors.solve(rhs))
+
+    @cached_property
+    def _factors(self) -> Any:
+        options = {"SymmetricMode": True}
+        try:
+            return splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        except RuntimeError as error:  # SuperLU's way of saying so
+            raise NotConverged("the stiffness is singular; hold the body, and mesh it without empty cells") from error
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CondensedBody(Valued):
+    """A block factorised once: its surface compliance, and the fields inside for a given surface pressure.
+
+    Pressures are (q,) arrays at ``operator.radii``, positive in compression; all is dimensionless, E* = 1.
+
+    Attributes
+    ----------
+    operator : ElasticOperator
+        Deflection of the surface from the pressure on it.
+    space : Space
+        Mesh and element.
+    poisson : float
+        Poisson's ratio.
+    stiffness : callable
+        Stiffness of its cells.
+    skeleton, exterior, surface
+        The parts it was made of.
+    factors : Factorised
+        The (n, n) reduced stiffness.
+    """
+
+    operator: ElasticOperator
+    space: Space
+    poisson: float
+    stiffness: CellStiffness
+    skeleton: Skeleton
+    exterior: Exterior
+    surface: Surface
+    factors: Factorised
+
+    @property
+    def unknowns(self) -> int:
+        """Number of displacement unknowns of the block."""
+        return self.space.unknowns
+
+    @property
+    def translation(self) -> Array:
+        """The (N,) unknowns of the rigid motion u_z = 1."""
+        motion = np.zeros(self.unknowns)
+        motion[self.space.components[1]] = self.space.constant
+        return motion
+
+    def nodal_forces(self, pressure: Array) -> Array:
+        """Return the (N,) forces, in E* beta^2, that do the same work as the pressure: negative, downwards."""
+        forces = np.zeros(self.unknowns)
+        forces[self.surface.unknowns] = -(self.surface.values.T @ (self.surface.weights * pressure))
+        return forces
+
+    def reduced_displacement(self, pressure: Array) -> Array:
+        """Return the (n,) reduced unknowns; the last one is the point load c if the far field is `point_load`."""
+        x: Array = self.factors.solve(self.exterior.reduction.T @ self.nodal_forces(pressure))
+        return x
+
+    def displacement(self, pressure: Array) -> Array:
+        """Return all (N,) displacement unknowns, in beta, interior ones included."""
+        u = self.exterior.reduction @ self.reduced_displacement(pressure)
+        u += self.exterior.rigid_compliance * (self.operator.weights @ pressure) * self.translation
+        return self.skeleton.recovered(u, self.space)
+
+    def far_reaction(self, pressure: Array) -> float:
+        """Return the upward force with which the exterior holds the far boundary, in E* beta^2: equal to the load."""
+        forces = self.skeleton.stiffness @ self.displacement(pressure) - self.nodal_forces(pressure)
+        far = self.space.components[1, self.space.boundary_functions("far")]
+        return float(self.translation[far] @ forces[far])
+
+    def strain_energy(self, pressure: Array) -> float:
+        """Return the elastic energy of block and exterior, in E* beta^3, summed over the cells."""
+        x, u = self.reduced_displacement(pressure), self.displacement(pressure)
+        cells = u[self.space.cell_dofs].T
+        inside = np.einsum("ci,cij,cj->", cells, self.stiffness(self.space, self.poisson), cells, optimize=True)
+        outside = x @ (self.exterior.stiffness @ x)
+        spring = self.exterior.rigid_compliance * (self.operator.weights @ pressure) ** 2
+        return 0.5 * float(inside + outside - spring)
+
+
+def condense(
+    space: Space,
+    poisson: float,
+    *,
+    far_field: FarField = point_load,
+    points: int | None = None,
+    stiffness: CellStiffness = cell_stiffness,
+    traction: str = "projected",
+) -> CondensedBody:
+    """Factorise the block once and condense it to its contact surface.
+
+    The compliance is N K^-1 N' diag(w): N evaluates the surface deflection -u_z at the Gauss points of the contact
+    facets and w are the weights of 2 pi r dr, so a surface law assembled by quadrature at them is condensed exactly.
+
+    Parameters
+    ----------
+    space : Space
+        Mesh and element.
+    poisson : float
+        Poisson's ratio nu, 0 <= nu < 0.5.
+    far_field : callable
+        `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.far_field`.
+    points : int, optional
+        Gauss points per contact facet, more than the degree p of the element; p + 2 unless given.
+    stiffness : callable
+        Stiffness of the cells; `fem_adhesion.elasticity.incompressible.projected_stiffness` does not lock.
+    traction : {"projected", "surface"}
+        Area on which the pressure acts, vertically: projected on the plane of the contact, or that of the surface.
+
+    Returns
+    -------
+    CondensedBody
+        With the `ElasticOperator`.
+
+    Raises
+    ------
+    InputError
+        If poisson is out of range or `points` too few.
+    """
+    points = space.degree + 2 if points is None else points
+    if points <= space.degree:
+        raise InputError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
+    surface = contact_surface(space, points, traction)
+    exterior = far_field(space, poisson)
+    skeleton = eliminate_interiors(space, stiffness(space, poisson))
+    factors = factorise(skeleton, exterior)
+    operator = surface_operator(surface, exterior, factors)
+    return CondensedBody(operator, space, poisson, stiffness, skeleton, exterior, surface, factors)
+
+
+def contact_surface(space: Space, points: int, traction: str = "projected") -> Surface:
+    """Return the Gauss points of the contact facets, sorted by radius, with the weights of the area asked for."""
+    basis = boundary_basis(space, "contact", points)
+    functions = space.boundary_functions("contact")
+    radii, heights = (x.ravel() for x in np.asarray(basis.global_coordinates()))
+    order = np.argsort(radii)
+    n_r, n_z = np.asarray(basis.normals)
+    lengths = basis.dx if traction == "surface" else n_z * basis.dx
+    weights = (ring_measure(radii) * lengths.ravel())[order]
+    ends = space.mesh.p[0, np.unique(space.mesh.facets[:, space.mesh.boundaries["contact"]])]
+    values = trace_matrix(basis, functions)[order]
+    vertical, slopes = space.components[1, functions], (n_r / n_z).ravel()[order]
+    return Surface(radii[order], weights, vertical, values, np.sort(ends), -heights[order], slopes)
+
+
+def eliminate_interiors(space: Space, K: Array) -> Skeleton:
+    """Eliminate the interior unknowns from the (cells, 2 n, 2 n) cell matrices and add up what is left."""
+    n, shared = len(K[0]) // 2, len(K[0]) // 2 - space.element.interior_dofs
+    functions = np.arange(2 * n).reshape(2, n)
+    outer, inner = functions[:, :shared].ravel(), functions[:, shared:].ravel()
+    K_io = K[:, inner[:, None], outer]
+    recovery = np.negative(np.linalg.solve(K[:, inner[:, None], inner], K_io), dtype=np.float64)
+    K_oo = K[:, outer[:, None], outer] + K_io.transpose(0, 2, 1) @ recovery
+    return Skeleton(scatter(K_oo, space.cell_dofs[outer], space.unknowns), inner, outer, recovery)
+
+
+def factorise(skeleton: Skeleton, exterior: Exterior) -> Factorised:
+    """Return the factorised T' K T + S."""
+    T = exterior.reduction
+    return Factorised(sparse.csc_array(T.T @ skeleton.stiffness @ T + exterior.stiffness))
+
+
+def surface_operator(surface: Surface, exterior: Exterior, factors: Any) -> ElasticOperator:
+    """Return the compliance of the surface, from one right-hand side per vertical unknown on it."""
+    T = exterior.reduction.tocsr()[surface.unknowns]
+    flexibility = T @ factors.solve(T.T.toarray())
+    N = surface.values
+    C = (N @ (N @ flexibility).T).T * surface.weights
+    C -= exterior.rigid_compliance * surface.weights
+    return ElasticOperator(surface.radii, surface.weights, C, surface.cells, surface.cell_nodes)

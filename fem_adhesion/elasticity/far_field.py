@@ -1,0 +1,211 @@
+"""What holds the far boundary of a body: a clamp, a plane without friction, Boussinesq's point load, or nothing.
+
+Each is a linear map u = T x from the reduced unknowns x to all of them and a stiffness S on x, so that the
+body's stiffness K becomes T' K T + S. T also imposes u_r = 0 on the axis, and leaves out the unknowns
+interior to a cell, which are eliminated before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
+from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure
+from halfspace.elastic.compliance import Array, Index
+from halfspace.values import Valued
+
+TRACE_POINTS = 6
+"""Gauss points on a facet beyond the degree p where a smooth field that is no polynomial is integrated."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Exterior(Valued):
+    """The far boundary's condition, reduced to matrices; N unknowns in all, n of them reduced.
+
+    Attributes
+    ----------
+    reduction : (N, n) sparse array
+        T, displacement unknowns from reduced ones.
+    stiffness : (n, n) sparse array
+        S, symmetric, in units of E* beta.
+    rigid_compliance : float
+        Deflection per unit load that S adds to the body's own and that must be taken off again, 1/(E* beta).
+    """
+
+    reduction: sparse.csc_array
+    stiffness: sparse.csc_array
+    rigid_compliance: float = 0.0
+
+
+class FarField(Protocol):
+    """A kind of far boundary: `clamped`, `sliding`, `point_load` or `free`."""
+
+    def __call__(self, space: Space, poisson: float) -> Exterior:
+        """Return the condition for the far boundary of this space's mesh."""
+
+
+def with_interiors(exterior: Exterior, space: Space) -> Exterior:
+    """Return the condition for a body whose interior unknowns are not eliminated: they lead the reduced ones."""
+    inner = space.interior_dofs
+    T = sparse.csc_array(sparse.hstack([_unit_columns(space, inner), exterior.reduction]))
+    S = sparse.block_diag([sparse.csc_array((len(inner), len(inner))), exterior.stiffness])
+    return Exterior(T, sparse.csc_array(S), exterior.rigid_compliance)
+
+
+def clamped(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (a clamp is one for every material)
+    """Hold the far boundary: u = 0. The deflection is too small by O(W/L)."""
+    T = _selection(space, dropped=space.components[:, space.boundary_functions("far")].ravel())
+    return Exterior(T, sparse.csc_array((T.shape[1], T.shape[1])))
+
+
+def sliding(space: Space, poisson: float) -> Exterior:  # noqa: ARG001
+    """Hold the far boundary by its vertical displacement alone: u_z = 0, u_r free; on a plane, without friction.
+
+    By symmetry a hemisphere held so is also half of a sphere that is squeezed between two equal walls.
+    """
+    T = _selection(space, dropped=space.components[1, space.boundary_functions("far")])
+    return Exterior(T, sparse.csc_array((T.shape[1], T.shape[1])))
+
+
+def point_load(space: Space, poisson: float) -> Exterior:
+    """Let the far boundary move as in a half-space under a point load at the origin: u = c u_B.
+
+    u_B is Boussinesq's displacement for a unit load, and the one added unknown c is the last. Beyond the
+    boundary goes on the half-space, which stores c^2 k_B / 2 with k_B = -oint u_B . sigma_B n dA. So the
+    equation of c says that the body pulls on the boundary with the force of a point load c, in the mean weighted by
+    u_B, and the matrix stays symmetric. c tends to the load W as L^-2; the deflection near a pressure that ends
+    within the block is in error by O(L^-5), both measured in tests/test_fem_condensed.py.
+    """
+    unknowns = space.components[:, space.boundary_functions("far")].ravel()
+    u_B = trace_projection(space, "far", lambda r, z: boussinesq_displacement(r, z, poisson)).ravel()
+    u_B[np.isin(unknowns, _axis_unknowns(space))] = 0.0
+
+    column = sparse.csc_array((u_B, (unknowns, 0 * unknowns)), shape=(space.unknowns, 1))
+    T = sparse.csc_array(sparse.hstack([_selection(space, dropped=unknowns), column]))
+    n = T.shape[1]
+    return Exterior(T, sparse.csc_array(([exterior_stiffness(space, poisson)], ([n - 1], [n - 1])), shape=(n, n)))
+
+
+def exterior_stiffness(space: Space, poisson: float) -> float:
+    """Return k_B = -oint u_B . sigma_B n dA over the far boundary, n pointing out of the block, in 1/(E* beta)."""
+    basis = boundary_basis(space, "far", space.degree + TRACE_POINTS)
+    r, z = basis.global_coordinates()
+    n_r, n_z = np.asarray(basis.normals)
+    u_r, u_z = boussinesq_displacement(r, z, poisson)
+    rr, zz, _, rz = boussinesq_stress(r, z, poisson)
+    work = u_r * (rr * n_r + rz * n_z) + u_z * (rz * n_r + zz * n_z)
+    return -float(np.sum(work * ring_measure(r) * basis.dx))
+
+
+def free(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (nothing is outside, whatever the material)
+    """Leave the far boundary free but for the uniform vertical traction that balances the load; its mean u_z is zero.
+
+    A spring on the mean of u_z holds the body; it carries the whole load, so that its deflection is known and
+    taken off: the result does not depend on the spring's stiffness.
+    """
+    far = space.boundary_functions("far")
+    basis = boundary_basis(space, "far", space.degree + 1)
+    r = basis.global_coordinates()[0]
+    area = (ring_measure(r) * basis.dx).ravel()
+    mean = trace_matrix(basis, far).T @ area / np.sum(area)
+    mean = sparse.csc_array((mean, (space.components[1, far], 0 * far)), shape=(space.unknowns, 1))
+    T = _selection(space, dropped=np.array([], dtype=np.intp))
+    spring = float(np.max(r))  # of the order of the block's own stiffness E* L
+    return Exterior(T, sparse.csc_array(spring * (T.T @ mean) @ (T.T @ mean).T), 1.0 / spring)
+
+
+def trace_projection(space: Space, name: str, field: Callable[[Array, Array], Array]) -> Array:
+    """Return the coefficients of the best approximation to a vector field on the named boundary.
+
+    Parameters
+    ----------
+    space : Space
+        Mesh and element.
+    name : str
+        Name of the boundary.
+    field : callable
+        field(r, z) returns (2, ...), its components at the given points.
+
+    Returns
+    -------
+    (2, m) array
+        Coefficients of the m functions ``space.boundary_functions(name)``, u_r first.
+    """
+    basis = boundary_basis(space, name, space.degree + TRACE_POINTS)
+    N = trace_matrix(basis, space.boundary_functions(name))
+    weighted = N.T * basis.dx.ravel()
+    values = field(*basis.global_coordinates()).reshape(2, -1)
+    coefficients: Array = splu(sparse.csc_array(weighted @ N)).solve(weighted @ values.T).T
+    return coefficients
+
+
+def boussinesq_displacement(r: Array, z: Array, poisson: float) -> Array:
+    """Return (u_r, u_z) in the half-space z <= 0 under a unit load pressing down at the origin.
+
+    Parameters
+    ----------
+    r, z : array
+        Points other than the origin, in beta.
+    poisson : float
+        Poisson's ratio, 0 <= nu < 0.5.
+
+    Returns
+    -------
+    (2, ...) array
+        Displacement in units of W/(E* beta); u_z < 0, since the load presses into the body.
+
+    Notes
+    -----
+    K. L. Johnson, Contact Mechanics (1985), eqs (3.18a, b).
+    """
+    nu, G, zeta = poisson, lame_parameters(poisson)[1], -z
+    rho = np.hypot(r, zeta)
+    u_r = r * zeta / rho**3 - (1.0 - 2.0 * nu) * r / (rho * (rho + zeta))
+    u_zeta = 2.0 * (1.0 - nu) / rho + zeta**2 / rho**3
+    return np.array([u_r, -u_zeta]) / (4.0 * np.pi * G)
+
+
+def boussinesq_stress(r: Array, z: Array, poisson: float) -> Array:
+    """Return the stresses (rr, zz, hoop, rz) that belong to `boussinesq_displacement`.
+
+    Returns
+    -------
+    (4, ...) array
+        In units of W/beta^2, tension positive.
+
+    Notes
+    -----
+    K. L. Johnson, Contact Mechanics (1985), eqs (3.19); the sign of rz is turned with the axis z.
+    """
+    nu, zeta = poisson, -z
+    rho = np.hypot(r, zeta)
+    surface = (1.0 - 2.0 * nu) / (rho * (rho + zeta))
+    rr = surface - 3.0 * r**2 * zeta / rho**5
+    zz = -3.0 * zeta**3 / rho**5
+    hoop = (1.0 - 2.0 * nu) * zeta / rho**3 - surface
+    rz = 3.0 * r * zeta**2 / rho**5
+    return np.array([rr, zz, hoop, rz]) / (2.0 * np.pi)
+
+
+def _axis_unknowns(space: Space) -> Index:
+    """Return the unknowns that must vanish: u_r on the axis."""
+    unknowns: Index = space.components[0, space.boundary_functions("axis")]
+    return unknowns
+
+
+def _selection(space: Space, dropped: Index) -> sparse.csc_array:
+    """Return the columns of the identity for all unknowns but those dropped, held by the axis or interior to a cell."""
+    kept = np.ones(space.unknowns, dtype=bool)
+    kept[np.concatenate([dropped, _axis_unknowns(space), space.interior_dofs])] = False
+    return _unit_columns(space, np.flatnonzero(kept))
+
+
+def _unit_columns(space: Space, rows: Index) -> sparse.csc_array:
+    """Return one column for each of the given unknowns, with a 1 in its row."""
+    return sparse.csc_array((np.ones(len(rows)), (rows, np.arange(len(rows)))), shape=(space.unknowns, len(rows)))

@@ -1,0 +1,189 @@
+"""Strains and stresses inside a body: from the displacement of an element, and as a continuous field recovered from it.
+
+Ordered (rr, zz, hoop, rz), tension positive. With the displacement in beta^2/R and lengths in beta, strains are in
+beta/R and stresses in E* beta/R = dgamma/(mu eps), the unit of the pressure P.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.polynomial.legendre import legvander2d
+from scipy.sparse.linalg import splu
+from skfem import CellBasis
+
+from fem_adhesion.elasticity.incompressible import pressure_modes
+from fem_adhesion.elasticity.space import Space, cell_quadrature, elastic_matrix, lame_parameters, scatter, shear_matrix
+from halfspace.elastic.compliance import Array
+
+ON_AXIS = 1e-12
+"""Radius, in the largest of the points given, below which the hoop strain is its limit du_r/dr."""
+
+
+def sampled(space: Space, coefficients: Array, places: Array) -> Array:
+    """Return the values of scalar fields at points of each cell.
+
+    Parameters
+    ----------
+    space : Space
+        Mesh and element.
+    coefficients : (..., functions) array
+        Of the scalar functions.
+    places : (2, k) array
+        Points of the reference cell.
+
+    Returns
+    -------
+    (..., cells, k) array
+    """
+    dofs = space.scalar_dofs.element_dofs
+    values = _reference_values(space, places)
+    return np.asarray(np.einsum("...nc,nk->...ck", coefficients[..., dofs], values, optimize=True))
+
+
+def positions(space: Space, places: Array) -> Array:
+    """Return r and z, (2, cells, k), of points (2, k) of the reference cell in each cell."""
+    return np.asarray(_basis(space, places).global_coordinates())
+
+
+def strains(space: Space, displacement: Array, places: Array) -> Array:
+    """Return the strains of a displacement at points of each cell.
+
+    Parameters
+    ----------
+    space : Space
+        Mesh and element.
+    displacement : (N,) array
+        All displacement unknowns, in beta^2/R.
+    places : (2, k) array
+        Points of the reference cell.
+
+    Returns
+    -------
+    (4, cells, k) array
+        e_rr, e_zz, u_r/r and gamma_rz, in beta/R; on the axis u_r/r is du_r/dr.
+    """
+    basis = _basis(space, places)
+    u_r, u_z = (basis.interpolate(displacement[row]) for row in space.components)
+    r = np.asarray(basis.global_coordinates())[0]
+    off_axis = r > ON_AXIS * r.max()
+    hoop = np.where(off_axis, np.asarray(u_r) / np.where(off_axis, r, 1.0), u_r.grad[0])
+    return np.array([u_r.grad[0], u_z.grad[1], hoop, u_r.grad[1] + u_z.grad[0]])
+
+
+def stresses(
+    space: Space, poisson: float, displacement: Array, places: Array, *, projected_dilatation: bool = False
+) -> Array:
+    """Return the stresses of a displacement at points of each cell: discontinuous from cell to cell.
+
+    Parameters
+    ----------
+    space, displacement, places
+        As of `strains`.
+    poisson : float
+        Poisson's ratio, 0 <= nu < 0.5.
+    projected_dilatation : bool
+        Whether the displacement is that of `fem_adhesion.elasticity.incompressible.projected_stiffness`, whose mean
+        stress is lambda times the projection of div u, not div u itself.
+
+    Returns
+    -------
+    (4, cells, k) array
+        In E* beta/R, tension positive.
+    """
+    strain = strains(space, displacement, places)
+    if not projected_dilatation:
+        return np.asarray(np.einsum("ij,jck->ick", elastic_matrix(poisson), strain))
+    stress = np.einsum("ij,jck->ick", shear_matrix(poisson), strain)
+    stress[:3] += lame_parameters(poisson)[0] * _projected_dilatation(space, displacement, places)
+    return np.asarray(stress)
+
+
+def recovered_stresses(
+    space: Space, poisson: float, displacement: Array, *, projected_dilatation: bool = False
+) -> Array:
+    """Return the continuous stresses nearest to those of the elements.
+
+    Parameters and units as of `stresses`.
+
+    Returns
+    -------
+    (4, functions) array
+        Coefficients of the scalar functions, for `sampled`.
+
+    Notes
+    -----
+    The least-squares projection on the functions of the displacement itself, each cell weighted by the inverse of its
+    area, so that a large cell does not outvote a small, more accurate neighbour. O. C. Zienkiewicz and J. Z. Zhu,
+    Int. J. Numer. Methods Eng. 24 (1987) 337-357.
+    """
+    points, _ = cell_quadrature(space)
+    stress = stresses(space, poisson, displacement, points, projected_dilatation=projected_dilatation)
+    return projection(space, stress)
+
+
+def projection(space: Space, values: Array) -> Array:
+    """Return the coefficients (m, functions) of the fields nearest to values (m, cells, k) at `cell_quadrature`."""
+    points, weights = cell_quadrature(space)
+    N, dA = _reference_values(space, points), _basis(space, points, weights).dx
+    dA = dA / dA.sum(axis=1, keepdims=True)
+    dofs, size = np.asarray(space.scalar_dofs.element_dofs, dtype=np.intp), int(space.scalar_dofs.N)
+    mass = scatter(np.einsum("ik,ck,jk->cij", N, dA, N, optimize=True), dofs, size)
+    loads = np.einsum("mck,ck,ik->mic", values, dA, N, optimize=True)
+    right = np.array([np.bincount(dofs.ravel(), load.ravel(), size) for load in loads])
+    factors = splu(mass, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    return np.asarray(factors.solve(right.T).T)
+
+
+def _projected_dilatation(space: Space, displacement: Array, places: Array) -> Array:
+    """Projection of div u, cell by cell, on `pressure_modes`, at points (2, k): (cells, k)."""
+    points, weights = cell_quadrature(space)
+    basis = _basis(space, points, weights)
+    root = np.sqrt(np.asarray(basis.global_coordinates())[0] * basis.dx)
+    dilatation = strains(space, displacement, points)[:3].sum(axis=0)
+    Q, triangle = np.linalg.qr(root[:, :, None] * pressure_modes(space))
+    parts = np.einsum("ckm,ck->cm", Q, root * dilatation)
+    coefficients = np.linalg.solve(triangle, parts[:, :, None])[:, :, 0]
+    x, y = 2.0 * places - 1.0
+    modes = legvander2d(x, y, [space.degree - 1, space.degree - 1])[:, :-1]
+    return np.asarray(coefficients @ modes.T)
+
+
+def hydrostatic(stress: Array) -> Array:
+    """Return the mean of the three normal stresses (4, ...), tension positive."""
+    return np.asarray(stress[:3].mean(axis=0))
+
+
+def von_mises(stress: Array) -> Array:
+    """Return von Mises' equivalent stress of (4, ...), sqrt(3/2) times the norm of the deviator."""
+    deviator = stress[:3] - hydrostatic(stress)
+    return np.asarray(np.sqrt(1.5 * np.sum(deviator**2, axis=0) + 3.0 * stress[3] ** 2))
+
+
+def principal(stress: Array) -> Array:
+    """Return the principal stresses (3, ...) of (4, ...), descending; the hoop stress is one of them."""
+    rr, zz, hoop, rz = stress
+    middle, radius = (rr + zz) / 2, np.hypot((rr - zz) / 2, rz)
+    return np.asarray(np.sort([middle - radius, middle + radius, hoop], axis=0)[::-1])
+
+
+def energy_density(stress: Array, poisson: float) -> Array:
+    """Return the strain energy per volume of (4, ...), half stress times the strain that goes with it.
+
+    In E* (beta/R)^2 for stresses in E* beta/R.
+    """
+    compliance = np.linalg.inv(elastic_matrix(poisson))
+    return np.asarray(np.einsum("i...,ij,j...->...", stress, compliance, stress) / 2)
+
+
+def _reference_values(space: Space, places: Array) -> Array:
+    """Values of a cell's n functions at points of the reference cell, (n, k)."""
+    n = len(space.scalar_dofs.element_dofs)
+    return np.array([np.broadcast_to(space.element.lbasis(places, i)[0], places.shape[1:]) for i in range(n)])
+
+
+def _basis(space: Space, places: Array, weights: Array | None = None) -> Any:
+    """Basis of scikit-fem's scalar element at points of all cells."""
+    quadrature = places, np.ones(places.shape[1]) if weights is None else weights
+    return CellBasis(space.mesh, space.element, quadrature=quadrature, dofs=space.scalar_dofs, disable_doflocs=True)

@@ -1,0 +1,1 @@
+"""What goes on inside the bodies at a state of a curve."""

@@ -1,0 +1,231 @@
+"""The fields inside a body at chosen states of its load-approach curve, each on a mesh made for that state.
+
+The curve is traced on the surface alone. Here a state of it is solved for again on a body whose cells are finest at
+its contact edge, in the plane across the curve through it, so that folds are no obstacle, and the displacement inside
+follows from the pressure. Units: lengths in beta, displacement in beta^2/R = mu eps, strain in beta/R, stress and
+pressure in E* beta/R = dgamma/(mu eps). `halfspace.scaling.Units` has the SI values of beta (`length`), of the stress
+(`pressure`) and of eps (`approach`), which times mu is that of the displacement.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fem_adhesion.bodies.sized import Discretisation
+from fem_adhesion.elasticity.condensation import Surface
+from fem_adhesion.elasticity.incompressible import projected_stiffness
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.elasticity.stress import recovered_stresses
+from fem_adhesion.fields.discretise import Discretised, discretised, share_of
+from fem_adhesion.scene import Scene
+from halfspace.elastic.compliance import Array
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.equilibrium.curve import EquilibriumPath, metric_for, transfer
+from halfspace.equilibrium.events import EVENTS
+from halfspace.equilibrium.newton import Control, Traceable
+from halfspace.equilibrium.path import Metric, Point, make_point
+from halfspace.errors import InputError
+from halfspace.values import Valued
+
+FIELDS = Discretisation(degree=6)
+"""Cells of the fields: displacement and stress differ from those of degree 9 by 5e-5 and 1e-3 of their maxima."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class State(Valued):
+    """An equilibrium of a scene with the fields inside the body, the first of two.
+
+    Attributes
+    ----------
+    scene : Scene
+        What was asked.
+    name : str
+        Of the event that the state is, or "".
+    space : Space
+        Mesh, in beta, and element.
+    displacement : (N,) array
+        All displacement unknowns, in beta^2/R.
+    stress : (4, functions) array
+        Coefficients of the recovered stress (rr, zz, hoop, rz), in E* beta/R, tension positive; for
+        `fem_adhesion.elasticity.stress.sampled`.
+    surface : Surface
+        Quadrature points of the contact surface.
+    problem : ContactProblem
+        The surface law on this body.
+    point : Point
+        The state's gaps, observables, and its place on the curve.
+    """
+
+    scene: Scene
+    name: str
+    space: Space
+    displacement: Array
+    stress: Array
+    surface: Surface
+    problem: ContactProblem
+    point: Point
+
+    @property
+    def observables(self) -> Array:
+        """Approach (eps), load (R dgamma), central gap (eps), contact radius (beta, nan if none), shape (4,)."""
+        return self.point.observables
+
+    @property
+    def arclength(self) -> float:
+        """Along the curve, in the units of `halfspace.equilibrium.path.Metric`."""
+        return self.point.arclength
+
+    @property
+    def radii(self) -> Array:
+        """Radii of the surface's nodes in beta, ascending, shape (q,)."""
+        return self.surface.radii
+
+    @property
+    def gap(self) -> Array:
+        """H = h/eps - 1 at the nodes, shape (q,)."""
+        return np.asarray(self.point.x[: self.radii.size])
+
+    @property
+    def pressure(self) -> Array:
+        """P at the nodes in E* beta/R, positive in compression, shape (q,)."""
+        return np.asarray(self.problem.pressure(self.point.x)[: self.radii.size])
+
+    @property
+    def share(self) -> float:
+        """The body's part of the compliance 1/E*: its own modulus is E*/share."""
+        return share_of(self.scene)
+
+    @cached_property
+    def stable(self) -> bool:
+        """Stability under fixed grips; at a fold, where it changes, rounding decides."""
+        return self.problem.negative_directions(self.point.x) == 0
+
+    @property
+    def stable_under_dead_load(self) -> bool:
+        """Stability under a dead load: stable under fixed grips and dW/dalpha positive."""
+        rates = self.point.rates
+        return self.stable and bool(rates[LOAD] * rates[APPROACH] > 0)
+
+    @property
+    def components(self) -> Array:
+        """Coefficients (2, functions) of u_r and u_z."""
+        return self.displacement[self.space.components]
+
+    def recovered_pressure(self) -> Array:
+        """Pressure P at the nodes that the stress inside exerts, shape (q,): to be compared with the law's."""
+        surface = self.surface
+        functions = self.space.boundary_functions("contact")
+        _, zz, _, rz = (surface.values @ self.stress[:, functions].T).T
+        n_z = 1 / np.hypot(1.0, surface.slopes)
+        traction = rz * surface.slopes * n_z + zz * n_z
+        return np.asarray(-traction / (n_z if self.scene.traction == "projected" else 1.0))
+
+
+def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", how: Discretisation = FIELDS) -> State:
+    """Solve for a state of a curve again on a mesh of its own, with the fields inside.
+
+    Parameters
+    ----------
+    scene : Scene
+        The contact: a block, a hemisphere or a mesh, in small strain.
+    problem : Traceable
+        On which the point was found: that of its segment or event.
+    point : Point
+        Of a path traced by `fem_adhesion.trace`.
+    name : str
+        To go with the state.
+    how : Discretisation
+        How finely.
+
+    Raises
+    ------
+    InputError
+        If the scene's body is a sphere held over a cap, or its strain finite.
+    halfspace.errors.NotConverged
+        If the state does not exist on the new mesh.
+    GridTooCoarse
+        If a user's mesh does not carry the spike of tension at the contact edge.
+    """
+    require_fields(scene)
+    body = discretised(scene, problem.interface, float(point.observables[CONTACT_RADIUS]), how)
+    return _solved(scene, body, problem, point, name)
+
+
+def states_along(
+    scene: Scene,
+    path: EquilibriumPath,
+    *,
+    points: int | None = None,
+    events: bool = True,
+    how: Discretisation = FIELDS,
+) -> Iterator[State]:
+    """Solve for states of a traced curve one by one, in order of their arclength.
+
+    Parameters
+    ----------
+    scene, how
+        As of `state_at`.
+    path : EquilibriumPath
+        The scene's, from `fem_adhesion.trace`.
+    points : int, optional
+        Of the curve's points, nearly equidistant in arclength with both ends; all unless given, none if 0.
+    events : bool
+        Whether to take the events too.
+
+    Raises
+    ------
+    InputError
+        As `state_at`, or if points is negative.
+    """
+    require_fields(scene)
+    chosen = [("", *path_point) for path_point in _spread(path, points)]
+    if events:
+        last = path.stages[-1]
+        chosen += [(name, last[name].problem, last[name].point) for name in EVENTS if name in last]
+    for name, problem, point in sorted(chosen, key=lambda entry: entry[2].arclength):
+        yield state_at(scene, problem, point, name=name, how=how)
+
+
+def require_fields(scene: Scene) -> None:
+    """Raise InputError for a scene whose fields inside the body are not to be had."""
+    if scene.strain != "small":
+        raise InputError('strain = "finite" has no fields here, limit: small strain; take strain = "small"')
+    if scene.body == "sphere":
+        raise InputError('body = "sphere" has no fields here; take body = "hemisphere"')
+
+
+def _spread(path: EquilibriumPath, count: int | None) -> list[tuple[Traceable, Point]]:
+    """Points of a path, nearly equidistant in arclength."""
+    every: list[tuple[Traceable, Point]] = [(s.problem, point) for s in path.segments for point in s.points]
+    if count is None:
+        return every
+    if count < 0:
+        raise InputError(f"points = {count} is outside 0 <= points; give how many states of the curve to take")
+    arclength = np.array([point.arclength for _, point in every])
+    wanted = np.linspace(arclength[0], arclength[-1], count)
+    nearest = np.abs(arclength - wanted[:, None]).argmin(axis=1) if count else []
+    return [every[number] for number in np.unique(nearest).astype(int)]
+
+
+def _solved(scene: Scene, made: Discretised, source: Traceable, point: Point, name: str) -> State:
+    problem, body = made.problem, made.body
+    new = _same_place(source, point, problem, metric_for(scene.tabor))
+    problem.require_resolution(new.x)
+    projected = body.stiffness is projected_stiffness
+    u = body.displacement(problem.pressure(new.x)[: body.surface.radii.size])
+    stress = recovered_stresses(body.space, body.poisson, u, projected_dilatation=projected)
+    return State(scene, name, body.space, share_of(scene) * u, stress, body.surface, problem, new)
+
+
+def _same_place(source: Traceable, point: Point, problem: ContactProblem, metric: Metric) -> Point:
+    """Solve on another discretisation in the plane across the path at a given point."""
+    weights = metric.weights * point.rates
+    used = weights != 0
+    control = Control(weights, float(weights[used] @ point.observables[used]))
+    solution = newton.solve(problem, transfer(source, point.x, problem), control)
+    return make_point(problem, solution, metric, weights, point.arclength)

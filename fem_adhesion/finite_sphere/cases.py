@@ -1,0 +1,225 @@
+"""What one case of the study of the finite sphere computes, and which difference of two cases isolates which cause.
+
+Between a paraboloid on a half-space and a true elastic sphere lie several assumptions. A case is a contact under one
+set of them; two that differ in one assumption tell what it does.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+
+import halfspace
+from fem_adhesion import Scene, trace
+from fem_adhesion.bodies.sized import Discretisation, sized_body
+from fem_adhesion.finite_sphere.records import APPROACH_SCALE, CRITICAL, Case, InputName, Record, Values
+from fem_adhesion.finite_strain.scene import find_jumps, require_well_posed
+from fem_adhesion.scene import GripName, ProfileName, TractionName
+from halfspace.accuracy.fold_birth import FIRST, Birth, NoBirth, born, tabor_of
+from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.devices import cycle
+from halfspace.equilibrium.events import Event
+from halfspace.equilibrium.newton import Traceable
+from halfspace.errors import InputError, NotConverged
+from halfspace.limits import SMALLEST_SPHERE
+
+FINITE_STRAIN_RTOL = 1e-4  # the tightest: a finer one is dear, and the effect is of the order of beta/R
+TO_LOAD = 0.5  # R dgamma: past every event, and little, since a sphere is no wider than it is
+FEWEST, MOST = 0.4, 1.25  # Tabor parameters between which the first jump of every sphere is, small or bonded
+LARGEST = 1 - 1e-9  # of the Tabor parameter up to which a sphere is large enough: not beyond it by rounding
+DEGREES = (5, 6)  # of the elements on which it is solved for
+
+
+@dataclass(frozen=True)
+class Model:
+    """A set of assumptions.
+
+    Attributes
+    ----------
+    solve : callable
+        Computes the quantities of a case; raises InputError or NotConverged where there are none.
+    inputs : tuple of str
+        Those on which it depends.
+    grip : {"sliding", "bonded"}, optional
+        What holds the body; none for the half-space.
+    check : callable
+        Raises InputError if a case is beyond limits that only this model has.
+    """
+
+    solve: Callable[[Case], Values]
+    inputs: tuple[InputName, ...]
+    grip: GripName | None = None
+    check: Callable[[Case], None] = lambda _: None
+
+
+@dataclass(frozen=True)
+class Cause:
+    """An assumption: the model that drops it less the one that makes it.
+
+    Attributes
+    ----------
+    model, baseline : str
+        Keys of `MODELS`.
+    meaning : str
+        What is switched, in words.
+    """
+
+    model: str
+    baseline: str
+    meaning: str
+
+
+def compute(case: Case) -> Record:
+    """Solve a case; one that the solver refuses or does not solve is recorded with the kind of its error and reason.
+
+    Any other error is a defect of the program and ends the study.
+    """
+    began = time.perf_counter()
+    try:
+        values = MODELS[case.model].solve(case)
+    except (InputError, NotConverged) as error:
+        return Record(case, "refused", {}, str(error), time.perf_counter() - began, type(error).__name__)
+    return Record(case, "solved", values, "", time.perf_counter() - began)
+
+
+def quantities_of(path: EquilibriumPath) -> dict[str, Estimate]:
+    """Quantities of a traced curve."""
+    pull_off, zero_load = path.events["pull_off"], path.events["zero_load"]
+    values = {
+        "pull_off_load": Estimate(pull_off.load, pull_off.load_error),
+        "zero_load_radius": Estimate(zero_load.contact_radius, zero_load.contact_radius_error),
+        APPROACH_SCALE: Estimate(path.approach_scale, 2 * max(e.approach_error for e in path.events.values())),
+    }
+    values |= _jumps(path.events)
+    if grips := cycle(path):
+        values["hysteresis"] = grips.energy_lost
+    return values
+
+
+def _jumps(events: Mapping[str, Event]) -> dict[str, Estimate]:
+    """Approach and load of the jumps that there are."""
+    values = {}
+    for name in ("jump_on", "jump_off"):
+        if jump := events.get(name):
+            values[f"{name}_approach"] = Estimate(jump.approach, jump.approach_error)
+            values[f"{name}_load"] = Estimate(jump.load, jump.load_error)
+    return values
+
+
+def _half_space(case: Case) -> Values:
+    """Reference: a paraboloid on a half-space."""
+    return quantities_of(halfspace.trace(case.given("tabor"), rtol=case.rtol, to_load=TO_LOAD))
+
+
+def _true_profile(case: Case) -> Values:
+    """A half-space under a sphere."""
+    ratio = case.given("radius_ratio")
+    return quantities_of(halfspace.trace(case.given("tabor"), rtol=case.rtol, to_load=TO_LOAD, radius_ratio=ratio))
+
+
+def hemisphere(
+    case: Case, *, profile: ProfileName = "sphere", grip: GripName = "sliding", traction: TractionName = "projected"
+) -> Scene:
+    """Elastic hemisphere of a case, held at its mid-plane."""
+    return Scene(
+        case.given("tabor"),
+        poisson=case.given("poisson"),
+        body="hemisphere",
+        profile=profile,
+        radius_ratio=case.given("radius_ratio"),
+        grip=grip,
+        traction=traction,
+    )
+
+
+def _elastic(
+    case: Case, *, profile: ProfileName = "sphere", grip: GripName = "sliding", traction: TractionName = "projected"
+) -> Values:
+    """A linear hemisphere."""
+    scene = hemisphere(case, profile=profile, grip=grip, traction=traction)
+    return quantities_of(trace(scene, rtol=case.rtol, to_load=TO_LOAD))
+
+
+def _neo_hookean(case: Case, traction: TractionName) -> Scene:
+    return replace(hemisphere(case), strain="finite", traction=traction)
+
+
+def _finite_strain(case: Case, traction: TractionName) -> Values:
+    """A neo-Hookean hemisphere: pull-off and jumps only, to a tolerance of 1e-4 or more."""
+    events = find_jumps(_neo_hookean(case, traction), max(case.rtol, FINITE_STRAIN_RTOL))
+    pull_off = events["pull_off"]
+    return {"pull_off_load": Estimate(pull_off.load, pull_off.load_error)} | _jumps(events)
+
+
+def _first_jump(case: Case) -> Values:
+    """Tabor parameter from which on a hemisphere jumps under fixed grips; none if none that is large enough does."""
+    ratio = case.given("radius_ratio")
+    birth = Birth((FEWEST, min(MOST, LARGEST * ratio / SMALLEST_SPHERE)), FIRST.gaps, FIRST.falling)
+
+    def at(degree: int) -> float:
+        return born(birth, lambda mu: _centred(replace(case, tabor=mu), degree))
+
+    try:
+        coarse, fine = map(at, DEGREES)
+    except NoBirth:
+        return {}
+    return {CRITICAL: Estimate(fine, abs(fine - coarse))}
+
+
+def _centred(case: Case, degree: int) -> Traceable:
+    """Problem of a hemisphere, its elements fine on the axis."""
+    return sized_body(hemisphere(case), Discretisation(degree)).centred().problem
+
+
+def _first_jump_half_space(case: Case) -> Values:
+    """The same of the half-space under a paraboloid."""
+    coarse, fine = (tabor_of(FIRST, rtol=rtol) for rtol in (case.rtol, case.rtol / 100))
+    return {CRITICAL: Estimate(fine, abs(fine - coarse))}
+
+
+SPHERE: tuple[InputName, ...] = ("tabor", "radius_ratio", "poisson")
+
+
+def _model_of(traction: TractionName) -> Model:
+    """Finite strain, its traction counted in one way; with a case of the default beside it."""
+
+    def check(case: Case) -> None:
+        for name in (traction, hemisphere(case).traction):
+            require_well_posed(_neo_hookean(case, name))
+
+    return Model(partial(_finite_strain, traction=traction), SPHERE, "sliding", check)
+
+
+MODELS: Mapping[str, Model] = {
+    "half_space": Model(_half_space, ("tabor",)),
+    "true_profile": Model(_true_profile, ("tabor", "radius_ratio")),
+    "finite_body": Model(partial(_elastic, profile="paraboloid"), SPHERE, "sliding"),
+    "sphere": Model(_elastic, SPHERE, "sliding"),
+    "bonded": Model(partial(_elastic, grip="bonded"), SPHERE, "bonded"),
+    "surface_traction": Model(partial(_elastic, traction="surface"), SPHERE, "sliding"),
+    "finite_strain": _model_of("projected"),
+    "finite_strain_normal": _model_of("normal"),
+    "finite_strain_reference": _model_of("reference"),
+    "first_jump": Model(_first_jump, ("radius_ratio", "poisson"), "sliding"),
+    "first_jump_half_space": Model(_first_jump_half_space, ()),
+}
+
+CAUSES = {
+    "profile": Cause("true_profile", "half_space", "sphere for paraboloid, on the half-space"),
+    "body": Cause("finite_body", "half_space", "hemisphere for half-space, under the paraboloid"),
+    "all": Cause("sphere", "half_space", "hemisphere on a sliding mid-plane, with the sphere's profile"),
+    "grip": Cause("bonded", "sphere", "bonded for sliding mid-plane"),
+    "traction": Cause("surface_traction", "sphere", "surface law per true for per projected area"),
+    "strain": Cause("finite_strain", "sphere", "neo-Hookean for linear, the attracted matter conserved"),
+    "normal": Cause("finite_strain_normal", "finite_strain", "model uncertainty: all per deformed area"),
+    "reference": Cause("finite_strain_reference", "finite_strain", "model uncertainty: all per undeformed area"),
+}
+
+
+def case_of(model: str, tabor: float | None, radius_ratio: float | None, poisson: float | None, rtol: float) -> Case:
+    """Case of a model at a point, without the inputs on which it does not depend."""
+    given: Mapping[InputName, float | None] = {"tabor": tabor, "radius_ratio": radius_ratio, "poisson": poisson}
+    needed = MODELS[model].inputs
+    return Case(model, **{name: value for name, value in given.items() if name in needed}, rtol=rtol)

@@ -1,0 +1,72 @@
+"""``fem-adhesion finite-sphere``: whether the half-space is good enough."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from fem_adhesion.common.options import AGREE, DISAGREE, add_output, ended, progress_bar
+
+if TYPE_CHECKING:
+    from fem_adhesion.common.options import Commands
+
+
+def add(commands: Commands) -> None:
+    """Add the command."""
+    study = commands.add_parser(
+        "finite-sphere",
+        help="measure how far the half-space is from a finite sphere, and why",
+        description="Solve the contact under one assumption less at a time, over Tabor parameters, R/eps and Poisson's "
+        "ratios. Each case is stored at once: what is interrupted goes on with --resume. Exits with 1 if a "
+        "case has no solution.",
+        epilog="example: fem-adhesion finite-sphere --out sphere --quick",
+    )
+    study.add_argument("--tabor", nargs="+", type=float, help="Tabor parameters", metavar="MU")
+    study.add_argument(
+        "--radius-ratio", nargs="+", type=float, help="R/eps, 2 or more and 2.25 MU or more", metavar="RHO"
+    )
+    study.add_argument("--poisson", nargs="+", type=float, help="Poisson's ratios, 0 <= nu < 0.5", metavar="NU")
+    study.add_argument(
+        "--quick", action="store_true", help="finish in half a minute: three by three points, less accurate"
+    )
+    study.add_argument("--resume", action="store_true", help="go on with the cases that the directory holds")
+    study.add_argument("--jobs", type=int, help="processes; as many as cores unless given", metavar="N")
+    study.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
+    add_output(study)
+    study.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the study of the finite sphere or what is left of it, and write its table, its pictures and its page.
+
+    Returns
+    -------
+    int
+        1 if any case has no solution, else 0.
+    """
+    from fem_adhesion.common.files import directory_written_aside
+    from fem_adhesion.common.store import open_store
+    from fem_adhesion.common.writing import writing
+    from fem_adhesion.finite_sphere import page as finite_sphere_report
+    from fem_adhesion.finite_sphere import study as finite_sphere
+    from fem_adhesion.finite_sphere.records import Study
+    from fem_adhesion.finite_sphere.words import headline
+
+    plan = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
+    store = open_store(options.out, finite_sphere.code(), resume=options.resume, force=options.force)
+    settings = {"jobs": options.jobs, "dask": options.dask, "fresh": options.force and not options.resume}
+    try:
+        with progress_bar() as step:
+            solved = finite_sphere.run(plan.cases, store, progress=step, **settings)
+        study = Study((*solved, *plan.left_out), options.quick)
+        parts = finite_sphere_report.PARTS
+        with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
+            note = finite_sphere_report.write(study, aside, lambda part: step(part, parts.index(part), len(parts)))
+            finite_sphere_report.remove_outdated(options.out, aside)
+    except KeyboardInterrupt as how:
+        return ended(how, f"what is done is kept in {options.out}, --resume goes on")
+    for line in filter(None, (*store.notes, note)):
+        print(f"fem-adhesion: {line}", file=sys.stderr)
+    print(f"{headline(study)}; written: {options.out / 'index.html'}")
+    return DISAGREE if study.failed else AGREE

@@ -1,0 +1,247 @@
+"""What the deviations of the finite sphere are governed by: their leading terms in beta/R = sqrt(mu/rho) and 1/rho.
+
+A deviation is fitted by weighted least squares on all points up to the largest beta/R at which the fit is within its
+tolerance: at all Tabor parameters together, and at each alone. Two coefficients are known, for the profile's part in
+the pull-off: -9/7 of 1/rho for a rigid sphere, and that of mu/rho by JKR's theory on the exact sphere (Maugis 1995).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_adhesion.finite_sphere.table import Row
+from fem_adhesion.finite_sphere.terms import TERMS, Array, Term, leading_terms
+from halfspace.equilibrium.curve import Estimate
+from halfspace.errors import InputError
+
+TOLERANCE = 0.1  # of the sum of the terms' sizes
+DEVIATIONS = 2.0  # standard deviations that bound an error
+RIGID_PULL_OFF = -9 / 7
+"""Of 1/rho in the relative change of the pull-off load by the profile, as mu -> 0 (theory of the rigid sphere)."""
+
+SOFT_PULL_OFF = -(8 / 15) * (9 * np.pi / 8) ** (5 / 3) / (3 * np.pi / 2)
+"""Of mu/rho as mu -> infinity: Maugis' load exceeds JKR's by 8 a^5/(15 X^2), and JKR's least has a^3 = 9 pi/8."""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Relative deviations of one quantity for one cause.
+
+    Attributes
+    ----------
+    tabor, radius_ratio, deviation, error : (n,) array
+        Points, deviations and the bounds of their errors.
+    """
+
+    tabor: Array
+    radius_ratio: Array
+    deviation: Array
+    error: Array
+
+    @property
+    def stretch(self) -> Array:
+        """beta/R = sqrt(mu/rho)."""
+        return np.asarray(np.sqrt(self.tabor / self.radius_ratio))
+
+    @property
+    def significant(self) -> Samples:
+        """Those that exceed their errors."""
+        return self.where(np.abs(self.deviation) > self.error)
+
+    def where(self, chosen: NDArray[np.bool_]) -> Samples:
+        """Those chosen."""
+        return Samples(self.tabor[chosen], self.radius_ratio[chosen], self.deviation[chosen], self.error[chosen])
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Leading terms of a deviation.
+
+    Attributes
+    ----------
+    coefficients : mapping of str to Estimate
+        By the names of the terms. The error is two standard deviations and the change when the points of more than half
+        the largest beta/R are left out.
+    holds_to : float
+        Largest beta/R of the points fitted, up to which the fit is within the tolerance.
+    tolerance : float
+        Part of the sum of the terms' sizes by which a point may be off, beyond its own error.
+    points : int
+        Fitted.
+    worst : float
+        Largest residual, in relative deviation.
+    """
+
+    coefficients: Mapping[str, Estimate]
+    holds_to: float
+    tolerance: float
+    points: int
+    worst: float
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What governs one deviation.
+
+    Attributes
+    ----------
+    cause, quantity : str
+        Which deviation.
+    tabor : float or None
+        Tabor parameter, or None for all together.
+    fit : Fit or None
+        Leading terms.
+    reason : str
+        Why there are none, or empty.
+    """
+
+    cause: str
+    quantity: str
+    tabor: float | None
+    fit: Fit | None
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The leading coefficient of the pull-off's deviation by the profile beside a theory's.
+
+    Attributes
+    ----------
+    theory : str
+        Which, and of what its number is the coefficient.
+    expected : float
+        In the theory's limit of the Tabor parameter.
+    tabor : float
+        Tabor parameter of the fit, the nearest to that limit.
+    fitted : Estimate
+        As in `Fit`.
+    """
+
+    theory: str
+    expected: float
+    tabor: float
+    fitted: Estimate
+
+
+def findings(rows: Sequence[Row], poisson: float = 0.3) -> tuple[Finding, ...]:
+    """Fits of every quantity for every cause, at all Tabor parameters together and at each."""
+    keys = dict.fromkeys((row.cause, row.quantity, row.poisson) for row in rows if row.poisson in (None, poisson))
+    return tuple(finding for key in keys for finding in _findings(key[0], key[1], samples(rows, *key)))
+
+
+def _findings(cause: str, quantity: str, data: Samples) -> Iterator[Finding]:
+    yield _finding(cause, quantity, None, data, leading_terms(cause, quantity))
+    for tabor in np.unique(data.tabor):
+        terms = leading_terms(cause, quantity, one_tabor=True)
+        yield _finding(cause, quantity, float(tabor), data.where(data.tabor == tabor), terms)
+
+
+def _finding(cause: str, quantity: str, tabor: float | None, data: Samples, terms: Mapping[str, Term]) -> Finding:
+    try:
+        return Finding(cause, quantity, tabor, fit(data, terms))
+    except InputError as error:
+        return Finding(cause, quantity, tabor, None, str(error))
+
+
+def compare(rows: Sequence[Row]) -> tuple[Comparison, ...]:
+    """Compare the profile's part in the pull-off with the rigid sphere's and with Maugis'.
+
+    Raises
+    ------
+    InputError
+        If there are too few points to fit.
+    """
+    data = samples(rows, "profile", "pull_off_load", None)
+    if not data.tabor.size:
+        raise InputError(
+            "0 deviations of the pull-off by the profile, limit 4; solve for some at small tabor/radius_ratio"
+        )
+    hard, soft = float(data.tabor.min()), float(data.tabor.max())
+    return (
+        _compared("rigid sphere: eps/R", RIGID_PULL_OFF, data, hard, lambda _, rho: 1 / rho),
+        _compared("Maugis (1995): (beta/R)^2", SOFT_PULL_OFF, data, soft, lambda mu, rho: mu / rho),
+    )
+
+
+def _compared(theory: str, expected: float, data: Samples, tabor: float, leading: Term) -> Comparison:
+    terms: dict[str, Term] = {"leading": leading, "square": lambda mu, rho: leading(mu, rho) ** 2}
+    found = fit(data.where(data.tabor == tabor), terms, tolerance=TOLERANCE / 10)
+    return Comparison(theory, expected, tabor, found.coefficients["leading"])
+
+
+def samples(rows: Iterable[Row], cause: str, quantity: str, poisson: float | None) -> Samples:
+    """Deviations of a quantity for a cause, of the rows that have one, and a finite one."""
+    chosen = [
+        (row.tabor, row.radius_ratio, row.deviation.value, row.deviation.error)
+        for row in rows
+        if (row.cause, row.quantity, row.poisson) == (cause, quantity, poisson) and row.deviation and row.radius_ratio
+    ]
+    numbers = np.array(chosen, float).reshape(-1, 4)
+    return Samples(*numbers[np.isfinite(numbers).all(axis=1)].T)
+
+
+def fit(data: Samples, terms: Mapping[str, Term] = TERMS, *, tolerance: float = TOLERANCE) -> Fit:
+    """Fit the terms on all points up to the largest beta/R that allows it.
+
+    Parameters
+    ----------
+    data : Samples
+        Points and deviations.
+    terms : mapping of str to callable
+        Functions of arrays of the Tabor parameter and R/eps.
+    tolerance : float
+        Part of the sum of the terms' sizes by which a point may be off, beyond its own error.
+
+    Raises
+    ------
+    InputError
+        If no fit is within the tolerance on at least twice as many points as there are terms.
+    """
+    functions = list(terms.values())
+    for limit in np.unique(data.stretch)[::-1]:
+        part = data.where(data.stretch <= limit)
+        if part.tabor.size < 2 * len(terms):
+            break
+        found, residual, allowed = _least_squares(part, functions, tolerance)
+        if np.all(np.abs(residual) <= allowed):
+            found = _with_bias(found, part.where(part.stretch <= limit / 2), functions, tolerance)
+            coefficients = dict(zip(terms, found, strict=True))
+            return Fit(coefficients, float(limit), tolerance, part.tabor.size, float(np.abs(residual).max()))
+    raise InputError(
+        f"{data.tabor.size} points leave no {2 * len(terms)} or more within tolerance = {tolerance:g} of a fit; "
+        "give more points of small tabor/radius_ratio"
+    )
+
+
+def _with_bias(found: Sequence[Estimate], nearer: Samples, terms: Sequence[Term], tolerance: float) -> list[Estimate]:
+    """Coefficients whose errors include their changes when only the points nearer to the limit are fitted.
+
+    What the terms leave out pulls at them, which no scatter shows.
+    """
+    if nearer.tabor.size < 2 * len(terms):
+        return list(found)
+    others, _, _ = _least_squares(nearer, terms, tolerance)
+    return [Estimate(c.value, c.error + abs(c.value - d.value)) for c, d in zip(found, others, strict=True)]
+
+
+def _least_squares(data: Samples, terms: Sequence[Term], tolerance: float) -> tuple[list[Estimate], Array, Array]:
+    """Coefficients, residuals, and the residuals allowed.
+
+    A point's weight is its error and the tolerance together: what the terms leave out weighs on the large deviations.
+    """
+    A = np.column_stack([term(data.tabor, data.radius_ratio) for term in terms])
+    sigma = data.error + tolerance * np.abs(data.deviation)
+    sigma = np.maximum(sigma, 1e-14 + 1e-9 * np.abs(data.deviation).max())
+    scaled = A / sigma[:, None]
+    sizes = np.linalg.norm(scaled, axis=0)
+    c = np.linalg.lstsq(scaled / sizes, data.deviation / sigma, rcond=None)[0] / sizes
+    residual = data.deviation - A @ c
+    spread = np.sum((residual / sigma) ** 2) / (data.deviation.size - len(terms))
+    variance = spread * np.diag(np.linalg.pinv((scaled / sizes).T @ (scaled / sizes))) / sizes**2
+    found = [Estimate(float(v), float(DEVIATIONS * np.sqrt(s))) for v, s in zip(c, variance, strict=True)]
+    return found, residual, data.error + tolerance * (np.abs(A) @ np.abs(c))

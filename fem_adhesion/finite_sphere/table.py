@@ -1,0 +1,216 @@
+"""The results of the finite sphere as a table: each quantity of each case beside the same without one cause."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from fem_adhesion.finite_sphere.cases import CAUSES, MODELS, case_of
+from fem_adhesion.finite_sphere.records import APPROACH_SCALE, CRITICAL, QUANTITIES, Case, Record, Study, Values
+from fem_adhesion.scene import GripName
+from halfspace.equilibrium.curve import Estimate
+
+BulkCompliance = Callable[[GripName, float, float], Estimate]
+"""Of grip, Poisson's ratio and R/beta: what a body yields more than the half-space under a load, in 1/(E* R)."""
+
+LESS_BULK = {f"{name}_less_bulk": name.removesuffix("_approach") for name in QUANTITIES if name.endswith("_approach")}
+"""Approaches with the linear yield of the body taken out, and the event that each is of."""
+
+UNITS = QUANTITIES | dict.fromkeys(LESS_BULK, "eps")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One quantity of one case beside the case without its cause.
+
+    Attributes
+    ----------
+    tabor, radius_ratio, poisson : float or None
+        Inputs; None for one on which the case does not depend, as it always does on the first.
+    cause : str
+        Key of `fem_adhesion.finite_sphere.cases.CAUSES`.
+    quantity, unit : str
+        Key of `UNITS`, and the unit of values and errors.
+    value, baseline, half_space : Estimate or None
+        With the cause, without it, and on the half-space under a paraboloid.
+    deviation : Estimate or None
+        (value - baseline)/half_space, of an approach over the scale of those of the half-space's curve in the place of
+        its value, see `halfspace.equilibrium.events.approach_scale`; its error bounded by those of all three.
+    status : str
+        ``solved``; ``absent`` where one of the three contacts does not have the quantity; else what ended the case, as
+        in `Record`.
+    reason : str
+        Why there is no deviation, or empty.
+    seconds : float
+        Wall time of the case.
+    kind : str
+        Of the error that ended the case, as in `Record`.
+    """
+
+    tabor: float
+    radius_ratio: float | None
+    poisson: float | None
+    cause: str
+    quantity: str
+    unit: str
+    value: Estimate | None
+    baseline: Estimate | None
+    half_space: Estimate | None
+    deviation: Estimate | None
+    status: str
+    reason: str
+    seconds: float
+    kind: str = ""
+
+
+def rows(records: Sequence[Record], bulk: BulkCompliance | None = None) -> tuple[Row, ...]:
+    """Lines of the table.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Of a study, in any order.
+    bulk : callable, optional
+        If given, the approaches of the jumps are listed also less the linear yield of the body.
+    """
+    found = {record.case: record for record in records}
+    quantities = [name for name in UNITS if bulk or name not in LESS_BULK]
+    return tuple(
+        row
+        for record in records
+        for cause in CAUSES
+        if CAUSES[cause].model == record.case.model
+        for row in _rows_of(record, cause, found, quantities, bulk)
+    )
+
+
+def _rows_of(
+    record: Record, cause: str, found: Mapping[Case, Record], quantities: Sequence[str], bulk: BulkCompliance | None
+) -> Iterator[Row]:
+    case = record.case
+    others = [_partner(case, model, found) for model in (CAUSES[cause].baseline, "half_space")]
+    tables = [_values(one, bulk) if one else {} for one in (record, *others)]
+    for name in quantities:
+        value, baseline, half_space = three = [table.get(name) for table in tables]
+        scale = half_space and tables[-1].get(APPROACH_SCALE) if UNITS[name] == "eps" else half_space
+        deviation = relative(value, baseline, scale) if value and baseline and scale else None
+        head = (case.given("tabor"), case.radius_ratio, case.poisson, cause, name, UNITS[name])
+        ending = (*_ending(record, others, three), record.seconds, record.kind)
+        yield Row(*head, value, baseline, half_space, deviation, *ending)
+
+
+def _partner(case: Case, model: str, found: Mapping[Case, Record]) -> Record | None:
+    """Record of another model at the same point."""
+    return found.get(case_of(model, case.tabor, case.radius_ratio, case.poisson, case.rtol))
+
+
+def _values(record: Record, bulk: BulkCompliance | None) -> Values:
+    """Stored quantities of a record, and those that follow from them."""
+    return {**record.values, **less_bulk(record, bulk)} if bulk else record.values
+
+
+def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
+    """Approaches of the jumps without the linear yield of the body, alpha* - kappa mu W/(R/beta)."""
+    values, yielding = record.values, _yielding(record.case, bulk)
+    return {
+        name: _less(values[f"{event}_approach"], yielding, values[f"{event}_load"])
+        for name, event in LESS_BULK.items()
+        if f"{event}_approach" in values
+    }
+
+
+def _yielding(case: Case, bulk: BulkCompliance) -> Estimate:
+    """Approach per load, kappa mu/(R/beta), of a body that is held; none of the half-space."""
+    grip = MODELS[case.model].grip
+    if grip is None:
+        return Estimate(0.0, 0.0)
+    tabor = case.given("tabor")
+    R = (case.given("radius_ratio") / tabor) ** 0.5
+    kappa = bulk(grip, case.given("poisson"), R)
+    return Estimate(kappa.value * tabor / R, kappa.error * tabor / R)
+
+
+def _less(approach: Estimate, compliance: Estimate, load: Estimate) -> Estimate:
+    error = abs(compliance.value) * load.error + compliance.error * abs(load.value)
+    return Estimate(approach.value - compliance.value * load.value, approach.error + error)
+
+
+def relative(value: Estimate, baseline: Estimate, scale: Estimate) -> Estimate:
+    """(value - baseline)/scale, with the errors of all three added."""
+    deviation = (value.value - baseline.value) / scale.value
+    error = value.error + baseline.error + abs(deviation) * scale.error
+    return Estimate(deviation, error / abs(scale.value))
+
+
+def _ending(record: Record, others: Sequence[Record | None], three: Sequence[Estimate | None]) -> tuple[str, str]:
+    """Status of a line and why it has no deviation."""
+    if record.status != "solved":
+        return record.status, record.reason
+    for one, number, role in zip((record, *others), three, ("case", "baseline", "half-space"), strict=True):
+        if one is None or one.status != "solved":
+            return "absent", f"the {role} was not solved"
+        if number is None:
+            return "absent", f"the {role} has none: it does not jump, or was solved for pull-off and jumps alone"
+    return "solved", ""
+
+
+@dataclass(frozen=True)
+class Border:
+    """Tabor parameter from which on a contact jumps under fixed grips.
+
+    Attributes
+    ----------
+    radius_ratio, poisson : float or None
+        Of the sphere; None for the half-space.
+    tabor : Estimate or None
+        Where it begins to jump, or None if it does not as far as it is large enough, or was not solved.
+    reason : str
+        Why there is none, or empty.
+    """
+
+    radius_ratio: float | None
+    poisson: float | None
+    tabor: Estimate | None
+    reason: str
+
+
+def borders(records: Sequence[Record]) -> tuple[Border, ...]:
+    """Where the jumps begin: on the half-space, then on spheres of growing size."""
+    models = ("first_jump_half_space", "first_jump")
+    chosen = sorted((r for r in records if r.case.model in models), key=_size)
+    return tuple(_border(record) for record in chosen)
+
+
+def _size(record: Record) -> tuple[float, float]:
+    case = record.case
+    return (case.poisson or 0.0, case.radius_ratio or 0.0)
+
+
+def _border(record: Record) -> Border:
+    found = record.values.get(CRITICAL)
+    reason = record.reason or ("" if found else "it does not jump at any Tabor parameter for which it is large enough")
+    return Border(record.case.radius_ratio, record.case.poisson, found, reason)
+
+
+@dataclass(frozen=True)
+class Results:
+    """All that figures and page are made of.
+
+    Attributes
+    ----------
+    study : Study
+        What was computed.
+    rows : sequence of Row
+        Its table.
+    borders : sequence of Border
+        Where the jumps begin.
+    """
+
+    study: Study
+    rows: Sequence[Row]
+    borders: Sequence[Border]
+
+
+def results(study: Study, bulk: BulkCompliance | None = None) -> Results:
+    """Set the records of a study beside each other; `bulk` as of `rows`."""
+    return Results(study, rows(study.records, bulk), borders(study.records))

@@ -1,0 +1,75 @@
+"""A contact problem at finite strain from its parts: a body for the material, its exterior, and its surface."""
+
+from __future__ import annotations
+
+from scipy import sparse
+from skfem import ElementQuadP
+
+from fem_adhesion.elasticity.far_field import Exterior
+from fem_adhesion.elasticity.incompressible import REMEDY_FROM
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain.bodies import Body, displacement_body, mixed_body
+from fem_adhesion.finite_strain.problem import FiniteStrainProblem
+from fem_adhesion.finite_strain.surface import contact_surface, rigid_operator
+from fem_adhesion.finite_strain.traction import Convention
+from halfspace.equilibrium.contact import ContactProblem
+from halfspace.errors import InputError
+from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
+from halfspace.profiles import PARABOLOID, Profile
+
+
+def material_body(space: Space, poisson: float, stretch: float) -> Body:
+    """Body of displacements alone, or with a pressure where these would lock."""
+    if poisson < REMEDY_FROM:
+        return displacement_body(space, poisson, stretch)
+    return mixed_body(space, poisson, stretch, ElementQuadP(space.degree - 1))
+
+
+def finite_strain_problem(
+    body: Body,
+    exterior: Exterior,
+    tabor: float,
+    *,
+    profile: Profile = PARABOLOID,
+    convention: Convention,
+    points: int | None = None,
+    law: SurfaceLaw = LENNARD_JONES,
+) -> FiniteStrainProblem:
+    """Put a body under a rigid flat wall that attracts it.
+
+    Parameters
+    ----------
+    body : Body
+        From `finite_strain_bodies.displacement_body` or `mixed_body`.
+    exterior : Exterior
+        Of all displacement unknowns of its space, interior ones included: see `far_field.with_interiors`.
+    tabor, law
+        As in `halfspace.equilibrium.contact.ContactProblem`.
+    profile : Profile
+        Height of the body's undeformed surface over its pole, carried along by its points. That of a block is a
+        perturbation of its flat surface, as in the linear body.
+    convention : Convention
+        What the law's traction is counted per, and its direction.
+    points : int, optional
+        Gauss points per contact facet; p + 2 unless given.
+
+    Raises
+    ------
+    InputError
+        If the exterior holds the body by a spring that has to be taken off again (`free`).
+    """
+    if exterior.rigid_compliance:
+        raise InputError("a far field with a rigid_compliance is known to `condense` only; use point_load or clamped")
+    whole = _with_pressures(exterior, body)
+    space = body.space
+    surface = contact_surface(space, whole, space.degree + 2 if points is None else points)
+    rigid = rigid_operator(space, surface)
+    return FiniteStrainProblem(body, whole, surface, ContactProblem(rigid, tabor, law, profile), convention)
+
+
+def _with_pressures(exterior: Exterior, body: Body) -> Exterior:
+    """Let the unknowns beyond the displacements be reduced unknowns themselves."""
+    more = body.unknowns - body.space.unknowns
+    T = sparse.block_diag([exterior.reduction, sparse.eye_array(more)])
+    S = sparse.block_diag([exterior.stiffness, sparse.csc_array((more, more))])
+    return Exterior(sparse.csc_array(T), sparse.csc_array(S))

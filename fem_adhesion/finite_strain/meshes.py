@@ -1,0 +1,185 @@
+"""A sphere of a scene at finite strain, on meshes fine for some range of contact radii."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from skfem import ElementQuadP
+
+from fem_adhesion.bodies import sized
+from fem_adhesion.elasticity.far_field import with_interiors
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain.assembly import finite_strain_problem, material_body
+from fem_adhesion.finite_strain.problem import FiniteStrainProblem
+from fem_adhesion.finite_strain.traction import convention_of
+from fem_adhesion.mesh import spheres
+from fem_adhesion.scene import Scene
+from halfspace.elastic import grid
+from halfspace.elastic.compliance import Array
+from halfspace.equilibrium.contact import spike_width
+from halfspace.equilibrium.curve import Chart, undeformed_radius
+from halfspace.equilibrium.events import Located
+from halfspace.values import Valued
+
+FARTHEST = 0.98
+"""Undeformed radius in R up to which a contact may spread; small slopes end before: `equilibrium.contact.WIDEST`."""
+
+WINDOW = 8
+"""Fine cells in a mesh of the curve: more cost more unknowns, fewer more meshes."""
+
+NEARBY = 0.01  # relative difference of contact radii that one mesh of an event serves
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ScenesBody(Valued):
+    """The body of a scene, to be meshed for any range of contact radii.
+
+    Attributes
+    ----------
+    scene : Scene
+        A hemisphere at finite strain.
+    how : Discretisation
+        Degree of the elements and size of their cells.
+    """
+
+    scene: Scene
+    how: sized.Discretisation
+
+    def meshed(self, inner: float, outer: float) -> FiniteStrainProblem:
+        """Discretise with cells that are fine for contact radii between these, as far as a contact may reach."""
+        scene, R = self.scene, self.scene.sphere_radius
+        coordinate = spheres.Stereographic(R)
+        first, last = (coordinate.of(min(radius, FARTHEST * R)) for radius in (inner, outer))
+        lines = fine_between(first, last, self.length, spheres.CORE * R, self.how.growth)
+        depths = grid.graded(0.0, float(np.diff(lines).min()), spheres.DEPTH * R, growth=self.how.growth)
+        mesh = spheres.hemisphere(R, lines, depths, rings=sized.corner_rings(scene, self.how))
+        space = Space(mesh, ElementQuadP(self.how.degree))
+        exterior = with_interiors(sized.GRIPS[scene.grip](space, scene.poisson), space)
+        return finite_strain_problem(
+            material_body(space, scene.poisson, 1 / R),
+            exterior,
+            scene.tabor,
+            profile=sized.profile_of(scene),
+            convention=convention_of(scene.traction, scene.poisson),
+        )
+
+    @property
+    def length(self) -> float:
+        """Length in beta of the cells at the contact edge."""
+        return self.how.finest * spike_width(self.scene.tabor) / 2
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Windows(Valued):
+    """Charts for the whole curve, each fine for a window of contact radii, made when they are first asked for.
+
+    Attributes
+    ----------
+    body : ScenesBody
+        How they are meshed.
+    """
+
+    body: ScenesBody
+    made: dict[int, Chart] = field(default_factory=dict, compare=False, repr=False)
+
+    def __iter__(self) -> Iterator[Chart]:
+        """All of them in order."""
+        return map(self._chart, range(self._count))
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for a point of the curve."""
+        radius = float(np.nan_to_num(undeformed_radius(event.problem, event.point)))
+        return self._chart(min(int(radius / self._width), self._count - 1))
+
+    def _chart(self, number: int) -> Chart:
+        if number not in self.made:
+            first, last = self._width * number, self._width * (number + 1)
+            problem = self.body.meshed(first, last)
+            self.made[number] = Chart(problem, problem.body.unknowns, min(last, self._farthest))
+        return self.made[number]
+
+    @property
+    def _width(self) -> float:
+        return WINDOW * self.body.length
+
+    @property
+    def _farthest(self) -> float:
+        return FARTHEST * self.body.scene.sphere_radius
+
+    @property
+    def _count(self) -> int:
+        return int(np.ceil(self._farthest / self._width))
+
+    @property
+    def everywhere(self) -> Windows:
+        """The same."""
+        return self
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a mesh made so far."""
+        return max(chart.unknowns for chart in self.made.values())
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AroundEvents(Valued):
+    """A discretisation on which every event has a mesh made for its own contact radius.
+
+    Attributes
+    ----------
+    body : ScenesBody
+        The body, and how it is meshed.
+    everywhere : Windows
+        For the points of a curve.
+    below : AroundEvents, optional
+        With elements of a lower degree, whose meshes are shared.
+    """
+
+    body: ScenesBody
+    everywhere: Windows
+    below: AroundEvents | None = None
+    made: list[tuple[float, FiniteStrainProblem]] = field(default_factory=list, compare=False, repr=False)
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event."""
+        _, problem = self.mesh(event)
+        return Chart(problem, problem.body.unknowns)
+
+    def mesh(self, event: Located) -> tuple[float, FiniteStrainProblem]:
+        """Mesh for an event and the contact radius that it is made for, unless one made before will do."""
+        radius, apart = self._place(event)
+        for made in self.made:
+            if abs(radius - made[0]) <= apart:
+                return made
+        self.made.append((radius, self.body.meshed(radius, radius)))
+        return self.made[-1]
+
+    def _place(self, event: Located) -> tuple[float, float]:
+        """Contact radius that a mesh is wanted for, and how far off it may be: not at all from that of the one below.
+
+        An event may have moved on its mesh by more than meshes serve; it is the mesh that counts, not the event.
+        """
+        own = [radius for stage in (self, self.below) if stage for radius, at in stage.made if at is event.problem]
+        if own:
+            return own[0], 0.0
+        if self.below:
+            return self.below.mesh(event)[0], 0.0
+        radius = float(np.nan_to_num(undeformed_radius(event.problem, event.point)))
+        return radius, NEARBY * radius
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a mesh made so far."""
+        return max(problem.body.unknowns for _, problem in self.made)
+
+
+def fine_between(inner: float, outer: float, finest: float, end: float, growth: float) -> Array:
+    """Ends of cells from 0 to `end`: no longer than `finest` from `inner` to `outer`, growing away from both."""
+    count = max(int(np.ceil((outer - inner) / finest - 1e-9)), 0)
+    before = inner - grid.geometric(inner, finest, growth)[:0:-1] if inner else np.zeros(0)
+    beyond = outer + grid.geometric(end - outer, finest, growth)[1:]
+    lines = np.concatenate([before, np.linspace(inner, outer, count + 1), beyond])
+    lines[0] = 0.0  # not what rounding leaves of it
+    return lines

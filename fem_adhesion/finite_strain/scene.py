@@ -1,0 +1,240 @@
+"""The load-approach curve of a sphere at finite strain, to an accuracy asked for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
+
+import numpy as np
+
+from fem_adhesion.bodies import sized
+from fem_adhesion.finite_strain.meshes import AroundEvents, ScenesBody, Windows
+from fem_adhesion.finite_strain.problem import FiniteStrainProblem
+from fem_adhesion.finite_strain.traction import convention_of
+from fem_adhesion.scene import Scene, TractionName
+from halfspace.accuracy.refinement import Rung, climb
+from halfspace.elastic.compliance import Array
+from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, find_events, metric_for, moved, trace_charts
+from halfspace.equilibrium.events import EVENTS, Event, Located, Tolerance, estimate_event, relocate
+from halfspace.equilibrium.path import Segment
+from halfspace.errors import InputError, NotConverged
+from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.limits import require_load, require_rtol
+from halfspace.values import Valued
+
+WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a minute's work at 3
+TIGHTEST = 1e-6  # relative tolerance
+MOST_RUNGS = 2  # above the lowest
+LITTLE = 0.5  # R dgamma: a load past every event
+SOFT = 0.9  # part of the surface's stiffness to short waves, gone, from which solutions get lost
+SMALLEST_PART = 0.005  # of delta, in which it is raised where the linear body's events are too far away
+JUMPS = ("pull_off", "jump_on", "jump_off")
+NUMBERS = ("approach", "load", "central_gap", "contact_radius")
+CONSERVATIVE: tuple[TractionName, ...] = ("projected", "reference", "normal")
+
+
+def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> EquilibriumPath:
+    """Trace the load-approach curve of a scene at finite strain and solve for its events.
+
+    Parameters
+    ----------
+    scene : Scene
+        A hemisphere of Tabor parameter 3 or less.
+    rtol : float
+        Relative accuracy asked of loads and approaches, 1e-6 to 1e-1.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+
+    Returns
+    -------
+    EquilibriumPath
+        Each event has a mesh of its own; its error estimate is half of its changes from the mesh of the curve and from
+        elements one degree lower. Its spread is that between the tractions ``reference`` and ``normal``. The energy is
+        nan with the vertical traction, which has none; stability is as said at
+        `FiniteStrainProblem.negative_directions`.
+
+    Raises
+    ------
+    InputError
+        If an input is out of range, or does not go with finite strain.
+    halfspace.errors.NotConverged
+        If the curve or an event is lost, as where the material is squeezed or torn beyond what Newton's method follows.
+    """
+    _require(scene, rtol, to_load)
+    if scene.tabor > WIDEST_TABOR:
+        raise InputError(
+            f"tabor = {scene.tabor:g} is outside tabor <= {WIDEST_TABOR:g} for a curve at finite strain; "
+            'take strain = "small"'
+        )
+    began = time.perf_counter()
+    with _cause_told(scene):
+        path = climb(rtol, partial(Stages(scene).rung, _lowest_degree(rtol)), to_load=to_load, most_rungs=MOST_RUNGS)
+    spread = {name: _spread(path.stages[-2][name], scene) for name in path.events}
+    settings = {**path.settings, "traction": scene.traction}
+    return replace(path, spread=spread, settings=settings, seconds=time.perf_counter() - began)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Stages(Valued):
+    """Discretisations of a scene's body by elements of every degree, made when they are first asked for.
+
+    Attributes
+    ----------
+    scene : Scene
+        A hemisphere at finite strain.
+    """
+
+    scene: Scene
+    along: dict[int, Windows] = field(default_factory=dict, compare=False, repr=False)
+    about: dict[int, AroundEvents] = field(default_factory=dict, compare=False, repr=False)
+
+    def rung(self, lowest: int, level: int) -> Rung:
+        """Rung of a level: events on meshes of their own, by the degree of the rung below and by one more."""
+        degree = lowest + level
+        windows = self.windows(degree)
+        if not level:
+            return Rung(lambda: windows, (windows,), asdict(windows.body.how))
+        stages = self.around(degree - 1, lowest), self.around(degree, lowest)
+        return Rung(lambda: windows, stages, asdict(stages[1].body.how))
+
+    def windows(self, degree: int) -> Windows:
+        """For the curve."""
+        how = sized.Discretisation(degree)
+        return self.along.setdefault(degree, Windows(ScenesBody(self.scene, how)))
+
+    def around(self, degree: int, lowest: int) -> AroundEvents:
+        """For events: the spike of tension is as wide as the surface is stiff; on the meshes of the lowest degree."""
+        below = self.around(degree - 1, lowest) if degree > lowest else None
+        how = sized.Discretisation(degree, sized.FINEST * (1 - softening(self.scene)))
+        stage = AroundEvents(ScenesBody(self.scene, how), self.windows(degree), below)
+        return self.about.setdefault(degree, stage)
+
+
+def _lowest_degree(rtol: float) -> int:
+    """Degree of the elements for the curve."""
+    return int(np.clip(np.ceil(-np.log10(rtol)), 4, 6))
+
+
+def _spread(event: Located, scene: Scene) -> dict[str, float]:
+    """How far the conservative tractions lie apart in the numbers of an event; nan if one does not have it."""
+    found = [_counted(event, replace(scene, traction=name)) for name in CONSERVATIVE]
+    return dict(zip(NUMBERS, np.ptp(found, axis=0).tolist(), strict=True))
+
+
+def _counted(event: Located, scene: Scene) -> Array:
+    """Numbers of an event by another traction."""
+    convention, problem = convention_of(scene.traction, scene.poisson), event.problem
+    if not isinstance(problem, FiniteStrainProblem) or problem.convention == convention:
+        return event.point.observables
+    try:
+        require_well_posed(scene)
+        other = replace(problem, convention=convention)
+        return relocate(event, other, event.point.x, metric_for(scene.tabor)).point.observables
+    except (InputError, NotConverged):
+        return np.full(len(NUMBERS), np.nan)
+
+
+def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
+    """Solve for pull-off and jumps alone, without the curve between: from those of the linear body.
+
+    Parameters and errors as of `trace`, without the limit of the Tabor parameter. The error estimates are half the
+    changes from elements one degree lower.
+    """
+    _require(scene, rtol, COMPRESSION)
+    stages, lowest = Stages(scene), _lowest_degree(rtol)
+    stage = stages.around(lowest, lowest)
+    found = {name: event for name, event in find_events(_linear_curve(scene, LITTLE)).items() if name in JUMPS}
+    with _cause_told(scene):
+        state = {name: raised(event, stage.mesh(event)[1]) for name, event in found.items()}
+        for degree in range(lowest + 1, lowest + 1 + MOST_RUNGS):
+            below, stage = state, stages.around(degree, lowest)
+            state = {name: moved(event, stage(event).problem) for name, event in below.items()}
+            events = {name: estimate_event(name, [[below[name], state[name]]]) for name in EVENTS if name in found}
+            if not Tolerance.on(events, rtol).missed(events):
+                break
+    return events
+
+
+@contextmanager
+def _cause_told(scene: Scene) -> Iterator[None]:
+    """Say, where no solution is found close to the limit of ill-posedness, that this is why."""
+    try:
+        yield
+    except NotConverged as error:
+        part, ratio = softening(scene), scene.tabor * scene.sphere_radius**2
+        if part < SOFT:
+            raise
+        raise NotConverged(
+            f"radius_ratio = {ratio:g} is close to its limit {ratio * part**2:.3g} for traction = {scene.traction!r}: "
+            f"the edge tension leaves {1 - part:.1%} of the surface's stiffness to short waves ({error}); take "
+            f"traction = 'reference', or radius_ratio above {ratio * (part / SOFT) ** 2:.3g}"
+        ) from error
+
+
+def raised(event: Located, problem: FiniteStrainProblem, done: float = 0.0) -> Located:
+    """Solve for an event again at finite strain, raising delta from where it is done in as many parts as that takes.
+
+    Raises
+    ------
+    NotConverged
+        If a small part of delta is too much.
+    """
+    try:
+        return moved(event, problem)
+    except NotConverged as error:
+        if problem.stretch - done < SMALLEST_PART:
+            approach, load = event.point.observables[[APPROACH, LOAD]]
+            raise NotConverged(
+                f"the event at approach {approach:.6g} eps, load {load:.6g} R dgamma is lost at beta/R = "
+                f"{problem.stretch:.3g} ({error}); take a larger radius_ratio"
+            ) from error
+        half = (done + problem.stretch) / 2
+        return raised(raised(event, problem.stretched(half), done), problem, half)
+
+
+def _linear_curve(scene: Scene, to_load: float) -> tuple[Segment, ...]:
+    """Curve of the linear body."""
+    linear = replace(scene, strain="small", traction="projected")
+    body = sized.sized_body(linear, sized.Discretisation(sized.CURVE_DEGREE))
+    return trace_charts(body.curve(to_load), to_load)
+
+
+def _require(scene: Scene, rtol: float, to_load: float) -> None:
+    """Refuse what is out of range or has no meaning at finite strain."""
+    require_rtol(rtol)
+    require_load(to_load)
+    if rtol < TIGHTEST:
+        raise InputError(f"rtol = {rtol:g} is outside {TIGHTEST:g} <= rtol for finite strain; take 1e-4")
+    require_well_posed(scene)
+    if scene.counter is not None:
+        raise InputError(f"counter = {scene.counter!r} does not go with finite strain; take counter = None")
+
+
+def softening(scene: Scene) -> float:
+    """Part of the surface's stiffness to short waves that the surface stress takes at the contact edge; 1 is too much.
+
+    That is c sigma, at the law's largest tension, over 2 G/(3 - 4 nu): see `fem_adhesion.finite_strain.traction`.
+    """
+    c, nu = convention_of(scene.traction, scene.poisson).surface_stress, scene.poisson
+    return c * _edge_tension(scene) * (3 - 4 * nu) / (1 - nu)
+
+
+def _edge_tension(scene: Scene) -> float:
+    """Largest tension of the law over E*."""
+    law = LENNARD_JONES
+    return -float(law.pressure(np.array(law.edge_gap), scene.tabor)) / scene.sphere_radius
+
+
+def require_well_posed(scene: Scene) -> None:
+    """Refuse a sphere whose surface stress would let waves of any length loose at the contact edge."""
+    part, ratio = softening(scene), scene.tabor * scene.sphere_radius**2
+    if part >= 1:
+        raise InputError(
+            f"radius_ratio = {ratio:g} is outside {ratio * part**2:.3g} < radius_ratio for traction = "
+            f"{scene.traction!r}, tabor {scene.tabor:g}, poisson {scene.poisson:g}: the equations are ill-posed under "
+            f"an edge tension of {_edge_tension(scene):.2g} E*; take traction = 'reference'"
+        )

@@ -1,0 +1,149 @@
+"""The forces of a surface law on a surface that stretches: per which area, and in which direction.
+
+Underneath is the wall's potential on every particle of the body: the attraction per undeformed volume at a gap H is
+-sigma(H), of which Phi(H) is the sum over a column of undeformed matter, and no matter is made or lost. A column whose
+particles keep their distances has the energy Phi dA_0. But the attraction stretches it, by e_z downwards and by theta
+in its area, so that to the first order it has Phi (1 - e_z) dA_0. Half-space and 3-9 law, M = lambda + 2 G:
+
+    e_z = sigma/M - nu/(1 - nu) theta,    theta = (1 - 2 nu)/(1 - nu) sigma/E*
+
+(the surface displacement of a point load diverges at its point only: K. L. Johnson, Contact Mechanics (1985), eq
+(3.18a) at z = 0). What theta does is a matter of shape, and the same as the energy
+
+    (1 - c) int Phi dA_0 + c int Phi dA,    c = nu/(1 - nu),    dA = (1 + theta) dA_0:
+
+the matter below a widened area becomes thinner, so that more of it is near, wholly if it is incompressible. What sigma
+does is the yield of the attracted layer itself, in which the stress builds up only: with the strain that it saves,
+
+    Delta Phi(h) = -(1/M) [Phi sigma + 1/2 int_h^inf sigma^2 dh'],    M = E* (1 - nu)^2/(1 - 2 nu),
+
+a change of the law. It moves the surfaces' equilibrium, too, and deepens it from dgamma to `yielded_adhesion`.
+
+* ``projected``, the default: the energy above. By the summed model, solved for itself, c = 0.42 at nu = 0.3.
+* ``reference``: c = 0, each particle of the surface attracted by the gap over it, however far it is from the next.
+* ``normal``: c = 1, forces normal to the deformed surface; besides, the surface stress Phi pulls the widened surface
+  together again.
+* ``vertical``: the work of the traction in a displacement v is -int P v_z dA over the deformed area: stretched matter
+  counts as new matter. It has no energy.
+
+The surface stress c Phi couples a wave of the surface's height with its slope along the surface, with c sigma, and both
+with the body's stiffness per wave number k: on a half-space
+
+    k [[D, i (B + c sigma)], [-i (B + c sigma), D]],    D = 4 G (1 - nu)/(3 - 4 nu),    B = 2 G (1 - 2 nu)/(3 - 4 nu)
+
+for v = (u_z, u_x), not positive definite, at every wavelength at once, from c sigma = 2 G/(3 - 4 nu) on: the equations
+are ill-posed there, and what is computed depends on the mesh. See `finite_strain_scene.require_well_posed`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from fem_adhesion.finite_strain.surface import ContactSurface, scaled
+from fem_adhesion.scene import TractionName
+from halfspace.elastic.compliance import Array
+from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
+from halfspace.values import Valued
+
+
+@dataclass(frozen=True)
+class Convention:
+    """What the law's traction is counted per, and whether it spreads the surface.
+
+    Attributes
+    ----------
+    deformed_area : float
+        Part of the traction that is counted per deformed horizontal area; the rest is per undeformed one.
+    surface_stress : float
+        Of the surface, over the energy Phi.
+    """
+
+    deformed_area: float
+    surface_stress: float
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the forces derive from the energy int Phi(H) dA, dA being the area that is counted per."""
+        return self.deformed_area == self.surface_stress
+
+
+def convention_of(traction: TractionName, poisson: float) -> Convention:
+    """Convention by its name in a `fem_adhesion.scene.Scene`, of a material."""
+    share = poisson / (1 - poisson)
+    conventions: dict[TractionName, Convention] = {
+        "projected": Convention(share, share),
+        "reference": Convention(0.0, 0.0),
+        "normal": Convention(1.0, 1.0),
+        "vertical": Convention(1.0, 0.0),
+    }
+    return conventions[traction]
+
+
+def yielded_adhesion(tabor: float, radius_ratio: float, poisson: float, law: SurfaceLaw = LENNARD_JONES) -> float:
+    """Work of adhesion over dgamma once the attracted layer has yielded, 1 + 0.274 tabor (beta/R) E*/M for the 3-9 law.
+
+    That is -Phi(eps) - Delta Phi(eps), to the first order in beta/R: the integral of sigma^2 in closed form.
+    """
+    n, m = law.attraction, law.repulsion
+    squared = law.amplitude**2 * (1 / (2 * n - 1) - 2 / (n + m - 1) + 1 / (2 * m - 1))  # in dgamma^2/eps
+    compliance = (1 - 2 * poisson) / (1 - poisson) ** 2
+    return 1 + squared / 2 * tabor * math.sqrt(tabor / radius_ratio) * compliance
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Traction(Valued):
+    """Forces of a surface law by a convention.
+
+    Attributes
+    ----------
+    surface : ContactSurface
+        Where the law acts.
+    tabor : float
+        Tabor parameter mu.
+    stretch : float
+        Of the deformed area: delta = beta/R.
+    convention : Convention
+        Which area, and which surface stress.
+    """
+
+    surface: ContactSurface
+    tabor: float
+    stretch: float
+    convention: Convention
+
+    def areas(self, y: Array) -> Array:
+        """Weights of the horizontal area, (q,), in beta^2."""
+        part, s = self.convention.deformed_area, self.surface
+        undeformed, deformed = (s.areas(y, stretch) for stretch in (0.0, self.stretch))
+        return np.asarray((1 - part) * undeformed + part * deformed)
+
+    def area_gradient(self, y: Array, amounts: Array) -> Array:
+        """Derivative by y of the areas, summed with the given amounts (q,), (n,)."""
+        return self.surface.area_gradient(y, self.stretch, self.convention.deformed_area * amounts)
+
+    def forces(self, y: Array, P: Array, Phi: Array) -> Array:
+        """Less the forces on the reduced unknowns, (n,), in R dgamma: upwards where the pressure is downwards.
+
+        Parameters
+        ----------
+        y : (n,) array
+            Reduced unknowns.
+        P, Phi : (q,) array
+            Pressure and energy of the law.
+        """
+        spreading = self.surface.area_gradient(y, self.stretch, self.convention.surface_stress / self.tabor * Phi)
+        return np.asarray(self.surface.vertical.T @ (P * self.areas(y)) + spreading)
+
+    def tangent(self, y: Array, P: Array, Phi: Array, slope: Array) -> sparse.csr_array:
+        """Derivative of `forces` by y, (n, n), for the law's slope dP/dH, (q,)."""
+        s, mu, delta, c = self.surface, self.tabor, self.stretch, self.convention
+        tangent = s.vertical.T @ scaled(-mu * slope * self.areas(y), s.vertical)
+        if c.deformed_area or c.surface_stress:
+            coupling = s.vertical.T @ scaled(P, s.area_rates(y, delta))
+            spreading = s.area_curvature(delta, c.surface_stress / mu * Phi)
+            tangent = tangent + c.deformed_area * coupling + c.surface_stress * coupling.T + spreading
+        return sparse.csr_array(tangent)

@@ -1,0 +1,1 @@
+"""Meshes of the bodies and their refinement, and meshes read from files, checked."""

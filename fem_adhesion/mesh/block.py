@@ -1,0 +1,170 @@
+"""Meshes of the block: body z <= 0 in the r-z plane, contact surface z = 0, boundaries axis, contact and far."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from skfem import MeshQuad, MeshTri
+
+from halfspace.elastic.compliance import Array, Index
+from halfspace.elastic.grid import geometric
+from halfspace.errors import InputError
+
+SizeFunction = Callable[[Array, Array], Array]
+"""Largest edge wanted at (r, z), in beta."""
+
+
+def graded_size(fine: float, fine_radius: float, growth: float) -> SizeFunction:
+    """Return size(r, z) = max(fine, growth * distance to the segment 0 <= r <= fine_radius of the surface).
+
+    Parameters
+    ----------
+    fine : float
+        Size on the segment, in beta.
+    fine_radius : float
+        Length of the segment, in beta.
+    growth : float
+        Increase of the size per unit of distance.
+    """
+
+    def size(r: Array, z: Array) -> Array:
+        distance = np.hypot(np.maximum(r - fine_radius, 0.0), z)
+        return np.maximum(fine, growth * distance)
+
+    return size
+
+
+def quarter_disc(radius: float, size: SizeFunction) -> Any:
+    """Triangulate the quarter disc of the given radius, no edge longer than `size` at its triangle's centroid.
+
+    Triangles are cut until they are small enough; new nodes of the far boundary are pushed onto the arc, so
+    the body is a polygon inscribed in the quarter disc.
+
+    Parameters
+    ----------
+    radius : float
+        Radius L of the block, in beta.
+    size : callable
+        size(r, z), bounded away from zero; see `graded_size`.
+
+    Returns
+    -------
+    skfem.MeshTri
+        With the boundaries "axis", "contact" and "far".
+
+    Raises
+    ------
+    InputError
+        If the radius is not positive.
+    """
+    _require_positive("radius", radius)
+    diagonal = radius * np.sqrt(0.5)
+    nodes = np.array([[0.0, radius, diagonal, 0.0], [0.0, 0.0, -diagonal, -radius]])
+    mesh = MeshTri(nodes, np.array([[0, 0], [1, 2], [2, 3]]))
+    while len(large := _too_large(mesh, size)):
+        mesh = _on_arc(mesh.refined(large), radius)
+    return with_named_boundaries(mesh)
+
+
+def tensor_grid(r_breaks: Array, z_breaks: Array) -> Any:
+    """Mesh the square box with quadrilaterals between lines of constant radius and depth.
+
+    Parameters
+    ----------
+    r_breaks : (m + 1,) array
+        Radii of the vertical lines, ascending from 0, in beta.
+    z_breaks : (n + 1,) array
+        Depths of the horizontal lines, ascending from 0 and positive into the body, in beta.
+
+    Returns
+    -------
+    skfem.MeshQuad
+        m times n cells with the boundaries "axis", "contact" and "far".
+
+    Raises
+    ------
+    InputError
+        If the lines do not ascend from 0.
+    """
+    for name, lines in (("r_breaks", r_breaks), ("z_breaks", z_breaks)):
+        if len(lines) < 2 or lines[0] != 0.0 or np.any(np.diff(lines) <= 0.0):
+            raise InputError(f"{name} = {lines} must ascend strictly from 0; sort them and remove duplicates")
+    return with_named_boundaries(MeshQuad.init_tensor(r_breaks, -z_breaks[::-1]))
+
+
+def graded_breaks(fine: float, fine_radius: float, length: float, *, growth: float = 2.0) -> Array:
+    """Cut [0, length] uniformly up to `fine_radius`, then into cells that grow geometrically.
+
+    Parameters
+    ----------
+    fine : float
+        Largest spacing on [0, fine_radius], in beta.
+    fine_radius : float
+        End of the uniform part, in beta; equal to `fine` for lines graded from the surface into the depth.
+    length : float
+        Last break point, in beta.
+    growth : float
+        Ratio of one cell to the one before outside the uniform part, above 1; less for the first of them, so that a
+        cell ends at `length`.
+
+    Returns
+    -------
+    (m + 1,) array
+        Break points from 0 to `length`.
+
+    Raises
+    ------
+    InputError
+        If the lengths are not positive, fine_radius reaches length or growth is not above 1.
+    """
+    _require_positive("fine", fine)
+    _require_positive("fine_radius", fine_radius)
+    if not fine_radius < length:
+        raise InputError(f"fine_radius = {fine_radius} must be less than length = {length}; enlarge the block")
+    if not growth > 1.0:
+        raise InputError(f"growth = {growth} must be above 1; use a value between 1.2 and 3")
+    uniform = np.linspace(0.0, fine_radius, int(np.ceil(fine_radius / fine - 1e-9)) + 1)
+    outside = fine_radius + geometric(length - fine_radius, uniform[1], growth)[1:]
+    return np.concatenate([uniform, outside[:-1], [length]])
+
+
+def block_grid(fine: float, fine_radius: float, length: float, *, growth: float = 2.0) -> Any:
+    """Mesh the box [0, length] x [-length, 0], graded from the centre of its surface.
+
+    Parameters and errors as in `graded_breaks`, which makes the lines in both directions.
+    """
+    r_breaks = graded_breaks(fine, fine_radius, length, growth=growth)
+    return tensor_grid(r_breaks, graded_breaks(fine, fine, length, growth=growth))
+
+
+def with_named_boundaries(mesh: Any) -> Any:
+    """Return the mesh with its boundaries named "axis" (r = 0), "contact" (z = 0) and "far" (the rest)."""
+    return mesh.with_boundaries({"axis": lambda x: x[0] == 0.0, "contact": lambda x: x[1] == 0.0, "far": _far})
+
+
+def _too_large(mesh: Any, size: SizeFunction) -> Index:
+    """Return the numbers of the triangles whose longest edge exceeds the size at the centroid."""
+    corners = mesh.p[:, mesh.t]
+    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=0)
+    large: Index = np.flatnonzero(edges.max(axis=0) > size(*corners.mean(axis=1)))
+    return large
+
+
+def _on_arc(mesh: Any, radius: float) -> Any:
+    """Return the mesh with the nodes of its far boundary at distance `radius` from the origin."""
+    nodes = np.unique(mesh.facets[:, mesh.facets_satisfying(_far, boundaries_only=True)])
+    points = mesh.p.copy()
+    points[:, nodes] *= radius / np.linalg.norm(points[:, nodes], axis=0)
+    return MeshTri(points, mesh.t)
+
+
+def _far(x: Array) -> Any:
+    """Tell which midpoints of boundary facets lie neither on the axis nor on the surface."""
+    return (x[0] != 0.0) & (x[1] != 0.0)
+
+
+def _require_positive(name: str, value: float) -> None:
+    if not (np.isfinite(value) and value > 0.0):
+        raise InputError(f"{name} = {value} must be positive and finite; give a length in beta")

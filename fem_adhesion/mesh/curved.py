@@ -1,0 +1,191 @@
+"""Quadrilaterals with curved sides: each cell is the polynomial through points of an exact map.
+
+Isoparametric cells of scikit-fem are quadratic; a sphere in cells as long as its radius asks for more. Here the degree
+of the cells' shape is free, so that the sphere is as good as exact and the element's degree alone decides the error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebder, chebvander
+from skfem import MeshQuad
+from skfem.mapping import MappingIsoparametric
+
+from halfspace.elastic.compliance import Array, Index
+from halfspace.values import Valued
+
+DEGREE = 8
+"""Of the cells' shape: an arc of one radian deviates from the circle by 1e-10 of its radius."""
+
+CORNERS = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]])  # of the reference square, in scikit-fem's order
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Block(Valued):
+    """A structured block of cells: the exact map of a rectangle that is cut into (m, n) cells.
+
+    Attributes
+    ----------
+    s, t : (m + 1,) and (n + 1,) array
+        Where the rectangle is cut.
+    place : callable
+        place(s, t) returns r and z of points of the rectangle, (2, ...).
+    """
+
+    s: Array
+    t: Array
+    place: Callable[[Array, Array], Array]
+
+    def points(self) -> Array:
+        """Points (2, m n, (DEGREE + 1)^2) that shape the cells; the first parameter runs slowest in both counts."""
+        local = chebyshev_points(DEGREE)
+        s = self.s[:-1, None] + np.diff(self.s)[:, None] * local
+        t = self.t[:-1, None] + np.diff(self.t)[:, None] * local
+        shape = (len(s), len(t), len(local), len(local))
+        placed = self.place(np.broadcast_to(s[:, None, :, None], shape), np.broadcast_to(t[None, :, None, :], shape))
+        return np.asarray(placed.reshape(2, len(s) * len(t), -1))
+
+
+class CurvedMapping(MappingIsoparametric):  # type: ignore[misc]
+    """Map from the reference square to cells shaped by tensor grids of points.
+
+    Parameters
+    ----------
+    mesh : skfem.MeshQuad
+        Its topology.
+    points : (2, cells, (k + 1)^2) array
+        Places of the tensor grid of the k + 1 Chebyshev points of each cell.
+    """
+
+    def __init__(self, mesh: Any, points: Array) -> None:
+        super().__init__(mesh, mesh.elem())
+        self.points = points
+        self.degree = round(np.sqrt(points.shape[2])) - 1
+        self._latest = (np.empty(0), np.empty(0))  # points of facets and their reference places
+        self._shaped = (np.empty(0), self._shapes(np.zeros((2, 1))))  # the last reference points and their shapes
+
+    def Fmap(self, i: int, X: Array, tind: Any = None) -> Array:
+        """Coordinate i of points of the cells."""
+        values, _ = self._shapes_at(X)
+        return self._sum(i, values, tind)
+
+    def _J(self, i: int, j: int, X: Array, tind: Any = None) -> Array:
+        _, derivatives = self._shapes_at(X)
+        return self._sum(i, derivatives[j], tind)
+
+    def _sum(self, i: int, shapes: Array, tind: Any) -> Array:
+        points = self.points[i] if tind is None else self.points[i][tind]
+        return np.asarray(points @ shapes if shapes.ndim == 2 else np.einsum("cn,ncq->cq", points, shapes))
+
+    def _shapes_at(self, X: Array) -> tuple[Array, tuple[Array, Array]]:
+        """Shapes, kept: scikit-fem asks for two coordinates and four derivatives at the same points in turn."""
+        if not np.array_equal(X, self._shaped[0]):
+            self._shaped = X.copy(), self._shapes(X)
+        return self._shaped[1]
+
+    def _shapes(self, X: Array) -> tuple[Array, tuple[Array, Array]]:
+        """Products of Lagrange polynomials at reference points (2, ...), and their two derivatives."""
+        (a, da), (b, db) = (lagrange_values(self.degree, x) for x in X)
+
+        def product(f: Array, g: Array) -> Array:
+            return (f[:, None] * g[None]).reshape(-1, *f.shape[1:])
+
+        return product(a, b), (product(da, b), product(a, db))
+
+    def G(self, X: Array, find: Any = None) -> Array:
+        """Points of facets."""
+        Y, cells = self._on_cell(X, find)
+        self._latest = self.F(Y, cells), Y
+        return self._latest[0]
+
+    def invF(self, x: Array, tind: Any = None, **options: Any) -> Array:
+        """Reference places of points; those of facets are known, and need not be found to the last digit again."""
+        points, places = self._latest
+        return places if x is points else np.asarray(super().invF(x, tind, **options))
+
+    def bndmap(self, i: int, X: Array, find: Any = None) -> Array:
+        """Coordinate i of points of facets, which run from their first vertex to their second."""
+        Y, cells = self._on_cell(X, find)
+        return self.Fmap(i, Y, cells)
+
+    def bndJ(self, i: int, j: int, X: Array, find: Any = None) -> Array:  # noqa: ARG002 (a facet has one direction)
+        """Derivative of coordinate i along facets."""
+        Y, cells = self._on_cell(X, find)
+        along = self._facet_directions(find)[:, :, None]
+        slopes = np.array([self._J(i, k, Y, cells) for k in range(2)])
+        return np.asarray(np.sum(slopes * along, axis=0))
+
+    def _on_cell(self, X: Array, find: Any) -> tuple[Array, Index]:
+        """Facet points as points (2, facets, q) of the reference square, and the facets' cells."""
+        start, along = self._facet_starts(find), self._facet_directions(find)
+        return start[:, :, None] + along[:, :, None] * X[0], self.mesh.f2t[0, find]
+
+    def _facet_starts(self, find: Any) -> Array:
+        return self._vertex(self.mesh.facets[0, find], find)
+
+    def _facet_directions(self, find: Any) -> Array:
+        return self._vertex(self.mesh.facets[1, find], find) - self._facet_starts(find)
+
+    def _vertex(self, vertices: Index, find: Any) -> Array:
+        """Reference places of vertices in the facets' cells, (2, facets)."""
+        cells = self.mesh.t[:, self.mesh.f2t[0, find]]
+        return CORNERS[:, np.argmax(cells == vertices, axis=0)]
+
+
+@dataclass(repr=False)
+class CurvedQuads(MeshQuad):  # type: ignore[misc]
+    """Quadrilaterals whose sides are curved; everything else sees their corners."""
+
+    points: Any = None
+
+    def _mapping(self) -> CurvedMapping:
+        if not hasattr(self, "_cached_mapping"):
+            self._cached_mapping = CurvedMapping(self, self.points)
+        return self._cached_mapping
+
+
+def joined(blocks: list[Block], corners: list[Index]) -> CurvedQuads:
+    """Mesh of blocks whose cells share vertices.
+
+    Parameters
+    ----------
+    blocks : list of Block
+        Each with (m, n) cells.
+    corners : list of (m + 1, n + 1) int arrays
+        Numbers of the vertices of each block; neighbours share those of their common side.
+    """
+    points = np.concatenate([block.points() for block in blocks], axis=1)
+    cells = [np.array([v[:-1, :-1], v[1:, :-1], v[1:, 1:], v[:-1, 1:]]).reshape(4, -1) for v in corners]
+    return of_cells(np.concatenate(cells, axis=1), points)
+
+
+def of_cells(t: Index, points: Array) -> CurvedQuads:
+    """Mesh of cells with the vertices t (4, cells) and the shape of points (2, cells, (DEGREE + 1)^2)."""
+    p = np.empty((2, t.max() + 1))
+    for local, (s, u) in enumerate(CORNERS.T.astype(int) * DEGREE):
+        p[:, t[local]] = points[:, :, s * (DEGREE + 1) + u]
+    return CurvedQuads(p, t, points=points)
+
+
+def chebyshev_points(degree: int) -> Array:
+    """The degree + 1 Chebyshev points of [0, 1], ends included, ascending."""
+    return np.asarray((1 - np.cos(np.pi * np.arange(degree + 1) / degree)) / 2)
+
+
+def lagrange_values(degree: int, x: Array) -> tuple[Array, Array]:
+    """Values and derivatives at x (...) of the Lagrange polynomials through Chebyshev's points, (degree + 1, ...)."""
+    series, slopes = _chebyshev_series(degree)
+    powers = np.moveaxis(chebvander(2 * x - 1, degree), -1, 0)
+    return np.tensordot(series, powers, (0, 0)), np.tensordot(slopes, powers[:-1], (0, 0))
+
+
+@cache
+def _chebyshev_series(degree: int) -> tuple[Array, Array]:
+    """Columns of the coefficients in Chebyshev's polynomials of 2x - 1 of these Lagrange polynomials, and of slopes."""
+    series = np.asarray(np.linalg.inv(chebvander(2 * chebyshev_points(degree) - 1, degree)), dtype=np.float64)
+    return series, np.asarray(chebder(series, scl=2), dtype=np.float64)

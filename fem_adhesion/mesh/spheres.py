@@ -1,0 +1,198 @@
+"""Meshes of bodies with a length: the hemisphere, graded towards the contact.
+
+The stereographic map m(Z) = Z/(1 + i Z/2R) of the complex plane Z = x - i d takes the half-plane of depths d >= 0 to
+the disc of radius R that touches it at the origin, the sphere's meridian section: the axis to the axis, the surface to
+the circle, and the quarter disc |Z| < 2R to the quarter disc of the hemisphere. It is conformal, so cells well shaped
+for a flat block are so for the sphere, and is the identity near the pole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fem_adhesion.mesh.curved import Block, CurvedQuads, joined
+from fem_adhesion.mesh.nested import refined_towards
+from halfspace.elastic.compliance import Array, Index
+from halfspace.values import Valued
+
+CORE, DEPTH = 1.7, 0.9
+"""Radius and depth of the tensor grid about the pole, in R on the flat plane; its corner stays inside that of 2R."""
+
+LAYERS = 2
+"""Cells between the tensor grid and the mid-plane."""
+
+NO_RINGS = np.empty(0)
+
+
+@dataclass(frozen=True)
+class Stereographic:
+    """Coordinate x along a sphere's surface, the radius on the flat plane: r = x/(1 + k x^2), k = 1/4R^2.
+
+    Parameters
+    ----------
+    R : float
+        Radius of the sphere in beta.
+    area : {"projected", "surface"}
+        Which area the density of a ring's is: that on the plane of the contact, or that on the sphere.
+    """
+
+    R: float
+    area: str = "projected"
+
+    def of(self, radius: float) -> float:
+        """Coordinate 2 R tan(theta/2) at the radius R sin(theta)."""
+        s = radius / self.R
+        return float(2 * self.R * s / (1 + np.sqrt((1 - s) * (1 + s))))
+
+    def radius(self, x: Array) -> tuple[Array, Array]:
+        """Radius r at x and dr/dx."""
+        t = (x / (2 * self.R)) ** 2
+        return np.asarray(x / (1 + t)), np.asarray((1 - t) / (1 + t) ** 2)
+
+    def ring(self, x: Array) -> tuple[Array, Array]:
+        """Density r dr/dx of a ring's area, or r ds/dx with ds/dx = 1/(1 + t), and its derivative by x."""
+        t = (x / (2 * self.R)) ** 2
+        if self.area == "surface":
+            return np.asarray(x / (1 + t) ** 2), np.asarray((1 - 3 * t) / (1 + t) ** 3)
+        return np.asarray(x * (1 - t) / (1 + t) ** 3), np.asarray((1 - 8 * t + 3 * t**2) / (1 + t) ** 4)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Lines(Valued):
+    """Lines of one half of a sphere.
+
+    Attributes
+    ----------
+    x, depths : (m + 1,) and (n + 1,) array
+        Of the core, a tensor grid on the flat plane.
+    layers : (LAYERS + 1,) array
+        From the core (0) to the mid-plane (1).
+    along : callable
+        The coordinate on the flat plane as a function of x, in which cells are cut.
+    """
+
+    x: Array
+    depths: Array
+    layers: Array = field(default_factory=lambda: np.linspace(0, 1, LAYERS + 1))
+    along: Callable[[Array], Array] = np.asarray
+
+    def core(self, i: Array, j: Array) -> Array:
+        """Points of the core at whole numbers of its lines, or between them."""
+        x, depths = (np.interp(k, np.arange(len(lines)), lines) for k, lines in ((i, self.x), (j, self.depths)))
+        return np.asarray(self.along(x) - 1j * depths)
+
+
+def even(R: float, m: int, n: int) -> Lines:
+    """Evenly spaced lines, m + 1 and n + 1 of them in the core."""
+    return Lines(np.linspace(0, CORE * R, m + 1), np.linspace(0, DEPTH * R, n + 1))
+
+
+def hemisphere(
+    R: float,
+    lines: Array,
+    depths: Array,
+    along: Callable[[Array], Array] = np.asarray,
+    rings: Array = NO_RINGS,
+) -> CurvedQuads:
+    """Mesh the hemisphere z >= -R of the sphere that touches z = 0 from below.
+
+    Parameters
+    ----------
+    R : float
+        Radius in beta.
+    lines, depths : (m + 1,) and (n + 1,) array
+        Lines of the core, a tensor grid on the flat plane, from 0 to CORE R and DEPTH R, in beta.
+    along : callable
+        The coordinate x as a function of another one in which the lines and the cells between them are given instead.
+    rings : (k,) array
+        Sizes of rings around the equator, as `fem_adhesion.mesh.nested.refined_towards` takes them: where a bonded
+        mid-plane meets the free surface the stress is singular. The cells that are cut are as long as deep then;
+        without rings they are as thin as the contact's.
+
+    Returns
+    -------
+    CurvedQuads
+        With the boundaries "axis", "contact" (the sphere) and "far" (the mid-plane).
+    """
+    m, n = len(lines), len(depths)
+    own = Lines(lines, depths, along=along)
+    met = even(R, m - 1, n - 1) if len(rings) else own
+    mesh = joined(half_blocks(R, own, met, stereographic), half_vertices(m, n, 0, m * n + (m + n - 1) * (LAYERS - 1)))
+    if len(rings):
+        mesh = refined_towards(mesh, vertex_at(mesh, R, -R), rings)
+    above = -R * (1 - 1e-9)
+    return named(mesh, lambda r, z: {"axis": r == 0, "contact": (r > 0) & (z > above), "far": (r > 0) & (z < above)})
+
+
+def half_blocks(R: float, own: Lines, met: Lines, onto: Callable[[Array, float], Array]) -> list[Block]:
+    """Blocks of one half of a sphere, whose rays from the core to the mid-plane end where those of other lines would.
+
+    They are cut at whole numbers, so that halves with different lines run along the mid-plane alike. No cell is turned
+    over: the rays end on the circle 2R, inside whose tangents both cores lie, and beyond the sides of both.
+    """
+
+    def outwards(i: Array, j: Array, t: Array) -> Array:
+        """Points between a side of the core (t = 0) and the circle 2R (t = 1)."""
+        ray = met.core(i, j)
+        return (1 - t) * own.core(i, j) + t * 2 * R * ray / np.abs(ray)
+
+    m, n = len(own.x) - 1, len(own.depths) - 1
+    i, j = np.arange(m + 1.0), np.arange(n + 1.0)
+    return [
+        Block(i, j, lambda i, j: onto(own.core(i, j), R)),
+        Block(j, own.layers, lambda j, t: onto(outwards(np.array(m), j, t), R)),
+        Block(i, own.layers, lambda i, t: onto(outwards(i, np.array(n), t), R)),
+    ]
+
+
+def half_vertices(m: int, n: int, first: int, middle: int) -> list[Index]:
+    """Numbers of the vertices of `half_blocks` of m lines x and n depths; those on the mid-plane begin at `middle`."""
+    core = first + np.arange(m * n).reshape(m, n)
+    around = m + n - 1
+    layers = first + m * n + np.arange(around * (LAYERS - 1)).reshape(around, LAYERS - 1)
+    out = np.column_stack([np.append(core[-1], core[-2::-1, -1]), layers, middle + np.arange(around)])
+    return [core, out[:n], out[: n - 2 : -1]]
+
+
+def contact_ends(R: float, rings: Array) -> Array:
+    """Ends of the cells of a sphere's surface from the core to the equator, in its coordinate, in beta."""
+    ends = R * np.linspace(CORE, 2.0, LAYERS + 1)
+    return np.concatenate([ends[:-1], ends[-1] - (ends[-1] - ends[-2]) * rings, ends[-1:]])
+
+
+def stereographic(Z: Array, R: float) -> Array:
+    """Return r and z of points of the flat plane: Z/(1 + i Z/2R)."""
+    image = Z / (1 + 0.5j * Z / R)
+    return np.array([image.real, image.imag])
+
+
+def with_contact_to(mesh: Any, radius: float) -> Any:
+    """Return a mesh with its boundary "contact" cut off at a radius where cells end; beyond, its surface is free."""
+    facets = mesh.boundaries["contact"]
+    inside = np.all(mesh.p[0, mesh.facets[:, facets]] <= radius * (1 + 1e-9), axis=0)
+    return mesh.with_boundaries({"contact": facets[inside]})
+
+
+def named_block(mesh: Any) -> Any:
+    """Name the boundaries of a block under z = 0: "axis", "contact" and "far"."""
+    p, facets = mesh.p, mesh.boundary_facets()
+    ends = mesh.facets[:, facets]
+    axis, contact = (np.all(p[k, ends] == 0.0, axis=0) for k in (0, 1))
+    return mesh.with_boundaries({"axis": facets[axis], "contact": facets[contact], "far": facets[~(axis | contact)]})
+
+
+def named(mesh: CurvedQuads, where: Callable[[Array, Array], dict[str, Any]]) -> CurvedQuads:
+    """Name the boundary facets for which the masks, by name, hold at the places r and z of their chords' middles."""
+    facets = mesh.boundary_facets()
+    masks = where(*mesh.p[:, mesh.facets[:, facets]].mean(axis=1))
+    found: CurvedQuads = mesh.with_boundaries({name: facets[mask] for name, mask in masks.items()})
+    return found
+
+
+def vertex_at(mesh: CurvedQuads, r: float, z: float) -> int:
+    """Number of the vertex at a place."""
+    return int(np.argmin(np.hypot(mesh.p[0] - r, mesh.p[1] - z)))

@@ -1,1 +1,0 @@
-"""Output: the leaves that draw and write files."""

@@ -1,0 +1,290 @@
+"""What the files for ParaView hold: arrays on the nodes, and notes on their units, signs and where they come from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from fem_adhesion.common.facts import plain
+from fem_adhesion.elasticity import stress as stresses
+from fem_adhesion.fields.beside import Beside, is_same_contact
+from fem_adhesion.fields.state import State
+from fem_adhesion.paraview.lattice import Cut
+from fem_adhesion.paraview.revolve import Solid
+from fem_adhesion.scene import Scene
+from halfspace.elastic.compliance import Array
+from halfspace.equilibrium.events import EVENTS
+from halfspace.errors import InputError
+from halfspace.scaling import Units
+
+Named = dict[str, Array]
+Numbers = TypeVar("Numbers", float, Array)
+
+LARGEST_STRAIN = 0.5
+"""Drawn at most: the cells stay far from turning inside out."""
+
+STRAIN_PLACES = np.stack(np.meshgrid(np.linspace(0, 0.5, 3), np.linspace(0, 0.5, 3))).reshape(2, -1)
+"""Points of the reference element, triangle or square, at which the largest strain is looked for."""
+
+TO_SCALE = 5.0
+"""Magnification of the true displacement below which it is not worth its distortion."""
+
+SAME_TABOR = 1e-6
+"""Relative difference of two Tabor parameters that are one."""
+
+COMPONENTS = {
+    "displacement": ("r", "theta", "z"),
+    "displacement_in_beta": ("r", "theta", "z"),
+    "displacement_magnified": ("r", "theta", "z"),
+    "stress_cylindrical": ("rr", "tt", "zz", "rt", "tz", "rz"),
+    "stress": ("xx", "yy", "zz", "xy", "yz", "xz"),
+    "principal_stresses": ("largest", "middle", "least"),
+}
+"""Names of the components, in VTK's order of a symmetric tensor's; in a section x, y, z are r, theta, z."""
+
+VECTORS = ("displacement", "displacement_in_beta", "displacement_magnified")
+
+COMPONENTS_OF_SOLID = COMPONENTS | dict.fromkeys(VECTORS, ("x", "y", "z"))
+"""The same in the solid of revolution."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Unit of an array.
+
+    Attributes
+    ----------
+    words : str
+        The paper's.
+    suffix : str
+        That of SI, as part of a name; none of a number without a dimension.
+    size : callable
+        The paper's unit of a material in that of SI.
+    """
+
+    words: str
+    suffix: str = ""
+    size: Callable[[Units], float] = lambda _: 1.0
+
+
+_LENGTH = Unit("beta = (R^2 dgamma/E*)^(1/3)", "m", lambda units: units.length)
+_DISPLACEMENT = Unit("beta^2/R = mu eps", "m", lambda units: units.tabor * units.approach)
+_GAP = Unit("eps", "m", lambda units: units.approach)
+_STRESS = Unit("E* beta/R = dgamma/(mu eps)", "Pa", lambda units: units.pressure)
+_DENSITY = Unit("E* (beta/R)^2", "J_per_m3", lambda units: units.pressure**2 / units.modulus)
+_LOAD = Unit("R dgamma", "N", lambda units: units.load)
+
+UNITS: Mapping[str, Unit] = {
+    "points": _LENGTH,
+    "displacement": _DISPLACEMENT,
+    "displacement_in_beta": _LENGTH,
+    "displacement_magnified": _LENGTH,
+    "stress_cylindrical": _STRESS,
+    "stress": _STRESS,
+    "von_mises": _STRESS,
+    "hydrostatic": _STRESS,
+    "principal_stresses": _STRESS,
+    "strain_energy_density": _DENSITY,
+    "pressure": _STRESS,
+    "gap": _GAP,
+    "H": Unit("1"),
+    "deflection": _DISPLACEMENT,
+    "approach": _GAP,
+    "load": _LOAD,
+    "central_gap": _GAP,
+    "contact_radius": _LENGTH,
+}
+"""Of the arrays, and of the numbers in the field data."""
+
+OBSERVED = ("approach", "load", "central_gap", "contact_radius")
+
+MEANINGS: Mapping[str, str] = {
+    "displacement": "u_r, u_theta, u_z; in the solid u_x, u_y, u_z",
+    "displacement_magnified": "displacement, not to scale",
+    "stress_cylindrical": "in VTK's order of xx yy zz xy yz xz: rr tt zz rt tz rz",
+    "stress": "Cartesian, in the solid",
+    "hydrostatic": "mean of the three normal stresses",
+    "principal_stresses": "descending",
+    "pressure": "that of the surface law; pressure_from_stress what the stress inside exerts",
+    "gap": "h, from surface to surface",
+    "H": "h/eps - 1",
+    "deflection": "-u_z",
+    "central_gap": "H(0) = h(0)/eps - 1, in SI h(0) - eps",
+    "contact_radius": "where h = 3^(1/6) eps; nan without contact",
+    "arclength": "of the load-approach curve in units of its metric; the time of the .pvd",
+}
+
+SIGNS = (
+    "pressure and load positive in compression, stress positive in tension; approach positive when pressed together; "
+    "displacement z upwards, out of the body; deflection positive into the body"
+)
+
+NAMES = (
+    "a name that ends in a unit of SI holds values in that unit; any other holds values in the units above; points are "
+    "in m where a material is given"
+)
+
+
+def unit_of(name: str) -> Unit:
+    """Unit of an array by its name, of the half-space's arrays too."""
+    return UNITS[name.partition("_of_half_space")[0].removesuffix("_from_stress")]
+
+
+def in_si(arrays: Mapping[str, Numbers], units: Units) -> dict[str, Numbers]:
+    """Numbers or arrays in SI, the unit at the end of their names; those without a dimension as they are."""
+    found = {name: unit_of(name) for name in arrays}
+    return {
+        f"{name}_{unit.suffix}" if unit.suffix else name: arrays[name] * unit.size(units)
+        for name, unit in found.items()
+    }
+
+
+def inside(state: State, cut: Cut, scale: float) -> Named:
+    """Arrays on the nodes of the section."""
+    u_r, u_z = cut.values(state.components)
+    stress = cut.values(state.stress)
+    rr, zz, hoop, rz = stress
+    none = np.zeros_like(rr)
+    displacement = np.stack([u_r, none, u_z], axis=1)
+    return _displacements(state, displacement, scale) | {
+        "stress_cylindrical": np.stack([rr, hoop, zz, none, none, rz], axis=1),
+        "von_mises": stresses.von_mises(stress),
+        "hydrostatic": stresses.hydrostatic(stress),
+        "principal_stresses": np.ascontiguousarray(stresses.principal(stress).T),
+        "strain_energy_density": state.share * stresses.energy_density(stress, state.scene.poisson),
+    }
+
+
+def turned(arrays: Named, solid: Solid) -> Named:
+    """Arrays on the nodes of the solid, vectors and the tensor `stress` in Cartesian components."""
+    solid_arrays = {
+        name: solid.vectors(values) if name in VECTORS else solid.scalars(values) for name, values in arrays.items()
+    }
+    return solid_arrays | {"stress": solid.tensors(arrays["stress_cylindrical"])}
+
+
+def on_surface(state: State, beside: Beside, scale: float) -> Named:
+    """Arrays on the nodes of the contact surface; those of the half-space say so, and whether it is another body."""
+    other = "half_space" if is_same_contact(state.scene) else "half_space_which_is_another_body"
+    functions = state.space.boundary_functions("contact")
+    u_r, u_z = (state.surface.values @ state.components[:, functions].T).T
+    displacement = np.stack([u_r, np.zeros_like(u_r), u_z], axis=1)
+    return _displacements(state, displacement, scale) | {
+        "pressure": state.pressure,
+        "pressure_from_stress": state.recovered_pressure(),
+        f"pressure_of_{other}": beside.pressure,
+        "gap": state.gap + 1,
+        f"gap_of_{other}": beside.gap + 1,
+        "H": state.gap,
+        f"H_of_{other}": beside.gap,
+        "deflection": -u_z,
+    }
+
+
+def _displacements(state: State, displacement: Array, scale: float) -> Named:
+    arrays = {"displacement": displacement, "displacement_magnified": scale * displacement}
+    R = state.scene.sphere_radius
+    return arrays if np.isinf(R) else arrays | {"displacement_in_beta": displacement / R}
+
+
+def magnification_for(states: Sequence[State]) -> float:
+    """Length in beta that a displacement of beta^2/R is drawn as, in all states alike: 1, 2 or 5 times a power of ten.
+
+    The largest at which no strain is drawn as more than `LARGEST_STRAIN`; or to scale, 1/R, if that is little less, so
+    that a sphere is drawn as flat as it is where it touches the wall.
+    """
+    largest = max(
+        float(np.abs(stresses.strains(state.space, state.displacement, STRAIN_PLACES)).max()) for state in states
+    )
+    allowed = LARGEST_STRAIN / largest
+    power = 10.0 ** np.floor(np.log10(allowed))
+    scale = float(max(step for step in (1.0, 2.0, 5.0) if step * power <= allowed) * power)
+    R = states[0].scene.sphere_radius
+    return 1 / R if scale * R < TO_SCALE else scale
+
+
+def numbers(state: State, scale: float, units: Units | None) -> dict[str, float]:
+    """Field data: scene and state, which event it is, how the displacement is magnified, and the material.
+
+    No words: not every reader of these files knows strings.
+    """
+    observed = dict(zip(OBSERVED, map(float, state.observables), strict=True))
+    rho = state.scene.radius_ratio
+    return (
+        {"tabor": state.scene.tabor, "poisson": state.scene.poisson}
+        | ({} if rho is None else {"radius_ratio": rho})
+        | observed
+        | (in_si(observed, units) if units else {})
+        | {f"is_{name}": float(state.name == name) for name in EVENTS}
+        | {"arclength": state.arclength, "stable_under_fixed_grips": float(state.stable)}
+        | {"stable_under_dead_load": float(state.stable_under_dead_load)}
+        | _magnification(state.scene, scale, units)
+        | (_material(units) if units else {})
+    )
+
+
+def radius_in_beta(scene: Scene, units: Units | None) -> float:
+    """Radius of the sphere in beta, infinite where neither the scene nor a material says."""
+    return units.radius / units.length if units else scene.sphere_radius
+
+
+def _magnification(scene: Scene, scale: float, units: Units | None) -> dict[str, float]:
+    R = radius_in_beta(scene, units)
+    true = {} if np.isinf(R) else {"sphere_radius_in_beta": R, "magnification_of_true_displacement": scale * R}
+    return {"magnified_beta_per_displacement_unit": scale, **true}
+
+
+def _material(units: Units) -> dict[str, float]:
+    return {
+        "radius_m": units.radius,
+        "contact_modulus_Pa": units.modulus,
+        "work_of_adhesion_J_per_m2": units.work_of_adhesion,
+        "spacing_m": units.spacing,
+    }
+
+
+def half_space_numbers(beside: Beside, units: Units | None) -> dict[str, float]:
+    """Field data on the half-space's approach and load."""
+    alpha, load = map(float, beside.observables[:2])
+    own = {"approach_of_half_space": alpha, "load_of_half_space": load}
+    return own | (in_si(own, units) if units else {})
+
+
+def words(scene: Scene) -> dict[str, object]:
+    """What the arrays are, for people: units, meanings, components, signs."""
+    where = "at the same contact radius, or central gap without contact"
+    other = "the same contact, solved by the integral equation" if is_same_contact(scene) else "another body than this"
+    return {
+        "scene": plain(asdict(scene)),
+        "units": {name: unit.words for name, unit in UNITS.items()},
+        "names": NAMES,
+        "meanings": dict(MEANINGS),
+        "components": dict(COMPONENTS),
+        "signs": SIGNS,
+        "magnification": HOW_MAGNIFIED,
+        "half_space": f"{other}, under the same profile, {where}",
+    }
+
+
+HOW_MAGNIFIED = (
+    "displacement_magnified is displacement times magnified_beta_per_displacement_unit, in all states alike: the "
+    f"largest of 1, 2, 5 times a power of ten at which no strain is drawn as more than {LARGEST_STRAIN:g}, or to scale "
+    f"if that is less than {TO_SCALE:g} times the true displacement"
+)
+
+
+def require_same_scene(states: Sequence[State], units: Units | None) -> None:
+    """Raise InputError unless there are states, all of one scene, with the Tabor parameter of the material."""
+    if not states:
+        raise InputError("no states to write, limit: 1 or more; ask for points or events of the curve")
+    scene = states[0].scene
+    if any(state.scene != scene for state in states):
+        raise InputError("states of several scenes, limit: one scene; write each to a directory of its own")
+    if units is not None and abs(units.tabor - scene.tabor) > SAME_TABOR * scene.tabor:
+        raise InputError(
+            f"the material's tabor = {units.tabor:.9g} is not the scene's {scene.tabor:.9g}; "
+            "take units.tabor for the scene"
+        )

@@ -1,0 +1,224 @@
+"""Files for ParaView: the fields inside the body, its contact surface, and the curve's states as a time series.
+
+Names have no spaces and, in SI, end in their unit. The numbers of the scene and of the state are in the field data of
+each file; words, which not every reader knows, are in ``notes.json``. Section and surface lie in the plane y = 0 with
+the axis z, so that the solid of revolution passes through them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from fem_adhesion.common.files import directory_written_aside
+from fem_adhesion.common.writing import writing
+from fem_adhesion.fields.beside import half_space_beside
+from fem_adhesion.fields.state import State
+from fem_adhesion.paraview.arrays import (
+    COMPONENTS,
+    COMPONENTS_OF_SOLID,
+    Named,
+    half_space_numbers,
+    in_si,
+    inside,
+    magnification_for,
+    numbers,
+    on_surface,
+    require_same_scene,
+    turned,
+    words,
+)
+from fem_adhesion.paraview.lattice import cut_for
+from fem_adhesion.paraview.revolve import require_angle, revolved
+from halfspace.elastic.compliance import Array, Index
+from halfspace.errors import InputError
+from halfspace.scaling import Units
+
+Labels = Mapping[str, Sequence[str]]
+
+TOLERANCE = 1e-4
+"""Largest error of the displacement as drawn, of its maximum, in the section."""
+
+SOLID_TOLERANCE = 1e-2
+"""The same in the solid of revolution, which has fifty times as many points."""
+
+QUADRATIC = {6: 22, 9: 28}
+"""VTK's types of cells of the section by their nodes: quadratic triangle, biquadratic quadrilateral."""
+
+
+def write_path(
+    states: Iterable[State],
+    directory: Path,
+    *,
+    units: Units | None = None,
+    revolve: float | None = None,
+    force: bool = False,
+) -> list[Path]:
+    """Write states of a curve for ParaView, all or none.
+
+    ``body.pvd`` and ``contact.pvd``, and ``solid.pvd`` if revolved, are the time series: their time is the arclength.
+    ``body_0000.vtu`` has the meridian section in second-order cells, ``contact_0000.vtp`` the contact surface with the
+    values of both solvers, ``solid_0000.vtu`` the solid. ``notes.json`` says in words what the arrays are.
+
+    Parameters
+    ----------
+    states : iterable of State
+        Of one scene, in order, from `fem_adhesion.fields.state.states_along`.
+    directory : Path
+        Where to; made unless it exists.
+    units : Units, optional
+        Of a material: points and arrays are in SI then, and the names of arrays end in their unit.
+    revolve : float, optional
+        Angle of the solid in degrees, 360 for all round; no solid unless given.
+    force : bool
+        Accept a directory that is not empty.
+
+    Returns
+    -------
+    list of Path
+        The files, the time series first.
+
+    Raises
+    ------
+    InputError
+        If there are no states, units or angle do not fit, the directory cannot be written, or pyvista is missing.
+    NotWritten
+        If the disk is full.
+    """
+    with directory_written_aside(directory, force=force) as aside:
+        names = write_states(states, aside, directory, units=units, revolve=revolve)
+    return [directory / name for name in names]
+
+
+def write_states(
+    states: Iterable[State], aside: Path, directory: Path, *, units: Units | None, revolve: float | None
+) -> list[str]:
+    """Write into a directory made by `directory_written_aside` and return the names; the rest as `write_path`."""
+    if revolve is not None:
+        require_angle(revolve)
+    pyvista = require_pyvista()
+    held = list(states)
+    require_same_scene(held, units)
+    scale = magnification_for(held)
+    with writing(directory):
+        files = [_write_state(pyvista, aside, k, state, scale, units, revolve) for k, state in enumerate(held)]
+        series = [_write_series(aside, kind, files, held) for kind in files[0]]
+        return [*series, _write_notes(aside, files, held), *(name for each in files for name in each.values())]
+
+
+def require_pyvista() -> Any:
+    """Return pyvista, or raise InputError where it is not installed."""
+    try:
+        import pyvista
+    except ImportError as error:
+        raise InputError(
+            "pyvista is not installed, which writes VTK files; pip install 'fem-adhesion[view]'"
+        ) from error
+    return pyvista
+
+
+def _write_state(
+    pyvista: Any, folder: Path, number: int, state: State, scale: float, units: Units | None, revolve: float | None
+) -> dict[str, str]:
+    """Write a state's files and return their names by kind."""
+    files = {}
+    for kind, suffix, grid in _grids(pyvista, state, scale, units, revolve):
+        _annotate(grid, numbers(state, scale, units))
+        files[kind] = f"{kind}_{number:04d}.{suffix}"
+        _save(grid, folder / files[kind])
+    return files
+
+
+def _save(grid: Any, file: Path) -> None:
+    """Write a grid by way of memory: where the disk is full VTK's own writing ends the process."""
+    from vtkmodules import vtkIOXML
+
+    kind = vtkIOXML.vtkXMLPolyDataWriter if file.suffix == ".vtp" else vtkIOXML.vtkXMLUnstructuredGridWriter
+    writer = kind()
+    writer.SetInputData(grid)
+    writer.SetDataModeToBinary()
+    writer.WriteToOutputStringOn()
+    writer.Write()
+    file.write_text(writer.GetOutputString(), encoding="utf-8")
+
+
+def _grids(
+    pyvista: Any, state: State, scale: float, units: Units | None, revolve: float | None
+) -> Iterator[tuple[str, str, Any]]:
+    """Kind, suffix and grid of each file of a state."""
+    cut = cut_for(state.space, state.components, TOLERANCE)
+    cells, (r, z) = cut.cells, cut.points
+    section = {QUADRATIC[cells.shape[1]]: cells}
+    yield "body", "vtu", _grid(pyvista, section, np.stack([r, 0 * r, z], axis=1), inside(state, cut, scale), units)
+    yield "contact", "vtp", _surface(pyvista, state, scale, units)
+    if revolve is not None:
+        coarse = cut_for(state.space, state.components, SOLID_TOLERANCE)
+        solid = revolved(coarse.points, coarse.cells, revolve)
+        arrays = turned(inside(state, coarse, scale), solid)
+        yield "solid", "vtu", _grid(pyvista, solid.cells, solid.points, arrays, units, COMPONENTS_OF_SOLID)
+
+
+def _grid(
+    pyvista: Any,
+    cells: dict[int, Index],
+    points: Array,
+    arrays: Named,
+    units: Units | None,
+    labels: Labels = COMPONENTS,
+) -> Any:
+    kept = {kind: nodes for kind, nodes in cells.items() if len(nodes)}
+    return _with_arrays(pyvista.UnstructuredGrid(kept, _placed(points, units)), arrays, units, labels)
+
+
+def _surface(pyvista: Any, state: State, scale: float, units: Units | None) -> Any:
+    """Contact surface as one line through its nodes."""
+    r, z = state.surface.radii, -state.surface.depths
+    line = np.append(r.size, np.arange(r.size))
+    beside = half_space_beside(state)
+    grid = pyvista.PolyData(_placed(np.stack([r, 0 * r, z], axis=1), units), lines=line)
+    _annotate(grid, half_space_numbers(beside, units))
+    return _with_arrays(grid, on_surface(state, beside, scale), units)
+
+
+def _placed(points: Array, units: Units | None) -> Array:
+    """Points in beta, or in m where the material is known."""
+    return points * (units.length if units else 1.0)
+
+
+def _annotate(grid: Any, values: Mapping[str, float]) -> None:
+    for name, value in values.items():
+        grid.field_data[name] = np.atleast_1d(value)
+
+
+def _with_arrays(grid: Any, arrays: Named, units: Units | None, labels: Labels = COMPONENTS) -> Any:
+    shown = in_si(arrays, units) if units else arrays
+    for (name, values), plain in zip(shown.items(), arrays, strict=True):
+        grid.point_data[name] = values
+        for number, component in enumerate(labels.get(plain, ())):
+            grid.GetPointData().GetArray(name).SetComponentName(number, component)
+    return grid
+
+
+def _write_series(folder: Path, kind: str, files: Sequence[dict[str, str]], states: Sequence[State]) -> str:
+    """Write the .pvd collection of a kind of file, whose paths are relative, and return its name."""
+    root = ElementTree.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
+    collection = ElementTree.SubElement(root, "Collection")
+    for names, state in zip(files, states, strict=True):
+        time = repr(float(state.arclength))
+        ElementTree.SubElement(collection, "DataSet", timestep=time, group="", part="0", file=names[kind])
+    ElementTree.indent(root)
+    ElementTree.ElementTree(root).write(folder / f"{kind}.pvd", encoding="utf-8", xml_declaration=True)
+    return f"{kind}.pvd"
+
+
+def _write_notes(folder: Path, files: Sequence[dict[str, str]], states: Sequence[State]) -> str:
+    """Write in words what the files hold, and which of them are events, and return the name."""
+    held = [{"event": state.name or None, **names} for names, state in zip(files, states, strict=True)]
+    notes = json.dumps({**words(states[0].scene), "states": held}, indent=1, allow_nan=False)
+    (folder / "notes.json").write_text(notes + "\n", encoding="utf-8")
+    return "notes.json"

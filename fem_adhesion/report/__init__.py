@@ -1,0 +1,1 @@
+"""One page that a reviewer can be sent, and the command `report`."""

@@ -1,0 +1,184 @@
+"""The report: one page that a reviewer can be sent, with every figure and all that moves inside it."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from fem_adhesion.common.machine import machine
+from fem_adhesion.crosscheck.record import overall_verdict, verdict_of
+from fem_adhesion.crosscheck.study import Case, Failure
+from fem_adhesion.curve import figure as plots
+from fem_adhesion.curve.lines import UNSTABLE, Line, smooth
+from fem_adhesion.curve.solve import Curves
+from fem_adhesion.report.figures import figure
+from fem_adhesion.report.levels import crosscheck_section, settings_section
+from fem_adhesion.report.parts import Section
+from fem_adhesion.report.sections import SOURCES, section_of
+from fem_adhesion.report.walk import LINES, Station, Walk
+from halfspace.elastic.compliance import Array
+from halfspace.equilibrium.curve import EquilibriumPath
+
+TEMPLATES = "report/templates"
+
+WORDS = {
+    "failed": "A solver failed",
+    "disagree": "The two solvers disagree",
+    "inconclusive": "The two solvers' error estimates are too wide to tell whether they agree",
+    "agree": "The two solvers agree",
+}
+"""What each verdict is called, worst first."""
+
+BETWEEN = 2.2  # heights in eps per beta of depth at which the lines inside the body are drawn in the moving figure
+DIGITS = 5  # of the numbers in the moving figure
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What goes into a report.
+
+    Attributes
+    ----------
+    cases : sequence of Case or Failure
+        The cross-check.
+    curves : Curves or None
+        One curve by both solvers, if it could be solved.
+    walk : Walk or None
+        The same curve, state by state.
+    directories : mapping of str to Path
+        Results of other commands, by the commands' names.
+    lost : str
+        Why there is no curve, or "".
+    """
+
+    cases: Sequence[Case | Failure]
+    curves: Curves | None
+    walk: Walk | None
+    directories: Mapping[str, Path]
+    lost: str = ""
+
+
+def page(contents: Contents) -> str:
+    """The page as HTML.
+
+    Raises
+    ------
+    InputError
+        If a directory does not hold what its command writes.
+    """
+    cases = contents.cases
+    others = [section_of(source, contents.directories.get(source.command)) for source in SOURCES]
+    environment = Environment(
+        loader=PackageLoader("fem_adhesion", TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    return environment.get_template("report.html.j2").render(
+        verdict="failed" if contents.lost else overall_verdict(cases),
+        words=verdict_words(cases),
+        cases=cases,
+        counts=_counts(cases),
+        lost=contents.lost,
+        curves=_curves_section(contents.curves) if contents.curves else None,
+        walk=walk_data(contents.walk, contents.curves) if contents.walk and contents.curves else None,
+        walk_words=walk_words(contents.walk) if contents.walk else (),
+        has_unstable=contents.curves is not None and any(map(_has_unstable, contents.curves.paths.values())),
+        levels=crosscheck_section(cases),
+        others=others,
+        settings=settings_section(cases, machine()),
+        style=_text("report.css"),
+        script=_text("walk.js"),
+    )
+
+
+def _text(name: str) -> str:
+    return (resources.files("fem_adhesion") / TEMPLATES / name).read_text(encoding="utf-8")
+
+
+def verdict_words(cases: Sequence[Case | Failure]) -> str:
+    """The verdict on all cases; where they differ, worst first with the Tabor parameters of each."""
+    found = [verdict_of(case) for case in cases]
+    if len(set(found)) == 1:
+        return f"{WORDS[found[0]]}."
+    tabors = {word: [f"{case.scene.tabor:g}" for case in cases if verdict_of(case) == word] for word in WORDS}
+    return " ".join(f"{WORDS[one]} at Tabor parameter {', '.join(at)}." for one, at in tabors.items() if at)
+
+
+def _counts(cases: Sequence[Case | Failure]) -> dict[str, int]:
+    """How many quantities ended how, those of failed cases too."""
+    verdicts = [row.verdict for case in cases for row in case.rows]
+    return {verdict: verdicts.count(verdict) for verdict in WORDS if verdict in verdicts}
+
+
+def _has_unstable(path: EquilibriumPath) -> bool:
+    return bool((smooth(path).kind == UNSTABLE).any())
+
+
+def walk_words(walk: Walk) -> list[str]:
+    """What is said of the moving figure: how many of its states are unstable, and what is missing."""
+    total, unstable = len(walk.stations), sum(not station.stable for station in walk.stations)
+    missing = sum(bool(np.isnan(station.pressure[1]).all()) for station in walk.stations)
+    words = [
+        f"Of {total} states {unstable} are unstable under fixed grips: hollow points."
+        if unstable
+        else f"All {total} states are stable under fixed grips.",
+        f"Thin lines lie inside the body, {LINES[1]:g} to {LINES[-1]:g}\u00a0β deep; they are drawn {BETWEEN:g}\u00a0ε "
+        "apart for each β, so that what the surface does can be seen.",
+    ]
+    return words + [f"At {missing} of them the half-space has no such state."] * bool(missing)
+
+
+def _curves_section(curves: Curves) -> Section:
+    stream, drawn = BytesIO(), plots.draw(curves)
+    drawn.savefig(stream, format="svg")
+    solvers = " and by ".join(curves.paths)
+    last = "the deformed mesh" if plots.has_mesh(curves) else "the central gap"
+    text = (
+        f"Load against approach at Tabor parameter {curves.question.scene.tabor:g} by {solvers}: "
+        f"{', '.join(plots.named(drawn))}. Pressure and gap at {', '.join(plots.states(curves))}; the spike of tension "
+        f"at the contact edge with the nodes of the grid; {last}."
+    )
+    return Section("curves", f"The curve by {solvers}", figures=(figure(stream.getvalue(), "curves", text),))
+
+
+def walk_data(walk: Walk, curves: Curves) -> str:
+    """The walk, and the curve by both solvers, as JSON that is safe inside a script element."""
+    data = {
+        "tabor": walk.scene.tabor,
+        "radii": _rounded(walk.radii),
+        "places": _rounded(walk.places),
+        "depths": list(LINES),
+        "between": BETWEEN,
+        "curves": [_curve(smooth(path)) for path in curves.paths.values()],
+        "stations": [_station(station) for station in walk.stations],
+    }
+    return json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _curve(line: Line) -> dict[str, Any]:
+    unstable = (line.kind == UNSTABLE).tolist()
+    return {"approach": _rounded(line.approach), "load": _rounded(line.load), "unstable": unstable}
+
+
+def _station(station: Station) -> dict[str, Any]:
+    numbers = ("arclength", "approach", "load", "central_gap", "contact_radius")
+    return {
+        "name": station.name.replace("_", " "),
+        "stable": station.stable,
+        **{name: _rounded(np.array([getattr(station, name)]))[0] for name in numbers},
+        "pressure": [_rounded(row) for row in station.pressure],
+        "gap": [_rounded(row) for row in station.gap],
+        "lines": [_rounded(row) for row in station.lines],
+    }
+
+
+def _rounded(values: Array) -> list[float | None]:
+    """Numbers of a few digits; what does not exist is null."""
+    return [float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None for value in values.tolist()]

@@ -1,0 +1,135 @@
+"""Sections of the report that other commands have left in directories."""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from fem_adhesion.report.figures import figure
+from fem_adhesion.report.parts import Section, Table, read_table, symbols
+from halfspace.errors import InputError
+
+WELL = ("converged", "refused")
+"""How a hard case may end."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a command leaves in its directory that goes into the report.
+
+    Attributes
+    ----------
+    command, title, introduction : str
+        Its name, the section's title, and what to know before looking.
+    figures : sequence of (stem, caption)
+        SVG files; the caption is the text alternative too. What the command measured itself stands in `captions`.
+    tables : sequence of (stem, title)
+        CSV files.
+    counted : str
+        Stem of a table whose column ``outcome`` is counted, or "".
+    captions : str
+        Stem of a CSV file with columns ``figure`` and ``caption``, or "".
+    """
+
+    command: str
+    title: str
+    introduction: str
+    figures: Sequence[tuple[str, str]]
+    tables: Sequence[tuple[str, str]]
+    counted: str = ""
+    captions: str = ""
+
+
+SOURCES = (
+    Source(
+        "speed",
+        "Speed against error",
+        "Each line is a method at ever finer settings. The grey band is the least time for each error by any method, "
+        "the dotted line the uncertainty of the truth that errors are taken against: the other family's solution.",
+        (
+            ("pull_off", "Error of the pull-off load against wall time: half-space left, finite elements right."),
+            ("jump_on", "Error of the approach at jump-on against wall time: half-space left, finite elements right."),
+            ("hysteresis", "Error of the energy lost in a cycle: half-space left, finite elements right."),
+        ),
+        (("speed", "Every method on every rung of its ladder"),),
+    ),
+    Source(
+        "hard",
+        "Hard cases",
+        "Each case has to end in a number whose error is within its estimate, or in a refusal that says why.",
+        (),
+        (("hard", "Cases"), ("locking", "Locking: largest error of the deflection under a smooth pressure")),
+        counted="hard",
+    ),
+    Source(
+        "greenwood",
+        "Greenwood (1997), printed and computed",
+        "The paper's tables beside the same quantities computed here with their estimated errors, and figures after "
+        "the paper's and beyond.",
+        tuple((stem, "") for stem in ("fig_3b", "fig_7", "fig_8")),
+        (("table_1", "Table 1"), ("table_2", "Table 2"), ("criteria_constants", "Criteria for jumping on")),
+        captions="captions",
+    ),
+    Source(
+        "finite-sphere",
+        "Is the half-space good enough for my sphere?",
+        "An elastic sphere of finite radius R beside the half-space with a parabolic profile.",
+        (("chart", ""), ("causes", "")),
+        (("rules", "Rules of thumb"), ("theories", "Beside the theories of the rigid and of the soft sphere")),
+        captions="captions",
+    ),
+)
+
+
+def section_of(source: Source, directory: Path | None) -> Section:
+    """Section from a command's directory, or one that says that it was not computed.
+
+    Raises
+    ------
+    InputError
+        If the directory does not hold what the command writes.
+    """
+    if directory is None:
+        return Section(source.command, source.title, missing=True)
+    captions = dict(source.figures) | _captions(source, directory)
+    figures = tuple(
+        figure(
+            _require(directory / f"{stem}.svg", source).read_bytes(),
+            f"{source.command}-{stem}",
+            symbols(captions[stem]),
+        )
+        for stem, _ in source.figures
+        if captions[stem]  # those without were not drawn
+    )
+    tables = {stem: read_table(_require(directory / f"{stem}.csv", source), title) for stem, title in source.tables}
+    paragraphs, warning = [source.introduction], ""
+    if source.counted:
+        ended = _outcomes(tables[source.counted])
+        paragraphs.append(f"Of {ended.total()} cases: {', '.join(f'{n} {outcome}' for outcome, n in ended.items())}.")
+        wrong = {outcome: n for outcome, n in ended.items() if outcome not in WELL}
+        warning = f"{', '.join(f'{n} {outcome}' for outcome, n in wrong.items())}." if wrong else ""
+    shown = tuple(tables.values())
+    return Section(source.command, source.title, warning=warning, paragraphs=paragraphs, figures=figures, tables=shown)
+
+
+def _captions(source: Source, directory: Path) -> dict[str, str]:
+    """Captions that the command left beside its figures."""
+    if not source.captions:
+        return {}
+    with _require(directory / f"{source.captions}.csv", source).open(newline="", encoding="utf-8") as file:
+        return {row["figure"]: row["caption"] for row in csv.DictReader(file)}
+
+
+def _outcomes(table: Table) -> Counter[str]:
+    """How many lines of a table ended how."""
+    place = list(table.columns).index("outcome")
+    return Counter(line[place] for line in table.lines)
+
+
+def _require(file: Path, source: Source) -> Path:
+    if not file.is_file():
+        raise InputError(f"{file} is not there; give the directory that fem-adhesion {source.command} --out wrote")
+    return file

@@ -1,0 +1,153 @@
+"""A walk along one load-approach curve: at each of its states the surface and the body, by finite elements and beside.
+
+Made for looking: profiles and lines inside the body on fixed grids, small enough to go into a page.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
+
+from fem_adhesion import convergence
+from fem_adhesion.bodies.sized import Discretisation
+from fem_adhesion.elasticity.stress import positions, sampled
+from fem_adhesion.fields.beside import half_space_beside
+from fem_adhesion.fields.state import State, states_along
+from fem_adhesion.scene import Scene
+from halfspace.elastic.compliance import Array
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.errors import NotConverged
+
+SEEN = Discretisation(degree=4)  # of the fields: right to the width of a line
+RADII = 151  # of the profiles
+REACH = 1.6  # of the largest contact radius: how far the profiles go
+LINES = (0.0, 0.25, 0.5, 1.0, 1.5, 2.0)  # depths in beta at which lines are drawn inside the body
+ON_LINE = 81  # points of a line
+FINE = np.stack(np.meshgrid(*2 * [np.linspace(0, 1, 7)], indexing="ij")).reshape(2, -1)  # of each cell
+
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Station:
+    """One state of the walk.
+
+    Attributes
+    ----------
+    name : str
+        Of the event that it is, or "".
+    arclength, approach, load, central_gap, contact_radius : float
+        In the path's unit, eps, R dgamma, eps and beta (nan without contact).
+    stable : bool
+        Under fixed grips.
+    pressure, gap : (2, n) array
+        P and H at the radii of the walk: by finite elements, and by the half-space at the same contact radius or
+        central gap; nan where the half-space has no such state.
+    lines : (depths, m) array
+        Upward displacement in eps of the lines inside the body, at the walk's places.
+    """
+
+    name: str
+    arclength: float
+    approach: float
+    load: float
+    central_gap: float
+    contact_radius: float
+    stable: bool
+    pressure: Array
+    gap: Array
+    lines: Array
+
+
+@dataclass(frozen=True)
+class Walk:
+    """States along a curve.
+
+    Attributes
+    ----------
+    scene : Scene
+        The contact.
+    path : EquilibriumPath
+        The curve by finite elements.
+    radii, places : (n,) and (m,) array
+        Of the profiles and of the points on the lines inside the body, in beta.
+    stations : tuple of Station
+        In order.
+    """
+
+    scene: Scene
+    path: EquilibriumPath
+    radii: Array
+    places: Array
+    stations: tuple[Station, ...]
+
+
+def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progress: Progress | None = None) -> Walk:
+    """Trace the curve of a block by finite elements and stop at some of its states.
+
+    Parameters
+    ----------
+    tabor : float
+        Tabor parameter.
+    rtol : float
+        Relative accuracy of the events.
+    states : int, optional
+        Stops, nearly equidistant in arclength, all points of the curve unless given; the events come on top.
+    progress : callable, optional
+        Told what is under way, how much is done and of how much.
+    """
+    scene = Scene(tabor)
+    path = convergence.trace(scene, rtol=rtol)
+    outer = REACH * float(np.nanmax(path.contact_radius))
+    radii, places = np.linspace(0, outer, RADII), np.linspace(0, outer, ON_LINE)
+    total = (path.count if states is None else states) + len(path.events)
+    stations = []
+    for number, state in enumerate(states_along(scene, path, points=states, how=SEEN)):
+        if progress:
+            progress("states along the curve", number, total)
+        stations.append(_station(state, radii, places))
+    return Walk(scene, path, radii, places, tuple(stations))
+
+
+def _station(state: State, radii: Array, places: Array) -> Station:
+    approach, load, central_gap, contact_radius = (float(value) for value in state.observables)
+    pressure, gap = (np.array(list(both)) for both in zip(*_profiles(state, radii), strict=True))
+    return Station(
+        state.name,
+        state.arclength,
+        approach,
+        load,
+        central_gap,
+        contact_radius,
+        state.stable,
+        pressure,
+        gap,
+        _lines(state, places),
+    )
+
+
+def _profiles(state: State, radii: Array) -> Iterator[tuple[Array, Array]]:
+    """Pressure and gap on the radii, by finite elements and by the half-space beside."""
+    operator = state.problem.operator.at(1.0)
+    yield operator.values_at(radii, state.pressure), operator.values_at(radii, state.gap)
+    try:
+        beside = half_space_beside(state)
+        yield operator.values_at(radii, beside.pressure), operator.values_at(radii, beside.gap)
+    except NotConverged:
+        yield np.full_like(radii, np.nan), np.full_like(radii, np.nan)
+
+
+def _lines(state: State, places: Array) -> Array:
+    """Upward displacement in eps on the lines inside the body."""
+    r, z = (x.ravel() for x in positions(state.space, FINE))
+    rise = state.scene.tabor * sampled(state.space, state.components[1], FINE).ravel()
+    near = (r < 2 * places[-1]) & (-z < 2 * LINES[-1] + places[-1])
+    points, values = np.stack([r, z], axis=1)[near], rise[near]
+    wanted = np.stack(np.meshgrid(places, -np.array(LINES)), axis=-1).reshape(-1, 2)
+    found = LinearNDInterpolator(points, values)(wanted)
+    outside = np.isnan(found)  # by rounding, on the surface and the axis
+    found[outside] = NearestNDInterpolator(points, values)(wanted[outside])
+    return np.asarray(found.reshape(len(LINES), places.size))

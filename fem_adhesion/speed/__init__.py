@@ -1,0 +1,1 @@
+"""What a digit costs: methods beside each other, page, and the command `speed`."""

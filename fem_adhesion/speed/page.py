@@ -1,0 +1,147 @@
+"""The speed study on paper: a table of all rungs, the plots, and a page that says what accuracy costs."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from fem_adhesion.common.facts import versions
+from fem_adhesion.common.machine import machine
+from fem_adhesion.speed.figures import draw
+from fem_adhesion.speed.methods import QUANTITIES
+from fem_adhesion.speed.result import Rung, SpeedStudy, best, cheapest
+
+TOLERANCES = (1e-3, 1e-6)
+UNITS = {"pull_off": "R dgamma", "jump_on": "eps", "hysteresis": "R dgamma eps"}
+COLUMNS = ("method", "setting", "unknowns", "seconds", "yardsticks", "peak_mebibytes")
+ERROR_COLUMNS = tuple(f"{quantity}_{what}" for quantity in QUANTITIES for what in ("error", "truth_uncertainty"))
+
+
+def write(study: SpeedStudy, directory: Path) -> None:
+    """Write ``speed.csv``, ``speed.md`` and a plot for each quantity, SVG and PNG, into a directory that exists.
+
+    Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none.
+    """
+    with (directory / "speed.csv").open("w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow([*COLUMNS, *ERROR_COLUMNS, "outcome", "reason"])
+        table.writerows(_cells(rung, study.yardstick) for rung in study.rungs)
+    (directory / "speed.md").write_text("\n".join(page(study)) + "\n")
+    draw(study, directory)
+
+
+def _cells(rung: Rung, yardstick: float) -> list[str]:
+    """Row of the table; what is not known is left empty."""
+    errors = [
+        _number(value, "{:.3e}")
+        for quantity in QUANTITIES
+        for value in (rung.error(quantity), rung.floors.get(quantity, math.nan))
+    ]
+    return [
+        rung.method,
+        rung.setting,
+        "" if rung.unknowns is None else str(rung.unknowns),
+        _number(rung.seconds, "{:.4f}"),
+        _number(rung.seconds / yardstick, "{:.0f}"),
+        _number(rung.memory, "{:.1f}"),
+        *errors,
+        rung.status,
+        rung.reason,
+    ]
+
+
+def _number(value: float, form: str) -> str:
+    return form.format(value) if math.isfinite(value) else ""
+
+
+def page(study: SpeedStudy) -> Iterator[str]:
+    """Lines of the page, in Markdown."""
+    yield f"# Error against wall time at Tabor parameter {study.tabor:g}{', quick run' if study.quick else ''}"
+    yield ""
+    yield from verdict(study)
+    yield ""
+    yield from (f"* {key}: {value}" for key, value in (machine() | versions()).items())
+    yield f"* yardstick, one dgesv of n = 200: {study.yardstick * 1e3:.2f} ms"
+    yield from _truths(study)
+    yield from _costs(study, "What it costs to have every quantity that a method gives", None)
+    for quantity in study.quantities:
+        yield from _costs(study, f"What it costs to have {quantity}", quantity)
+    yield from _exponents(study)
+    yield from _failures(study)
+
+
+def verdict(study: SpeedStudy) -> Iterator[str]:
+    """What the run was, and what failed that should not have; a sentence each."""
+    rungs = sum(len(method.steps) for method in study.methods)
+    counted = (
+        f"{len(study.rungs)} of {rungs} rungs were climbed, {sum(r.converged for r in study.rungs)} have a result."
+    )
+    yield f"A quick run: {counted} The finer ones were left out." if study.quick else counted
+    troubles = list(study.troubles())
+    if troubles:
+        yield f"FAILED where it should not have, {len(troubles)} times:"
+        yield from (f"* {trouble}" for trouble in troubles)
+
+
+def _truths(study: SpeedStudy) -> Iterator[str]:
+    """What the errors are taken against, and whether the two truths agree."""
+    title = "The truths: each family is judged by the other; an error below the truth's own uncertainty is shown as <"
+    columns = [
+        f"judge of the {judged}: {truth.family}, rtol {truth.rtol:.0e}" for judged, truth in study.truths.items()
+    ]
+    yield from _heading(title, ["quantity", "unit", *columns, "difference", "within both errors"])
+    for quantity in study.quantities:
+        a, b = (truth.values[quantity] for truth in study.truths.values())
+        cells = [f"{estimate.value:.12g}, error {estimate.error:.0e}" for estimate in (a, b)]
+        agree = abs(a.value - b.value) <= a.error + b.error
+        yield _line([quantity, UNITS[quantity], *cells, f"{abs(a.value - b.value):.0e}", "yes" if agree else "NO"])
+
+
+def _costs(study: SpeedStudy, title: str, quantity: str | None) -> Iterator[str]:
+    """One line per method: seconds to each tolerance, and the best that it reached."""
+    yield from _heading(title, ["method", *(f"to {tolerance:.0e}" for tolerance in TOLERANCES), "best reached"])
+    for method in study.methods:
+        rungs = study.of(method.name)
+        cells = [_cost(cheapest(rungs, tolerance, quantity), study) for tolerance in TOLERANCES]
+        yield _line([method.name, *cells, _best(best(rungs, quantity), quantity)])
+
+
+def _cost(rung: Rung | None, study: SpeedStudy) -> str:
+    if rung is None:
+        return "-"
+    return f"{rung.seconds:.2f} s = {rung.seconds / study.yardstick:.0f} yardsticks ({rung.setting})"
+
+
+def _best(rung: Rung | None, quantity: str | None) -> str:
+    named = quantity or (rung.worst if rung else None)
+    if rung is None or named is None:
+        return "-"
+    below = "<" if rung.hidden(named) else ""
+    return f"{below}{rung.error(named):.0e} in {rung.seconds:.2f} s ({rung.setting})"
+
+
+def _exponents(study: SpeedStudy) -> Iterator[str]:
+    title = "How the cost grows: exponents b fitted to cost ~ x^b; the error is that of pull_off"
+    costs = [f"{cost}, x = {x}" for x in ("unknowns", "1/error") for cost in ("time", "peak memory")]
+    yield from _heading(title, ["method", "rungs", *costs])
+    for method in study.methods:
+        b = study.exponents(method.name)
+        fitted = (b.time, b.memory, b.time_by_accuracy, b.memory_by_accuracy)
+        yield _line([method.name, str(b.rungs), *(_number(value, "{:.2f}") or "-" for value in fitted)])
+
+
+def _failures(study: SpeedStudy) -> Iterator[str]:
+    yield from _heading("Rungs without result", ["method", "setting", "outcome", "reason"])
+    for rung in study.rungs:
+        if not rung.converged:
+            yield _line([rung.method, rung.setting, rung.status, rung.reason])
+
+
+def _heading(title: str, columns: Sequence[str]) -> Iterator[str]:
+    yield from ("", f"## {title}", "", _line(columns), _line(["---"] * len(columns)))
+
+
+def _line(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"

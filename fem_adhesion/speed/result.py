@@ -1,0 +1,229 @@
+"""What the speed study finds: rungs of ladders, and the figures of merit drawn from them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from fem_adhesion.speed.methods import QUANTITIES, Family, Method
+from halfspace.equilibrium.curve import Estimate
+
+Status = Literal["converged", "too coarse", "refused", "failed"]
+VISIBLE = 4.0  # MiB of memory below which a growth says nothing
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What errors are taken against: a solution at a tight tolerance by the family that is not judged by it.
+
+    Attributes
+    ----------
+    family : str
+        Whose elasticity it is.
+    rtol : float
+        Its tolerance.
+    values : mapping of str to Estimate
+        Pull-off load in R dgamma, jump_on approach in eps, hysteresis energy in R dgamma eps; the last two only where
+        the curve folds.
+    approach_scale : float
+        What errors of approaches are relative to, in eps, see `halfspace.equilibrium.events.approach_scale`.
+    """
+
+    family: Family
+    rtol: float
+    values: Mapping[str, Estimate]
+    approach_scale: float
+
+    def relative(self, quantity: str, error: float) -> float:
+        """Error of a quantity, relative to its value or, of an approach, which has no size of its own, to the scale."""
+        return error / (self.approach_scale if quantity == "jump_on" else abs(self.values[quantity].value))
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One resolution of one method.
+
+    Attributes
+    ----------
+    method, setting : str
+        Whose rung, and how fine.
+    status : str
+        How it ended: ``converged``; ``too coarse``, as its grid cannot carry the spike of tension; ``refused`` before
+        any work; ``failed``.
+    seconds : float
+        Wall time from the set-up to the events, or to the failure.
+    reason : str
+        For having no result.
+    unknowns : int or None
+        Elastic ones included; None without result.
+    memory : float
+        Growth of the peak memory of the process in MiB; nan where the system does not tell.
+    errors : mapping of str to float
+        For each quantity found, as by `Truth.relative`; not below `floors`.
+    floors : mapping of str to float
+        Uncertainty of the truth on the same scale.
+    """
+
+    method: str
+    setting: str
+    status: Status
+    seconds: float
+    reason: str = ""
+    unknowns: int | None = None
+    memory: float = float("nan")
+    errors: Mapping[str, float] = field(default_factory=dict)
+    floors: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def converged(self) -> bool:
+        """Whether there is a result."""
+        return self.status == "converged"
+
+    def error(self, quantity: str) -> float:
+        """Error of a quantity; nan where there is none."""
+        return self.errors.get(quantity, float("nan"))
+
+    def hidden(self, quantity: str) -> bool:
+        """Whether the error is no more than the truth's uncertainty, which then stands in its place."""
+        return self.error(quantity) <= self.floors.get(quantity, 0.0)
+
+    @property
+    def worst(self) -> str | None:
+        """Quantity with the largest error; None without result, or with an error that is not a number."""
+        if not self.errors or not np.all(np.isfinite(list(self.errors.values()))):
+            return None
+        return max(self.errors, key=self.error)
+
+
+@dataclass(frozen=True)
+class Exponents:
+    """Slopes of a method's cost in log-log scale, nan where fewer than two rungs converged.
+
+    Attributes
+    ----------
+    rungs : int
+        That converged.
+    time, memory : float
+        Against unknowns.
+    time_by_accuracy, memory_by_accuracy : float
+        Against 1/error, error that of the pull-off load where it exceeds the truth's uncertainty.
+    """
+
+    rungs: int
+    time: float
+    memory: float
+    time_by_accuracy: float
+    memory_by_accuracy: float
+
+
+@dataclass(frozen=True)
+class SpeedStudy:
+    """All rungs of all methods.
+
+    Attributes
+    ----------
+    tabor : float
+        Tabor parameter.
+    quick : bool
+        Whether only the lower rungs were climbed.
+    truths : mapping of str to Truth
+        By the family that is judged.
+    yardstick : float
+        Seconds that one dgesv of n = 200 took in the same run.
+    methods : tuple of Method
+        In the order of the report.
+    rungs : tuple of Rung
+        In the order of the methods.
+    """
+
+    tabor: float
+    quick: bool
+    truths: Mapping[Family, Truth]
+    yardstick: float
+    methods: tuple[Method, ...]
+    rungs: tuple[Rung, ...]
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Quantities that every truth has."""
+        return tuple(q for q in QUANTITIES if all(q in truth.values for truth in self.truths.values()))
+
+    def of(self, method: str) -> list[Rung]:
+        """Rungs of a method by name."""
+        return [rung for rung in self.rungs if rung.method == method]
+
+    def uncertainty(self, family: Family, quantity: str) -> float:
+        """Uncertainty of the truth that judges a family, on the scale of the errors."""
+        truth = self.truths[family]
+        return truth.relative(quantity, truth.values[quantity].error)
+
+    def troubles(self) -> Iterator[str]:
+        """What failed that should not have, a sentence each."""
+        for quantity in self.quantities:
+            a, b = (truth.values[quantity] for truth in self.truths.values())
+            if not abs(a.value - b.value) <= a.error + b.error:
+                yield f"the truths disagree in {quantity}: {a.value:.10g} and {b.value:.10g}"
+        for method in self.methods:
+            yield from _troubles(method, self.of(method.name))
+
+    def exponents(self, method: str) -> Exponents:
+        """Fitted exponents of a method's cost."""
+        rungs = [rung for rung in self.of(method) if rung.converged]
+        n, t, m = (np.array([getattr(r, key) for r in rungs], float) for key in ("unknowns", "seconds", "memory"))
+        m[m < VISIBLE] = np.nan
+        accuracy = 1 / np.array([np.nan if rung.hidden("pull_off") else rung.error("pull_off") for rung in rungs])
+        return Exponents(len(rungs), slope(n, t), slope(n, m), slope(accuracy, t), slope(accuracy, m))
+
+
+def _troubles(method: Method, rungs: Sequence[Rung]) -> Iterator[str]:
+    """Failures of one method: a coarse grid may be refused, but not above a finer one that was not."""
+    solved = False
+    for rung in rungs:
+        if (rung.status == "failed" and not method.may_diverge) or (solved and rung.status == "too coarse"):
+            yield f"{method.name} at {rung.setting}: {rung.reason}"
+        if rung.converged and rung.worst is None:
+            yield f"{method.name} at {rung.setting}: a result that is not a number"
+        solved = solved or rung.converged
+    if not solved and not method.may_diverge:
+        yield f"{method.name}: no rung has a result"
+
+
+def cheapest(rungs: Sequence[Rung], tolerance: float, quantity: str | None = None) -> Rung | None:
+    """Fastest rung within the tolerance, in one quantity or in all that it gives; None if there is none."""
+    good = [rung for rung in rungs if _error(rung, quantity) <= tolerance]
+    return min(good, key=lambda rung: rung.seconds, default=None)
+
+
+def best(rungs: Sequence[Rung], quantity: str | None = None) -> Rung | None:
+    """Most accurate rung, in one quantity or in all; None if none converged."""
+    good = [rung for rung in rungs if np.isfinite(_error(rung, quantity))]
+    return min(good, key=lambda rung: _error(rung, quantity), default=None)
+
+
+def _error(rung: Rung, quantity: str | None) -> float:
+    named = quantity or rung.worst
+    return rung.error(named) if named else float("nan")
+
+
+def pareto_front(rungs: Sequence[Rung], quantity: str) -> list[Rung]:
+    """Rungs than which none is both faster and more accurate, from the fastest to the most accurate.
+
+    Of those whose error the truth cannot tell only the fastest counts: no other is known to be more accurate.
+    """
+    front: list[Rung] = []
+    known = [rung for rung in rungs if np.isfinite(rung.error(quantity))]
+    for rung in sorted(known, key=lambda r: (r.seconds, r.error(quantity))):
+        if not front or (rung.error(quantity) < front[-1].error(quantity) and not front[-1].hidden(quantity)):
+            front.append(rung)
+    return front
+
+
+def slope(x: np.ndarray, y: np.ndarray) -> float:
+    """Exponent b of y ~ x^b by least squares of the logarithms; nan from fewer than two different points."""
+    use = np.isfinite(x) & np.isfinite(y) & (x > 0) & (y > 0)
+    if np.unique(x[use]).size < 2:
+        return float("nan")
+    return float(np.polyfit(np.log(x[use]), np.log(y[use]), 1)[0])

@@ -1,0 +1,148 @@
+"""Error against wall time of every method in the house, at one Tabor parameter.
+
+Each method climbs a ladder of resolutions; a rung is timed from the set-up to the events. Its errors are those of three
+quantities against the tightest solution of the other family: no elasticity is judged by itself. Which rungs are climbed
+is a matter of the ladders alone, so it is the same on every machine; time is only reported.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from scipy.linalg.lapack import dgesv
+
+import fem_adhesion
+import halfspace
+from fem_adhesion.common.machine import peak_memory
+from fem_adhesion.scene import Scene
+from fem_adhesion.speed.element_methods import POISSON, element_methods
+from fem_adhesion.speed.halfspace_methods import halfspace_methods
+from fem_adhesion.speed.methods import Family, Method, Solved, Step
+from fem_adhesion.speed.result import Rung, SpeedStudy, Status, Truth
+from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.devices import cycle
+from halfspace.errors import GridTooCoarse, InputError, NotConverged
+
+TABOR_RANGE = (0.05, 2.0)  # beyond it fixed grids need too many nodes, or rigid surfaces leave nothing to compare
+TIGHTEST = 1e-9  # relative tolerance of the truths
+
+Progress = Callable[[str, int, int], None]
+
+
+def measure(
+    tabor: float = 1.0,
+    *,
+    quick: bool = False,
+    progress: Progress | None = None,
+    methods: Sequence[Method] | None = None,
+) -> SpeedStudy:
+    """Time every method on its ladder of resolutions.
+
+    Parameters
+    ----------
+    tabor : float
+        Tabor parameter, 0.05 to 2.
+    quick : bool
+        Climb the lower rungs only, which `Method.quick` counts, and each once.
+    progress : callable
+        Called before each method with its name, and how many of how many are done.
+    methods : sequence of Method, optional
+        All unless given.
+
+    Raises
+    ------
+    InputError
+        If tabor is out of range.
+    NotConverged
+        If a truth cannot be solved for.
+    """
+    require_tabor(tabor)
+    chosen = tuple([*halfspace_methods(), *element_methods()] if methods is None else methods)
+    truths = find_truths(tabor)
+    yardstick = time_yardstick()
+    rungs: list[Rung] = []
+    for number, method in enumerate(chosen):
+        if progress:
+            progress(method.name, number, len(chosen))
+        rungs += _climb(method, tabor, truths[method.family], quick=quick)
+    return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs))
+
+
+def require_tabor(tabor: float) -> float:
+    """Return the Tabor parameter, or raise InputError unless the study is meant for it."""
+    low, high = TABOR_RANGE
+    if not low <= tabor <= high:
+        raise InputError(f"tabor = {tabor:g} is outside {low:g} <= tabor <= {high:g} for the speed study; take 1")
+    return tabor
+
+
+def find_truths(tabor: float) -> dict[Family, Truth]:
+    """What each family is judged by: the other one at its tightest tolerance, with its own uncertainties."""
+    half_space = _truth("half-space", halfspace.trace(tabor, rtol=TIGHTEST))
+    elements = _truth("finite elements", fem_adhesion.trace(Scene(tabor, POISSON), rtol=TIGHTEST))
+    return {"half-space": elements, "finite elements": half_space}
+
+
+def _truth(family: Family, path: EquilibriumPath) -> Truth:
+    return Truth(family, TIGHTEST, _estimates(path), path.approach_scale)
+
+
+def _estimates(path: EquilibriumPath) -> dict[str, Estimate]:
+    """Quantities of a path with their uncertainties; jump and hysteresis only where it folds."""
+    pull_off, jump_on, grips = path.events["pull_off"], path.event("jump_on"), cycle(path)
+    found = {"pull_off": Estimate(pull_off.load, pull_off.load_error)}
+    if jump_on and grips:
+        found |= {"jump_on": Estimate(jump_on.approach, jump_on.approach_error), "hysteresis": grips.energy_lost}
+    return found
+
+
+def time_yardstick() -> float:
+    """Seconds of one dgesv of n = 200, the best of 20."""
+    rng = np.random.default_rng(0)
+    matrix, rhs = rng.normal(size=(200, 200)), rng.normal(size=200)
+    return min(_seconds(lambda: dgesv(matrix, rhs)) for _ in range(20))
+
+
+def _seconds(work: Callable[[], object]) -> float:
+    began = time.perf_counter()
+    work()
+    return time.perf_counter() - began
+
+
+def _climb(method: Method, tabor: float, truth: Truth, *, quick: bool) -> Iterator[Rung]:
+    """Rungs of a method; in the full study those of the quick ladder, which are cheap, are timed once more, warm."""
+    for number, step in enumerate(method.ladder(quick=quick)):
+        yield _run(method.name, step, tabor, truth, again=not quick and number < method.quick)
+
+
+def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) -> Rung:
+    """One rung: run it, time it again if asked, and compare with the truth."""
+    began = time.perf_counter()
+    try:
+        with peak_memory() as memory:
+            solved = step.run(tabor)
+    except (InputError, NotConverged) as error:
+        return Rung(method, step.setting, _status(error), time.perf_counter() - began, str(error))
+    seconds = time.perf_counter() - began
+    if again:
+        seconds = min(seconds, _seconds(lambda: step.run(tabor)))
+    errors, floors = _errors(solved, truth), {name: truth.relative(name, e.error) for name, e in truth.values.items()}
+    return Rung(method, step.setting, "converged", seconds, "", solved.unknowns, memory.mebibytes, errors, floors)
+
+
+def _status(error: InputError | NotConverged) -> Status:
+    """How a rung without result ended."""
+    if isinstance(error, InputError):
+        return "refused"
+    return "too coarse" if isinstance(error, GridTooCoarse) else "failed"
+
+
+def _errors(solved: Solved, truth: Truth) -> dict[str, float]:
+    """Differences from the truth; not below its own uncertainty, since nothing less can be told."""
+    return {
+        name: truth.relative(name, max(abs(value - truth.values[name].value), truth.values[name].error))
+        for name, value in solved.values.items()
+        if name in truth.values
+    }

@@ -1,1 +1,0 @@
-"""Studies: each answers one question with the solvers."""

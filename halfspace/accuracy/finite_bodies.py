@@ -1,0 +1,217 @@
+"""Bodies with a length of their own: charts for their load-approach curve, and operators around its events.
+
+No single compliance serves all contact radii of such a body. The curve is traced on an operator interpolated between a
+few radii (`halfspace.elastic.operators.Interpolated`). Each event is then solved for on a grid and an operator of its
+own, made for radii close to that of the event, where the interpolation is as good as exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from halfspace.elastic import grid
+from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.operators import Interpolated, MovingGrid, SurfaceCoordinate, chebyshev_radii
+from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, ContactProblem, spike_width
+from halfspace.equilibrium.curve import COMPRESSION, Chart
+from halfspace.equilibrium.events import Located
+from halfspace.profiles import Profile
+from halfspace.theories.closed_forms import jkr_radius
+from halfspace.values import Valued
+
+LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the least that the other one knows
+LEAVE = 0.5  # of the first cell: the radius at which the chart centred on the axis is left
+WINDOW, AROUND = 2e-3, 3  # half the logarithmic width of the radii around an event on the lowest rung, operators in it
+TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
+APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
+CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
+
+Made = tuple[ElasticOperator, int]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SizedBody(Valued):
+    """A body that is discretised anew on any grid of its surface.
+
+    Parameters
+    ----------
+    tabor : float
+        Tabor parameter.
+    profile : Profile
+        Of the undeformed surface.
+    make : callable
+        From the ends of all cells, in the surface's coordinate, the operator and its number of unknowns.
+    finest : float
+        Length of the cells at the contact edge, in widths of the spike of tension there.
+    growth : float
+        Ratio of neighbouring cells.
+    outer : (k,) array
+        The last cells' ends, ascending, which do not move with the contact: their first is where the others end.
+    coordinate : SurfaceCoordinate
+        Along the surface.
+    last : float
+        Length of the last of the others, in beta, if they are to be fine there too; see `at_equator`.
+    """
+
+    tabor: float
+    profile: Profile
+    make: Callable[[Array], Made]
+    finest: float
+    growth: float
+    outer: Array
+    coordinate: SurfaceCoordinate
+    last: float = np.inf
+
+    @property
+    def length(self) -> float:
+        """Length of the cells at the contact edge in beta, and the contact radius up to which they do at the centre."""
+        return self.finest * spike_width(self.tabor) / 2
+
+    def lines(self, edge: float = 0.0) -> Array:
+        """Ends of all cells that are finest at a contact edge, in the surface's coordinate, or on the axis."""
+        return np.concatenate([self._graded(edge), self.outer[1:]])
+
+    def _graded(self, edge: float) -> Array:
+        return grid.graded(edge, self.length, float(self.outer[0]), growth=self.growth, last=self.last)
+
+    def centred(self) -> Chart:
+        """Chart fine on the axis."""
+        operator, unknowns = self.make(self.lines())
+        return Chart(ContactProblem(operator, self.tabor, profile=self.profile), unknowns, LEAVE * self.length)
+
+    def following(self, moving: MovingGrid, scales: Array) -> Chart:
+        """Chart that follows the contact edge, from operators at some contact radii."""
+        made = [self.make(moving.lines(float(a))) for a in scales]
+        operator = Interpolated(scales, [operator for operator, _ in made], moving)
+        return Chart(ContactProblem(operator, self.tabor, profile=self.profile), made[0][1])
+
+    def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
+        """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
+        widest = min(float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(self.tabor))), WIDEST * self.profile.end)
+        least = min(LEAST * LEAVE * self.length, widest / 2)
+        count = 2 + int(np.ceil(np.log(widest / least) / np.log(apart)))
+        end, edge = float(self.outer[0]), self.coordinate.of(widest)
+        inner = grid.geometric(1.0, 2 * self.length / edge, self.growth)
+        outside = grid.geometric(end, self.length, self.growth, self.last)
+        moving = self._moving(1 - inner[::-1], outside / end)
+        return self.centred(), self.following(moving, chebyshev_radii(least, widest, count))
+
+    def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
+        """Chart for contact radii near the given one, from so many operators."""
+        end, edge = float(self.outer[0]), self.coordinate.of(radius)
+        lines = self._graded(edge)
+        inner = lines < edge * (1 + 1e-12)
+        moving = self._moving(lines[inner] / edge, np.append(0, (lines[~inner] - edge) / (end - edge)))
+        return self.following(moving, chebyshev_radii(radius * np.exp(-window), radius * np.exp(window), count))
+
+    def _moving(self, inner: Array, outside: Array) -> MovingGrid:
+        """Grid from the ends of cells inside the edge, as parts of x_a, and outside, as parts of the rest."""
+        inner[0], inner[-1], end = 0.0, 1.0, float(self.outer[0])
+        fixed = np.concatenate([0 * inner, end * outside[1:], self.outer[1:]])
+        moving = np.concatenate([inner, 1 - outside[1:], 0 * self.outer[1:]])
+        return MovingGrid(fixed, moving, self.coordinate)
+
+
+def at_equator(tabor: float, profile: Profile, nodes: int) -> float:
+    """Length in beta of the last cell at the equator of a sphere, r = R, where its profile has a vertical tangent.
+
+    Cells that grow from there on as they do from the contact edge leave as little of the root of the distance as of
+    anything else, but for the last. What a rule of its nodes leaves there is of the order d^(3/2) of its length d in R,
+    times h^-2 in the load, h the gap: a decade less with each node more, as everywhere.
+    """
+    h = 1 + tabor * float(profile.height(np.array(profile.end)))
+    return float(profile.end * (10.0 ** (1 - nodes) * h**2) ** (2 / 3))
+
+
+def surroundings(rtol: float, level: int) -> tuple[float, int]:
+    """Half the logarithmic width of the radii around an event on a rung, halved on each above it, and operators in it.
+
+    In their middle the operator is as good as exact. Its derivative, by which a fold or an extremum is found, errs by
+    the window's square with three operators, some 1e-7 of the approach at pull-off, and by its fourth power with five.
+    """
+    window, count = (WINDOW, AROUND) if rtol >= TIGHT else (2 * WINDOW, AROUND + 2)
+    return window / 2**level, count
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AroundEvents(Valued):
+    """Stage of a ladder on which every event has an operator made for its own contact radius.
+
+    Parameters
+    ----------
+    body : SizedBody
+        The body.
+    window : float
+        Half the logarithmic width of the contact radii that a chart serves. A fold is where a derivative vanishes,
+        which errs by a power of it: windows that differ from rung to rung let the error estimate see it.
+    count : int
+        Operators in it, see `surroundings`.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+    """
+
+    body: SizedBody
+    window: float = WINDOW
+    count: int = AROUND
+    to_load: float = COMPRESSION
+    charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event, made unless one made before will do."""
+        follows = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
+        radius = float(event.point.observables[CONTACT_RADIUS]) if follows else 0.0
+        for made_for, chart in self.charts:
+            if abs(radius - made_for) <= self.window * radius:
+                return chart
+        chart = self.body.around(radius, self.window, self.count) if follows else self.body.centred()
+        self.charts.append((radius, chart))
+        return chart
+
+    @property
+    def everywhere(self) -> AlongCurve:
+        """The same grid for every point of a curve."""
+        apart = 1 + (CLOSER - 1) * self.window / WINDOW * 2.0 ** (AROUND - self.count)
+        return AlongCurve(self.body, self.to_load, apart)
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a chart made so far."""
+        return max(chart.unknowns for _, chart in self.charts)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AlongCurve(Valued):
+    """Charts of a body for every point of its curve, made when they are first asked for.
+
+    Attributes
+    ----------
+    body : SizedBody
+        The body.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+    apart : float
+        Ratio of the radii between which the operator is interpolated.
+    """
+
+    body: SizedBody
+    to_load: float
+    apart: float
+
+    @cached_property
+    def charts(self) -> tuple[Chart, Chart]:
+        """Chart centred on the axis, and that which follows the contact."""
+        return self.body.curve(self.to_load, self.apart)
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for a point of a curve."""
+        follows = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
+        return self.charts[1 if follows else 0]
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the larger chart."""
+        return max(chart.unknowns for chart in self.charts)

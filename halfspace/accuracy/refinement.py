@@ -1,0 +1,282 @@
+"""The load-approach curve to an accuracy asked for: a ladder of discretisations of any body.
+
+The curve is traced on the lowest rung and each event solved for again on the next, and on more if need be. An event's
+error estimate is a part of its change from the last rung but one to the last, which is nearly the lower rung's error:
+half of it where the higher rung leaves a third of that error at most, more where it may leave more.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Protocol
+
+import numpy as np
+
+from halfspace.equilibrium.contact import ContactProblem
+from halfspace.equilibrium.curve import (
+    COMPRESSION,
+    Chart,
+    EquilibriumPath,
+    Estimate,
+    Finest,
+    energy_released,
+    find_events,
+    metric_for,
+    moved,
+    placed,
+    trace_charts,
+)
+from halfspace.equilibrium.events import (
+    EVENTS,
+    REMAINING,
+    ROUND_OFF,
+    STEEPEST,
+    Event,
+    Located,
+    Tolerance,
+    estimate_event,
+    steepest,
+    steepest_from,
+)
+from halfspace.equilibrium.path import Segment
+from halfspace.equilibrium.states import Ways
+from halfspace.errors import InputError, NotConverged
+from halfspace.values import Valued
+
+MOST_RUNGS = 4  # above the lowest
+FOLDS = ("jump_on", "jump_off")
+IN_DOUBT = 0.02  # eps/(R dgamma), of the least -d(alpha*)/dW between the points: the Tabor parameter is 0.65 to 0.74
+FLAT = 1e-9  # eps/(R dgamma), of it: what the last of the parabolas and rounding leave
+
+Charts = Sequence[Chart]
+State = Mapping[str, Located]
+
+
+class Stage(Protocol):
+    """One discretisation on which events are solved for again."""
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event found on another discretisation."""
+        ...
+
+    @property
+    def everywhere(self) -> Finest:
+        """The same for every point of a curve, if charts for events do not serve these."""
+        ...
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the largest chart."""
+        ...
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Charted(Valued):
+    """The same charts for every event, one for those on a grid that stands still, one for those on one that follows.
+
+    Attributes
+    ----------
+    charts : sequence of Chart
+        That for the grid that follows the contact is the last.
+    """
+
+    charts: Charts
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart of the event's kind."""
+        source = event.problem
+        return self.charts[-1 if isinstance(source, ContactProblem) and source.follows_contact else 0]
+
+    @property
+    def everywhere(self) -> Finest:
+        """The same charts."""
+        return self
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the largest chart."""
+        return max(chart.unknowns for chart in self.charts)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Rung(Valued):
+    """One step of a ladder of discretisations.
+
+    Attributes
+    ----------
+    curve : callable
+        Makes the charts for tracing the curve on this rung; they need not all be made before.
+    stages : tuple of Stage
+        On each of which every event is solved for; each differs from the one before in one respect, the last is the
+        finest. The changes add up to the error. On the lowest rung they only prepare, and there may be none.
+    settings : mapping
+        How the last stage is discretised.
+    twin : Stage or None
+        As fine as the rung below, with other cells: it errs as much, but not by the same accident of sign.
+    remaining : float
+        Part of the changes that may be left as error; above 1 where the error falls slowly from stage to stage.
+    along : bool
+        Whether the shift of an event along the path counts, see `halfspace.equilibrium.events.estimate_event`: on grids
+        that follow the contact, whose radius tells it precisely, and where there is no twin to guard against chance.
+    """
+
+    curve: Callable[[], Iterable[Chart]]
+    stages: tuple[Stage, ...]
+    settings: Mapping[str, object]
+    twin: Stage | None = None
+    remaining: float = REMAINING
+    along: bool = False
+
+
+def charted_rung(*stages: Charts) -> Rung:
+    """Rung of given charts, the last of which also serve for the curve."""
+    return Rung(lambda: stages[-1], tuple(Charted(charts) for charts in stages), {})
+
+
+def climb(
+    rtol: float, rung: Callable[[int], Rung], *, to_load: float = COMPRESSION, most_rungs: int = MOST_RUNGS
+) -> EquilibriumPath:
+    """Trace the curve on the lowest rung of a ladder and solve for its events on higher ones until `rtol` is met.
+
+    Parameters
+    ----------
+    rtol : float
+        Relative accuracy asked of loads and approaches.
+    rung : callable
+        Makes the rung of a level: 0 for the curve, 1, 2 ... for the events.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+    most_rungs : int
+        Levels after which the estimates stand as they are.
+
+    Raises
+    ------
+    halfspace.errors.NotConverged
+        If the curve cannot be traced or an event not be found again.
+    GridTooCoarse
+        If a grid cannot carry the spike at the contact edge.
+    """
+    for start in range(most_rungs):
+        try:
+            return _climb_from(start, rtol, rung, to_load, most_rungs)
+        except FoldsLost:  # two folds about to merge exist on one grid but not on the next
+            if start == most_rungs - 1:
+                return _climb_from(0, rtol, rung, to_load, most_rungs, folds=False)
+        except NotConverged:
+            if start == most_rungs - 1:
+                raise
+    raise InputError(f"most_rungs = {most_rungs} leaves nothing to climb; allow 1 or more")
+
+
+class FoldsLost(NotConverged):
+    """Folds about to merge are found on one rung but not on another."""
+
+
+def _climb_from(
+    start: int, rtol: float, rung: Callable[[int], Rung], to_load: float, most_rungs: int, *, folds: bool = True
+) -> EquilibriumPath:
+    """Trace the curve on the rung `start` and climb from there, with its folds or without."""
+    began = time.perf_counter()
+    lowest = rung(start)
+    charts = lowest.curve()
+    segments = trace_charts(charts, to_load)
+    found = {**find_events(segments), **_folds_in_doubt(segments)}
+    state: State = {name: event for name, event in found.items() if folds or name not in FOLDS}
+    for stage in lowest.stages:
+        state = _on_all(state, stage)
+    higher = lowest
+    for level in range(start + 1, start + most_rungs + 1):
+        below, higher = higher, rung(level)
+        chains = _step_up(state, higher)
+        state = chains[0][-1]
+        events = _estimate(chains, higher.remaining, along=higher.along)
+        if not Tolerance.on(events, rtol).missed(events):
+            break
+    margin = _margin(chains, higher.remaining)
+    if folds and margin and margin.value + margin.error < 0 and "jump_on" not in events:
+        raise FoldsLost("the curve folds on a finer grid, but not on its own; take a smaller rtol")
+    return EquilibriumPath(
+        segments[0].problem.tabor,
+        segments,
+        events,
+        _energy(chains, higher.remaining),
+        tuple(chains[0]),
+        higher.stages[-1],
+        time.perf_counter() - began,
+        {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
+        below.stages[-1] if below.stages else None,
+        higher.twin or (higher.stages[-2] if len(higher.stages) > 1 else None),
+        higher.remaining,
+        _ways(below.stages[-1] if below.stages else Charted(tuple(charts)), higher),
+        margin,
+    )
+
+
+def _ways(below: Stage, higher: Rung) -> Ways:
+    """Chains from the rung below, and from its twin, to the last stage of a rung, for any point of the curve."""
+    stages = [stage.everywhere for stage in (below, *higher.stages)]
+    chain = [partial(placed, b) for a, b in zip([None, *stages], stages, strict=False) if a is not b]
+    return (tuple(chain), (partial(placed, higher.twin.everywhere), chain[-1])) if higher.twin else (tuple(chain),)
+
+
+def _folds_in_doubt(segments: Sequence[Segment]) -> State:
+    """Where the curve falls most steeply, if two folds there are about to merge or to be born; nothing otherwise."""
+    metric = metric_for(segments[0].problem.tabor)
+    least, point, problem = min(((*steepest(s.points), s.problem) for s in segments), key=lambda one: one[0])
+    return {"steepest": steepest_from(problem, point, metric)} if abs(least) < IN_DOUBT else {}
+
+
+def _margin(chains: Sequence[Sequence[State]], remaining: float) -> Estimate | None:
+    """How far the curve is from folds, with the error that the changes along the chains leave."""
+    if "steepest" not in chains[0][-1]:
+        return None
+    values = [[STEEPEST.of(state["steepest"].point) for state in chain] for chain in chains]
+    return Estimate(values[0][-1], remaining * _change(values) + FLAT)
+
+
+def _change(values: Sequence[Sequence[float]]) -> float:
+    """Sum of the changes along a chain, the largest of all chains."""
+    return max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
+
+
+def _step_up(state: State, higher: Rung) -> list[list[State]]:
+    """Chains of states from the rung below, and from its twin, to the last stage of a rung."""
+    chain = [state]
+    for stage in higher.stages:
+        chain.append(_on_all(chain[-1], stage))
+    return [chain, [_on_all(chain[-1], higher.twin), chain[-1]]] if higher.twin else [chain]
+
+
+def _on_all(state: State, stage: Stage) -> State:
+    return {name: _found_again(name, event, stage) for name, event in state.items()}
+
+
+def _found_again(name: str, event: Located, stage: Stage) -> Located:
+    try:
+        return _moved_to(event, stage)
+    except NotConverged as error:
+        raise FoldsLost(str(error)) if name in FOLDS else error from error
+
+
+def _moved_to(event: Located, stage: Stage) -> Located:
+    """Solve for an event again, and once more where it comes to lie in the reach of another chart."""
+    problem = stage(event).problem
+    found = event if event.problem is problem else moved(event, problem)
+    better = stage(found).problem
+    return found if better is found.problem else moved(found, better)
+
+
+def _estimate(chains: Sequence[Sequence[State]], remaining: float, *, along: bool) -> dict[str, Event]:
+    """Events of the last state, with their changes along the chains as errors."""
+    names = [name for name in EVENTS if name in chains[0][-1]]
+    by_name = {name: [[state[name] for state in chain] for chain in chains] for name in names}
+    return {name: estimate_event(name, own, remaining, along=along) for name, own in by_name.items()}
+
+
+def _energy(chains: Sequence[Sequence[State]], remaining: float) -> Estimate:
+    values = [[energy_released(state) for state in chain] for chain in chains]
+    best = values[0][-1]
+    return Estimate(best, remaining * _change(values) + ROUND_OFF * (1 + abs(best)))

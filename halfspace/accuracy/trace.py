@@ -1,0 +1,195 @@
+"""The half-space's load-approach curve to an accuracy asked for.
+
+See `halfspace.accuracy.refinement` for how the error is estimated.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from halfspace.accuracy.finite_bodies import AroundEvents, Made, SizedBody, at_equator, surroundings
+from halfspace.accuracy.refinement import Charted, Rung, climb
+from halfspace.elastic import compliance, grid
+from halfspace.elastic.operators import FlatCoordinate, Homogeneous
+from halfspace.equilibrium.contact import ContactProblem, spike_width
+from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.equilibrium.events import REMAINING
+from halfspace.limits import require_counter_radius, require_load, require_radius_ratio, require_rtol, require_tabor
+from halfspace.profiles import Profile, between_spheres
+from halfspace.theories.closed_forms import jkr_radius
+from halfspace.values import Valued
+
+EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
+MOST_NODES = 16  # of a panel
+LEAVE = 0.8  # of the first cell: the contact radius at which the chart centred on the axis is left
+ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
+TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How finely the half-space is discretised.
+
+    Attributes
+    ----------
+    nodes : int
+        Nodes per panel; the error falls about a decade a node.
+    finest : float
+        Length of the panels at the contact edge, in widths of the spike of tension there.
+    growth : float
+        Ratio of neighbouring panels.
+    extent : float
+        Of the finite cells, in units of beta/sqrt(mu), the width of a rigid paraboloid's attraction; what lies beyond
+        it is one cell more, see `halfspace.elastic.compliance.to_infinity`.
+    """
+
+    nodes: int
+    finest: float
+    growth: float
+    extent: float
+
+
+def resolution_for(tabor: float, rtol: float, level: int = 0) -> Resolution:
+    """Resolution whose events are right to about `rtol` at level 0 and five to ten times better with each node more.
+
+    The first level above it has one more, the second two more than that, and so on.
+    """
+    nodes = max(math.ceil(2 - math.log10(rtol) - 1e-9), 5) + level * (level + 1) // 2
+    return Resolution(min(nodes, MOST_NODES), finest=0.6, growth=3.0, extent=EXTENT * widened(tabor))
+
+
+def widened(tabor: float) -> float:
+    """Width of the attraction at jump_on, where the gap is about mu^(3/7), in those of a rigid paraboloid."""
+    return float(max(1.0, tabor) ** (3 / 14))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Rings(Valued):
+    """Breakpoints of two charts: centred on the axis up to a contact radius, then on the edge, whose radius is 1."""
+
+    centred: grid.Array
+    edge: grid.Array
+    until: float
+
+
+def rings(tabor: float, finest: float, growth: float, extent: float, to_load: float = COMPRESSION) -> Rings:
+    """Breakpoints fine enough for the spike of tension at every contact radius up to that under the load `to_load`.
+
+    `finest` is in widths of the spike, `extent` in beta/sqrt(mu), as in `Resolution`.
+    """
+    length = finest * spike_width(tabor) / 2
+    outer = extent / np.sqrt(tabor)
+    widest = widest_radius(tabor, to_load)
+    centred = grid.graded(0.0, length, outer, growth=growth)
+    edge = grid.graded(1.0, 2 * length / widest, outer / length, growth=growth)
+    return Rings(centred, edge, until=LEAVE * float(centred[1]))  # the cells beyond the first may be too coarse
+
+
+def widest_radius(tabor: float, to_load: float) -> float:
+    """Contact radius in beta that a curve up to a load hardly exceeds: a soft and a rigid contact's together."""
+    return float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(tabor)))
+
+
+def half_space_charts(tabor: float, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:
+    """Panel grids centred on the axis and following the contact edge."""
+    lines = rings(tabor, resolution.finest, resolution.growth, resolution.extent, to_load)
+    centred, edge = (
+        compliance.to_infinity(compliance.panels(breaks, resolution.nodes), resolution.nodes)
+        for breaks in (lines.centred, lines.edge)
+    )
+    return (
+        Chart(ContactProblem(centred, tabor), centred.radii.size, lines.until),
+        Chart(ContactProblem(Homogeneous(edge), tabor), edge.radii.size),
+    )
+
+
+def trace(
+    tabor: float,
+    *,
+    rtol: float = 1e-6,
+    to_load: float = COMPRESSION,
+    radius_ratio: float | None = None,
+    counter_radius: float = math.inf,
+) -> EquilibriumPath:
+    """Trace the load-approach curve of a rigid paraboloid or sphere on the adhesive half-space and solve for events.
+
+    Parameters
+    ----------
+    tabor : float
+        Tabor parameter mu, mu^3 = R dgamma^2/(E*^2 eps^3).
+    rtol : float
+        Relative accuracy asked of loads and approaches, 1e-9 to 1e-1; of approaches, which have no natural zero, in
+        parts of eps and the range of those of all events.
+    to_load : float
+        Compressive load at which the curve ends, in R dgamma.
+    radius_ratio : float, optional
+        rho = R/eps of a true sphere, R/beta = sqrt(rho/tabor); a paraboloid unless given.
+    counter_radius : float
+        Of a second true sphere in radii of the first, 1 or more; R is that of the pair then, 1/R = 1/R1 + 1/R2.
+
+    Returns
+    -------
+    EquilibriumPath
+        The curve, its events and their error estimates.
+
+    Raises
+    ------
+    InputError
+        If an input is out of range.
+    halfspace.errors.NotConverged
+        If the curve cannot be traced.
+    """
+    tabor, rtol, to_load = require_tabor(tabor), require_rtol(rtol), require_load(to_load)
+    counter_radius = require_counter_radius(counter_radius, radius_ratio)
+    if radius_ratio is not None:
+        gap = between_spheres(math.sqrt(require_radius_ratio(radius_ratio, tabor) / tabor), counter_radius)
+        return climb(rtol, partial(_sphere_rung, tabor, gap, rtol, to_load), to_load=to_load)
+
+    def rung(level: int) -> Rung:
+        resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
+        curve = partial(half_space_charts, tabor, resolution, to_load)
+        if not level:
+            return Rung(curve, (), asdict(resolution))
+        fine, twin = (Charted(half_space_charts(tabor, r, to_load)) for r in (resolution, _twin(below)))
+        return Rung(curve, (fine,), asdict(resolution), twin, ONE_NODE if level == 1 else REMAINING)
+
+    return climb(rtol, rung, to_load=to_load)
+
+
+def _twin(resolution: Resolution) -> Resolution:
+    """Return a resolution as fine, with other cells."""
+    finest, growth, extent = TWIN
+    return replace(
+        resolution,
+        finest=finest * resolution.finest,
+        growth=growth * resolution.growth,
+        extent=extent * resolution.extent,
+    )
+
+
+def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level: int) -> Rung:
+    """Rung of a level for a sphere or two, whose surface ends at the smaller one's equator."""
+    resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
+    fine, other = (_under_sphere(tabor, gap, r) for r in (resolution, _twin(below)))
+    settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
+    return Rung(
+        partial(fine.curve, to_load),
+        (AroundEvents(fine, *surroundings(rtol, level), to_load),),
+        settings,
+        AroundEvents(other, *surroundings(rtol, level - 1), to_load) if level else None,
+        ONE_NODE if level == 1 else REMAINING,
+    )
+
+
+def _under_sphere(tabor: float, gap: Profile, resolution: Resolution) -> SizedBody:
+    make, last = partial(_made, resolution.nodes), at_equator(tabor, gap, resolution.nodes)
+    outer = np.array([gap.end])
+    return SizedBody(tabor, gap, make, resolution.finest, resolution.growth, outer, FlatCoordinate(), last)
+
+
+def _made(nodes: int, lines: compliance.Array) -> Made:
+    return compliance.panels(lines, nodes), nodes * (lines.size - 1)

@@ -1,0 +1,304 @@
+"""Elastic operators: the linear map from surface pressure to surface deflection, and the half-space's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.linalg import eigh
+
+from halfspace.elastic import grid
+from halfspace.elastic.kernel import band_deflection, panel_integrals
+from halfspace.errors import InputError
+from halfspace.values import Valued
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ElasticOperator(Valued):
+    """Elastic half of a contact problem, whatever body or method it comes from.
+
+    The surface is cut into rings, the `cells`; inside each, pressure, deflection and gap are
+    polynomials through the values at the cell's nodes. Dimensionless: lengths in beta, E* = 1.
+
+    Attributes
+    ----------
+    radii : (q,) array
+        Radii of the surface nodes, ascending, in beta; those past the last cell are of an infinite one, see
+        `to_infinity`.
+    weights : (q,) array
+        Quadrature weights of the area element 2 pi u du: ``weights @ P`` is the load in R dgamma.
+    compliance : (q, q) array
+        Deflection into the body (positive when pressed) at the nodes is ``compliance @ P`` for nodal
+        pressures P, positive in compression.
+    cells : (m + 1,) array
+        Radii between which one interpolation polynomial holds, from 0 outwards.
+    cell_nodes : (m, k) int array
+        The k nodes whose values define the polynomial in each cell.
+    """
+
+    radii: Array
+    weights: Array
+    compliance: Array
+    cells: Array
+    cell_nodes: Index
+
+    @property
+    def extent(self) -> float:
+        """Radius in beta at which the last finite cell ends."""
+        return float(self.cells[-1])
+
+    @cached_property
+    def beyond(self) -> Index:
+        """Nodes past the extent, none where the surface law acts only up to it."""
+        return np.flatnonzero(self.radii > self.extent)
+
+    @property
+    def finite(self) -> ElasticOperator:
+        """The operator without the nodes past its extent."""
+        inside = self.radii <= self.extent
+        compliance = self.compliance[np.ix_(inside, inside)]
+        return ElasticOperator(self.radii[inside], self.weights[inside], compliance, self.cells, self.cell_nodes)
+
+    @property
+    def follows_contact(self) -> bool:
+        """False: this grid stands still; see `halfspace.elastic.operators` for those that do not."""
+        return False
+
+    @property
+    def edge_row(self) -> Array:
+        """Row that interpolates at the contact edge, which a grid that stands still has nowhere in particular."""
+        raise AttributeError("the grid does not follow the contact; use interpolation at its radius")
+
+    def at(self, scale: float) -> ElasticOperator:  # noqa: ARG002 (the same at every contact radius)
+        """Return the operator itself, whatever the contact radius."""
+        return self
+
+    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:  # noqa: ARG002
+        """Derivatives by the scale of radii, weights and deflection: zero."""
+        zero = np.zeros(self.radii.size)
+        return zero, zero, zero
+
+    def root(self, scale: float) -> Array:  # noqa: ARG002
+        """L, (q, m), with L L^T the symmetric part of w^(1/2) C w^(-1/2)."""
+        return self.compliance_root
+
+    @cached_property
+    def compliance_root(self) -> Array:
+        """L of `root`; the rank m falls short of q where the nodes outnumber the freedoms of the surface."""
+        root = np.sqrt(self.weights)
+        balanced = self.compliance * (root[:, None] / root)
+        values, vectors = eigh((balanced + balanced.T) / 2)
+        kept = values > 1e-13 * values[-1]
+        return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
+
+    def scaled(self, factor: float) -> ElasticOperator:
+        """Return the operator of the same body blown up by `factor`: compliance is homogeneous of degree one."""
+        return ElasticOperator(
+            self.radii * factor,
+            self.weights * factor**2,
+            self.compliance * factor,
+            self.cells * factor,
+            self.cell_nodes,
+        )
+
+    def cell_of(self, radius: float) -> int:
+        """Index of the cell that holds `radius`."""
+        return min(max(int(self.cells.searchsorted(radius, side="right")) - 1, 0), self.cells.size - 2)
+
+    def spacing(self, radius: float) -> float:
+        """Distance between neighbouring nodes around `radius`, in beta."""
+        cell = self.cell_of(radius)
+        return float((self.cells[cell + 1] - self.cells[cell]) / max(self.cell_nodes.shape[1] - 1, 1))
+
+    def interpolation(self, radius: float) -> tuple[Array, Array]:
+        """Row (q,) that interpolates nodal values at `radius`, and the row of its derivative by the radius."""
+        cell = self.cell_of(radius)
+        nodes = self.cell_nodes[cell]
+        row, derivative = np.zeros((2, self.radii.size))
+        row[nodes], derivative[nodes] = lagrange(self.radii[nodes], self._barycentric[cell], radius)
+        return row, derivative
+
+    def continuous(self, radius: float) -> tuple[Array, Array]:
+        """Rows as of `interpolation`, but of a function that is continuous where two cells meet.
+
+        Polynomials through nodes inside their cells leap there by their error; so between the last node of a cell and
+        the first of the next, the one goes over into the other in proportion.
+        """
+        cell = self.cell_of(radius)
+        cell -= cell > 0 and radius < self.radii[self.cell_nodes[cell, 0]]
+        if cell + 1 == len(self.cell_nodes) or radius <= self.radii[self.cell_nodes[cell, -1]]:
+            return self.interpolation(radius)
+        before, after = self.radii[self.cell_nodes[cell, -1]], self.radii[self.cell_nodes[cell + 1, 0]]
+        part, rows = (radius - before) / (after - before), np.zeros((2, 2, self.radii.size))
+        for k in (0, 1):
+            nodes = self.cell_nodes[cell + k]
+            rows[:, k, nodes] = lagrange(self.radii[nodes], self._barycentric[cell + k], radius)
+        (left, right), (left_slope, right_slope) = rows
+        value = (1 - part) * left + part * right
+        return value, (1 - part) * left_slope + part * right_slope + (right - left) / (after - before)
+
+    def values_at(self, radii: Array, values: Array) -> Array:
+        """Interpolate nodal values (q,) at many radii (n,) within the extent."""
+        cells = np.clip(np.searchsorted(self.cells, radii, side="right") - 1, 0, self.cells.size - 2)
+        nodes = self.cell_nodes[cells]
+        offset = np.asarray(radii)[:, None] - self.radii[nodes]
+        hit = offset == 0
+        weights = np.where(hit.any(axis=1, keepdims=True), hit, self._barycentric[cells] / np.where(hit, 1.0, offset))
+        return np.asarray(np.einsum("nk,nk->n", weights, values[nodes]) / weights.sum(axis=1))
+
+    def values_beyond(self, radii: Array, values: Array) -> Array:
+        """Interpolate nodal values (q,) that die out at infinity at radii (n,) past the extent, in t = extent/r."""
+        t = self.extent / self.radii[self.beyond][::-1]
+        return np.asarray(
+            PchipInterpolator(np.append(0.0, t), np.append(0.0, values[self.beyond][::-1]))(self.extent / radii)
+        )
+
+    @cached_property
+    def axis_row(self) -> Array:
+        """Row (q,) that interpolates nodal values on the axis."""
+        return self.interpolation(0.0)[0]
+
+    @cached_property
+    def unit_row(self) -> Array:
+        """Row (q,) that interpolates nodal values at radius 1, the edge on a grid that follows the contact."""
+        return self.interpolation(1.0)[0]
+
+    @cached_property
+    def _barycentric(self) -> Array:
+        """Weights 1/prod (u_j - u_m) of the nodes of each cell, (m, k)."""
+        nodes = self.radii[self.cell_nodes]
+        differences = nodes[:, :, None] - nodes[:, None, :] + np.eye(nodes.shape[1])
+        return np.asarray(1 / differences.prod(axis=2))
+
+
+def lagrange(nodes: Array, barycentric: Array, x: float) -> tuple[list[float], list[float]]:
+    """Values and derivatives at x of the Lagrange polynomials through k nodes.
+
+    Each is the product of all x - x_m but one: the products of those before it and of those after it, so that no
+    factor is divided out and x may be a node.
+    """
+    factors = [x - node for node in nodes.tolist()]
+    before = _running_products(factors)
+    after = _running_products(factors[::-1])[::-1]
+    weights = barycentric.tolist()
+    values = [b * p * s for b, (p, _), (s, _) in zip(weights, before, after, strict=True)]
+    slopes = [b * (dp * s + p * ds) for b, (p, dp), (s, ds) in zip(weights, before, after, strict=True)]
+    return values, slopes
+
+
+def _running_products(factors: list[float]) -> list[tuple[float, float]]:
+    """Product, and its derivative by x, of the factors before each."""
+    product, slope, running = 1.0, 0.0, []
+    for factor in factors:
+        running.append((product, slope))
+        product, slope = product * factor, slope * factor + product
+    return running
+
+
+def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
+    """Half-space under pressures that are polynomials between the breakpoints, collocated at Gauss's points.
+
+    Parameters
+    ----------
+    breakpoints : (m + 1,) array
+        Panel ends from 0 outwards, in beta.
+    nodes_per_panel : int
+        k, from 1 to 16; the pressure has degree k - 1 in each panel and may jump between them.
+    """
+    if not 1 <= nodes_per_panel <= 16:
+        raise InputError(f"nodes_per_panel {nodes_per_panel} is outside 1 to 16; use more panels instead")
+    x, w = grid.gauss_legendre(nodes_per_panel)
+    half = np.diff(breakpoints)[:, None] / 2
+    radii = breakpoints[:-1, None] + half * (1 + x)
+    compliance = panel_integrals(radii.ravel(), breakpoints, x).reshape(radii.size, radii.size)
+    weights = 2 * np.pi * radii * half * w
+    return ElasticOperator(
+        radii.ravel(), weights.ravel(), compliance, breakpoints, np.arange(radii.size).reshape(radii.shape)
+    )
+
+
+def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> ElasticOperator:
+    """Let the surface law act on a half-space beyond the extent U of an operator, in cells up to infinity.
+
+    Inversion s = U/t maps them on the disc t < 1 and the ring kernel on itself, G(U/tau, U/t) = (tau t/U) G(tau, t), so
+    that a pressure deflects the surface at r = U/tau by
+
+        int_U^inf P G(r, s) s ds = U tau int_0^1 (P/t^3) G(tau, t) t dt.
+
+    P/t^3 falls as t^3 for the 3-9 law on a paraboloid; it is a polynomial through Gauss's points in each cell.
+
+    Parameters
+    ----------
+    operator : ElasticOperator
+        Of a half-space, from any discretisation; how a pressure inside deflects what is beyond follows by reciprocity.
+        Where it reaches to infinity already, the cells beyond its extent are made anew.
+    nodes : int
+        Of each cell, from 1 to 16.
+    reach : float
+        Where the infinite cell begins, in extents; up to there the cells grow threefold at most.
+    """
+    x, w = grid.gauss_legendre(nodes)
+    ends = np.append(0.0, grid.equal_ratios(1 / reach, 1.0, most=3.0))
+    half = np.diff(ends)[:, None] / 2
+    t, U, inner = (ends[:-1, None] + half * (1 + x)).ravel(), operator.extent, operator.finite
+    radii, weights = U / t, 2 * np.pi * U**2 * (half * w).ravel() / t**3
+    tau = U / np.append(inner.radii, radii)
+    integrals = panel_integrals(tau, ends, x).reshape(tau.size, t.size)
+    order = np.argsort(radii)
+    deflection = (U * tau[:, None] * integrals / t**3)[:, order]
+    radii, weights = radii[order], weights[order]
+    inward, own = deflection[: inner.radii.size], deflection[inner.radii.size :][order]
+    outward = (inner.weights[:, None] * inward / weights).T
+    return ElasticOperator(
+        np.append(inner.radii, radii),
+        np.append(inner.weights, weights),
+        np.block([[inner.compliance, inward], [outward, own]]),
+        inner.cells,
+        inner.cell_nodes,
+    )
+
+
+def triangles(nodes: Array) -> ElasticOperator:
+    """Half-space under overlapping triangles of pressure, [G97] section 2a.
+
+    Parameters
+    ----------
+    nodes : (q,) array
+        Apices of the triangles from 0 outwards, in beta; the pressure is linear between them.
+    """
+    ends = np.array([-1.0, 1.0])
+    halves = panel_integrals(nodes, nodes, ends)
+    compliance = np.zeros((nodes.size, nodes.size))
+    compliance[:, :-1] += halves[:, :, 0]
+    compliance[:, 1:] += halves[:, :, 1]
+    a, b = nodes[:-1], nodes[1:]
+    weights = np.zeros(nodes.size)
+    weights[:-1] += np.pi / 3 * (b - a) * (2 * a + b)
+    weights[1:] += np.pi / 3 * (b - a) * (a + 2 * b)
+    return ElasticOperator(nodes, weights, compliance, nodes, _neighbours(nodes.size))
+
+
+def bands(edges: Array) -> ElasticOperator:
+    """Half-space under bands of uniform pressure, in closed form at their mid-radii, [G97] App. B as corrected.
+
+    Parameters
+    ----------
+    edges : (q + 1,) array
+        Ends of the bands from 0 outwards, in beta.
+    """
+    middle = (edges[1:] + edges[:-1]) / 2
+    compliance = np.diff(band_deflection(middle[:, None], edges), axis=1)
+    weights = np.pi * np.diff(edges**2)
+    cells = np.concatenate([[0], middle[1:-1], edges[-1:]])
+    return ElasticOperator(middle, weights, compliance, cells, _neighbours(middle.size))
+
+
+def _neighbours(count: int) -> Index:
+    """Pairs of neighbouring nodes: linear interpolation."""
+    return np.stack([np.arange(count - 1), np.arange(1, count)], axis=1)

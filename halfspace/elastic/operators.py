@@ -1,0 +1,278 @@
+"""Operators on a grid that breathes with the contact: all their arrays are functions of the contact radius a.
+
+A body without a length of its own is homogeneous: radii, weights and compliance on the grid a xi are a, a^2 and a times
+those on xi. The compliance of any other body on a grid that follows the edge is still a smooth function of a, so the
+polynomial in log a through its values at a few Chebyshev radii serves all others. Either way the spike of tension at
+the edge keeps its nodes along the whole path, and the contact radius is one more unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from halfspace.elastic.compliance import Array, ElasticOperator, lagrange
+from halfspace.elastic.grid import gauss_legendre
+from halfspace.values import Valued
+
+
+class Operator(Protocol):
+    """What a contact problem needs to know of a body; an `ElasticOperator` is one on a grid that stands still."""
+
+    @property
+    def follows_contact(self) -> bool:
+        """Whether the scale is the contact radius in beta; if not, it is 1."""
+        ...
+
+    @property
+    def axis_row(self) -> Array:
+        """Row (q,) that interpolates nodal values on the axis."""
+        ...
+
+    @property
+    def edge_row(self) -> Array:
+        """Row (q,) that interpolates nodal values at the contact edge of a grid that follows it."""
+        ...
+
+    def at(self, scale: float) -> ElasticOperator:
+        """Operator at a contact radius in beta."""
+        ...
+
+    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
+        """Derivatives by the scale of radii, weights and the deflection under a pressure, each (q,)."""
+        ...
+
+    def root(self, scale: float) -> Array:
+        """L, (q, m), with L L^T the symmetric part of w^(1/2) C w^(-1/2)."""
+        ...
+
+
+@dataclass
+class _Latest:
+    """The operator asked for last: an equilibrium asks several times for the same."""
+
+    scale: float = np.nan
+    operator: ElasticOperator | None = None
+
+    def get(self, scale: float, make: Callable[[float], ElasticOperator]) -> ElasticOperator:
+        if self.operator is None or scale != self.scale:
+            self.scale, self.operator = scale, make(scale)
+        return self.operator
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Homogeneous(Valued):
+    """A body without a length of its own.
+
+    Parameters
+    ----------
+    unit : ElasticOperator
+        At the contact radius 1.
+    """
+
+    unit: ElasticOperator
+    _latest: _Latest = field(default_factory=_Latest, compare=False, repr=False)
+    follows_contact = True
+
+    @property
+    def axis_row(self) -> Array:
+        """Row (q,) that interpolates nodal values on the axis."""
+        return self.unit.axis_row
+
+    @property
+    def edge_row(self) -> Array:
+        """Row (q,) that interpolates nodal values at the contact edge."""
+        return self.unit.unit_row
+
+    def at(self, scale: float) -> ElasticOperator:
+        """Operator at a contact radius in beta."""
+        return self._latest.get(scale, self.unit.scaled)
+
+    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
+        """Derivatives by the scale of radii, weights and the deflection under a pressure."""
+        return self.unit.radii, 2 * scale * self.unit.weights, self.unit.compliance @ pressure
+
+    def root(self, scale: float) -> Array:
+        """Square root of the balanced compliance."""
+        return np.asarray(np.sqrt(scale) * self.unit.compliance_root)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class _Nodes(Valued):
+    """Radii and weights of the nodes, and their derivatives by the contact radius."""
+
+    radii: Array
+    weights: Array
+    d_radii: Array
+    d_weights: Array
+
+
+class SurfaceCoordinate(Protocol):
+    """A coordinate x along a surface that ascends with the radius r."""
+
+    def of(self, radius: float) -> float:
+        """Coordinate at a radius."""
+        ...
+
+    def radius(self, x: Array) -> tuple[Array, Array]:
+        """Radius r at x and dr/dx."""
+        ...
+
+    def ring(self, x: Array) -> tuple[Array, Array]:
+        """Density r dr/dx of a ring's area, but for 2 pi, and its derivative by x."""
+        ...
+
+
+@dataclass(frozen=True)
+class FlatCoordinate:
+    """On a flat surface: the radius itself."""
+
+    def of(self, radius: float) -> float:
+        """Coordinate at a radius."""
+        return radius
+
+    def radius(self, x: Array) -> tuple[Array, Array]:
+        """Radius r at x and dr/dx."""
+        return x, np.ones_like(x)
+
+    def ring(self, x: Array) -> tuple[Array, Array]:
+        """Density r dr/dx and its derivative by x."""
+        return x, np.ones_like(x)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MovingGrid(Valued):
+    """Cells that move with the contact edge: their ends are x = fixed + x_a moving, x_a the edge's coordinate.
+
+    Attributes
+    ----------
+    fixed, moving : (m + 1,) array
+        Of the cells' ends, in the surface's coordinate.
+    coordinate : SurfaceCoordinate
+        In which nodes keep their places within their cells.
+    """
+
+    fixed: Array
+    moving: Array
+    coordinate: SurfaceCoordinate
+
+    def lines(self, contact_radius: float) -> Array:
+        """Cell ends (m + 1,) at a contact radius in beta."""
+        return self.fixed + self.edge(contact_radius) * self.moving
+
+    def edge(self, contact_radius: float) -> float:
+        """x_a."""
+        return self.coordinate.of(contact_radius)
+
+    def edge_rate(self, contact_radius: float) -> float:
+        """Derivative of x_a by the contact radius."""
+        return 1 / float(self.coordinate.radius(np.array(self.edge(contact_radius)))[1])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Interpolated(Valued):
+    """A body with a length, or any other, between the contact radii at which its operator is known.
+
+    With C = A w the compliance, the symmetric kernel max(r_i, r_j) A_ij, of order one at every radius and exact for a
+    homogeneous body, is what is interpolated.
+
+    Parameters
+    ----------
+    scales : (m,) array
+        Contact radii in beta, positive and distinct; see `chebyshev_radii`.
+    operators : sequence of m ElasticOperator
+        On the grid at these radii, with Gauss's points as nodes.
+    grid : MovingGrid
+        Their grid.
+    """
+
+    scales: Array
+    operators: Sequence[ElasticOperator]
+    grid: MovingGrid
+    _latest: _Latest = field(default_factory=_Latest, compare=False, repr=False)
+    follows_contact = True
+
+    @cached_property
+    def axis_row(self) -> Array:
+        """Row (q,) that interpolates nodal values on the axis."""
+        return self.operators[0].axis_row
+
+    @cached_property
+    def edge_row(self) -> Array:
+        """Row (q,) that interpolates nodal values at the contact edge."""
+        return self.operators[0].interpolation(float(self.scales[0]))[0]
+
+    def at(self, scale: float) -> ElasticOperator:
+        """Operator at a contact radius in beta."""
+        return self._latest.get(scale, self._at)
+
+    def _at(self, scale: float) -> ElasticOperator:
+        nodes, values = self._nodes(scale), self._rows(scale)[0]
+        compliance = self._combined(values) / np.maximum.outer(nodes.radii, nodes.radii) * nodes.weights
+        ends = self.grid.coordinate.radius(self.grid.lines(scale))[0]
+        return ElasticOperator(nodes.radii, nodes.weights, compliance, ends, self.operators[0].cell_nodes)
+
+    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
+        """Derivatives by the scale of radii, weights and the deflection under a pressure."""
+        nodes, body, slopes = self._nodes(scale), self.at(scale), self._rows(scale)[1]
+        larger = np.maximum.outer(np.arange(nodes.radii.size), np.arange(nodes.radii.size))
+        by_kernel = (self._combined(slopes) / nodes.radii[larger]) @ (nodes.weights * pressure)
+        by_radii = (body.compliance * (nodes.d_radii / nodes.radii)[larger]) @ pressure
+        by_weights = body.compliance @ (nodes.d_weights / nodes.weights * pressure)
+        return nodes.d_radii, nodes.d_weights, by_kernel - by_radii + by_weights
+
+    def root(self, scale: float) -> Array:
+        """Square root of the balanced compliance."""
+        return self.at(scale).compliance_root
+
+    def _nodes(self, scale: float) -> _Nodes:
+        """Gauss's points of the cells at a scale: w = 2 pi r dr/dx dx."""
+        grid = self.grid
+        x, lengths = self._gauss_points(grid.lines(scale))
+        dx, d_lengths = self._gauss_points(grid.moving * grid.edge_rate(scale))
+        (radii, slope), (ring, bend) = grid.coordinate.radius(x), grid.coordinate.ring(x)
+        return _Nodes(radii, ring * lengths, slope * dx, bend * dx * lengths + ring * d_lengths)
+
+    def _gauss_points(self, lines: Array) -> tuple[Array, Array]:
+        """Places of Gauss's points between lines and 2 pi times their weights."""
+        t, w = gauss_legendre(self.operators[0].cell_nodes.shape[1])
+        half = np.diff(lines)[:, None] / 2
+        return (lines[:-1, None] + half * (1 + t)).ravel(), (2 * np.pi * half * w).ravel()
+
+    def _rows(self, scale: float) -> tuple[Array, Array]:
+        """Weights of the operators at a scale, and their derivatives by the scale."""
+        x = self.grid.edge(scale)
+        values, slopes = lagrange(self._log_edges, self._barycentric, float(np.log(x)))
+        return np.array(values), np.array(slopes) * (self.grid.edge_rate(scale) / x)
+
+    def _combined(self, weights: Array) -> Array:
+        """Weighted sum of the kernels, (q, q)."""
+        q = self.operators[0].radii.size
+        return np.asarray((weights @ self._kernels).reshape(q, q))
+
+    @cached_property
+    def _kernels(self) -> Array:
+        """Kernels max(r_i, r_j) C_ij/w_j, (m, q^2)."""
+        return np.array(
+            [(np.maximum.outer(o.radii, o.radii) * o.compliance / o.weights).ravel() for o in self.operators]
+        )
+
+    @cached_property
+    def _log_edges(self) -> Array:
+        return np.log([self.grid.edge(float(scale)) for scale in self.scales])
+
+    @cached_property
+    def _barycentric(self) -> Array:
+        t = self._log_edges
+        return np.asarray(1 / (t[:, None] - t + np.eye(t.size)).prod(axis=1))
+
+
+def chebyshev_radii(least: float, most: float, count: int) -> Array:
+    """Radii, descending, whose logarithms are the `count` Chebyshev points between those of two radii."""
+    t = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    middle, half = (np.log(most) + np.log(least)) / 2, (np.log(most) - np.log(least)) / 2
+    return np.asarray(np.exp(middle + half * t))

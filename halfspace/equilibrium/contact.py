@@ -1,0 +1,287 @@
+"""The contact problem: an elastic operator under a rigid profile that acts through a surface law.
+
+Unknowns x = (H_1 ... H_q, alpha*, s): nodal gaps in eps, approach in eps, and the scale s of the grid. Equations
+[G97] (2.8), and one for the scale, which is either fixed or is the radius of the contact edge:
+
+    H + alpha* - mu z(u) - mu C P(H) = 0,        s = 1   or   H(u = s) = H_edge,
+
+z the height of the undeformed surface over its pole, u^2/2 for a paraboloid. Radii u, weights and compliance C depend
+on s where the grid breathes with the contact (`halfspace.elastic.operators`). That costs one unknown and keeps the
+spike of tension at the contact edge on the same nodes all along the path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial.legendre import legvander
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
+
+from halfspace.elastic.compliance import ElasticOperator
+from halfspace.elastic.operators import Operator
+from halfspace.errors import GridTooCoarse, NotConverged
+from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
+from halfspace.profiles import PARABOLOID, Profile
+from halfspace.roots import root
+from halfspace.values import Valued
+
+Array = NDArray[np.float64]
+
+APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
+
+WIDEST = 0.95  # of the radius of a body, that a contact may reach
+
+
+def spike_width(tabor: float) -> float:
+    """Width in beta over which the tension at a contact edge varies: mu^-2, or about mu^-1/2 when nearly rigid."""
+    return float(min(tabor**-2, 0.7 * tabor**-0.5))
+
+
+def widest_interval(nodes: int) -> float:
+    """Widest interval between k nodes of a cell that carries the spike, in its widths: found by trial."""
+    k = nodes - 1
+    return max(0.1, min(0.1 * k, 0.021 * k**2))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactProblem(Valued):
+    """Equilibrium of a surface law with an elastic operator.
+
+    Parameters
+    ----------
+    operator : Operator
+        Any body's surface compliance, from any discretisation, on a grid that stands still or follows the contact.
+    tabor : float
+        Tabor parameter mu.
+    law : SurfaceLaw
+        Pressure against gap.
+    profile : Profile
+        Of the undeformed surface.
+    """
+
+    operator: Operator
+    tabor: float
+    law: SurfaceLaw = LENNARD_JONES
+    profile: Profile = PARABOLOID
+
+    @property
+    def follows_contact(self) -> bool:
+        """Whether the grid follows the contact, whose radius then joins the unknowns."""
+        return self.operator.follows_contact
+
+    @property
+    def interface(self) -> ContactProblem:
+        """The problem itself, whose state is that of the surface: see `halfspace.equilibrium.newton.Traceable`."""
+        return self
+
+    def surface_state(self, x: Array) -> Array:
+        """Return the state itself."""
+        return x
+
+    def state_from_surface(self, state: Array, near: Array | None = None) -> Array:  # noqa: ARG002 (it is all there is)
+        """Return the state itself."""
+        return state
+
+    def operator_at(self, x: Array) -> ElasticOperator:
+        """Operator of a state."""
+        return self.operator.at(float(x[-1]))
+
+    def undeformed(self, approach: float, scale: float = 1.0) -> Array:
+        """State with the gaps of the undeformed surfaces, H = -alpha* + mu z(u), as a start for Newton's method."""
+        gap = -approach + self.tabor * self.profile.height(self.operator.at(scale).radii)
+        return np.concatenate([gap, [approach, scale]])
+
+    def residual(self, x: Array) -> Array:
+        """Left-hand sides of the equilibrium (in eps) and scale equations, shape (q + 1,)."""
+        H, alpha, s = x[:-2], x[-2], x[-1]
+        mu, body = self.tabor, self.operator_at(x)
+        w = body.compliance @ self.law.pressure(H, mu)
+        return np.append(H + alpha - mu * (self.profile.height(body.radii) + w), self._scale_equation(H, s))
+
+    def _scale_equation(self, H: Array, s: float) -> float:
+        return float(self.operator.edge_row @ H - self.law.edge_gap) if self.follows_contact else s - 1
+
+    def jacobian(self, x: Array) -> Array:
+        """Derivative of the residual, shape (q + 1, q + 2)."""
+        H, mu, body = x[:-2], self.tabor, self.operator_at(x)
+        J = np.empty((x.size - 1, x.size))
+        J[:-1, :-2] = body.compliance * (-mu * self.law.slope(H, mu))
+        J[:-1, :-2].flat[:: x.size - 1] += 1
+        J[:-1, -2] = 1
+        J[-1] = 0
+        if self.follows_contact:
+            d_radii, _, d_deflection = self.operator.rates(float(x[-1]), self.law.pressure(H, mu))
+            J[:-1, -1] = -mu * (self.profile.slope(body.radii) * d_radii + d_deflection)
+            J[-1, :-2] = self.operator.edge_row
+        else:
+            J[:-1, -1] = 0
+            J[-1, -1] = 1
+        return J
+
+    def bordered_solver(self, x: Array, row: Array) -> Callable[[Array], Array]:
+        """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
+        lu, pivots, info = dgetrf(np.vstack([self.jacobian(x), row]), overwrite_a=True)
+        if info > 0:
+            raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start")
+        return lambda rhs: np.asarray(dgetrs(lu, pivots, rhs)[0])
+
+    def observables(self, x: Array) -> Array:
+        """Approach, load, central gap and contact radius (nan without contact), shape (4,)."""
+        return np.array([self._observable(x, index) for index in range(4)])
+
+    def weighted_observables(self, x: Array, weights: Array) -> float:
+        """Sum of the observables by the given weights; one of weight zero is not computed and need not exist."""
+        return float(sum(weights[index] * self._observable(x, index) for index in range(4) if weights[index]))
+
+    def _observable(self, x: Array, index: int) -> float:
+        if index == APPROACH:
+            return float(x[-2])
+        if index == LOAD:
+            return self.load(x)
+        if index == CENTRAL_GAP:
+            return float(self.operator.axis_row @ x[:-2])
+        return self.contact_radius(x)
+
+    def load(self, x: Array) -> float:
+        """W in R dgamma, positive in compression."""
+        return float(self.operator_at(x).weights @ self.pressure(x))
+
+    def pressure(self, x: Array) -> Array:
+        """Nodal pressures P, shape (q,)."""
+        return self.law.pressure(x[:-2], self.tabor)
+
+    def radii(self, x: Array) -> Array:
+        """Nodal radii in beta, shape (q,)."""
+        return self.operator_at(x).radii
+
+    def contact_radius(self, x: Array) -> float:
+        """Largest radius in beta at which the gap is 3^(1/6) eps, or nan where the surfaces are further apart.
+
+        Where they are nowhere so far apart it is the extent of the surface.
+        """
+        if self.follows_contact:
+            return float(x[-1])
+        H, edge, body = x[:-2], self.law.edge_gap, self.operator_at(x)
+        inside = np.flatnonzero(edge > H)
+        if inside.size == 0 and not body.axis_row @ H <= edge:
+            return float("nan")
+        if inside.size and inside[-1] == H.size - 1 and body.continuous(body.extent)[0] @ H <= edge:
+            return body.extent
+        radii = np.append(body.radii, body.extent)
+        below, above = (radii[inside[-1]], radii[inside[-1] + 1]) if inside.size else (0.0, radii[0])
+
+        def beyond(r: float) -> float:
+            return float(body.continuous(r)[0] @ H - edge)
+
+        return root(beyond, below, above, "the contact edge; refine the grid", xtol=1e-14)
+
+    def ripples(self, x: Array) -> Array:
+        """What the deflection's polynomials end with on the axis, in eps, and at the contact edge, in beta, (2,).
+
+        No better are values at a point known: the central gap by the last three Legendre coefficients in the first
+        cell, as one may be small by accident; the contact radius, nan without contact, by the last but one in the cells
+        on both sides of the edge. On finite elements of degree p, with p + 2 nodes, the last is none of theirs.
+        """
+        body, radius = self.operator_at(x), self.contact_radius(x)
+        nodes = body.cell_nodes.shape[1]
+        gap = self._coefficients(x, 0)[max(min(2, nodes - 1), nodes - 3) :].max()  # but no displacement, and no slope
+        if np.isnan(radius):
+            return np.array([gap, np.nan])
+        cells = {body.cell_of(radius * (1 + side)) for side in (-1e-9, 1e-9)}
+        slope = abs(body.continuous(radius)[1] @ x[:-2])
+        return np.array([gap, max(self._coefficients(x, cell)[-2:][0] for cell in cells) / slope])
+
+    def _coefficients(self, x: Array, cell: int) -> Array:
+        """Sizes of the Legendre coefficients of the deflection in a cell, whereas the profile is exact, in eps."""
+        body = self.operator_at(x)
+        nodes, (first, last) = body.cell_nodes[cell], body.cells[cell : cell + 2]
+        places = 2 * (body.radii[nodes] - first) / (last - first) - 1
+        deflection = x[nodes] - self.tabor * self.profile.height(body.radii[nodes])
+        return np.abs(np.linalg.solve(legvander(places, nodes.size - 1), deflection))
+
+    def gradient(self, x: Array, weights: Array) -> Array:
+        """Derivative by x of the weighted sum of the observables, shape (q + 2,)."""
+        row = np.zeros(x.size)
+        row[-2] = weights[APPROACH]
+        if weights[LOAD]:
+            P = self.pressure(x)
+            row[:-2] += weights[LOAD] * self.operator_at(x).weights * self.law.slope(x[:-2], self.tabor)
+            row[-1] += weights[LOAD] * float(self.operator.rates(float(x[-1]), P)[1] @ P)
+        if weights[CENTRAL_GAP]:
+            row[:-2] += weights[CENTRAL_GAP] * self.operator.axis_row
+        if weights[CONTACT_RADIUS]:
+            row += weights[CONTACT_RADIUS] * self._radius_gradient(x)
+        return row
+
+    def _radius_gradient(self, x: Array) -> Array:
+        if self.follows_contact:
+            return np.asarray(np.eye(1, x.size, x.size - 1)[0])
+        value, slope = self.operator_at(x).continuous(self.contact_radius(x))
+        return np.append(-value / (slope @ x[:-2]), [0.0, 0.0])
+
+    def require_resolution(self, x: Array) -> None:
+        """Refuse a state whose contact edge stands where the grid is too coarse for the spike of tension there.
+
+        Linear interpolation wants ten intervals in the spike's width, polynomials fewer (`widest_interval`). A coarser
+        grid still converges, to a pull-off force that is too large ([G97] 4b).
+
+        Raises
+        ------
+        GridTooCoarse
+            With the spacing, its place and the limit.
+        """
+        radius, body = self.contact_radius(x), self.operator_at(x)
+        if np.isnan(radius):
+            return
+        spacing, intervals = body.spacing(radius), max(body.cell_nodes.shape[1] - 1, 1)
+        limit = spike_width(self.tabor) * widest_interval(body.cell_nodes.shape[1])
+        if spacing > limit * (1 + 1e-9):
+            raise GridTooCoarse(
+                f"grid spacing {spacing:.3g} beta at the contact edge, radius {radius:.3g} beta, "
+                f"exceeds {limit:.3g} beta for tabor {self.tabor:g}; refine the grid there",
+                radius,
+                spacing * intervals,
+                limit * intervals,
+            )
+
+    def longest_step(self, x: Array, dx: Array) -> float:
+        """Fraction of the step dx that takes no gap h, nor the scale, below a quarter of its value."""
+        positive = np.append(x[:-2] + 1, x[-1])
+        change = np.append(dx[:-2], dx[-1])
+        shrink = -change / positive
+        return float(min(1.0, 0.75 / max(shrink.max(), 0.75)))
+
+    def size(self, x: Array, dx: Array) -> float:
+        """Relative size of the change dx of the state x."""
+        return float(np.max(np.abs(dx) / np.concatenate([x[:-2] + 1, [1 + abs(x[-2]), x[-1]]])))
+
+    def misfit(self, x: Array, residual: Array) -> float:
+        """Norm of the residual relative to the gaps, lest the far field of a scaled grid drown the contact."""
+        return float(np.linalg.norm(residual / np.append(x[:-2] + 1, 1)))
+
+    def energy(self, x: Array) -> float:
+        """Total potential energy in R dgamma eps, elastic and surface; its derivative by the approach is the load."""
+        H, alpha, mu, body = x[:-2], x[-2], self.tabor, self.operator_at(x)
+        deflection = H + alpha - mu * self.profile.height(body.radii)
+        density = self.law.energy(H, mu) + self.pressure(x) * deflection / 2
+        return float(body.weights @ density)
+
+    def negative_directions(self, x: Array) -> int:
+        """Number of directions in which the energy falls at fixed approach; 0 means stable under fixed grips.
+
+        The Hessian A^-1 - mu w P'(H), A = C/w, has the inertia of I - mu L^T P'(H) L, where L L^T is the compliance
+        made symmetric by the square roots of the weights.
+        """
+        L = self.operator.root(float(x[-1]))
+        hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * self.law.slope(x[:-2], self.tabor))[:, None])
+        return count_negative(hessian)
+
+
+def count_negative(matrix: Array) -> int:
+    """Count the negative eigenvalues of a symmetric matrix by Sylvester's law of inertia (Bunch-Kaufman)."""
+    ldu, pivots, _ = dsytrf(matrix, lower=1)
+    single = pivots > 0
+    return int(np.sum(np.diag(ldu)[single] < 0) + np.sum(~single) // 2)  # a 2 x 2 block has one of each sign

@@ -1,0 +1,234 @@
+"""Loading devices: where an apparatus of given stiffness jumps on and off, where it lands, and what energy is lost.
+
+The contact hangs on a spring whose other end, the base, is moved: b = alpha* + W/k. Fixed grips are the spring of
+infinite stiffness. The contact jumps at the folds of the base along the path, where it is tangent to a load line of
+slope -k, and lands on the other stable state at the same base. With E the energy of the contact, a jump sets free
+
+    E + W^2/(2k) at take-off  -  E + W^2/(2k) at landing,
+
+and a cycle loses what its two jumps set free: it equals the work of the base round the loop, as d(E + W^2/2k) = W db.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.curve import EquilibriumPath, Estimate, Finest, metric_for, moved, transfer
+from halfspace.equilibrium.events import ROUND_OFF, Condition, Event, Located, Tolerance, estimate_event, locate
+from halfspace.equilibrium.newton import Control, Traceable
+from halfspace.equilibrium.path import Segment, make_point
+from halfspace.equilibrium.reach import reaching, widened
+from halfspace.errors import InputError, NotConverged
+from halfspace.limits import require_number
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A jump of the contact at a fixed base.
+
+    Attributes
+    ----------
+    take_off, landing : Event
+        States before and after, with error estimates.
+    energy : Estimate
+        Set free, in R dgamma eps.
+    """
+
+    take_off: Event
+    landing: Event
+    energy: Estimate
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """One approach and separation by an apparatus.
+
+    Attributes
+    ----------
+    stiffness : float
+        Of the apparatus, in R dgamma/eps; infinite for fixed grips.
+    jump_on, jump_off : Jump
+        From separation into contact, A to B in [G97] Fig. 2a, and back, C to D.
+    energy_lost : Estimate
+        In the whole cycle, in R dgamma eps.
+    tolerance : Tolerance
+        Accuracy that was asked of the curve, and so of these states.
+    """
+
+    stiffness: float
+    jump_on: Jump
+    jump_off: Jump
+    energy_lost: Estimate
+    tolerance: Tolerance
+
+    @property
+    def met(self) -> bool:
+        """Whether all four states have their loads and approaches to the accuracy asked for."""
+        return not self.missed
+
+    @property
+    def missed(self) -> dict[str, tuple[str, ...]]:
+        """By state, as ``jump_on landing``, the numbers that have not."""
+        jumps = {"jump_on": self.jump_on, "jump_off": self.jump_off}
+        return self.tolerance.missed(
+            {f"{name} {s.name}": s for name, jump in jumps.items() for s in (jump.take_off, jump.landing)}
+        )
+
+
+@dataclass(frozen=True)
+class _States:
+    """Take-off and landing of one jump on one discretisation."""
+
+    take_off: Located
+    landing: Located
+
+    def energy(self, compliance: float) -> float:
+        """Energy set free, that of the spring included."""
+        return _energy(self.take_off, compliance) - _energy(self.landing, compliance)
+
+
+def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
+    """Both jumps of a cycle with an apparatus of given stiffness, or None where the contact follows it smoothly.
+
+    With fixed grips also where that cannot be told: see `halfspace.equilibrium.curve.EquilibriumPath.jumps`.
+
+    Parameters
+    ----------
+    path : EquilibriumPath
+        A traced curve, of either solver.
+    stiffness : float
+        In R dgamma/eps, positive. A dead load is the limit of none: it jumps off at ``pull_off``, never to land.
+
+    Raises
+    ------
+    InputError
+        If the stiffness is not positive.
+    halfspace.errors.NotConverged
+        If a landing cannot be solved for.
+    """
+    stiffness = require_number(stiffness, "stiffness")
+    if not stiffness > 0:
+        raise InputError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
+    if math.isinf(stiffness) and not path.jumps:
+        return None
+    rough = jumps(reaching(path, stiffness).segments, 1 / stiffness)
+    if rough is None:
+        return None
+    on, off = (_jump(states, path, 1 / stiffness) for states in rough)
+    lost = Estimate(on.energy.value + off.energy.value, on.energy.error + off.energy.error)
+    return Cycle(stiffness, on, off, lost, path.tolerance)
+
+
+def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> float | None:
+    """Energy lost in a cycle under fixed grips on one discretisation, or None if the curve does not fold.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+        The traced curve.
+    found : mapping of str to Located
+        Its events, from `halfspace.equilibrium.curve.find_events`.
+    """
+    if "jump_on" not in found:
+        return None
+    states = jumps(segments, 0.0)
+    return None if states is None else sum(jump.energy(0.0) for jump in states)
+
+
+def jumps(segments: Sequence[Segment], compliance: float) -> tuple[_States, _States] | None:
+    """Jump on and jump off with an apparatus of compliance 1/k, on the discretisation of the curve itself."""
+    folds = _roots(segments, Condition(APPROACH, stationary=True, compliance=compliance))
+    if not folds:
+        return None
+    on, off = folds[0], folds[-1]
+    landings = _roots(segments, Condition(APPROACH, value=_base(on, compliance), compliance=compliance))
+    if not landings:
+        load = segments[-1].points[-1].observables[LOAD]
+        raise NotConverged(
+            f"the landing of the jump on lies beyond the end of the curve at load {load:.3g} R dgamma; trace it to a "
+            "larger to_load"
+        )
+    contact, base = landings[-1], _base(off, compliance)
+    separated = widened(segments[0].problem, base)
+    start = separated.undeformed(base)
+    return _States(on, contact), _States(off, _landing(separated, start, off, compliance))
+
+
+def _roots(segments: Sequence[Segment], condition: Condition) -> list[Located]:
+    metric = metric_for(segments[0].problem.tabor)
+    return [e for s in segments for e in locate(s.problem, s.points, metric, condition)]
+
+
+def _base(state: Located, compliance: float) -> float:
+    """B = alpha* + W/k."""
+    return float(state.point.observables[APPROACH] + compliance * state.point.observables[LOAD])
+
+
+def _landing(problem: Traceable, start: Array, take_off: Located, compliance: float) -> Located:
+    """State on a discretisation at the base of a take-off."""
+    base, weights = _base(take_off, compliance), np.array([1.0, compliance, 0.0, 0.0])
+    solution = newton.solve(problem, start, Control(weights, base))
+    point = make_point(problem, solution, metric_for(problem.tabor), weights, 0.0)
+    return Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
+
+
+def _refined(states: _States, stage: Finest, compliance: float) -> _States:
+    """Both states of a jump on another discretisation."""
+    fold = _settled(states.take_off, stage, moved)
+
+    def land(state: Located, problem: Traceable) -> Located:
+        return _landing(problem, transfer(state.problem, state.point.x, problem), fold, compliance)
+
+    return _States(fold, _settled(states.landing, stage, land))
+
+
+def _settled(state: Located, stage: Finest, solve: Callable[[Located, Traceable], Located]) -> Located:
+    """Solve for a state again, and once more where it comes to lie in the reach of another chart."""
+    found = solve(state, _wide_enough(state, stage))
+    return found if stage(found).problem is stage(state).problem else solve(found, _wide_enough(found, stage))
+
+
+def _wide_enough(state: Located, stage: Finest) -> Traceable:
+    return widened(stage(state).problem, float(state.point.observables[APPROACH]))
+
+
+def _jump(rough: _States, path: EquilibriumPath, compliance: float) -> Jump:
+    """Jump on the finest discretisation, its errors by the change from the rung below and, if there is one, a twin."""
+    below = _refined(rough, path.below, compliance) if path.below else rough
+    fine = _refined(below, path.finest, compliance)
+    others = (below, _refined(fine, path.twin, compliance)) if path.twin else (below,)
+    alone = len(path.ways) < 2  # no chain from a twin guards against chance
+    energies = [states.energy(compliance) for states in (*others, fine)]
+    change = max(abs(energy - energies[-1]) for energy in energies)
+    return Jump(
+        estimate_event("take_off", [[s.take_off, fine.take_off] for s in others], path.remaining, along=alone),
+        estimate_event(
+            "landing",
+            [[s.landing, fine.landing] for s in others],
+            path.remaining,
+            least=_by_base(others, fine, compliance),
+        ),
+        Estimate(energies[-1], max(path.remaining, 1.0) * change + ROUND_OFF * (1 + abs(energies[-1]))),
+    )
+
+
+def _by_base(others: Sequence[_States], fine: _States, compliance: float) -> Array:
+    """Changes of the observables at a landing by that of the base, which those of the landing itself may cancel."""
+    base = _base(fine.take_off, compliance)
+    change = max(abs(_base(states.take_off, compliance) - base) for states in others)
+    rates = fine.landing.point.rates
+    return np.asarray(change * np.abs(rates / (rates[APPROACH] + compliance * rates[LOAD])))
+
+
+def _energy(state: Located, compliance: float) -> float:
+    """E + W^2/(2k)."""
+    return state.problem.energy(state.point.x) + float(compliance * state.point.observables[LOAD] ** 2 / 2)

@@ -1,0 +1,404 @@
+"""Special points of the load-approach curve, each found by solving for it on the equilibrium path.
+
+A fold in the approach is where d(alpha*)/ds vanishes along the path, an extremum of the load where dW/ds does. The
+corrector runs at every trial of the root finder; nothing is interpolated between samples of the curve.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
+from halfspace.equilibrium.newton import Control, Traceable
+from halfspace.equilibrium.path import Metric, Point, correct, least_slope, make_point
+from halfspace.errors import NotConverged
+from halfspace.roots import root
+from halfspace.values import Valued
+
+Array = NDArray[np.float64]
+
+EVENTS = ("pull_off", "jump_on", "jump_off", "zero_load")
+ARCLENGTH_TOLERANCE = 1e-12
+REMAINING = 0.5  # of a change between two discretisations: what is left if each errs at most a third of the one before
+ROUND_OFF = 1e-11  # what Newton's method, the root finder and the matrices leave, relative to 1 + the value
+
+
+@dataclass(frozen=True)
+class Event:
+    """A special point of the curve, with the estimated error of each number.
+
+    Attributes
+    ----------
+    name : str
+        ``pull_off`` (global minimum of the load), ``jump_on``, ``jump_off`` (the folds that a fixed-grips experiment
+        meets coming from separation and from contact), ``zero_load`` (the contact branch where W = 0).
+    approach, approach_error : float
+        In eps.
+    load, load_error : float
+        In R dgamma, positive in compression.
+    central_gap, central_gap_error : float
+        H(0) in eps, zero at the equilibrium spacing.
+    contact_radius, contact_radius_error : float
+        In beta; nan where the central gap exceeds 3^(1/6) eps.
+    """
+
+    name: str
+    approach: float
+    load: float
+    central_gap: float
+    contact_radius: float
+    approach_error: float
+    load_error: float
+    central_gap_error: float
+    contact_radius_error: float
+
+
+def approach_scale(approaches: Iterable[float], spacing: float = 1.0) -> float:
+    """Size by which errors and deviations of approaches count: the spacing and the range of those of a path's events.
+
+    An approach has no natural zero: its own size says where somebody began to count. Nor has the position of a base.
+
+    Parameters
+    ----------
+    approaches : iterable of float
+        At the events of one path, at least one.
+    spacing : float
+        Of the surfaces, eps, in the unit of the approaches.
+    """
+    values = list(approaches)
+    return spacing + max(values) - min(values)
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Relative accuracy asked of the loads and approaches of a path's events, and of jumps on it.
+
+    Gaps and radii, values at one point, are not asked to have it: their errors say what they are worth.
+
+    Attributes
+    ----------
+    rtol : float
+        Of a load, in its own size.
+    approach : float
+        What approaches, which have no natural zero, are measured by, in eps: see `approach_scale`.
+    """
+
+    rtol: float
+    approach: float
+
+    @classmethod
+    def on(cls, events: Mapping[str, Event], rtol: float) -> Tolerance:
+        """Tolerance on the path of these events."""
+        return cls(rtol, approach_scale(event.approach for event in events.values()))
+
+    def missed_by(self, event: Event) -> tuple[str, ...]:
+        """``approach`` and ``load`` of an event if their estimated errors exceed it, but no load that is zero."""
+        sizes = {"approach": self.approach, "load": math.inf if event.name == "zero_load" else abs(event.load)}
+        return tuple(name for name, size in sizes.items() if not getattr(event, f"{name}_error") <= self.rtol * size)
+
+    def missed(self, events: Mapping[str, Event]) -> dict[str, tuple[str, ...]]:
+        """By event, the numbers that miss it; empty if it is met."""
+        return {name: numbers for name, event in events.items() if (numbers := self.missed_by(event))}
+
+
+def tolerance_told(rtol: float, missed: Mapping[str, Sequence[str]]) -> str:
+    """Whether a tolerance was met, in words; if not, by which numbers of which states."""
+    names = [f"{name} {' and '.join(numbers)}" for name, numbers in missed.items()]
+    return f"rtol {rtol:g} not met by {', '.join(names)}" if names else f"rtol {rtol:g} met"
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What vanishes at an event: an observable less a value, or the observable's rate along the path.
+
+    With a compliance the observable is taken at the far end of a spring that bears the load: the approach and a
+    compliance 1/k make the base of an apparatus of stiffness k.
+
+    Attributes
+    ----------
+    observable : int
+        One of APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS.
+    stationary : bool
+        If true the rate d(observable)/ds vanishes, else the observable less `value`.
+    value : float
+        Value sought.
+    compliance : float
+        Of the spring, in eps/(R dgamma) for the approach.
+    """
+
+    observable: int
+    stationary: bool = False
+    value: float = 0.0
+    compliance: float = 0.0
+
+    def of(self, point: Point) -> float:
+        """Quantity whose root is sought."""
+        if self.stationary:
+            return float(point.rates[self.observable] + self.compliance * point.rates[LOAD])
+        return self.level(point) - self.value
+
+    def level(self, point: Point) -> float:
+        """Observable at the far end of the spring."""
+        return float(point.observables[self.observable] + self.compliance * point.observables[LOAD])
+
+
+@dataclass(frozen=True)
+class Steepest(Condition):
+    """Where the curve falls most steeply: the first place to jump with a softer apparatus, or under a fold's birth."""
+
+    observable: int = APPROACH
+
+    def of(self, point: Point) -> float:
+        """Compliance -d(alpha*)/dW in eps/(R dgamma) of the apparatus that would jump here; infinite where W rises."""
+        return float(compliance(point.rates[APPROACH], point.rates[LOAD]))
+
+
+def compliance(approach: Array, load: Array) -> Array:
+    """-d(alpha*)/dW from the rates of approach and load along the path; infinite where the load rises."""
+    return np.where(np.less(load, 0), approach / -np.minimum(load, -TINY), np.inf)
+
+
+TINY = 1e-300
+FOLD = Condition(APPROACH, stationary=True)
+STEEPEST = Steepest()
+EXTREMUM = Condition(LOAD, stationary=True)
+ZERO_LOAD = Condition(LOAD)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Located(Valued):
+    """A root of a condition on one discretisation's path.
+
+    Attributes
+    ----------
+    condition : Condition
+        What vanishes.
+    problem : Traceable
+        The discretisation.
+    point : Point
+        The converged point.
+    slope : float
+        Derivative along the path of what vanishes, to start a root finder from.
+    """
+
+    condition: Condition
+    problem: Traceable
+    point: Point
+    slope: float
+
+
+def locate(problem: Traceable, points: Sequence[Point], metric: Metric, condition: Condition) -> list[Located]:
+    """Find every root of a condition between successive points of one discretisation's path."""
+    return [
+        between(problem, c, d, condition, metric)
+        for a, b in pairwise(points)
+        for c, d in _watched(problem, a, b, condition, metric)
+        if (condition.of(c) < 0) != (condition.of(d) < 0)  # their product is zero at a root, and where it underflows
+    ]
+
+
+def _watched(
+    problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric, depth: int = 8
+) -> list[tuple[Point, Point]]:
+    """Halve the interval between two points as long as a pair of roots may hide in it, unseen at its ends."""
+    if not depth or not _may_hide(a, b, condition):
+        return [(a, b)]
+    length = b.arclength - a.arclength
+    middle = correct(problem, a, length / 2, hermite(problem, a, b, 0.5), metric, iterations=20)
+    rest = float((metric.weights * middle.rates)[:3] @ (b.observables - middle.observables)[:3])
+    onward = replace(b, arclength=middle.arclength + rest)  # as `correct` measures it, along the first point's tangent
+    halves = ((a, middle), (middle, onward))
+    return [pair for c, d in halves for pair in _watched(problem, c, d, condition, metric, depth - 1)]
+
+
+def _may_hide(a: Point, b: Point, condition: Condition) -> bool:
+    """Whether a rate nearly vanishes at an end of a long interval, or inside it by the cubic through both points."""
+    first, last, length = condition.of(a), condition.of(b), b.arclength - a.arclength
+    if not condition.stationary or first * last <= 0:
+        return False
+    little = NEARLY * max(abs(first), abs(last))
+    inside = least_slope(first, last, (condition.level(b) - condition.level(a)) / length)
+    return inside < little or (length > LONG and min(abs(first), abs(last)) < little)
+
+
+LEAP = 1e-3  # of what should vanish at a root in its largest value around: more is left where states leap
+NEARLY = 0.2  # of the larger rate at the two ends
+LONG = 0.05  # arclength
+
+
+def between(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
+    """Find the root between two points of which the second was reached from the first."""
+    length = b.arclength - a.arclength
+    trials = {0.0: a, length: b}
+
+    def quantity(step: float) -> float:
+        if step not in trials:
+            trials[step] = correct(problem, a, step, hermite(problem, a, b, step / length), metric, iterations=20)
+        return condition.of(trials[step])
+
+    step = root(quantity, 0.0, length, "an event; take a smaller rtol", xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
+    part = max(LEAP, 2 * ARCLENGTH_TOLERANCE / abs(length))  # what the root finder leaves of a short interval
+    if abs(quantity(step)) > part * max(abs(condition.of(a)), abs(condition.of(b))) + ROUND_OFF:
+        raise NotConverged(
+            f"an event near approach {a.observables[0]:.6g} eps, load {a.observables[1]:.6g} R dgamma is lost: states "
+            "next to each other lie on different branches; take a smaller rtol"
+        )
+    return Located(condition, problem, trials[step], (condition.of(b) - condition.of(a)) / length)
+
+
+def hermite(problem: Traceable, a: Point, b: Point, t: float) -> Array:
+    """State between two points, from the cubic through both with their tangents; gaps stay positive."""
+    h = b.arclength - a.arclength
+    x = (
+        (1 + 2 * t) * (1 - t) ** 2 * a.x
+        + t**2 * (3 - 2 * t) * b.x
+        + h * t * (1 - t) * ((1 - t) * a.tangent - t * b.tangent)
+    )
+    return np.asarray(a.x + problem.longest_step(a.x, x - a.x) * (x - a.x))
+
+
+def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located:
+    """Solve for an event again on another discretisation, from a state transferred to it.
+
+    Raises
+    ------
+    NotConverged
+        If the event does not exist near `start` on that discretisation.
+    """
+    condition = event.condition
+    nearby = same_place(event.point, problem, start, metric)
+    if isinstance(condition, Steepest):
+        return steepest_from(problem, nearby, metric)
+    step = -PAST * condition.of(nearby) / event.slope
+    if abs(step) < ARCLENGTH_TOLERANCE:
+        return Located(condition, problem, nearby, event.slope)
+    for _ in range(TRIALS):
+        beyond = correct(problem, nearby, step, nearby.x + step * nearby.tangent, metric, iterations=20)
+        left = condition.of(beyond) / condition.of(nearby)
+        if left <= 0:
+            return between(problem, nearby, beyond, condition, metric)
+        step *= min(1 + PAST * left / (1 - left), LONGER) if left < 1 else LONGER  # as far past the secant's root
+    at = event.point.observables
+    raise NotConverged(
+        f"the event at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma is not found again on another grid; "
+        "take a smaller rtol"
+    )
+
+
+TRIALS, PAST, LONGER = 4, 1.5, 3.0  # steps to beyond an event: how many, how far past it, how many times the last
+
+
+def steepest(points: Sequence[Point]) -> tuple[float, Point]:
+    """Least compliance between the points of a curve by cubics through them, and the nearest point."""
+    found = [(_least_compliance(a, b), min(a, b, key=STEEPEST.of)) for a, b in pairwise(points)]
+    return min(found, key=lambda one: one[0], default=(np.inf, points[0]))
+
+
+def _least_compliance(a: Point, b: Point) -> float:
+    """Least compliance between two points, by the cubics of approach and load."""
+    t, h = np.linspace(0, 1, 17)[:, None], b.arclength - a.arclength
+    slopes = (
+        (1 - 4 * t + 3 * t**2) * a.rates
+        + (3 * t**2 - 2 * t) * b.rates
+        + 6 * t * (1 - t) * (b.observables - a.observables) / h
+    )
+    return float(compliance(slopes[:, APPROACH], slopes[:, LOAD]).min())
+
+
+def steepest_from(problem: Traceable, point: Point, metric: Metric) -> Located:
+    """Where the curve falls most steeply near a point: the least compliance, by parabolas ever narrower.
+
+    Raises
+    ------
+    NotConverged
+        If there is no such place near.
+    """
+    for width in WIDTHS:
+        sides = [
+            correct(problem, point, h, point.x + h * point.tangent, metric, iterations=20) for h in (-width, width)
+        ]
+        before, here, after = (STEEPEST.of(p) for p in (sides[0], point, sides[1]))
+        bend = before - 2 * here + after
+        if not (np.isfinite(bend) and bend > 0):
+            raise NotConverged("the curve has no steepest fall here; take a smaller rtol")
+        step = float(np.clip((before - after) / (2 * bend), -3, 3)) * width
+        point = correct(problem, point, step, point.x + step * point.tangent, metric, iterations=20)
+    return Located(STEEPEST, problem, point, 1.0)
+
+
+WIDTHS = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
+
+
+def same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:
+    """Solve on another discretisation in the plane across the path at a given point."""
+    weights = metric.weights * point.rates
+    used = weights != 0
+    control = Control(weights, float(weights[used] @ point.observables[used]))
+    solution = newton.solve(problem, start, control)
+    return make_point(problem, solution, metric, weights, point.arclength)
+
+
+AT_A_POINT = [CENTRAL_GAP, CONTACT_RADIUS]
+
+
+def estimate_event(
+    name: str,
+    chains: Sequence[Sequence[Located]],
+    remaining: float = REMAINING,
+    along: bool = False,
+    least: Array | float = 0.0,
+) -> Event:
+    """Turn an event into numbers with error estimates.
+
+    Parameters
+    ----------
+    chains : sequence of sequences of Located
+        The event on discretisations that differ in one respect from one to the next, all chains ending with the best.
+        Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
+        share by accident is not taken for exact. Where there is but one, or `along`, gap and radius, which at a point
+        err more than the rest and in turns, are known no better than to what the polynomials there end with.
+    remaining : float
+        Part of that change that may be left.
+    along : bool
+        If true, an observable's change is taken to be no less than what the event's shift along the path makes of it:
+        on a single chain, one number may stand still by accident while the event moves. For stationary conditions only.
+        Nor do the gap and radius, which are at a point, then fall as averages do: the changes of all chains add up.
+    least : (4,) array
+        Changes of the observables that count where the chains' own are less.
+    """
+    values = chains[0][-1].point.observables
+    changes = [
+        sum((np.abs(b.point.observables - a.point.observables) for a, b in pairwise(chain)), np.zeros(4))
+        for chain in chains
+    ]
+    whole = np.sum(changes, axis=0)
+    if along and chains[0][-1].condition.stationary:
+        changes += [shift for change in changes for shift in _shifted(chains[0][-1], change)]
+    errors = remaining * np.maximum(np.max(changes, axis=0), least) + ROUND_OFF * (1 + np.abs(values))
+    if along:
+        errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
+    if along or len(chains) == 1:
+        best = chains[0][-1]
+        ripples = best.problem.interface.ripples(best.problem.surface_state(best.point.x))
+        errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], ripples)
+    return Event(name, *map(float, values), *map(float, errors))
+
+
+def _shifted(event: Located, change: Array) -> tuple[Array, Array]:
+    """Changes of the observables by a shift along the path, to which an event is sensitive where a rate must vanish.
+
+    For all of them the shift is read off the contact radius, or off the central gap where there is no contact; for
+    these two, which are at a point and may stand still by accident, also off the load or approach that has a rate.
+    """
+    rates, tell = event.point.rates, CONTACT_RADIUS if np.isfinite(change[CONTACT_RADIUS]) else CENTRAL_GAP
+    other = LOAD if event.condition.observable == APPROACH else APPROACH
+    by_point, by_average = (np.abs(rates) * (change[k] / np.abs(rates[k])) for k in (tell, other))
+    by_average[[APPROACH, LOAD]] = 0.0
+    return by_point, by_average

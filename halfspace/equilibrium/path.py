@@ -1,0 +1,306 @@
+"""Pseudo-arclength continuation of an equilibrium along its load-approach curve, through every fold.
+
+Arclength is measured in the space of approach, load and central gap, each in a unit of its own (`Metric`): three
+numbers that every discretisation has, so its value does not depend on the grid, nor change where a grid is exchanged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.newton import Control, Equilibrium, Traceable
+from halfspace.errors import GridTooCoarse, NotConverged
+from halfspace.values import Valued
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Metric:
+    """Units of approach, load and central gap in which the arclength is measured."""
+
+    approach: float
+    load: float = 2 * np.pi
+    central_gap: float = 2.0
+
+    @property
+    def weights(self) -> Array:
+        """Inverse squares of the units; the contact radius, which need not exist, has none."""
+        return np.array([self.approach**-2, self.load**-2, self.central_gap**-2, 0.0])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Point(Valued):
+    """A converged point of the path with its unit tangent.
+
+    Attributes
+    ----------
+    x, observables : arrays
+        State vector; approach, load, central gap and contact radius.
+    tangent : array
+        dx/ds, s the arclength.
+    rates : (4,) array
+        d(observables)/ds; the contact radius' is 0 where there is none.
+    arclength : float
+        From the start of the path.
+    iterations : int
+        Newton steps that the point took.
+    """
+
+    x: Array
+    observables: Array
+    tangent: Array
+    rates: Array
+    arclength: float
+    iterations: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Segment(Valued):
+    """Points of the path in order on one discretisation."""
+
+    problem: Traceable
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Lengths of the continuation's steps, in arclength, and what they adapt to.
+
+    Attributes
+    ----------
+    first, longest, shortest : float
+        First trial, bounds; a step below `shortest` ends the path with an error.
+    turn : float
+        Largest angle between the tangents at a step's two ends, in radians.
+    iterations, usual : int
+        Newton steps allowed for one continuation step, and those that one of the right length takes.
+    """
+
+    first: float = 0.05
+    longest: float = 1.0
+    shortest: float = 1e-7
+    turn: float = 0.35
+    iterations: int = 8
+    usual: int = 4
+
+
+WHOLE_BODY = Steps(iterations=10, usual=6)  # where a Newton step is worth many of the surface's alone
+
+
+def make_point(
+    problem: Equilibrium, solution: newton.Solution, metric: Metric, direction: Array, arclength: float
+) -> Point:
+    """Attach the unit tangent to a solution, oriented so that it has a positive component along `direction`.
+
+    Parameters
+    ----------
+    direction : (4,) array
+        Covector on the observables: the arclength's gradient at a point nearby.
+    """
+    row = problem.gradient(solution.x, direction)
+    rhs = np.zeros(solution.x.size)
+    rhs[-1] = 1
+    tangent = problem.bordered_solver(solution.x, row)(rhs)
+    rates = _rates(problem, solution, tangent)
+    length = np.sqrt(metric.weights @ rates**2)
+    return Point(solution.x, solution.observables, tangent / length, rates / length, arclength, solution.iterations)
+
+
+def _rates(problem: Equilibrium, solution: newton.Solution, tangent: Array) -> Array:
+    exists = np.isfinite(solution.observables)
+    return np.array(
+        [problem.gradient(solution.x, row) @ tangent if e else 0.0 for row, e in zip(np.eye(4), exists, strict=True)]
+    )
+
+
+def correct(
+    problem: Equilibrium, point: Point, step: float, guess: Array, metric: Metric, iterations: int = 8
+) -> Point:
+    """Solve for the point of the path at the arclength `step` past `point`, measured along its tangent.
+
+    Raises
+    ------
+    NotConverged
+        If Newton's method does not reach it from `guess`.
+    """
+    weights = metric.weights * point.rates
+    used = weights != 0
+    control = Control(weights, float(weights[used] @ point.observables[used]) + step)
+    solution = newton.solve(problem, guess, control, max_iterations=iterations)
+    return make_point(problem, solution, metric, weights, point.arclength + step)
+
+
+def predict(problem: Traceable, point: Point, step: float, before: Point | None = None) -> Array:
+    """Extrapolate along the tangent, to second order where the point before is known (Adams and Bashforth).
+
+    Where a body's grid stands still the spike of tension at the contact edge moves over it: then see `with_edge`.
+    """
+    if before is not None and problem.interface is not problem and step > NUDGE:
+        moved = with_edge(problem, before, point, step)
+        if moved is not None:
+            return moved
+    slope = point.tangent
+    if before is not None:
+        slope = slope + (point.tangent - before.tangent) * (step / (2 * (point.arclength - before.arclength)))
+    return np.asarray(point.x + problem.longest_step(point.x, step * slope) * step * slope)
+
+
+NUDGE = 1e-3  # of arclength: a step too short for the contact edge to leave its place
+
+
+def with_edge(problem: Traceable, before: Point, point: Point, step: float) -> Array | None:
+    """State a step past the second of two, gaps extrapolated in parts of the contact radius; None without contact."""
+    surface, part = problem.interface, step / (point.arclength - before.arclength)
+    states = [problem.surface_state(p.x) for p in (before, point)]
+    last, radii = states[1], [surface.contact_radius(state) for state in states]
+    radius = radii[1] + part * (radii[1] - radii[0])
+    if not np.min([*radii, radius]) > 0:  # nor nan
+        return None
+    body = surface.operator_at(last)
+    inside = [np.minimum(body.radii * (old / radius), body.extent) for old in radii]
+    H0, H1 = (body.values_at(r, state[:-2]) for r, state in zip(inside, states, strict=True))
+    H = np.maximum(H1 + part * (H1 - H0), 0.25 * (1 + H1) - 1)  # no gap h falls below a quarter of its value
+    alpha = last[-2] + part * (last[-2] - states[0][-2])
+    return problem.state_from_surface(np.append(H, [alpha, 1.0]), point.x)
+
+
+def follow(
+    problem: Traceable,
+    start: Point,
+    metric: Metric,
+    stop: Callable[[Point], bool],
+    *,
+    steps: Steps | None = None,
+    max_points: int = 2000,
+) -> list[Point]:
+    """Continue the path from a point until `stop` holds, in steps adapted to its curvature.
+
+    Parameters
+    ----------
+    problem : Equilibrium
+        The contact problem.
+    start : Point
+        Where to begin; its tangent says in which direction.
+    metric : Metric
+        What arclength means.
+    stop : callable
+        Says of each new point whether it is the last.
+    steps : Steps, optional
+        Bounds of the step length.
+    max_points : int
+        Points after which to give up.
+
+    Returns
+    -------
+    list of Point
+        From `start` to the first point for which `stop` holds.
+
+    Raises
+    ------
+    NotConverged
+        If the step falls below the shortest allowed, or the points run out.
+    GridTooCoarse
+        If the contact edge comes to a place where the grid is too coarse for the spike of tension there.
+    """
+    steps = steps or (Steps() if problem.interface is problem else WHOLE_BODY)
+    points = [start]
+    step = steps.first
+    while len(points) < max_points:
+        try:
+            new = _advance(problem, points, step, metric, steps)
+        except NotConverged as error:
+            step /= 3
+            if step < steps.shortest:
+                at = points[-1].observables
+                raise NotConverged(
+                    f"the path ends at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma: no step of "
+                    f"{steps.shortest:.0e} or more converges ({error}); take a smaller rtol, or a finer mesh"
+                ) from error
+            continue
+        ended = stop(new)
+        if ended and step > steps.shortest and not _carried(problem, new):
+            step /= 3  # it leapt over the end into cells that need not carry a contact
+            continue
+        problem.require_resolution(new.x)
+        points.append(new)
+        if ended:
+            return points
+        step = _next_step(step, points, metric, steps)
+    raise NotConverged(f"the path did not end within {max_points} points; allow more points or longer steps")
+
+
+def _carried(problem: Equilibrium, point: Point) -> bool:
+    """Whether a discretisation is fine enough for a point."""
+    try:
+        problem.require_resolution(point.x)
+    except GridTooCoarse:
+        return False
+    return True
+
+
+def _advance(problem: Traceable, points: list[Point], step: float, metric: Metric, steps: Steps) -> Point:
+    """One step, refused if the path turns too far in it for its folds to be seen."""
+    point, before = points[-1], points[-2] if len(points) > 1 else None
+    new = correct(problem, point, step, predict(problem, point, step, before), metric, steps.iterations)
+    if _turn(point, new, metric) > 2 * steps.turn:
+        raise NotConverged("the path turns too sharply")
+    if any(_hides_turning_points(point, new, k, metric) for k in (APPROACH, LOAD)):
+        raise NotConverged("the step may leap over a pair of folds")
+    return new
+
+
+def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
+    """Whether an observable may rise and fall between two points at whose tangents it only rises, or only falls.
+
+    Its least slope between them, in the metric's units, must clear zero by a margin that shrinks with the step, and as
+    its square where it is short: so a curve that all but folds is passed, and folds are where its slope changes sign.
+    """
+    length = b.arclength - a.arclength
+    unit = np.sqrt(metric.weights[k])
+    change = unit * (b.observables[k] - a.observables[k])
+    return least_slope(unit * a.rates[k], unit * b.rates[k], change / length) < TURNING_MARGIN * length * min(
+        1.0, length / SHORT
+    )
+
+
+TURNING_MARGIN, SHORT = 0.3, 0.1  # of the step's length; a step below which the cubic errs by far less than that
+
+
+def least_slope(first: float, last: float, mean: float) -> float:
+    """Least slope inside an interval of the cubic with given end slopes of one sign and mean slope.
+
+    Positive as long as the cubic goes on in the direction of its ends; infinite if it has no least slope inside, or
+    the end slopes differ in sign.
+    """
+    if first * last <= 0:
+        return float("inf")
+    bend = 6 * (first + last) - 12 * mean
+    t = (4 * first + 2 * last - 6 * mean) / bend if bend else 0.0
+    if not 0 < t < 1:
+        return float("inf")
+    slope = first * (1 - 4 * t + 3 * t**2) + last * (3 * t**2 - 2 * t) + 6 * mean * t * (1 - t)
+    return float(slope * np.sign(first))
+
+
+def _turn(a: Point, b: Point, metric: Metric) -> float:
+    """Angle between two tangents in radians."""
+    return float(np.arccos(np.clip(metric.weights @ (a.rates * b.rates), -1, 1)))
+
+
+def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -> float:
+    """Lengthen the step while Newton's method and the curvature allow, shorten it where they do not."""
+    by_turn = steps.turn / max(_turn(points[-2], points[-1], metric), 1e-6)
+    by_effort = steps.usual / points[-1].iterations
+    return float(min(step * np.clip(min(by_turn, by_effort), 0.3, 2.0), steps.longest))
+
+
+def loaded_to(load: float) -> Callable[[Point], bool]:
+    """Stop where the contact bears a load in R dgamma, a compressive one: there is but one place."""
+    return lambda point: bool(point.observables[LOAD] >= load)

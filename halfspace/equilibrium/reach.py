@@ -1,0 +1,71 @@
+"""Extension of a curve to far separation: a soft apparatus jumps on from beyond the curve's first point."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from halfspace.elastic.compliance import ElasticOperator, to_infinity
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import APPROACH, ContactProblem
+from halfspace.equilibrium.curve import EquilibriumPath, metric_for
+from halfspace.equilibrium.newton import Traceable
+from halfspace.equilibrium.path import Metric, Point, Segment, make_point
+
+FARTHER, NEARER = 1.5, 1.1  # margins by which the points added to a curve reach past the jump and past its beginning
+POINTS = 12  # so added
+WIDTHS = 1.7  # of the attraction, sqrt(2 h/mu), that the cells should cover of which none is infinite
+
+
+def reaching(path: EquilibriumPath, stiffness: float) -> EquilibriumPath:
+    """Extend a curve to the separation from which an apparatus of the given stiffness jumps on, if it has to be."""
+    jump = rigid_jump_on(stiffness)
+    first = path.segments[0]
+    if jump > float(first.points[0].observables[APPROACH]) / NEARER:
+        return path
+    return replace(path, segments=(_far_segment(first, jump), *path.segments))
+
+
+def rigid_jump_on(stiffness: float) -> float:
+    """Approach in eps at which a rigid sphere jumps on from afar, where the attraction is (8 pi/3) h^-2."""
+    return 1 - float(np.cbrt(16 * math.pi / 3 / stiffness))
+
+
+def widened(problem: Traceable, approach: float) -> Traceable:
+    """Problem whose cells cover the attraction at a separation, which widens as its root: the same if they do already.
+
+    So are those whose grid follows the contact, or whose surface law does not act to infinity.
+    """
+    if not isinstance(problem, ContactProblem) or not isinstance(problem.operator, ElasticOperator):
+        return problem
+    body, h = problem.operator, 1 - approach
+    reach = WIDTHS * math.sqrt(2 * max(h, 0.0) / problem.tabor) / body.extent
+    if not body.beyond.size or reach <= 1:
+        return problem
+    nodes = min(body.beyond.size, body.cell_nodes.shape[1])
+    return replace(problem, operator=to_infinity(body, nodes, reach))
+
+
+def _far_segment(first: Segment, jump: float) -> Segment:
+    """Points of the separated branch from beyond a jump to past the first point of a curve."""
+    far, near = 1 - FARTHER * jump, 1 - float(first.points[0].observables[APPROACH]) / NEARER
+    problem = widened(first.problem, 1 - far)
+    metric = metric_for(problem.tabor)
+    points: list[Point] = []
+    for approach in 1 - np.geomspace(far, near, POINTS):
+        points.append(_separated(problem, float(approach), metric, points[-1] if points else None))
+    return Segment(problem, tuple(points))
+
+
+def _separated(problem: Traceable, approach: float, metric: Metric, before: Point | None) -> Point:
+    """State on the separated branch; its arclength goes along the tangent of the point before, as a step's does."""
+    control = newton.approach(approach)
+    solution = newton.solve(problem, problem.undeformed(approach), control)
+    point = make_point(problem, solution, metric, control.weights, 0.0)
+    if before is None:
+        return point
+    used = metric.weights != 0
+    change = (point.observables - before.observables)[used]
+    return replace(point, arclength=before.arclength + float((metric.weights * before.rates)[used] @ change))

@@ -1,0 +1,225 @@
+"""The iterations of 1997, kept as baselines: simple relaxation and Greenwood's local Newton-Raphson.
+
+Both correct one state under fixed grips or a given central gap, sweep after sweep. Neither can pass a fold, nor follow
+the curve where the contact is unstable under the control; `halfspace.equilibrium.newton` and
+`halfspace.equilibrium.path` do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, ContactProblem
+from halfspace.equilibrium.newton import Control
+from halfspace.errors import InputError, NotConverged
+from halfspace.lennard_jones import SurfaceLaw
+from halfspace.values import Valued
+
+Array = NDArray[np.float64]
+
+MOST_SWEEPS = 20_000  # Greenwood's
+CLOSEST = -0.7  # gap H below which the law is not followed: an overshoot, no contact bears such pressures
+HOPELESS = 1e6  # relative residual beyond which an iteration has run away
+CHECKED_EVERY = 10  # sweeps
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Relaxed(Valued):
+    """A state to which an iteration converged.
+
+    Attributes
+    ----------
+    x : array
+        State vector of the problem, on its fixed grid.
+    observables : (4,) array
+        Approach, load, central gap, contact radius.
+    sweeps : int
+        Sweeps taken, a multiple of `CHECKED_EVERY`.
+    residual : float
+        Largest misfit of gap or pressure, relative, below the tolerance; the error is larger by the number of sweeps in
+        which the iteration gains a factor e.
+    """
+
+    x: Array
+    observables: Array
+    sweeps: int
+    residual: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class _Gaps(Valued):
+    """Gaps H = given + influence @ P under a control, which has eliminated the approach from [G97] (2.8)."""
+
+    given: Array
+    influence: Array
+
+    def under(self, P: Array) -> Array:
+        return np.asarray(self.given + self.influence @ P)
+
+
+def simple(
+    problem: ContactProblem,
+    start: Array,
+    control: Control,
+    *,
+    relaxation: float = 0.05,
+    tolerance: float = 1e-10,
+    most_sweeps: int = MOST_SWEEPS,
+) -> Relaxed:
+    """Solve by simple relaxation, H <- H + c (H' - H), H' being the gaps under the pressures that belong to H.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        On a fixed grid.
+    start : array
+        First state vector.
+    control : Control
+        Approach or central gap.
+    relaxation : float
+        c; Greenwood needed as little as 0.005, and only a small Tabor parameter converges at all.
+    tolerance : float
+        Largest change H' - H accepted, relative to the gap h.
+    most_sweeps : int
+        Sweeps after which to give up.
+
+    Raises
+    ------
+    InputError
+        If the grid follows the contact, or the control is another one.
+    NotConverged
+        If the gaps run away or the sweeps run out.
+    """
+    gaps, tabor, law = _gaps_under(problem, control), problem.tabor, problem.law
+    H = start[:-2].copy()
+
+    def sweep() -> None:
+        nonlocal H
+        H = np.maximum(H + relaxation * (gaps.under(law.pressure(H, tabor)) - H), CLOSEST)
+
+    def residual() -> float:
+        return float(np.max(np.abs(gaps.under(law.pressure(H, tabor)) - H) / (1 + H)))
+
+    sweeps, misfit = _iterate("simple relaxation", relaxation, sweep, residual, tolerance, most_sweeps)
+    return _relaxed(problem, H, law.pressure(H, tabor), sweeps, misfit)
+
+
+def greenwood(
+    problem: ContactProblem,
+    start: Array,
+    control: Control,
+    *,
+    relaxation: float = 1.0,
+    tolerance: float = 1e-10,
+    most_sweeps: int = MOST_SWEEPS,
+) -> Relaxed:
+    """Solve by Greenwood's local Newton-Raphson iteration.
+
+    Node after node, P_i is corrected from its own misfit P_i - P(H_i) while P_(i-1) and P_(i+1) change by half as much
+    the other way, so that the deflection changes near the node only. What is smooth on the grid therefore fades
+    slowly: sweeps grow as the square of the number of nodes.
+
+    Parameters
+    ----------
+    problem, start, control, most_sweeps
+        As in `simple`.
+    relaxation : float
+        Fraction of each correction that is made, 0.5 to 1.5.
+    tolerance : float
+        Largest misfit of the pressure accepted, relative to the largest pressure.
+
+    Raises
+    ------
+    InputError
+        If the grid follows the contact, or the control is another one.
+    NotConverged
+        If the pressures run away or the sweeps run out.
+    """
+    gaps, tabor, law = _gaps_under(problem, control), problem.tabor, problem.law
+    columns, P = _local_changes(gaps.influence).T.copy(), problem.pressure(start)
+
+    def sweep() -> None:
+        _correct_each(P, gaps.under(P), columns, law, tabor, relaxation)
+
+    def residual() -> float:
+        H = np.maximum(gaps.under(P), CLOSEST)
+        return float(np.max(np.abs(P - law.pressure(H, tabor))) / np.max(np.abs(P)))
+
+    sweeps, misfit = _iterate("Greenwood's iteration", relaxation, sweep, residual, tolerance, most_sweeps)
+    return _relaxed(problem, gaps.under(P), P, sweeps, misfit)
+
+
+def _gaps_under(problem: ContactProblem, control: Control) -> _Gaps:
+    """Eliminate the approach: it is given, or follows from the gap given on the axis."""
+    if problem.follows_contact:
+        raise InputError("the grid follows the contact; the 1997 iterations need a fixed one")
+    body, undeformed = problem.operator.at(1.0), problem.undeformed(0.0)[:-2]
+    C = problem.tabor * body.compliance
+    if np.array_equal(control.weights, np.eye(4)[APPROACH]):
+        return _Gaps(undeformed - control.target, C)
+    if np.array_equal(control.weights, np.eye(4)[CENTRAL_GAP]):
+        axis = body.axis_row
+        return _Gaps(undeformed - axis @ undeformed + control.target, C - axis @ C)
+    raise InputError("the 1997 iterations work under newton.approach or newton.central_gap only; take newton.solve")
+
+
+def _local_changes(influence: Array) -> Array:
+    """Columns: the gaps' change as P_i rises by 1 while P_(i-1) and P_(i+1) fall by 1/2."""
+    changes = influence.copy()
+    changes[:, :-1] -= influence[:, 1:] / 2
+    changes[:, 1:] -= influence[:, :-1] / 2
+    return changes
+
+
+def _correct_each(P: Array, H: Array, columns: Array, law: SurfaceLaw, tabor: float, relaxation: float) -> None:
+    """One sweep of local corrections, in place; each node sees those before it."""
+    last = P.size - 1
+    for i, column in enumerate(columns):
+        gap = max(H[i], CLOSEST)
+        change = relaxation * (law.pressure(gap, tabor) - P[i]) / (1 - law.slope(gap, tabor) * column[i])
+        P[i] += change
+        if i > 0:
+            P[i - 1] -= change / 2
+        if i < last:
+            P[i + 1] -= change / 2
+        H += change * column
+
+
+def _iterate(
+    name: str,
+    relaxation: float,
+    sweep: Callable[[], None],
+    residual: Callable[[], float],
+    tolerance: float,
+    most_sweeps: int,
+) -> tuple[int, float]:
+    """Sweep until the residual meets the tolerance; return the sweeps taken and the residual."""
+    first = misfit = residual()
+    for sweeps in range(1, most_sweeps + 1):
+        sweep()
+        if sweeps % CHECKED_EVERY:
+            continue
+        misfit = residual()
+        if misfit < tolerance:
+            return sweeps, misfit
+        if not misfit < HOPELESS * (1 + first):
+            raise NotConverged(
+                f"{name} ran away within {sweeps} sweeps at relaxation {relaxation:g} (relative residual "
+                f"{misfit:.1e}); take a smaller relaxation, a nearer start or halfspace.equilibrium.newton.solve"
+            )
+    raise NotConverged(
+        f"{name} did not converge in {most_sweeps} sweeps at relaxation {relaxation:g} (relative residual "
+        f"{misfit:.1e}, limit {tolerance:.0e}); take another relaxation, fewer nodes or Newton's method"
+    )
+
+
+def _relaxed(problem: ContactProblem, H: Array, P: Array, sweeps: int, residual: float) -> Relaxed:
+    """Complete the state by the approach at which these pressures leave these gaps."""
+    deflection = problem.tabor * problem.operator.at(1.0).compliance[0] @ P
+    approach = problem.undeformed(0.0)[0] + deflection - H[0]
+    x = np.concatenate([H, [approach, 1.0]])
+    return Relaxed(x, problem.observables(x), sweeps, residual)

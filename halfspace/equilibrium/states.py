@@ -1,0 +1,333 @@
+"""States anywhere on a curve, each solved for on the finest discretisation, with the estimated error of each number.
+
+A curve is traced on a coarse discretisation. Each of its points is solved for again on the finest, in the plane across
+the path at that point: two discretisations share the arclength, where at a fold they share neither approach nor load.
+The same in the plane of the point found, on the discretisations that the events went through before, tells the errors.
+
+Where a coordinate is prescribed, as the approach, the errors of the others are those in the plane and what that shift
+along the path makes of them by which the coordinate would come back to its value.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import groupby, pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
+from halfspace.equilibrium.events import AT_A_POINT, ROUND_OFF, Condition, between, hermite, locate
+from halfspace.equilibrium.newton import Traceable
+from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
+from halfspace.errors import InputError
+from halfspace.values import Valued
+
+Array = NDArray[np.float64]
+Again = Callable[[Traceable, Point], tuple[Traceable, Point]]
+"""Solves for a point of the path on another discretisation, in the plane across the path at that point."""
+
+Ways = Sequence[Sequence[Again]]
+"""Chains of discretisations, each of which differs from the one before in one respect; all end with the finest."""
+
+COORDINATES: Mapping[str, tuple[int, str]] = {
+    "approach": (APPROACH, "eps"),
+    "load": (LOAD, "R dgamma"),
+    "central_gap": (CENTRAL_GAP, "eps"),
+}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class States(Valued):
+    """States of a contact, with the estimated error of each number; all arrays have the shape of what was asked.
+
+    Attributes
+    ----------
+    approach, approach_error : array
+        In eps.
+    load, load_error : array
+        In R dgamma, positive in compression.
+    central_gap, central_gap_error : array
+        H(0) in eps.
+    contact_radius, contact_radius_error : array
+        In beta; nan where the central gap exceeds 3^(1/6) eps.
+    """
+
+    approach: Array
+    load: Array
+    central_gap: Array
+    contact_radius: Array
+    approach_error: Array
+    load_error: Array
+    central_gap_error: Array
+    contact_radius_error: Array
+
+
+def measured(problem: Traceable, points: Sequence[Point], metric: Metric, before: Point | None = None) -> Segment:
+    """Measure the arclength between points along the tangent of the first of any two, as a step is measured.
+
+    It begins with that of the first, or where the last point before it is given, on another discretisation, from there.
+    """
+    found = [points[0] if before is None else _onwards(before, points[0], metric)]
+    for point in points[1:]:
+        found.append(_onwards(found[-1], point, metric))
+    return Segment(problem, tuple(found))
+
+
+def _onwards(last: Point, point: Point, metric: Metric) -> Point:
+    """Return the point with its arclength from the last one."""
+    step = float((metric.weights * last.rates)[:3] @ (point.observables - last.observables)[:3])
+    return replace(point, arclength=last.arclength + max(step, 0.0))  # 0 where one grid hands over to the next
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FinestCurve(Valued):
+    """A curve on the finest discretisation.
+
+    Attributes
+    ----------
+    segments : tuple of Segment
+        In order.
+    ways : chains of callables
+        By which errors are found.
+    remaining : float
+        Part of the changes along a chain that may be left.
+    metric : Metric
+        What arclength means.
+    """
+
+    segments: tuple[Segment, ...]
+    ways: Ways
+    remaining: float
+    metric: Metric
+
+    @cached_property
+    def errors(self) -> Array:
+        """Estimated errors of approach, load, central gap and contact radius at each point, (points, 4).
+
+        No less than between those at the points beside it, in the geometric mean: along the path a change passes
+        through zero, where it tells nothing.
+        """
+        part = max(self.remaining, 1.0)
+        return np.concatenate([self._errors_along(segment, part) for segment in self.segments])
+
+    def _errors_along(self, segment: Segment, part: float) -> Array:
+        own = np.array([self._errors(segment.problem, point, part) for point in segment.points])
+        padded = np.pad(own, ((1, 1), (0, 0)), mode="edge")
+        beside = np.sqrt(padded[:-2] * padded[2:])
+        return np.where(np.isnan(own), own, np.fmax(own, beside))
+
+    def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
+        """Range of a coordinate on each of its branches, by name."""
+        ends = [part.points[place].observables for part, place in self._ends(coordinate)]
+        values = [float(end[COORDINATES[coordinate][0]]) for end in ends]
+        pairs = zip(values[::2], values[1::2], strict=True)
+        return {name: (min(pair), max(pair)) for name, pair in zip(self._branches[coordinate], pairs, strict=True)}
+
+    def _ends(self, coordinate: str) -> Iterator[tuple[Segment, int]]:
+        for parts in self._branches[coordinate].values():
+            yield parts[0], 0
+            yield parts[-1], -1
+
+    @cached_property
+    def _branches(self) -> Mapping[str, Mapping[str, Sequence[Segment]]]:
+        """For each coordinate the parts of the curve along which it goes in one direction, by name."""
+        return {name: self._cut(k) for name, (k, _) in COORDINATES.items()}
+
+    def _cut(self, k: int) -> Mapping[str, Sequence[Segment]]:
+        """Cut the curve where an observable turns."""
+        branches: list[list[Segment]] = [[]]
+        for part in self.segments:
+            turns = locate(part.problem, part.points, self.metric, Condition(k, stationary=True))
+            points = list(part.points)
+            for turn in turns:
+                before = [p for p in points if p.arclength < turn.point.arclength]
+                branches[-1].append(measured(part.problem, [*before, turn.point], self.metric))
+                branches.append([])
+                points = [turn.point, *points[len(before) :]]
+            branches[-1].append(measured(part.problem, points, self.metric))
+        return dict(zip(_names(len(branches)), branches, strict=True))
+
+    def at(self, coordinate: str, values: ArrayLike, branch: str | None) -> States:
+        """States on a branch where a coordinate has given values."""
+        wanted = np.asarray(values, dtype=float)
+        found = [self._at(coordinate, float(value), branch) for value in wanted.ravel()]
+        numbers = np.array(found).reshape(-1, 8).T.reshape(8, *wanted.shape)
+        return States(*(number[()] for number in numbers))
+
+    def _at(self, coordinate: str, value: float, branch: str | None) -> Array:
+        """Numbers of one state and their errors, (8,)."""
+        k, _ = COORDINATES[coordinate]
+        problem, point, bend = self._solved(
+            k, value, self._branches[coordinate][self._chosen(coordinate, value, branch)]
+        )
+        return np.concatenate([point.observables, self._errors_given(k, problem, point, bend)])
+
+    def _solved(self, k: int, value: float, parts: Sequence[Segment]) -> tuple[Traceable, Point, float]:
+        """State on a branch where an observable has a value, and the observable's second derivative along the path."""
+        condition = Condition(k, value=value)
+        for part in parts:
+            for a, b in pairwise(part.points):
+                if condition.of(a) * condition.of(b) <= 0:
+                    bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
+                    return part.problem, between(part.problem, a, b, condition, self.metric).point, bend
+        # Between the last point on one discretisation and the first on the next.
+        off, problem, near = min(
+            ((abs(condition.of(p)), part.problem, p) for part in parts for p in part.points), key=lambda one: one[0]
+        )
+        solution = newton.solve(problem, near.x, newton.Control(np.eye(4)[k], value))
+        weights = self.metric.weights * near.rates
+        return problem, make_point(problem, solution, self.metric, weights, near.arclength + off), 0.0
+
+    def _chosen(self, coordinate: str, value: float, branch: str | None) -> str:
+        """Name of the branch that is asked for, if it has the value, or of the only one that has."""
+        ranges, unit = self.branches(coordinate), COORDINATES[coordinate][1]
+        if branch and branch not in ranges and not (branch in ENDS and WHOLE in ranges):
+            raise InputError(
+                f'branch = "{branch}" is none of {", ".join(ranges)} of the {coordinate}; take one of these'
+            )
+        names = [branch] if branch in ranges else list(ranges)
+        having = [name for name in names if ranges[name][0] <= value <= ranges[name][1]]
+        if len(having) > 1:
+            raise InputError(
+                f"{coordinate} = {value:g} {unit} is met on {', '.join(having)}, limit: one; name it by branch"
+            )
+        if not having:
+            low, high = min(ranges[name][0] for name in names), max(ranges[name][1] for name in names)
+            where = f"on {names[0]}" if len(names) == 1 else "on this curve"
+            raise InputError(
+                f"{coordinate} = {value:g} is outside {low:.6g} <= {coordinate} <= {high:.6g} {unit} {where}; take one "
+                "inside"
+            )
+        return having[0]
+
+    def _errors(self, problem: Traceable, point: Point, part: float) -> Array:
+        """Errors of the observables in the plane across the path, (4,); nan where there is nothing to compare with.
+
+        They are a part of the largest change along a chain of discretisations.
+        """
+        return self._in_plane(problem, point, part * _largest(self._steps(problem, point)))
+
+    def _steps(self, problem: Traceable, point: Point) -> Sequence[Array]:
+        """Changes of the observables from each discretisation of a chain to the next, (steps, 4) for every chain."""
+        found = [[again(problem, point)[1].observables for again in way[:-1]] for way in self.ways]
+        return [np.diff([*others, point.observables], axis=0) for others in found]
+
+    def _in_plane(self, problem: Traceable, point: Point, change: Array) -> Array:
+        """Errors in the plane by changes there, (4,)."""
+        here = point.observables
+        if not self.ways:
+            return np.full(4, np.nan)
+        errors = change + ROUND_OFF * (1 + np.abs(here))
+        if len(self.ways) == 1:
+            ripples, rates = problem.interface.ripples(problem.surface_state(point.x)), point.rates
+            doubt = max(ripples[0] - errors[CENTRAL_GAP], 0.0)  # that the changes do not tell; the plane goes with it
+            errors += np.abs(rates) * (self.metric.weights[CENTRAL_GAP] * abs(rates[CENTRAL_GAP]) * doubt)
+            errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], ripples)
+        return np.where(np.isnan(errors), np.abs(here), errors)  # a contact that only one discretisation has
+
+    def _errors_given(self, k: int, problem: Traceable, point: Point, bend: float) -> Array:
+        """Errors where an observable is prescribed: those in the plane and those by a shift along the path, (4,).
+
+        What a change of the others in the plane owes to that of the prescribed one, as all do to that of a gap, which
+        errs most, a shift takes back; but for what the path's bend, or the gap's ripple, adds to it. On a single chain,
+        where one change may be small by accident, both count in full.
+        """
+        steps, part, rates = self._steps(problem, point), max(self.remaining, 1.0), point.rates
+        change = part * _largest(steps)
+        errors = self._in_plane(problem, point, change)
+        whole, straight = shift(errors[k], abs(rates[k]), bend), change[k] / abs(rates[k])
+        if len(self.ways) > 1 and whole > straight:
+            back = part * _largest([step - np.outer(step[:, k], rates / rates[k]) for step in steps])
+            rest = self._in_plane(problem, point, back) + np.abs(rates) * (whole - straight)
+            errors = np.minimum(errors + np.abs(rates) * whole, rest)
+        else:
+            errors = errors + np.abs(rates) * whole
+        errors[k] = ROUND_OFF * (1 + abs(point.observables[k]))
+        return errors
+
+
+def _largest(steps: Sequence[Array]) -> Array:
+    """Sum of the changes along a chain, the largest of all chains, (4,)."""
+    return np.asarray(np.max([np.sum(np.abs(chain), axis=0) for chain in steps], axis=0)) if steps else np.zeros(4)
+
+
+def shift(change: float, rate: float, bend: float) -> float:
+    """Bound of the arclength that takes a change of a coordinate back, which has a rate and a second derivative.
+
+    Towards a fold the root of rate s - bend s^2/2 = change, past it, where there is none, that of bend s^2/2 = change.
+    """
+    inside = rate**2 - 2 * bend * change
+    return float(2 * change / (rate + np.sqrt(inside)) if inside > 0 else np.sqrt(2 * change / bend))
+
+
+ENDS = ("separated", "contact")
+WHOLE = "whole"
+
+
+def _names(count: int) -> Sequence[str]:
+    """Names of branches in order: of one that is the whole curve, of two that meet, or with unstable ones between."""
+    if count < 3:
+        return ENDS if count == 2 else (WHOLE,)
+    inner = ["unstable"] if count == 3 else [f"unstable {i + 1}" for i in range(count - 2)]
+    return (ENDS[0], *inner, ENDS[1])
+
+
+def require_coordinate(name: str) -> str:
+    """Return the name of a coordinate, or raise InputError if there is none of that name."""
+    if name not in COORDINATES:
+        raise InputError(f'coordinate = "{name}" is none of {", ".join(COORDINATES)}; take one of these')
+    return name
+
+
+def finest_curve(segments: Sequence[Segment], ways: Ways, remaining: float, metric: Metric) -> FinestCurve:
+    """Solve for the points of a curve on the finest discretisation; without any the curve stays as it is.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+        The curve on any discretisation.
+    ways : chains of callables
+        To the finest.
+    remaining : float
+        As of `FinestCurve`.
+    metric : Metric
+        What arclength means.
+    """
+    if not ways:
+        return FinestCurve(tuple(segments), ways, math.nan, metric)
+    found = [ways[0][-1](segment.problem, point) for segment in segments for point in segment.points]
+    runs = [list(run) for _, run in groupby(found, key=lambda one: id(one[0]))]
+    finest: list[Segment] = []
+    for run in runs:
+        before = finest[-1].points[-1] if finest else None
+        finest.append(measured(run[0][0], [point for _, point in run], metric, before))
+    return FinestCurve(tuple(finest), ways, remaining, metric)
+
+
+def resampled(segments: Sequence[Segment], count: int, metric: Metric) -> tuple[Segment, ...]:
+    """Points of a curve evenly spaced in arclength, on its own discretisations."""
+    places = np.linspace(segments[0].points[0].arclength, segments[-1].points[-1].arclength, count)
+    ends = [segment.points[-1].arclength for segment in segments]
+    own = np.searchsorted(ends[:-1], places)
+    return tuple(
+        Segment(segment.problem, tuple(_spread(segment, places[own == i], metric)))
+        for i, segment in enumerate(segments)
+        if np.any(own == i)
+    )
+
+
+def _spread(segment: Segment, places: Array, metric: Metric) -> Iterator[Point]:
+    """Points at arclengths within a segment."""
+    problem, points = segment.problem, segment.points
+    s = np.array([point.arclength for point in points])
+    for place in places:
+        i = int(np.clip(np.searchsorted(s, place) - 1, 0, s.size - 2))
+        a, b = points[i], points[i + 1]
+        step = float(place - a.arclength)
+        guess = hermite(problem, a, b, step / (b.arclength - a.arclength))
+        yield correct(problem, a, step, guess, metric, iterations=20)
