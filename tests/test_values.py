@@ -195,7 +195,7 @@ def test_long_things_are_shown_by_their_size():
 
 def _solver_dataclasses():
     for package in (halfspace, fem_adhesion):
-        for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             if not module.ispkg and module.name != "fem_adhesion.__main__":
                 for value in vars(importlib.import_module(module.name)).values():
                     if isinstance(value, type) and is_dataclass(value) and value.__module__ == module.name:

@@ -17,6 +17,7 @@ from halfspace.equilibrium.curve import Estimate
 from halfspace.theories import closed_forms, dmt
 from halfspace.theories.closed_forms import ContactState
 from halfspace.theories.maugis import MaugisDugdale
+from halfspace.values import Valued
 
 SAMPLES = 100_001  # of each stretch; odd, so that every second one has the same ends
 COMPRESSED = 2.0  # load to which the curves go
@@ -26,8 +27,8 @@ SMALLEST = 1e-4  # of the coordinate along a stretch
 REACH = 3 * math.pi**2 / (2.5 * 1.4**3.5)  # in the bulge of `jkr_with_reach`, so that the fit of [G97] App. C comes out
 
 
-@dataclass(frozen=True)
-class Curve:
+@dataclass(frozen=True, eq=False, repr=False)
+class Curve(Valued):
     """Samples along the curve of a theory, each array of shape (n,).
 
     Attributes

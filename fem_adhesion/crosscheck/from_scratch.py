@@ -26,6 +26,7 @@ from halfspace.equilibrium.curve import EquilibriumPath, Estimate
 from halfspace.equilibrium.events import Located
 from halfspace.errors import NotConverged
 from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.values import Valued
 
 BUDGET = 1e-3  # of each quantity
 ROUND_OFF = 1e-10
@@ -185,7 +186,7 @@ def _numbers(a: Turn | None, b: Turn | None, of: Callable[[Turn], float]) -> tup
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class State:
+class State(Valued):
     """A state of the finite elements in the weak form: the displacements that its gaps would make.
 
     Attributes

@@ -14,6 +14,7 @@ from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath, metric_for
 from halfspace.equilibrium.events import FOLD, locate
 from halfspace.equilibrium.path import Segment
+from halfspace.values import Valued
 
 STABLE, GRIPS_ONLY, UNSTABLE = range(3)
 KINDS: Mapping[int, str] = {
@@ -29,8 +30,8 @@ HIGHEST = 0.5  # load in pull-off forces that is shown around the events
 Range = tuple[float, float]
 
 
-@dataclass(frozen=True)
-class Line:
+@dataclass(frozen=True, eq=False, repr=False)
+class Line(Valued):
     """A curve, dimensionless, all arrays (n,).
 
     Attributes

@@ -14,6 +14,7 @@ from fem_adhesion.curve.solve import Curves
 from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem, spike_width
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.values import Valued
 
 POINTS = 1500
 WIDER = 1.6  # radii shown, in those of the widest contact
@@ -40,8 +41,8 @@ STATES: Mapping[str, Look] = {
 }
 
 
-@dataclass(frozen=True)
-class Profile:
+@dataclass(frozen=True, eq=False, repr=False)
+class Profile(Valued):
     """A state along the surface: radii in beta, pressure in dgamma/(mu eps), gap H in eps, each (n,)."""
 
     radii: Array

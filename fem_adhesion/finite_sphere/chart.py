@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fem_adhesion.finite_sphere.table import Row
 from halfspace.errors import InputError
+from halfspace.values import Valued
 
 Array = NDArray[np.float64]
 
@@ -23,8 +24,8 @@ LEVELS = (0.1, 0.01, 0.001)
 MISFIT = 0.25  # largest relative difference of a rule from its contour
 
 
-@dataclass(frozen=True)
-class Field:
+@dataclass(frozen=True, eq=False, repr=False)
+class Field(Valued):
     """A deviation over the plane.
 
     Attributes

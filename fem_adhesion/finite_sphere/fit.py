@@ -17,6 +17,7 @@ from fem_adhesion.finite_sphere.table import Row
 from fem_adhesion.finite_sphere.terms import TERMS, Array, Term, leading_terms
 from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import InputError
+from halfspace.values import Valued
 
 TOLERANCE = 0.1  # of the sum of the terms' sizes
 DEVIATIONS = 2.0  # standard deviations that bound an error
@@ -27,8 +28,8 @@ SOFT_PULL_OFF = -(8 / 15) * (9 * np.pi / 8) ** (5 / 3) / (3 * np.pi / 2)
 """Of mu/rho as mu -> infinity: Maugis' load exceeds JKR's by 8 a^5/(15 X^2), and JKR's least has a^3 = 9 pi/8."""
 
 
-@dataclass(frozen=True)
-class Samples:
+@dataclass(frozen=True, eq=False, repr=False)
+class Samples(Valued):
     """Relative deviations of one quantity for one cause.
 
     Attributes

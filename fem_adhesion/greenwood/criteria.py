@@ -13,6 +13,7 @@ import halfspace
 from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.curve import Estimate
 from halfspace.theories import criteria
+from halfspace.values import Valued
 
 REPULSION_GONE = 10.0  # Tabor parameter above which the exponent is fitted
 
@@ -31,8 +32,8 @@ class JumpOn:
         return float(criteria.fundamental_criterion(self.approach.value, self.central_gap.value))
 
 
-@dataclass(frozen=True)
-class Criterion:
+@dataclass(frozen=True, eq=False, repr=False)
+class Criterion(Valued):
     """A criterion with its constants as printed and refitted to the true jumps.
 
     Attributes

@@ -16,6 +16,7 @@ from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, Estimate, 
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import FOLD, Condition, Located, locate
 from halfspace.equilibrium.path import Steps
+from halfspace.values import Valued
 
 FINE = Steps(first=0.02, longest=0.08, turn=0.06)  # a polygon through the points looks smooth
 FINEST = Steps(first=0.02, longest=0.03, turn=0.02)  # even enlarged
@@ -47,8 +48,8 @@ class Jump:
     landing_load: Estimate
 
 
-@dataclass(frozen=True)
-class Profile:
+@dataclass(frozen=True, eq=False, repr=False)
+class Profile(Valued):
     """Shape and pressure of one state.
 
     Attributes

@@ -11,12 +11,13 @@ from halfspace.accuracy.fold_birth import FIRST, critical_stiffness, tabor_of
 from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
+from halfspace.values import Valued
 
 STIFFNESSES = (math.inf, 100.0, 10.0, 3.0, 1.0, 0.3, 0.1)  # R dgamma/eps
 
 
-@dataclass(frozen=True)
-class DeviceStudy:
+@dataclass(frozen=True, eq=False, repr=False)
+class DeviceStudy(Valued):
     """Cycles by stiffness, and the border between jumping and following.
 
     Attributes

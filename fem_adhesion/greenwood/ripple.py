@@ -17,6 +17,7 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath, transfer
 from halfspace.errors import NotConverged
+from halfspace.values import Valued
 
 EXTENT = 6.0  # beta: less than 0.6 % of the pull-off load is lost beyond it for mu >= 1
 WINDOW = 2.0  # spacings, on both sides of the contact radius at pull-off: the ripple's period is one
@@ -32,8 +33,8 @@ class Unguarded(ContactProblem):
         """Accept every state."""
 
 
-@dataclass(frozen=True)
-class Ripple:
+@dataclass(frozen=True, eq=False, repr=False)
+class Ripple(Valued):
     """The curve near pull-off on a uniform grid.
 
     Attributes

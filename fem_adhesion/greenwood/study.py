@@ -24,6 +24,7 @@ from fem_adhesion.scene import Scene
 from halfspace.accuracy.fold_birth import FIRST, tabor_of
 from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, Estimate
+from halfspace.values import Valued
 
 DRAWN = (0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0)  # Tabor parameters of the figures' curves
 DEEP = {0.02: 20.0}  # load to which a curve goes, Fig. 1c
@@ -50,8 +51,8 @@ class PullOff:
         return b is not None and abs(a.value - b.value) <= a.error + b.error
 
 
-@dataclass(frozen=True)
-class States:
+@dataclass(frozen=True, eq=False, repr=False)
+class States(Valued):
     """Single states.
 
     Attributes

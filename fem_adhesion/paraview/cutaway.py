@@ -16,6 +16,7 @@ from fem_adhesion.fields.state import State
 from fem_adhesion.paraview.lattice import cut_for
 from halfspace.elastic.compliance import Array, Index
 from halfspace.equilibrium.contact import CONTACT_RADIUS
+from halfspace.values import Valued
 
 TOLERANCE = 1e-2
 """Largest error of the stress as drawn, of its maximum."""
@@ -65,8 +66,8 @@ class View:
     limit: float
 
 
-@dataclass(frozen=True)
-class Section:
+@dataclass(frozen=True, eq=False, repr=False)
+class Section(Valued):
     """Meridian section of the body.
 
     Attributes
@@ -84,8 +85,8 @@ class Section:
     stress: Array
 
 
-@dataclass(frozen=True)
-class Surfaces:
+@dataclass(frozen=True, eq=False, repr=False)
+class Surfaces(Valued):
     """Lines (2, n) of radius and height as drawn: the body's surface, undeformed and deformed, and the wall."""
 
     undeformed: Array

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from halfspace.elastic.compliance import Array, Index
 from halfspace.errors import InputError
+from halfspace.values import Valued
 
 SEGMENT = 15.0
 """Largest angle of a cell in degrees."""
@@ -59,8 +60,8 @@ _MIRRORED = {6: [0, 2, 1, 5, 4, 3], 9: [0, 3, 2, 1, 7, 6, 5, 4, 8]}
 """Nodes of a cell in the opposite sense."""
 
 
-@dataclass(frozen=True)
-class Solid:
+@dataclass(frozen=True, eq=False, repr=False)
+class Solid(Valued):
     """A solid of revolution.
 
     Attributes

@@ -20,6 +20,7 @@ from fem_adhesion.scene import Scene
 from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import NotConverged
+from halfspace.values import Valued
 
 SEEN = Discretisation(degree=4)  # of the fields: right to the width of a line
 RADII = 151  # of the profiles
@@ -31,8 +32,8 @@ FINE = np.stack(np.meshgrid(*2 * [np.linspace(0, 1, 7)], indexing="ij")).reshape
 Progress = Callable[[str, int, int], None]
 
 
-@dataclass(frozen=True)
-class Station:
+@dataclass(frozen=True, eq=False, repr=False)
+class Station(Valued):
     """One state of the walk.
 
     Attributes
@@ -62,8 +63,8 @@ class Station:
     lines: Array
 
 
-@dataclass(frozen=True)
-class Walk:
+@dataclass(frozen=True, eq=False, repr=False)
+class Walk(Valued):
     """States along a curve.
 
     Attributes
