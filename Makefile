@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 # The systems are small and dense: threads inside LAPACK cost more than they bring.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help compare test check bench honesty clean
+.PHONY: help compare test check bench hard honesty clean
 
 help: ## show this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 10
@@ -24,6 +24,9 @@ check: $(VENV)/installed-dev ## check format, style and types
 
 bench: $(VENV)/installed-dev ## time the solvers beside a yardstick (some minutes; QUICK=1: half a minute)
 	QUICK=$(QUICK) $(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-enable --benchmark-columns=min,median,rounds -q
+
+hard: $(VENV)/installed-dev ## attempt the hard cases and print how each ended (a minute; OUT=directory of the tables, hard)
+	PYTHONPATH=tests $(BIN)/python -m hard $(or $(OUT),hard)
 
 honesty: $(VENV)/installed-dev ## hold all error estimates against the truth, by families, and the solvers against each other (QUICK=1: a minute; SEED=n)
 	$(BIN)/python tests/honesty.py $(if $(QUICK),--quick) $(if $(SEED),--seed $(SEED))

@@ -12,12 +12,11 @@ from fem_adhesion.crosscheck import command as compare
 from fem_adhesion.curve import command as curve
 from fem_adhesion.finite_sphere import command as finite_sphere
 from fem_adhesion.greenwood import command as greenwood
-from fem_adhesion.hard import command as hard
 from fem_adhesion.report import command as report
 from fem_adhesion.speed import command as speed
 from halfspace.errors import InputError, NotConverged
 
-COMMANDS = (compare, curve, assess, finite_sphere, speed, hard, greenwood, report)
+COMMANDS = (compare, curve, assess, finite_sphere, speed, greenwood, report)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

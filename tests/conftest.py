@@ -19,7 +19,7 @@ def _wide(monkeypatch):
 
 @pytest.fixture(scope="session")
 def whole(tmp_path_factory):
-    """Run a command line whole, as ``whole("fem-adhesion hard --out hard")``; see `whole_runs`."""
+    """Run a command line whole, as ``whole("fem-adhesion curve --tabor 2")``; see `whole_runs`."""
     base = tmp_path_factory.getbasetemp()
     shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
     return partial(whole_run, shared / "whole")

@@ -84,7 +84,7 @@ def test_bad_input_is_refused_in_one_line_before_any_work(arguments, message):
     assert done.stdout == ""
 
 
-@pytest.mark.parametrize("command", ["speed", "hard", "greenwood"])
+@pytest.mark.parametrize("command", ["speed", "greenwood"])
 def test_an_output_that_is_in_use_or_cannot_be_written_is_refused_before_any_work(command, tmp_path):
     (tmp_path / "precious").write_text("kept")
     for out, message in ((tmp_path, "use --force"), ("/no/such/place", "cannot be written")):
@@ -165,7 +165,7 @@ def test_a_file_keeps_its_old_content_until_the_new_one_is_whole(tmp_path):
 
 HELPS = [
     [],
-    *([name] for name in ("compare", "curve", "assess", "finite-sphere", "speed", "hard", "greenwood", "report")),
+    *([name] for name in ("compare", "curve", "assess", "finite-sphere", "speed", "greenwood", "report")),
 ]
 
 

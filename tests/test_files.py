@@ -103,29 +103,23 @@ def _full(*_args, **_kwargs):
     raise OSError(errno.ENOSPC, "No space left on device")
 
 
-@pytest.mark.parametrize("command", ["speed", "greenwood", "hard", "finite-sphere"])
+@pytest.mark.parametrize("command", ["speed", "greenwood", "finite-sphere"])
 def test_a_full_disk_ends_each_study_in_one_line_and_leaves_nothing(command, tmp_path, monkeypatch, capsys):
     from fem_adhesion.finite_sphere import page as finite_sphere_report
     from fem_adhesion.finite_sphere import study as finite_sphere
     from fem_adhesion.greenwood import page as greenwood_report
     from fem_adhesion.greenwood import study as greenwood1997
-    from fem_adhesion.hard import bodies as hard_bodies
-    from fem_adhesion.hard import run as hard_run
-    from fem_adhesion.hard import table as hard_report
     from fem_adhesion.speed import page as speed_report
     from fem_adhesion.speed import study as speed
 
     for module, name in (
         (speed_report, "write"),
         (greenwood_report, "write"),
-        (hard_report, "write_hard"),
         (finite_sphere_report, "write"),
     ):
         monkeypatch.setattr(module, name, _full)
     monkeypatch.setattr(speed, "measure", lambda *_, **__: None)
     monkeypatch.setattr(greenwood1997, "compute", lambda **_: None)
-    monkeypatch.setattr(hard_run, "run", lambda _: [])
-    monkeypatch.setattr(hard_bodies, "locking", list)
     monkeypatch.setattr(finite_sphere, "run", lambda *_, **__: [SimpleNamespace(status="solved", failed=False)])
     assert cli.main([command, "--out", str(tmp_path / "out")]) == 1
     error = capsys.readouterr().err

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from hard.bodies import smooth_deflection, smooth_pressure
 from numpy.polynomial.legendre import legvander2d
 from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
@@ -28,7 +29,6 @@ from fem_adhesion.elasticity.space import (
     shear_matrix,
     strain_products,
 )
-from fem_adhesion.hard.bodies import smooth_deflection, smooth_pressure
 from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
 
 

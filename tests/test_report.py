@@ -94,8 +94,9 @@ def test_lines_left_out_are_owned_to(tmp_path):
 
 
 def test_sections_not_computed_say_how_to(html):
-    for name in ("speed", "hard", "greenwood", "finite-sphere"):
-        assert f"<code>fem-adhesion {name} --out {name}</code>, then this with <code>--{name} {name}</code>" in html
+    lines = {name: f"fem-adhesion {name} --out {name}" for name in ("speed", "greenwood", "finite-sphere")}
+    for name, line in {**lines, "hard": "make hard"}.items():
+        assert f"<code>{line}</code>, then this with <code>--{name} {name}</code>" in html
 
 
 def test_the_moving_figure_shows_the_path(contents, html):
@@ -142,7 +143,7 @@ def test_the_command_writes_the_page_with_what_other_commands_left(tmp_path, cap
     html = file.read_text()
     assert "<td>tabor &lt;50&gt;</td>" in html
     assert "Of 1 cases: 1 converged." in html
-    assert "fem-adhesion hard --out hard" not in html
+    assert "make hard" not in html
 
 
 # --- what is said, and its negation ---

@@ -12,15 +12,15 @@ import termios
 from dataclasses import replace
 
 import pytest
+from hard import table as hard_report
+from hard.bodies import Locking
+from hard.run import Row as HardRow
 from rich.console import Console
 
 from fem_adhesion.common.terminal import WIDE, Column, Fitted, Flow, make_console, page, prose
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Row
 from fem_adhesion.crosscheck.table import cells, columns, crosscheck_tables
-from fem_adhesion.hard import table as hard_report
-from fem_adhesion.hard.bodies import Locking
-from fem_adhesion.hard.run import Row as HardRow
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import Estimate
 

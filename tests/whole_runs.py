@@ -4,6 +4,7 @@ import fcntl
 import hashlib
 import json
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -62,7 +63,8 @@ def _target(arguments, directory):
     """Make a target in the environment of the tests: stamps say that it is complete, so that nothing is installed."""
     for stamp in ("installed", "installed-dev"):
         (directory / stamp).touch()
-    return ["make", "--no-print-directory", f"VENV={directory}", f"BIN={BIN}", *arguments]
+    placed = [re.sub("^OUT=", f"OUT={directory}/", argument) for argument in arguments]
+    return ["make", "--no-print-directory", f"VENV={directory}", f"BIN={BIN}", *placed]
 
 
 def tables_in(text):

@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
     named = {name: getattr(options, name.replace("-", "_")) for name in STUDIES}
     directories = {name: directory for name, directory in named.items() if directory is not None}
     for source in SOURCES:
-        section_of(source, directories.get(source.command))  # refuse a directory before any work
+        section_of(source, directories.get(source.name))  # refuse a directory before any work
     with written_aside(options.out) as file:
         verdict, text = _compute(scenes, options.rtol, question, directories)
         file.write(text)

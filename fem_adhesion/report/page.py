@@ -76,7 +76,7 @@ def page(contents: Contents) -> str:
         If a directory does not hold what its command writes.
     """
     cases = contents.cases
-    others = [section_of(source, contents.directories.get(source.command)) for source in SOURCES]
+    others = [section_of(source, contents.directories.get(source.name)) for source in SOURCES]
     environment = Environment(
         loader=PackageLoader("fem_adhesion", TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )

@@ -36,8 +36,8 @@ class Section:
     ----------
     name, title : str
         For links, and for the reader.
-    missing : bool
-        Whether the command of that name was not run for it.
+    missing : str
+        The command line that was not run for it, or "".
     warning : str
         What went wrong in it, or "".
     paragraphs, figures, tables : sequence
@@ -46,7 +46,7 @@ class Section:
 
     name: str
     title: str
-    missing: bool = False
+    missing: str = ""
     warning: str = ""
     paragraphs: Sequence[str] = ()
     figures: Sequence[Figure] = ()

@@ -18,12 +18,12 @@ WELL = ("converged", "refused")
 
 @dataclass(frozen=True)
 class Source:
-    """What a command leaves in its directory that goes into the report.
+    """What a command line leaves in a directory that goes into the report.
 
     Attributes
     ----------
-    command, title, introduction : str
-        Its name, the section's title, and what to know before looking.
+    name, title, introduction : str
+        Of the section and of the option that takes the directory; its title, and what to know before looking.
     figures : sequence of (stem, caption)
         SVG files; the caption is the text alternative too. What the command measured itself stands in `captions`.
     tables : sequence of (stem, title)
@@ -32,15 +32,23 @@ class Source:
         Stem of a table whose column ``outcome`` is counted, or "".
     captions : str
         Stem of a CSV file with columns ``figure`` and ``caption``, or "".
+    line : str
+        The command line, if it is not that of the same name.
     """
 
-    command: str
+    name: str
     title: str
     introduction: str
     figures: Sequence[tuple[str, str]]
     tables: Sequence[tuple[str, str]]
     counted: str = ""
     captions: str = ""
+    line: str = ""
+
+    @property
+    def made_by(self) -> str:
+        """The command line."""
+        return self.line or f"fem-adhesion {self.name} --out {self.name}"
 
 
 SOURCES = (
@@ -63,6 +71,7 @@ SOURCES = (
         (),
         (("hard", "Cases"), ("locking", "Locking: largest error of the deflection under a smooth pressure")),
         counted="hard",
+        line="make hard",
     ),
     Source(
         "greenwood",
@@ -93,12 +102,12 @@ def section_of(source: Source, directory: Path | None) -> Section:
         If the directory does not hold what the command writes.
     """
     if directory is None:
-        return Section(source.command, source.title, missing=True)
+        return Section(source.name, source.title, missing=source.made_by)
     captions = dict(source.figures) | _captions(source, directory)
     figures = tuple(
         figure(
             _require(directory / f"{stem}.svg", source).read_bytes(),
-            f"{source.command}-{stem}",
+            f"{source.name}-{stem}",
             symbols(captions[stem]),
         )
         for stem, _ in source.figures
@@ -112,7 +121,7 @@ def section_of(source: Source, directory: Path | None) -> Section:
         wrong = {outcome: n for outcome, n in ended.items() if outcome not in WELL}
         warning = f"{', '.join(f'{n} {outcome}' for outcome, n in wrong.items())}." if wrong else ""
     shown = tuple(tables.values())
-    return Section(source.command, source.title, warning=warning, paragraphs=paragraphs, figures=figures, tables=shown)
+    return Section(source.name, source.title, warning=warning, paragraphs=paragraphs, figures=figures, tables=shown)
 
 
 def _captions(source: Source, directory: Path) -> dict[str, str]:
@@ -131,5 +140,5 @@ def _outcomes(table: Table) -> Counter[str]:
 
 def _require(file: Path, source: Source) -> Path:
     if not file.is_file():
-        raise InputError(f"{file} is not there; give the directory that fem-adhesion {source.command} --out wrote")
+        raise InputError(f"{file} is not there; give the directory that {source.made_by} wrote")
     return file

@@ -13,7 +13,6 @@ from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3, MeshTr
 
 import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.common.measured import Measured, compare_events
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.incompressible import projected_stiffness, taylor_hood
 from fem_adhesion.elasticity.space import Space
@@ -31,6 +30,7 @@ from halfspace.elastic.compliance import Array, ElasticOperator
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath, trace_charts
 from halfspace.errors import InputError
+from hard.measured import Measured, compare_events
 
 INDEPENDENT = "half-space"
 POISSON = 0.3

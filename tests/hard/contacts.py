@@ -8,7 +8,6 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 import halfspace
-from fem_adhesion.common.measured import Measured, compare_events, newton_steps, worst
 from halfspace.accuracy.fold_birth import Birth, approached, at_gap, count_folds, tabor_of
 from halfspace.accuracy.refinement import Rung, charted_rung, climb
 from halfspace.accuracy.trace import half_space_charts, resolution_for
@@ -18,6 +17,7 @@ from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, Contac
 from halfspace.equilibrium.curve import COMPRESSION, find_events, metric_for, trace_charts, transfer
 from halfspace.equilibrium.events import ROUND_OFF, Condition, Located, locate
 from halfspace.equilibrium.path import Metric, Point, Segment, Steps
+from hard.measured import Measured, compare_events, newton_steps, worst
 
 TIGHTER = "half-space, two decades tighter"
 GRID = 1e-6  # tolerance of the grids on which single states are solved for, and so their error

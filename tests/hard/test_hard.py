@@ -3,31 +3,31 @@
 import csv
 import json
 import math
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from rich.console import Console
 from skfem import MeshTri
 
-from fem_adhesion import cli
-from fem_adhesion.common.measured import Measured, compare_events, worst
-from fem_adhesion.hard import bodies as hard_bodies
-from fem_adhesion.hard import cases as hard_cases
-from fem_adhesion.hard import run as hard_run
-from fem_adhesion.hard.bodies import Locking, flattened
-from fem_adhesion.hard.run import WITHIN, Case, Refusal, Row
-from fem_adhesion.hard.table import cases_table, locking_table, summary, write_hard
 from fem_adhesion.mesh.block import graded_size, quarter_disc
 from halfspace.accuracy.fold_birth import FIRST, SECOND, tabor_of
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
+from hard import __main__ as command_line
+from hard import cases as hard_cases
+from hard import run as hard_run
+from hard.bodies import Locking, flattened
+from hard.measured import Measured, compare_events, worst
+from hard.run import WITHIN, Case, Refusal, Row
+from hard.table import cases_table, locking_table, summary, write_hard
 
 CASES = {case.name: case for case in hard_cases.cases()}
 
 
 @pytest.fixture(scope="module")
 def command(whole):
-    """The command of the README, with all cases."""
-    return whole("fem-adhesion hard --out hard")
+    """The target of the Makefile, with all cases."""
+    return whole("make hard OUT=hard")
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +68,10 @@ def test_the_command_runs_every_case_and_says_how_each_ended(command, record):
     assert [line["name"] for line in lines] == list(CASES)
     for line, row in zip(lines, record["cases"], strict=True):
         assert line == {key: "" if value is None else str(value) for key, value in row.items()}
+
+
+def test_the_readme_says_how_many_there_are():
+    assert f"runs {len(CASES)} hard cases" in (Path(__file__).parents[2] / "README.md").read_text()
 
 
 def test_a_refusal_says_value_limit_and_remedy_apart():
@@ -275,16 +279,16 @@ def test_the_tables_show_each_number_under_its_header():
     ("endings", "code", "found"), [((WITHIN,), 0, "converged"), ((REFUSAL,), 1, "converged")], ids=["well", "otherwise"]
 )
 def test_the_exit_code_says_whether_all_ended_as_declared(endings, code, found, monkeypatch, tmp_path, capsys):
-    monkeypatch.setattr(hard_cases, "cases", lambda: (Case("one", lambda: FINE, endings),))
-    monkeypatch.setattr(hard_bodies, "locking", lambda: iter(LOCKING))
-    assert cli.main(["hard", "--out", str(tmp_path / "hard")]) == code
+    monkeypatch.setattr(command_line, "cases", lambda: (Case("one", lambda: FINE, endings),))
+    monkeypatch.setattr(command_line, "locking", lambda: iter(LOCKING))
+    assert command_line.main(tmp_path / "hard") == code
     (row,) = json.loads((tmp_path / "hard/hard.json").read_text())["cases"]
     assert (row["found"], row["outcome"]) == (found, "wrong" if code else "converged")
     assert ("1 wrong" in capsys.readouterr().out) == bool(code)
 
 
 def test_a_defect_in_a_case_shows_its_traceback_and_leaves_nothing(monkeypatch, tmp_path):
-    monkeypatch.setattr(hard_cases, "cases", lambda: (Case("one", lambda: 1 / 0),))
+    monkeypatch.setattr(command_line, "cases", lambda: (Case("one", lambda: 1 / 0),))
     with pytest.raises(ZeroDivisionError):
-        cli.main(["hard", "--out", str(tmp_path / "hard")])
+        command_line.main(tmp_path / "hard")
     assert list(tmp_path.iterdir()) == []

@@ -7,9 +7,11 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from fem_adhesion.common.measured import Measured
-from fem_adhesion.hard.bodies import obtuse, solved, stretched, too_coarse
-from fem_adhesion.hard.contacts import (
+from fem_adhesion.scene import Scene
+from halfspace.accuracy.fold_birth import FIRST, SECOND
+from halfspace.errors import GridTooCoarse, InputError, NotConverged
+from hard.bodies import obtuse, solved, stretched, too_coarse
+from hard.contacts import (
     compressed,
     from_other_branch,
     gaps_below_equilibrium,
@@ -19,11 +21,9 @@ from fem_adhesion.hard.contacts import (
     tangent_spring,
     traced,
 )
-from fem_adhesion.hard.run import WITHIN, Attempt, Case, Refusal
-from fem_adhesion.hard.spheres import against_half_space, against_integral, against_tighter
-from fem_adhesion.scene import Scene
-from halfspace.accuracy.fold_birth import FIRST, SECOND
-from halfspace.errors import GridTooCoarse, InputError, NotConverged
+from hard.measured import Measured
+from hard.run import WITHIN, Attempt, Case, Refusal
+from hard.spheres import against_half_space, against_integral, against_tighter
 
 NO_CONVERGENCE = Refusal(NotConverged, "last relative step", "40 Newton steps", "try a nearer start")
 

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from fem_adhesion.common.measured import Measured
 from halfspace.errors import InputError, NotConverged
+from hard.measured import Measured
 
 Attempt = Callable[[], Measured]
 Outcome = Literal["converged", "refused", "wrong"]

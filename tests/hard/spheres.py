@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import halfspace
-from fem_adhesion.common.measured import Measured, compare_events
 from fem_adhesion.convergence import trace
 from fem_adhesion.scene import Scene
+from hard.measured import Measured, compare_events
 
 SPHERE = Scene(1.0, body="hemisphere", profile="sphere", radius_ratio=100.0)
 RTOL = 1e-4

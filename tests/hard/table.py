@@ -14,8 +14,8 @@ from rich.markup import escape
 
 from fem_adhesion.common.facts import versions
 from fem_adhesion.common.terminal import Column, Fitted
-from fem_adhesion.hard.bodies import Locking
-from fem_adhesion.hard.run import Row
+from hard.bodies import Locking
+from hard.run import Row
 
 COLUMNS = ("case", "expected", "found", "error", "estimate", "Newton steps", "seconds", "compared, or refused because")
 RANKS = {"error": 1, "estimate": 1, "seconds": 2, "Newton steps": 3}  # by which columns are left out

@@ -1,0 +1,1 @@
+"""Hard cases, each with the outcome it must have."""
