@@ -1,1 +1,4 @@
-"""What holds for one contact given in SI: theories, predictions, verdict, and the command `assess`."""
+"""What holds for one contact given in SI, and which model to trust. The command ``assess``.
+
+`study`, `predictions` (of the solvers), `theories`, `verdict`; `terminal`, `figure`, `command`.
+"""

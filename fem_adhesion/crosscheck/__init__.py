@@ -1,1 +1,5 @@
-"""Do the two solvers agree? Four levels of comparison, their record and table, and the command `compare`."""
+"""Do the two solvers agree? The command ``compare``.
+
+In the order of reading: `comparison` (two numbers with errors, a budget, a verdict), `study` (operators, residuals,
+events), `from_scratch` (what both share, against `fem_adhesion.weak_form`), `record`, `table`, `command`.
+"""

@@ -1,1 +1,5 @@
-"""Bodies for the eye: VTK files with cells of high order and units, solids of revolution, pictures of the cut body."""
+"""Bodies for the eye.
+
+`arrays` and `write` (VTK files with cells of high order), `lattice` and `revolve` (solids of revolution), `cutaway` and
+`solid` (pictures by pyvista).
+"""

@@ -1,1 +1,4 @@
-"""What a digit costs: methods beside each other, page, and the command `speed`."""
+"""What a digit costs. The command ``speed``.
+
+`methods` of both families (`halfspace_methods`, `element_methods`), `study`, `result`; `figures`, `page`, `command`.
+"""

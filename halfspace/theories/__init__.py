@@ -1,1 +1,5 @@
-"""What theories say in closed form or by quadrature: Hertz, Bradley, JKR, DMT, Maugis, spheres, criteria of jumps."""
+"""What is known without solving the contact problem.
+
+`closed_forms` (Hertz, Bradley, JKR), `dmt`, `maugis` (Dugdale's law), `exact_sphere` (a sphere's profile in the place
+of a paraboloid's), `criteria` (for jumping on).
+"""
