@@ -1,4 +1,27 @@
-"""Adhesive contact of a sphere with an elastic body by finite elements, and its cross-check on the half-space."""
+"""Adhesive contact of elastic spheres by finite elements, checked against the integral equation of `halfspace`.
+
+Rooms, in the order of reading: `scene` (what is asked), `mesh`, `elasticity`, `bodies`, `finite_strain`, `convergence`
+(the curve that answers), `fields` and `paraview` (inside the body), and a folder for each command. `weak_form` is the
+contact problem as a textbook has it, and `monolithic` Newton's method on all unknowns; both only check the others.
+
+What it is good for, and what not:
+
+* Axisymmetric and frictionless. Small strain unless a scene asks for ``strain="finite"``. The traction acts vertically
+  on the projected area; the other convention, on the surface's own area, is a scene's choice and differs by O(eps/R).
+* At finite strain the projected area is stretched, and what the traction is counted per matters as much as the strain:
+  the default conserves the attracted matter, as the wall's potential on every particle of the body does; the other
+  choices of ``traction`` are beside it, and their spread is given with each event as model uncertainty. What that
+  potential does besides, the yield of the attracted layer, is a change of dgamma, which ``assess`` gives.
+* R at least 1.5 beta, that is R/eps at least 2.25 mu, and at least 2: a smaller sphere is deformed as a whole. The
+  curve ends where the contact reaches 0.95 R; at finite strain, which goes as far down, where what was at 0.98 R is in
+  contact. The part nu/(1 - nu) of the traction that is counted per deformed area makes the equations ill-posed where it
+  exceeds E* (1 - nu)/(3 - 4 nu) at the contact edge: at nu = 0.3 and mu = 3 below R/eps = 35, and 188 with
+  ``traction="normal"``.
+* Of a whole sphere, only the half that faces the wall attracts; the other would take O((eps/R)^2) off the load.
+* Tabor parameters from 1e-12 to 300, Poisson's ratio up to 0.499999, loads up to 1000 R dgamma; beyond, a closed form
+  of `halfspace.theories.closed_forms` serves and the error message says which.
+* Blocks with a ``far_field`` of "clamped" or "free" need a fixed mesh, up to a Tabor parameter of 3.
+"""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any

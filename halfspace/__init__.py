@@ -1,7 +1,34 @@
-"""Adhesive contact of a sphere with an elastic half-space, by an integral equation, after Greenwood (1997).
+"""Adhesive contact of an elastic sphere with an elastic half-space, by an integral equation, after Greenwood (1997).
 
-All quantities are dimensionless: radii in beta = (R^2 dgamma/E*)^(1/3), gaps and approach in eps, loads in R dgamma,
-pressures P = mu eps p/dgamma; compression is positive.
+`trace` gives the whole load-approach curve with its events. Rooms, in the order of reading: `elastic` (the half-space
+alone), `equilibrium` (contact, path, events), `accuracy` (to the digits asked for), `theories` (closed forms).
+
+Conventions are Greenwood's, everywhere. R is the equivalent radius, E* the contact modulus, dgamma the work of
+adhesion, eps the spacing at which the surfaces are in equilibrium, mu = (R dgamma^2/(E*^2 eps^3))^(1/3) the Tabor
+parameter and beta = (R^2 dgamma/E*)^(1/3).
+
+===================  =========================  ================  ==================================================
+quantity             in the code                unit              sign
+===================  =========================  ================  ==================================================
+approach alpha*      ``approach``               eps               positive when pressed together; zero where the
+                                                                  undeformed surfaces would be eps apart
+gap H = h/eps - 1    ``gap``, ``central_gap``   eps               zero at the equilibrium spacing
+load W               ``load``                   R dgamma          positive in compression; pull-off force is -min W
+radius u, a          ``radii``,                 beta              the contact edge is where the gap is 3^(1/6) eps,
+                     ``contact_radius``                           where the tension is largest
+pressure P           ``pressure``               dgamma/(mu eps)   positive in compression
+energy               ``energy``                 R dgamma eps      released between separation and zero approach
+===================  =========================  ================  ==================================================
+
+Of a body with a length of its own the approach is that of the plane or cap by which it is held, zero where the
+undeformed pole would be eps from the wall, so it includes the yield of the whole body. R/eps is ``radius_ratio``, and
+R/beta its root over that of mu. An approach has no natural zero, so its size is no measure of anything: errors, budgets
+and deviations of approaches are relative to eps and the range of the approaches of all events of the curve.
+
+Events: ``pull_off`` is the deepest minimum of the load; ``jump_on`` and ``jump_off`` are the folds that an experiment
+under fixed grips meets when it comes from separation and from contact; ``zero_load`` lies on the contact branch. Each
+is solved for, not read off samples of the curve. The approach at pull-off is the place of a flat extremum and less
+certain than the load there; its error estimate says by how much.
 """
 
 from importlib import import_module

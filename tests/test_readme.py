@@ -50,10 +50,9 @@ LINES = {
     "fem-adhesion finite-sphere --out sphere --quick": "fem-adhesion finite-sphere --out sphere --quick",
     "make hard": MAKE,
     "fem-adhesion curve --tabor 2 --render body.png": "fem-adhesion curve --tabor 2 --render body.png",
-    "fem-adhesion finite-sphere --out sphere": "fem-adhesion finite-sphere --out sphere --quick",
-    "fem-adhesion speed --out speed": "fem-adhesion speed --out speed --quick",
-    f"{ASSESS} --plot assess.png": f"{ASSESS} --plot silica.png",  # the same but for the name of the picture
 }
+(COMMANDS,) = [action for action in cli.make_parser()._actions if action.choices]
+NAMES = tuple(COMMANDS.choices)
 RUN = tuple(dict.fromkeys(run for run in LINES.values() if run not in (MAKE, INSTALL)))
 
 
@@ -79,16 +78,12 @@ def test_a_line_is_run_as_it_stands_or_in_its_quick_form():
         if run == MAKE:
             assert line.removeprefix("make ") in test_make.TARGETS
         elif run != INSTALL:
-            assert run.replace("silica.png", "assess.png") in (
-                line.replace("silica.png", "assess.png"),
-                f"{line} --quick",
-            )
+            assert run in (line, f"{line} --quick")
 
 
 def test_the_readme_shows_every_command():
     shown = {shlex.split(line)[1] for line in LINES if line.startswith("fem-adhesion")}
-    names = {command.__name__.rsplit(".", 1)[1].replace("_", "-") for command in cli.COMMANDS}
-    assert shown == names
+    assert shown == set(NAMES)
 
 
 def test_other_blocks_are_python_and_run_as_doctests():
@@ -211,10 +206,9 @@ def test_a_picture_of_the_readme_is_there(picture):
     assert (ROOT / picture).stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("command", cli.COMMANDS, ids=lambda command: command.__name__)
-def test_the_example_of_a_help_text_can_be_run(command, capsys):
+@pytest.mark.parametrize("name", NAMES)
+def test_the_example_of_a_help_text_can_be_run(name, capsys):
     """Argument by argument; the examples are those of the README or shorter."""
-    name = command.__name__.rsplit(".", 1)[1].replace("_", "-")
     with pytest.raises(SystemExit):
         cli.main([name, "--help"])
     shown = " ".join(capsys.readouterr().out.split())

@@ -2,4 +2,28 @@
 
 In the order of reading: `comparison` (two numbers with errors, a budget, a verdict), `study` (operators, residuals,
 events), `from_scratch` (what both share, against `fem_adhesion.weak_form`), `record`, `table`, `command`.
+
+How independent the two solvers are:
+
+* Elasticity: the ring kernel's elliptic integrals against scikit-fem's axisymmetric forms, condensed to the surface.
+  Nothing is shared; a uniform disc, Hertz and Boussinesq check each alone.
+* Body: the half-space against a block of finite size, its far field as under a point load. The error against the
+  block's size is measured: of fifth order.
+* Beyond grid and block both use cells up to infinity, by inversion of the ring kernel. Shared; checked by pressures
+  without end in closed form, and by the load as derivative of the energy.
+* Surface law, contact problem, Newton's method, continuation, events: shared. Checked by the rigid (Bradley) and soft
+  (JKR) limits, the printed values of the paper, energies against work, converged reference values.
+* Where cells begin and end: the same radial lines; error estimates by refinement on each side.
+* All that is shared is checked by a weak form with its own law, profile, energy, Newton's method and determinant, on
+  its own mesh. It imports nothing of the solvers. Each event of the finite elements is put into it: do the gaps
+  balance, does the far side carry the load, does the determinant of the tangent change its sign at a fold, is the
+  energy that? Law, load, residual and tangent are compared at a state made up as well, so that a solver which does not
+  converge is told what is wrong with it. It looks for mistakes, not digits: its budget is a part in a thousand. Beyond
+  a Tabor parameter of 6 it only checks that pull-off and jump-off are equilibria, not that they turn there.
+
+A quantity agrees only if the difference is within the sum of both error estimates and that sum is within the budget.
+Seven defects of one side - no hoop strain, E for E*, 2 pi r forgotten, half the shear modulus, a shifted approach,
+wrong exponents, a clamped block of ten beta - and seven that both sides share - 1 % on the law, the profile, the load
+or the elastic term, jumps taken on a spring, the energy without its half, the slope of the load 5 % short - are
+injected in the tests, and each is rejected.
 """

@@ -3,4 +3,12 @@
 In the order of reading: `trace` (the half-space, from a tolerance to a curve), `refinement` (the ladder of ever finer
 stages, and what two of them say of the error), `finite_bodies` (the same for bodies with a length, whose operator
 changes with the contact), `fold_birth` (the Tabor parameter at which a pair of folds is born).
+
+An elastic body without a length of its own is homogeneous, so one compliance matrix serves every contact radius: the
+grid breathes with the contact, the radius joins the unknowns, and the spike of tension at the contact edge, whose width
+falls as 1/mu^2, stays on the same nodes. That is why 100 to 200 unknowns give eight digits.
+
+A sphere is not homogeneous. Its compliance on a grid that follows the contact edge is still a smooth function of the
+contact radius: the curve is traced on a polynomial through some ten radii, and each event solved for on operators made
+around its own.
 """
