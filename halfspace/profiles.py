@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from halfspace.values import Valued
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicHermiteSpline
 
 Array = NDArray[np.float64]
 
@@ -138,4 +140,6 @@ class Tabulated(Valued):
 
     @cached_property
     def _spline(self) -> CubicHermiteSpline:
+        from scipy.interpolate import CubicHermiteSpline  # it takes as long to load as all else, and few need it
+
         return CubicHermiteSpline(self.radii, self.heights, self.slopes)

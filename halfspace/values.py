@@ -12,7 +12,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy import sparse
 
 FEW = 4
 """Items of a sequence, and numbers of an array, that are shown one by one."""
@@ -89,7 +88,7 @@ def shown(value: Any) -> str:
 
 
 def _is_sparse(value: Any) -> bool:
-    return isinstance(value, (sparse.sparray, sparse.spmatrix))
+    return hasattr(value, "tocsr")  # asked of what it can: SciPy's sparse part takes long to load
 
 
 def _same_fields(a: Any, b: Any) -> bool:
