@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 # The systems are small and dense: threads inside LAPACK cost more than they bring.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help compare test check bench hard honesty clean
+.PHONY: help compare test check bench hard honesty docs clean
 
 help: ## show this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 10
@@ -30,6 +30,9 @@ hard: $(VENV)/installed-dev ## attempt the hard cases and print how each ended (
 
 honesty: $(VENV)/installed-dev ## hold all error estimates against the truth, by families, and the solvers against each other (QUICK=1: a minute; SEED=n)
 	$(BIN)/python tests/honesty.py $(if $(QUICK),--quick) $(if $(SEED),--seed $(SEED))
+
+docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, into build/docs
+	$(BIN)/python tests/docs.py $(or $(OUT),build/docs)
 
 clean: ## remove the environment and all caches
 	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

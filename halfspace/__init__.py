@@ -7,18 +7,14 @@ Conventions are Greenwood's, everywhere. R is the equivalent radius, E* the cont
 adhesion, eps the spacing at which the surfaces are in equilibrium, mu = (R dgamma^2/(E*^2 eps^3))^(1/3) the Tabor
 parameter and beta = (R^2 dgamma/E*)^(1/3).
 
-===================  =========================  ================  ==================================================
-quantity             in the code                unit              sign
-===================  =========================  ================  ==================================================
-approach alpha*      ``approach``               eps               positive when pressed together; zero where the
-                                                                  undeformed surfaces would be eps apart
-gap H = h/eps - 1    ``gap``, ``central_gap``   eps               zero at the equilibrium spacing
-load W               ``load``                   R dgamma          positive in compression; pull-off force is -min W
-radius u, a          ``radii``,                 beta              the contact edge is where the gap is 3^(1/6) eps,
-                     ``contact_radius``                           where the tension is largest
-pressure P           ``pressure``               dgamma/(mu eps)   positive in compression
-energy               ``energy``                 R dgamma eps      released between separation and zero approach
-===================  =========================  ================  ==================================================
+| quantity | in the code | unit | sign |
+|---|---|---|---|
+| approach alpha* | `approach` | eps | positive when pressed together; zero where undeformed surfaces are eps apart |
+| gap H = h/eps - 1 | `gap`, `central_gap` | eps | zero at the equilibrium spacing |
+| load W | `load` | R dgamma | positive in compression; the pull-off force is -min W |
+| radius u, a | `radii`, `contact_radius` | beta | the contact ends where H + 1 = 3^(1/6), the largest tension |
+| pressure P | `pressure` | dgamma/(mu eps) | positive in compression |
+| energy | `energy` | R dgamma eps | released between a separated state and zero approach in contact |
 
 Of a body with a length of its own the approach is that of the plane or cap by which it is held, zero where the
 undeformed pole would be eps from the wall, so it includes the yield of the whole body. R/eps is ``radius_ratio``, and

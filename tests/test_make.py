@@ -25,6 +25,7 @@ TARGETS = {
     "bench": "make bench QUICK=1",
     "honesty": "make honesty QUICK=1 SEED=77",  # a new seed each time finds what is not known yet: no test's verdict
     "hard": HARD,  # tests/hard reads what it writes
+    "docs": "make docs OUT=docs",
     "clean": "make clean",
 }
 
@@ -90,6 +91,20 @@ def test_bench_times_every_solver_beside_the_yardstick(made):
         assert seconds > 0
         assert yardsticks >= 1
     assert re.search(r"peak memory of one process: \d+ MiB", run.out)
+
+
+def test_docs_shows_every_module_without_a_warning(made):
+    run = made("docs")
+    assert run.code == 0, run.err
+    assert not run.err
+    pages = {str(file.relative_to(run / "docs").with_suffix("")) for file in (run / "docs").rglob("*.html")}
+    modules = {
+        str(file.relative_to(ROOT).with_suffix("")).removesuffix("/__init__")
+        for package in ("halfspace", "fem_adhesion")
+        for file in (ROOT / package).rglob("*.py")
+    }
+    assert pages - {"index"} == modules - {"fem_adhesion/__main__"}
+    assert "beta = (R^2 dgamma/E*)^(1/3)" in (run / "docs/halfspace.html").read_text()
 
 
 def test_honesty_judges_every_family_and_both_solvers_side_by_side(made):

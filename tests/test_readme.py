@@ -49,6 +49,7 @@ LINES = {
     f"{ASSESS} --plot silica.png": f"{ASSESS} --plot silica.png",
     "fem-adhesion finite-sphere --out sphere --quick": "fem-adhesion finite-sphere --out sphere --quick",
     "make hard": MAKE,
+    "make docs": MAKE,
     "fem-adhesion curve --tabor 2 --render body.png": "fem-adhesion curve --tabor 2 --render body.png",
 }
 (COMMANDS,) = [action for action in cli.make_parser()._actions if action.choices]

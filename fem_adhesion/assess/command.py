@@ -8,12 +8,11 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_adhesion.common.options import AGREE, console_beside, progress_bar, require_distinct, written
+from fem_adhesion.common.options import AGREE, Commands, console_beside, progress_bar, require_distinct, written
 from fem_adhesion.common.scene_options import add_contact, material_of, refuse
 
 if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact
-    from fem_adhesion.common.options import Commands
 
 
 def add(commands: Commands) -> None:

@@ -10,14 +10,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TextIO
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol, TextIO
 
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-    Commands = argparse._SubParsersAction["Parser"]
 
 AGREE, DISAGREE, BAD_INPUT, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 NOT_WRITTEN = DISAGREE
@@ -96,6 +94,13 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Exit with code 2."""
         self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+class Commands(Protocol):
+    """What a command adds itself to."""
+
+    def add_parser(self, name: str, **settings: Any) -> Parser:
+        """Parser of a command of that name."""
 
 
 def add_output(command: Parser) -> None:

@@ -8,13 +8,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_adhesion.common.options import AGREE, DISAGREE, console_beside, progress_bar, written
+from fem_adhesion.common.options import AGREE, DISAGREE, Commands, console_beside, progress_bar, written
 from fem_adhesion.common.scene_options import POISSON, add_body, add_other_body, body_of, counter_of, refuse
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from fem_adhesion.common.options import Commands
     from fem_adhesion.crosscheck.study import Case, Failure
     from fem_adhesion.scene import Scene
 

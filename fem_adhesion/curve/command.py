@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from fem_adhesion.common.options import AGREE, console_beside, progress_bar, require_distinct, written
+from fem_adhesion.common.options import AGREE, Commands, console_beside, progress_bar, require_distinct, written
 from fem_adhesion.common.scene_options import (
     POISSON,
     add_body,
@@ -24,7 +24,7 @@ from halfspace.errors import InputError
 
 if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact
-    from fem_adhesion.common.options import Commands, Parser
+    from fem_adhesion.common.options import Parser
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
 

@@ -7,10 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_adhesion.common.options import AGREE, DISAGREE, progress_bar
+from fem_adhesion.common.options import AGREE, DISAGREE, Commands, progress_bar
 
 if TYPE_CHECKING:
-    from fem_adhesion.common.options import Commands
     from fem_adhesion.curve.solve import Question
     from fem_adhesion.scene import Scene
 

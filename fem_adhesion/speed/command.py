@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import TYPE_CHECKING
 
-from fem_adhesion.common.options import AGREE, DISAGREE, add_output, console_beside, progress_bar
-
-if TYPE_CHECKING:
-    from fem_adhesion.common.options import Commands
+from fem_adhesion.common.options import AGREE, DISAGREE, Commands, add_output, console_beside, progress_bar
 
 
 def add(commands: Commands) -> None:

@@ -1,0 +1,25 @@
+"""``make docs``: pages of both packages, from their docstrings."""
+
+import pkgutil
+import sys
+from pathlib import Path
+
+import pdoc
+
+import fem_adhesion
+import halfspace
+
+
+def packages():
+    """Both packages, with what they import late and what lies in them where pdoc looks for it."""
+    for package in (halfspace, fem_adhesion):
+        vars(package).update({name: getattr(package, name) for name in package.__all__})
+        package.__all__ += [module.name for module in pkgutil.iter_modules(package.__path__) if module.name[0] != "_"]
+        yield package.__name__
+
+
+if __name__ == "__main__":
+    pdoc.render.configure(docformat="numpy", math=True)
+    directory = Path(sys.argv[1])
+    pdoc.pdoc(*packages(), output_directory=directory)
+    print(f"written: {directory / 'index.html'}")
