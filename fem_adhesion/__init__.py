@@ -2,7 +2,8 @@
 
 Rooms, in the order of reading: `scene` (what is asked), `mesh`, `elasticity`, `bodies`, `finite_strain`, `convergence`
 (the curve that answers), `fields` and `paraview` (inside the body), and a folder for each command. `weak_form` is the
-contact problem as a textbook has it, and `monolithic` Newton's method on all unknowns; both only check the others.
+contact problem as a textbook has it, `harmonics` the whole sphere in Legendre polynomials, and `monolithic` Newton's
+method on all unknowns; they only check the others.
 
 What it is good for, and what not:
 

@@ -48,3 +48,8 @@ def _imports(module):
 def test_the_fourth_level_imports_nothing_of_the_solvers_it_checks():
     own = {name for name in _imports("fem_adhesion.weak_form") if name.split(".")[0] in ("halfspace", "fem_adhesion")}
     assert own == {"halfspace.errors.NotConverged", "halfspace.values.Valued"}  # no physics, no numbers
+
+
+def test_the_harmonics_import_nothing_of_the_finite_elements_they_check():
+    own = {name for name in _imports("fem_adhesion.harmonics") if name.split(".")[0] in ("skfem", "fem_adhesion")}
+    assert own == {"fem_adhesion.scene.Scene"}

@@ -1,7 +1,8 @@
 """Do the two solvers agree? The command ``compare``.
 
 In the order of reading: `comparison` (two numbers with errors, a budget, a verdict), `study` (operators, residuals,
-events), `from_scratch` (what both share, against `fem_adhesion.weak_form`), `record`, `table`, `command`.
+events; of spheres, `references`), `from_scratch` (what both share, against `fem_adhesion.weak_form`), `record`,
+`table`, `command`.
 
 How independent the two solvers are:
 
@@ -20,6 +21,10 @@ How independent the two solvers are:
   energy that? Law, load, residual and tangent are compared at a state made up as well, so that a solver which does not
   converge is told what is wrong with it. It looks for mistakes, not digits: its budget is a part in a thousand. Beyond
   a Tabor parameter of 6 it only checks that pull-off and jump-off are equilibria, not that they turn there.
+
+A hemisphere that slides, or a pair, is compared with whole spheres in Legendre polynomials in the place of the
+half-space (`fem_adhesion.harmonics`), whose elasticity is summed mode by mode. Bonded bodies, spheres held over a cap
+and meshes of the user's have the weak form alone (`weak_bodies`); it shares with the solver what draws the mesh.
 
 A quantity agrees only if the difference is within the sum of both error estimates and that sum is within the budget.
 Seven defects of one side - no hoop strain, E for E*, 2 pi r forgotten, half the shear modulus, a shifted approach,
