@@ -330,7 +330,7 @@ def drawn(results, stem):
 
 
 ILL_POSED = {("strain", 3.0, 10.0)}
-"""Cause and sphere too small for its Tabor parameter at finite strain, as `finite_sphere_cases` says."""
+"""Cause and sphere too small for its Tabor parameter at finite strain, as `fem_adhesion.finite_sphere.cases` says."""
 
 
 def test_the_axes_of_the_causes_say_what_is_drawn(distinct):

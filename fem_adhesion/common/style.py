@@ -1,4 +1,4 @@
-"""How the figures after Greenwood's look: one colour for each Tabor parameter, stable and unstable told apart."""
+"""How figures look: one colour for each Tabor parameter, stable and unstable told apart."""
 
 from __future__ import annotations
 

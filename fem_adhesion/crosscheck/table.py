@@ -1,4 +1,4 @@
-"""Tables for the terminal."""
+"""The cross-check as tables for the terminal."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The finite sphere: how far the half-space under a paraboloid is from it, and which assumption makes the difference.
 
-Every point of the plan is solved under several sets of assumptions (`finite_sphere_cases`), in parallel, each result
-stored as it comes; `finite_sphere_table` sets them beside each other.
+Every point of the plan is solved under several sets of assumptions (`fem_adhesion.finite_sphere.cases`), in parallel,
+each result stored as it comes; `fem_adhesion.finite_sphere.table` sets them beside each other.
 """
 
 from __future__ import annotations

@@ -40,9 +40,9 @@ def finite_strain_problem(
     Parameters
     ----------
     body : Body
-        From `finite_strain_bodies.displacement_body` or `mixed_body`.
+        From `finite_strain.bodies.displacement_body` or `mixed_body`.
     exterior : Exterior
-        Of all displacement unknowns of its space, interior ones included: see `far_field.with_interiors`.
+        Of all displacement unknowns of its space, interior ones included: see `elasticity.far_field.with_interiors`.
     tabor, law
         As in `halfspace.equilibrium.contact.ContactProblem`.
     profile : Profile

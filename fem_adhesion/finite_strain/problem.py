@@ -8,8 +8,8 @@ height of the undeformed surface in beta^2/R and r_d = r + delta u_r, the work i
     -int [P(H) v_z dA + c Phi(H)/mu d(dA)],    H = -alpha* + mu (z - u_z),    dA = 2 pi r_d dr_d,
 
 d(dA) the change of the horizontal area by delta v_r. The first term is the force, the second that of a surface stress
-c Phi; `fem_adhesion.finite_strain.traction` says what is known of c and of the area. The default, c = 0, is a vertical
-traction per deformed area.
+c Phi; `fem_adhesion.finite_strain.traction` says what is known of c and of the area, and which are the default. With
+c = 0 it is a vertical traction per deformed area.
 """
 
 from __future__ import annotations
