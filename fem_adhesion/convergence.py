@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 from skfem import ElementQuadP
 
-from fem_adhesion.bodies import sized
-from fem_adhesion.bodies import user_mesh as meshed
+from fem_adhesion.bodies import sized, user_mesh
 from fem_adhesion.elasticity import far_field
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.incompressible import stiffness_for
@@ -89,7 +88,7 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     if scene.strain == "finite":
         return finite_strain_scene.trace(scene, rtol, to_load)
     if isinstance(scene.body, Path):
-        return meshed.trace(scene, rtol, to_load)
+        return user_mesh.trace(scene, rtol, to_load)
     if scene.sized:
         return climb(rtol, partial(sized.ladder, scene, rtol, to_load), to_load=to_load)
     most_rungs = MOST_RUNGS if scene.radius is None else 1

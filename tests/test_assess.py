@@ -15,7 +15,7 @@ from scipy.optimize import brentq, minimize_scalar
 import fem_adhesion
 import halfspace
 from fem_adhesion import cli
-from fem_adhesion.assess import figure as assess_plot
+from fem_adhesion.assess import figure as assess_figure
 from fem_adhesion.assess import study
 from fem_adhesion.assess import theories as assess_theories
 from fem_adhesion.assess.predictions import QUANTITIES, WORDS, Prediction, computed, large_tabor
@@ -785,15 +785,15 @@ def test_engineering_prefixes():
 def test_the_figure_is_written(bead, tmp_path):
     path = tmp_path / "curve.png"
     with written_aside(path) as file:
-        assess_plot.write(bead, file, assess_plot.require_suffix(path))
+        assess_figure.write(bead, file, assess_figure.require_suffix(path))
     assert path.read_bytes().startswith(b"\x89PNG")
     with pytest.raises(ValueError, match=r"limit: one of \.png, \.svg, \.pdf; rename it"):
-        assess_plot.require_suffix(tmp_path / "curve.gif")
+        assess_figure.require_suffix(tmp_path / "curve.gif")
 
 
 @pytest.fixture(scope="module")
 def axes(silica):
-    return assess_plot.draw(silica).axes[0]
+    return assess_figure.draw(silica).axes[0]
 
 
 def test_the_axes_of_the_figure_say_what_is_drawn_along_them(axes, silica):

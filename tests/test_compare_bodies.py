@@ -13,7 +13,7 @@ from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
 from fem_adhesion.crosscheck.weak_bodies import contacts
-from fem_adhesion.elasticity import space as elasticity
+from fem_adhesion.elasticity import space
 from fem_adhesion.mesh.spheres import Stereographic
 from fem_adhesion.scene import Counter
 from fem_adhesion.weak_form import tension
@@ -124,8 +124,8 @@ def test_a_bonded_hemisphere_agrees_with_the_weak_form():
 
 
 def _stiffer(monkeypatch):
-    original = elasticity.elastic_matrix
-    monkeypatch.setattr(elasticity, "elastic_matrix", lambda nu: 1.01 * original(nu))
+    original = space.elastic_matrix
+    monkeypatch.setattr(space, "elastic_matrix", lambda nu: 1.01 * original(nu))
 
 
 def _another(**change):

@@ -15,7 +15,7 @@ from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Row
 from fem_adhesion.crosscheck.study import Case, Failure
 from fem_adhesion.crosscheck.table import crosscheck_tables
-from fem_adhesion.elasticity import space as elasticity
+from fem_adhesion.elasticity import space
 from halfspace import limits
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import Estimate
@@ -55,34 +55,34 @@ def test_the_solvers_agree_for_a_nearly_rigid_contact():
 
 
 def _no_hoop_strain(monkeypatch):
-    original = elasticity.strain_displacement
+    original = space.strain_displacement
 
     def strain_displacement(value, grad, r):
         B = original(value, grad, r)
         B[:, 2] = 0
         return B
 
-    monkeypatch.setattr(elasticity, "strain_displacement", strain_displacement)
+    monkeypatch.setattr(space, "strain_displacement", strain_displacement)
 
 
 def _young_for_contact_modulus(monkeypatch):
-    original = elasticity.elastic_matrix
-    monkeypatch.setattr(elasticity, "elastic_matrix", lambda nu: original(nu) / (1 - nu**2))
+    original = space.elastic_matrix
+    monkeypatch.setattr(space, "elastic_matrix", lambda nu: original(nu) / (1 - nu**2))
 
 
 def _no_ring_measure(monkeypatch):
-    monkeypatch.setattr(elasticity, "ring_measure", np.ones_like)
+    monkeypatch.setattr(space, "ring_measure", np.ones_like)
 
 
 def _half_the_shear_modulus(monkeypatch):
-    original = elasticity.elastic_matrix
+    original = space.elastic_matrix
 
     def elastic_matrix(nu):
         D = original(nu)
         D[3, 3] /= 2
         return D
 
-    monkeypatch.setattr(elasticity, "elastic_matrix", elastic_matrix)
+    monkeypatch.setattr(space, "elastic_matrix", elastic_matrix)
 
 
 def _shifted_approach(monkeypatch):

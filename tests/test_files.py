@@ -105,21 +105,21 @@ def _full(*_args, **_kwargs):
 
 @pytest.mark.parametrize("command", ["speed", "greenwood", "finite-sphere"])
 def test_a_full_disk_ends_each_study_in_one_line_and_leaves_nothing(command, tmp_path, monkeypatch, capsys):
-    from fem_adhesion.finite_sphere import page as finite_sphere_report
+    from fem_adhesion.finite_sphere import page as finite_sphere_page
     from fem_adhesion.finite_sphere import study as finite_sphere
-    from fem_adhesion.greenwood import page as greenwood_report
-    from fem_adhesion.greenwood import study as greenwood1997
-    from fem_adhesion.speed import page as speed_report
+    from fem_adhesion.greenwood import page as greenwood_page
+    from fem_adhesion.greenwood import study as greenwood
+    from fem_adhesion.speed import page as speed_page
     from fem_adhesion.speed import study as speed
 
     for module, name in (
-        (speed_report, "write"),
-        (greenwood_report, "write"),
-        (finite_sphere_report, "write"),
+        (speed_page, "write"),
+        (greenwood_page, "write"),
+        (finite_sphere_page, "write"),
     ):
         monkeypatch.setattr(module, name, _full)
     monkeypatch.setattr(speed, "measure", lambda *_, **__: None)
-    monkeypatch.setattr(greenwood1997, "compute", lambda **_: None)
+    monkeypatch.setattr(greenwood, "compute", lambda **_: None)
     monkeypatch.setattr(finite_sphere, "run", lambda *_, **__: [SimpleNamespace(status="solved", failed=False)])
     assert cli.main([command, "--out", str(tmp_path / "out")]) == 1
     error = capsys.readouterr().err

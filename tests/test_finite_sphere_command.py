@@ -14,8 +14,8 @@ import pytest
 from processes import PATIENCE, alive, wait_until
 
 from fem_adhesion import cli
-from fem_adhesion.finite_sphere import cases as finite_sphere_cases
-from fem_adhesion.finite_sphere import page as finite_sphere_report
+from fem_adhesion.finite_sphere import cases
+from fem_adhesion.finite_sphere import page as finite_sphere_page
 from fem_adhesion.finite_sphere.cases import MODELS
 from fem_adhesion.finite_sphere.records import CRITICAL
 from halfspace.equilibrium.curve import Estimate
@@ -85,7 +85,7 @@ def test_a_figure_of_the_quick_study_is_drawn_or_says_what_it_lacks(quick):
 def test_the_quick_study_resumed_computes_nothing(quick, tmp_path, monkeypatch, capsys):
     directory = shutil.copytree(quick / "sphere", tmp_path / "sphere")
     kept = {file: file.stat().st_mtime_ns for file in (directory / "cases").iterdir()}
-    monkeypatch.setattr(finite_sphere_report, "write", lambda *_: "")
+    monkeypatch.setattr(finite_sphere_page, "write", lambda *_: "")
     assert cli.main(["finite-sphere", "--out", str(directory), "--quick", "--resume", "--jobs", "1"]) == 0
     assert capsys.readouterr().err == ""
     assert {file: file.stat().st_mtime_ns for file in (directory / "cases").iterdir()} == kept
@@ -149,7 +149,7 @@ def test_a_defect_of_the_program_shows_its_traceback(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("ratio", ["1", "0.5", "nan"])
 def test_a_sphere_too_small_for_all_is_refused_before_any_work(tmp_path, monkeypatch, capsys, ratio):
-    monkeypatch.setattr(finite_sphere_cases, "compute", lambda _: pytest.fail("worked"))
+    monkeypatch.setattr(cases, "compute", lambda _: pytest.fail("worked"))
     assert cli.main(["finite-sphere", "--out", str(tmp_path / "out"), "--radius-ratio", "30", ratio]) == 2
     assert f"radius_ratio = {float(ratio):g} is outside 2 <= radius_ratio <= 1e12" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from whole_sphere import sphere_operator
 
-from fem_adhesion.finite_sphere import chart_figure as finite_sphere_chart
-from fem_adhesion.finite_sphere import figures as finite_sphere_plots
-from fem_adhesion.finite_sphere import page as finite_sphere_report
+from fem_adhesion.finite_sphere import chart_figure, figures
+from fem_adhesion.finite_sphere import page as finite_sphere_page
 from fem_adhesion.finite_sphere.bulk import FINE, bulk_compliance, coefficients, excess_compliance
 from fem_adhesion.finite_sphere.cases import CAUSES, MODELS, case_of
 from fem_adhesion.finite_sphere.chart import Field, contour, field_of, rule, safe_from
@@ -58,7 +57,7 @@ def records():
 def coarse_pixels():
     """Images of few pixels, which are drawn faster."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(finite_sphere_plots, "DOTS_PER_INCH", 30)
+        patch.setattr(figures, "DOTS_PER_INCH", 30)
         yield
 
 
@@ -81,13 +80,13 @@ def written(records, tmp_path_factory):
     """Directory of the study, and what was begun."""
     pytest.importorskip("pyarrow")
     directory, begun = tmp_path_factory.mktemp("study"), []
-    assert finite_sphere_report.write(Study(records), directory, begun.append) == ""
+    assert finite_sphere_page.write(Study(records), directory, begun.append) == ""
     return directory, tuple(begun)
 
 
 def test_the_page_answers_with_the_rule_and_all_files_are_there(written):
     directory, begun = written
-    assert begun == finite_sphere_report.PARTS
+    assert begun == finite_sphere_page.PARTS
     names = {f"{stem}.csv" for stem in TABLES} | {f"{stem}.{kind}" for stem in FIGURES for kind in ("svg", "png")}
     names |= {"index.html", "finite_sphere.csv", "finite_sphere.parquet"}
     assert {file.name for file in directory.iterdir()} == names
@@ -117,7 +116,7 @@ def test_the_figures_hold_their_words_as_text(written):
 
 def test_a_study_in_which_nothing_was_solved_says_so(tmp_path):
     cases = plan([1.0], [10.0], [0.3]).cases
-    finite_sphere_report.write(Study([Record(case, "died", {}, "the worker died") for case in cases]), tmp_path)
+    finite_sphere_page.write(Study([Record(case, "died", {}, "the worker died") for case in cases]), tmp_path)
     page = (tmp_path / "index.html").read_text()
     assert f"<strong>{len(cases)} of {len(cases)} cases not solved ({len(cases)} died).</strong>" in page
     assert "pull-off force</strong> nowhere that is known" in page
@@ -193,7 +192,7 @@ def test_a_rule_is_right_as_it_is_printed():
 
 
 def test_the_drawn_contour_is_that_of_the_deviations(table):
-    figure = finite_sphere_chart.chart(table, 0.3, ())
+    figure = chart_figure.chart(table, 0.3, ())
     pull_off, jump_on = figure.axes
     for level in (0.1, 0.01, 0.001):
         expected = (1 + np.array(TABORS) / 2) / level
@@ -225,7 +224,7 @@ def test_a_point_is_hatched_by_how_it_ended_and_no_other_is(records):
         else r
         for r in records
     ]
-    axes = finite_sphere_chart.chart(rows(changed), 0.3, ()).axes[0]
+    axes = chart_figure.chart(rows(changed), 0.3, ()).axes[0]
     hatched = {}
     for patch in axes.patches:
         (x, y), width, height = patch.get_xy(), patch.get_width(), patch.get_height()
@@ -240,7 +239,7 @@ def test_a_point_is_hatched_by_how_it_ended_and_no_other_is(records):
 
 
 def test_the_border_of_the_jumps_is_drawn_where_it_was_solved_for(records):
-    axes = finite_sphere_chart.chart(rows(records), 0.3, borders(records)).axes[1]
+    axes = chart_figure.chart(rows(records), 0.3, borders(records)).axes[1]
     half_space, *spheres = borders(records)
     assert (half_space.radius_ratio, half_space.tabor.value) == (None, pytest.approx(0.6))
     assert [border.radius_ratio for border in spheres] == [*RATIOS] * 3
@@ -324,7 +323,7 @@ def test_the_csv_holds_each_number_with_its_error_under_its_name(distinct, tmp_p
 
 
 def drawn(results, stem):
-    (picture,) = (picture for picture in finite_sphere_plots.PICTURES if picture.stem == stem)
+    (picture,) = (picture for picture in figures.PICTURES if picture.stem == stem)
     assert not picture.lacks(results)
     return picture.draw(results).axes
 
@@ -341,7 +340,7 @@ def test_the_axes_of_the_causes_say_what_is_drawn(distinct):
         assert x == r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
         assert y in ("|relative deviation from the half-space|", "")
         for cause in ("all", "profile", "body", "grip", "traction", "strain"):
-            label = finite_sphere_plots.CAUSES[cause][2]
+            label = figures.CAUSES[cause][2]
             assert label.startswith(f"{cause}: ")
             at = sorted(np.transpose(line_of(panel, label)).tolist(), reverse=True)
             wanted = [
@@ -480,16 +479,16 @@ def test_the_yield_is_not_said_to_be_most_of_what_it_is_not():
 def test_nothing_is_concluded_from_numbers_that_are_none(value, tmp_path):
     found = study_of(lambda _: value)
     assert [caption(stem, found) for stem in FIGURES]
-    for picture in finite_sphere_plots.PICTURES:
+    for picture in figures.PICTURES:
         assert picture.lacks(found)
-    finite_sphere_report.write(found.study, tmp_path)
+    finite_sphere_page.write(found.study, tmp_path)
     page = (tmp_path / "index.html").read_text()
     assert page.count("nowhere that is known") == len(QUANTITIES)
     assert "nan" not in page.partition("<footer>")[0].replace("nancy", "")
 
 
 def test_nothing_is_concluded_from_nothing(tmp_path):
-    finite_sphere_report.write(Study([]), tmp_path)
+    finite_sphere_page.write(Study([]), tmp_path)
     page = (tmp_path / "index.html").read_text()
     assert "<strong>no case.</strong>" in page
     assert "No elastic sphere was solved." in page
@@ -497,14 +496,14 @@ def test_nothing_is_concluded_from_nothing(tmp_path):
 
 
 def test_a_half_space_that_is_never_good_enough_is_not_said_to_be(tmp_path):
-    finite_sphere_report.write(study_of(lambda _: 5.0).study, tmp_path)
+    finite_sphere_page.write(study_of(lambda _: 5.0).study, tmp_path)
     page = (tmp_path / "index.html").read_text()
     assert page.count("at no R/&epsilon; up to 10000 for all &mu; from 0.3 to 3") >= 3
     assert "</strong> if R/&epsilon;" not in page
 
 
 def test_a_deviation_that_grows_with_the_sphere_gives_no_rule(tmp_path):
-    finite_sphere_report.write(study_of(lambda case: 1e-6 * case.radius_ratio).study, tmp_path)
+    finite_sphere_page.write(study_of(lambda case: 1e-6 * case.radius_ratio).study, tmp_path)
     page = (tmp_path / "index.html").read_text()
     assert "<strong>pull-off force</strong> if R/&epsilon;" not in page
     assert "<strong>pull-off force</strong> at no R/&epsilon; up to 10000" in page

@@ -18,10 +18,9 @@ from matplotlib import rc_context
 import halfspace
 from fem_adhesion import cli
 from fem_adhesion.common.page_tables import typeset
-from fem_adhesion.greenwood import figures as greenwood_plots
-from fem_adhesion.greenwood import page as greenwood_report
-from fem_adhesion.greenwood import ripple as greenwood_ripple
-from fem_adhesion.greenwood import study as greenwood1997
+from fem_adhesion.greenwood import figures, ripple
+from fem_adhesion.greenwood import page as greenwood_page
+from fem_adhesion.greenwood import study as greenwood
 from fem_adhesion.greenwood import tables as greenwood_tables
 from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, fit
 from fem_adhesion.greenwood.record import tables
@@ -57,7 +56,7 @@ class Run:
     code: int
     printed: str
     out: Path
-    study: greenwood1997.Greenwood1997
+    study: greenwood.Greenwood1997
     told: list
 
 
@@ -65,14 +64,14 @@ class Run:
 def ran(tmp_path_factory):
     """The whole study as a user runs it."""
     kept, told, out, printed = [], [], tmp_path_factory.mktemp("greenwood") / "out", io.StringIO()
-    compute = greenwood1997.compute
+    compute = greenwood.compute
 
     def keeping(*, quick, progress):
         kept.append(compute(quick=quick, progress=lambda part: (told.append(part), progress(part))))
         return kept[-1]
 
     with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(printed):
-        patch.setattr(greenwood1997, "compute", keeping)
+        patch.setattr(greenwood, "compute", keeping)
         code = cli.main(["greenwood", "--out", str(out), "--quick"])
     return Run(code, printed.getvalue(), out, kept[0], told)
 
@@ -103,7 +102,7 @@ def test_the_quick_run_ends_well(ran):
 @pytest.mark.parametrize("number", [1, 2])
 def test_the_packaged_tables_are_those_of_the_tests(number):
     name = f"greenwood1997_table{number}.csv"
-    assert (Path(greenwood1997.__file__).parent / "data" / name).read_text() == (DATA / name).read_text()
+    assert (Path(greenwood.__file__).parent / "data" / name).read_text() == (DATA / name).read_text()
 
 
 def test_table_1_to_its_last_printed_digit(study):
@@ -295,7 +294,7 @@ def test_the_page_shows_everything(report):
 
 
 def test_progress_names_every_subject_once(study, ran):
-    assert ran.told == list(greenwood1997.SUBJECTS)
+    assert ran.told == list(greenwood.SUBJECTS)
     assert math.isfinite(study.seconds)
 
 
@@ -312,8 +311,8 @@ CURVES = {"1a": 3, "1b": 4, "1c": 1, "2a": 3, "2b": 4, "3a": 7, "3b": 8, "3c": 4
 
 
 def figure(study, number):
-    plot = next(plot for plot in greenwood_plots.PLOTS if plot.number == number)
-    with rc_context(dict(greenwood_plots.LOOK)):
+    plot = next(plot for plot in figures.PLOTS if plot.number == number)
+    with rc_context(dict(figures.LOOK)):
         return plot.draw(study)
 
 
@@ -575,7 +574,7 @@ def test_the_caption_of_each_figure_is_that_of_the_page(report, study):
     captions = {row["figure"]: row["caption"] for row in rows(report, "captions")}
     page = html.unescape((report / "index.html").read_text(encoding="utf-8"))
     assert list(captions) == [f"fig_{number}" for number in FIGURES]
-    for plot in greenwood_plots.PLOTS:
+    for plot in figures.PLOTS:
         assert captions[plot.stem].endswith(plot.see(study))
         assert html.unescape(typeset(plot.see(study))) in page
 
@@ -666,7 +665,7 @@ CLAIMS = (  # words that conclude
 
 def sentences(study):
     """Everything that the page says of the study in words."""
-    told = [plot.see(study) for plot in greenwood_plots.PLOTS]
+    told = [plot.see(study) for plot in figures.PLOTS]
     return told + [table.see for table in tables(study)]
 
 
@@ -682,14 +681,14 @@ def test_without_numbers_nothing_is_concluded(study):
 
 def test_without_results_nothing_is_concluded_and_the_page_is_made(study, tmp_path):
     bare = without_results(study)
-    for text, plot in zip(sentences(bare), greenwood_plots.PLOTS, strict=False):
+    for text, plot in zip(sentences(bare), figures.PLOTS, strict=False):
         assert "Finite elements agree" not in text
         assert "finite-element points" not in text, plot.number
-    page_of = dict(zip([plot.number for plot in greenwood_plots.PLOTS], sentences(bare), strict=False))
+    page_of = dict(zip([plot.number for plot in figures.PLOTS], sentences(bare), strict=False))
     assert "No jump was found." in page_of["2a"]
     assert "has 0 folds." in page_of["3c"]
     assert page_of["4a"] == page_of["4b"] == page_of["6a"] == page_of["6b"] == page_of["7"] == NOTHING
-    greenwood_report.write(bare, tmp_path)
+    greenwood_page.write(bare, tmp_path)
     assert (tmp_path / "index.html").stat().st_size > 10_000
     assert list(bare.troubles()) == ["no jumps were found", "no cycles were found"]
 
@@ -775,13 +774,13 @@ NEGATED = {
 
 @pytest.mark.parametrize(("number", "told"), NEGATED.items())
 def test_a_caption_says_the_contrary_of_the_contrary(study, number, told):
-    plot = next(plot for plot in greenwood_plots.PLOTS if plot.number == number)
+    plot = next(plot for plot in figures.PLOTS if plot.number == number)
     assert told not in plot.see(study)
     assert told in plot.see(upside_down(study))
 
 
 def test_captions_that_turn_with_their_curves(study):
-    sees = {plot.number: plot.see for plot in greenwood_plots.PLOTS}
+    sees = {plot.number: plot.see for plot in figures.PLOTS}
     early = absurd_path(study.curves[0.02], load=np.append(study.curves[0.02].load[:-1], 1e6))
     turned = dataclasses.replace(study, curves={**study.curves, 0.02: early})
     assert "The load rises later than in any DMT theory" in sees["1c"](study)
@@ -834,9 +833,9 @@ def test_what_is_off_is_a_trouble_told_first_with_exit_code_1(study, monkeypatch
         for p in study.pull_offs
     )
     wrong = dataclasses.replace(wrong, pull_offs=fe)
-    monkeypatch.setattr(greenwood1997, "compute", lambda **_: wrong)
-    monkeypatch.setattr(greenwood_report, "draw", lambda _study, directory, _told: [
-        (directory / f"{plot.stem}.svg").write_text("<svg/>") for plot in greenwood_plots.PLOTS
+    monkeypatch.setattr(greenwood, "compute", lambda **_: wrong)
+    monkeypatch.setattr(greenwood_page, "draw", lambda _study, directory, _told: [
+        (directory / f"{plot.stem}.svg").write_text("<svg/>") for plot in figures.PLOTS
     ])  # fmt: skip
     assert cli.main(["greenwood", "--out", str(tmp_path / "out")]) == 1
     first = capsys.readouterr().out.splitlines()[0]
@@ -851,7 +850,7 @@ def test_what_is_off_is_a_trouble_told_first_with_exit_code_1(study, monkeypatch
 
 @pytest.mark.parametrize("quick", [True, False])
 def test_a_quick_page_says_so(study, quick):
-    page = "".join(greenwood_report._head(dataclasses.replace(study, quick=quick), []))
+    page = "".join(greenwood_page._head(dataclasses.replace(study, quick=quick), []))
     assert ("quick run" in page) == quick
     assert ("A quick run: fewer points" in page) == quick
 
@@ -895,10 +894,10 @@ def test_a_rise_says_why_it_ends(monkeypatch):
     def fail(*_):
         raise NotConverged("on purpose")
 
-    monkeypatch.setattr(greenwood_ripple, "ripple", fail)
-    rise = greenwood_ripple.false_rise([path], 0.1)
+    monkeypatch.setattr(ripple, "ripple", fail)
+    rise = ripple.false_rise([path], 0.1)
     assert (rise.ripples, rise.ended) == ((), "no solution at mu = 3: on purpose")
-    monkeypatch.setattr(greenwood_ripple, "ripple", lambda *_: types.SimpleNamespace(pull_off=-8.0))
-    assert greenwood_ripple.false_rise([path, path], 0.1).ended == "the load is below -7.5 R dgamma"
-    monkeypatch.setattr(greenwood_ripple, "ripple", lambda *_: types.SimpleNamespace(pull_off=-5.0))
-    assert greenwood_ripple.false_rise([path, path], 0.1).ended == "no larger mu was asked for"
+    monkeypatch.setattr(ripple, "ripple", lambda *_: types.SimpleNamespace(pull_off=-8.0))
+    assert ripple.false_rise([path, path], 0.1).ended == "the load is below -7.5 R dgamma"
+    monkeypatch.setattr(ripple, "ripple", lambda *_: types.SimpleNamespace(pull_off=-5.0))
+    assert ripple.false_rise([path, path], 0.1).ended == "no larger mu was asked for"

@@ -8,11 +8,11 @@ from matplotlib import rc_context
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from fem_adhesion.curve import figure as plots
+from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve import lines as curve_lines
-from fem_adhesion.curve import load as load_plots
-from fem_adhesion.curve import mesh as mesh_plots
-from fem_adhesion.curve import profiles as profile_plots
+from fem_adhesion.curve import load as load_panel
+from fem_adhesion.curve import mesh as mesh_panel
+from fem_adhesion.curve import profiles as profiles_panel
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields.state import state_at
 from fem_adhesion.scene import Scene
@@ -44,8 +44,8 @@ def real():
 
 
 def _drawn(curves):
-    with rc_context(plots.LOOK):
-        figure = plots.draw(curves)
+    with rc_context(curve_figure.LOOK):
+        figure = curve_figure.draw(curves)
         figure.draw_without_rendering()
     return figure
 
@@ -149,10 +149,10 @@ def test_an_apparatus_adds_two_arrows_along_its_load_lines(real):
 
 def test_an_arrow_is_cut_at_the_frame():
     frame = curve_lines.Frame((-1.0, 1.0), (-2.0, 2.0))
-    assert load_plots._clipped((-3, 0), (3, 0), frame) == ((-1, 0), (1, 0))
-    assert load_plots._clipped((0, 0), (0, 8), frame) == ((0, 0), (0, 2))
-    assert load_plots._clipped((0, 0), (0.5, 1), frame) == ((0, 0), (0.5, 1))
-    assert load_plots._clipped((-3, 0), (-2, 1), frame) is None
+    assert load_panel._clipped((-3, 0), (3, 0), frame) == ((-1, 0), (1, 0))
+    assert load_panel._clipped((0, 0), (0, 8), frame) == ((0, 0), (0, 2))
+    assert load_panel._clipped((0, 0), (0.5, 1), frame) == ((0, 0), (0.5, 1))
+    assert load_panel._clipped((-3, 0), (-2, 1), frame) is None
 
 
 def test_profiles_meet_the_surface_law_and_the_nodes_lie_on_them(curves):
@@ -162,19 +162,19 @@ def test_profiles_meet_the_surface_law_and_the_nodes_lie_on_them(curves):
     spike = _lines(_panel(figure, "spike"))["nodes of the grid"]
     r, p = spike.get_xdata(), spike.get_ydata()
     assert r.size > 30
-    np.testing.assert_allclose(profile_plots.profile(curves[5.0].path, "jump_off", r).pressure, p, atol=1e-9)
+    np.testing.assert_allclose(profiles_panel.profile(curves[5.0].path, "jump_off", r).pressure, p, atol=1e-9)
     assert p.min() == pytest.approx(-16 / (9 * np.sqrt(3)) * 5, rel=1e-3)
 
 
 def test_the_mesh_is_drawn_with_the_deformation_of_its_surface(elements):
     """On the surface gap, deflection and the height of the sphere add up."""
     found = elements.path.stages[-1]["pull_off"]
-    state = state_at(Scene(2.0), found.problem, found.point, how=mesh_plots.MESH)
-    places, moved = (a.reshape(-1, 2) for a in mesh_plots.outlines(state, 3.0))
+    state = state_at(Scene(2.0), found.problem, found.point, how=mesh_panel.MESH)
+    places, moved = (a.reshape(-1, 2) for a in mesh_panel.outlines(state, 3.0))
     top = (places[:, 1] == 0) & (places[:, 0] < 3)
     r, u_z = places[top, 0], moved[top, 1]
     gap = state.problem.operator.at(1.0).values_at(r, state.gap)
-    np.testing.assert_allclose(mesh_plots._sphere(state, r) - u_z, (gap + 1) / 2, atol=2e-3)
+    np.testing.assert_allclose(mesh_panel._sphere(state, r) - u_z, (gap + 1) / 2, atol=2e-3)
     assert gap.min() > -1
     assert np.abs(LENNARD_JONES.pressure(gap, 2.0)).max() > 1.9
     body = _panel(_drawn(elements), "body")
@@ -224,7 +224,7 @@ def test_each_format_is_written_the_same_twice(curves, form, tmp_path):
     files = [tmp_path / f"{n}.{form}" for n in (1, 2)]
     for file in files:
         with file.open("w") as opened:
-            plots.write(curves[2.0], opened, form)
+            curve_figure.write(curves[2.0], opened, form)
     assert files[0].stat().st_size > 10_000
     if form != "pdf":  # which has the time in it
         assert files[0].read_bytes() == files[1].read_bytes()
@@ -268,7 +268,7 @@ def test_each_axis_is_labelled_with_what_is_drawn_along_it(curves, real, materia
     gaps, pressures = _lines(_panel(figure, "gap")), _lines(_panel(figure, "pressure"))
     marks = [line for line in body.lines if len(line.get_xdata()) == 1]
     assert len(marks) == len(path.events)
-    for event, mark in zip((path.event(name) for name in profile_plots.STATES), marks, strict=True):
+    for event, mark in zip((path.event(name) for name in profiles_panel.STATES), marks, strict=True):
         x, y = event.approach * size["approach"], event.load * size["load"]
         assert load[words[event.name]].get_xydata()[0] == pytest.approx((x, y), rel=1e-6, abs=1e-9)
         assert mark.get_xydata()[0] == pytest.approx((x, event.central_gap * size["central_gap"]), rel=1e-6)
@@ -361,7 +361,7 @@ def test_each_legend_names_what_is_to_be_seen(made):
 
 def test_a_gap_is_smooth_up_to_the_equator_of_a_sphere(made):
     for line in _panel(made, "gap").lines:
-        if line.get_label() in {look.words for look in profile_plots.STATES.values()}:
+        if line.get_label() in {look.words for look in profiles_panel.STATES.values()}:
             rise = np.diff(line.get_ydata())
             far = line.get_xdata()[:-1] > 0.95 * line.get_xdata().max()
             assert np.all(rise[far] > 0)
@@ -374,4 +374,4 @@ def test_a_line_outside_the_frame_is_not_named():
     axes.plot([0.0, 1.0], [7.0, 8.0], label="above")
     axes.plot([], [], label="arrows")
     axes.set(xlim=(0, 2), ylim=(0, 2))
-    assert [line.get_label() for line in load_plots._seen(axes)] == ["inside", "arrows"]
+    assert [line.get_label() for line in load_panel._seen(axes)] == ["inside", "arrows"]

@@ -10,8 +10,7 @@ from scipy.interpolate import CubicSpline
 from fem_adhesion.common.files import written_aside
 from fem_adhesion.common.options import Parser
 from fem_adhesion.curve import command as curve
-from fem_adhesion.curve import movie
-from fem_adhesion.curve import still as render
+from fem_adhesion.curve import movie, still
 from fem_adhesion.curve.lines import smooth
 from fem_adhesion.curve.load import KINDS
 from fem_adhesion.curve.profiles import STATES
@@ -42,7 +41,7 @@ def sphere():
 
 @pytest.fixture(scope="module")
 def states(block):
-    return render.event_states(block)
+    return still.event_states(block)
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +50,7 @@ def pictures(block, tmp_path_factory):
     for event in ("jump_on", "pull_off", "zero_load"):
         path = folder / f"{event}.png"
         with written_aside(path) as file:
-            render.write_picture(block, file, event, (480, 300))
+            still.write_picture(block, file, event, (480, 300))
         with Image.open(path) as image:
             drawn[event] = np.asarray(image.convert("RGB")).astype(int)
     return drawn
@@ -77,7 +76,7 @@ def test_the_rigid_sphere_over_a_half_space_is_drawn_round(states, name):
 
 
 def test_the_wall_over_a_sphere_is_drawn_flat_and_the_sphere_flattened_where_it_touches(sphere):
-    states = render.event_states(sphere)
+    states = still.event_states(sphere)
     state, view = states["zero_load"], view_of(list(states.values()))
     shown = surfaces(state, view.reach, view.heights)
     wall = view.heights * (1 - state.observables[APPROACH]) / 2.0
@@ -90,7 +89,7 @@ def test_the_wall_over_a_sphere_is_drawn_flat_and_the_sphere_flattened_where_it_
 
 def test_a_small_sphere_is_drawn_to_scale():
     curves = _solved(Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=30.0))
-    state = render.event_states(curves)["pull_off"]
+    state = still.event_states(curves)["pull_off"]
     view, R = view_of([state]), np.sqrt(30.0 / 2.0)
     assert view.heights == pytest.approx(1 / R)
     r, z = surfaces(state, view.reach, view.heights).undeformed[:, 1:-1]
@@ -172,7 +171,7 @@ def test_the_command_draws_and_prints(tmp_path, capsys):
     path = tmp_path / "neck.png"
     assert _run("--tabor", 2, "--rtol", 1e-2, "--render", path, "--at", "jump_off") == 0
     with Image.open(path) as image:
-        assert image.size == render.SIZE
+        assert image.size == still.SIZE
     assert "finite elements" in capsys.readouterr().out
     assert [file.name for file in tmp_path.iterdir()] == ["neck.png"]
 
@@ -219,18 +218,18 @@ def _texts(figure):
 
 def _composed(curves, state, words):
     view = view_of([state])
-    return render.composed(curves, np.full((30, 48, 3), 255, np.uint8), state, view, words), view
+    return still.composed(curves, np.full((30, 48, 3), 255, np.uint8), state, view, words), view
 
 
 def _said(text):
     """Numbers of a caption by their symbols."""
-    found = re.findall(r"\$(W|\\alpha\^\*|\\alpha|a)\$ = (-?[\d.]+)(?:\((\d+)\))?", text.replace(render.MINUS, "-"))
+    found = re.findall(r"\$(W|\\alpha\^\*|\\alpha|a)\$ = (-?[\d.]+)(?:\((\d+)\))?", text.replace(still.MINUS, "-"))
     return {symbol.strip("\\^*"): float(value) for symbol, value, _ in found}
 
 
 @pytest.mark.parametrize("event", ["jump_on", "jump_off", "pull_off", "zero_load"])
 def test_the_caption_has_the_numbers_of_the_event_under_their_symbols(block, event):
-    title, numbers = render._caption(block, event)
+    title, numbers = still._caption(block, event)
     assert title == f"$\\mu$ = 2: {STATES[event].words}"
     found, said = block.path.events[event], _said(numbers)
     assert said["W"] == pytest.approx(found.load, abs=2e-2)
@@ -242,7 +241,7 @@ def test_the_caption_has_the_numbers_of_the_event_under_their_symbols(block, eve
 
 def test_the_words_of_a_frame_are_load_and_approach(block, states):
     for state in states.values():
-        said = _said(render.state_words(block, state))
+        said = _said(still.state_words(block, state))
         assert said["W"] == pytest.approx(state.observables[LOAD], abs=6e-3)
         assert said["alpha"] == pytest.approx(state.observables[APPROACH], abs=6e-3)
 
@@ -264,7 +263,7 @@ def test_the_curve_on_a_picture_is_load_against_approach_with_the_state_on_it(bl
         np.testing.assert_array_equal(drawn.get_ydata(), load)
     assert "vertical stress" in bar.get_ylabel()
     assert bar.get_title() == "tension"
-    ticks = [float(label.get_text().replace(render.MINUS, "-")) for label in bar.get_yticklabels()]
+    ticks = [float(label.get_text().replace(still.MINUS, "-")) for label in bar.get_yticklabels()]
     assert ticks == sorted(ticks)
     assert ticks[-1] == pytest.approx(view.limit, rel=1e-2)
     assert solid.axison is False
@@ -273,7 +272,7 @@ def test_the_curve_on_a_picture_is_load_against_approach_with_the_state_on_it(bl
 def test_a_picture_with_a_material_is_in_si():
     units = Units(100e-9, 1.1e9, 0.05, 0.3e-9)
     curves = solve(Question(Scene(units.tabor), solver="fem", rtol=1e-2, units=units))
-    title, numbers = render._caption(curves, "pull_off")
+    title, numbers = still._caption(curves, "pull_off")
     event = curves.path.events["pull_off"]
     assert title.startswith("$R$ = 100 nm")
     assert _said(numbers)["W"] == pytest.approx(event.load * 5, abs=0.3)

@@ -18,9 +18,9 @@ from fem_adhesion.common.files import directory_written_aside
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed import element_methods as element_methods_module
-from fem_adhesion.speed import figures as speed_plots
+from fem_adhesion.speed import figures
 from fem_adhesion.speed import halfspace_methods as halfspace_methods_module
-from fem_adhesion.speed import page as speed_report
+from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
 from fem_adhesion.speed.element_methods import element_methods
 from fem_adhesion.speed.halfspace_methods import MOST_NODES, _affordable, halfspace_methods
@@ -454,7 +454,7 @@ def distinct():
 
 
 def test_each_value_stands_under_its_name_in_the_csv(distinct, tmp_path):
-    speed_report.write(distinct, tmp_path)
+    speed_page.write(distinct, tmp_path)
     table = list(csv.DictReader((tmp_path / "speed.csv").read_text().splitlines()))
     assert len(table) == 4
     for row, made in zip(table, distinct.rungs, strict=True):
@@ -470,7 +470,7 @@ def test_each_value_stands_under_its_name_in_the_csv(distinct, tmp_path):
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_axes_are_labelled_with_what_is_drawn_along_them(distinct, quantity):
-    figure = speed_plots.error_against_time(distinct, quantity)
+    figure = figures.error_against_time(distinct, quantity)
     words = {"pull_off": "pull-off load", "jump_on": "jump-on approach", "hysteresis": "energy lost"}
     assert words[quantity] in figure.axes[0].get_ylabel()
     assert "error" in figure.axes[0].get_ylabel()
@@ -495,7 +495,7 @@ def section(page, title):
 
 
 def test_the_page_gives_each_cost_and_each_truth(distinct):
-    text = "\n".join(speed_report.page(distinct))
+    text = "\n".join(speed_page.page(distinct))
     for quantity, error in zip(QUANTITIES, ("1e-03", "1e-04", "1e-05"), strict=True):
         row = section(text, f"What it costs to have {quantity}")[0]
         assert row["method"] == "some"
@@ -517,19 +517,19 @@ def test_the_page_gives_each_cost_and_each_truth(distinct):
 def test_an_error_below_the_truths_uncertainty_is_shown_as_such():
     hidden = rung(1.0, 2e-9, floors={"pull_off": 2e-9})
     study = made_study([hidden])
-    assert "<2e-09 in 1.00 s" in "\n".join(speed_report.page(study))
-    axes = speed_plots.error_against_time(study, "pull_off").axes[0]
+    assert "<2e-09 in 1.00 s" in "\n".join(speed_page.page(study))
+    axes = figures.error_against_time(study, "pull_off").axes[0]
     arrows = next(line for line in axes.lines if line.get_label() == "within that uncertainty")
     assert list(arrows.get_xdata()) == [1.0]
     told = made_study([rung(1.0, 3e-9, floors={"pull_off": 2e-9})])
-    assert "<" not in "\n".join(speed_report.page(told)).split("What it costs")[1]
-    labels = [line.get_label() for line in speed_plots.error_against_time(told, "pull_off").axes[0].lines]
+    assert "<" not in "\n".join(speed_page.page(told)).split("What it costs")[1]
+    labels = [line.get_label() for line in figures.error_against_time(told, "pull_off").axes[0].lines]
     assert "within that uncertainty" not in labels
 
 
 def test_a_legend_names_only_what_is_drawn(study):
     for quantity in QUANTITIES:
-        figure = speed_plots.error_against_time(study, quantity)
+        figure = figures.error_against_time(study, quantity)
         for axes in figure.axes:
             for text, line in zip(axes.get_legend().get_texts(), axes.get_legend().legend_handles, strict=True):
                 drawn = next(x for x in axes.lines if x.get_label() == text.get_text())
@@ -539,8 +539,8 @@ def test_a_legend_names_only_what_is_drawn(study):
 
 def test_nothing_is_cut_off_or_overprinted(study):
     for quantity in QUANTITIES:
-        with rc_context(speed_plots.LOOK):
-            figure = speed_plots.error_against_time(study, quantity)
+        with rc_context(figures.LOOK):
+            figure = figures.error_against_time(study, quantity)
             figure.draw_without_rendering()
         boxes = [axes.get_tightbbox() for axes in figure.axes]
         assert all(box.x0 >= 0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0 for box in boxes)
@@ -554,7 +554,7 @@ def test_nothing_is_cut_off_or_overprinted(study):
 def test_a_quick_run_says_so(page):
     assert "quick run" in page.splitlines()[0]
     assert "A quick run: 58 of 93 rungs were climbed" in page
-    whole = "\n".join(speed_report.page(made_study([rung(1.0, 1e-3)])))
+    whole = "\n".join(speed_page.page(made_study([rung(1.0, 1e-3)])))
     assert "quick" not in whole
     assert "1 of 4 rungs were climbed, 1 have a result." in whole
 
@@ -594,20 +594,20 @@ def test_truths_that_disagree_are_told_first():
         "half-space": Truth("finite elements", 1e-9, {"pull_off": Estimate(-5.0, 1e-9)}, 1.0),
         "finite elements": Truth("half-space", 1e-9, {"pull_off": Estimate(-6.0, 1e-9)}, 1.0),
     }
-    page = list(speed_report.page(made_study([rung(1.0, 1e-3)], truths)))
+    page = list(speed_page.page(made_study([rung(1.0, 1e-3)], truths)))
     assert page[3] == "FAILED where it should not have, 1 times:"
     assert page[4] == "* the truths disagree in pull_off: -5 and -6"
     assert section("\n".join(page), "The truths")[0]["within both errors"] == "NO"
     nan = {family: Truth(family, 1e-9, {"pull_off": Estimate(math.nan, 1e-9)}, 1.0) for family in PREFIX}
-    assert section("\n".join(speed_report.page(made_study([], nan))), "The truths")[0]["within both errors"] == "NO"
+    assert section("\n".join(speed_page.page(made_study([], nan))), "The truths")[0]["within both errors"] == "NO"
 
 
 def test_a_result_that_is_not_a_number_is_neither_best_nor_cheapest_nor_drawn():
     absurd = made_study([rung(0.1, math.nan), rung(0.2, math.inf)])
-    text = "\n".join(speed_report.page(absurd))
+    text = "\n".join(speed_page.page(absurd))
     assert section(text, "What it costs to have pull_off")[0]["best reached"] == "-"
     assert "FAILED" in text
-    lines = speed_plots.error_against_time(absurd, "pull_off").axes[0].lines
+    lines = figures.error_against_time(absurd, "pull_off").axes[0].lines
     assert [line.get_label() for line in lines] == ["uncertainty of the truth"]
 
 
@@ -622,7 +622,7 @@ def test_a_failure_that_should_not_be_is_told_first_and_ends_in_1(monkeypatch, t
 
 def test_every_number_in_the_pages_own_words_is_computed():
     """With nothing measured no figure is left but settings: tolerances, the yardstick's size, versions."""
-    page = "\n".join(speed_report.page(made_study([], methods=[SOME])))
+    page = "\n".join(speed_page.page(made_study([], methods=[SOME])))
     kept = [line for line in page.splitlines() if not line.startswith("* ") and "judge" not in line]
     numbers = set(re.findall(r"\d[\d.e+-]*", "\n".join(kept)))
     assert numbers <= {"1", "0", "1e-03", "1e-06", "0e+00"} | {"-5", "5", "1.5", "0.25", "1e-09", "2e-09", "3e-09"}

@@ -35,22 +35,21 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Assess a contact, print what is found, and write the record and the figure."""
-    from fem_adhesion.assess import figure as assess_plot
-    from fem_adhesion.assess import terminal as assess_report
+    from fem_adhesion.assess import figure, terminal
     from fem_adhesion.assess.study import assess
     from fem_adhesion.common.files import written_aside
 
     contact = _contact(options)
     require_distinct(options.json, options.plot)
-    form = assess_plot.require_suffix(options.plot) if options.plot else ""
-    with written(options.json) as record, written_aside(options.plot) if options.plot else nullcontext() as figure:
+    form = figure.require_suffix(options.plot) if options.plot else ""
+    with written(options.json) as record, written_aside(options.plot) if options.plot else nullcontext() as plot:
         with progress_bar() as step:
             assessment = assess(contact, step)
         if record:
-            json.dump(assess_report.record(assessment), record, indent=1, allow_nan=False)
-        if figure:
-            assess_plot.write(assessment, figure, form)
-    console_beside(options.json).print(assess_report.report(assessment))
+            json.dump(terminal.record(assessment), record, indent=1, allow_nan=False)
+        if plot:
+            figure.write(assessment, plot, form)
+    console_beside(options.json).print(terminal.report(assessment))
     return AGREE
 
 

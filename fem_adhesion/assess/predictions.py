@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from fem_adhesion.assess import theories as assess_theories
+from fem_adhesion.assess import theories
 from fem_adhesion.assess.theories import Curve, Loop, estimated, loop
 from fem_adhesion.common.units import Quantity
 from halfspace.equilibrium.curve import EquilibriumPath, Estimate
@@ -130,9 +130,9 @@ def closed(
     """
     curve = make(tabor, stiffness)
     values = {
-        "pull_off_force": _read(curve, lambda c: -assess_theories.pull_off(c).load, units.load, "N"),
-        "pull_off_radius": _read(curve, lambda c: assess_theories.pull_off(c).contact_radius, units.length, "m"),
-        "zero_load_radius": _read(curve, lambda c: assess_theories.zero_load(c).contact_radius, units.length, "m"),
+        "pull_off_force": _read(curve, lambda c: -theories.pull_off(c).load, units.load, "N"),
+        "pull_off_radius": _read(curve, lambda c: theories.pull_off(c).contact_radius, units.length, "m"),
+        "zero_load_radius": _read(curve, lambda c: theories.zero_load(c).contact_radius, units.length, "m"),
     }
     found = loop(curve, stiffness)
     if found:
@@ -144,7 +144,7 @@ def closed(
 
 def large_tabor(tabor: float, stiffness: float, units: Units) -> Prediction:
     """JKR's theory with the reach of the attraction, its errors being the distance from the truth: tabor >= 300."""
-    read = closed("JKR with reach", assess_theories.jkr_with_reach, tabor, stiffness, units)
+    read = closed("JKR with reach", theories.jkr_with_reach, tabor, stiffness, units)
     part = (REFERENCE_TABOR / tabor) ** DECAY
     values = {
         name: Quantity(

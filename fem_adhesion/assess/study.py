@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 
 import fem_adhesion
 import halfspace
-from fem_adhesion.assess import theories as assess_theories
 from fem_adhesion.assess.predictions import (
     REFERENCE_TABOR,
     Prediction,
@@ -19,6 +18,7 @@ from fem_adhesion.assess.predictions import (
     rigid_sphere,
     soft_sphere,
 )
+from fem_adhesion.assess.theories import bradley, dmt_maugis, jkr, maugis_dugdale
 from fem_adhesion.assess.verdict import (
     Deviation,
     Distance,
@@ -43,10 +43,10 @@ FINITE_TABOR = 10.0  # up to which the finite sphere takes a few seconds
 TO_LOAD = 2.0  # R dgamma
 MAUGIS_RANGE = (1e-6, 1e6)
 THEORIES = {
-    "JKR": assess_theories.jkr,
-    "Maugis-Dugdale": assess_theories.maugis_dugdale,
-    "DMT-M": assess_theories.dmt_maugis,
-    "rigid": assess_theories.bradley,
+    "JKR": jkr,
+    "Maugis-Dugdale": maugis_dugdale,
+    "DMT-M": dmt_maugis,
+    "rigid": bradley,
 }
 PARAMETERS = {
     "Tabor mu": None,
@@ -168,7 +168,7 @@ def _half_space(contact: Contact) -> Prediction:
     if units.tabor > REFERENCE_TABOR:
         return large_tabor(units.tabor, stiffness, units)
     if units.tabor < RIGID_TABOR:
-        return closed("rigid half-space", assess_theories.bradley, units.tabor, stiffness, units)
+        return closed("rigid half-space", bradley, units.tabor, stiffness, units)
     path = halfspace.trace(units.tabor, rtol=RTOL, to_load=TO_LOAD)
     return computed(HALF_SPACE, path, stiffness, units)
 
@@ -177,7 +177,7 @@ def _theories(contact: Contact) -> Iterator[Prediction]:
     """Closed theories in their range."""
     tabor = contact.units.tabor
     for name, make in THEORIES.items():
-        if make is not assess_theories.maugis_dugdale or MAUGIS_RANGE[0] <= MAUGIS.of(tabor) <= MAUGIS_RANGE[1]:
+        if make is not maugis_dugdale or MAUGIS_RANGE[0] <= MAUGIS.of(tabor) <= MAUGIS_RANGE[1]:
             yield closed(name, make, tabor, contact.reduced_stiffness, contact.units)
 
 

@@ -75,10 +75,10 @@ def _scenes(options: argparse.Namespace) -> list[Scene]:
 
 def _compare_with_progress(scenes: Sequence[Scene], rtol: float, console: Console) -> list[Case | Failure]:
     """Run the cases with a bar on standard error and tables on the console."""
-    from fem_adhesion.crosscheck import study as crosscheck
+    from fem_adhesion.crosscheck import study
 
     cases: list[Case | Failure] = []
-    solved = crosscheck.run(scenes, rtol=rtol)
+    solved = study.run(scenes, rtol=rtol)
     for done, scene in enumerate(scenes):
         with progress_bar() as step:  # it is gone when a table is printed, which would break it
             step(f"tabor {scene.tabor:g}", done, len(scenes))

@@ -76,8 +76,7 @@ def _add_results(curve: Parser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Trace the curve, write what is asked for and print the events."""
     from fem_adhesion.common.files import directory_written_aside, written_aside
-    from fem_adhesion.curve import record as curve_record
-    from fem_adhesion.curve import terminal as curve_terminal
+    from fem_adhesion.curve import record, terminal
     from fem_adhesion.curve.solve import solve
 
     question = _question(options)
@@ -86,26 +85,26 @@ def run(options: argparse.Namespace) -> int:
     with ExitStack() as stack:
         fields = options.vtk and stack.enter_context(directory_written_aside(options.vtk, force=bool(options.force)))
         data, points = (stack.enter_context(written(path)) for path in (options.json, options.csv))
-        figure, picture, movie = (
+        plot, picture, movie = (
             stack.enter_context(written_aside(path)) if path else None
             for path in (options.plot, options.render, options.movie)
         )
         with progress_bar() as step:
             curves = solve(question, step)
         if data:
-            json.dump(curve_record.record(curves), data, indent=1, allow_nan=False)
+            json.dump(record.record(curves), data, indent=1, allow_nan=False)
         if points:
-            curve_record.write_csv(curves, points)
-        if figure:
-            from fem_adhesion.curve import figure as plots
+            record.write_csv(curves, points)
+        if plot:
+            from fem_adhesion.curve import figure
 
-            plots.write(curves, figure, form)
+            figure.write(curves, plot, form)
         if fields:
             _write_vtk(options, curves, fields)
         _draw_body(curves, picture, options.at or "pull_off", movie)
-        for file in filter(None, (data, points, figure, picture, movie)):
+        for file in filter(None, (data, points, plot, picture, movie)):
             file.flush()  # all on disk before the first takes its place
-    curve_terminal.show(curves, console_beside(options.json, options.csv))
+    terminal.show(curves, console_beside(options.json, options.csv))
     return AGREE
 
 
@@ -120,9 +119,9 @@ def _write_vtk(options: argparse.Namespace, curves: Curves, aside: Path) -> None
 
 def _draw_body(curves: Curves, picture: TextIO | None, at: str, movie: TextIO | None) -> None:
     if picture:
-        from fem_adhesion.curve import still as render
+        from fem_adhesion.curve.still import write_picture
 
-        render.write_picture(curves, picture, at)
+        write_picture(curves, picture, at)
     if movie:
         from fem_adhesion.curve.movie import write_movie
 

@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.common.files import directory_written_aside
     from fem_adhesion.common.store import open_store
     from fem_adhesion.common.writing import writing
-    from fem_adhesion.finite_sphere import page as finite_sphere_report
+    from fem_adhesion.finite_sphere import page
     from fem_adhesion.finite_sphere import study as finite_sphere
     from fem_adhesion.finite_sphere.records import Study
     from fem_adhesion.finite_sphere.words import headline
@@ -56,10 +56,10 @@ def run(options: argparse.Namespace) -> int:
         with progress_bar() as step:
             solved = finite_sphere.run(plan.cases, store, progress=step, **settings)
         study = Study((*solved, *plan.left_out), options.quick)
-        parts = finite_sphere_report.PARTS
+        parts = page.PARTS
         with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
-            note = finite_sphere_report.write(study, aside, lambda part: step(part, parts.index(part), len(parts)))
-            finite_sphere_report.remove_outdated(options.out, aside)
+            note = page.write(study, aside, lambda part: step(part, parts.index(part), len(parts)))
+            page.remove_outdated(options.out, aside)
     except KeyboardInterrupt as how:
         return ended(how, f"what is done is kept in {options.out}, --resume goes on")
     for line in filter(None, (*store.notes, note)):

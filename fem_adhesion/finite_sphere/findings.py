@@ -6,11 +6,10 @@ from collections.abc import Iterator, Sequence
 
 from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.common.page_tables import Table
-from fem_adhesion.finite_sphere import fit as finite_sphere_fit
 from fem_adhesion.finite_sphere.bulk import coefficients
 from fem_adhesion.finite_sphere.chart import LEVELS, Rule, field_of, rule
 from fem_adhesion.finite_sphere.figures import PICTURES, Picture
-from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, Fit
+from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, Fit, compare, findings
 from fem_adhesion.finite_sphere.points import reference_poisson
 from fem_adhesion.finite_sphere.records import Record
 from fem_adhesion.finite_sphere.table import Border, Results, Row
@@ -38,7 +37,7 @@ def tables(results: Results) -> list[Table]:
         Of the study, with the approaches less the bulk yield.
     """
     rows, records = results.rows, results.study.records
-    found = finite_sphere_fit.findings(rows, reference_poisson(rows) or 0.0)
+    found = findings(rows, reference_poisson(rows) or 0.0)
     return [
         _rules(rows),
         _borders(results.borders),
@@ -105,7 +104,7 @@ def _theories(rows: Sequence[Row]) -> Table:
     try:
         lines = tuple(
             (c.theory, f"{c.expected:.4f}", f"{c.fitted.value:.4f}", f"{c.fitted.error:.1e}", f"{c.tabor:g}", "")
-            for c in finite_sphere_fit.compare(rows)
+            for c in compare(rows)
         )
     except InputError as error:
         lines = (("", "", "", "", "", str(error)),)

@@ -12,7 +12,7 @@ import numpy as np
 from fem_adhesion.common.facts import versions
 from fem_adhesion.common.machine import machine
 from fem_adhesion.common.page_tables import STYLE, Table, html, typeset, write_csv
-from fem_adhesion.finite_sphere import findings as finite_sphere_findings
+from fem_adhesion.finite_sphere import findings
 from fem_adhesion.finite_sphere.bulk import bulk_compliance
 from fem_adhesion.finite_sphere.cases import CAUSES
 from fem_adhesion.finite_sphere.chart import Field, field_of, rule, safe_from
@@ -56,7 +56,7 @@ def write(study: Study, directory: Path, begin: Callable[[str], None] | None = N
     draw(found, directory, begin)
     if begin:
         begin("page")
-    tables = finite_sphere_findings.tables(found)
+    tables = findings.tables(found)
     for one in tables:
         write_csv(one, directory)
     page = "\n".join(_page(found, tables[:-1], directory))

@@ -26,20 +26,20 @@ def run(options: argparse.Namespace) -> int:
     """Compute, draw and write the figures and tables of the paper."""
     from fem_adhesion.common.files import directory_written_aside
     from fem_adhesion.common.writing import writing
-    from fem_adhesion.greenwood import page as greenwood_report
-    from fem_adhesion.greenwood import study as greenwood1997
+    from fem_adhesion.greenwood import page
+    from fem_adhesion.greenwood import study as greenwood
     from fem_adhesion.greenwood.figures import PLOTS
 
-    total = len(greenwood1997.SUBJECTS) + len(PLOTS)
+    total = len(greenwood.SUBJECTS) + len(PLOTS)
     done = itertools.count()
     with directory_written_aside(options.out, force=options.force) as aside, progress_bar() as step:
 
         def begin(part: str) -> None:
             step(part, next(done), total)
 
-        study = greenwood1997.compute(quick=options.quick, progress=begin)
+        study = greenwood.compute(quick=options.quick, progress=begin)
         with writing(options.out):
-            greenwood_report.write(study, aside, begin)
+            page.write(study, aside, begin)
     troubles = list(study.troubles())
     if troubles:
         print(f"{len(troubles)} failed that should not have, the first: {troubles[0]}")

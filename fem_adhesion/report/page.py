@@ -17,7 +17,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from fem_adhesion.common.machine import machine
 from fem_adhesion.crosscheck.record import overall_verdict, verdict_of
 from fem_adhesion.crosscheck.study import Case, Failure
-from fem_adhesion.curve import figure as plots
+from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve.lines import UNSTABLE, Line, smooth
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.report.figures import figure
@@ -136,14 +136,14 @@ def walk_words(walk: Walk) -> list[str]:
 
 
 def _curves_section(curves: Curves) -> Section:
-    stream, drawn = BytesIO(), plots.draw(curves)
+    stream, drawn = BytesIO(), curve_figure.draw(curves)
     drawn.savefig(stream, format="svg")
     solvers = " and by ".join(curves.paths)
-    last = "the deformed mesh" if plots.has_mesh(curves) else "the central gap"
+    last = "the deformed mesh" if curve_figure.has_mesh(curves) else "the central gap"
     text = (
         f"Load against approach at Tabor parameter {curves.question.scene.tabor:g} by {solvers}: "
-        f"{', '.join(plots.named(drawn))}. Pressure and gap at {', '.join(plots.states(curves))}; the spike of tension "
-        f"at the contact edge with the nodes of the grid; {last}."
+        f"{', '.join(curve_figure.named(drawn))}. Pressure and gap at {', '.join(curve_figure.states(curves))}; the "
+        f"spike of tension at the contact edge with the nodes of the grid; {last}."
     )
     return Section("curves", f"The curve by {solvers}", figures=(figure(stream.getvalue(), "curves", text),))
 

@@ -25,23 +25,23 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Measure, draw and write the speed study."""
+    from fem_adhesion.common import terminal
     from fem_adhesion.common.files import directory_written_aside
-    from fem_adhesion.common.terminal import page
     from fem_adhesion.common.writing import writing
-    from fem_adhesion.speed import page as speed_report
+    from fem_adhesion.speed import page
     from fem_adhesion.speed import study as speed
 
     speed.require_tabor(options.tabor)
     with directory_written_aside(options.out, force=options.force) as aside, progress_bar() as step:
         study = speed.measure(options.tabor, quick=options.quick, progress=step)
         with writing(options.out):
-            speed_report.write(study, aside)
+            page.write(study, aside)
     troubles = list(study.troubles())
     if troubles:
         print(f"{len(troubles)} failed that should not have, the first: {troubles[0]}")
     text = (options.out / "speed.md").read_text()
     if sys.stdout.isatty():
-        console_beside().print(*page(text), sep="\n", highlight=False)
+        console_beside().print(*terminal.page(text), sep="\n", highlight=False)
     else:
         print(text, end="")
     return DISAGREE if troubles else AGREE
