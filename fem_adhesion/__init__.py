@@ -1,9 +1,9 @@
 """Adhesive contact of elastic spheres by finite elements, checked against the integral equation of `halfspace`.
 
 Rooms, in the order of reading: `scene` (what is asked), `mesh`, `elasticity`, `bodies`, `finite_strain`, `convergence`
-(the curve that answers), `fields` and `paraview` (inside the body), and a folder for each command. `weak_form` is the
-contact problem as a textbook has it, `harmonics` the whole sphere in Legendre polynomials, and `monolithic` Newton's
-method on all unknowns; they only check the others.
+(the curve that answers), `fields` and `paraview` (inside the body), a folder for each command, and `common` for what
+these share. `weak_form` is the contact problem as a textbook has it, `harmonics` the whole sphere in Legendre
+polynomials, and `monolithic` Newton's method on all unknowns; they only check the others.
 
 What it is good for, and what not:
 
@@ -19,8 +19,8 @@ What it is good for, and what not:
   exceeds E* (1 - nu)/(3 - 4 nu) at the contact edge: at nu = 0.3 and mu = 3 below R/eps = 35, and 188 with
   ``traction="normal"``.
 * Of a whole sphere, only the half that faces the wall attracts; the other would take O((eps/R)^2) off the load.
-* Tabor parameters from 1e-12 to 300, Poisson's ratio up to 0.499999, loads up to 1000 R dgamma; beyond, a closed form
-  of `halfspace.theories.closed_forms` serves and the error message says which.
+* Tabor parameters from 1e-12 to 300, Poisson's ratio up to 0.499999, loads up to 1000 R dgamma; the error message
+  says what serves beyond, such as a closed form of `halfspace.theories`.
 * Blocks with a ``far_field`` of "clamped" or "free" need a fixed mesh, up to a Tabor parameter of 3.
 """
 

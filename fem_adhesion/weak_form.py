@@ -1,8 +1,9 @@
 """The contact problem as a textbook writes it: a law, a profile, a weak form, Newton's method and a determinant.
 
-It checks the solvers, so it shares nothing with them: it imports NumPy, SciPy and scikit-fem alone, forms every
-integral by scikit-fem's quadrature, keeps every displacement among its unknowns, condenses nothing, and has no far
-field but a clamp so far away that what it leaves out is small. Clarity comes first: it is right to 1e-3.
+It checks the solvers, so it shares nothing with them: it imports NumPy, SciPy and scikit-fem alone, save an exception
+and how results are shown, forms every integral by scikit-fem's quadrature, keeps every displacement among its unknowns,
+condenses nothing, and has no far field but a clamp so far away that what it leaves out is small. Clarity comes first:
+it is right to 1e-3.
 
 Displacements u = (u_r, u_z) are in beta^2/R = mu eps, radii in beta, the gap h and the approach alpha in eps, E* = 1.
 The potential energy over mu, with the elastic form a, the energy w(h) of the surfaces per area and 2 pi r dr = dA,

@@ -2,6 +2,7 @@
 
 `trace` gives the whole load-approach curve with its events. Rooms, in the order of reading: `elastic` (the half-space
 alone), `equilibrium` (contact, path, events), `accuracy` (to the digits asked for), `theories` (closed forms).
+Under them are `lennard_jones` (the surface law), `profiles` and `scaling` (SI, and other people's parameters).
 
 Conventions are Greenwood's, everywhere. R is the equivalent radius, E* the contact modulus, dgamma the work of
 adhesion, eps the spacing at which the surfaces are in equilibrium, mu = (R dgamma^2/(E*^2 eps^3))^(1/3) the Tabor
