@@ -50,7 +50,7 @@ def axisymmetric_elasticity(poisson: float) -> Any:
 
 
 def block_stiffness(space: Space, poisson: float) -> sparse.csc_array:
-    """Return the (N, N) stiffness of the block in E* beta, by the quadrature of `elasticity.space.cell_stiffness`."""
+    """Return the (N, N) stiffness of the block in E* beta, by the quadrature of `fem_adhesion.elasticity.space`."""
     element, quadrature = ElementVector(space.element), cell_quadrature(space)
     basis = CellBasis(space.mesh, element, quadrature=quadrature, dofs=space.dofs, disable_doflocs=True)
     return sparse.csc_array(axisymmetric_elasticity(poisson).assemble(basis))

@@ -40,9 +40,10 @@ def finite_strain_problem(
     Parameters
     ----------
     body : Body
-        From `finite_strain.bodies.displacement_body` or `mixed_body`.
+        From `fem_adhesion.finite_strain.bodies`, its `displacement_body` or `mixed_body`.
     exterior : Exterior
-        Of all displacement unknowns of its space, interior ones included: see `elasticity.far_field.with_interiors`.
+        Of all displacement unknowns of its space, interior ones included: see
+        `fem_adhesion.elasticity.far_field.with_interiors`.
     tabor, law
         As in `halfspace.equilibrium.contact.ContactProblem`.
     profile : Profile

@@ -44,7 +44,7 @@ class Body(Valued):
     stretch : float
         Stretch parameter delta = beta/R = sqrt(mu/rho), zero for the linear body.
     cells : tuple of Cells
-        From `finite_strain.cells.cells_of`.
+        From `fem_adhesion.finite_strain.cells.cells_of`.
     functions : (m, q) array
         The pressure's m functions at a cell's quadrature points, the same in every cell.
     pressures : tuple of (cells, m) int arrays

@@ -24,7 +24,10 @@ from halfspace.equilibrium.events import Located
 from halfspace.values import Valued
 
 FARTHEST = 0.98
-"""Undeformed radius in R up to which a contact may spread; small slopes end before: `equilibrium.contact.WIDEST`."""
+"""Undeformed radius in R up to which a contact may spread.
+
+Small slopes end before: `halfspace.equilibrium.contact.WIDEST`.
+"""
 
 WINDOW = 8
 """Fine cells in a mesh of the curve: more cost more unknowns, fewer more meshes."""

@@ -32,7 +32,8 @@ with the body's stiffness per wave number k: on a half-space
     k [[D, i (B + c sigma)], [-i (B + c sigma), D]],    D = 4 G (1 - nu)/(3 - 4 nu),    B = 2 G (1 - 2 nu)/(3 - 4 nu)
 
 for v = (u_z, u_x), not positive definite, at every wavelength at once, from c sigma = 2 G/(3 - 4 nu) on: the equations
-are ill-posed there, and what is computed depends on the mesh. See `finite_strain.scene.require_well_posed`.
+are ill-posed there, and what is computed depends on the mesh. See
+`fem_adhesion.finite_strain.scene.require_well_posed`.
 """
 
 from __future__ import annotations

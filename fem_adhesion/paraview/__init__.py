@@ -1,5 +1,5 @@
 """Bodies for the eye.
 
-`arrays` and `write` (VTK files with cells of high order), `lattice` and `revolve` (solids of revolution), `cutaway` and
-`solid` (pictures by pyvista).
+`arrays` and `write` (VTK files), `lattice` and `revolve` (sections and solids in cells of the second order), `cutaway`
+and `solid` (pictures by pyvista).
 """

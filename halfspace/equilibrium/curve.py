@@ -237,7 +237,7 @@ class EquilibriumPath(Valued):
 
     @property
     def arclength(self) -> Array:
-        """Arclength from the first point as it was traced, in the units of `path.Metric`, shape (points,)."""
+        """Arclength from the first point as it was traced, in the units of `Metric`, shape (points,)."""
         return np.array([point.arclength for segment in self.segments for point in segment.points])
 
     @property
