@@ -164,7 +164,7 @@ def _connected(address: str) -> tuple[ModuleType, Any]:
     try:
         distributed = importlib.import_module("distributed")
     except ModuleNotFoundError as error:
-        raise InputError(f"dask = {address} needs the extra cluster; pip install fem-adhesion[cluster]") from error
+        raise InputError(f"dask = {address} needs the extra cluster; pip install 'fem-adhesion[cluster]'") from error
     try:
         _knock(address)
         return distributed, distributed.Client(address, timeout=CONNECTION_SECONDS, set_as_default=False)
