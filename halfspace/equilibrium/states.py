@@ -110,7 +110,7 @@ class FinestCurve(Valued):
         """Estimated errors of approach, load, central gap and contact radius at each point, (points, 4).
 
         No less than between those at the points beside it, in the geometric mean: along the path a change passes
-        through zero, where it tells nothing.
+        through zero, where it tells nothing. Where there is but one change to tell, no less than the larger of them.
         """
         part = max(self.remaining, 1.0)
         return np.concatenate([self._errors_along(segment, part) for segment in self.segments])
@@ -118,8 +118,14 @@ class FinestCurve(Valued):
     def _errors_along(self, segment: Segment, part: float) -> Array:
         own = np.array([self._errors(segment.problem, point, part) for point in segment.points])
         padded = np.pad(own, ((1, 1), (0, 0)), mode="edge")
-        beside = np.sqrt(padded[:-2] * padded[2:])
+        before, after = padded[:-2], padded[2:]
+        beside = np.fmax(before, after) if self._one_change else np.sqrt(before * after)
         return np.where(np.isnan(own), own, np.fmax(own, beside))
+
+    @property
+    def _one_change(self) -> bool:
+        """Whether there is one chain, of two discretisations."""
+        return [len(way) for way in self.ways] == [2]
 
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Range of a coordinate on each of its branches, by name."""
