@@ -295,6 +295,7 @@ def _graded(finest: float, size: float, even: int) -> Array:
     return np.asarray(np.cumsum(finest * GROWTH ** np.maximum(np.arange(count) - even + 1, 0)))
 
 
+# Found by trial, as FLAT and NEARBY below: see tests/constants.py for what each decides at half and at double.
 EVEN, GROWTH, INNER = 3, 3.0, 0.7  # cells next to the edge, ratio of the others, and how far they go inwards
 
 

@@ -4,6 +4,29 @@
 of `honesty` are within their estimates, and have an estimate within a hundred times the true error; of the fourth level
 of the comparison how many rows agree, and how much of the budget the largest error takes; of the widest interval by how
 much the pull-off load is off. The time says what more certainty, or less, would cost.
+
+What it found, at half, as they are, and at double, in parts within and within a hundred times in per cent:
+
+| constant | half | as it is | double |
+|---|---|---|---|
+| ONE_NODE, events of the half-space | 99.4, 97.5 | 99.4, 95.6 | 100, 90.6 |
+| ONE_NODE, springs on it | 98.7, 95.5 | 100, 90.2 | 100, 84.8 |
+| REMAINING of the half-space | the same | 99.4, 95.6 | the same: second rungs are rare |
+| TWIN, by how much its cells are others | 100, 93.1 | 99.4, 95.6 | 100, 95.6 |
+| EXTENT | 98.1, 95.0 | 99.4, 95.6 | 100, 95.0 |
+| at_equator | 100, 89.1 | 100, 84.8 | 100, 78.3 |
+| WINDOW; APART, by its logarithm | the same | 100, 84.8 | 100, 87.0; the same |
+| CLOSER, by its logarithm, states on a hemisphere | 100, 97.8 in 5 s | 100, 100 in 4 s | 100, 93.5 in 3 s |
+| widest_interval, 4 to 13 nodes, tabor 1 | 2e-7 to 7e-4 off | 5e-5 to 2e-3 | 1e-4 to 3e-2; at tabor 3 mostly none |
+| FINEST, GROWTH, FOURTH, PER_DEGREE of bodies | the same | 100, 100 of 15 | the same |
+| RINGS; PAST_EQUATOR | the same | 100, 93.3; 100, 86.7 | the same |
+| FINENESS: sizes; degrees, in budgets | 0.69; 2.8 | 0.33 | 0.33; 0.06 |
+| EVEN; INNER, from one | 0.81; 0.33 | 0.33 | 0.28; 0.76 |
+| SHARP for degrees; for what is tried to turn | 0.08 in 10 s; 0.25 | 0.25 in 4 s | 0.28; a row fails |
+| FLAT, NEARBY | the same | 0.33 | the same |
+
+Those whose change tells nothing are steps on the way and may be anything within a factor of two. The part that may be
+left on a block under a sphere was one more: graded to the equator its cells converge as all others do.
 """
 
 import argparse
@@ -154,11 +177,12 @@ CONSTANTS = (
     Constant(fem_adhesion.bodies.sized, "GROWTH", estimates("hemisphere, sliding"), to_the_power),
     Constant(fem_adhesion.bodies.sized, "FOURTH", estimates("hemisphere, sliding")),
     Constant(fem_adhesion.bodies.sized, "PER_DEGREE", estimates("hemisphere, sliding"), to_the_power),
-    Constant(fem_adhesion.bodies.sized, "RINGS", estimates("hemisphere, bonded"), to_the_power),
+    Constant(fem_adhesion.bodies.sized, "RINGS", estimates("hemisphere, bonded")),
     Constant(fem_adhesion.bodies.sized, "PAST_EQUATOR", estimates("block under a sphere")),
     Constant(weak_bodies, "FINENESS", fourth_level(0.5, 2.0), larger_boxes),
     Constant(weak_bodies, "FINENESS", fourth_level(0.5, 2.0), higher_degrees),
     Constant(weak_bodies, "SHARP", fourth_level(5.0, 8.0)),
+    Constant(from_scratch, "SHARP", fourth_level(5.0, 8.0)),
     Constant(weak_form, "EVEN", fourth_level(0.5, 2.0)),
     Constant(weak_form, "GROWTH", fourth_level(0.5, 2.0), to_the_power),
     Constant(weak_form, "INNER", fourth_level(0.5, 2.0), from_one),
