@@ -55,7 +55,7 @@ def test_a_root_is_found_or_said_not_to_be_there_whatever_the_function(at, bend)
         (lambda x: 1 + x, "a thing is not between 0 and 1, where the signs are the same (1 and 2); do this"),
         (lambda x: 1e-200 + x * 1e-200, "a thing is not between 0 and 1, where the signs are the same (1e-200 and"),
         (lambda x: math.nan if x == 1 else -1.0, "a thing is lost at 1, where it cannot be told; do this"),
-        (lambda x: math.nan if 0 < x < 1 else x - 0.3, "a thing is lost at 0.5, where it cannot be told; do this"),
+        (lambda x: math.nan if 0 < x < 1 else x - 0.3, "a thing is lost at 0.3, where it cannot be told; do this"),
     ],
 )
 def test_what_is_not_between_two_places_is_said_with_their_values_and_the_remedy(function, said):

@@ -2,7 +2,7 @@
 
 Results come as they are ready. A worker that dies takes no other item with it: locally the pool is made anew, and each
 item that was handed out and not finished runs in a pool of its own, so that one that kills its worker is known for
-certain; the scheduler of Dask does as much by itself.
+certain; on Dask what the scheduler has given up runs again alone.
 """
 
 from __future__ import annotations
@@ -188,8 +188,17 @@ def _on_cluster(
     with client:
         futures = {client.submit(work, item, pure=False): item for item in items}
         try:
+            # The scheduler gives up what died with a worker too often, also what only waited there: that runs alone.
+            killed = []
             for future in distributed.as_completed(futures, loop=client.loop):
-                yield futures[future], _result(future, distributed.KilledWorker)
+                result = _result(future, distributed.KilledWorker)
+                if isinstance(result, Died):
+                    killed.append(futures[future])
+                else:
+                    yield futures[future], result
+            for item in killed:
+                futures[again := client.submit(work, item, pure=False)] = item
+                yield item, _result(again, distributed.KilledWorker)
         finally:
             client.cancel(list(futures))
 
