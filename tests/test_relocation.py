@@ -51,7 +51,7 @@ def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, other):
     rates[own.observable] = 0.0
     values = np.array([[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
     values[0, other] = 4e-6
-    interface = SimpleNamespace(ripple=lambda _: 0.0)
+    interface = SimpleNamespace(ripples=lambda _: np.zeros(2))
     problem = SimpleNamespace(interface=interface, surface_state=lambda x: x)
     chain = [
         SimpleNamespace(condition=own, problem=problem, point=SimpleNamespace(observables=v, rates=rates, x=None))
