@@ -112,7 +112,7 @@ def test_honesty_judges_every_family_and_both_solvers_side_by_side(made):
     assert run.code == 0, run.out + run.err
     judged = dict(re.findall(r"^(\S.*?) +(\d+) +[\d.]+% +[\d.]+% +\d+$", run.out, re.M))
     assert judged.keys() == {name for name, family in honesty.FAMILIES.items() if family.quick.scenes}
-    assert all(int(count) >= 10 for count in judged.values())
+    assert all(int(count) >= 8 for count in judged.values())  # those of a curve without folds
     assert re.search(r"both solvers side by side, \d+ scenes of seed \d+", run.out)
     compared = dict(re.findall(r"^(\w+) +(\d+) +\d+ +\S+$", run.out, re.M))
     assert compared.keys() == {*side_by_side.QUANTITIES, "energy"}
