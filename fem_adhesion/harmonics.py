@@ -34,7 +34,8 @@ from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
 from halfspace.equilibrium.events import Located
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol
-from halfspace.profiles import Paraboloid, Profile, between_spheres
+from halfspace.profiles import Paraboloid, Surface
+from halfspace.profiles.sphere import between_spheres
 from halfspace.values import Valued
 
 # The sphere
@@ -329,7 +330,7 @@ def sized_body(scene: Scene, how: Resolution) -> SizedBody:
     """Body of a scene, to be discretised on any cells of its surface."""
     R, counter = _radii(scene)[0], scene.counter
     gap = between_spheres(scene.sphere_radius, counter.radius if counter else math.inf)
-    profile: Profile = Paraboloid(R) if scene.profile == "paraboloid" else gap
+    profile: Surface = Paraboloid(R) if scene.profile == "paraboloid" else gap
     outer = R * np.append(1 - (1 - (RIM if counter else 0.98)) * CROWDED, 1.0)
     make = partial(_made, scene, how.nodes, counts(scene, how))
     return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, FlatCoordinate())

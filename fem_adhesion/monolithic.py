@@ -31,7 +31,7 @@ from fem_adhesion.elasticity.space import Space, cell_quadrature, lame_parameter
 from halfspace.elastic.compliance import Array, ElasticOperator
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
-from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
+from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Valued
 
 
@@ -245,7 +245,7 @@ def assemble(
     *,
     far_field: FarField = point_load,
     points: int | None = None,
-    law: SurfaceLaw = LENNARD_JONES,
+    law: Law = LENNARD_JONES,
 ) -> MonolithicProblem:
     """Assemble the contact problem of a block under a rigid paraboloid.
 

@@ -1,8 +1,8 @@
 """Adhesive contact of an elastic sphere with an elastic half-space, by an integral equation, after Greenwood (1997).
 
-`trace` gives the whole load-approach curve with its events. Rooms, in the order of reading: `elastic` (the half-space
-alone), `equilibrium` (contact, path, events), `accuracy` (to the digits asked for), `theories` (closed forms).
-Under them are `lennard_jones` (the surface law), `profiles` and `scaling` (SI, and other people's parameters).
+`trace` gives the whole load-approach curve with its events. Rooms, in the order of reading: `laws` and `profiles` (the
+parts of a contact), `elastic` (the half-space alone), `equilibrium` (contact, path, events), `accuracy` (to the digits
+asked for), `theories` (closed forms); under them `scaling` (SI, and other people's parameters).
 
 Conventions are Greenwood's, everywhere. R is the equivalent radius, E* the contact modulus, dgamma the work of
 adhesion, eps the spacing at which the surfaces are in equilibrium, mu = (R dgamma^2/(E*^2 eps^3))^(1/3) the Tabor
@@ -32,6 +32,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from halfspace import laws, profiles, scaling, theories
     from halfspace.accuracy.trace import trace
     from halfspace.equilibrium.curve import EquilibriumPath, Estimate
     from halfspace.equilibrium.events import Event
@@ -45,9 +46,14 @@ __all__ = [
     "GridTooCoarse",
     "InputError",
     "NotConverged",
+    "laws",
+    "profiles",
+    "scaling",
+    "theories",
     "trace",
 ]
 
+_ROOMS = ("laws", "profiles", "scaling", "theories")
 _HOMES = {
     "trace": "accuracy.trace",
     "EquilibriumPath": "equilibrium.curve",
@@ -59,6 +65,8 @@ _HOMES = {
 
 def __getattr__(name: str) -> Any:
     """Import what is public when it is first asked for, so that the command line answers at once."""
+    if name in _ROOMS:
+        return import_module(f"{__name__}.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

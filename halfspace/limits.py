@@ -90,7 +90,7 @@ def require_fixed_mesh(tabor: float) -> float:
     return _require(tabor, "tabor", tabor <= 3, "tabor <= 3 for a fixed mesh", 'take far_field = "point_load"')
 
 
-def require_radius_ratio(radius_ratio: float, tabor: float) -> float:
+def require_radius_ratio(radius_ratio: float, tabor: float = 0.0) -> float:
     """Return R/eps, or raise InputError unless it is 2 to 1e12 and R/beta = sqrt(radius_ratio/tabor) at least 1.5.
 
     A contact is 1 to 2 beta wide where it is lost: a smaller sphere is deformed as a whole, and past its equator.
@@ -103,16 +103,12 @@ def require_radius_ratio(radius_ratio: float, tabor: float) -> float:
     return _require(radius_ratio, "radius_ratio", radius_ratio >= least, limit, remedy)
 
 
-def require_counter_radius(counter_radius: float, radius_ratio: float | None) -> float:
-    """Return a counter-body's radius in radii of the first sphere, or raise InputError unless 1 or more, and heeded."""
+def require_counter_radius(counter_radius: float) -> float:
+    """Return a second sphere's radius in radii of the first, or raise InputError unless it is 1 or more."""
     counter_radius = require_number(counter_radius, "counter_radius")
     if not counter_radius >= 1:
         raise InputError(
             f"counter_radius = {counter_radius:g} is outside 1 <= counter_radius; let the smaller be first"
-        )
-    if counter_radius != math.inf and radius_ratio is None:
-        raise InputError(
-            f"counter_radius = {counter_radius:g} means nothing to a paraboloid; give radius_ratio, its R/eps, too"
         )
     return counter_radius
 

@@ -339,7 +339,7 @@ def _solved(solve, scene, rtol):
 
 
 def _under_sphere(size, rtol):
-    return halfspace.trace(size[0], rtol=rtol, radius_ratio=size[1])
+    return halfspace.trace(size[0], profile=halfspace.profiles.Sphere(size[1]), rtol=rtol)
 
 
 def _stages_under_sphere(size):

@@ -29,6 +29,7 @@ from fem_adhesion.common.units import KINDS, Quantity, parse
 from fem_adhesion.scene import Counter, Scene
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
+from halfspace.profiles import Sphere
 from halfspace.scaling import Units, spacing_of
 from halfspace.theories import closed_forms as theories
 from halfspace.theories.exact_sphere import JKRSphere
@@ -241,8 +242,8 @@ def test_the_true_profile_is_that_of_both_spheres(counter_radius, ratio, monkeyp
     assert study._profile(contact) == "true profile"
     ((tabor, options),) = asked
     assert tabor == contact.units.tabor
-    assert options["radius_ratio"] == contact.units.radius_ratio
-    assert options["counter_radius"] == pytest.approx(ratio, rel=1e-12)
+    assert options["profile"].radius_ratio == contact.units.radius_ratio
+    assert options["profile"].counter_radius == pytest.approx(ratio, rel=1e-12)
 
 
 @pytest.mark.parametrize("tabor", [1e3, 1e-14])
@@ -278,24 +279,17 @@ def test_two_rigid_spheres_attract_over_their_true_profiles():
 
             return quad(ring, 0, R1, limit=400)[0]
 
-        found = halfspace.trace(tabor, rtol=1e-6, radius_ratio=rho, counter_radius=ratio).event("pull_off")
+        found = halfspace.trace(tabor, profile=Sphere(rho, ratio), rtol=1e-6).event("pull_off")
         largest = -minimize_scalar(lambda h: -tension(h), bounds=(0.95, 1.05), method="bounded").fun
         assert -found.load == pytest.approx(largest, rel=3e-6)
-    wall, far = (halfspace.trace(1.0, rtol=1e-4, radius_ratio=30.0, counter_radius=c) for c in (math.inf, 1e9))
+    wall, far = (halfspace.trace(1.0, profile=Sphere(30.0, c), rtol=1e-4) for c in (math.inf, 1e9))
     assert far.event("pull_off").load == pytest.approx(wall.event("pull_off").load, rel=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("more", "message"),
-    [
-        ({"radius_ratio": 30.0, "counter_radius": 0.5}, "counter_radius = 0.5 is outside 1 <= counter_radius"),
-        ({"radius_ratio": 30.0, "counter_radius": math.nan}, "counter_radius = nan is outside"),
-        ({"counter_radius": 2.0}, "counter_radius = 2 means nothing to a paraboloid; give radius_ratio"),
-    ],
-)
-def test_a_second_sphere_that_is_not_heeded_is_refused(more, message):
-    with pytest.raises(InputError, match=message):
-        halfspace.trace(1.0, **more)
+@pytest.mark.parametrize("counter_radius", [0.5, math.nan])
+def test_a_second_sphere_smaller_than_the_first_is_refused(counter_radius):
+    with pytest.raises(InputError, match=f"counter_radius = {counter_radius:g} is outside 1 <= counter_radius"):
+        Sphere(30.0, counter_radius)
 
 
 # The answer -----------------------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from fem_adhesion.elasticity.space import Space, cell_quadrature, cell_stiffness
 from fem_adhesion.harmonics import legendre
 from fem_adhesion.mesh import curved, spheres
 from halfspace.elastic import grid
-from halfspace.profiles import Sphere
+from halfspace.profiles.sphere import SphereSurface
 
 R = 2.5
 GRIPS = {"sliding": sliding, "bonded": clamped}
@@ -65,7 +65,7 @@ def test_the_contact_surface_is_the_sphere_below_the_wall(fine):
     r, z = surface_points(fine, "contact")
     assert np.max(np.abs(np.hypot(r, z + R) - R)) < 1e-8 * R
     inside = r < 0.9 * R  # the profile has a vertical tangent at the equator
-    assert np.max(np.abs(z + Sphere(R).height(r * inside) / R)[inside]) < 1e-8 * R
+    assert np.max(np.abs(z + SphereSurface(R).height(r * inside) / R)[inside]) < 1e-8 * R
     assert np.max(z) < 0
 
 

@@ -13,7 +13,7 @@ from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import FlatCoordinate, Homogeneous, Interpolated, MovingGrid, chebyshev_radii
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import Chart, find_events, trace_charts
-from halfspace.profiles import Sphere
+from halfspace.profiles.sphere import SphereSurface
 
 R = 4.0
 EDGE = 1.5  # contact radius at which operators are compared, between those that are known
@@ -141,7 +141,7 @@ def test_the_root_squares_to_the_balanced_compliance():
 
 
 def test_the_jacobian_against_finite_differences_on_a_grid_that_follows_a_sphere(body):
-    problem = ContactProblem(interpolated(body, 3), 0.5, profile=Sphere(R))
+    problem = ContactProblem(interpolated(body, 3), 0.5, profile=SphereSurface(R))
     x = problem.undeformed(-0.2, EDGE)
     x[:-2] += 0.3 * np.cos(np.arange(x.size - 2))
     J, h = problem.jacobian(x), 1e-6
@@ -151,7 +151,7 @@ def test_the_jacobian_against_finite_differences_on_a_grid_that_follows_a_sphere
 
 
 def test_the_load_gradient_against_finite_differences_on_a_grid_that_follows_a_sphere(body):
-    problem = ContactProblem(interpolated(body, 3), 0.5, profile=Sphere(R))
+    problem = ContactProblem(interpolated(body, 3), 0.5, profile=SphereSurface(R))
     x, h = problem.undeformed(-0.2, EDGE), 1e-6
     steps = h * np.eye(x.size)
     differences = [(problem.load(x + dx) - problem.load(x - dx)) / (2 * h) for dx in steps]

@@ -10,7 +10,7 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import ContactProblem, count_negative
 from halfspace.equilibrium.curve import transfer
 from halfspace.errors import GridTooCoarse, NotConverged
-from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
+from halfspace.laws import LENNARD_JONES, PowerLaw
 from halfspace.theories import closed_forms
 
 CENTRED = compliance.panels(grid.graded(0.0, 0.3, 400.0), 10)
@@ -31,7 +31,7 @@ def touching(problem):
     return x
 
 
-@pytest.mark.parametrize("law", [LENNARD_JONES, SurfaceLaw(3, 8)])
+@pytest.mark.parametrize("law", [LENNARD_JONES, PowerLaw(3, 8)])
 def test_surface_law_is_normalised_to_the_work_of_adhesion(law):
     tension = quad(lambda h: -float(law.pressure(np.array(h - 1), 1.0)), 1, np.inf, epsabs=1e-12)[0]
     assert tension == pytest.approx(1, abs=1e-9)

@@ -20,7 +20,7 @@ from halfspace import limits
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import NotConverged
-from halfspace.lennard_jones import SurfaceLaw
+from halfspace.laws import PowerLaw
 
 RTOL = 1e-4  # defects change the numbers by per cents: coarse meshes show them as well
 
@@ -99,7 +99,7 @@ def _exponents_3_8(monkeypatch):
     monkeypatch.setattr(
         convergence,
         "ContactProblem",
-        lambda *args, **kwargs: ContactProblem(*args, law=SurfaceLaw(3, 8), **kwargs),
+        lambda *args, **kwargs: ContactProblem(*args, law=PowerLaw(3, 8), **kwargs),
     )
 
 

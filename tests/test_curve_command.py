@@ -27,6 +27,7 @@ from fem_adhesion.scene import Counter, Scene
 from halfspace.equilibrium import devices
 from halfspace.equilibrium.curve import EquilibriumPath, Estimate
 from halfspace.errors import InputError, NotConverged
+from halfspace.profiles import Paraboloid, Sphere
 from halfspace.scaling import Units
 
 MATERIAL = ("--radius", "100nm", "--modulus", "1GPa", "--poisson", "0.3", "--work-of-adhesion", "50mJ/m^2")
@@ -582,11 +583,11 @@ def test_the_other_solver_of_a_true_sphere_has_its_profile(monkeypatch):
     monkeypatch.setattr(study.halfspace, "trace", lambda _, **options: asked.update(options))
     scene = Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=100)
     study._trace(study.Question(scene, solver="both"), study.HALF_SPACE)
-    assert (asked["radius_ratio"], asked["counter_radius"]) == (100, math.inf)
+    assert asked["profile"] == Sphere(100)
     study._trace(study.Question(replace(scene, counter=Counter(0.5, 0.3, 2.0)), solver="both"), study.HALF_SPACE)
-    assert (asked["radius_ratio"], asked["counter_radius"]) == (100, 2.0)
+    assert asked["profile"] == Sphere(100, 2.0)
     study._trace(study.Question(Scene(2.0, body="hemisphere", radius_ratio=100), solver="both"), study.HALF_SPACE)
-    assert asked["radius_ratio"] is None
+    assert asked["profile"] == Paraboloid()
 
 
 def test_the_two_solvers_agree(both):

@@ -44,7 +44,8 @@ from fem_adhesion.finite_sphere.tables import COLUMNS, NO_PARQUET, TEXTS, write_
 from fem_adhesion.finite_strain.scene import find_jumps
 from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
+from halfspace.profiles import Sphere
 from halfspace.theories.closed_forms import JKR_PULL_OFF
 from halfspace.theories.exact_sphere import JKRSphere
 
@@ -610,7 +611,7 @@ def test_every_model_solves_its_own_scene(solved_once):
     assert set(solved_once) == {"half_space", "true_profile", *SCENES, *TRACTIONS}
     wanted = {
         "half_space": pull_off_of(halfspace.trace(0.3, rtol=1e-2, to_load=0.5)),
-        "true_profile": pull_off_of(halfspace.trace(0.3, rtol=1e-2, to_load=0.5, radius_ratio=30.0)),
+        "true_profile": pull_off_of(halfspace.trace(0.3, profile=Sphere(30.0), rtol=1e-2, to_load=0.5)),
     }
     for name, scene in SCENES.items():
         wanted[name] = pull_off_of(fem_adhesion.trace(Scene(0.3, **scene), rtol=1e-2, to_load=0.5))

@@ -21,7 +21,7 @@ from fem_adhesion.monolithic import assemble
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem
 from halfspace.equilibrium.curve import Chart, find_events, moved, trace_charts, transfer
-from halfspace.profiles import Sphere
+from halfspace.profiles.sphere import SphereSurface
 
 LAM, G = 0.7, 0.4
 VERTICAL, NORMAL, REFERENCE = Convention(1.0, 0.0), Convention(1.0, 1.0), Convention(0.0, 0.0)
@@ -310,9 +310,9 @@ def sphere():
     R, tabor, nu = 10.0, 1.0, 0.3
     space = Space(hemisphere(R), ElementQuadP(3))
     condensed = condense(space, nu, far_field=sliding)
-    events = events_of(ContactProblem(condensed.operator, tabor, profile=Sphere(R)), condensed.unknowns)
+    events = events_of(ContactProblem(condensed.operator, tabor, profile=SphereSurface(R)), condensed.unknowns)
     body, exterior = displacement_body(space, nu, 1 / R), with_interiors(sliding(space, nu), space)
-    return finite_strain_problem(body, exterior, tabor, profile=Sphere(R), convention=BLEND), events
+    return finite_strain_problem(body, exterior, tabor, profile=SphereSurface(R), convention=BLEND), events
 
 
 def test_events_of_a_hemisphere_tend_to_the_linear_ones_in_proportion_to_the_stretch(sphere):

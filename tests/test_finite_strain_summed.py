@@ -20,7 +20,7 @@ from fem_adhesion.mesh import spheres
 from halfspace.elastic import grid
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import Chart, find_events, moved, trace_charts
-from halfspace.profiles import Sphere
+from halfspace.profiles.sphere import SphereSurface
 
 TABOR, POISSON = 1.0, 0.3
 
@@ -42,11 +42,11 @@ def hemisphere(ratio):
     depths = grid.graded(0.0, 0.35 / (TABOR * R), spheres.DEPTH * R, growth=2.0)
     space = Space(spheres.hemisphere(R, lines, depths), ElementQuadP(4))
     condensed = condense(space, POISSON, far_field=sliding)
-    linear = ContactProblem(condensed.operator, TABOR, profile=Sphere(R))
+    linear = ContactProblem(condensed.operator, TABOR, profile=SphereSurface(R))
     event = find_events(trace_charts((Chart(linear, condensed.unknowns),), 0.5))["pull_off"]
     exterior, body = with_interiors(sliding(space, POISSON), space), displacement_body(space, POISSON, 1 / R)
     convention = convention_of("projected", POISSON)
-    problem = finite_strain_problem(body, exterior, TABOR, profile=Sphere(R), convention=convention)
+    problem = finite_strain_problem(body, exterior, TABOR, profile=SphereSurface(R), convention=convention)
     return SimpleNamespace(problem=problem, event=event, stretch=1 / R)
 
 

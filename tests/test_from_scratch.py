@@ -17,7 +17,7 @@ from halfspace.equilibrium import events as halfspace_events
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.events import FOLD
 from halfspace.errors import NotConverged
-from halfspace.lennard_jones import SurfaceLaw
+from halfspace.laws import PowerLaw
 from halfspace.profiles import Paraboloid
 
 # --- the weak form ---
@@ -127,8 +127,8 @@ def test_closed_forms_agree():
 
 
 def _amplitude(monkeypatch):
-    original = SurfaceLaw.amplitude.fget
-    monkeypatch.setattr(SurfaceLaw, "amplitude", property(lambda law: 1.01 * original(law)))
+    original = PowerLaw.amplitude.fget
+    monkeypatch.setattr(PowerLaw, "amplitude", property(lambda law: 1.01 * original(law)))
 
 
 def _profile(monkeypatch):

@@ -150,7 +150,7 @@ def test_the_jumps_of_a_block_have_errors_in_which_its_size_and_degree_do_not_ca
 
 def test_an_event_that_lies_no_further_off_than_the_root_finder_resolves_is_not_lost():
     """On grids that both know it to 1e-11 the interval around it is as short as the tolerance of arclength."""
-    path = halfspace.trace(0.3, rtol=1e-6, radius_ratio=30.0)
+    path = halfspace.trace(0.3, profile=halfspace.profiles.Sphere(30.0), rtol=1e-6)
     first, second = truths.relocated(path.stages[-1], truths.under_sphere(0.3, 30.0))
     change = first["pull_off"].point.observables - second["pull_off"].point.observables
     assert np.max(np.abs(change)) < 1e-9

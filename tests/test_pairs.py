@@ -51,7 +51,7 @@ def test_both_bodies_have_the_same_nodes_and_symmetric_compliances(counter):
 def test_a_stiff_sphere_on_a_soft_block_is_a_rigid_one_on_a_half_space():
     """All but a hundredth of the compliance is the block's."""
     mixed = events(scene(counter=Counter(0.99)))
-    limit = halfspace.trace(1.0, radius_ratio=RHO).events
+    limit = halfspace.trace(1.0, profile=halfspace.profiles.Sphere(RHO)).events
     finite = events(scene())
     for name in ("pull_off", "jump_on", "jump_off"):
         expected = limit[name].approach + 0.01 * (finite[name].approach - limit[name].approach)

@@ -20,7 +20,7 @@ from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.curve import trace_charts
 from halfspace.equilibrium.path import Steps
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import Units
 
 UNITS = Units(100e-9, 1.1e9, 0.05, 0.3e-9)

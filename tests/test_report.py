@@ -21,7 +21,7 @@ from fem_adhesion.report.page import WORDS, Contents, page, walk_data
 from fem_adhesion.report.parts import MOST_LINES, cell, read_table
 from fem_adhesion.report.walk import SEEN, _station, walk
 from halfspace.errors import NotConverged
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 
 from halfspace import scaling
 from halfspace.errors import InputError
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import Units
 from halfspace.theories import closed_forms
 from halfspace.theories.maugis import MaugisDugdale

@@ -21,7 +21,9 @@ from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import Chart, moved
 from halfspace.equilibrium.devices import cycle
-from halfspace.profiles import between_spheres
+from halfspace.laws import LENNARD_JONES
+from halfspace.profiles import PARABOLOID, Sphere
+from halfspace.profiles.sphere import between_spheres
 
 HEMISPHERE = {"tabor": 1.0, "body": "hemisphere", "profile": "sphere", "radius_ratio": 30.0}
 
@@ -115,13 +117,14 @@ def test_a_tolerance_out_of_range_is_refused_before_any_work(rtol):
 @pytest.mark.parametrize("radius_ratio", [1.0, 2.0, float("nan")])
 def test_the_half_space_refuses_a_sphere_too_small(radius_ratio):
     with pytest.raises(ValueError, match="radius_ratio"):
-        halfspace.trace(1.0, radius_ratio=radius_ratio)
+        halfspace.trace(1.0, profile=Sphere(radius_ratio))
 
 
 @pytest.fixture(scope="module")
 def spheres():
     """The half-space under true spheres, by R/eps; None is the paraboloid."""
-    return {rho: halfspace.trace(1.0, rtol=1e-5, radius_ratio=rho) for rho in (None, 10.0, 100.0)}
+    profiles = {None: PARABOLOID, 10.0: Sphere(10.0), 100.0: Sphere(100.0)}
+    return {rho: halfspace.trace(1.0, profile=profile, rtol=1e-5) for rho, profile in profiles.items()}
 
 
 @pytest.mark.parametrize("name", ["pull_off", "jump_on", "jump_off"])
@@ -146,7 +149,7 @@ def block(spheres):
 @pytest.fixture(scope="module")
 def small():
     """A sphere on the half-space whose equator the attraction reaches, and what its events are."""
-    path = halfspace.trace(1.0, rtol=1e-9, radius_ratio=6.0)
+    path = halfspace.trace(1.0, profile=Sphere(6.0), rtol=1e-9)
     return path, truths.relocated(path.stages[-1], truths.under_sphere(1.0, 6.0))
 
 
@@ -186,7 +189,7 @@ def test_events_share_an_operator_within_its_window_alone(part, shared):
 
 def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_tolerance():
     """By which a fold is found; against differences of whole operators over ever narrower windows, extrapolated."""
-    body = _under_sphere(2.0, between_spheres(np.sqrt(5.0), np.inf), resolution_for(2.0, 1e-8))
+    body = _under_sphere(2.0, LENNARD_JONES, between_spheres(np.sqrt(5.0), np.inf), resolution_for(2.0, 1e-8))
     pressure = -np.exp(-8 * (body.around(1.18).problem.operator.at(1.18).radii / 1.18 - 1) ** 2)
 
     def derivative(window, count):
@@ -201,7 +204,7 @@ def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_toleran
 
 @pytest.fixture(scope="module")
 def tight():
-    return halfspace.trace(2.0, radius_ratio=10.0, rtol=1e-9)
+    return halfspace.trace(2.0, profile=Sphere(10.0), rtol=1e-9)
 
 
 def test_the_tightest_tolerance_is_met_under_a_sphere(tight):
@@ -210,12 +213,12 @@ def test_the_tightest_tolerance_is_met_under_a_sphere(tight):
     assert tight.missed == {}
     pull_off = tight.event("pull_off")
     assert abs(pull_off.approach - -2.083525446222) <= pull_off.approach_error < 1e-9
-    folding = halfspace.trace(0.8, radius_ratio=8.0, rtol=1e-9)  # whose folds are near, and flat
+    folding = halfspace.trace(0.8, profile=Sphere(8.0), rtol=1e-9)  # whose folds are near, and flat
     assert folding.met
 
 
 def test_jumps_of_a_spring_on_a_sphere_are_as_accurate_as_its_events(tight):
-    rough = halfspace.trace(2.0, radius_ratio=10.0, rtol=1e-5)
+    rough = halfspace.trace(2.0, profile=Sphere(10.0), rtol=1e-5)
     for stiffness in (np.inf, 0.5):
         found, truth = (cycle(path, stiffness) for path in (rough, tight))
         assert found.met

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from scipy.special import gamma
 
 import halfspace
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.theories import closed_forms, dmt, maugis
 from halfspace.theories.maugis import MaugisDugdale
 

@@ -22,7 +22,7 @@ from fem_adhesion.paraview.lattice import QUAD9, TRIANGLE6, Cut, Lattice, cut_fo
 from fem_adhesion.paraview.revolve import revolved
 from fem_adhesion.paraview.write import TOLERANCE, write_path
 from fem_adhesion.scene import Counter
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import Units
 
 vtk = pytest.importorskip("vtk")

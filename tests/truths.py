@@ -20,7 +20,7 @@ from halfspace.accuracy.trace import Resolution, half_space_charts, widened
 from halfspace.elastic import compliance
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.curve import find_events, moved, trace_charts
-from halfspace.profiles import between_spheres
+from halfspace.profiles.sphere import between_spheres
 
 
 def half_space(tabor, *_):

@@ -34,6 +34,7 @@ from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import tolerance_told
 from halfspace.errors import InputError, NotConverged
+from halfspace.profiles import Sphere
 from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
 
 HALF_SPACE, PROFILE, FINITE, PAIR = "half-space", "true profile", "finite sphere", "finite pair"
@@ -208,9 +209,8 @@ def _profile(contact: Contact) -> Prediction:
         return soft_sphere(units)
     if units.tabor < RIGID_TABOR:
         return rigid_sphere(units)
-    path = halfspace.trace(
-        units.tabor, rtol=RTOL, to_load=TO_LOAD, radius_ratio=units.radius_ratio, counter_radius=larger
-    )
+    profile = Sphere(units.radius_ratio, larger)
+    path = halfspace.trace(units.tabor, profile=profile, rtol=RTOL, to_load=TO_LOAD)
     return computed(PROFILE, path, contact.reduced_stiffness, units)
 
 

@@ -23,7 +23,8 @@ from fem_adhesion.mesh.curved import Block, joined
 from fem_adhesion.scene import Counter
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import Array, ElasticOperator
-from halfspace.profiles import Paraboloid, Profile, between_spheres
+from halfspace.profiles import Paraboloid, Surface
+from halfspace.profiles.sphere import between_spheres
 
 BEYOND = 1e3  # size of a block, in radii of the sphere that meets it
 
@@ -33,7 +34,7 @@ def radii_of(R: float, counter: Counter) -> tuple[float, float]:
     return R * (1 + 1 / counter.radius), R * (1 + counter.radius)
 
 
-def gap_of(R: float, counter: Counter, profile: str) -> Profile:
+def gap_of(R: float, counter: Counter, profile: str) -> Surface:
     """Undeformed gap of the pair."""
     return Paraboloid(radii_of(R, counter)[0]) if profile == "paraboloid" else between_spheres(R, counter.radius)
 

@@ -25,7 +25,8 @@ from halfspace.elastic import grid
 from halfspace.elastic.compliance import Array
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.contact import spike_width
-from halfspace.profiles import Paraboloid, Profile, Sphere
+from halfspace.profiles import Paraboloid, Surface
+from halfspace.profiles.sphere import SphereSurface
 
 GRIPS = {"sliding": sliding, "bonded": clamped}
 
@@ -104,9 +105,9 @@ def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
     return _pair(scene, how, R, scene.counter) if scene.counter else _sphere(scene, how, R, profile)
 
 
-def profile_of(scene: Scene) -> Profile:
+def profile_of(scene: Scene) -> Surface:
     """Undeformed gap under a rigid wall."""
-    return Sphere(scene.sphere_radius) if scene.profile == "sphere" else Paraboloid(scene.sphere_radius)
+    return SphereSurface(scene.sphere_radius) if scene.profile == "sphere" else Paraboloid(scene.sphere_radius)
 
 
 def _pair(scene: Scene, how: Discretisation, R: float, counter: Counter) -> SizedBody:
@@ -117,7 +118,7 @@ def _pair(scene: Scene, how: Discretisation, R: float, counter: Counter) -> Size
     return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, spheres.Stereographic(R1))
 
 
-def _sphere(scene: Scene, how: Discretisation, R: float, profile: Profile) -> SizedBody:
+def _sphere(scene: Scene, how: Discretisation, R: float, profile: Surface) -> SizedBody:
     """Hemisphere held at its mid-plane, or sphere held over a cap."""
     whole = scene.body == "sphere"
     rings = rings_at_equator(R, scene.cap_angle) if whole else corner_rings(scene, how)

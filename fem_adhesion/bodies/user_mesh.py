@@ -19,7 +19,7 @@ from halfspace.accuracy.refinement import Charted, Charts, Rung, climb
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import Chart, EquilibriumPath
 from halfspace.errors import GridTooCoarse
-from halfspace.profiles import Tabulated
+from halfspace.profiles.table import TabulatedSurface
 
 
 def trace(scene: Scene, rtol: float, to_load: float) -> EquilibriumPath:
@@ -87,7 +87,7 @@ def mesh_charts(scene: Scene, mesh: Any, times_refined: int = 0) -> Charts:
     body = condense(space, scene.poisson, far_field=GRIPS[scene.grip], stiffness=_stiffness(scene, mesh))
     surface = body.surface
     R = scene.sphere_radius
-    profile = Tabulated(surface.radii, R * surface.depths, R * surface.slopes)
+    profile = TabulatedSurface(surface.radii, R * surface.depths, R * surface.slopes)
     return (Chart(ContactProblem(body.operator, scene.tabor, profile=profile), body.unknowns),)
 
 

@@ -25,7 +25,7 @@ from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath, Estimate
 from halfspace.equilibrium.events import Located
 from halfspace.errors import NotConverged
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.values import Valued
 
 BUDGET = 1e-3  # of each quantity

@@ -28,7 +28,8 @@ from halfspace.elastic.compliance import Array, ElasticOperator
 from halfspace.equilibrium.contact import ContactProblem, spike_width
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
-from halfspace.profiles import Sphere
+from halfspace.profiles import PARABOLOID, Profile, Sphere
+from halfspace.profiles.sphere import SphereSurface
 
 Operators = list[ElasticOperator]
 
@@ -55,7 +56,8 @@ class Reference:
 def reference_for(scene: Scene) -> Reference | None:
     """The half-space or the whole sphere by harmonics; None for a body that is neither."""
     if scene.body == "block":
-        half_space = partial(halfspace.trace, scene.tabor, radius_ratio=scene.radius_ratio)
+        profile: Profile = Sphere(scene.radius_ratio) if scene.radius_ratio else PARABOLOID
+        half_space = partial(halfspace.trace, scene.tabor, profile=profile)
         return Reference(SOLVERS, half_space, partial(_half_spaces, scene))
     if scene.body == "hemisphere" and scene.grip == "sliding" and scene.traction == "projected":
         return Reference(HARMONICS, partial(harmonics.trace, scene), partial(_spheres, scene))
@@ -108,7 +110,7 @@ def _lines(scene: Scene) -> Array:
     """Ends of the cells of a block's surface."""
     if scene.sized:
         R = np.array([scene.sphere_radius])
-        return _about(radius_of(scene), R, at_equator(scene.tabor, Sphere(R[0]), 8))
+        return _about(radius_of(scene), R, at_equator(scene.tabor, SphereSurface(R[0]), 8))
     return grid.graded(1.0, FINEST, 40.0 if scene.radius is None else scene.radius)
 
 

@@ -15,6 +15,7 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_points, require_rtol
+from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.scaling import Units
 
 HALF_SPACE, FINITE_ELEMENTS = "half-space", "finite elements"
@@ -152,10 +153,10 @@ def solve(question: Question, progress: Progress = lambda *_: None) -> Curves:
 
 
 def _trace(question: Question, solver: str) -> EquilibriumPath:
-    scene, wanted = question.scene, {"rtol": question.rtol, "to_load": question.to_load}
+    scene, rtol, to_load = question.scene, question.rtol, question.to_load
     if solver == FINITE_ELEMENTS:
-        return convergence.trace(scene, **wanted)
+        return convergence.trace(scene, rtol=rtol, to_load=to_load)
     curved = scene.profile == "sphere" or isinstance(scene.body, Path)
     larger = scene.counter.radius if scene.counter and curved else math.inf
-    ratio = scene.radius_ratio if curved else None
-    return halfspace.trace(scene.tabor, radius_ratio=ratio, counter_radius=larger, **wanted)
+    profile: Profile = Sphere(scene.radius_ratio, larger) if curved and scene.radius_ratio else PARABOLOID
+    return halfspace.trace(scene.tabor, profile=profile, rtol=rtol, to_load=to_load)

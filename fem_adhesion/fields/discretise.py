@@ -25,7 +25,8 @@ from halfspace.accuracy.finite_bodies import SizedBody
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import ContactProblem, spike_width
-from halfspace.profiles import PARABOLOID, Profile, Tabulated
+from halfspace.profiles import PARABOLOID, Surface
+from halfspace.profiles.table import TabulatedSurface
 from halfspace.values import Valued
 
 RTOL = 1e-5
@@ -103,7 +104,7 @@ def _block(scene: Scene, how: Discretisation, lines: Array, far_field: FarField)
     return _of(scene, _condensed(scene, how, tensor_grid(lines, depths), far_field), PARABOLOID)
 
 
-def _block_under_sphere(scene: Scene, how: Discretisation, lines: Array, profile: Profile) -> Discretised:
+def _block_under_sphere(scene: Scene, how: Discretisation, lines: Array, profile: Surface) -> Discretised:
     """Block whose surface the law acts on as far as the sphere reaches."""
     mesh = block_under_sphere(scene, how, lines, BEYOND)
     return _of(scene, _condensed(scene, how, mesh, point_load), profile)
@@ -136,7 +137,7 @@ def _meshed(scene: Scene, source: ContactProblem) -> Discretised:
     stiffness = stiffness_for(0.0 if triangles else scene.poisson)
     body = condense(space, scene.poisson, far_field=GRIPS[scene.grip], stiffness=stiffness)
     surface = body.surface
-    return _of(scene, body, Tabulated(surface.radii, R * surface.depths, R * surface.slopes))
+    return _of(scene, body, TabulatedSurface(surface.radii, R * surface.depths, R * surface.slopes))
 
 
 def _condensed(scene: Scene, how: Discretisation, mesh: Any, far_field: FarField) -> CondensedBody:
@@ -145,5 +146,5 @@ def _condensed(scene: Scene, how: Discretisation, mesh: Any, far_field: FarField
     return condense(space, scene.poisson, far_field=far_field, stiffness=stiffness, traction=scene.traction)
 
 
-def _of(scene: Scene, body: CondensedBody, profile: Profile) -> Discretised:
+def _of(scene: Scene, body: CondensedBody, profile: Surface) -> Discretised:
     return Discretised(body, ContactProblem(body.operator, scene.tabor, profile=profile))

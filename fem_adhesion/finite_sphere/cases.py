@@ -24,6 +24,7 @@ from halfspace.equilibrium.events import Event
 from halfspace.equilibrium.newton import Traceable
 from halfspace.errors import InputError, NotConverged
 from halfspace.limits import SMALLEST_SPHERE
+from halfspace.profiles import Sphere
 
 FINITE_STRAIN_RTOL = 1e-4  # the tightest: a finer one is dear, and the effect is of the order of beta/R
 TO_LOAD = 0.5  # R dgamma: past every event, and little, since a sphere is no wider than it is
@@ -115,8 +116,8 @@ def _half_space(case: Case) -> Values:
 
 def _true_profile(case: Case) -> Values:
     """A half-space under a sphere."""
-    ratio = case.given("radius_ratio")
-    return quantities_of(halfspace.trace(case.given("tabor"), rtol=case.rtol, to_load=TO_LOAD, radius_ratio=ratio))
+    profile = Sphere(case.given("radius_ratio"))
+    return quantities_of(halfspace.trace(case.given("tabor"), profile=profile, rtol=case.rtol, to_load=TO_LOAD))
 
 
 def hemisphere(

@@ -14,8 +14,8 @@ from fem_adhesion.finite_strain.surface import contact_surface, rigid_operator
 from fem_adhesion.finite_strain.traction import Convention
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError
-from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
-from halfspace.profiles import PARABOLOID, Profile
+from halfspace.laws import LENNARD_JONES, Law
+from halfspace.profiles import PARABOLOID, Surface
 
 
 def material_body(space: Space, poisson: float, stretch: float) -> Body:
@@ -30,10 +30,10 @@ def finite_strain_problem(
     exterior: Exterior,
     tabor: float,
     *,
-    profile: Profile = PARABOLOID,
+    profile: Surface = PARABOLOID,
     convention: Convention,
     points: int | None = None,
-    law: SurfaceLaw = LENNARD_JONES,
+    law: Law = LENNARD_JONES,
 ) -> FiniteStrainProblem:
     """Put a body under a rigid flat wall that attracts it.
 
@@ -46,7 +46,7 @@ def finite_strain_problem(
         `fem_adhesion.elasticity.far_field.with_interiors`.
     tabor, law
         As in `halfspace.equilibrium.contact.ContactProblem`.
-    profile : Profile
+    profile : Surface
         Height of the body's undeformed surface over its pole, carried along by its points. That of a block is a
         perturbation of its flat surface, as in the linear body.
     convention : Convention

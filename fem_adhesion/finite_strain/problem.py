@@ -28,7 +28,7 @@ from fem_adhesion.finite_strain.surface import ContactSurface
 from fem_adhesion.finite_strain.traction import Convention, Traction
 from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.profiles import Profile
+from halfspace.profiles import Surface
 from halfspace.values import Valued
 
 MOST_STEPS, ENOUGH = 12, 1e-4  # to a start under a given pressure, and its relative accuracy
@@ -67,7 +67,7 @@ class FiniteStrainProblem(Valued):
         return self.interface.tabor
 
     @property
-    def profile(self) -> Profile:
+    def profile(self) -> Surface:
         """Of the undeformed surface."""
         return self.interface.profile
 

@@ -22,7 +22,7 @@ from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, find_event
 from halfspace.equilibrium.events import EVENTS, Event, Located, Tolerance, estimate_event, relocate
 from halfspace.equilibrium.path import Segment
 from halfspace.errors import InputError, NotConverged
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Valued
 

@@ -47,7 +47,7 @@ from scipy import sparse
 from fem_adhesion.finite_strain.surface import ContactSurface, scaled
 from fem_adhesion.scene import TractionName
 from halfspace.elastic.compliance import Array
-from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
+from halfspace.laws import LENNARD_JONES, PowerLaw
 from halfspace.values import Valued
 
 
@@ -84,7 +84,7 @@ def convention_of(traction: TractionName, poisson: float) -> Convention:
     return conventions[traction]
 
 
-def yielded_adhesion(tabor: float, radius_ratio: float, poisson: float, law: SurfaceLaw = LENNARD_JONES) -> float:
+def yielded_adhesion(tabor: float, radius_ratio: float, poisson: float, law: PowerLaw = LENNARD_JONES) -> float:
     """Work of adhesion over dgamma once the attracted layer has yielded, 1 + 0.274 tabor (beta/R) E*/M for the 3-9 law.
 
     That is -Phi(eps) - Delta Phi(eps), to the first order in beta/R: the integral of sigma^2 in closed form.

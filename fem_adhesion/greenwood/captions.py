@@ -10,7 +10,7 @@ from fem_adhesion.greenwood.text import farthest, gap_falls, joined, listed, ris
 from halfspace.accuracy.fold_birth import count_folds
 from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.theories import dmt
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF, bradley_load, jkr_zero_load
 from halfspace.theories.maugis import MaugisDugdale

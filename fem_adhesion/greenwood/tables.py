@@ -15,7 +15,7 @@ from fem_adhesion.greenwood.curves import states
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.curve import EquilibriumPath, Estimate
 from halfspace.equilibrium.events import Condition, Event
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.theories import criteria, dmt
 
 TABORS = (1.0, 2.0, 3.0, 5.0, 6.0)  # of Table 2

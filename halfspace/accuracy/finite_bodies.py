@@ -19,7 +19,8 @@ from halfspace.elastic.operators import Interpolated, MovingGrid, SurfaceCoordin
 from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, ContactProblem, spike_width
 from halfspace.equilibrium.curve import COMPRESSION, Chart
 from halfspace.equilibrium.events import Located
-from halfspace.profiles import Profile
+from halfspace.laws import LENNARD_JONES, Law
+from halfspace.profiles import Surface
 from halfspace.theories.closed_forms import jkr_radius
 from halfspace.values import Valued
 
@@ -41,7 +42,7 @@ class SizedBody(Valued):
     ----------
     tabor : float
         Tabor parameter.
-    profile : Profile
+    profile : Surface
         Of the undeformed surface.
     make : callable
         From the ends of all cells, in the surface's coordinate, the operator and its number of unknowns.
@@ -55,16 +56,19 @@ class SizedBody(Valued):
         Along the surface.
     last : float
         Length of the last of the others, in beta, if they are to be fine there too; see `at_equator`.
+    law : Law
+        Of the tension against the gap.
     """
 
     tabor: float
-    profile: Profile
+    profile: Surface
     make: Callable[[Array], Made]
     finest: float
     growth: float
     outer: Array
     coordinate: SurfaceCoordinate
     last: float = np.inf
+    law: Law = LENNARD_JONES
 
     @property
     def length(self) -> float:
@@ -81,13 +85,13 @@ class SizedBody(Valued):
     def centred(self) -> Chart:
         """Chart fine on the axis."""
         operator, unknowns = self.make(self.lines())
-        return Chart(ContactProblem(operator, self.tabor, profile=self.profile), unknowns, LEAVE * self.length)
+        return Chart(ContactProblem(operator, self.tabor, self.law, self.profile), unknowns, LEAVE * self.length)
 
     def following(self, moving: MovingGrid, scales: Array) -> Chart:
         """Chart that follows the contact edge, from operators at some contact radii."""
         made = [self.make(moving.lines(float(a))) for a in scales]
         operator = Interpolated(scales, [operator for operator, _ in made], moving)
-        return Chart(ContactProblem(operator, self.tabor, profile=self.profile), made[0][1])
+        return Chart(ContactProblem(operator, self.tabor, self.law, self.profile), made[0][1])
 
     def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
@@ -116,7 +120,7 @@ class SizedBody(Valued):
         return MovingGrid(fixed, moving, self.coordinate)
 
 
-def at_equator(tabor: float, profile: Profile, nodes: int) -> float:
+def at_equator(tabor: float, profile: Surface, nodes: int) -> float:
     """Length in beta of the last cell at the equator of a sphere, r = R, where its profile has a vertical tangent.
 
     Cells that grow from there on as they do from the contact edge leave as little of the root of the distance as of

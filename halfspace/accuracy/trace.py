@@ -18,8 +18,9 @@ from halfspace.elastic.operators import FlatCoordinate, Homogeneous
 from halfspace.equilibrium.contact import ContactProblem, spike_width
 from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
 from halfspace.equilibrium.events import REMAINING
-from halfspace.limits import require_counter_radius, require_load, require_radius_ratio, require_rtol, require_tabor
-from halfspace.profiles import Profile, between_spheres
+from halfspace.laws import LENNARD_JONES, Law
+from halfspace.limits import require_load, require_rtol, require_tabor
+from halfspace.profiles import PARABOLOID, Profile, Surface
 from halfspace.theories.closed_forms import jkr_radius
 from halfspace.values import Valued
 
@@ -95,7 +96,13 @@ def widest_radius(tabor: float, to_load: float) -> float:
     return float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(tabor)))
 
 
-def half_space_charts(tabor: float, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:
+def half_space_charts(
+    tabor: float,
+    resolution: Resolution,
+    to_load: float = COMPRESSION,
+    law: Law = LENNARD_JONES,
+    profile: Surface = PARABOLOID,
+) -> tuple[Chart, Chart]:
     """Panel grids centred on the axis and following the contact edge."""
     lines = rings(tabor, resolution.finest, resolution.growth, resolution.extent, to_load)
     centred, edge = (
@@ -103,34 +110,34 @@ def half_space_charts(tabor: float, resolution: Resolution, to_load: float = COM
         for breaks in (lines.centred, lines.edge)
     )
     return (
-        Chart(ContactProblem(centred, tabor), centred.radii.size, lines.until),
-        Chart(ContactProblem(Homogeneous(edge), tabor), edge.radii.size),
+        Chart(ContactProblem(centred, tabor, law, profile), centred.radii.size, lines.until),
+        Chart(ContactProblem(Homogeneous(edge), tabor, law, profile), edge.radii.size),
     )
 
 
 def trace(
     tabor: float,
     *,
+    law: Law = LENNARD_JONES,
+    profile: Profile = PARABOLOID,
     rtol: float = 1e-6,
     to_load: float = COMPRESSION,
-    radius_ratio: float | None = None,
-    counter_radius: float = math.inf,
 ) -> EquilibriumPath:
-    """Trace the load-approach curve of a rigid paraboloid or sphere on the adhesive half-space and solve for events.
+    """Trace the load-approach curve of a rigid body on the adhesive half-space and solve for its events.
 
     Parameters
     ----------
     tabor : float
         Tabor parameter mu, mu^3 = R dgamma^2/(E*^2 eps^3).
+    law : Law
+        Of the tension between the surfaces against their gap, see `halfspace.laws`.
+    profile : Profile
+        Shape of the body, see `halfspace.profiles`.
     rtol : float
         Relative accuracy asked of loads and approaches, 1e-9 to 1e-1; of approaches, which have no natural zero, in
         parts of eps and the range of those of all events.
     to_load : float
         Compressive load at which the curve ends, in R dgamma.
-    radius_ratio : float, optional
-        rho = R/eps of a true sphere, R/beta = sqrt(rho/tabor); a paraboloid unless given.
-    counter_radius : float
-        Of a second true sphere in radii of the first, 1 or more; R is that of the pair then, 1/R = 1/R1 + 1/R2.
 
     Returns
     -------
@@ -145,17 +152,16 @@ def trace(
         If the curve cannot be traced.
     """
     tabor, rtol, to_load = require_tabor(tabor), require_rtol(rtol), require_load(to_load)
-    counter_radius = require_counter_radius(counter_radius, radius_ratio)
-    if radius_ratio is not None:
-        gap = between_spheres(math.sqrt(require_radius_ratio(radius_ratio, tabor) / tabor), counter_radius)
-        return climb(rtol, partial(_sphere_rung, tabor, gap, rtol, to_load), to_load=to_load)
+    surface = profile.surface(tabor)
+    if math.isfinite(surface.end):
+        return climb(rtol, partial(_sphere_rung, tabor, law, surface, rtol, to_load), to_load=to_load)
 
     def rung(level: int) -> Rung:
         resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
-        curve = partial(half_space_charts, tabor, resolution, to_load)
+        curve = partial(half_space_charts, tabor, resolution, to_load, law, surface)
         if not level:
             return Rung(curve, (), asdict(resolution))
-        fine, twin = (Charted(half_space_charts(tabor, r, to_load)) for r in (resolution, _twin(below)))
+        fine, twin = (Charted(half_space_charts(tabor, r, to_load, law, surface)) for r in (resolution, _twin(below)))
         return Rung(curve, (fine,), asdict(resolution), twin, ONE_NODE if level == 1 else REMAINING)
 
     return climb(rtol, rung, to_load=to_load)
@@ -172,10 +178,10 @@ def _twin(resolution: Resolution) -> Resolution:
     )
 
 
-def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level: int) -> Rung:
-    """Rung of a level for a sphere or two, whose surface ends at the smaller one's equator."""
+def _sphere_rung(tabor: float, law: Law, gap: Surface, rtol: float, to_load: float, level: int) -> Rung:
+    """Rung of a level for a surface that ends, as a sphere's does at its equator."""
     resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
-    fine, other = (_under_sphere(tabor, gap, r) for r in (resolution, _twin(below)))
+    fine, other = (_under_sphere(tabor, law, gap, r) for r in (resolution, _twin(below)))
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(
         partial(fine.curve, to_load),
@@ -186,10 +192,10 @@ def _sphere_rung(tabor: float, gap: Profile, rtol: float, to_load: float, level:
     )
 
 
-def _under_sphere(tabor: float, gap: Profile, resolution: Resolution) -> SizedBody:
+def _under_sphere(tabor: float, law: Law, gap: Surface, resolution: Resolution) -> SizedBody:
     make, last = partial(_made, resolution.nodes), at_equator(tabor, gap, resolution.nodes)
     outer = np.array([gap.end])
-    return SizedBody(tabor, gap, make, resolution.finest, resolution.growth, outer, FlatCoordinate(), last)
+    return SizedBody(tabor, gap, make, resolution.finest, resolution.growth, outer, FlatCoordinate(), last, law)
 
 
 def _made(nodes: int, lines: compliance.Array) -> Made:

@@ -23,8 +23,8 @@ from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import Operator
 from halfspace.errors import GridTooCoarse, NotConverged
-from halfspace.lennard_jones import LENNARD_JONES, SurfaceLaw
-from halfspace.profiles import PARABOLOID, Profile
+from halfspace.laws import LENNARD_JONES, Law
+from halfspace.profiles import PARABOLOID, Surface
 from halfspace.roots import root
 from halfspace.values import Valued
 
@@ -60,16 +60,16 @@ class ContactProblem(Valued):
         Any body's surface compliance, from any discretisation, on a grid that stands still or follows the contact.
     tabor : float
         Tabor parameter mu.
-    law : SurfaceLaw
+    law : Law
         Pressure against gap.
-    profile : Profile
+    profile : Surface
         Of the undeformed surface.
     """
 
     operator: Operator
     tabor: float
-    law: SurfaceLaw = LENNARD_JONES
-    profile: Profile = PARABOLOID
+    law: Law = LENNARD_JONES
+    profile: Surface = PARABOLOID
 
     @property
     def follows_contact(self) -> bool:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, ContactProblem
 from halfspace.equilibrium.newton import Control
 from halfspace.errors import InputError, NotConverged
-from halfspace.lennard_jones import SurfaceLaw
+from halfspace.laws import Law
 from halfspace.values import Valued
 
 Array = NDArray[np.float64]
@@ -175,7 +175,7 @@ def _local_changes(influence: Array) -> Array:
     return changes
 
 
-def _correct_each(P: Array, H: Array, columns: Array, law: SurfaceLaw, tabor: float, relaxation: float) -> None:
+def _correct_each(P: Array, H: Array, columns: Array, law: Law, tabor: float, relaxation: float) -> None:
     """One sweep of local corrections, in place; each node sees those before it."""
     last = P.size - 1
     for i, column in enumerate(columns):

@@ -18,7 +18,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.theories.closed_forms import Array, gap_shape, hertz_load, hertz_radius_at
 
 # Nodes of the trapezoidal rule in ln z. The integrands decay as z^5 and z^-4 and are analytic for |Im ln z| < pi/3, so

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.errors import InputError
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.roots import root
 from halfspace.theories.closed_forms import Array, ContactState
 
@@ -89,16 +89,16 @@ class RigidSphere:
     def _end(self, h: Array) -> Array:
         return np.asarray(h + (2 if self.whole else 1) * self.radius_ratio)
 
-    def _moment(self, h: Array, n: int) -> Array:
+    def _moment(self, h: Array, n: float) -> Array:
         """Integral of t^-n from the pole's gap h to the end's."""
         return np.asarray((h ** (1 - n) - self._end(h) ** (1 - n)) / (n - 1))
 
-    def _sum(self, approach: ArrayLike, power: Callable[[Array, int], Array]) -> Array:
+    def _sum(self, approach: ArrayLike, power: Callable[[Array, float], Array]) -> Array:
         """Load, or its derivative by the gap, from the integrals of the law's two powers."""
         h, law = 1 - np.asarray(approach, float), LENNARD_JONES
         return np.asarray(-2 * np.pi * law.amplitude * (power(h, law.attraction) - power(h, law.repulsion)))
 
-    def _least(self, load: Callable[[ArrayLike], Array], slope: Callable[[Array, int], Array]) -> ContactState:
+    def _least(self, load: Callable[[ArrayLike], Array], slope: Callable[[Array, float], Array]) -> ContactState:
         """Solve for the zero of the load's derivative by the gap, given the derivatives of the two integrals."""
         what = "the largest tension of a rigid sphere; take a larger radius_ratio"
         approach = root(lambda alpha: float(self._sum(alpha, slope)), -1.0, 1e-6, what, xtol=1e-15)

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.errors import InputError
-from halfspace.lennard_jones import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES
 from halfspace.roots import root
 from halfspace.theories.closed_forms import Array, ContactState, gap_shape
 

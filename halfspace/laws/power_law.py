@@ -1,31 +1,27 @@
-"""Surface law: the pressure between two surfaces as a function of their gap ([G97] 1.2, 2.5, 2.9)."""
+"""Attraction and repulsion by inverse powers of the gap, 3 and 9 for Lennard-Jones solids ([G97] 1.2, 2.5, 2.9)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from halfspace.laws.law import Array
 
 
 @dataclass(frozen=True)
-class SurfaceLaw:
+class PowerLaw:
     """Attraction and repulsion by inverse powers of the gap, normalised to the work of adhesion.
 
     sigma(h) = c dgamma/eps [(eps/h)^n - (eps/h)^m] is the tension, zero at h = eps; the amplitude c makes
-    the integral of sigma from eps to infinity equal to dgamma. Gaps enter as H = h/eps - 1, pressures
-    leave as P = mu eps p/dgamma, positive in compression.
+    the integral of sigma from eps to infinity equal to dgamma.
 
     Parameters
     ----------
-    attraction, repulsion : int
+    attraction, repulsion : float
         Exponents n < m; 3 and 9 for Lennard-Jones solids.
     """
 
-    attraction: int = 3
-    repulsion: int = 9
+    attraction: float = 3
+    repulsion: float = 9
 
     @property
     def amplitude(self) -> float:
@@ -34,7 +30,7 @@ class SurfaceLaw:
 
     @property
     def edge_gap(self) -> float:
-        """H at which the tension is largest, 3^(1/6) - 1 for the 3-9 law: it defines the contact edge."""
+        """H at which the tension is largest, 3^(1/6) - 1 for the 3-9 law."""
         return float((self.repulsion / self.attraction) ** (1 / (self.repulsion - self.attraction)) - 1)
 
     def pressure(self, gap: Array, tabor: float) -> Array:
@@ -48,9 +44,14 @@ class SurfaceLaw:
         return self.amplitude * tabor * (n * h ** -(n + 1) - m * h ** -(m + 1))
 
     def energy(self, gap: Array, tabor: float) -> Array:
-        """Phi(H) with -dPhi/dH = P and Phi = 0 far apart; multiply by R dgamma eps for an energy per beta^2."""
+        """Phi(H) with -dPhi/dH = P and Phi = 0 far apart."""
         h, n, m = gap + 1, self.attraction, self.repulsion
         return self.amplitude * tabor * (h ** -(m - 1) / (m - 1) - h ** -(n - 1) / (n - 1))
 
 
-LENNARD_JONES = SurfaceLaw()
+def LennardJones() -> PowerLaw:
+    """Return the 3-9 law, that of two half-spaces whose particles attract by the Lennard-Jones potential."""
+    return PowerLaw(3, 9)
+
+
+LENNARD_JONES = LennardJones()

@@ -1,0 +1,9 @@
+"""Laws of the tension between two surfaces against their gap, one a module.
+
+`law` says what each must know of itself; `power_law` is the default, Lennard and Jones's for solids.
+"""
+
+from halfspace.laws.law import Law
+from halfspace.laws.power_law import LENNARD_JONES, LennardJones, PowerLaw
+
+__all__ = ["LENNARD_JONES", "Law", "LennardJones", "PowerLaw"]

@@ -1,0 +1,11 @@
+"""Profiles of the undeformed surfaces, one a module: the gap's height over that on the axis against the radius.
+
+`profile` says what each must know of itself. `paraboloid` is the default and `sphere` the true shape of one sphere or
+two; `table` is the surface of a body that is given as a mesh.
+"""
+
+from halfspace.profiles.paraboloid import PARABOLOID, Paraboloid
+from halfspace.profiles.profile import Dimensionless, Profile, Surface
+from halfspace.profiles.sphere import Sphere
+
+__all__ = ["PARABOLOID", "Dimensionless", "Paraboloid", "Profile", "Sphere", "Surface"]

@@ -1,0 +1,49 @@
+"""What a contact asks of the profile of the undeformed surfaces.
+
+A `Surface` is what the equations take: heights z in beta^2/R = mu eps against radii in beta. A `Profile` is what is
+asked for. Most are the same surface at every Tabor parameter; one with a length of its own, as R/eps, is not.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Surface(Protocol):
+    """Height of the undeformed surface over its pole as a function of the radius."""
+
+    @property
+    def end(self) -> float:
+        """Radius in beta at which the surface ends; infinite if it does not."""
+        ...
+
+    def height(self, radii: Array) -> Array:
+        """Height in beta^2/R at radii in beta."""
+        ...
+
+    def slope(self, radii: Array) -> Array:
+        """Derivative of the height by the radius."""
+        ...
+
+
+class Profile(Protocol):
+    """Shape of the undeformed surfaces."""
+
+    def surface(self, tabor: float) -> Surface:
+        """Heights in beta^2/R against radii in beta at a Tabor parameter."""
+        ...
+
+
+class Dimensionless:
+    """A profile that is the same surface at every Tabor parameter: it has `height`, `slope` and perhaps an `end`."""
+
+    end: float = np.inf
+
+    def surface(self, tabor: float) -> Self:  # noqa: ARG002 (the same at all)
+        """Return the profile itself."""
+        return self
