@@ -27,7 +27,7 @@ from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import AlongCurve, Made, SizedBody
 from halfspace.accuracy.refinement import Rung, climb
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem, spike_width
 from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
@@ -36,7 +36,7 @@ from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol
 from halfspace.profiles import Paraboloid, Surface
 from halfspace.profiles.sphere import between_spheres
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 # The sphere
 

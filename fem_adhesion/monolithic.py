@@ -28,11 +28,11 @@ from fem_adhesion.elasticity.boundaries import boundary_basis
 from fem_adhesion.elasticity.condensation import contact_surface
 from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space, cell_quadrature, lame_parameters
-from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 
 def axisymmetric_elasticity(poisson: float) -> Any:

@@ -34,9 +34,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from halfspace import laws, profiles, scaling, theories
     from halfspace.accuracy.trace import trace
-    from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+    from halfspace.equilibrium.curve import EquilibriumPath
     from halfspace.equilibrium.events import Event
     from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
+    from halfspace.values import Estimate
 
 __all__ = [
     "ContactTooWide",

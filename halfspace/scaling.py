@@ -9,11 +9,10 @@ import math
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from halfspace.errors import InputError
-
-Array = NDArray[np.float64]
+from halfspace.values import Array
 
 HAMAKER = 16 * math.pi  # A/(dgamma eps^2) of the 3-9 law
 

@@ -1,5 +1,6 @@
-"""Results that hold arrays, as values: compared by what they hold, shown in a few lines, pickled without their caches.
+"""Numbers with errors, and results that hold arrays, as values.
 
+They are compared by what they hold, shown in a few lines, and pickled without their caches.
 The comparison that `dataclasses` writes asks an array for its truth and raises; its repr prints every number.
 """
 
@@ -7,17 +8,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import Field, fields, is_dataclass
+from dataclasses import Field, dataclass, fields, is_dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 FEW = 4
 """Items of a sequence, and numbers of an array, that are shown one by one."""
 
 LONGEST = 60
 """Characters shown of anything else."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number and the estimated bound of its error, in the same unit."""
+
+    value: float
+    error: float
 
 
 class Valued:

@@ -28,10 +28,11 @@ from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.jobs import stream
 from fem_adhesion.common.options import progress_bar
 from fem_adhesion.scene import Counter
-from halfspace.equilibrium.curve import Estimate, energy_released, placed
+from halfspace.equilibrium.curve import energy_released, placed
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import EVENTS, Condition, Located
 from halfspace.equilibrium.states import COORDINATES
+from halfspace.values import Estimate
 
 MESHES = Path(__file__).parents[1] / "meshes"
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")

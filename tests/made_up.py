@@ -5,8 +5,9 @@ from types import SimpleNamespace
 from fem_adhesion import Scene
 from fem_adhesion.crosscheck.comparison import SOLVERS, Row
 from fem_adhesion.crosscheck.study import Case, Failure
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Event
+from halfspace.values import Estimate
 
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 

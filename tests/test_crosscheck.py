@@ -18,9 +18,9 @@ from fem_adhesion.crosscheck.table import crosscheck_tables
 from fem_adhesion.elasticity import space
 from halfspace import limits
 from halfspace.equilibrium.contact import ContactProblem
-from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import NotConverged
 from halfspace.laws import PowerLaw
+from halfspace.values import Estimate
 
 RTOL = 1e-4  # defects change the numbers by per cents: coarse meshes show them as well
 

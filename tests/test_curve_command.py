@@ -25,10 +25,11 @@ from fem_adhesion.curve import solve as study
 from fem_adhesion.curve import terminal as curve_terminal
 from fem_adhesion.scene import Counter, Scene
 from halfspace.equilibrium import devices
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError, NotConverged
 from halfspace.profiles import Paraboloid, Sphere
 from halfspace.scaling import Units
+from halfspace.values import Estimate
 
 MATERIAL = ("--radius", "100nm", "--modulus", "1GPa", "--poisson", "0.3", "--work-of-adhesion", "50mJ/m^2")
 MATERIAL = (*MATERIAL, "--spacing", "0.3nm")

@@ -18,8 +18,8 @@ from fem_adhesion.finite_sphere import cases
 from fem_adhesion.finite_sphere import page as finite_sphere_page
 from fem_adhesion.finite_sphere.cases import MODELS
 from fem_adhesion.finite_sphere.records import CRITICAL
-from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import ContactTooWide, NotConverged
+from halfspace.values import Estimate
 
 QUICK = "fem-adhesion finite-sphere --out sphere --quick"
 

@@ -22,7 +22,7 @@ from fem_adhesion.finite_sphere.tables import write_tables
 from fem_adhesion.finite_sphere.terms import FIXED_GRIPS, leading_terms
 from fem_adhesion.finite_sphere.words import caption
 from halfspace.elastic import grid
-from halfspace.equilibrium.curve import Estimate
+from halfspace.values import Estimate
 
 TABORS, RATIOS = (0.3, 1.0, 3.0), (10.0, 100.0, 1e3, 1e4)
 TABLES = ("rules", "first_jumps", "fits", "theories", "bulk", "failures", "captions")

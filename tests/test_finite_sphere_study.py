@@ -42,12 +42,12 @@ from fem_adhesion.finite_sphere.study import plan, run, seconds_left
 from fem_adhesion.finite_sphere.table import Row, borders, rows
 from fem_adhesion.finite_sphere.tables import COLUMNS, NO_PARQUET, TEXTS, write_tables
 from fem_adhesion.finite_strain.scene import find_jumps
-from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Sphere
 from halfspace.theories.closed_forms import JKR_PULL_OFF
 from halfspace.theories.exact_sphere import JKRSphere
+from halfspace.values import Estimate
 
 CASES = [Case("half_space", tabor, rtol=1e-2) for tabor in (0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0)]
 

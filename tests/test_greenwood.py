@@ -27,11 +27,11 @@ from fem_adhesion.greenwood.record import tables
 from fem_adhesion.greenwood.tables import LAST_DIGIT, ROUNDED
 from fem_adhesion.greenwood.text import NOTHING
 from halfspace.equilibrium.contact import CENTRAL_GAP
-from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import NotConverged
 from halfspace.theories import criteria, dmt
 from halfspace.theories.closed_forms import bradley_load
 from halfspace.theories.maugis import MaugisDugdale, carpick_pull_off
+from halfspace.values import Estimate
 
 DATA = Path(__file__).parent / "data"
 FIGURES = ("1a", "1b", "1c", "2a", "2b", "3a", "3b", "3c", "4a", "4b", "5", "6a", "6b", "7", "8")

@@ -19,7 +19,8 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
 from halfspace.accuracy.trace import Resolution, half_space_charts
-from halfspace.equilibrium.curve import Estimate, energy_released, find_events, trace_charts
+from halfspace.equilibrium.curve import energy_released, find_events, trace_charts
+from halfspace.values import Estimate
 
 
 def _number(estimate, error, known=0.0):

@@ -18,7 +18,7 @@ from fem_adhesion.crosscheck.table import STYLES, columns, crosscheck_table, cro
 from fem_adhesion.report import levels
 from fem_adhesion.report.page import WORDS, verdict_words
 from fem_adhesion.report.parts import symbols
-from halfspace.equilibrium.curve import Estimate
+from halfspace.values import Estimate
 
 
 def row_as_read(cells):

@@ -29,9 +29,10 @@ from fem_adhesion.speed.result import Rung, SpeedStudy, Truth, best, cheapest, p
 from fem_adhesion.speed.study import measure
 from halfspace.elastic import compliance
 from halfspace.equilibrium import newton, relaxation
-from halfspace.equilibrium.curve import Estimate, transfer
+from halfspace.equilibrium.curve import transfer
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
+from halfspace.values import Estimate
 
 METHODS = [*halfspace_methods(), *element_methods()]
 PREFIX = {"half-space": "", "finite elements": "FE "}

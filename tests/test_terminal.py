@@ -22,7 +22,7 @@ from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Row
 from fem_adhesion.crosscheck.table import cells, columns, crosscheck_tables
 from fem_adhesion.scene import Scene
-from halfspace.equilibrium.curve import Estimate
+from halfspace.values import Estimate
 
 WIDTHS = [150, 100, 80, 60, 40, 20]
 

@@ -17,7 +17,6 @@ from fem_adhesion.assess.study import Assessment
 from fem_adhesion.assess.theories import Curve, loop
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
@@ -25,6 +24,7 @@ from halfspace.equilibrium.path import Segment
 from halfspace.equilibrium.reach import reaching
 from halfspace.errors import InputError
 from halfspace.scaling import Units
+from halfspace.values import Array
 
 SUFFIXES = (".png", ".svg", ".pdf")
 LINES: tuple[dict[str, Any], ...] = (

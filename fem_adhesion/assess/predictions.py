@@ -9,12 +9,13 @@ from dataclasses import dataclass, field
 from fem_adhesion.assess import theories
 from fem_adhesion.assess.theories import Curve, Loop, estimated, loop
 from fem_adhesion.common.units import Quantity
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Jump, cycle
 from halfspace.equilibrium.events import Event, approach_scale
 from halfspace.scaling import Units
 from halfspace.theories.closed_forms import ContactState
 from halfspace.theories.exact_sphere import JKRSphere, RigidSphere
+from halfspace.values import Estimate
 
 # Relative distance of JKR's theory with the reach of the attraction from the half-space at the Tabor parameter 300, the
 # last that is computed; it falls beyond, the contact's as mu^-1.7.
@@ -108,7 +109,7 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
 
 
 def _radius(event: Event, units: Units) -> Quantity:
-    return Quantity.of(Estimate(event.contact_radius, event.contact_radius_error), units.length, "m")
+    return Quantity.of(event.estimate("contact_radius"), units.length, "m")
 
 
 def _jump(name: str, jump: Jump, stiffness: float, units: Units) -> dict[str, Quantity]:

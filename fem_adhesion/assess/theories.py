@@ -12,12 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from halfspace.elastic.compliance import Array
-from halfspace.equilibrium.curve import Estimate
 from halfspace.theories import closed_forms, dmt
 from halfspace.theories.closed_forms import ContactState
 from halfspace.theories.maugis import MaugisDugdale
-from halfspace.values import Valued
+from halfspace.values import Array, Estimate, Valued
 
 SAMPLES = 100_001  # of each stretch; odd, so that every second one has the same ends
 COMPRESSED = 2.0  # load to which the curves go

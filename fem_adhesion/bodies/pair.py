@@ -22,9 +22,10 @@ from fem_adhesion.mesh import spheres
 from fem_adhesion.mesh.curved import Block, joined
 from fem_adhesion.scene import Counter
 from halfspace.elastic import grid
-from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.profiles import Paraboloid, Surface
 from halfspace.profiles.sphere import between_spheres
+from halfspace.values import Array
 
 BEYOND = 1e3  # size of a block, in radii of the sphere that meets it
 

@@ -22,11 +22,11 @@ from halfspace.accuracy.finite_bodies import AroundEvents, Made, SizedBody, at_e
 from halfspace.accuracy.refinement import Rung
 from halfspace.accuracy.trace import TWIN
 from halfspace.elastic import grid
-from halfspace.elastic.compliance import Array
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.contact import spike_width
 from halfspace.profiles import Paraboloid, Surface
 from halfspace.profiles.sphere import SphereSurface
+from halfspace.values import Array
 
 GRIPS = {"sliding": sliding, "bonded": clamped}
 

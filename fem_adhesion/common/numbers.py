@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from fem_adhesion.common.units import Quantity
-from halfspace.equilibrium.curve import Estimate
+from halfspace.values import Estimate
 
 PREFIXES = {
     -24: "y",

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.values import Array
 
 # Okabe and Ito's colours, which colour-blind eyes tell apart; a figure shows no two parameters of the same colour.
 BLUE, SKY, GREEN, ORANGE, RED, PINK = "#0072B2", "#56B4E9", "#009E73", "#E69F00", "#D55E00", "#CC79A7"

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from halfspace.equilibrium.curve import Estimate
+from halfspace.values import Estimate
 
 Verdict = Literal["agree", "disagree", "inconclusive"]
 Pair = tuple[str, str]

@@ -20,13 +20,12 @@ from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, diff
 from fem_adhesion.crosscheck.weak_bodies import SHARP, AtRadius, contacts
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form import Contact, Turn, newton, tension, tension_slope, turning_point
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import LOAD, ContactProblem
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Located
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES
-from halfspace.values import Valued
+from halfspace.values import Array, Estimate, Valued
 
 BUDGET = 1e-3  # of each quantity
 ROUND_OFF = 1e-10
@@ -163,7 +162,7 @@ def _of_event(
 ) -> Iterator[Compared]:
     event, located = path.events[name], path.stages[-1][name]
     coarse, fine = (_state(contact(_size(located, sized=sized)), located) for contact in (on_coarse, on_fine))
-    approach, load = (Estimate(getattr(event, key), getattr(event, f"{key}_error")) for key in ("approach", "load"))
+    approach, load = map(event.estimate, ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
     balances, reactions = (coarse.balance, fine.balance), (coarse.reaction, fine.reaction)
     yield Compared(f"{name} balance", "eps", balances, Estimate(0.0, approach.error), width)

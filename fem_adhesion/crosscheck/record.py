@@ -8,8 +8,9 @@ from typing import Any
 from fem_adhesion.common.facts import finite, versions
 from fem_adhesion.crosscheck.comparison import Row
 from fem_adhesion.crosscheck.study import Case, Failure
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Event
+from halfspace.values import Estimate
 
 VERDICTS = ("failed", "disagree", "inconclusive", "agree")  # worst first
 EVENT_KEYS = ("approach", "load", "central_gap", "contact_radius", "approach_error", "load_error")

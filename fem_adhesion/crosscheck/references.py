@@ -24,12 +24,13 @@ from fem_adhesion.mesh.file import read_body
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import SizedBody, at_equator
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium.contact import ContactProblem, spike_width
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
 from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.profiles.sphere import SphereSurface
+from halfspace.values import Array
 
 Operators = list[ElasticOperator]
 

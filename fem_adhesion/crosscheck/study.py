@@ -32,12 +32,13 @@ from fem_adhesion.crosscheck.references import (
 )
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.refinement import FOLDS
-from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium.contact import ContactProblem
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate, transfer
+from halfspace.equilibrium.curve import EquilibriumPath, transfer
 from halfspace.equilibrium.events import ROUND_OFF, Located
 from halfspace.errors import NotConverged
 from halfspace.limits import require_rtol
+from halfspace.values import Array, Estimate
 
 Solver = Callable[..., EquilibriumPath]
 
@@ -245,7 +246,7 @@ def _number(path: EquilibriumPath, name: str, quantity: str) -> Estimate | None:
     event = path.event(name)
     if event is None:
         return UNTOLD if name in FOLDS and path.jumps is None else None
-    return Estimate(getattr(event, quantity), getattr(event, f"{quantity}_error"))
+    return event.estimate(quantity)
 
 
 UNTOLD = Estimate(float("nan"), float("inf"))

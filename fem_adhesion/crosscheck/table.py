@@ -12,8 +12,9 @@ from fem_adhesion.common.terminal import Column, Fitted
 from fem_adhesion.crosscheck.comparison import SOLVERS, Pair, Row
 from fem_adhesion.crosscheck.study import Case
 from fem_adhesion.scene import Scene
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import tolerance_told
+from halfspace.values import Estimate
 
 SHORT = {
     "half-space": "hs",

@@ -21,7 +21,6 @@ from fem_adhesion.mesh.file import read_body
 from fem_adhesion.mesh.held_sphere import held_sphere
 from fem_adhesion.scene import Counter, Scene
 from fem_adhesion.weak_form import (
-    Array,
     Body,
     Contact,
     Heights,
@@ -33,6 +32,7 @@ from fem_adhesion.weak_form import (
     sphere,
 )
 from halfspace.elastic import grid
+from halfspace.values import Array
 
 AtRadius = Callable[[float], Contact]
 """The contact on cells that are finest at a radius in beta."""

@@ -9,12 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath, metric_for
 from halfspace.equilibrium.events import FOLD, locate
 from halfspace.equilibrium.path import Segment
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 STABLE, GRIPS_ONLY, UNSTABLE = range(3)
 KINDS: Mapping[int, str] = {

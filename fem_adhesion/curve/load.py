@@ -15,12 +15,12 @@ from fem_adhesion.curve.lines import Frame
 from fem_adhesion.curve.profiles import LEGEND, STATES
 from fem_adhesion.curve.scales import Scale, scales
 from fem_adhesion.curve.solve import Curves
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.reach import reaching
 from halfspace.scaling import MAUGIS
 from halfspace.theories.closed_forms import bradley_load, hertz_radius, jkr_approach, jkr_load
 from halfspace.theories.maugis import MaugisDugdale
+from halfspace.values import Array
 
 KINDS: Mapping[int, dict[str, Any]] = {
     lines.STABLE: {"color": style.BLUE, "linewidth": 2.4, "linestyle": "-"},

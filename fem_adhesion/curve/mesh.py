@@ -15,9 +15,9 @@ from fem_adhesion.curve.scales import scales
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.fields.state import State, require_fields, state_at
 from fem_adhesion.scene import Scene
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS
 from halfspace.errors import InputError
+from halfspace.values import Array
 
 EVENT = "pull_off"
 MESH = Discretisation(degree=4)

@@ -18,10 +18,10 @@ from fem_adhesion.curve.still import composed, contact_words, state_words
 from fem_adhesion.fields.state import state_at
 from fem_adhesion.paraview.cutaway import view_of
 from fem_adhesion.paraview.solid import Pixels, solid_image
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath, metric_for
 from halfspace.equilibrium.events import Condition, Located, locate
+from halfspace.values import Array
 
 SIZE = (800, 500)
 """Of a frame in pixels."""

@@ -11,10 +11,9 @@ import numpy as np
 from fem_adhesion.common import style
 from fem_adhesion.curve.scales import scales
 from fem_adhesion.curve.solve import Curves
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem, spike_width
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 POINTS = 1500
 WIDER = 1.6  # radii shown, in those of the widest contact

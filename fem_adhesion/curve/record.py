@@ -11,9 +11,10 @@ from typing import IO, Any
 from fem_adhesion.common.facts import plain, versions
 from fem_adhesion.curve.scales import si_sizes
 from fem_adhesion.curve.solve import Curves
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, Jump
 from halfspace.equilibrium.events import Event, Tolerance
+from halfspace.values import Estimate
 
 OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
 UNITS: Mapping[str, str] = {

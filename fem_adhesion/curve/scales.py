@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from fem_adhesion.common.numbers import PREFIXES, exponent_of
 from fem_adhesion.curve.solve import Curves
-from halfspace.elastic.compliance import Array
 from halfspace.scaling import Units
+from halfspace.values import Array
 
 
 @dataclass(frozen=True)

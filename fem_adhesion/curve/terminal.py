@@ -16,10 +16,10 @@ from fem_adhesion.curve import lines
 from fem_adhesion.curve.braille import Canvas
 from fem_adhesion.curve.scales import Scale, scales
 from fem_adhesion.curve.solve import Curves
-from halfspace.equilibrium.curve import Estimate
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
 from halfspace.equilibrium.reach import reaching
+from halfspace.values import Estimate
 
 DIGITS = 8  # significant, at most
 MISSED = "*"  # after a number whose error is above the tolerance

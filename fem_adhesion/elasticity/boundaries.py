@@ -13,7 +13,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine
 
 from fem_adhesion.elasticity.space import Space
-from halfspace.elastic.compliance import Index
+from halfspace.values import Index
 
 INVERSION_TOLERANCE = 1e-6
 """Summed over the points of a facet, in units of the reference cell; a cell of 1e-9 of its radius is still resolved."""

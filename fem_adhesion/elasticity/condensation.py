@@ -13,9 +13,9 @@ from scipy.sparse.linalg import splu
 from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
 from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load
 from fem_adhesion.elasticity.space import CellStiffness, Space, cell_stiffness, ring_measure, scatter
-from halfspace.elastic.compliance import Array, ElasticOperator, Index
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError, NotConverged
-from halfspace.values import Valued
+from halfspace.values import Array, Index, Valued
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -17,8 +17,7 @@ from scipy.sparse.linalg import splu
 
 from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
 from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure
-from halfspace.elastic.compliance import Array, Index
-from halfspace.values import Valued
+from halfspace.values import Array, Index, Valued
 
 TRACE_POINTS = 6
 """Gauss points on a facet beyond the degree p where a smooth field that is no polynomial is integrated."""

@@ -30,8 +30,9 @@ from fem_adhesion.elasticity.space import (
     shear_matrix,
     strain_products,
 )
-from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
+from halfspace.values import Array
 
 REMEDY_FROM = 0.4
 """Poisson's ratio from which the projection earns its cost, a tenth more time to condense a block. Of the error of the

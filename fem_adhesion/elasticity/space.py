@@ -17,9 +17,8 @@ from skfem import Dofs, ElementVector
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
-from halfspace.elastic.compliance import Array, Index
 from halfspace.errors import InputError
-from halfspace.values import Valued
+from halfspace.values import Array, Index, Valued
 
 BATCH = 400_000
 """Numbers held in one batch of strain-displacement matrices: 16 MB, small enough for the cache to help."""

@@ -15,7 +15,7 @@ from skfem import CellBasis
 
 from fem_adhesion.elasticity.incompressible import pressure_modes
 from fem_adhesion.elasticity.space import Space, cell_quadrature, elastic_matrix, lame_parameters, scatter, shear_matrix
-from halfspace.elastic.compliance import Array
+from halfspace.values import Array
 
 ON_AXIS = 1e-12
 """Radius, in the largest of the points given, below which the hoop strain is its limit du_r/dr."""

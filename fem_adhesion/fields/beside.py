@@ -9,10 +9,9 @@ import numpy as np
 from fem_adhesion.fields.state import State
 from fem_adhesion.scene import Scene
 from halfspace.elastic import compliance
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS, ContactProblem
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 MOST_NODES = 16
 """Of a ring of the half-space."""

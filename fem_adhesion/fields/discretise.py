@@ -23,11 +23,10 @@ from fem_adhesion.mesh.refinement import refined
 from fem_adhesion.scene import Counter, Scene
 from halfspace.accuracy.finite_bodies import SizedBody
 from halfspace.elastic import grid
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import ContactProblem, spike_width
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.profiles.table import TabulatedSurface
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 RTOL = 1e-5
 """Of the load left out beyond a block that goes on as a half-space: it is then 15 to 80 beta wide."""

@@ -22,7 +22,6 @@ from fem_adhesion.elasticity.space import Space
 from fem_adhesion.elasticity.stress import recovered_stresses
 from fem_adhesion.fields.discretise import Discretised, discretised, share_of
 from fem_adhesion.scene import Scene
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath, metric_for, transfer
@@ -30,7 +29,7 @@ from halfspace.equilibrium.events import EVENTS
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Metric, Point, make_point
 from halfspace.errors import InputError
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 FIELDS = Discretisation(degree=6)
 """Cells of the fields: displacement and stress differ from those of degree 9 by 5e-5 and 1e-3 of their maxima."""

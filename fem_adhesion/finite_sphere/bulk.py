@@ -23,7 +23,7 @@ from fem_adhesion.bodies.sized import Discretisation, sized_body
 from fem_adhesion.scene import GripName, Scene
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.equilibrium.curve import Estimate
+from halfspace.values import Estimate
 
 SMALL, LARGE = 10.0, 100.0  # R/beta of the spheres that are solved
 FINE, COARSE = Discretisation(6), Discretisation(5)

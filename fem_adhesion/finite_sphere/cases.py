@@ -18,13 +18,14 @@ from fem_adhesion.finite_sphere.records import APPROACH_SCALE, CRITICAL, Case, I
 from fem_adhesion.finite_strain.scene import find_jumps, require_well_posed
 from fem_adhesion.scene import GripName, ProfileName, TractionName
 from halfspace.accuracy.fold_birth import FIRST, Birth, NoBirth, born, tabor_of
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import Event
 from halfspace.equilibrium.newton import Traceable
 from halfspace.errors import InputError, NotConverged
 from halfspace.limits import SMALLEST_SPHERE
 from halfspace.profiles import Sphere
+from halfspace.values import Estimate
 
 FINITE_STRAIN_RTOL = 1e-4  # the tightest: a finer one is dear, and the effect is of the order of beta/R
 TO_LOAD = 0.5  # R dgamma: past every event, and little, since a sphere is no wider than it is
@@ -89,8 +90,8 @@ def quantities_of(path: EquilibriumPath) -> dict[str, Estimate]:
     """Quantities of a traced curve."""
     pull_off, zero_load = path.events["pull_off"], path.events["zero_load"]
     values = {
-        "pull_off_load": Estimate(pull_off.load, pull_off.load_error),
-        "zero_load_radius": Estimate(zero_load.contact_radius, zero_load.contact_radius_error),
+        "pull_off_load": pull_off.estimate("load"),
+        "zero_load_radius": zero_load.estimate("contact_radius"),
         APPROACH_SCALE: Estimate(path.approach_scale, 2 * max(e.approach_error for e in path.events.values())),
     }
     values |= _jumps(path.events)
@@ -104,8 +105,8 @@ def _jumps(events: Mapping[str, Event]) -> dict[str, Estimate]:
     values = {}
     for name in ("jump_on", "jump_off"):
         if jump := events.get(name):
-            values[f"{name}_approach"] = Estimate(jump.approach, jump.approach_error)
-            values[f"{name}_load"] = Estimate(jump.load, jump.load_error)
+            values[f"{name}_approach"] = jump.estimate("approach")
+            values[f"{name}_load"] = jump.estimate("load")
     return values
 
 
@@ -151,7 +152,7 @@ def _finite_strain(case: Case, traction: TractionName) -> Values:
     """A neo-Hookean hemisphere: pull-off and jumps only, to a tolerance of 1e-4 or more."""
     events = find_jumps(_neo_hookean(case, traction), max(case.rtol, FINITE_STRAIN_RTOL))
     pull_off = events["pull_off"]
-    return {"pull_off_load": Estimate(pull_off.load, pull_off.load_error)} | _jumps(events)
+    return {"pull_off_load": pull_off.estimate("load")} | _jumps(events)
 
 
 def _first_jump(case: Case) -> Values:

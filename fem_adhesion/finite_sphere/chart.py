@@ -14,9 +14,7 @@ from numpy.typing import NDArray
 
 from fem_adhesion.finite_sphere.table import Row
 from halfspace.errors import InputError
-from halfspace.values import Valued
-
-Array = NDArray[np.float64]
+from halfspace.values import Array, Valued
 
 LEVELS = (0.1, 0.01, 0.001)
 """Relative deviations of the contours."""

@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from fem_adhesion.common import style
-from fem_adhesion.finite_sphere.chart import LEVELS, Array, Field, contour, field_of
+from fem_adhesion.finite_sphere.chart import LEVELS, Field, contour, field_of
 from fem_adhesion.finite_sphere.materials import Material, materials
 from fem_adhesion.finite_sphere.table import Border, Row
 from halfspace.limits import SMALLEST_SPHERE
+from halfspace.values import Array
 
 TABOR = r"Tabor parameter $\mu$"
 RATIO = r"radius over spacing $R/\epsilon$"

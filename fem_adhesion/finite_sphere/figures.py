@@ -23,9 +23,10 @@ from fem_adhesion.finite_sphere.points import (
     reference_poisson,
 )
 from fem_adhesion.finite_sphere.table import Results, Row
-from fem_adhesion.finite_sphere.terms import Array, leading_terms
+from fem_adhesion.finite_sphere.terms import leading_terms
 from fem_adhesion.finite_sphere.words import headline
 from halfspace.errors import InputError
+from halfspace.values import Array
 
 DOTS_PER_INCH = 160
 LOOK: Mapping[Any, Any] = {**style.LOOK, "svg.fonttype": "none"}

@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_adhesion.finite_sphere.table import Row
-from fem_adhesion.finite_sphere.terms import TERMS, Array, Term, leading_terms
-from halfspace.equilibrium.curve import Estimate
+from fem_adhesion.finite_sphere.terms import TERMS, Term, leading_terms
 from halfspace.errors import InputError
-from halfspace.values import Valued
+from halfspace.values import Array, Estimate, Valued
 
 TOLERANCE = 0.1  # of the sum of the terms' sizes
 DEVIATIONS = 2.0  # standard deviations that bound an error

@@ -8,7 +8,7 @@ import numpy as np
 
 from fem_adhesion.finite_sphere.fit import samples
 from fem_adhesion.finite_sphere.table import Row
-from fem_adhesion.finite_sphere.terms import Array
+from halfspace.values import Array
 
 FAVOURED = (0.3, 1.0, 3.0)  # Tabor parameters of a panel each
 POISSON = 0.3

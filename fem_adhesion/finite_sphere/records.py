@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Literal
 
-from halfspace.equilibrium.curve import Estimate
 from halfspace.errors import InputError
+from halfspace.values import Estimate
 
 Status = Literal["solved", "refused", "died", "left out"]
 InputName = Literal["tabor", "radius_ratio", "poisson"]

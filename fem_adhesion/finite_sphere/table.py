@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fem_adhesion.finite_sphere.cases import CAUSES, MODELS, case_of
 from fem_adhesion.finite_sphere.records import APPROACH_SCALE, CRITICAL, QUANTITIES, Case, Record, Study, Values
 from fem_adhesion.scene import GripName
-from halfspace.equilibrium.curve import Estimate
+from halfspace.values import Estimate
 
 BulkCompliance = Callable[[GripName, float, float], Estimate]
 """Of grip, Poisson's ratio and R/beta: what a body yields more than the half-space under a load, in 1/(E* R)."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from fem_adhesion.finite_sphere.table import Row
-from halfspace.equilibrium.curve import Estimate
+from halfspace.values import Estimate
 
 NUMBERS = ("value", "baseline", "half_space", "deviation")  # each followed by its error
 FIELDS = tuple(field.name for field in fields(Row))

@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from halfspace.values import Array
+
 Term = Callable[[Array, Array], Array]
 """Of Tabor parameters and R/eps."""
 

@@ -26,9 +26,8 @@ from skfem import Dofs
 from fem_adhesion.elasticity.space import Space, cell_quadrature, lame_parameters, reference_functions, scatter
 from fem_adhesion.finite_strain import material
 from fem_adhesion.finite_strain.cells import Cells, cells_of, summed
-from halfspace.elastic.compliance import Array, Index
 from halfspace.errors import InputError
-from halfspace.values import Valued
+from halfspace.values import Array, Index, Valued
 
 
 @dataclass(frozen=True, eq=False, repr=False)

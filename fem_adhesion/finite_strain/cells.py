@@ -12,8 +12,7 @@ import numpy as np
 
 from fem_adhesion.elasticity.space import Space, cell_strains
 from fem_adhesion.finite_strain.material import Deformation
-from halfspace.elastic.compliance import Array, Index
-from halfspace.values import Valued
+from halfspace.values import Array, Index, Valued
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -21,9 +21,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from halfspace.elastic.compliance import Array
 from halfspace.elastic.grid import gauss_legendre
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 SMALL = 0.5
 """Change of volume below which x - ln(1 + x) is integrated rather than subtracted; ten Gauss points give all digits."""

@@ -17,11 +17,10 @@ from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.mesh import spheres
 from fem_adhesion.scene import Scene
 from halfspace.elastic import grid
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import spike_width
 from halfspace.equilibrium.curve import Chart, undeformed_radius
 from halfspace.equilibrium.events import Located
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 FARTHEST = 0.98
 """Undeformed radius in R up to which a contact may spread.

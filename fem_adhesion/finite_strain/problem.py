@@ -26,10 +26,9 @@ from fem_adhesion.finite_strain.bodies import Body
 from fem_adhesion.finite_strain.solve import Elimination, Step, elimination
 from fem_adhesion.finite_strain.surface import ContactSurface
 from fem_adhesion.finite_strain.traction import Convention, Traction
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.profiles import Surface
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 MOST_STEPS, ENOUGH = 12, 1e-4  # to a start under a given pressure, and its relative accuracy
 SLOW = 0.5  # ratio of two such steps from which the stiffness is computed again

@@ -16,7 +16,6 @@ from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.scene import Scene, TractionName
 from halfspace.accuracy.refinement import Rung, climb
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, find_events, metric_for, moved, trace_charts
 from halfspace.equilibrium.events import EVENTS, Event, Located, Tolerance, estimate_event, relocate
@@ -24,7 +23,7 @@ from halfspace.equilibrium.path import Segment
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
 from halfspace.limits import require_load, require_rtol
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a minute's work at 3
 TIGHTEST = 1e-6  # relative tolerance

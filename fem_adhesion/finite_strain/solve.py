@@ -15,9 +15,8 @@ from scipy.sparse.linalg import splu
 
 from fem_adhesion.elasticity.far_field import Exterior
 from fem_adhesion.finite_strain.bodies import Body
-from halfspace.elastic.compliance import Array, Index
 from halfspace.errors import NotConverged
-from halfspace.values import Valued
+from halfspace.values import Array, Index, Valued
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -11,8 +11,8 @@ from scipy import sparse
 from fem_adhesion.elasticity.boundaries import boundary_basis
 from fem_adhesion.elasticity.far_field import Exterior
 from fem_adhesion.elasticity.space import Space
-from halfspace.elastic.compliance import Array, ElasticOperator, Index
-from halfspace.values import Valued
+from halfspace.elastic.compliance import ElasticOperator
+from halfspace.values import Array, Index, Valued
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -46,9 +46,8 @@ from scipy import sparse
 
 from fem_adhesion.finite_strain.surface import ContactSurface, scaled
 from fem_adhesion.scene import TractionName
-from halfspace.elastic.compliance import Array
 from halfspace.laws import LENNARD_JONES, PowerLaw
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 
 @dataclass(frozen=True)

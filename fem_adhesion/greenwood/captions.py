@@ -8,12 +8,12 @@ from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.greenwood.study import JUMPS_AT, WINDING_AT, Greenwood1997
 from fem_adhesion.greenwood.text import farthest, gap_falls, joined, listed, rises, told
 from halfspace.accuracy.fold_birth import count_folds
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.laws import LENNARD_JONES
 from halfspace.theories import dmt
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF, bradley_load, jkr_zero_load
 from halfspace.theories.maugis import MaugisDugdale
+from halfspace.values import Array
 
 DMT = {"force method": dmt.force_load, "thermodynamic": dmt.thermodynamic_load, "DMT-M": dmt.maugis_load}
 RIGID = (0.02, 0.1, 0.3)  # Tabor parameters of Fig. 1a

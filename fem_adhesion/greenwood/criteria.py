@@ -10,10 +10,8 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 import halfspace
-from halfspace.elastic.compliance import Array
-from halfspace.equilibrium.curve import Estimate
 from halfspace.theories import criteria
-from halfspace.values import Valued
+from halfspace.values import Array, Estimate, Valued
 
 REPULSION_GONE = 10.0  # Tabor parameter above which the exponent is fitted
 
@@ -84,7 +82,7 @@ class CriteriaStudy:
 def jump_on(tabor: float, *, rtol: float = 1e-6) -> JumpOn:
     """Solve for a true jump; above the critical Tabor parameter."""
     event = halfspace.trace(tabor, rtol=rtol).events["jump_on"]
-    approach, gap = Estimate(event.approach, event.approach_error), Estimate(event.central_gap, event.central_gap_error)
+    approach, gap = event.estimate("approach"), event.estimate("central_gap")
     return JumpOn(tabor, approach, gap)
 
 

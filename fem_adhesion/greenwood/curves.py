@@ -9,14 +9,13 @@ import numpy as np
 
 import halfspace
 from halfspace.accuracy.trace import half_space_charts, resolution_for
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium import devices
 from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS
-from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, Estimate, metric_for, trace_charts
+from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, metric_for, trace_charts
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import FOLD, Condition, Located, locate
 from halfspace.equilibrium.path import Steps
-from halfspace.values import Valued
+from halfspace.values import Array, Estimate, Valued
 
 FINE = Steps(first=0.02, longest=0.08, turn=0.06)  # a polygon through the points looks smooth
 FINEST = Steps(first=0.02, longest=0.03, turn=0.02)  # even enlarged
@@ -99,8 +98,8 @@ def jumps(tabor: float, *, rtol: float = 1e-6) -> tuple[Jump, ...]:
 
 def _lettered(letters: str, jump: devices.Jump) -> Jump:
     before, after = jump.take_off, jump.landing
-    approach = Estimate(before.approach, before.approach_error)
-    load, landing_load = (Estimate(event.load, event.load_error) for event in (before, after))
+    approach = before.estimate("approach")
+    load, landing_load = (event.estimate("load") for event in (before, after))
     return Jump(letters[0], letters[1], approach, load, landing_load)
 
 

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from halfspace.accuracy.fold_birth import FIRST, critical_stiffness, tabor_of
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 STIFFNESSES = (math.inf, 100.0, 10.0, 3.0, 1.0, 0.3, 0.1)  # R dgamma/eps
 

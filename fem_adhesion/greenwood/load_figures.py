@@ -13,9 +13,9 @@ from fem_adhesion.greenwood import captions
 from fem_adhesion.greenwood.captions import DMT_TABOR, RIGID, SCALED, SOFT
 from fem_adhesion.greenwood.plot import Plot
 from fem_adhesion.greenwood.study import JUMPS_AT, Greenwood1997
-from halfspace.elastic.compliance import Array
 from halfspace.theories import dmt
 from halfspace.theories.closed_forms import bradley_load, hertz_load, hertz_radius_at, jkr_approach, jkr_load
+from halfspace.values import Array
 
 
 def _figure_1a(study: Greenwood1997) -> Figure:

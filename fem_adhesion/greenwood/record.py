@@ -13,8 +13,8 @@ from fem_adhesion.greenwood.devices import DeviceStudy
 from fem_adhesion.greenwood.relaxation import NODES, Attempt
 from fem_adhesion.greenwood.study import JUMPS_AT, WINDING_AT, Greenwood1997
 from fem_adhesion.greenwood.tables import Printed
-from halfspace.equilibrium.curve import Estimate
 from halfspace.equilibrium.events import Event
+from halfspace.values import Estimate
 
 
 def tables(study: Greenwood1997) -> list[Table]:
@@ -89,7 +89,7 @@ def _cycles(devices: DeviceStudy) -> Table:
 
 def _end(event: Event) -> tuple[str, ...]:
     """Approach and load where a jump takes off or lands."""
-    approach, load = Estimate(event.approach, event.approach_error), Estimate(event.load, event.load_error)
+    approach, load = event.estimate("approach"), event.estimate("load")
     return (*_cells(approach), *_cells(load))
 
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium import newton, relaxation
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.errors import NotConverged
+from halfspace.values import Array
 
 NODES, OUTER = 200, 6.0  # uniform triangles, to this radius in beta, or in beta/sqrt(mu) below mu = 1
 TABORS = (0.05, 0.2, 0.5, 1.0, 2.0, 3.0)

@@ -15,8 +15,8 @@ from fem_adhesion.greenwood.study import Greenwood1997, PullOff
 from fem_adhesion.greenwood.tables import Printed
 from fem_adhesion.greenwood.text import joined, rises, told
 from fem_adhesion.greenwood.trend_captions import closed_ratios
-from halfspace.equilibrium.curve import Estimate
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
+from halfspace.values import Estimate
 
 
 def agreement(entries: Sequence[Printed]) -> str:

@@ -12,12 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath, transfer
 from halfspace.errors import NotConverged
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 EXTENT = 6.0  # beta: less than 0.6 % of the pull-off load is lost beyond it for mu >= 1
 WINDOW = 2.0  # spacings, on both sides of the contact radius at pull-off: the ripple's period is one

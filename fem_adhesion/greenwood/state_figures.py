@@ -13,10 +13,10 @@ from fem_adhesion.greenwood import captions
 from fem_adhesion.greenwood.captions import GAPS_AT, RADII_AT
 from fem_adhesion.greenwood.plot import Plot
 from fem_adhesion.greenwood.study import WINDING_AT, Greenwood1997
-from halfspace.elastic.compliance import Array
 from halfspace.scaling import MAUGIS
 from halfspace.theories.closed_forms import hertz_load, jkr_load
 from halfspace.theories.maugis import MaugisDugdale, carpick_radius
+from halfspace.values import Array
 
 THEORIES_AT = (0.5, 2.0)
 FOLD_NUMBERS = ((0, (8, 0)), (1, (-16, -3)), (1, (8, -3)), (0, (-4, 9)))  # panel and offset in points

@@ -22,9 +22,8 @@ from fem_adhesion.greenwood.ripple import Ripple, Rise, false_rise, ripple
 from fem_adhesion.greenwood.tables import Printed
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.fold_birth import FIRST, tabor_of
-from halfspace.elastic.compliance import Array
-from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, Estimate
-from halfspace.values import Valued
+from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath
+from halfspace.values import Array, Estimate, Valued
 
 DRAWN = (0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0)  # Tabor parameters of the figures' curves
 DEEP = {0.02: 20.0}  # load to which a curve goes, Fig. 1c
@@ -294,7 +293,7 @@ def _pull_off(tabor: float, extent: Extent) -> PullOff:
 
 def _least_load(path: EquilibriumPath) -> Estimate:
     event = path.events["pull_off"]
-    return Estimate(event.load, event.load_error)
+    return event.estimate("load")
 
 
 def _critical_tabor() -> Estimate:

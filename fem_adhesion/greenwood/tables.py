@@ -13,10 +13,11 @@ from scipy.optimize import curve_fit
 
 from fem_adhesion.greenwood.curves import states
 from halfspace.equilibrium.contact import LOAD
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Condition, Event
 from halfspace.laws import LENNARD_JONES
 from halfspace.theories import criteria, dmt
+from halfspace.values import Estimate
 
 TABORS = (1.0, 2.0, 3.0, 5.0, 6.0)  # of Table 2
 ROUNDING = 1e-15  # of 1 + f, and of closed forms relative to their value
@@ -124,9 +125,9 @@ def _quantity(quantity: str, event: Event, tabor: float) -> tuple[Estimate, str]
         "minus_alpha_star": (Estimate(-event.approach, event.approach_error), "eps"),
         "minus_alpha_star_over_mu": (Estimate(-event.approach / tabor, event.approach_error / tabor), "beta^2/R"),
         "minus_W_over_R_dgamma": (Estimate(-event.load, event.load_error), "R dgamma"),
-        "H0": (Estimate(event.central_gap, event.central_gap_error), "eps"),
+        "H0": (event.estimate("central_gap"), "eps"),
         "H0_plus_1_over_mu_3_7": (Estimate((event.central_gap + 1) / scale, event.central_gap_error / scale), "1"),
-        "a_star": (Estimate(event.contact_radius, event.contact_radius_error), "beta"),
+        "a_star": (event.estimate("contact_radius"), "beta"),
     }[quantity]
 
 

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.contact import CENTRAL_GAP
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.values import Array
 
 NOTHING = "No numbers were found to tell of."
 

@@ -12,8 +12,8 @@ from fem_adhesion.greenwood.criteria import CriteriaStudy, Criterion
 from fem_adhesion.greenwood.ripple import Ripple
 from fem_adhesion.greenwood.study import Greenwood1997
 from fem_adhesion.greenwood.text import joined, rises, told
-from halfspace.elastic.compliance import Array
 from halfspace.theories import criteria
+from halfspace.values import Array
 
 CLOSED = ("Attard & Parker", "Pethica & Sutton", "App. C")
 STEADY = 5.0  # Tabor parameter from which the scaled gap at jump-on is looked at for being constant

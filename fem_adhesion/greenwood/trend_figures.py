@@ -14,10 +14,10 @@ from fem_adhesion.greenwood import trend_captions as captions
 from fem_adhesion.greenwood.criteria import Criterion
 from fem_adhesion.greenwood.plot import Plot
 from fem_adhesion.greenwood.study import RIPPLE_AT, Greenwood1997, PullOff
-from halfspace.elastic.compliance import Array
 from halfspace.scaling import MAUGIS
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 from halfspace.theories.maugis import MaugisDugdale, carpick_pull_off
+from halfspace.values import Array
 
 TRUE: dict[str, Any] = {"color": "black", "linestyle": "none", "marker": "o", "markersize": 5, "label": "true jump"}
 CRITERIA_STYLES: dict[str, tuple[str, Any]] = {

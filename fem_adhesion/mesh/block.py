@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from skfem import MeshQuad, MeshTri
 
-from halfspace.elastic.compliance import Array, Index
 from halfspace.elastic.grid import geometric
 from halfspace.errors import InputError
+from halfspace.values import Array, Index
 
 SizeFunction = Callable[[Array, Array], Array]
 """Largest edge wanted at (r, z), in beta."""

@@ -14,8 +14,8 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from halfspace.elastic.compliance import Array, Index
 from halfspace.errors import InputError
+from halfspace.values import Array, Index
 
 GROUPS = {"axis": "axis", "contact": "contact", "grip": "far"}
 """Groups of lines of a file, and what the boundaries are called inside."""

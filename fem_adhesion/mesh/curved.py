@@ -16,8 +16,7 @@ from numpy.polynomial.chebyshev import chebder, chebvander
 from skfem import MeshQuad
 from skfem.mapping import MappingIsoparametric
 
-from halfspace.elastic.compliance import Array, Index
-from halfspace.values import Valued
+from halfspace.values import Array, Index, Valued
 
 DEGREE = 8
 """Of the cells' shape: an arc of one radian deviates from the circle by 1e-10 of its radius."""

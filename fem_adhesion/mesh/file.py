@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 
 from fem_adhesion.mesh.checks import GROUPS, TOLERANCE, facet_nodes, pole, pole_radius, require_body
-from halfspace.elastic.compliance import Array, Index
 from halfspace.errors import InputError
+from halfspace.values import Array, Index
 
 CORNERS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
 """Vertices of the cells that are read, by meshio's name."""

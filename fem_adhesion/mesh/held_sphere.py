@@ -26,9 +26,9 @@ from fem_adhesion.mesh.spheres import (
     stereographic,
     vertex_at,
 )
-from halfspace.elastic.compliance import Array
 from halfspace.errors import InputError
 from halfspace.limits import require_cap_angle
+from halfspace.values import Array
 
 RINGS = 0.2 ** np.arange(1.0, 8.0)
 """Sizes of the rings around the rim of the cap, in parts of the cells there; what is left errs by some 1e-9."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fem_adhesion.mesh.curved import CORNERS, DEGREE, CurvedQuads, chebyshev_points, of_cells
-from halfspace.elastic.compliance import Array, Index
+from halfspace.values import Array, Index
 
 
 def refined_towards(mesh: CurvedQuads, vertex: int, sizes: Array) -> CurvedQuads:

@@ -16,8 +16,7 @@ import numpy as np
 
 from fem_adhesion.mesh.curved import Block, CurvedQuads, joined
 from fem_adhesion.mesh.nested import refined_towards
-from halfspace.elastic.compliance import Array, Index
-from halfspace.values import Valued
+from halfspace.values import Array, Index, Valued
 
 CORE, DEPTH = 1.7, 0.9
 """Radius and depth of the tensor grid about the pole, in R on the flat plane; its corner stays inside that of 2R."""

@@ -15,10 +15,10 @@ from fem_adhesion.fields.state import State
 from fem_adhesion.paraview.lattice import Cut
 from fem_adhesion.paraview.revolve import Solid
 from fem_adhesion.scene import Scene
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.events import EVENTS
 from halfspace.errors import InputError
 from halfspace.scaling import Units
+from halfspace.values import Array
 
 Named = dict[str, Array]
 Numbers = TypeVar("Numbers", float, Array)

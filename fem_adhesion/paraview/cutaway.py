@@ -14,9 +14,8 @@ import numpy as np
 
 from fem_adhesion.fields.state import State
 from fem_adhesion.paraview.lattice import cut_for
-from halfspace.elastic.compliance import Array, Index
 from halfspace.equilibrium.contact import CONTACT_RADIUS
-from halfspace.values import Valued
+from halfspace.values import Array, Index, Valued
 
 TOLERANCE = 1e-2
 """Largest error of the stress as drawn, of its maximum."""

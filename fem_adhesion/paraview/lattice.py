@@ -14,7 +14,7 @@ from skfem.refdom import RefTri
 
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.elasticity.stress import positions, sampled
-from halfspace.elastic.compliance import Array, Index
+from halfspace.values import Array, Index
 
 QUAD9 = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1], [1, 1]])
 """Steps to the nodes of a quadrilateral from its first, in VTK's order: corners, middles of sides, centre."""

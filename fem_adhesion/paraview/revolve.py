@@ -12,9 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from halfspace.elastic.compliance import Array, Index
 from halfspace.errors import InputError
-from halfspace.values import Valued
+from halfspace.values import Array, Index, Valued
 
 SEGMENT = 15.0
 """Largest angle of a cell in degrees."""

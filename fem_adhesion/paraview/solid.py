@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from fem_adhesion.fields.state import State
 from fem_adhesion.paraview.cutaway import Section, View, section, surfaces
 from fem_adhesion.paraview.write import require_pyvista
-from halfspace.elastic.compliance import Array
 from halfspace.errors import InputError
+from halfspace.values import Array
 
 Pixels = NDArray[np.uint8]
 

@@ -35,9 +35,9 @@ from fem_adhesion.paraview.arrays import (
 )
 from fem_adhesion.paraview.lattice import cut_for
 from fem_adhesion.paraview.revolve import require_angle, revolved
-from halfspace.elastic.compliance import Array, Index
 from halfspace.errors import InputError
 from halfspace.scaling import Units
+from halfspace.values import Array, Index
 
 Labels = Mapping[str, Sequence[str]]
 

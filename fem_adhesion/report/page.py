@@ -25,8 +25,8 @@ from fem_adhesion.report.levels import crosscheck_section, settings_section
 from fem_adhesion.report.parts import Section
 from fem_adhesion.report.sections import SOURCES, section_of
 from fem_adhesion.report.walk import LINES, Station, Walk
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.values import Array
 
 TEMPLATES = "report/templates"
 

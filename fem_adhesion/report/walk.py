@@ -17,10 +17,9 @@ from fem_adhesion.elasticity.stress import positions, sampled
 from fem_adhesion.fields.beside import half_space_beside
 from fem_adhesion.fields.state import State, states_along
 from fem_adhesion.scene import Scene
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import NotConverged
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 SEEN = Discretisation(degree=4)  # of the fields: right to the width of a line
 RADII = 151  # of the profiles

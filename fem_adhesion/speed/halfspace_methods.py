@@ -11,12 +11,13 @@ import halfspace
 from fem_adhesion.mesh.block import graded_breaks
 from fem_adhesion.speed.methods import Method, Solved, Step, from_chart, from_path, unit, widest
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium import newton, relaxation
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem, spike_width
 from halfspace.equilibrium.newton import Control
 from halfspace.equilibrium.relaxation import Relaxed
 from halfspace.errors import InputError
+from halfspace.values import Array
 
 MOST_NODES = 3000  # of a dense operator: 70 MB, and as much again for each factorisation
 

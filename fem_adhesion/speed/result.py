@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from fem_adhesion.speed.methods import QUANTITIES, Family, Method
-from halfspace.equilibrium.curve import Estimate
+from halfspace.values import Estimate
 
 Status = Literal["converged", "too coarse", "refused", "failed"]
 VISIBLE = 4.0  # MiB of memory below which a growth says nothing

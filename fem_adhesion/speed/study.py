@@ -21,9 +21,10 @@ from fem_adhesion.speed.element_methods import POISSON, element_methods
 from fem_adhesion.speed.halfspace_methods import halfspace_methods
 from fem_adhesion.speed.methods import Family, Method, Solved, Step
 from fem_adhesion.speed.result import Rung, SpeedStudy, Status, Truth
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
+from halfspace.values import Estimate
 
 TABOR_RANGE = (0.05, 2.0)  # beyond it fixed grids need too many nodes, or rigid surfaces leave nothing to compare
 TIGHTEST = 1e-9  # relative tolerance of the truths
@@ -92,9 +93,9 @@ def _truth(family: Family, path: EquilibriumPath) -> Truth:
 def _estimates(path: EquilibriumPath) -> dict[str, Estimate]:
     """Quantities of a path with their uncertainties; jump and hysteresis only where it folds."""
     pull_off, jump_on, grips = path.events["pull_off"], path.event("jump_on"), cycle(path)
-    found = {"pull_off": Estimate(pull_off.load, pull_off.load_error)}
+    found = {"pull_off": pull_off.estimate("load")}
     if jump_on and grips:
-        found |= {"jump_on": Estimate(jump_on.approach, jump_on.approach_error), "hysteresis": grips.energy_lost}
+        found |= {"jump_on": jump_on.estimate("approach"), "hysteresis": grips.energy_lost}
     return found
 
 

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from halfspace.elastic import grid
-from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import Interpolated, MovingGrid, SurfaceCoordinate, chebyshev_radii
 from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, ContactProblem, spike_width
 from halfspace.equilibrium.curve import COMPRESSION, Chart
@@ -22,7 +22,7 @@ from halfspace.equilibrium.events import Located
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import Surface
 from halfspace.theories.closed_forms import jkr_radius
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the least that the other one knows
 LEAVE = 0.5  # of the first cell: the radius at which the chart centred on the axis is left

@@ -14,7 +14,6 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from halfspace.accuracy.trace import half_space_charts, resolution_for
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath, metric_for
@@ -22,6 +21,7 @@ from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Point, make_point
 from halfspace.errors import NotConverged
 from halfspace.roots import root
+from halfspace.values import Array
 
 
 class NoBirth(NotConverged):

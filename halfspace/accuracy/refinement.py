@@ -20,7 +20,6 @@ from halfspace.equilibrium.curve import (
     COMPRESSION,
     Chart,
     EquilibriumPath,
-    Estimate,
     Finest,
     energy_released,
     find_events,
@@ -44,7 +43,7 @@ from halfspace.equilibrium.events import (
 from halfspace.equilibrium.path import Segment
 from halfspace.equilibrium.states import Ways
 from halfspace.errors import InputError, NotConverged
-from halfspace.values import Valued
+from halfspace.values import Estimate, Valued
 
 MOST_RUNGS = 4  # above the lowest
 FOLDS = ("jump_on", "jump_off")

@@ -22,7 +22,7 @@ from halfspace.laws import LENNARD_JONES, Law
 from halfspace.limits import require_load, require_rtol, require_tabor
 from halfspace.profiles import PARABOLOID, Profile, Surface
 from halfspace.theories.closed_forms import jkr_radius
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
 MOST_NODES = 16  # of a panel
@@ -73,8 +73,8 @@ def widened(tabor: float) -> float:
 class Rings(Valued):
     """Breakpoints of two charts: centred on the axis up to a contact radius, then on the edge, whose radius is 1."""
 
-    centred: grid.Array
-    edge: grid.Array
+    centred: Array
+    edge: Array
     until: float
 
 
@@ -198,5 +198,5 @@ def _under_sphere(tabor: float, law: Law, gap: Surface, resolution: Resolution) 
     return SizedBody(tabor, gap, make, resolution.finest, resolution.growth, outer, FlatCoordinate(), last, law)
 
 
-def _made(nodes: int, lines: compliance.Array) -> Made:
+def _made(nodes: int, lines: Array) -> Made:
     return compliance.panels(lines, nodes), nodes * (lines.size - 1)

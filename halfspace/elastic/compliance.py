@@ -6,16 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from halfspace.elastic import grid
 from halfspace.elastic.kernel import band_deflection, panel_integrals
 from halfspace.errors import InputError
-from halfspace.values import Valued
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from halfspace.values import Array, Index, Valued
 
 
 @dataclass(frozen=True, eq=False, repr=False)

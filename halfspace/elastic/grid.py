@@ -6,11 +6,9 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
 from halfspace.errors import InputError
-
-Array = NDArray[np.float64]
+from halfspace.values import Array
 
 
 def uniform(extent: float, spacing: float) -> Array:

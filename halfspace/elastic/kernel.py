@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from scipy.special import ellipe, ellipkm1, elliprd, elliprf
 
 from halfspace.elastic.grid import gauss_legendre
-
-Array = NDArray[np.float64]
+from halfspace.values import Array
 
 GRADING = 5  # q of the substitution; with NEAR_POINTS it leaves 1e-13 for panels of up to 16 nodes
 NEAR_POINTS = 64

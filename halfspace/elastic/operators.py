@@ -15,9 +15,9 @@ from typing import Protocol
 
 import numpy as np
 
-from halfspace.elastic.compliance import Array, ElasticOperator, lagrange
+from halfspace.elastic.compliance import ElasticOperator, lagrange
 from halfspace.elastic.grid import gauss_legendre
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 
 class Operator(Protocol):

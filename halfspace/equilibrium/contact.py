@@ -17,7 +17,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
-from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
 from halfspace.elastic.compliance import ElasticOperator
@@ -26,9 +25,7 @@ from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.roots import root
-from halfspace.values import Valued
-
-Array = NDArray[np.float64]
+from halfspace.values import Array, Valued
 
 APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
 

@@ -39,9 +39,7 @@ from halfspace.equilibrium.path import WHOLE_BODY, Metric, Point, Segment, Steps
 from halfspace.equilibrium.states import FinestCurve, States, Ways, finest_curve, require_coordinate, resampled
 from halfspace.errors import ContactTooWide, InputError, NotConverged
 from halfspace.limits import require_points
-from halfspace.values import Valued, shown
-
-Array = NDArray[np.float64]
+from halfspace.values import Array, Estimate, Valued, shown
 
 COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwise
 
@@ -53,14 +51,6 @@ class Chart(Valued):
     problem: Traceable
     unknowns: int
     until: float = np.inf
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A number and the estimated bound of its error, in the same unit."""
-
-    value: float
-    error: float
 
 
 class Finest(Protocol):
@@ -291,6 +281,10 @@ class EquilibriumPath(Valued):
         ((coordinate, values),) = given.items()
         return self.finest_curve.at(coordinate, values, branch)
 
+    def states(self, condition: Condition) -> list[Located]:
+        """Every state of the path as it was traced, on the coarsest grid, that meets a condition, in order."""
+        return states(self.segments, condition)
+
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Parts of the curve in order along which a coordinate goes in one direction, and its range on each.
 
@@ -450,6 +444,12 @@ def moved(event: Located, problem: Traceable) -> Located:
     return relocate(event, problem, start, metric_for(problem.tabor))
 
 
+def states(segments: Sequence[Segment], condition: Condition) -> list[Located]:
+    """Every state of a traced curve that meets a condition, in order."""
+    metric = metric_for(segments[0].problem.tabor)
+    return [e for s in segments for e in locate(s.problem, s.points, metric, condition)]
+
+
 def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     """Solve for the events of a traced curve and name them.
 
@@ -466,15 +466,11 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
         If the curve ends before one of those that it must have: for want of body, it is a ContactTooWide.
     """
     tabor = segments[0].problem.tabor
-    metric = metric_for(tabor)
-
-    def roots(condition: Condition) -> list[Located]:
-        return [e for s in segments for e in locate(s.problem, s.points, metric, condition)]
 
     def required(name: str, condition: Condition) -> list[Located]:
-        return roots(condition) or _missing(segments[-1], name)
+        return states(segments, condition) or _missing(segments[-1], name)
 
-    folds = roots(FOLD)
+    folds = states(segments, FOLD)
     found = {"pull_off": min(required("pull_off", EXTREMUM), key=lambda e: float(e.point.observables[LOAD]))}
     if folds:
         found |= {"jump_on": folds[0], "jump_off": folds[-1]}

@@ -16,19 +16,17 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, LOAD
-from halfspace.equilibrium.curve import EquilibriumPath, Estimate, Finest, metric_for, moved, transfer
-from halfspace.equilibrium.events import ROUND_OFF, Condition, Event, Located, Tolerance, estimate_event, locate
+from halfspace.equilibrium.curve import EquilibriumPath, Finest, metric_for, moved, states, transfer
+from halfspace.equilibrium.events import ROUND_OFF, Condition, Event, Located, Tolerance, estimate_event
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Segment, make_point
 from halfspace.equilibrium.reach import reaching, widened
 from halfspace.errors import InputError, NotConverged
 from halfspace.limits import require_number
-
-Array = NDArray[np.float64]
+from halfspace.values import Array, Estimate
 
 
 @dataclass(frozen=True)
@@ -146,11 +144,11 @@ def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> fl
 
 def jumps(segments: Sequence[Segment], compliance: float) -> tuple[_States, _States] | None:
     """Jump on and jump off with an apparatus of compliance 1/k, on the discretisation of the curve itself."""
-    folds = _roots(segments, Condition(APPROACH, stationary=True, compliance=compliance))
+    folds = states(segments, Condition(APPROACH, stationary=True, compliance=compliance))
     if not folds:
         return None
     on, off = folds[0], folds[-1]
-    landings = _roots(segments, Condition(APPROACH, value=_base(on, compliance), compliance=compliance))
+    landings = states(segments, Condition(APPROACH, value=_base(on, compliance), compliance=compliance))
     if not landings:
         load = segments[-1].points[-1].observables[LOAD]
         raise NotConverged(
@@ -161,11 +159,6 @@ def jumps(segments: Sequence[Segment], compliance: float) -> tuple[_States, _Sta
     separated = widened(segments[0].problem, base)
     start = separated.undeformed(base)
     return _States(on, contact), _States(off, _landing(separated, start, off, compliance))
-
-
-def _roots(segments: Sequence[Segment], condition: Condition) -> list[Located]:
-    metric = metric_for(segments[0].problem.tabor)
-    return [e for s in segments for e in locate(s.problem, s.points, metric, condition)]
 
 
 def _base(state: Located, compliance: float) -> float:

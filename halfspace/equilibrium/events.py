@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
@@ -20,9 +19,7 @@ from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Metric, Point, correct, least_slope, make_point
 from halfspace.errors import NotConverged
 from halfspace.roots import root
-from halfspace.values import Valued
-
-Array = NDArray[np.float64]
+from halfspace.values import Array, Estimate, Valued
 
 EVENTS = ("pull_off", "jump_on", "jump_off", "zero_load")
 ARCLENGTH_TOLERANCE = 1e-12
@@ -58,6 +55,10 @@ class Event:
     load_error: float
     central_gap_error: float
     contact_radius_error: float
+
+    def estimate(self, quantity: str) -> Estimate:
+        """One of its numbers with its error: approach, load, central_gap or contact_radius."""
+        return Estimate(getattr(self, quantity), getattr(self, f"{quantity}_error"))
 
 
 def approach_scale(approaches: Iterable[float], spacing: float = 1.0) -> float:

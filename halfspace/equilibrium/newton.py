@@ -7,14 +7,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.errors import NotConverged
-from halfspace.values import Valued
-
-Array = NDArray[np.float64]
-
+from halfspace.values import Array, Valued
 
 GROWTH = 10.0  # of the relative residual, let through in one step
 ROUND_OFF = 1e-10  # relative size of a step below which the residual may be no more than rounding

@@ -10,15 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.newton import Control, Equilibrium, Traceable
 from halfspace.errors import GridTooCoarse, NotConverged
-from halfspace.values import Valued
-
-Array = NDArray[np.float64]
+from halfspace.values import Array, Valued
 
 
 @dataclass(frozen=True)

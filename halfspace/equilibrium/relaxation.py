@@ -11,15 +11,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, ContactProblem
 from halfspace.equilibrium.newton import Control
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import Law
-from halfspace.values import Valued
-
-Array = NDArray[np.float64]
+from halfspace.values import Array, Valued
 
 MOST_SWEEPS = 20_000  # Greenwood's
 CLOSEST = -0.7  # gap H below which the law is not followed: an overshoot, no contact bears such pressures

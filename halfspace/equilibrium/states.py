@@ -17,7 +17,7 @@ from functools import cached_property
 from itertools import groupby, pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
@@ -25,9 +25,8 @@ from halfspace.equilibrium.events import AT_A_POINT, ROUND_OFF, Condition, betwe
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
 from halfspace.errors import InputError
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
-Array = NDArray[np.float64]
 Again = Callable[[Traceable, Point], tuple[Traceable, Point]]
 """Solves for a point of the path on another discretisation, in the plane across the path at that point."""
 

@@ -9,10 +9,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from halfspace.values import Array
 
 
 class Law(Protocol):

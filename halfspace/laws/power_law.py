@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from halfspace.laws.law import Array
+from halfspace.values import Array
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from halfspace.profiles.profile import Array, Dimensionless
+from halfspace.profiles.profile import Dimensionless
+from halfspace.values import Array
 
 
 @dataclass(frozen=True)

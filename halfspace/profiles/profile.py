@@ -9,9 +9,8 @@ from __future__ import annotations
 from typing import Protocol, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from halfspace.values import Array
 
 
 class Surface(Protocol):

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from halfspace.limits import require_counter_radius, require_radius_ratio
-from halfspace.profiles.profile import Array, Dimensionless, Surface
-from halfspace.values import Valued
+from halfspace.profiles.profile import Dimensionless, Surface
+from halfspace.values import Array, Valued
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from halfspace.profiles.profile import Array
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicHermiteSpline

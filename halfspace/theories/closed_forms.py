@@ -12,9 +12,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from halfspace.values import Array
 
 JKR_PULL_OFF = -1.5 * np.pi
 BRADLEY_PULL_OFF = -2 * np.pi

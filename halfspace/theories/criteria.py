@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.laws import LENNARD_JONES
-from halfspace.laws.law import Array
+from halfspace.values import Array
 
 ATTARD_PARKER = 3.0  # b sigma'/sigma = -1, their fundamental criterion, with sigma as h^-3
 PETHICA_SUTTON = 8 * np.sqrt(2) / 3

@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.laws import LENNARD_JONES
-from halfspace.theories.closed_forms import Array, gap_shape, hertz_load, hertz_radius_at
+from halfspace.theories.closed_forms import gap_shape, hertz_load, hertz_radius_at
+from halfspace.values import Array
 
 # Nodes of the trapezoidal rule in ln z. The integrands decay as z^5 and z^-4 and are analytic for |Im ln z| < pi/3, so
 # that a step of 0.15 leaves exp(-2 pi^2/(3 0.15)) = 1e-19.

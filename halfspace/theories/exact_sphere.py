@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
 from halfspace.roots import root
-from halfspace.theories.closed_forms import Array, ContactState
+from halfspace.theories.closed_forms import ContactState
+from halfspace.values import Array
 
 LEAST_RATIO = 1e-3  # of rho; the tension of smaller spheres is a small difference of large numbers
 SERIES_BELOW = 0.5  # of a/X: below it arctanh x - x is summed as a series, above it nothing cancels

@@ -26,7 +26,8 @@ from numpy.typing import ArrayLike
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
 from halfspace.roots import root
-from halfspace.theories.closed_forms import Array, ContactState, gap_shape
+from halfspace.theories.closed_forms import ContactState, gap_shape
+from halfspace.values import Array
 
 TENSION_TO_MAUGIS = float(np.cbrt(9 / (2 * np.pi)))  # lambda/s, from lambda = sigma0 (9 R/(2 pi E*^2 dgamma))^(1/3)
 MAUGIS_UNIT = float(np.cbrt(3 * np.pi / 4))  # his unit of radius (3 pi R^2 dgamma/(4 E*))^(1/3), in beta

@@ -26,10 +26,11 @@ from fem_adhesion.mesh.block import (
 )
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.refinement import Charts, Rung, charted_rung, climb
-from halfspace.elastic.compliance import Array, ElasticOperator
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath, trace_charts
 from halfspace.errors import InputError
+from halfspace.values import Array
 from hard.measured import Measured, compare_events
 
 INDEPENDENT = "half-space"

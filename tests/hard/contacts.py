@@ -11,12 +11,12 @@ import halfspace
 from halfspace.accuracy.fold_birth import Birth, approached, at_gap, count_folds, tabor_of
 from halfspace.accuracy.refinement import Rung, charted_rung, climb
 from halfspace.accuracy.trace import half_space_charts, resolution_for
-from halfspace.elastic.compliance import Array
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import COMPRESSION, find_events, metric_for, trace_charts, transfer
 from halfspace.equilibrium.events import ROUND_OFF, Condition, Located, locate
 from halfspace.equilibrium.path import Metric, Point, Segment, Steps
+from halfspace.values import Array
 from hard.measured import Measured, compare_events, newton_steps, worst
 
 TIGHTER = "half-space, two decades tighter"
