@@ -25,6 +25,7 @@ from fem_adhesion.finite_strain.scene import LITTLE
 from fem_adhesion.mesh.block import block_grid
 from fem_adhesion.monolithic import assemble
 from halfspace.errors import InputError
+from halfspace.profiles import Sphere
 from halfspace.values import Valued, same, shown
 
 ROOT = Path(__file__).parents[1]
@@ -32,7 +33,7 @@ SPHERE = {"tabor": 0.1, "body": "hemisphere", "profile": "sphere", "radius_ratio
 
 PATHS = {
     "half-space": partial(halfspace.trace, 1.0, rtol=1e-2),
-    "half-space under a sphere": partial(halfspace.trace, 0.1, rtol=1e-1, radius_ratio=10.0),
+    "half-space under a sphere": partial(halfspace.trace, 0.1, rtol=1e-1, profile=Sphere(10.0)),
     "block": partial(fem_adhesion.trace, Scene(0.1), rtol=1e-1),
     "clamped block": partial(fem_adhesion.trace, Scene(0.3, far_field="clamped", radius=20.0), rtol=1e-1),
     "block under a sphere": partial(fem_adhesion.trace, Scene(**SPHERE | {"body": "block"}), rtol=1e-1),
