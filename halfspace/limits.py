@@ -131,6 +131,23 @@ def require_modulus(modulus: float) -> float:
     )
 
 
+def require_thickness(thickness: float) -> float:
+    """Return the thickness of a layer in beta, or raise InputError unless it is 0.01 to 1000.
+
+    A thinner one is a mattress, a thicker one a half-space, of which contacts of some beta do not see the end.
+    """
+    thickness = require_number(thickness, "thickness")
+    remedy = "it is in beta = (R^2 dgamma/E*)^(1/3); a thicker one is a half-space"
+    return _require(thickness, "thickness", 0.01 <= thickness <= 1000, "0.01 <= thickness <= 1000", remedy)
+
+
+def require_modulus_ratio(ratio: float) -> float:
+    """Return a ratio of two Young's moduli, or raise InputError unless it is 1e-3 to 1e3."""
+    ratio = require_number(ratio, "ratio of moduli")
+    remedy = 'take a rigid base, "bonded", or a softer layer alone'
+    return _require(ratio, "ratio of moduli", 1e-3 <= ratio <= 1e3, "0.001 <= ratio of moduli <= 1000", remedy)
+
+
 def require_share(share: float, radius: float) -> float:
     """Return a counter-body's part of the compliance, or raise InputError unless 0 < share < 1 and its radius is."""
     share = require_number(share, "share")

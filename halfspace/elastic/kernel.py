@@ -61,7 +61,7 @@ def _elliptic_b(k: Array) -> Array:
 
 
 @cache
-def _graded_rule() -> tuple[Array, Array]:
+def graded_rule() -> tuple[Array, Array]:
     """Points and weights on (0, 1) for integrands with a logarithm at, or just below, 0."""
     x, w = gauss_legendre(NEAR_POINTS)
     t = (1 + x) / 2
@@ -119,7 +119,7 @@ def _near_moments(r: Array, left: Array, right: Array, nearest: Array, end: Arra
     moments = np.zeros((r.size, k))
     some = nearest != end
     r, left, right, nearest, end = (v[some, None] for v in (r, left, right, nearest, end))
-    t, w = _graded_rule()
+    t, w = graded_rule()
     step = (end - nearest) * t
     s = nearest + step
     x = (s - left - (right - s)) / (right - left)

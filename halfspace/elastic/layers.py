@@ -1,0 +1,282 @@
+"""Layers on a base, or a coating on a half-space: how far their surface yields to waves of pressure of any length.
+
+A pressure p J0(k r), frictionless, deflects the surface of a half-space by 2 p J0(k r)/(E* k), and that of a layered
+body by S(k) times as much, E* being that of its first stratum. All strata are one recursion. In each, with zeta = k z
+at the depth z, displacements U J1(k r), W J0(k r) and stresses sigma_rz = 2 G k T J1, sigma_zz = 2 G k N J0 are
+
+    U =  e^-zeta [a + b zeta]                   + e^zeta [c - d zeta]
+    W =  e^-zeta [a + b (zeta + 3 - 4 nu)]      - e^zeta [c - d (zeta - 3 + 4 nu)]
+    T = -e^-zeta [a + b (zeta + 1 - 2 nu)]      + e^zeta [c - d (zeta - 1 + 2 nu)]
+    N = -e^-zeta [a + b (zeta + 2 - 2 nu)]      - e^zeta [c - d (zeta - 2 + 2 nu)],
+
+so that what holds below a stratum, displacement = M stress, becomes the same above it. Sources: the solutions are
+Muki's (1960) for axial symmetry; of one bonded stratum the recursion is
+
+    S(x) = [(3 - 4 nu) sinh 2x - 2x]/[(3 - 4 nu) cosh 2x + 2x^2 + 5 - 12 nu + 8 nu^2], x = k t,
+
+and of one that slides (cosh 2x - 1)/(sinh 2x + 2x); both are tests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from halfspace.errors import InputError
+from halfspace.limits import require_modulus_ratio, require_poisson, require_thickness
+
+Array = NDArray[np.float64]
+Foundation = Literal["bonded", "sliding"]
+
+DEEP = 30.0  # wave numbers times depth: what is below moves the surface by e^-60
+
+
+@dataclass(frozen=True)
+class Substrate:
+    """An elastic half-space under the strata.
+
+    Parameters
+    ----------
+    modulus : float
+        Young's, in units of that of the first stratum.
+    poisson : float
+        Poisson's ratio.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    modulus: float = 1.0
+    poisson: float = 0.3
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "modulus", require_modulus_ratio(self.modulus))
+        object.__setattr__(self, "poisson", require_poisson(self.poisson))
+
+
+@dataclass(frozen=True)
+class Stratum:
+    """A homogeneous layer.
+
+    Parameters
+    ----------
+    thickness : float
+        In beta.
+    poisson : float
+        Poisson's ratio.
+    modulus : float
+        Young's, in units of that of the first stratum.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    thickness: float
+    poisson: float = 0.3
+    modulus: float = 1.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "thickness", require_thickness(self.thickness))
+        object.__setattr__(self, "poisson", require_poisson(self.poisson))
+        object.__setattr__(self, "modulus", require_modulus_ratio(self.modulus))
+
+
+class LayeredBody(Protocol):
+    """What the surface of a layered body follows from; E* is that of its first stratum."""
+
+    @property
+    def strata(self) -> tuple[Stratum, ...]:
+        """From the surface down."""
+        ...
+
+    @property
+    def base(self) -> Foundation | Substrate:
+        """What carries the last: rigid and bonded to it, rigid and without friction, or elastic and bonded."""
+        ...
+
+
+@dataclass(frozen=True)
+class Layers:
+    """Strata on a base: a graded or many-layered body.
+
+    Parameters
+    ----------
+    strata : sequence of Stratum
+        From the surface down; the modulus of the first is the unit of all.
+    base : {"bonded", "sliding"} or Substrate
+        A rigid one to which the last stratum is bonded, or on which it slides, or an elastic half-space.
+
+    Raises
+    ------
+    InputError
+        If there is no stratum, the first has a modulus other than 1, or the base is none of these.
+    """
+
+    strata: tuple[Stratum, ...]
+    base: Foundation | Substrate = "bonded"
+
+    def __init__(self, strata: Sequence[Stratum], base: Foundation | Substrate = "bonded") -> None:
+        object.__setattr__(self, "strata", tuple(strata))
+        object.__setattr__(self, "base", _require_base(base))
+        if not self.strata or self.strata[0].modulus != 1:
+            first = f"modulus = {self.strata[0].modulus:g} of the first stratum" if self.strata else "strata = []"
+            raise InputError(f"{first} does not serve, limit: one stratum or more, the first of modulus 1; see Stratum")
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer on a rigid base.
+
+    Parameters
+    ----------
+    thickness : float
+        In beta.
+    poisson : float
+        Poisson's ratio.
+    foundation : {"bonded", "sliding"}
+        Whether the base holds the layer, or carries it without friction.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    thickness: float
+    poisson: float = 0.3
+    foundation: Foundation = "bonded"
+
+    def __post_init__(self) -> None:
+        own = Stratum(self.thickness, self.poisson)
+        object.__setattr__(self, "thickness", own.thickness)
+        object.__setattr__(self, "poisson", own.poisson)
+        _require_foundation(self.foundation)
+
+    @property
+    def strata(self) -> tuple[Stratum, ...]:
+        """The layer."""
+        return (Stratum(self.thickness, self.poisson),)
+
+    @property
+    def base(self) -> Foundation:
+        """The rigid base."""
+        return self.foundation
+
+
+@dataclass(frozen=True)
+class Coated:
+    """A half-space under a coating that is bonded to it; E*, in the Tabor parameter and beta, is the coating's.
+
+    Parameters
+    ----------
+    thickness : float
+        Of the coating, in beta.
+    modulus_ratio : float
+        Young's modulus of the coating over that of the half-space.
+    poisson, substrate_poisson : float
+        Poisson's ratios of the coating and of the half-space.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    thickness: float
+    modulus_ratio: float
+    poisson: float = 0.3
+    substrate_poisson: float = 0.3
+
+    def __post_init__(self) -> None:
+        own = Stratum(self.thickness, self.poisson)
+        object.__setattr__(self, "thickness", own.thickness)
+        object.__setattr__(self, "poisson", own.poisson)
+        object.__setattr__(self, "modulus_ratio", require_modulus_ratio(self.modulus_ratio))
+        object.__setattr__(self, "substrate_poisson", require_poisson(self.substrate_poisson))
+
+    @property
+    def strata(self) -> tuple[Stratum, ...]:
+        """The coating."""
+        return (Stratum(self.thickness, self.poisson),)
+
+    @property
+    def base(self) -> Substrate:
+        """The half-space below."""
+        return Substrate(1 / self.modulus_ratio, self.substrate_poisson)
+
+
+def total_thickness(body: LayeredBody) -> float:
+    """Thickness of all strata in beta."""
+    return sum(stratum.thickness for stratum in body.strata)
+
+
+def surface_compliance(body: LayeredBody, wave_numbers: Array) -> Array:
+    """S, (n,): the deflection by waves of pressure over that of a half-space of the first stratum's E*.
+
+    Parameters
+    ----------
+    body : LayeredBody
+        The strata and their base.
+    wave_numbers : (n,) array
+        k, positive, in 1/beta.
+    """
+    first, k = body.strata[0], np.asarray(wave_numbers, float)
+    held, free = _at_base(body.base)  # A and B: A displacement + B stress = 0
+    for stratum in reversed(body.strata):
+        depth = np.minimum(k * stratum.thickness, DEEP)
+        parts = max(1, int(np.ceil(depth.max(initial=0.0))))  # waves grow e-fold in each: more would drown in rounding
+        across = _across(depth / parts, stratum)
+        for _ in range(parts):
+            above = held @ across[..., :2, :] + free @ across[..., 2:, :]
+            held, free = np.eye(2), np.asarray(np.linalg.solve(above[..., :2], above[..., 2:]), float)
+    return np.asarray(free[..., 1, 1] * first.modulus / (1 - first.poisson**2) / 2)
+
+
+def _at_base(base: Foundation | Substrate) -> tuple[Array, Array]:
+    """Matrices A, B of the condition A (U, W) + B (T, N) = 0 under the strata."""
+    if base == "bonded":
+        return np.eye(2), np.zeros((2, 2))
+    if base == "sliding":
+        return np.diag([0.0, 1.0]), np.diag([1.0, 0.0])
+    if isinstance(base, Substrate):
+        decaying = _waves(np.array(0.0), base.poisson)[:, :2]
+        shear = base.modulus / (2 * (1 + base.poisson))
+        return np.eye(2), -decaying[:2] @ np.linalg.inv(decaying[2:]) / (2 * shear)
+    raise InputError(f"base = {base!r} is none of bonded, sliding, Substrate(modulus, poisson); take one of these")
+
+
+def _across(zeta: Array, stratum: Stratum) -> Array:
+    """Displacements times k, and stresses, at the depth zeta, from those on top: (n, 4, 4)."""
+    at_top = np.linalg.inv(_waves(np.array(0.0), stratum.poisson))
+    unit = np.repeat([1.0, stratum.modulus / (1 + stratum.poisson)], 2)  # 2 G
+    return np.asarray(_waves(zeta, stratum.poisson) @ at_top * unit[:, None] / unit)
+
+
+def _waves(zeta: Array, nu: float) -> Array:
+    """U, W, T, N (rows) of the four solutions a, b, c, d (columns) at the depth zeta, (..., 4, 4)."""
+    down, up = np.exp(-zeta), np.exp(zeta)
+    rows = [
+        [down, zeta * down, up, -zeta * up],
+        [down, (zeta + 3 - 4 * nu) * down, -up, (zeta - 3 + 4 * nu) * up],
+        [-down, -(zeta + 1 - 2 * nu) * down, up, -(zeta - 1 + 2 * nu) * up],
+        [-down, -(zeta + 2 - 2 * nu) * down, -up, (zeta - 2 + 2 * nu) * up],
+    ]
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+
+
+def _require_base(base: Foundation | Substrate) -> Foundation | Substrate:
+    return base if isinstance(base, Substrate) else _require_foundation(base)
+
+
+def _require_foundation(foundation: Foundation) -> Foundation:
+    if foundation not in get_args(Foundation):
+        raise InputError(f"foundation = {foundation!r} is not one of {', '.join(get_args(Foundation))}; take bonded")
+    return foundation

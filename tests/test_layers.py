@@ -1,0 +1,167 @@
+"""Layers: the yield of their surface to waves, its images, and the limits of Hertz and JKR on a layer."""
+
+import csv
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq, minimize_scalar
+from scipy.special import j0
+
+from halfspace.elastic import grid
+from halfspace.elastic.layered import images_of, layered_panels
+from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, surface_compliance
+from halfspace.errors import InputError, NotConverged
+
+DATA = Path(__file__).parent / "data"
+WAVES = np.geomspace(1e-3, 25, 300)
+POISSON = [0.0, 0.3, 0.45, 0.499999]
+STACK = Layers([Stratum(0.4, 0.3), Stratum(0.5, 0.45, 0.2), Stratum(3, 0.2, 2.0)], Substrate(5.0, 0.1))
+BODIES = [Layer(2, 0.3), Layer(0.5, 0.4999, "sliding"), Coated(1, 10), Coated(1, 0.01, 0.4999), STACK]
+
+
+@pytest.mark.parametrize("poisson", POISSON)
+@pytest.mark.parametrize("thickness", [0.05, 2.0])
+def test_a_bonded_layer_yields_to_waves_by_its_closed_form(poisson, thickness):
+    x, k = WAVES, 3 - 4 * poisson
+    upper = k * np.sinh(2 * x) - 2 * x
+    closed = upper / (k * np.cosh(2 * x) + 2 * x**2 + 5 - 12 * poisson + 8 * poisson**2)
+    assert surface_compliance(Layer(thickness, poisson), x / thickness) == pytest.approx(closed, rel=0, abs=1e-12)
+
+
+def test_a_sliding_layer_yields_by_its_closed_form_whatever_its_poisson_ratio():
+    x = WAVES
+    closed = (np.cosh(2 * x) - 1) / (np.sinh(2 * x) + 2 * x)
+    for poisson in POISSON:
+        assert surface_compliance(Layer(2, poisson, "sliding"), x / 2) == pytest.approx(closed, rel=0, abs=1e-12)
+
+
+def test_a_layer_cut_into_strata_is_the_layer():
+    whole, cut = Layer(1.5, 0.3), Layers([Stratum(0.1, 0.3), Stratum(0.9, 0.3), Stratum(0.5, 0.3)])
+    assert surface_compliance(cut, WAVES) == pytest.approx(surface_compliance(whole, WAVES), rel=0, abs=1e-12)
+
+
+def test_a_coating_like_its_half_space_is_the_half_space():
+    assert surface_compliance(Coated(1, 1.0, 0.3, 0.3), WAVES) == pytest.approx(1, rel=1e-12)
+
+
+def test_long_waves_see_what_is_below_and_short_ones_the_first_stratum():
+    body = Coated(2, modulus_ratio=10, poisson=0.3, substrate_poisson=0.2)
+    long, short = surface_compliance(body, np.array([1e-7, 20.0]))
+    assert long == pytest.approx(10 * (1 - 0.2**2) / (1 - 0.3**2), rel=1e-5)
+    assert short == pytest.approx(1, rel=1e-12)
+
+
+@pytest.mark.parametrize("body", BODIES, ids=repr)
+def test_images_have_the_kernel_of_hankels_integral(body):
+    images = images_of(body)
+    for r, s in [(0.0, 0.3), (0.7, 1.3), (1.0, 1.0), (3.0, 0.5)]:
+
+        def integrand(k, r=r, s=s):
+            return 2 * (surface_compliance(body, np.array([k]))[0] - 1) * j0(k * r) * j0(k * s)
+
+        wanted = quad(integrand, 1e-9, 20 / body.strata[0].thickness, epsabs=1e-9, epsrel=1e-9, limit=400)[0]
+        scale = abs(quad(integrand, 1e-9, 20 / body.strata[0].thickness, args=(0.0, 0.0), limit=400)[0])
+        assert float(images.kernel(np.array(r), np.array(s))) == pytest.approx(wanted, abs=1e-6 * scale)
+
+
+def test_other_images_give_the_same_kernel():
+    r = np.geomspace(0.05, 20, 12)
+    one, other = (images_of(STACK, spacing).kernel(r[:, None], r) for spacing in (1.14, 1.11))
+    assert other == pytest.approx(one, abs=1e-6 * np.abs(one).max())
+    assert not np.array_equal(one, other)
+
+
+@pytest.mark.parametrize("thickness", [0.05, 0.5, 20.0])
+def test_a_bell_of_pressure_deflects_a_layer_as_hankels_integral_says(thickness):
+    """P = e^(-r^2) has the transform e^(-k^2/4)/2; cells are longer and shorter than the layer is thick."""
+    body = Layer(thickness, 0.3)
+    operator = layered_panels(images_of(body), grid.graded(1.0, 0.05, 60.0, growth=3.0), 10)
+    found = operator.compliance @ np.exp(-(operator.radii**2))
+    k, w = grid.gauss_legendre(600)
+    k, w = 6 * (1 + k), 6 * w
+    waves = surface_compliance(body, k) * np.exp(-(k**2) / 4) * w
+    inside = operator.radii < 30
+    wanted = j0(np.outer(operator.radii[inside], k)) @ waves
+    assert found[inside] == pytest.approx(wanted, abs=3e-8)
+
+
+@cache
+def _images(poisson: float):
+    return images_of(Layer(1.0, poisson))
+
+
+@cache
+def _pressures(poisson: float, a: float):
+    """Under a punch of radius a: weights, pressures by a unit approach and by u^2/2, and of both the root's part."""
+    inner = grid.geometric(a, 1e-11 * a, 3.0)
+    lines = a - inner[::-1]
+    lines[0] = 0.0
+    operator = layered_panels(_images(poisson), lines, 10)
+    u = operator.radii
+    flat, bowl = np.linalg.solve(operator.compliance, np.stack([np.ones_like(u), u**2 / 2], axis=1)).T
+    near = (a - u > 1e-4 * a) & (a - u < 0.1 * a)  # P times the root is smooth; rounding and cells spoil it at the edge
+    d, root = (a - u[near]) / a, np.sqrt((a - u[near]) * (a + u[near]) / a)
+    parts = [float(np.polynomial.Polynomial.fit(d, P[near] * root, 6)(0.0)) for P in (flat, bowl)]
+    return operator.weights, flat, bowl, parts
+
+
+def _hertz(poisson: float, a: float):
+    """Approach and load on a layer of thickness 1 without a singularity at the edge of the contact."""
+    weights, flat, bowl, (of_flat, of_bowl) = _pressures(poisson, a)
+    approach = of_bowl / of_flat
+    return approach, float(weights @ (approach * flat - bowl))
+
+
+def _rows(kind: str):
+    with (DATA / "layer_limits.csv").open() as file:
+        return [tuple(map(float, row[1:])) for row in csv.reader(file) if row[0].startswith(kind)]
+
+
+@pytest.mark.parametrize(("poisson", "chi", "ratio"), _rows("hertz"))
+def test_hertz_on_a_layer(poisson, chi, ratio):
+    """Load over Hertz's at sqrt(R delta)/h = chi, by dual integral equations; nearly incompressible for 0.5."""
+    nu = min(poisson, 0.499999)
+    a = brentq(lambda a: np.sqrt(_hertz(nu, a)[0]) - chi, 0.3 * chi, 2.5 * chi, xtol=1e-9)
+    approach, load = _hertz(nu, a)
+    assert load / (4 / 3 * approach**1.5) == pytest.approx(ratio, rel=1e-5 if poisson < 0.5 else 3e-5)
+
+
+@pytest.mark.parametrize(("poisson", "thickness", "pull_off"), _rows("jkr"))
+def test_jkr_on_a_layer(poisson, thickness, pull_off):
+    """Pull-off over pi R dgamma, h/beta = thickness; lengths in thicknesses here, so that dgamma scales by its cube."""
+    nu = min(poisson, 0.499999)
+
+    def load(a):  # K = (2 E* dgamma)^(1/2), P -> -K/(2 pi (a - u))^(1/2), in thicknesses
+        weights, flat, bowl, (of_flat, of_bowl) = _pressures(nu, a)
+        approach = (of_bowl - 2 / np.sqrt(2 * np.pi * thickness**3)) / of_flat
+        return float(weights @ (approach * flat - bowl)) * thickness**3
+
+    least = minimize_scalar(load, bounds=(0.8 / thickness, 2.0 / thickness), method="bounded", options={"xatol": 1e-6})
+    assert -least.fun / np.pi == pytest.approx(pull_off, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Layer(0.001), "thickness = 0.001 is outside 0.01 <= thickness"),
+        (lambda: Layer(1.0, 0.5), "poisson = 0.5 is outside"),
+        (lambda: Layer(1.0, 0.3, "glued"), "foundation = 'glued' is not one of bonded, sliding"),
+        (lambda: Coated(1.0, 0.0), "ratio of moduli = 0 is outside"),
+        (lambda: Layers([]), "limit: one stratum or more"),
+        (lambda: Layers([Stratum(1.0, 0.3, 2.0)]), "modulus = 2 of the first stratum"),
+        (lambda: Substrate(1e4), "ratio of moduli = 10000 is outside"),
+    ],
+)
+def test_what_is_no_layer_is_refused_when_it_is_made(make, words):
+    with pytest.raises(InputError, match=words):
+        make()
+
+
+def test_strata_too_unlike_for_images_are_refused_with_the_misfit():
+    soft, stiff = Stratum(1, 0.499, 1e-3), Stratum(1, 0.3, 1e3)
+    unlike = Layers([Stratum(1, 0.3), soft, stiff, soft], Substrate(1e3))
+    with pytest.raises(NotConverged, match="is missed by"):
+        images_of(unlike)
