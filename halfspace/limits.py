@@ -141,11 +141,22 @@ def require_thickness(thickness: float) -> float:
     return _require(thickness, "thickness", 0.01 <= thickness <= 1000, "0.01 <= thickness <= 1000", remedy)
 
 
-def require_modulus_ratio(ratio: float) -> float:
-    """Return a ratio of two Young's moduli, or raise InputError unless it is 1e-3 to 1e3."""
-    ratio = require_number(ratio, "ratio of moduli")
-    remedy = 'take a rigid base, "bonded", or a softer layer alone'
-    return _require(ratio, "ratio of moduli", 1e-3 <= ratio <= 1e3, "0.001 <= ratio of moduli <= 1000", remedy)
+def require_stiffness(modulus: float) -> float:
+    """Return a Young's modulus in units of the first stratum's, or raise InputError unless it is 0.01 to 1000.
+
+    Under a film that is stiffer still rounding hides the contact's edge; what is 1000 times as stiff is rigid.
+    """
+    name = "modulus, in units of the first stratum's,"
+    modulus = require_number(modulus, name)
+    remedy = "what is stiffer is rigid: a bonded base; over what is softer the first stratum is a plate"
+    return _require(modulus, name, 0.01 <= modulus <= 1000, "0.01 <= modulus <= 1000", remedy)
+
+
+def require_film(ratio: float) -> float:
+    """Return a coating's Young's modulus over that of what is below, or raise InputError unless it is 0.001 to 100."""
+    ratio = require_number(ratio, "modulus_ratio")
+    remedy = "a softer coating is a layer on a rigid base; a stiffer one is a plate"
+    return _require(ratio, "modulus_ratio", 0.001 <= ratio <= 100, "0.001 <= modulus_ratio <= 100", remedy)
 
 
 def require_share(share: float, radius: float) -> float:

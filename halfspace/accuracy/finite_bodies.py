@@ -58,6 +58,9 @@ class SizedBody(Valued):
         Length of the last of the others, in beta, if they are to be fine there too; see `at_equator`.
     law : Law
         Of the tension against the gap.
+    softest : float
+        How many times as much as a half-space of E* the body yields to waves of any length, at most; above 1 where
+        something softer is below the surface.
     """
 
     tabor: float
@@ -69,6 +72,7 @@ class SizedBody(Valued):
     coordinate: SurfaceCoordinate
     last: float = np.inf
     law: Law = LENNARD_JONES
+    softest: float = 1.0
 
     @property
     def length(self) -> float:
@@ -95,7 +99,8 @@ class SizedBody(Valued):
 
     def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
-        widest = min(float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(self.tabor))), WIDEST * self.profile.end)
+        soft = np.cbrt(self.softest) * jkr_radius(to_load)
+        widest = min(float(np.hypot(soft, 0.7 / np.sqrt(self.tabor))), WIDEST * self.profile.end)
         least = min(LEAST * LEAVE * self.length, widest / 2)
         count = 2 + int(np.ceil(np.log(widest / least) / np.log(apart)))
         end, edge = float(self.outer[0]), self.coordinate.of(widest)

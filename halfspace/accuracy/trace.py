@@ -6,6 +6,7 @@ See `halfspace.accuracy.refinement` for how the error is estimated.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 
@@ -14,6 +15,8 @@ import numpy as np
 from halfspace.accuracy.finite_bodies import AroundEvents, Made, SizedBody, at_equator, surroundings
 from halfspace.accuracy.refinement import Charted, Rung, climb
 from halfspace.elastic import compliance, grid
+from halfspace.elastic.layered import Images, images_of, layered_panels
+from halfspace.elastic.layers import LayeredBody
 from halfspace.elastic.operators import FlatCoordinate, Homogeneous
 from halfspace.equilibrium.contact import ContactProblem, spike_width
 from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
@@ -26,10 +29,14 @@ from halfspace.values import Array, Valued
 
 EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
 MOST_NODES = 16  # of a panel
+FAR = 400.0  # of the last cell on a layered body, in the same widths: the load left out beyond is 1e-9 R dgamma
 LEAVE = 0.8  # of the first cell: the contact radius at which the chart centred on the axis is left
 # Found by trial; what each decides at half and at double is in tests/constants.py.
 ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
 TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same
+IMAGES = (1.14, 1.12)  # ratios of the depths of a layered body's images, and of its twin's
+
+Panels = Callable[[Array, int], compliance.ElasticOperator]
 
 
 @dataclass(frozen=True)
@@ -120,10 +127,11 @@ def trace(
     *,
     law: Law = LENNARD_JONES,
     profile: Profile = PARABOLOID,
+    body: LayeredBody | None = None,
     rtol: float = 1e-6,
     to_load: float = COMPRESSION,
 ) -> EquilibriumPath:
-    """Trace the load-approach curve of a rigid body on the adhesive half-space and solve for its events.
+    """Trace the load-approach curve of a rigid body on an adhesive half-space, or a layer, and solve for its events.
 
     Parameters
     ----------
@@ -132,7 +140,10 @@ def trace(
     law : Law
         Of the tension between the surfaces against their gap, see `halfspace.laws`.
     profile : Profile
-        Shape of the body, see `halfspace.profiles`.
+        Shape of the rigid body, see `halfspace.profiles`.
+    body : LayeredBody, optional
+        Layers on a base or a coating, see `halfspace.elastic.layers`, in the place of the half-space; E*, in the Tabor
+        parameter and beta, is that of the first stratum.
     rtol : float
         Relative accuracy asked of loads and approaches, 1e-9 to 1e-1; of approaches, which have no natural zero, in
         parts of eps and the range of those of all events.
@@ -153,8 +164,10 @@ def trace(
     """
     tabor, rtol, to_load = require_tabor(tabor), require_rtol(rtol), require_load(to_load)
     surface = profile.surface(tabor)
-    if math.isfinite(surface.end):
-        return climb(rtol, partial(_sphere_rung, tabor, law, surface, rtol, to_load), to_load=to_load)
+    if body is not None or math.isfinite(surface.end):
+        images = [images_of(body, spacing) if body else None for spacing in IMAGES]
+        ladder = partial(_sized_rung, tabor, law, surface, images, rtol, to_load)
+        return climb(rtol, ladder, to_load=to_load)
 
     def rung(level: int) -> Rung:
         resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
@@ -178,10 +191,13 @@ def _twin(resolution: Resolution) -> Resolution:
     )
 
 
-def _sphere_rung(tabor: float, law: Law, gap: Surface, rtol: float, to_load: float, level: int) -> Rung:
-    """Rung of a level for a surface that ends, as a sphere's does at its equator."""
-    resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
-    fine, other = (_under_sphere(tabor, law, gap, r) for r in (resolution, _twin(below)))
+def _sized_rung(
+    tabor: float, law: Law, gap: Surface, images: Sequence[Images | None], rtol: float, to_load: float, level: int
+) -> Rung:
+    """Rung of a level for a surface that ends, as a sphere's does at its equator, or a body that has a length."""
+    resolutions = resolution_for(tabor, rtol, level), _twin(resolution_for(tabor, rtol, max(level - 1, 0)))
+    fine, other = (_sized_body(tabor, law, gap, *both) for both in zip(images, resolutions, strict=True))
+    resolution = resolutions[0]
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(
         partial(fine.curve, to_load),
@@ -192,11 +208,25 @@ def _sphere_rung(tabor: float, law: Law, gap: Surface, rtol: float, to_load: flo
     )
 
 
-def _under_sphere(tabor: float, law: Law, gap: Surface, resolution: Resolution) -> SizedBody:
-    make, last = partial(_made, resolution.nodes), at_equator(tabor, gap, resolution.nodes)
-    outer = np.array([gap.end])
-    return SizedBody(tabor, gap, make, resolution.finest, resolution.growth, outer, FlatCoordinate(), last, law)
+def _sized_body(tabor: float, law: Law, gap: Surface, images: Images | None, resolution: Resolution) -> SizedBody:
+    """Body whose cells end with the surface, or so far out that nothing attracts there."""
+    make = partial(layered_panels, images) if images else compliance.panels
+    softest, ends = images.softest if images else 1.0, math.isfinite(gap.end)
+    last = at_equator(tabor, gap, resolution.nodes) if ends else math.inf
+    outer = gap.end if ends else FAR * widened(tabor * softest ** (2 / 3)) / math.sqrt(tabor)
+    return SizedBody(
+        tabor,
+        gap,
+        partial(_made, make, resolution.nodes),
+        resolution.finest,
+        resolution.growth,
+        np.array([outer]),
+        FlatCoordinate(),
+        last,
+        law,
+        softest,
+    )
 
 
-def _made(nodes: int, lines: Array) -> Made:
-    return compliance.panels(lines, nodes), nodes * (lines.size - 1)
+def _made(make: Panels, nodes: int, lines: Array) -> Made:
+    return make(lines, nodes), nodes * (lines.size - 1)

@@ -47,11 +47,14 @@ class Images(Valued):
         c_j.
     smooth : float
         Thickness of the first stratum in beta: over such a distance the sum hardly changes.
+    softest : float
+        Largest yield to waves of any length, in that of the half-space of the first stratum: 1 or more.
     """
 
     depths: Array
     strengths: Array
     smooth: float
+    softest: float
 
     def kernel(self, r: Array, s: Array) -> Array:
         """Deflection at radius r by all images of a ring of unit pressure times radius at s; arrays broadcast."""
@@ -90,7 +93,7 @@ def images_of(body: LayeredBody, spacing: float = SPACING) -> Images:
         strengths = np.asarray(np.linalg.lstsq(waves, wanted, rcond=1e-15)[0], float)
         misfit = float(np.abs(waves @ strengths - wanted).max())
         if misfit <= limit:
-            return Images(depths, strengths, thin)
+            return Images(depths, strengths, thin, 1 + max(0.0, float(wanted.max())))
     raise NotConverged(
         f"the yield of the strata to waves is missed by {misfit:.1g} of a half-space's, limit {limit:.1g}; they differ "
         "too much in stiffness or thickness: take them together where they are thin"

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from halfspace.errors import InputError
-from halfspace.limits import require_modulus_ratio, require_poisson, require_thickness
+from halfspace.limits import require_film, require_poisson, require_stiffness, require_thickness
 
 Array = NDArray[np.float64]
 Foundation = Literal["bonded", "sliding"]
@@ -56,7 +56,7 @@ class Substrate:
     poisson: float = 0.3
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "modulus", require_modulus_ratio(self.modulus))
+        object.__setattr__(self, "modulus", require_stiffness(self.modulus))
         object.__setattr__(self, "poisson", require_poisson(self.poisson))
 
 
@@ -86,7 +86,7 @@ class Stratum:
     def __post_init__(self) -> None:
         object.__setattr__(self, "thickness", require_thickness(self.thickness))
         object.__setattr__(self, "poisson", require_poisson(self.poisson))
-        object.__setattr__(self, "modulus", require_modulus_ratio(self.modulus))
+        object.__setattr__(self, "modulus", require_stiffness(self.modulus))
 
 
 class LayeredBody(Protocol):
@@ -199,7 +199,7 @@ class Coated:
         own = Stratum(self.thickness, self.poisson)
         object.__setattr__(self, "thickness", own.thickness)
         object.__setattr__(self, "poisson", own.poisson)
-        object.__setattr__(self, "modulus_ratio", require_modulus_ratio(self.modulus_ratio))
+        object.__setattr__(self, "modulus_ratio", require_film(self.modulus_ratio))
         object.__setattr__(self, "substrate_poisson", require_poisson(self.substrate_poisson))
 
     @property
