@@ -1,8 +1,8 @@
 """Adhesive contact of an elastic sphere with an elastic half-space, by an integral equation, after Greenwood (1997).
 
 `trace` gives the whole load-approach curve with its events. Rooms, in the order of reading: `laws` and `profiles` (the
-parts of a contact), `elastic` (the half-space alone), `equilibrium` (contact, path, events), `accuracy` (to the digits
-asked for), `theories` (closed forms); under them `scaling` (SI, and other people's parameters).
+parts of a contact), `elastic` (half-space and layers alone), `equilibrium` (contact, path, events), `accuracy` (to the
+digits asked for), `theories` (closed forms); under them `scaling` (SI, and other people's parameters).
 
 Conventions are Greenwood's, everywhere. R is the equivalent radius, E* the contact modulus, dgamma the work of
 adhesion, eps the spacing at which the surfaces are in equilibrium, mu = (R dgamma^2/(E*^2 eps^3))^(1/3) the Tabor
@@ -34,19 +34,25 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from halfspace import laws, profiles, scaling, theories
     from halfspace.accuracy.trace import trace
+    from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate
     from halfspace.equilibrium.curve import EquilibriumPath
     from halfspace.equilibrium.events import Event
     from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
     from halfspace.values import Estimate
 
 __all__ = [
+    "Coated",
     "ContactTooWide",
     "EquilibriumPath",
     "Estimate",
     "Event",
     "GridTooCoarse",
     "InputError",
+    "Layer",
+    "Layers",
     "NotConverged",
+    "Stratum",
+    "Substrate",
     "laws",
     "profiles",
     "scaling",
@@ -60,6 +66,7 @@ _HOMES = {
     "EquilibriumPath": "equilibrium.curve",
     "Estimate": "equilibrium.curve",
     "Event": "equilibrium.events",
+    **dict.fromkeys(("Coated", "Layer", "Layers", "Stratum", "Substrate"), "elastic.layers"),
     **dict.fromkeys(("ContactTooWide", "GridTooCoarse", "InputError", "NotConverged"), "errors"),
 }
 

@@ -15,7 +15,7 @@ from fem_adhesion import Scene
 from fem_adhesion.bodies.sized import Discretisation, sized_body
 from fem_adhesion.scene import Counter
 from halfspace.accuracy.finite_bodies import AroundEvents, surroundings
-from halfspace.accuracy.trace import _under_sphere, resolution_for
+from halfspace.accuracy.trace import _sized_body, resolution_for
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.contact import ContactProblem
@@ -189,7 +189,7 @@ def test_events_share_an_operator_within_its_window_alone(part, shared):
 
 def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_tolerance():
     """By which a fold is found; against differences of whole operators over ever narrower windows, extrapolated."""
-    body = _under_sphere(2.0, LENNARD_JONES, between_spheres(np.sqrt(5.0), np.inf), resolution_for(2.0, 1e-8))
+    body = _sized_body(2.0, LENNARD_JONES, between_spheres(np.sqrt(5.0), np.inf), None, resolution_for(2.0, 1e-8))
     pressure = -np.exp(-8 * (body.around(1.18).problem.operator.at(1.18).radii / 1.18 - 1) ** 2)
 
     def derivative(window, count):

@@ -21,19 +21,19 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from scipy.special import ellipkm1
 
-from halfspace.elastic.compliance import Array, ElasticOperator, panels
+from halfspace.elastic.compliance import ElasticOperator, panels
 from halfspace.elastic.grid import gauss_legendre
 from halfspace.elastic.kernel import graded_rule
 from halfspace.elastic.layers import LayeredBody, surface_compliance, total_thickness
 from halfspace.errors import NotConverged
-from halfspace.values import Valued
+from halfspace.values import Array, Valued
 
 SHALLOWEST, DEEPEST = 1.0, 60.0  # images, in thicknesses of the first stratum and of all
 DEEPER = (1.0, 10.0, 100.0, 1000.0)  # times as deep they go if need be: stiff strata spread a load as widely
 SPACING = 1.14  # ratio of neighbouring depths: with 1.2 the fit is a decade worse, with 1.1 no better
 SAMPLES = 3000  # wave numbers at which S is fitted
-# In cells longer than the first stratum is thick, near a node: with 6 nodes a cell a bell of pressure deflects the surface
-# as by a rule of 64 points, q = 5, up to two lengths away, to 1e-8, with 8 to 2e-9.
+# Rule for the nodes near a cell that is longer than the first stratum is thick: with 6 nodes a cell a bell of pressure
+# deflects the surface to 1e-8 as by a rule of 64 points, q = 5, up to two lengths away, with 8 nodes to 2e-9.
 NEAR = 0.5  # lengths of the cell
 NEAR_POINTS, GRADING = 24, 2  # see `halfspace.elastic.kernel.graded_rule`
 FITTED = 1e-6  # of S, at worst, or of the largest S if that is above 1; one layer is fitted to 2e-8

@@ -24,12 +24,11 @@ from dataclasses import dataclass
 from typing import Literal, Protocol, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from halfspace.errors import InputError
 from halfspace.limits import require_film, require_poisson, require_stiffness, require_thickness
+from halfspace.values import Array
 
-Array = NDArray[np.float64]
 Foundation = Literal["bonded", "sliding"]
 
 DEEP = 30.0  # wave numbers times depth: what is below moves the surface by e^-60
