@@ -39,7 +39,7 @@ clean: ## remove the environment and all caches
 
 $(VENV)/installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable .
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[studies]'
 	@touch $@
 
 $(VENV)/installed-dev: $(VENV)/installed

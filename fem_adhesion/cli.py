@@ -5,18 +5,21 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from fem_adhesion.assess import command as assess
+from fem_adhesion.assess.command import COMMAND as ASSESS
+from fem_adhesion.common.files import NotWritten
 from fem_adhesion.common.options import BAD_INPUT, DISAGREE, NOT_WRITTEN, Parser, Version, ended, ended_by_signal
-from fem_adhesion.common.writing import NotWritten
-from fem_adhesion.crosscheck import command as compare
-from fem_adhesion.curve import command as curve
-from fem_adhesion.finite_sphere import command as finite_sphere
-from fem_adhesion.greenwood import command as greenwood
-from fem_adhesion.report import command as report
-from fem_adhesion.speed import command as speed
+from fem_adhesion.crosscheck.command import COMMAND as COMPARE
+from fem_adhesion.curve.command import COMMAND as CURVE
+from fem_adhesion.finite_sphere.command import COMMAND as FINITE_SPHERE
+from fem_adhesion.greenwood.command import COMMAND as GREENWOOD
+from fem_adhesion.report.command import COMMAND as REPORT
+from fem_adhesion.speed.command import COMMAND as SPEED
 from halfspace.errors import InputError, NotConverged
 
-COMMANDS = (compare, curve, assess, finite_sphere, speed, greenwood, report)
+COMMANDS = (COMPARE, CURVE, ASSESS, FINITE_SPHERE, SPEED, GREENWOOD, REPORT)
+
+STUDIES = ("PIL", "jinja2", "joblib", "markupsafe", "matplotlib", "pint", "rich")
+"""Libraries of the extra that every command needs, the solvers none."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -25,24 +28,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 if all is well, 1 if solvers disagree or fail or the disk is full, 2 for bad input, 130 if interrupted by
-        Ctrl-C, 143 if terminated by SIGTERM.
+        0 if all is well, 1 if solvers disagree or fail or the disk is full, 2 for bad input or a missing library, 130
+        if interrupted by Ctrl-C, 143 if terminated by SIGTERM.
     """
     options = make_parser().parse_args(arguments)
     try:
         with ended_by_signal():
             return int(options.run(options))
     except InputError as error:
-        print(f"fem-adhesion: {error}", file=sys.stderr)
-        return BAD_INPUT
+        return _told(error, BAD_INPUT)
     except NotConverged as error:
-        print(f"fem-adhesion: {error}; nothing was written", file=sys.stderr)
-        return DISAGREE
+        return _told(f"{error}; nothing was written", DISAGREE)
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in STUDIES:
+            raise
+        return _told(f"{error.name} is not installed; pip install 'fem-adhesion[studies]'", BAD_INPUT)
     except NotWritten as error:
-        print(f"fem-adhesion: {error}", file=sys.stderr)
-        return NOT_WRITTEN
+        return _told(error, NOT_WRITTEN)
     except KeyboardInterrupt as how:
         return ended(how, "nothing was written")
+
+
+def _told(why: object, code: int) -> int:
+    """Say in one line why a command ended, and give its exit code."""
+    print(f"fem-adhesion: {why}", file=sys.stderr)
+    return code
 
 
 def make_parser() -> Parser:
@@ -51,7 +61,7 @@ def make_parser() -> Parser:
     parser.add_argument("--version", action=Version, nargs=0, help="show the version and exit")
     commands = parser.add_subparsers(required=True, metavar="command", parser_class=Parser)
     for command in COMMANDS:
-        command.add(commands)
+        command.add_to(commands)
     return parser
 
 

@@ -26,7 +26,7 @@ from fem_adhesion import Scene
 from fem_adhesion.assess.study import assess
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.jobs import stream
-from fem_adhesion.common.options import progress_bar
+from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.scene import Counter
 from halfspace.equilibrium.curve import energy_released, placed
 from halfspace.equilibrium.devices import cycle

@@ -15,7 +15,7 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
 from fem_adhesion.common.jobs import stream
-from fem_adhesion.common.options import progress_bar
+from fem_adhesion.common.progress import progress_bar
 from halfspace.errors import NotConverged
 
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")

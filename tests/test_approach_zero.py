@@ -7,7 +7,7 @@ import pytest
 import halfspace
 from fem_adhesion.assess.predictions import Prediction
 from fem_adhesion.assess.verdict import ranked
-from fem_adhesion.common.units import Quantity
+from fem_adhesion.common.numbers import Quantity
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.finite_sphere.cases import case_of, quantities_of
 from fem_adhesion.finite_sphere.records import Record

@@ -22,10 +22,10 @@ from fem_adhesion.assess.predictions import QUANTITIES, WORDS, Prediction, compu
 from fem_adhesion.assess.study import Assessment, assess
 from fem_adhesion.assess.terminal import contact_radius, record, report
 from fem_adhesion.assess.verdict import Distance, cautions, deviations, ranked, regime, verdict
+from fem_adhesion.common import style
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.files import written_aside
-from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of, with_error
-from fem_adhesion.common.units import KINDS, Quantity, parse
+from fem_adhesion.common.numbers import KINDS, PREFIXES, Quantity, engineering, exponent_of, parse, with_error
 from fem_adhesion.scene import Counter, Scene
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
@@ -779,10 +779,10 @@ def test_engineering_prefixes():
 def test_the_figure_is_written(bead, tmp_path):
     path = tmp_path / "curve.png"
     with written_aside(path) as file:
-        assess_figure.write(bead, file, assess_figure.require_suffix(path))
+        style.write(lambda: assess_figure.draw(bead), file, style.require_suffix(path))
     assert path.read_bytes().startswith(b"\x89PNG")
     with pytest.raises(ValueError, match=r"limit: one of \.png, \.svg, \.pdf; rename it"):
-        assess_figure.require_suffix(tmp_path / "curve.gif")
+        style.require_suffix(tmp_path / "curve.gif")
 
 
 @pytest.fixture(scope="module")

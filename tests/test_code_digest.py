@@ -55,7 +55,7 @@ def test_it_is_the_same_in_another_place_and_loads_nothing_heavy(tree):
         ("fem_adhesion/finite_strain/material.py", True),  # through four others
         ("fem_adhesion/convergence.py", True),  # through __getattr__ of the package
         ("fem_adhesion/finite_sphere/cases.py", True),
-        ("fem_adhesion/finite_sphere/words.py", False),
+        ("fem_adhesion/finite_sphere/findings.py", False),
         ("fem_adhesion/cli.py", False),
     ],
 )
@@ -76,7 +76,7 @@ def test_it_knows_every_module_of_this_project_that_computing_a_case_loads():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = {name for name in ast.literal_eval(done.stdout) if name.split(".")[0] in ("halfspace", "fem_adhesion")}
-    kept = {f"fem_adhesion.common.{name}" for name in ("store", "jobs", "code_digest", "writing")} | {
+    kept = {f"fem_adhesion.common.{name}" for name in ("store", "jobs", "code_digest", "files", "progress")} | {
         "fem_adhesion.common"
     }
     assert loaded - kept - {"fem_adhesion.finite_sphere.study"} <= set(sources(CASES))

@@ -12,9 +12,8 @@ from types import SimpleNamespace
 import pytest
 
 from fem_adhesion import cli
-from fem_adhesion.common.files import directory_written_aside, written_aside
+from fem_adhesion.common.files import ELSEWHERE, REMEDIES, NotWritten, directory_written_aside, writing, written_aside
 from fem_adhesion.common.store import open_store
-from fem_adhesion.common.writing import ELSEWHERE, REMEDIES, NotWritten, writing
 from fem_adhesion.curve import solve as curves
 
 CURVE = ["curve", "--tabor", "0.5", "--rtol", "1e-2"]

@@ -21,14 +21,15 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
 from fem_adhesion.common import store
+from fem_adhesion.common.files import NotWritten
 from fem_adhesion.common.store import open_store
-from fem_adhesion.common.writing import NotWritten
 from fem_adhesion.finite_sphere import cases as finite_sphere_cases
 from fem_adhesion.finite_sphere import fit as finite_sphere_fit
 from fem_adhesion.finite_sphere import study as finite_sphere
 from fem_adhesion.finite_sphere.cases import CAUSES, MODELS, case_of, quantities_of
-from fem_adhesion.finite_sphere.fit import SOFT_PULL_OFF, Samples, fit
+from fem_adhesion.finite_sphere.fit import SOFT_PULL_OFF, fit
 from fem_adhesion.finite_sphere.materials import materials
+from fem_adhesion.finite_sphere.points import Samples
 from fem_adhesion.finite_sphere.records import (
     APPROACH_SCALE,
     CRITICAL,
@@ -38,9 +39,8 @@ from fem_adhesion.finite_sphere.records import (
     from_plain,
     to_plain,
 )
-from fem_adhesion.finite_sphere.study import plan, run, seconds_left
-from fem_adhesion.finite_sphere.table import Row, borders, rows
-from fem_adhesion.finite_sphere.tables import COLUMNS, NO_PARQUET, TEXTS, write_tables
+from fem_adhesion.finite_sphere.study import plan, run
+from fem_adhesion.finite_sphere.table import COLUMNS, NO_PARQUET, TEXTS, Row, borders, rows, write_tables
 from fem_adhesion.finite_strain.scene import find_jumps
 from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
@@ -238,19 +238,11 @@ def test_a_defect_inside_a_solver_is_no_refusal(monkeypatch):
             finite_sphere_cases.compute(Case("half_space", 1.0))
 
 
-def test_progress_counts_to_the_end_and_tells_the_time_left(tmp_path):
+def test_progress_counts_to_the_end(tmp_path):
     seen = []
     run(CASES[:3], opened(tmp_path), jobs=1, work=cheap, progress=lambda *args: seen.append(args))
     assert [(done, total) for _, done, total in seen] == [(0, 3), (1, 3), (2, 3), (3, 3)]
-    assert seen[-1][0].endswith("; 0 s left")
-
-
-def test_the_time_left_follows_the_cost_of_each_model():
-    done = [replace(solved(Case("half_space", mu)), seconds=0.1) for mu in (1.0, 2.0)]
-    done += [replace(solved(Case("sphere", 1.0, 10.0, 0.3)), seconds=3.0)]
-    ahead = [Case("sphere", mu, 10.0, 0.3) for mu in (2.0, 3.0)] + [Case("half_space", 3.0)]
-    assert seconds_left(1.6, done, ahead) == pytest.approx(6.1 * 1.6 / 3.2)
-    assert seconds_left(1.6, done, []) == 0
+    assert [name for name, _, _ in seen] == ["starting", *(case.name for case in CASES[:3])]
 
 
 # --- the store ---

@@ -17,15 +17,16 @@ from matplotlib import rc_context
 
 import halfspace
 from fem_adhesion import cli
-from fem_adhesion.common.page_tables import typeset
-from fem_adhesion.greenwood import figures, ripple
+from fem_adhesion.common import style
+from fem_adhesion.common.page import symbols
+from fem_adhesion.common.words import NOTHING
+from fem_adhesion.greenwood import numerics_1997
 from fem_adhesion.greenwood import page as greenwood_page
 from fem_adhesion.greenwood import study as greenwood
 from fem_adhesion.greenwood import tables as greenwood_tables
 from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, fit
 from fem_adhesion.greenwood.record import tables
 from fem_adhesion.greenwood.tables import LAST_DIGIT, ROUNDED
-from fem_adhesion.greenwood.text import NOTHING
 from halfspace.equilibrium.contact import CENTRAL_GAP
 from halfspace.errors import NotConverged
 from halfspace.theories import criteria, dmt
@@ -33,6 +34,7 @@ from halfspace.theories.closed_forms import bradley_load
 from halfspace.theories.maugis import MaugisDugdale, carpick_pull_off
 from halfspace.values import Estimate
 
+EMPTY = '<svg xmlns="http://www.w3.org/2000/svg"/>'
 DATA = Path(__file__).parent / "data"
 FIGURES = ("1a", "1b", "1c", "2a", "2b", "3a", "3b", "3c", "4a", "4b", "5", "6a", "6b", "7", "8")
 TABLES = (
@@ -66,8 +68,8 @@ def ran(tmp_path_factory):
     kept, told, out, printed = [], [], tmp_path_factory.mktemp("greenwood") / "out", io.StringIO()
     compute = greenwood.compute
 
-    def keeping(*, quick, progress):
-        kept.append(compute(quick=quick, progress=lambda part: (told.append(part), progress(part))))
+    def keeping(*, quick, begin):
+        kept.append(compute(quick=quick, begin=lambda part: (told.append(part), begin(part))))
         return kept[-1]
 
     with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(printed):
@@ -272,9 +274,9 @@ class Page(HTMLParser):
         attributes = dict(attrs)
         self.ids |= {attributes["id"]} if "id" in attributes else set()
         self.links += [attributes["href"]] if tag == "a" else []
-        if tag == "img":
+        if attributes.get("role") == "img":
             self.images.append(attributes)
-        elif tag != "meta":
+        if tag != "meta":
             self.open.append(tag)
 
     def handle_endtag(self, tag):
@@ -287,7 +289,7 @@ def test_the_page_shows_everything(report):
     page.feed((report / "index.html").read_text(encoding="utf-8"))
     assert page.open == []
     assert len(page.images) == len(FIGURES)
-    assert all(len(image["alt"]) > 40 and image["src"].startswith("data:image/svg+xml") for image in page.images)
+    assert all(len(image["aria-label"]) > 40 for image in page.images)
     assert {f"fig_{number}" for number in FIGURES} | set(TABLES) <= page.ids
     for link in page.links:
         assert link.startswith("https://doi.org/") or link.lstrip("#") in page.ids or (report / link).exists()
@@ -311,8 +313,8 @@ CURVES = {"1a": 3, "1b": 4, "1c": 1, "2a": 3, "2b": 4, "3a": 7, "3b": 8, "3c": 4
 
 
 def figure(study, number):
-    plot = next(plot for plot in figures.PLOTS if plot.number == number)
-    with rc_context(dict(figures.LOOK)):
+    plot = next(plot for plot in greenwood_page.FIGURES if plot.stem == f"fig_{number}")
+    with rc_context(style.LOOK):
         return plot.draw(study)
 
 
@@ -574,9 +576,9 @@ def test_the_caption_of_each_figure_is_that_of_the_page(report, study):
     captions = {row["figure"]: row["caption"] for row in rows(report, "captions")}
     page = html.unescape((report / "index.html").read_text(encoding="utf-8"))
     assert list(captions) == [f"fig_{number}" for number in FIGURES]
-    for plot in figures.PLOTS:
+    for plot in greenwood_page.FIGURES:
         assert captions[plot.stem].endswith(plot.see(study))
-        assert html.unescape(typeset(plot.see(study))) in page
+        assert symbols(plot.see(study)) in page
 
 
 # --- absurd results find absurd sentences, or none ---
@@ -665,7 +667,7 @@ CLAIMS = (  # words that conclude
 
 def sentences(study):
     """Everything that the page says of the study in words."""
-    told = [plot.see(study) for plot in figures.PLOTS]
+    told = [plot.see(study) for plot in greenwood_page.FIGURES]
     return told + [table.see for table in tables(study)]
 
 
@@ -681,10 +683,12 @@ def test_without_numbers_nothing_is_concluded(study):
 
 def test_without_results_nothing_is_concluded_and_the_page_is_made(study, tmp_path):
     bare = without_results(study)
-    for text, plot in zip(sentences(bare), figures.PLOTS, strict=False):
+    for text, plot in zip(sentences(bare), greenwood_page.FIGURES, strict=False):
         assert "Finite elements agree" not in text
-        assert "finite-element points" not in text, plot.number
-    page_of = dict(zip([plot.number for plot in figures.PLOTS], sentences(bare), strict=False))
+        assert "finite-element points" not in text, plot.stem
+    page_of = dict(
+        zip([plot.stem.removeprefix("fig_") for plot in greenwood_page.FIGURES], sentences(bare), strict=False)
+    )
     assert "No jump was found." in page_of["2a"]
     assert "has 0 folds." in page_of["3c"]
     assert page_of["4a"] == page_of["4b"] == page_of["6a"] == page_of["6b"] == page_of["7"] == NOTHING
@@ -774,13 +778,13 @@ NEGATED = {
 
 @pytest.mark.parametrize(("number", "told"), NEGATED.items())
 def test_a_caption_says_the_contrary_of_the_contrary(study, number, told):
-    plot = next(plot for plot in figures.PLOTS if plot.number == number)
+    plot = next(plot for plot in greenwood_page.FIGURES if plot.stem == f"fig_{number}")
     assert told not in plot.see(study)
     assert told in plot.see(upside_down(study))
 
 
 def test_captions_that_turn_with_their_curves(study):
-    sees = {plot.number: plot.see for plot in figures.PLOTS}
+    sees = {plot.stem.removeprefix("fig_"): plot.see for plot in greenwood_page.FIGURES}
     early = absurd_path(study.curves[0.02], load=np.append(study.curves[0.02].load[:-1], 1e6))
     turned = dataclasses.replace(study, curves={**study.curves, 0.02: early})
     assert "The load rises later than in any DMT theory" in sees["1c"](study)
@@ -834,8 +838,8 @@ def test_what_is_off_is_a_trouble_told_first_with_exit_code_1(study, monkeypatch
     )
     wrong = dataclasses.replace(wrong, pull_offs=fe)
     monkeypatch.setattr(greenwood, "compute", lambda **_: wrong)
-    monkeypatch.setattr(greenwood_page, "draw", lambda _study, directory, _told: [
-        (directory / f"{plot.stem}.svg").write_text("<svg/>") for plot in figures.PLOTS
+    monkeypatch.setattr(greenwood_page, "draw", lambda _figures, _study, directory, _told: [
+        (directory / f"{plot.stem}.svg").write_text(EMPTY) for plot in greenwood_page.FIGURES
     ])  # fmt: skip
     assert cli.main(["greenwood", "--out", str(tmp_path / "out")]) == 1
     first = capsys.readouterr().out.splitlines()[0]
@@ -844,14 +848,13 @@ def test_what_is_off_is_a_trouble_told_first_with_exit_code_1(study, monkeypatch
     )
     page = (tmp_path / "out" / "index.html").read_text()
     assert "FAILED where it should not have, 12 times" in page
-    assert "the solvers disagree in the pull-off load at &mu; = 0.5" in page
+    assert "the solvers disagree in the pull-off load at μ = 0.5" in page
     assert "0 of 10 values agree to their last printed digit" in page
 
 
 @pytest.mark.parametrize("quick", [True, False])
 def test_a_quick_page_says_so(study, quick):
-    page = "".join(greenwood_page._head(dataclasses.replace(study, quick=quick), []))
-    assert ("quick run" in page) == quick
+    page = "".join(greenwood_page.lead(dataclasses.replace(study, quick=quick)))
     assert ("A quick run: fewer points" in page) == quick
 
 
@@ -894,10 +897,10 @@ def test_a_rise_says_why_it_ends(monkeypatch):
     def fail(*_):
         raise NotConverged("on purpose")
 
-    monkeypatch.setattr(ripple, "ripple", fail)
-    rise = ripple.false_rise([path], 0.1)
+    monkeypatch.setattr(numerics_1997, "ripple", fail)
+    rise = numerics_1997.false_rise([path], 0.1)
     assert (rise.ripples, rise.ended) == ((), "no solution at mu = 3: on purpose")
-    monkeypatch.setattr(ripple, "ripple", lambda *_: types.SimpleNamespace(pull_off=-8.0))
-    assert ripple.false_rise([path, path], 0.1).ended == "the load is below -7.5 R dgamma"
-    monkeypatch.setattr(ripple, "ripple", lambda *_: types.SimpleNamespace(pull_off=-5.0))
-    assert ripple.false_rise([path, path], 0.1).ended == "no larger mu was asked for"
+    monkeypatch.setattr(numerics_1997, "ripple", lambda *_: types.SimpleNamespace(pull_off=-8.0))
+    assert numerics_1997.false_rise([path, path], 0.1).ended == "the load is below -7.5 R dgamma"
+    monkeypatch.setattr(numerics_1997, "ripple", lambda *_: types.SimpleNamespace(pull_off=-5.0))
+    assert numerics_1997.false_rise([path, path], 0.1).ended == "no larger mu was asked for"

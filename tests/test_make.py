@@ -138,6 +138,6 @@ def test_the_environment_of_a_target_is_made_once_and_from_what_is_pinned():
         check=True,
     ).stdout.splitlines()
     assert rehearsed[0].endswith("-m venv no-such-environment")
-    assert "--constraint constraints.txt --editable ." in rehearsed[1]
+    assert "--constraint constraints.txt --editable '.[studies]'" in rehearsed[1]
     assert rehearsed[-1] == "no-such-environment/bin/fem-adhesion compare"
     assert not Path(ROOT / "no-such-environment").exists()

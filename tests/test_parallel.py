@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from fem_adhesion.common import jobs as parallel
-from fem_adhesion.common.jobs import ATTEMPTS, CONNECTION_SECONDS, Died, stream
+from fem_adhesion.common.jobs import ATTEMPTS, CONNECTION_SECONDS, WorkerDied, stream
 from halfspace.errors import InputError
 
 
@@ -71,7 +71,7 @@ def test_an_item_that_always_kills_its_worker_is_given_up_and_no_other(tmp_path)
     items = [(x, 99, str(tmp_path)) for x in range(8)]
     results = {item[0]: result for item, result in stream(deadly, items, jobs=2)}
     died = results.pop(3)
-    assert isinstance(died, Died)
+    assert isinstance(died, WorkerDied)
     assert f"died {ATTEMPTS} times" in died.reason
     assert results == {x: x * x for x in range(8) if x != 3}
     assert len(list(tmp_path.iterdir())) == ATTEMPTS

@@ -43,6 +43,7 @@ LINES = {
         "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve"
     ),
     "pip install 'fem-adhesion[view]'": INSTALL,
+    "pip install '.[studies]'": INSTALL,
     "fem-adhesion report --out report.html": "fem-adhesion report --out report.html",
     "fem-adhesion speed --out speed --quick": "fem-adhesion speed --out speed --quick",
     "fem-adhesion greenwood --out greenwood": "fem-adhesion greenwood --out greenwood --quick",

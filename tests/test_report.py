@@ -12,13 +12,13 @@ from made_up import ENDINGS
 from page_tables import tables
 
 from fem_adhesion import Scene, cli
+from fem_adhesion.common.page import inlined, symbols
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields.beside import Beside
 from fem_adhesion.fields.state import state_at
-from fem_adhesion.report.figures import figure
 from fem_adhesion.report.page import WORDS, Contents, page, walk_data
-from fem_adhesion.report.parts import MOST_LINES, cell, read_table
+from fem_adhesion.report.sections import MOST_ROWS, cell, read_table
 from fem_adhesion.report.walk import SEEN, _station, walk
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES
@@ -64,14 +64,14 @@ def test_pictures_keep_to_themselves():
     svg = b"""<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" height="9pt">
     <metadata>by</metadata><defs><style>*{color:red}</style><path id="p" d="M0 0"/></defs><script>1</script>
     <use xlink:href="#p" clip-path="url(#c)"/></svg>"""
-    markup = figure(svg, "one", 'see "this" & that').markup
+    markup = inlined(svg, "one", 'see "this" & that').markup
     assert 'id="one-p"' in markup
     assert 'xlink:href="#one-p"' in markup
     assert 'clip-path="url(#one-c)"' in markup
     assert 'role="img" aria-label="see &quot;this&quot; &amp; that"' in markup
     assert not re.search("style|script|metadata|height", markup)
     with pytest.raises(ValueError, match="the picture one is not SVG"):
-        figure(b"<html/>", "one", "")
+        inlined(b"<html/>", "one", "")
 
 
 @pytest.mark.parametrize(
@@ -79,15 +79,15 @@ def test_pictures_keep_to_themselves():
     [("3.8573291370920526e-11", "3.857e-11"), ("1.6118266845", "1.6118266845"), ("mu = 2", "μ = 2"), ("", "")],
 )
 def test_numbers_of_the_machine_are_rounded_and_others_left(written, shown):
-    assert cell(written) == shown
+    assert symbols(cell(written)) == shown
 
 
 def test_lines_left_out_are_owned_to(tmp_path):
     with (tmp_path / "long.csv").open("w", newline="") as stream:
-        csv.writer(stream).writerows([["n"], *([k] for k in range(MOST_LINES + 1))])
+        csv.writer(stream).writerows([["n"], *([k] for k in range(MOST_ROWS + 1))])
     table = read_table(tmp_path / "long.csv", "Long")
-    assert len(table.lines) == MOST_LINES
-    assert table.title == f"Long (first {MOST_LINES} of {MOST_LINES + 1} lines; all are in long.csv)"
+    assert len(table.rows) == MOST_ROWS
+    assert table.title == f"Long (first {MOST_ROWS} of {MOST_ROWS + 1} lines; all are in long.csv)"
     (tmp_path / "long.csv").write_text("")
     with pytest.raises(ValueError, match=r"long\.csv is empty"):
         read_table(tmp_path / "long.csv", "Long")

@@ -14,7 +14,9 @@ from numpy.polynomial.legendre import leggauss
 import fem_adhesion
 import halfspace
 from fem_adhesion import cli
+from fem_adhesion.common import style
 from fem_adhesion.common.files import directory_written_aside
+from fem_adhesion.common.page import markdown
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed import element_methods as element_methods_module
@@ -489,6 +491,11 @@ def test_axes_are_labelled_with_what_is_drawn_along_them(distinct, quantity):
         assert set(floor.get_ydata()) == {distinct.uncertainty(family, quantity)}
 
 
+def lines_of_page(study):
+    """The page of a study."""
+    return markdown(list(speed_page.parts(study)))
+
+
 def section(page, title):
     lines = page[page.index(f"## {title}") :].split("\n\n")[1].splitlines()
     cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
@@ -496,7 +503,7 @@ def section(page, title):
 
 
 def test_the_page_gives_each_cost_and_each_truth(distinct):
-    text = "\n".join(speed_page.page(distinct))
+    text = "\n".join(lines_of_page(distinct))
     for quantity, error in zip(QUANTITIES, ("1e-03", "1e-04", "1e-05"), strict=True):
         row = section(text, f"What it costs to have {quantity}")[0]
         assert row["method"] == "some"
@@ -518,12 +525,12 @@ def test_the_page_gives_each_cost_and_each_truth(distinct):
 def test_an_error_below_the_truths_uncertainty_is_shown_as_such():
     hidden = rung(1.0, 2e-9, floors={"pull_off": 2e-9})
     study = made_study([hidden])
-    assert "<2e-09 in 1.00 s" in "\n".join(speed_page.page(study))
+    assert "<2e-09 in 1.00 s" in "\n".join(lines_of_page(study))
     axes = figures.error_against_time(study, "pull_off").axes[0]
     arrows = next(line for line in axes.lines if line.get_label() == "within that uncertainty")
     assert list(arrows.get_xdata()) == [1.0]
     told = made_study([rung(1.0, 3e-9, floors={"pull_off": 2e-9})])
-    assert "<" not in "\n".join(speed_page.page(told)).split("What it costs")[1]
+    assert "<" not in "\n".join(lines_of_page(told)).split("What it costs")[1]
     labels = [line.get_label() for line in figures.error_against_time(told, "pull_off").axes[0].lines]
     assert "within that uncertainty" not in labels
 
@@ -540,7 +547,7 @@ def test_a_legend_names_only_what_is_drawn(study):
 
 def test_nothing_is_cut_off_or_overprinted(study):
     for quantity in QUANTITIES:
-        with rc_context(figures.LOOK):
+        with rc_context(style.LOOK):
             figure = figures.error_against_time(study, quantity)
             figure.draw_without_rendering()
         boxes = [axes.get_tightbbox() for axes in figure.axes]
@@ -555,7 +562,7 @@ def test_nothing_is_cut_off_or_overprinted(study):
 def test_a_quick_run_says_so(page):
     assert "quick run" in page.splitlines()[0]
     assert "A quick run: 58 of 93 rungs were climbed" in page
-    whole = "\n".join(speed_page.page(made_study([rung(1.0, 1e-3)])))
+    whole = "\n".join(lines_of_page(made_study([rung(1.0, 1e-3)])))
     assert "quick" not in whole
     assert "1 of 4 rungs were climbed, 1 have a result." in whole
 
@@ -595,17 +602,17 @@ def test_truths_that_disagree_are_told_first():
         "half-space": Truth("finite elements", 1e-9, {"pull_off": Estimate(-5.0, 1e-9)}, 1.0),
         "finite elements": Truth("half-space", 1e-9, {"pull_off": Estimate(-6.0, 1e-9)}, 1.0),
     }
-    page = list(speed_page.page(made_study([rung(1.0, 1e-3)], truths)))
+    page = list(lines_of_page(made_study([rung(1.0, 1e-3)], truths)))
     assert page[3] == "FAILED where it should not have, 1 times:"
     assert page[4] == "* the truths disagree in pull_off: -5 and -6"
     assert section("\n".join(page), "The truths")[0]["within both errors"] == "NO"
     nan = {family: Truth(family, 1e-9, {"pull_off": Estimate(math.nan, 1e-9)}, 1.0) for family in PREFIX}
-    assert section("\n".join(speed_page.page(made_study([], nan))), "The truths")[0]["within both errors"] == "NO"
+    assert section("\n".join(lines_of_page(made_study([], nan))), "The truths")[0]["within both errors"] == "NO"
 
 
 def test_a_result_that_is_not_a_number_is_neither_best_nor_cheapest_nor_drawn():
     absurd = made_study([rung(0.1, math.nan), rung(0.2, math.inf)])
-    text = "\n".join(speed_page.page(absurd))
+    text = "\n".join(lines_of_page(absurd))
     assert section(text, "What it costs to have pull_off")[0]["best reached"] == "-"
     assert "FAILED" in text
     lines = figures.error_against_time(absurd, "pull_off").axes[0].lines
@@ -623,7 +630,7 @@ def test_a_failure_that_should_not_be_is_told_first_and_ends_in_1(monkeypatch, t
 
 def test_every_number_in_the_pages_own_words_is_computed():
     """With nothing measured no figure is left but settings: tolerances, the yardstick's size, versions."""
-    page = "\n".join(speed_page.page(made_study([], methods=[SOME])))
+    page = "\n".join(lines_of_page(made_study([], methods=[SOME])))
     kept = [line for line in page.splitlines() if not line.startswith("* ") and "judge" not in line]
     numbers = set(re.findall(r"\d[\d.e+-]*", "\n".join(kept)))
     assert numbers <= {"1", "0", "1e-03", "1e-06", "0e+00"} | {"-5", "5", "1.5", "0.25", "1e-09", "2e-09", "3e-09"}

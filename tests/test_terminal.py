@@ -17,6 +17,8 @@ from hard.bodies import Locking
 from hard.run import Row as HardRow
 from rich.console import Console
 
+from fem_adhesion.common.page import Table
+from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.terminal import WIDE, Column, Fitted, Flow, make_console, page, prose
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Row
@@ -178,28 +180,45 @@ def test_the_hard_cases_are_whole_at_any_width(width):
     assert all(word in text for word in ("0.49", "P2", "mixed", "1.2e-03", "3.4e-05"))
 
 
-MARKDOWN = """# A page
-
-* a bullet [1]
-
-| method | to 1e-03 | best reached |
-| --- | --- | --- |
-| half-space | 0.25 s = 34 yardsticks (rtol 1e-04) | 1e-09 in 0.5 s (rtol [x]) |
-| simple relaxation | - | 7e-02 in 8.5 s (n = 20) |
-
-The end.
-"""
+PARTS = (
+    "# A page",
+    "* a bullet [1]",
+    Table(
+        "",
+        "Costs",
+        "",
+        ("method", "to 1e-03", "best reached"),
+        (
+            ("half-space", "0.25 s = 34 yardsticks (rtol 1e-04)", "1e-09 in 0.5 s (rtol [x])"),
+            ("simple relaxation", "-", "7e-02 in 8.5 s (n = 20)"),
+        ),
+    ),
+    "The end.",
+)
 
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_a_page_is_shown_with_its_tables_fitted(width):
-    text = "".join(shown(part, width) for part in page(MARKDOWN))
-    for word in ("# A page", "* a bullet [1]", "half-space", "simple", "relaxation", "The end."):
+    text = "".join(shown(part, width) for part in page(PARTS))
+    for word in ("# A page", "* a bullet [1]", "## Costs", "half-space", "simple", "relaxation", "The end."):
         assert word in text
     assert "|" not in text
     left_out = left_out_of(text)
     for name, cells_ in (("to 1e-03", ("0.25 s", "= 34", "yardsticks")), ("best reached", ("1e-09 in", "7e-02 in"))):
         assert all(cell in text for cell in cells_) != (name in left_out), (name, width)
+
+
+def test_the_bar_of_long_work_says_what_is_under_way_and_what_is_left(monkeypatch, capsys):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "80")
+    with progress_bar() as step:
+        step("sphere, tabor 1", 3, 5)
+    shown_last = capsys.readouterr().err
+    for words in ("sphere, tabor 1", "3/5", "left:", "-:--:--"):
+        assert words in shown_last
+    with progress_bar() as step:  # no terminal, no bar
+        monkeypatch.delenv("FORCE_COLOR")
+    assert capsys.readouterr().out == ""
 
 
 @pytest.mark.parametrize("to_error", [False, True])

@@ -8,47 +8,41 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_adhesion.common.options import AGREE, Commands, console_beside, progress_bar, require_distinct, written
+from fem_adhesion.common.options import AGREE, Command, Parser, console_beside, require_distinct, written
+from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.scene_options import add_contact, material_of, refuse
 
 if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact
 
 
-def add(commands: Commands) -> None:
-    """Add the command."""
-    assess = commands.add_parser(
-        "assess",
-        help="assess a real contact in SI: forces, jumps, losses, and which model to trust",
-        description="Compute what a contact does, beside the closed theories, and how wrong the half-space is for it.",
-        epilog="example: fem-adhesion assess --radius 100nm --modulus 72GPa --poisson 0.17 "
-        "--work-of-adhesion 0.063J/m^2 --hamaker 65zJ --stiffness 0.2N/m",
-    )
-    add_contact(assess, in_si_only=True)
-    results = assess.add_argument_group("results")
+def add_options(command: Parser) -> None:
+    """Add the options."""
+    add_contact(command, in_si_only=True)
+    results = command.add_argument_group("results")
     results.add_argument(
         "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
     )
     results.add_argument("--plot", type=Path, help="also draw force against distance: png, svg or pdf", metavar="FILE")
-    assess.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Assess a contact, print what is found, and write the record and the figure."""
     from fem_adhesion.assess import figure, terminal
     from fem_adhesion.assess.study import assess
+    from fem_adhesion.common import style
     from fem_adhesion.common.files import written_aside
 
     contact = _contact(options)
     require_distinct(options.json, options.plot)
-    form = figure.require_suffix(options.plot) if options.plot else ""
+    form = style.require_suffix(options.plot) if options.plot else ""
     with written(options.json) as record, written_aside(options.plot) if options.plot else nullcontext() as plot:
         with progress_bar() as step:
             assessment = assess(contact, step)
         if record:
             json.dump(terminal.record(assessment), record, indent=1, allow_nan=False)
         if plot:
-            figure.write(assessment, plot, form)
+            style.write(lambda: figure.draw(assessment), plot, form)
     console_beside(options.json).print(terminal.report(assessment))
     return AGREE
 
@@ -64,3 +58,13 @@ def _contact(options: argparse.Namespace) -> Contact:
             options, ("grip",), f"tabor <= {FINITE_TABOR:g}, where a finite sphere is solved, and this is {tabor:.4g}"
         )
     return contact
+
+
+COMMAND = Command(
+    "assess",
+    "assess a real contact in SI: forces, jumps, losses, and which model to trust",
+    "Compute what a contact does, beside the closed theories, and how wrong the half-space is for it.",
+    "--radius 100nm --modulus 72GPa --poisson 0.17 --work-of-adhesion 0.063J/m^2 --hamaker 65zJ --stiffness 0.2N/m",
+    add_options,
+    run,
+)

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from io import BytesIO
-from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.figure import Figure
 from scipy.interpolate import CubicHermiteSpline
 
@@ -22,11 +19,9 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.path import Segment
 from halfspace.equilibrium.reach import reaching
-from halfspace.errors import InputError
 from halfspace.scaling import Units
 from halfspace.values import Array
 
-SUFFIXES = (".png", ".svg", ".pdf")
 LINES: tuple[dict[str, Any], ...] = (
     {"color": style.BLUE, "linewidth": 2.0},
     {"color": style.ORANGE, "linewidth": 1.8, "linestyle": style.DASHED},
@@ -38,21 +33,6 @@ THINNED = 50  # of so many samples of a closed theory one is drawn
 BETWEEN = 8  # points drawn from one computed point to the next
 
 Ends = tuple[float, float]
-
-
-def require_suffix(path: Path) -> str:
-    """Return the format of a figure file, or raise InputError if it is none of png, svg and pdf."""
-    if path.suffix not in SUFFIXES:
-        raise InputError(f"{path} ends in {path.suffix!r}, limit: one of {', '.join(SUFFIXES)}; rename it")
-    return path.suffix[1:]
-
-
-def write(assessment: Assessment, file: TextIO, form: str) -> None:
-    """Write the figure, in a format of `require_suffix`, to a file from `fem_adhesion.common.files.written_aside`."""
-    picture = BytesIO()
-    with rc_context(dict(style.LOOK)):
-        draw(assessment).savefig(picture, format=form, dpi=160)
-    file.buffer.write(picture.getbuffer())
 
 
 def draw(assessment: Assessment) -> Figure:

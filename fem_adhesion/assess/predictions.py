@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from fem_adhesion.assess import theories
 from fem_adhesion.assess.theories import Curve, Loop, estimated, loop
-from fem_adhesion.common.units import Quantity
+from fem_adhesion.common.numbers import Quantity
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Jump, cycle
 from halfspace.equilibrium.events import Event, approach_scale

@@ -30,6 +30,7 @@ from fem_adhesion.assess.verdict import (
     yielding,
 )
 from fem_adhesion.common.contact import Contact
+from fem_adhesion.common.progress import Progress, in_turn, unheard
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import tolerance_told
@@ -56,8 +57,6 @@ PARAMETERS = {
     "Muller-Yushchenko-Derjaguin mu_T": MYD_AMPLIFICATION,
     "Attard-Parker sigma": ATTARD_PARKER,
 }
-
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
@@ -112,7 +111,7 @@ class Assessment:
         return {name: float(other.of(mu)) if other else mu for name, other in PARAMETERS.items()}
 
 
-def assess(contact: Contact, progress: Progress = lambda *_: None) -> Assessment:
+def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
     """Assess a contact.
 
     Parameters
@@ -128,20 +127,14 @@ def assess(contact: Contact, progress: Progress = lambda *_: None) -> Assessment
         If the half-space's curve cannot be traced.
     """
     began = time.perf_counter()
-    steps = ("half-space", "closed theories", "sphere's profile", "finite sphere")
-    stages = iter(enumerate(steps))
-
-    def begin() -> None:
-        done, name = next(stages)
-        progress(name, done, len(steps))
-
-    begin()
+    begin = in_turn(progress, 4)
+    begin("half-space")
     half_space = _half_space(contact)
-    begin()
+    begin("closed theories")
     theories = tuple(_theories(contact))
-    begin()
+    begin("sphere's profile")
     profile, reason = _tried(PROFILE, _profile, contact)
-    begin()
+    begin("finite sphere")
     finite, why_not = _tried(PAIR if contact.pair else FINITE, _finite, contact)
     return Assessment(
         contact,

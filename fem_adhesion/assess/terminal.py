@@ -12,9 +12,8 @@ from rich.text import Text
 from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.common.facts import plain, versions
-from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of, with_error
+from fem_adhesion.common.numbers import PREFIXES, Quantity, engineering, exponent_of, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
-from fem_adhesion.common.units import Quantity
 
 DIGITS_OF_RATIO = 4  # significant, at most
 RANKS = {"both": 0, "true profile": 1, "finite body": 1}  # by which columns of the differences are left out

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fem_adhesion.assess.predictions import QUANTITIES, RADII, WORDS, Prediction, relative
 from fem_adhesion.common.contact import Contact
-from fem_adhesion.common.units import Quantity
+from fem_adhesion.common.numbers import Quantity
 from fem_adhesion.finite_strain.traction import yielded_adhesion
 
 # Tabor parameters between which neither limit serves, [G97] and Johnson & Greenwood 1997.

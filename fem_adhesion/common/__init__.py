@@ -1,6 +1,6 @@
 """What studies share, each once.
 
-Numbers: `units`, `numbers`, `facts`. Pages and pictures: `page_tables`, `style`. Files: `files`, `writing`. The
-terminal: `terminal`, `options`, `scene_options`. Contacts in SI: `contact`. Long work: `jobs`, `store`, `code_digest`,
-`machine`.
+Numbers with units and errors: `numbers`; sentences made of them: `words`. Pages and pictures: `page`, `style`. Files:
+`files`, `facts` (what records say besides). The terminal: `options`, `scene_options`, `terminal`, `progress`. Contacts
+in SI: `contact`. Long work: `jobs`, `store`, `code_digest`.
 """

@@ -1,7 +1,7 @@
 """Files and directories of files that appear whole or not at all.
 
-What the system refuses at once, before any work, is InputError; what it refuses later, or a disk that is full, is
-NotWritten. Either leaves what was there before.
+What the system refuses at once, before any work, is InputError; what it refuses later, as a full disk or a folder that
+is not ours or has vanished, is NotWritten. Either leaves what was there before.
 """
 
 from __future__ import annotations
@@ -11,19 +11,57 @@ import io
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from fem_adhesion.common.writing import NotWritten, refusal, writing
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
+REMEDIES: Mapping[int, str] = {
+    errno.ENOSPC: "free some space or choose another disk",
+    errno.EDQUOT: "free some of your quota or choose another disk",
+    errno.EFBIG: "raise the limit on the size of files, ulimit -f",
+    errno.EACCES: "choose a folder that is yours",
+    errno.EPERM: "choose a folder that is yours",
+    errno.EROFS: "choose a disk that is not read-only",
+    errno.ENOENT: "choose a folder that exists, and stays",
+    errno.ENOTDIR: "choose a folder that exists, and stays",
+    errno.ENAMETOOLONG: "choose a shorter name",
+}
+
+ELSEWHERE = "choose another place"
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 """What is no fault of the name that was given."""
+
+
+class NotWritten(RuntimeError):
+    """What was computed could not be written; the message says what, why, and what to do."""
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Run a block that does nothing but write `path`, so that what the system refuses is no defect.
+
+    Raises
+    ------
+    NotWritten
+        In the place of the block's OSError.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise NotWritten(refusal(path, error)) from error
+
+
+def refusal(path: Path, error: OSError) -> str:
+    """One line: what cannot be written, the system's reason, and a remedy."""
+    number = error.errno or 0
+    reason = os.strerror(number) if number else str(error)
+    return f"{path} cannot be written ({reason}); {REMEDIES.get(number, ELSEWHERE)}"
 
 
 @contextmanager
@@ -78,7 +116,7 @@ def _opened(descriptor: int, path: Path) -> TextIO:
 def directory_written_aside(path: Path, *, force: bool = False) -> Iterator[Path]:
     """Make an empty directory whose files move into `path` when the block ends well, and vanish if it does not.
 
-    In the block, what writes the files stands under `fem_adhesion.common.writing.writing`.
+    In the block, what writes the files stands under `writing`.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ WATCH_SECONDS = 1  # between two looks of a local worker at whether its study is
 
 
 @dataclass(frozen=True)
-class Died:
+class WorkerDied:
     """The end of an item whose worker died at every attempt, and why it is thought to have."""
 
     reason: str
@@ -43,7 +43,7 @@ class Died:
 
 def stream(
     work: Callable[[Item], Result], items: Sequence[Item], *, jobs: int | None = None, dask: str | None = None
-) -> Generator[tuple[Item, Result | Died], None, None]:
+) -> Generator[tuple[Item, Result | WorkerDied], None, None]:
     """Do the work on all items and give each with its result, in the order in which they end.
 
     Parameters
@@ -82,7 +82,7 @@ def workers(jobs: int | None) -> int:
 
 def _on_cores(
     work: Callable[[Item], Result], items: Sequence[Item], jobs: int
-) -> Generator[tuple[Item, Result | Died], None, None]:
+) -> Generator[tuple[Item, Result | WorkerDied], None, None]:
     todo = dict(enumerate(items))
     while todo:
         given: set[int] = set()
@@ -102,7 +102,7 @@ def _handed_out(todo: Mapping[int, Item], given: set[int]) -> Iterator[tuple[int
         yield number, item
 
 
-def _alone(work: Callable[[Item], Result], item: Item) -> Result | Died:
+def _alone(work: Callable[[Item], Result], item: Item) -> Result | WorkerDied:
     """Result of an item in a pool that holds nothing else, tried again while the worker dies."""
     for _ in range(ATTEMPTS - 1):
         try:
@@ -110,7 +110,7 @@ def _alone(work: Callable[[Item], Result], item: Item) -> Result | Died:
                 return next(results)[1]
         except TerminatedWorkerError as error:
             last = error
-    return Died(f"its worker died {ATTEMPTS} times: {_one_line(last)}")
+    return WorkerDied(f"its worker died {ATTEMPTS} times: {_one_line(last)}")
 
 
 def _pool(
@@ -184,7 +184,7 @@ def _knock(address: str) -> None:
 
 def _on_cluster(
     work: Callable[[Item], Result], items: Sequence[Item], distributed: ModuleType, client: Any
-) -> Generator[tuple[Item, Result | Died], None, None]:
+) -> Generator[tuple[Item, Result | WorkerDied], None, None]:
     with client:
         futures = {client.submit(work, item, pure=False): item for item in items}
         try:
@@ -192,7 +192,7 @@ def _on_cluster(
             killed = []
             for future in distributed.as_completed(futures, loop=client.loop):
                 result = _result(future, distributed.KilledWorker)
-                if isinstance(result, Died):
+                if isinstance(result, WorkerDied):
                     killed.append(futures[future])
                 else:
                     yield futures[future], result
@@ -207,7 +207,7 @@ def _result(future: Any, killed: type[Exception]) -> Any:
     try:
         return future.result()
     except killed as error:
-        return Died(f"its worker died: {_one_line(error)}")
+        return WorkerDied(f"its worker died: {_one_line(error)}")
 
 
 def _one_line(error: Exception) -> str:

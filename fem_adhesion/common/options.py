@@ -1,4 +1,4 @@
-"""What the commands share: exit codes, help, the options for results, the progress bar."""
+"""What the commands share: exit codes, help, the options for results."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import argparse
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Protocol, TextIO
@@ -103,6 +104,42 @@ class Commands(Protocol):
         """Parser of a command of that name."""
 
 
+@dataclass(frozen=True)
+class Command:
+    """A command of the program.
+
+    Attributes
+    ----------
+    name, help, description, example : str
+        Its name, one line on what it does, more than that, and arguments to begin with.
+    add_options : callable
+        Adds its options to a parser.
+    run : callable
+        Does what the options ask for and returns the exit code.
+    """
+
+    name: str
+    help: str
+    description: str
+    example: str
+    add_options: Callable[[Parser], None]
+    run: Callable[[argparse.Namespace], int]
+
+    def add_to(self, commands: Commands) -> None:
+        """Add it to the commands of a parser."""
+        epilog = f"example: fem-adhesion {self.name} {self.example}"
+        parser = commands.add_parser(self.name, help=self.help, description=self.description, epilog=epilog)
+        self.add_options(parser)
+        parser.set_defaults(run=self.run)
+
+
+def exit_code_of(troubles: Sequence[str]) -> int:
+    """Say how much failed that should not have, and give the exit code."""
+    if troubles:
+        print(f"{len(troubles)} failed that should not have, the first: {troubles[0]}")
+    return DISAGREE if troubles else AGREE
+
+
 def add_output(command: Parser) -> None:
     """Add the options of a command that writes a directory."""
     results = command.add_argument_group("results")
@@ -124,8 +161,7 @@ def require_distinct(*paths: Path | None) -> None:
 @contextmanager
 def written(path: Path | None) -> Iterator[TextIO | None]:
     """Open the file of an output, whole or not at all; standard output for ``-``, nothing for None."""
-    from fem_adhesion.common.files import written_aside
-    from fem_adhesion.common.writing import writing
+    from fem_adhesion.common.files import writing, written_aside
 
     if path is None:
         yield None
@@ -145,19 +181,3 @@ def console_beside(*paths: Path | None) -> Console:
     from fem_adhesion.common.terminal import make_console
 
     return make_console(to_error=STANDARD in paths)
-
-
-@contextmanager
-def progress_bar() -> Iterator[Callable[[str, int, int], None]]:
-    """Bar on standard error if that is a terminal.
-
-    The function it gives says what is under way, how much is done and of how much.
-    """
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    console = Console(stderr=True)
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("", total=None)
-        yield lambda name, done, total: progress.update(task, description=name, completed=done, total=total)

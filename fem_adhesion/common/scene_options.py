@@ -144,7 +144,7 @@ def _require_whole(options: argparse.Namespace) -> None:
 
 def _contact(options: argparse.Namespace) -> Contact:
     from fem_adhesion.common.contact import Contact
-    from fem_adhesion.common.units import KINDS, parse
+    from fem_adhesion.common.numbers import KINDS, parse
     from halfspace.scaling import spacing_of
 
     named = {name: text for name in KINDS if (text := getattr(options, name)) is not None}

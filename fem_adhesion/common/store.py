@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from fem_adhesion.common.writing import writing
+from fem_adhesion.common.files import writing
 from halfspace.errors import InputError
 
 SCHEMA = 2  # raised whenever what is stored changes

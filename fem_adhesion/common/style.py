@@ -1,15 +1,21 @@
-"""How figures look: one colour for each Tabor parameter, stable and unstable told apart."""
+"""How figures look: one colour for each Tabor parameter, stable and unstable told apart; and how they become files."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import Any, Generic, TextIO, TypeVar
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from fem_adhesion.common import page
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.errors import InputError
 from halfspace.values import Array
 
 # Okabe and Ito's colours, which colour-blind eyes tell apart; a figure shows no two parameters of the same colour.
@@ -40,7 +46,15 @@ ELEMENTS: Mapping[str, Any] = {
     "markerfacecolor": "white",
     "zorder": 4,
 }
-LOOK: Mapping[Any, Any] = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "svg.hashsalt": "G97"}
+LOOK: dict[Any, Any] = {
+    "font.size": 11,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "svg.hashsalt": "fem-adhesion",
+}
+ON_PAGES = LOOK | {"svg.fonttype": "none"}  # text that can be read and searched, in the page's fonts
+SUFFIXES = (".png", ".svg", ".pdf")
+DOTS_PER_INCH = 160
 
 LEGEND: Mapping[str, Any] = {"fontsize": 9.5, "handlelength": 3.2}
 
@@ -72,6 +86,14 @@ def dress(
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=columns, frameon=False, **LEGEND)
     elif legend:
         axes.legend(loc=legend, framealpha=0.9, edgecolor="none", **LEGEND)
+
+
+def legend_below(figure: Figure, panels: Sequence[Any], columns: int) -> None:
+    """One legend below the panels, of all that any of them shows, each label once."""
+    shown = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    if shown:
+        handles, labels = list(shown.values()), list(shown)
+        figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, **LEGEND)
 
 
 def plain_ticks(axis: Any, ticks: Sequence[float]) -> None:
@@ -121,3 +143,81 @@ def theory(axes: Any, name: str, x: Array, y: Array, label: str | None = None, *
 def note(axes: Any, text: str, at: tuple[float, float], offset: tuple[float, float] = (6, 4), **style: Any) -> None:
     """Text beside a point, offset in points."""
     axes.annotate(text, at, xytext=offset, textcoords="offset points", fontsize=10.5, **style)
+
+
+# Files
+
+
+Results = TypeVar("Results")
+
+
+@dataclass(frozen=True)
+class Picture(Generic[Results]):
+    """A figure of a study.
+
+    Attributes
+    ----------
+    stem, title : str
+        File name without its suffix, and what is drawn.
+    draw, see : callable
+        What draws it from the results, and what says in words what is to be seen in it.
+    lacks : callable
+        What the results lack to be drawn, or empty.
+    """
+
+    stem: str
+    title: str
+    draw: Callable[[Results], Figure]
+    see: Callable[[Results], str]
+    lacks: Callable[[Results], str] = lambda _: ""
+
+
+def draw(
+    pictures: Sequence[Picture[Results]],
+    results: Results,
+    directory: Path,
+    begin: Callable[[str], None] = lambda _: None,
+) -> None:
+    """Write figures as SVG and PNG, but for those that lack something; `begin` is told which is begun."""
+    with rc_context(ON_PAGES):
+        for picture in pictures:
+            begin(f"figure {picture.stem}")
+            if picture.lacks(results):
+                continue
+            figure = picture.draw(results)
+            figure.savefig(directory / f"{picture.stem}.svg", metadata={"Date": None, "Title": picture.title})
+            figure.savefig(directory / f"{picture.stem}.png", dpi=DOTS_PER_INCH)
+
+
+def captions(pictures: Sequence[Picture[Results]], results: Results) -> page.Table:
+    """What is to be seen in each figure, for pages that show it elsewhere."""
+    lacking = {picture: picture.lacks(results) for picture in pictures}
+    rows = [
+        (picture.stem, "" if lack else f"{picture.title}. {picture.see(results)}", lack)
+        for picture, lack in lacking.items()
+    ]
+    return page.Table("captions", "Captions", "", ("figure", "caption", "why not drawn"), rows)
+
+
+def shown(pictures: Sequence[Picture[Results]], results: Results, directory: Path) -> list[page.Figure]:
+    """Figures that `draw` has written, as parts of a page, which can be sent alone."""
+    drawn = [picture for picture in pictures if not picture.lacks(results)]
+    files = ((picture, (directory / f"{picture.stem}.svg").read_bytes()) for picture in drawn)
+    return [page.inlined(svg, one.stem, one.see(results), one.title, one.stem) for one, svg in files]
+
+
+def require_suffix(path: Path) -> str:
+    """Return the format of a figure file, or raise InputError if it is none of png, svg and pdf."""
+    if path.suffix not in SUFFIXES:
+        raise InputError(f"{path} ends in {path.suffix!r}, limit: one of {', '.join(SUFFIXES)}; rename it")
+    return path.suffix[1:]
+
+
+def write(
+    figure: Callable[[], Figure], file: TextIO, form: str, look: Mapping[Any, Any] = LOOK, dpi: int = 200
+) -> None:
+    """Draw and write, in a format of `require_suffix`, to a file from `fem_adhesion.common.files.written_aside`."""
+    picture = BytesIO()
+    with rc_context(dict(look)):
+        figure().savefig(picture, format=form, dpi=dpi, metadata={"Date": None} if form == "svg" else None)
+    file.buffer.write(picture.getbuffer())

@@ -15,6 +15,8 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from fem_adhesion.common import page as page_of
+
 WIDE = 150  # columns where there is no terminal
 LEAST = 14  # columns of text that may be wrapped, where it is so long
 PAGE = 18  # the same of a cell of a page, in which a number and its unit stay together
@@ -249,17 +251,13 @@ def _one_line(text: str) -> str:
     return " ".join(text.split("\n"))
 
 
-def page(markdown: str) -> Iterator[RenderableType]:
-    """Lines of a page in Markdown, its tables fitted: the last columns are left out first."""
-    rows: list[list[str]] = []
-    for line in (*markdown.splitlines(), ""):
-        if line.startswith("|"):
-            rows.append([_broken(cell.strip()) for cell in line.strip("|").split(" | ")])
-            continue
-        if rows:
-            yield _from_rows(rows)
-            rows = []
-        yield Text(line)
+def page(parts: Sequence[str | page_of.Table]) -> Iterator[RenderableType]:
+    """Lines and tables of a page, the tables fitted: the last columns are left out first."""
+    for part in parts:
+        if isinstance(part, page_of.Table):
+            yield from (Text(), Text(f"## {part.title}"), Text(), _from_table(part))
+        else:
+            yield Text(part)
 
 
 def _broken(cell: str) -> str:
@@ -267,12 +265,12 @@ def _broken(cell: str) -> str:
     return re.sub(r" (?=\(|= )", "\n", cell.replace("[", r"\["))
 
 
-def _from_rows(rows: Sequence[Sequence[str]]) -> Fitted:
-    """Table whose first row is the headings and whose second divides it from the others."""
-    columns = zip(rows[0], *rows[2:], strict=True)
+def _from_table(table: page_of.Table) -> Fitted:
+    """Table of a page, its headers broken after commas and colons."""
+    rows = [[_broken(cell) for cell in cells] for cells in (table.columns, *table.rows)]
     return Fitted(
         [
             Column(re.sub(r"(?<=[:,]) ", "\n", header), cells, rank, text=True, wraps=True, wrapped=PAGE)
-            for rank, (header, *cells) in enumerate(columns)
+            for rank, (header, *cells) in enumerate(zip(*rows, strict=True))
         ]
     )

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_adhesion.common.options import AGREE, DISAGREE, Commands, console_beside, progress_bar, written
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, console_beside, written
+from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.scene_options import POISSON, add_body, add_other_body, body_of, counter_of, refuse
 
 if TYPE_CHECKING:
@@ -18,19 +19,9 @@ if TYPE_CHECKING:
     from fem_adhesion.scene import Scene
 
 
-def add(commands: Commands) -> None:
-    """Add the command."""
-    compare = commands.add_parser(
-        "compare",
-        help="check that two solvers which share no elasticity agree",
-        description="Solve the adhesive contact of a body by finite elements and by a solver that shares no operator "
-        "with them: a block by an integral equation, a hemisphere that slides by spherical harmonics. Compare "
-        "operators, residuals and events, and what both share, or all of a body that only finite elements can solve, "
-        "with a problem that shares nothing. "
-        "Exit code 0: all agree, 1: some do not, 2: bad input.",
-        epilog="example: fem-adhesion compare --tabor 0.5 2 --rtol 1e-4",
-    )
-    scenes, body, results = map(compare.add_argument_group, ("scenes", "body", "results"))
+def add_options(command: Parser) -> None:
+    """Add the options."""
+    scenes, body, results = map(command.add_argument_group, ("scenes", "body", "results"))
     tabors = [0.05, 0.5, 1, 2, 3, 5]
     scenes.add_argument("--tabor", nargs="+", type=float, default=tabors, help="Tabor parameters", metavar="MU")
     scenes.add_argument(
@@ -41,7 +32,6 @@ def add(commands: Commands) -> None:
     add_other_body(body, f"{POISSON:g} unless given", " in radii of the first")
     file = "also write the result to this file, - for standard output"
     results.add_argument("--json", type=Path, help=file, metavar="FILE")
-    compare.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -101,3 +91,17 @@ def _show(case: Case | Failure, console: Console) -> None:
         for row in case.rows:
             console.print(f"  {row.quantity}: {row.verdict}", highlight=False, markup=False)
     console.print()
+
+
+COMMAND = Command(
+    "compare",
+    "check that two solvers which share no elasticity agree",
+    "Solve the adhesive contact of a body by finite elements and by a solver that shares no operator "
+    "with them: a block by an integral equation, a hemisphere that slides by spherical harmonics. Compare "
+    "operators, residuals and events, and what both share, or all of a body that only finite elements can solve, "
+    "with a problem that shares nothing. "
+    "Exit code 0: all agree, 1: some do not, 2: bad input.",
+    "--tabor 0.5 2 --rtol 1e-4",
+    add_options,
+    run,
+)

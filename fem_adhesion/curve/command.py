@@ -9,7 +9,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from fem_adhesion.common.options import AGREE, Commands, console_beside, progress_bar, require_distinct, written
+from fem_adhesion.common.options import AGREE, Command, Parser, console_beside, require_distinct, written
+from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.scene_options import (
     POISSON,
     add_body,
@@ -24,26 +25,17 @@ from halfspace.errors import InputError
 
 if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact
-    from fem_adhesion.common.options import Parser
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
 
 POINTS = 20  # of a curve for ParaView
 
 
-def add(commands: Commands) -> None:
-    """Add the command."""
-    curve = commands.add_parser(
-        "curve",
-        help="trace one load-approach curve: events, stability, jumps, plots and data",
-        description="Trace the load-approach curve of one contact, dimensionless or, with a material, in SI; print its "
-        "events with their errors, and a small plot unless piped.",
-        epilog="example: fem-adhesion curve --tabor 2 --plot curve.svg --json curve.json",
-    )
-    add_contact(curve)
-    _add_body(curve)
-    _add_results(curve)
-    curve.set_defaults(run=run)
+def add_options(command: Parser) -> None:
+    """Add the options."""
+    add_contact(command)
+    _add_body(command)
+    _add_results(command)
 
 
 def _add_body(curve: Parser) -> None:
@@ -170,7 +162,7 @@ def _form_of(plot: Path | None) -> str:
     """Format of the figure; matplotlib is not loaded without one."""
     if plot is None:
         return ""
-    from fem_adhesion.curve.figure import require_suffix
+    from fem_adhesion.common.style import require_suffix
 
     return require_suffix(plot)
 
@@ -224,3 +216,14 @@ def _scene(options: argparse.Namespace, contact: Contact | None) -> Scene:
     poisson = contact.smaller_poisson if counter else contact.poisson
     ratio = None if block and options.profile != "sphere" else units.radius_ratio
     return made(units.tabor, poisson, radius_ratio=ratio, counter=counter)
+
+
+COMMAND = Command(
+    "curve",
+    "trace one load-approach curve: events, stability, jumps, plots and data",
+    "Trace the load-approach curve of one contact, dimensionless or, with a material, in SI; print its "
+    "events with their errors, and a small plot unless piped.",
+    "--tabor 2 --plot curve.svg --json curve.json",
+    add_options,
+    run,
+)

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from io import BytesIO
-from pathlib import Path
 from typing import Any, TextIO
 
-from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
@@ -14,26 +11,14 @@ from fem_adhesion.curve.load import draw_central_gap, draw_load
 from fem_adhesion.curve.mesh import draw_mesh, is_drawn
 from fem_adhesion.curve.profiles import STATES, draw_gap, draw_pressure, draw_spike
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves
-from halfspace.errors import InputError
 
-SUFFIXES = (".png", ".svg", ".pdf")
-LOOK = {**style.LOOK, "font.size": 9.5, "svg.hashsalt": "fem-adhesion"}
+LOOK = {**style.LOOK, "font.size": 9.5}
 SIZE = (7.3, 10.0)  # inches
 
 
-def require_suffix(path: Path) -> str:
-    """Return the format of a figure file, or raise InputError if it is none of png, svg and pdf."""
-    if path.suffix not in SUFFIXES:
-        raise InputError(f"{path} ends in {path.suffix!r}, limit: one of {', '.join(SUFFIXES)}; rename it")
-    return path.suffix[1:]
-
-
 def write(curves: Curves, file: TextIO, form: str) -> None:
-    """Write the page, in a format of `require_suffix`, to a file from `fem_adhesion.common.files.written_aside`."""
-    picture = BytesIO()
-    with rc_context(LOOK):
-        draw(curves).savefig(picture, format=form, dpi=200, metadata={"Date": None} if form == "svg" else None)
-    file.buffer.write(picture.getbuffer())
+    """Write the page to a file, in a format of `fem_adhesion.common.style.require_suffix`."""
+    style.write(lambda: draw(curves), file, form, LOOK)
 
 
 def has_mesh(curves: Curves) -> bool:

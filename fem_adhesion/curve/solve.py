@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 import halfspace
 from fem_adhesion import convergence
+from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
@@ -20,8 +21,6 @@ from halfspace.scaling import Units
 
 HALF_SPACE, FINITE_ELEMENTS = "half-space", "finite elements"
 SolverName = Literal["half-space", "fem", "both"]
-
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
@@ -124,7 +123,7 @@ class Curves:
         return self.paths.get(HALF_SPACE) if self.solver == FINITE_ELEMENTS else None
 
 
-def solve(question: Question, progress: Progress = lambda *_: None) -> Curves:
+def solve(question: Question, progress: Progress = unheard) -> Curves:
     """Trace the curve by each solver asked for, and find its jumps.
 
     Parameters

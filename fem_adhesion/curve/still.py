@@ -13,8 +13,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from fem_adhesion.common.numbers import engineering, with_error
-from fem_adhesion.common.units import Quantity
+from fem_adhesion.common.numbers import Quantity, engineering, with_error
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.figure import LOOK
 from fem_adhesion.curve.load import KINDS

@@ -9,9 +9,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.text import Text
 
-from fem_adhesion.common.numbers import engineering, with_error
+from fem_adhesion.common.numbers import Quantity, engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
-from fem_adhesion.common.units import Quantity
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.braille import Canvas
 from fem_adhesion.curve.scales import Scale, scales

@@ -1,5 +1,6 @@
 """Is the half-space good enough for a sphere? The command ``finite-sphere``.
 
-Computation: `cases`, `study`, `records`, `table`, `points`, `terms`, `bulk`, `fit`, `chart`, `materials`. What is seen:
-`figures`, `chart_figure`, `findings`, `words`, `tables`, `page`. And `command`.
+Computation: `cases`, `records`, `study`; of its `table`, the `points`, what the body yields (`bulk`), the leading terms
+(`fit`), the `chart` and `materials` on it. What is seen: `chart_figure`, `cause_figure` and `dependence_figures`, each
+figure with its caption, `findings` and `page`. And `command`.
 """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
@@ -11,9 +11,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from fem_adhesion.common import style
+from fem_adhesion.common.numbers import plus_minus
+from fem_adhesion.common.style import Picture
 from fem_adhesion.finite_sphere.chart import LEVELS, Field, contour, field_of
+from fem_adhesion.finite_sphere.findings import headline
 from fem_adhesion.finite_sphere.materials import Material, materials
-from fem_adhesion.finite_sphere.table import Border, Row
+from fem_adhesion.finite_sphere.points import reference_poisson, samples
+from fem_adhesion.finite_sphere.table import Border, Results, Row
 from halfspace.limits import SMALLEST_SPHERE
 from halfspace.values import Array
 
@@ -69,7 +73,7 @@ def chart(rows: Sequence[Row], poisson: float | None, borders: Sequence[Border],
     _no_jump(panels[1], [border for border in borders if border.poisson == poisson])
     if heading:
         figure.suptitle(heading, fontsize=10.5, color="0.25")
-    legend_below(figure, panels, columns=5)
+    style.legend_below(figure, panels, columns=5)
     return figure
 
 
@@ -178,9 +182,53 @@ def _dress(axes: Any) -> None:
     axes.set_axisbelow(True)
 
 
-def legend_below(figure: Figure, panels: Sequence[Any], columns: int) -> None:
-    """One legend below the panels, of all that any of them shows, each label once."""
-    shown = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+def _caption(results: Results) -> Iterator[str]:
+    """What is to be seen."""
+    poisson = reference_poisson(results.rows)
+    fields = [field_of(results.rows, quantity, poisson) for quantity in ("pull_off_load", "jump_on_approach")]
+    if any(np.isfinite(contour(field, level)).any() for field in fields for level in LEVELS):
+        yield (
+            "A line is where the half-space under a paraboloid errs by as much as it says, between the points solved; "
+            "at the points above it, it errs by less."
+        )
+    else:
+        yield f"No deviation passes {', '.join(f'{100 * level:g}' for level in LEVELS)} % between the points solved."
+    yield from _borders([border for border in results.borders if border.poisson in (None, poisson)])
+    if any(set(field.ending.flat) - {"solved", "absent", ""} for field in fields):
+        yield "Hatched: nearest to points that were not solved."
+    yield (
+        "Materials are typical, and placed by their own values, whatever their Poisson's ratio; sizes are radii, of "
+        "the tips at the left edge."
+    )
+
+
+def _borders(borders: Sequence[Border]) -> Iterator[str]:
+    """Where the jumps begin, on the smallest sphere, the largest, and the half-space."""
+    spheres = [(b.radius_ratio, b.tabor) for b in borders if b.tabor and b.radius_ratio]
+    flat = [b.tabor for b in borders if b.tabor and b.radius_ratio is None]
+    ends = dict(sorted(spheres, key=lambda pair: pair[0]))
+    shown = [f"{plus_minus(ends[ratio])} at R/eps = {ratio:g}" for ratio in dict.fromkeys([*ends][:1] + [*ends][-1:])]
+    shown += [f"{plus_minus(tabor)} on the half-space" for tabor in flat]
     if shown:
-        handles, labels = list(shown.values()), list(shown)
-        figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, **style.LEGEND)
+        yield f"Jumps under fixed grips begin at mu = {', '.join(shown)}."
+
+
+def _figure_chart(results: Results) -> Figure:
+    partly = results.study.quick or results.study.failed
+    heading = headline(results.study) if partly else ""
+    return chart(results.rows, reference_poisson(results.rows), results.borders, heading)
+
+
+def no_sphere(results: Results) -> str:
+    """What is lacking where no sphere was solved, or empty."""
+    solved = samples(results.rows, "all", "pull_off_load", reference_poisson(results.rows))
+    return "" if solved.tabor.size else "no elastic sphere was solved beside the half-space"
+
+
+CHART = Picture(
+    "chart",
+    "Where the half-space is good enough",
+    _figure_chart,
+    lambda results: " ".join(_caption(results)),
+    no_sphere,
+)

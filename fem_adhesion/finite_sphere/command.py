@@ -5,32 +5,24 @@ from __future__ import annotations
 import argparse
 import sys
 
-from fem_adhesion.common.options import AGREE, DISAGREE, Commands, add_output, ended, progress_bar
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_output, ended
+from fem_adhesion.common.progress import in_turn, progress_bar
 
 
-def add(commands: Commands) -> None:
-    """Add the command."""
-    study = commands.add_parser(
-        "finite-sphere",
-        help="measure how far the half-space is from a finite sphere, and why",
-        description="Solve the contact under one assumption less at a time, over Tabor parameters, R/eps and Poisson's "
-        "ratios. Each case is stored at once: what is interrupted goes on with --resume. Exits with 1 if a "
-        "case has no solution.",
-        epilog="example: fem-adhesion finite-sphere --out sphere --quick",
-    )
-    study.add_argument("--tabor", nargs="+", type=float, help="Tabor parameters", metavar="MU")
-    study.add_argument(
+def add_options(command: Parser) -> None:
+    """Add the options."""
+    command.add_argument("--tabor", nargs="+", type=float, help="Tabor parameters", metavar="MU")
+    command.add_argument(
         "--radius-ratio", nargs="+", type=float, help="R/eps, 2 or more and 2.25 MU or more", metavar="RHO"
     )
-    study.add_argument("--poisson", nargs="+", type=float, help="Poisson's ratios, 0 <= nu < 0.5", metavar="NU")
-    study.add_argument(
+    command.add_argument("--poisson", nargs="+", type=float, help="Poisson's ratios, 0 <= nu < 0.5", metavar="NU")
+    command.add_argument(
         "--quick", action="store_true", help="finish in half a minute: three by three points, less accurate"
     )
-    study.add_argument("--resume", action="store_true", help="go on with the cases that the directory holds")
-    study.add_argument("--jobs", type=int, help="processes; as many as cores unless given", metavar="N")
-    study.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
-    add_output(study)
-    study.set_defaults(run=run)
+    command.add_argument("--resume", action="store_true", help="go on with the cases that the directory holds")
+    command.add_argument("--jobs", type=int, help="processes; as many as cores unless given", metavar="N")
+    command.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
+    add_output(command)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -41,13 +33,12 @@ def run(options: argparse.Namespace) -> int:
     int
         1 if any case has no solution, else 0.
     """
-    from fem_adhesion.common.files import directory_written_aside
+    from fem_adhesion.common.files import directory_written_aside, writing
     from fem_adhesion.common.store import open_store
-    from fem_adhesion.common.writing import writing
     from fem_adhesion.finite_sphere import page
     from fem_adhesion.finite_sphere import study as finite_sphere
+    from fem_adhesion.finite_sphere.findings import headline
     from fem_adhesion.finite_sphere.records import Study
-    from fem_adhesion.finite_sphere.words import headline
 
     plan = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
     store = open_store(options.out, finite_sphere.code(), resume=options.resume, force=options.force)
@@ -56,9 +47,8 @@ def run(options: argparse.Namespace) -> int:
         with progress_bar() as step:
             solved = finite_sphere.run(plan.cases, store, progress=step, **settings)
         study = Study((*solved, *plan.left_out), options.quick)
-        parts = page.PARTS
         with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
-            note = page.write(study, aside, lambda part: step(part, parts.index(part), len(parts)))
+            note = page.write(study, aside, in_turn(step, len(page.PARTS)))
             page.remove_outdated(options.out, aside)
     except KeyboardInterrupt as how:
         return ended(how, f"what is done is kept in {options.out}, --resume goes on")
@@ -66,3 +56,15 @@ def run(options: argparse.Namespace) -> int:
         print(f"fem-adhesion: {line}", file=sys.stderr)
     print(f"{headline(study)}; written: {options.out / 'index.html'}")
     return DISAGREE if study.failed else AGREE
+
+
+COMMAND = Command(
+    "finite-sphere",
+    "measure how far the half-space is from a finite sphere, and why",
+    "Solve the contact under one assumption less at a time, over Tabor parameters, R/eps and Poisson's "
+    "ratios. Each case is stored at once: what is interrupted goes on with --resume. Exits with 1 if a "
+    "case has no solution.",
+    "--out sphere --quick",
+    add_options,
+    run,
+)

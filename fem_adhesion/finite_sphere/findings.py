@@ -1,19 +1,19 @@
-"""The tables on the page of the finite sphere: rules, fits, theories, the body's yield, and what was not solved."""
+"""How the study of the finite sphere went, and the tables of its page: rules, fits, theories, yield, failures."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from fem_adhesion.common.numbers import plus_minus
-from fem_adhesion.common.page_tables import Table
+from fem_adhesion.common.page import Table
+from fem_adhesion.common.words import counted
 from fem_adhesion.finite_sphere.bulk import coefficients
 from fem_adhesion.finite_sphere.chart import LEVELS, Rule, field_of, rule
-from fem_adhesion.finite_sphere.figures import PICTURES, Picture
 from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, Fit, compare, findings
 from fem_adhesion.finite_sphere.points import reference_poisson
-from fem_adhesion.finite_sphere.records import Record
+from fem_adhesion.finite_sphere.records import Record, Study
 from fem_adhesion.finite_sphere.table import Border, Results, Row
-from fem_adhesion.finite_sphere.words import caption
 from halfspace.errors import InputError
 
 QUANTITIES = {
@@ -26,6 +26,23 @@ QUANTITIES = {
     "hysteresis": "energy lost in a cycle",
 }
 """Quantities on the page; the files have the others besides."""
+
+
+def headline(study: Study) -> str:
+    """How the study went, in one line."""
+    tried = [record for record in study.records if record.status != "left out"]
+    ended = f"{len(study.failed)} of {counted(len(tried), 'case')} not solved ({kinds(study.failed)})"
+    parts = [
+        "quick study, of few points" if study.quick else "",
+        ended if study.failed else f"{counted(len(tried), 'case')}, all solved" if tried else "no case",
+        f"{counted(len(study.left_out), 'case')} left out, beyond the limits" if study.left_out else "",
+    ]
+    return "; ".join(filter(None, parts))
+
+
+def kinds(records: Sequence[Record]) -> str:
+    """How many records ended how."""
+    return ", ".join(f"{count} {kind}" for kind, count in Counter(r.kind or r.status for r in records).items())
 
 
 def tables(results: Results) -> list[Table]:
@@ -45,7 +62,6 @@ def tables(results: Results) -> list[Table]:
         _theories(rows),
         _bulk(records),
         _failures(records),
-        _captions(results),
     ]
 
 
@@ -149,13 +165,3 @@ def _border(border: Border) -> tuple[str, ...]:
     size = "half-space" if border.radius_ratio is None else f"{border.radius_ratio:g}"
     found = (f"{border.tabor.value:.9g}", f"{border.tabor.error:.1e}") if border.tabor else ("", "")
     return (size, "" if border.poisson is None else f"{border.poisson:g}", *found, border.reason)
-
-
-def _captions(results: Results) -> Table:
-    lines = tuple((picture.stem, *_caption(picture, results)) for picture in PICTURES)
-    return Table("captions", "Figures", "", ("figure", "caption", "why not drawn"), lines)
-
-
-def _caption(picture: Picture, results: Results) -> tuple[str, str]:
-    lack = picture.lacks(results)
-    return ("", lack) if lack else (f"{picture.title}. {caption(picture.stem, results)}", "")

@@ -3,20 +3,25 @@
 A deviation is fitted by weighted least squares on all points up to the largest beta/R at which the fit is within its
 tolerance: at all Tabor parameters together, and at each alone. Two coefficients are known, for the profile's part in
 the pull-off: -9/7 of 1/rho for a rigid sphere, and that of mu/rho by JKR's theory on the exact sphere (Maugis 1995).
+
+The curved body deforms in proportion to beta/R otherwise than a half-space. What it yields as a whole shifts the
+approaches, and moves the jumps under fixed grips, by (kappa_0 + kappa_1 ln(beta/R)) beta/R, see
+`fem_adhesion.finite_sphere.bulk`; dead load does not feel it. The undeformed surface is even in r/R, so profile and
+area make a difference from (r/R)^2 on only, r being some beta or sqrt(R eps). A distant grip bends the surface by
+(beta/R)^3, beside shifting it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem_adhesion.finite_sphere.points import Samples, samples
 from fem_adhesion.finite_sphere.table import Row
-from fem_adhesion.finite_sphere.terms import TERMS, Term, leading_terms
 from halfspace.errors import InputError
-from halfspace.values import Array, Estimate, Valued
+from halfspace.values import Array, Estimate
 
 TOLERANCE = 0.1  # of the sum of the terms' sizes
 DEVIATIONS = 2.0  # standard deviations that bound an error
@@ -26,35 +31,52 @@ RIGID_PULL_OFF = -9 / 7
 SOFT_PULL_OFF = -(8 / 15) * (9 * np.pi / 8) ** (5 / 3) / (3 * np.pi / 2)
 """Of mu/rho as mu -> infinity: Maugis' load exceeds JKR's by 8 a^5/(15 X^2), and JKR's least has a^3 = 9 pi/8."""
 
+Term = Callable[[Array, Array], Array]
+"""Of Tabor parameters and R/eps."""
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Samples(Valued):
-    """Relative deviations of one quantity for one cause.
 
-    Attributes
+def _power(exponent: float) -> Term:
+    """(beta/R) to a power."""
+    return lambda mu, rho: np.asarray((mu / rho) ** (exponent / 2))
+
+
+TERMS: Mapping[str, Term] = {
+    "beta/R": _power(1),
+    "(beta/R)^2": _power(2),
+    "eps/R": lambda mu, rho: 1 / rho,  # noqa: ARG005 - every term is a function of both
+}
+POWERS: Mapping[str, Term] = {
+    "beta/R": _power(1),
+    "(beta/R)^2": _power(2),
+    "(beta/R)^3": _power(3),
+}
+LOGARITHM: Mapping[str, Term] = {"beta/R ln(beta/R)": lambda mu, rho: np.sqrt(mu / rho) * np.log(mu / rho) / 2}
+EVEN = {"(beta/R)^2": _power(2), "eps/R": TERMS["eps/R"]}
+EVEN_POWERS = {"(beta/R)^2": _power(2), "(beta/R)^4": _power(4)}
+ODD_POWERS = {"(beta/R)^3": _power(3), "(beta/R)^5": _power(5)}
+
+OF_THE_SHAPE = ("profile", "traction")  # causes that are of the shape of the undeformed surface alone
+YIELDING = ("body", "all")  # causes that let the body yield as a whole
+FIXED_GRIPS = ("jump_on_approach", "jump_on_load", "jump_off_approach", "jump_off_load", "hysteresis")
+"""Quantities that the body's yield changes to first order."""
+
+
+def leading_terms(cause: str, quantity: str, *, one_tabor: bool = False) -> Mapping[str, Term]:
+    """Terms of a deviation.
+
+    Parameters
     ----------
-    tabor, radius_ratio, deviation, error : (n,) array
-        Points, deviations and the bounds of their errors.
+    cause, quantity : str
+        Which deviation, as in `fem_adhesion.finite_sphere.table.Row`.
+    one_tabor : bool
+        For points of one Tabor parameter, where (beta/R)^2 and eps/R are one term.
     """
-
-    tabor: Array
-    radius_ratio: Array
-    deviation: Array
-    error: Array
-
-    @property
-    def stretch(self) -> Array:
-        """beta/R = sqrt(mu/rho)."""
-        return np.asarray(np.sqrt(self.tabor / self.radius_ratio))
-
-    @property
-    def significant(self) -> Samples:
-        """Those that exceed their errors."""
-        return self.where(np.abs(self.deviation) > self.error)
-
-    def where(self, chosen: NDArray[np.bool_]) -> Samples:
-        """Those chosen."""
-        return Samples(self.tabor[chosen], self.radius_ratio[chosen], self.deviation[chosen], self.error[chosen])
+    if cause in OF_THE_SHAPE:
+        return EVEN_POWERS if one_tabor else EVEN
+    if quantity not in FIXED_GRIPS:
+        return ODD_POWERS if cause == "grip" else POWERS if one_tabor else TERMS
+    powers = {name: TERMS[name] for name in ("beta/R", "(beta/R)^2")} if one_tabor else TERMS
+    return {**powers, **LOGARITHM} if cause in YIELDING else powers
 
 
 @dataclass(frozen=True)
@@ -172,17 +194,6 @@ def _compared(theory: str, expected: float, data: Samples, tabor: float, leading
     terms: dict[str, Term] = {"leading": leading, "square": lambda mu, rho: leading(mu, rho) ** 2}
     found = fit(data.where(data.tabor == tabor), terms, tolerance=TOLERANCE / 10)
     return Comparison(theory, expected, tabor, found.coefficients["leading"])
-
-
-def samples(rows: Iterable[Row], cause: str, quantity: str, poisson: float | None) -> Samples:
-    """Deviations of a quantity for a cause, of the rows that have one, and a finite one."""
-    chosen = [
-        (row.tabor, row.radius_ratio, row.deviation.value, row.deviation.error)
-        for row in rows
-        if (row.cause, row.quantity, row.poisson) == (cause, quantity, poisson) and row.deviation and row.radius_ratio
-    ]
-    numbers = np.array(chosen, float).reshape(-1, 4)
-    return Samples(*numbers[np.isfinite(numbers).all(axis=1)].T)
 
 
 def fit(data: Samples, terms: Mapping[str, Term] = TERMS, *, tolerance: float = TOLERANCE) -> Fit:

@@ -2,35 +2,36 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Callable, Iterator, Sequence
 from math import ceil
 from pathlib import Path
 
 import numpy as np
+from markupsafe import Markup
 
-from fem_adhesion.common.facts import versions
-from fem_adhesion.common.machine import machine
-from fem_adhesion.common.page_tables import STYLE, Table, html, typeset, write_csv
+from fem_adhesion.common.facts import machine, versions
+from fem_adhesion.common.page import Section, Table, listed, page, write_csv
+from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.finite_sphere import findings
 from fem_adhesion.finite_sphere.bulk import bulk_compliance
 from fem_adhesion.finite_sphere.cases import CAUSES
+from fem_adhesion.finite_sphere.cause_figure import CAUSES_FIGURE
 from fem_adhesion.finite_sphere.chart import Field, field_of, rule, safe_from
-from fem_adhesion.finite_sphere.figures import PICTURES, Picture, draw
-from fem_adhesion.finite_sphere.findings import QUANTITIES, line
+from fem_adhesion.finite_sphere.chart_figure import CHART
+from fem_adhesion.finite_sphere.dependence_figures import BULK_FIGURE, POISSON_FIGURE
+from fem_adhesion.finite_sphere.findings import QUANTITIES, headline, line
 from fem_adhesion.finite_sphere.points import reference_poisson
 from fem_adhesion.finite_sphere.records import Record, Study
-from fem_adhesion.finite_sphere.table import Results, Row, results
-from fem_adhesion.finite_sphere.tables import write_tables
-from fem_adhesion.finite_sphere.words import caption, headline
+from fem_adhesion.finite_sphere.table import Results, Row, results, write_tables
 from halfspace.errors import InputError
 
+PICTURES = (CHART, CAUSES_FIGURE, POISSON_FIGURE, BULK_FIGURE)
 LEVEL = 0.01  # of the answer on top
 PARTS = ("table", *(f"figure {picture.stem}" for picture in PICTURES), "page")
 """What `write` tells that it begins, in this order."""
 
 
-def write(study: Study, directory: Path, begin: Callable[[str], None] | None = None) -> str:
+def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _: None) -> str:
     """Write the table, every figure as SVG and PNG, the findings as CSV, and ``index.html``, into a directory.
 
     Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none.
@@ -41,7 +42,7 @@ def write(study: Study, directory: Path, begin: Callable[[str], None] | None = N
         What was computed.
     directory : Path
         Where to write, which exists.
-    begin : callable, optional
+    begin : callable
         Told what is done next, once for each of `PARTS`.
 
     Returns
@@ -49,18 +50,15 @@ def write(study: Study, directory: Path, begin: Callable[[str], None] | None = N
     str
         How to get the Parquet file if there is none, else empty.
     """
-    if begin:
-        begin("table")
+    begin("table")
     found = results(study, bulk_compliance)
     note = write_tables(found.rows, directory)
-    draw(found, directory, begin)
-    if begin:
-        begin("page")
+    draw(PICTURES, found, directory, begin)
+    begin("page")
     tables = findings.tables(found)
-    for one in tables:
+    for one in (*tables, captions(PICTURES, found)):
         write_csv(one, directory)
-    page = "\n".join(_page(found, tables[:-1], directory))
-    (directory / "index.html").write_text(page + "\n", encoding="utf-8")
+    (directory / "index.html").write_text(_page(found, tables, directory), encoding="utf-8")
     return note
 
 
@@ -71,43 +69,53 @@ def remove_outdated(directory: Path, written: Path) -> None:
             (directory / name).unlink(missing_ok=True)
 
 
-def _page(found: Results, tables: Sequence[Table], directory: Path) -> Iterator[str]:
-    yield '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">'
-    yield '<meta name="viewport" content="width=device-width, initial-scale=1">'
-    yield f"<title>The finite sphere</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<main>"
-    yield f"<h1>Is the half-space good enough for my sphere?</h1>\n<p><strong>{headline(found.study)}.</strong></p>"
-    yield from _answer(found.rows)
-    chart, *others = PICTURES
-    yield from _figure(chart, found, directory)
-    rules, *rest = tables
-    yield from html(rules)
-    yield from _causes()
-    for picture in others:
-        yield from _figure(picture, found, directory)
-    for one in rest:
-        yield from html(one)
-    yield from _foot(found.study.records)
-    yield "</main>\n</body>\n</html>"
+def _page(found: Results, tables: Sequence[Table], directory: Path) -> str:
+    records = found.study.records
+    rules, *others = tables
+    chart = _section("where", CHART.title, (CHART,), found, directory, tables=[rules])
+    causes = _section("why", "Causes", PICTURES[1:], found, directory, _causes())
+    lead = [Markup("<strong>{}.</strong>").format(headline(found.study)), *_answer(found.rows)]
+    sections = [chart, causes, Section("tables", "Tables", tables=others), _settings(records)]
+    spent = f"{sum(r.seconds for r in records):.0f} s of work on {len(records)} cases"
+    facts = {**machine(), **versions(), "computed in": spent}
+    return page("Is the half-space good enough for my sphere?", lead, sections, facts)
+
+
+def _section(
+    name: str,
+    title: str,
+    pictures: Sequence[Picture[Results]],
+    found: Results,
+    directory: Path,
+    paragraphs: Sequence[str] = (),
+    tables: Sequence[Table] = (),
+) -> Section:
+    """Section with its figures, and what those that are not drawn lack."""
+    lacking = [f"{one.title}. Not drawn: {lack}." for one in pictures if (lack := one.lacks(found))]
+    figures = shown(pictures, found, directory)
+    return Section(name, title, paragraphs=(*paragraphs, *lacking), figures=figures, tables=tables)
 
 
 def _answer(table: Sequence[Row]) -> Iterator[str]:
     """The rules in words."""
     poisson = reference_poisson(table)
     if poisson is None:
-        yield "<p>No elastic sphere was solved.</p>"
+        yield "No elastic sphere was solved."
         return
-    yield f"<p>By the points solved at Poisson's ratio {poisson:g} it errs by less than {100 * LEVEL:g} % in</p><ul>"
-    for quantity, name in QUANTITIES.items():
-        yield f"<li>the <strong>{name}</strong> {typeset(_when(field_of(table, quantity, poisson)))};</li>"
-    yield "</ul>"
-    yield typeset(
+    fields = {name: field_of(table, quantity, poisson) for quantity, name in QUANTITIES.items()}
+    yield Markup("By the points solved at Poisson's ratio {:g} it errs by less than {:g} % in").format(
+        poisson, 100 * LEVEL
+    ) + listed(
+        [Markup("the <strong>{}</strong> {};").format(name, _condition(field)) for name, field in fields.items()]
+    )
+    yield (
         "Here mu is the Tabor parameter, mu^3 = R dgamma^2/(E*^2 eps^3), R the radius of the sphere, eps the spacing "
         "of the surface law; the half-space's profile is a paraboloid. The sphere is elastic, its mid-plane slides in "
         "its grip, the wall is rigid and the strains are small. Nothing is said of points beyond the range given."
-    ).join(("<p>", "</p>"))
+    )
 
 
-def _when(field: Field) -> str:
+def _condition(field: Field) -> str:
     """Condition under which a deviation is below the level."""
     try:
         found = rule(field, LEVEL)
@@ -128,35 +136,19 @@ def _from(field: Field) -> str:
     return f"if R/eps is {least:g} or more (points solved, mu from {known[0]:g} to {known[-1]:g})"
 
 
-def _causes() -> Iterator[str]:
-    yield "<section><h2>Causes</h2><p>Between the two lie several assumptions, switched one at a time:</p><ul>"
-    yield from (f"<li><strong>{name}</strong>: {cause.meaning};</li>" for name, cause in CAUSES.items())
-    yield "</ul></section>"
+def _causes() -> list[str]:
+    causes = [Markup("<strong>{}</strong>: {};").format(name, cause.meaning) for name, cause in CAUSES.items()]
+    return [Markup("Between the two lie several assumptions, switched one at a time:") + listed(causes)]
 
 
-def _figure(picture: Picture, found: Results, directory: Path) -> Iterator[str]:
-    """A figure with its caption; the image is part of the page, which can be sent alone."""
-    title = typeset(picture.title)
-    if lack := picture.lacks(found):
-        yield f'<section id="{picture.stem}"><h2>{title}</h2><p>Not drawn: {typeset(lack)}.</p></section>'
-        return
-    image = base64.b64encode((directory / f"{picture.stem}.svg").read_bytes()).decode()
-    files = " ".join(f'<a href="{picture.stem}.{suffix}">{suffix.upper()}</a>' for suffix in ("svg", "png"))
-    see = typeset(caption(picture.stem, found))
-    yield f'<figure id="{picture.stem}"><h2>{title}</h2>'
-    yield f'<img alt="{title}. {see}" src="data:image/svg+xml;base64,{image}">'
-    yield f"<figcaption>{see} {files}</figcaption></figure>"
-
-
-def _foot(records: Sequence[Record]) -> Iterator[str]:
+def _settings(records: Sequence[Record]) -> Section:
     """How it was computed, and how to do so again."""
     names = ("tabor", "radius_ratio", "poisson", "rtol")
     inputs = {name: sorted({v for r in records if (v := getattr(r.case, name)) is not None}) for name in names}
-    yield "<section><h2>Settings</h2><ul>"
-    yield from (f"<li>{name}: {', '.join(f'{v:g}' for v in values)}</li>" for name, values in inputs.items())
-    yield "</ul><p>All numbers with their errors are in "
-    yield '<a href="finite_sphere.csv">finite_sphere.csv</a>. To repeat, <code>fem-adhesion finite-sphere --out DIR'
-    yield "</code>; with <code>--resume</code>, what the directory holds is not computed again.</p></section>"
-    spent = f"{sum(r.seconds for r in records):.0f} s of work on {len(records)} cases"
-    facts = {**machine(), **versions(), "computed in": spent}
-    yield f"<footer><p>{'; '.join(typeset(f'{key} {value}') for key, value in facts.items())}</p></footer>"
+    asked = listed([f"{name}: {', '.join(f'{v:g}' for v in values)}" for name, values in inputs.items()])
+    again = Markup(
+        'All numbers with their errors are in <a href="finite_sphere.csv">finite_sphere.csv</a>. To repeat, <code>'
+        "fem-adhesion finite-sphere --out DIR</code>; with <code>--resume</code>, what the directory holds is not "
+        "computed again."
+    )
+    return Section("settings", "Settings", paragraphs=(asked, again))

@@ -1,17 +1,59 @@
-"""Which points of the study of the finite sphere its figures show and its sentences speak of."""
+"""Points of the study of the finite sphere: samples of its table, and those that figures and sentences speak of."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fem_adhesion.finite_sphere.fit import samples
 from fem_adhesion.finite_sphere.table import Row
-from halfspace.values import Array
+from halfspace.values import Array, Valued
 
 FAVOURED = (0.3, 1.0, 3.0)  # Tabor parameters of a panel each
 POISSON = 0.3
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Samples(Valued):
+    """Relative deviations of one quantity for one cause.
+
+    Attributes
+    ----------
+    tabor, radius_ratio, deviation, error : (n,) array
+        Points, deviations and the bounds of their errors.
+    """
+
+    tabor: Array
+    radius_ratio: Array
+    deviation: Array
+    error: Array
+
+    @property
+    def stretch(self) -> Array:
+        """beta/R = sqrt(mu/rho)."""
+        return np.asarray(np.sqrt(self.tabor / self.radius_ratio))
+
+    @property
+    def significant(self) -> Samples:
+        """Those that exceed their errors."""
+        return self.where(np.abs(self.deviation) > self.error)
+
+    def where(self, chosen: NDArray[np.bool_]) -> Samples:
+        """Those chosen."""
+        return Samples(self.tabor[chosen], self.radius_ratio[chosen], self.deviation[chosen], self.error[chosen])
+
+
+def samples(rows: Iterable[Row], cause: str, quantity: str, poisson: float | None) -> Samples:
+    """Deviations of a quantity for a cause, of the rows that have one, and a finite one."""
+    chosen = [
+        (row.tabor, row.radius_ratio, row.deviation.value, row.deviation.error)
+        for row in rows
+        if (row.cause, row.quantity, row.poisson) == (cause, quantity, poisson) and row.deviation and row.radius_ratio
+    ]
+    numbers = np.array(chosen, float).reshape(-1, 4)
+    return Samples(*numbers[np.isfinite(numbers).all(axis=1)].T)
 
 
 def reference_poisson(rows: Sequence[Row]) -> float | None:

@@ -6,14 +6,14 @@ each result stored as it comes; `fem_adhesion.finite_sphere.table` sets them bes
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass, replace
 from itertools import product
 
 from fem_adhesion.common.code_digest import code_digest
-from fem_adhesion.common.jobs import Died, stream
+from fem_adhesion.common.jobs import WorkerDied, stream
+from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.common.store import Store
 from fem_adhesion.finite_sphere.cases import MODELS, case_of, compute
 from fem_adhesion.finite_sphere.records import STORED, Case, Record, from_plain, to_plain
@@ -28,8 +28,6 @@ FINITE_STRAIN = ("finite_strain", "finite_strain_normal", "finite_strain_referen
 SPARSE = ("surface_traction", *FINITE_STRAIN)  # models solved at fewer points
 QUICK_SPARSE = ("finite_body", "bonded")  # and in a quick study, which has none of the others
 RTOL, QUICK_RTOL = 1e-5, 1e-4
-
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
@@ -152,7 +150,7 @@ def run(
     *,
     jobs: int | None = None,
     dask: str | None = None,
-    progress: Progress | None = None,
+    progress: Progress = unheard,
     fresh: bool = False,
     work: Callable[[Case], Record] = compute,
 ) -> tuple[Record, ...]:
@@ -166,8 +164,8 @@ def run(
         From `fem_adhesion.common.store.open_store`.
     jobs, dask : int and str, optional
         Local processes, or the address of a cluster: see `fem_adhesion.common.jobs.stream`.
-    progress : callable, optional
-        Called with the last case and the time left, how many cases are done, and of how many.
+    progress : callable
+        Called with the last case, how many cases are done, and of how many.
     fresh : bool
         Compute all, whatever the store holds.
     work : callable
@@ -186,18 +184,14 @@ def run(
     """
     records = {} if fresh else dict(_stored(cases, store))
     todo = [case for case in cases if case not in records]
-    began = time.perf_counter()
-    new: list[Record] = []
     with closing(stream(work, todo, jobs=jobs, dask=dask)) as results:
-        _report(progress, "starting", len(records), len(cases))
+        progress("starting", len(records), len(cases))
         for case, result in results:
-            record = Record(case, "died", {}, result.reason) if isinstance(result, Died) else result
+            record = Record(case, "died", {}, result.reason) if isinstance(result, WorkerDied) else result
             if record.status in STORED:
                 store.put(asdict(case), to_plain(record))
             records[case] = record
-            new.append(record)
-            left = seconds_left(time.perf_counter() - began, new, [c for c in todo if c not in records])
-            _report(progress, f"{case.name}; {_duration(left)} left", len(records), len(cases))
+            progress(case.name, len(records), len(cases))
     return tuple(records[case] for case in cases)
 
 
@@ -210,35 +204,3 @@ def _stored(cases: Sequence[Case], store: Store) -> Iterator[tuple[Case, Record]
             yield case, from_plain(case, plain)
         except InputError as error:
             store.distrust(asdict(case), str(error))
-
-
-def _report(progress: Progress | None, name: str, done: int, total: int) -> None:
-    if progress:
-        progress(name, done, total)
-
-
-def seconds_left(elapsed: float, done: Sequence[Record], remaining: Sequence[Case]) -> float:
-    """Estimated wall time until the remaining cases are done.
-
-    Parameters
-    ----------
-    elapsed : float
-        Wall time in which the cases of `done` were computed, in s.
-    done : sequence of Record
-        At least one.
-    remaining : sequence of Case
-        Each expected to take as long as the mean of its model, or of all if none of its model is done.
-    """
-    means = {model: _mean([r for r in done if r.case.model == model]) for model in {r.case.model for r in done}}
-    spent = sum(record.seconds for record in done)
-    ahead = sum(means.get(case.model, _mean(done)) for case in remaining)
-    return elapsed * ahead / spent if spent else 0.0
-
-
-def _mean(records: Sequence[Record]) -> float:
-    return sum(record.seconds for record in records) / len(records)
-
-
-def _duration(seconds: float) -> str:
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"

@@ -13,6 +13,7 @@ import halfspace
 from halfspace.theories import criteria
 from halfspace.values import Array, Estimate, Valued
 
+CLOSED = ("Attard & Parker", "Pethica & Sutton", "App. C")
 REPULSION_GONE = 10.0  # Tabor parameter above which the exponent is fitted
 
 
@@ -82,8 +83,7 @@ class CriteriaStudy:
 def jump_on(tabor: float, *, rtol: float = 1e-6) -> JumpOn:
     """Solve for a true jump; above the critical Tabor parameter."""
     event = halfspace.trace(tabor, rtol=rtol).events["jump_on"]
-    approach, gap = event.estimate("approach"), event.estimate("central_gap")
-    return JumpOn(tabor, approach, gap)
+    return JumpOn(tabor, event.estimate("approach"), event.estimate("central_gap"))
 
 
 def fit(jumps: Iterable[JumpOn]) -> CriteriaStudy:
@@ -96,15 +96,11 @@ def fit(jumps: Iterable[JumpOn]) -> CriteriaStudy:
 def _closed(mu: Array, y: Array) -> list[Criterion]:
     """Criteria (H0 + 1)^(7/2) = k pi sqrt2 mu^(3/2): one constant, printed in three values."""
     k, scatter = _mean(np.log(y**3.5 / (np.pi * np.sqrt(2) * mu**1.5)))
-    printed = {
-        "Attard & Parker": criteria.ATTARD_PARKER,
-        "Pethica & Sutton": float(criteria.PETHICA_SUTTON),
-        "App. C": criteria.APPENDIX_C,
-    }
+    printed = zip(CLOSED, (criteria.ATTARD_PARKER, float(criteria.PETHICA_SUTTON), criteria.APPENDIX_C), strict=True)
     formula = "(H0 + 1)^(7/2) = k pi sqrt2 mu^(3/2)"
     return [
         Criterion(name, formula, partial(criteria.closed_gap, k=value), False, (("k", value, k),), scatter)
-        for name, value in printed.items()
+        for name, value in printed
     ]
 
 
@@ -165,3 +161,14 @@ def _mean(logarithms: Array) -> tuple[Estimate, float]:
     scatter = float(np.std(logarithms, ddof=1))
     value = float(np.exp(np.mean(logarithms)))
     return Estimate(value, value * scatter / float(np.sqrt(logarithms.size))), scatter
+
+
+def is_closed(criterion: Criterion) -> bool:
+    """Whether a criterion was derived, and not fitted."""
+    return criterion.name in CLOSED
+
+
+def closed_ratios(study: CriteriaStudy) -> Array:
+    """(H0 + 1)^(7/2) by each closed criterion over that of the true jumps; shape (criteria, jumps)."""
+    predicted = [c.predict(study.tabor) for c in study.criteria if is_closed(c) and c.predict]
+    return (np.reshape(predicted, (len(predicted), study.tabor.size)) + 1) ** 3.5 / (study.central_gap + 1) ** 3.5

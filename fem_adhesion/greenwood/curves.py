@@ -1,19 +1,21 @@
-"""Curves of Greenwood's figures: finely stepped paths, where jumps under fixed grips land, states along a path."""
+"""Curves of Greenwood's figures: finely stepped paths, states on them, jumps under fixed grips or of an apparatus."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 import halfspace
+from fem_adhesion.common.words import told
+from halfspace.accuracy.fold_birth import FIRST, critical_stiffness, tabor_of
 from halfspace.accuracy.trace import half_space_charts, resolution_for
-from halfspace.equilibrium import devices
 from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS
-from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, metric_for, trace_charts
-from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import FOLD, Condition, Located, locate
+from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, trace_charts
+from halfspace.equilibrium.devices import Cycle, Jump, cycle
+from halfspace.equilibrium.events import Condition, Located
 from halfspace.equilibrium.path import Steps
 from halfspace.values import Array, Estimate, Valued
 
@@ -25,9 +27,11 @@ SEEN = 1e-4  # relative accuracy of what is only drawn
 PROFILES = ((2.554, 0), (1.0, 0), (0.3, 0), (0.02, 0), (0.0, -1), (-0.0036, -1), (-0.01, -1))
 PROFILE_RADII = np.concatenate([[0.0], np.geomspace(1e-3, 0.05, 30), np.linspace(0.052, 4.0, 1200)])
 
+STIFFNESSES = (math.inf, 100.0, 10.0, 3.0, 1.0, 0.3, 0.1)  # R dgamma/eps, of an apparatus
+
 
 @dataclass(frozen=True)
-class Jump:
+class LetteredJump:
     """A jump under fixed grips.
 
     Attributes
@@ -48,7 +52,7 @@ class Jump:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Profile(Valued):
+class DrawnState(Valued):
     """Shape and pressure of one state.
 
     Attributes
@@ -79,39 +83,28 @@ def fine_path(
     return replace(path, segments=trace_charts(charts, to_load, steps))
 
 
-def folds(path: EquilibriumPath) -> list[Located]:
-    """Every fold in the approach, in order along the path."""
-    return states(path, FOLD)
-
-
-def states(path: EquilibriumPath, condition: Condition) -> list[Located]:
-    """Every state of the path that meets a condition, in order."""
-    metric = metric_for(path.tabor)
-    return [e for s in path.segments for e in locate(s.problem, s.points, metric, condition)]
-
-
-def jumps(tabor: float, *, rtol: float = 1e-6) -> tuple[Jump, ...]:
+def jumps(tabor: float, *, rtol: float = 1e-6) -> tuple[LetteredJump, ...]:
     """Jumps A to B, into contact, and C to D, out of it; empty where the curve does not fold."""
     grips = cycle(halfspace.trace(tabor, rtol=rtol))
     return (_lettered("AB", grips.jump_on), _lettered("CD", grips.jump_off)) if grips else ()
 
 
-def _lettered(letters: str, jump: devices.Jump) -> Jump:
+def _lettered(letters: str, jump: Jump) -> LetteredJump:
     before, after = jump.take_off, jump.landing
-    approach = before.estimate("approach")
-    load, landing_load = (event.estimate("load") for event in (before, after))
-    return Jump(letters[0], letters[1], approach, load, landing_load)
+    return LetteredJump(
+        letters[0], letters[1], before.estimate("approach"), before.estimate("load"), after.estimate("load")
+    )
 
 
-def profiles(path: EquilibriumPath) -> Iterator[Profile]:
+def profiles(path: EquilibriumPath) -> Iterator[DrawnState]:
     """States of Fig. 4 on a path, in order along it."""
     for gap, which in PROFILES:
-        found = states(path, Condition(CENTRAL_GAP, value=gap))
+        found = path.states(Condition(CENTRAL_GAP, value=gap))
         if found:
             yield _profile(found[which])
 
 
-def _profile(state: Located) -> Profile:
+def _profile(state: Located) -> DrawnState:
     """State as a field; the gap is interpolated, the pressure is what the law gives for it."""
     problem, x = state.problem.interface, state.problem.surface_state(state.point.x)
     edge = state.point.observables[CONTACT_RADIUS]  # where the tension is largest
@@ -119,4 +112,66 @@ def _profile(state: Located) -> Profile:
     gap = problem.operator_at(x).values_at(radii, x[:-2])
     approach, load, central_gap, radius = state.point.observables
     pressure = problem.law.pressure(gap, problem.tabor)
-    return Profile(central_gap, approach, load, radius, radii, gap, pressure)
+    return DrawnState(central_gap, approach, load, radius, radii, gap, pressure)
+
+
+def gap_falls(path: EquilibriumPath) -> bool:
+    """Whether the central gap falls at every point of a curve, by the tangents: grids hand over with a small step."""
+    return all(point.rates[CENTRAL_GAP] < 0 for point in path.points)
+
+
+def elements_beside(fe: EquilibriumPath | None, path: EquilibriumPath, x: str, y: str) -> str:
+    """How far finite-element points lie from the half-space's curve."""
+    if fe is None:
+        return ""
+    seen = (fe.load <= path.load.max(initial=-np.inf)) & (fe.approach >= path.approach.min(initial=np.inf))
+    if x == "contact_radius" or y == "contact_radius":
+        seen &= np.isfinite(fe.contact_radius)
+    line = np.isfinite(getattr(path, x)) & np.isfinite(getattr(path, y))
+    off = _farthest((getattr(fe, x)[seen], getattr(fe, y)[seen]), (getattr(path, x)[line], getattr(path, y)[line]))
+    text = (
+        f"At mu = {path.tabor:g} the finite-element points are within {off:.1e} of the line, in units of their extent."
+    )
+    return told(text, off)
+
+
+def _farthest(points: tuple[Array, Array], line: tuple[Array, Array]) -> float:
+    """Largest distance of points from a polygon, in units of its width and height where the points are."""
+    at, corners = np.stack(points), np.stack(line)
+    if at.size == 0 or corners.shape[1] < 2:
+        return math.nan
+    size = np.maximum(np.ptp(at, axis=1), 1e-12)[:, None]
+    at, corners = at / size, corners / size
+    start, step = corners[:, :-1], np.diff(corners)
+    length = np.maximum(np.sum(step**2, axis=0), 1e-30)
+    offsets = at[:, :, None] - start[:, None]
+    t = np.clip(np.sum(offsets * step[:, None], axis=0) / length, 0, 1)
+    return float(np.hypot(*(offsets - t * step[:, None])).min(axis=1).max())
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DeviceStudy(Valued):
+    """Cycles by stiffness, and the border between jumping and following.
+
+    Attributes
+    ----------
+    tabor : float
+        Of the cycles.
+    cycles : tuple of Cycle
+        From fixed grips to the softest apparatus.
+    border : (n, 2) array
+        Tabor parameter below the critical one, and the stiffness in R dgamma/eps below which that contact jumps.
+    """
+
+    tabor: float
+    cycles: tuple[Cycle, ...]
+    border: Array
+
+
+def devices(path: EquilibriumPath) -> DeviceStudy:
+    """Cycles on a traced curve, which must fold, and the border at every Tabor parameter."""
+    cycles = (cycle(path, stiffness) for stiffness in STIFFNESSES)
+    critical = tabor_of(FIRST)
+    tabors = critical * (1 - np.geomspace(0.999, 1e-3, 40))
+    border = np.array([[tabor, critical_stiffness(float(tabor))] for tabor in tabors])
+    return DeviceStudy(path.tabor, tuple(c for c in cycles if c is not None), border)

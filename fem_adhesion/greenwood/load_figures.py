@@ -1,4 +1,4 @@
-"""Load against approach: figures after [G97] 1a to 2b."""
+"""Load against approach: figures after [G97] 1a to 2b, each with what is to be seen in it, measured on its data."""
 
 from __future__ import annotations
 
@@ -8,14 +8,33 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
-from fem_adhesion.common.style import curve, dress, note, panels, theory
-from fem_adhesion.greenwood import captions
-from fem_adhesion.greenwood.captions import DMT_TABOR, RIGID, SCALED, SOFT
-from fem_adhesion.greenwood.plot import Plot
+from fem_adhesion.common.style import Picture, curve, dress, note, panels, theory
+from fem_adhesion.common.words import joined, listed, rises, told
+from fem_adhesion.greenwood.curves import elements_beside
 from fem_adhesion.greenwood.study import JUMPS_AT, Greenwood1997
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.theories import dmt
-from halfspace.theories.closed_forms import bradley_load, hertz_load, hertz_radius_at, jkr_approach, jkr_load
+from halfspace.theories.closed_forms import (
+    BRADLEY_PULL_OFF,
+    JKR_PULL_OFF,
+    bradley_load,
+    hertz_load,
+    hertz_radius_at,
+    jkr_approach,
+    jkr_load,
+    jkr_zero_load,
+)
 from halfspace.values import Array
+
+DMT = {
+    "DMT force method": dmt.force_load,
+    "DMT thermodynamic": dmt.thermodynamic_load,
+    "DMT-M": dmt.maugis_load,
+}
+RIGID = (0.02, 0.1, 0.3)  # Tabor parameters of Fig. 1a
+SCALED = (0.1, 0.3, 0.5, 1.0)  # of Fig. 1b
+SOFT = (1.0, 2.0, 3.0, 5.0)  # of Fig. 2b
+DMT_TABOR = 0.1  # at which Fig. 1a shows the DMT theories
 
 
 def _figure_1a(study: Greenwood1997) -> Figure:
@@ -31,10 +50,37 @@ def _figure_1a(study: Greenwood1997) -> Figure:
 
 def _dmt(axes: Any, tabor: float, approach: Array, suffix: str) -> None:
     """Three DMT theories and Hertz's at one Tabor parameter."""
-    theory(axes, "DMT force method", approach, dmt.force_load(approach, tabor), f"DMT force method{suffix}")
-    theory(axes, "DMT thermodynamic", approach, dmt.thermodynamic_load(approach, tabor), f"DMT thermodynamic{suffix}")
-    theory(axes, "DMT-M", approach, dmt.maugis_load(approach, tabor), f"DMT-M{suffix}")
+    for name, load in DMT.items():
+        theory(axes, name, approach, load(approach, tabor), f"{name}{suffix}")
     theory(axes, "Hertz", approach, hertz_load(hertz_radius_at(approach, tabor)), f"Hertz{suffix}")
+
+
+def _see_1a(study: Greenwood1997) -> str:
+    """Bradley's curve far from contact, the DMT theories at zero load."""
+    path = study.curves[RIGID[0]]
+    apart = (path.approach > -1.8) & (path.approach < 0)
+    off = np.abs(path.load - bradley_load(path.approach))[apart]
+    rigid = (
+        f"Apart, at -1.8 < alpha* < 0, the load at mu = {RIGID[0]:g} is within {np.max(off, initial=0):.2g} R dgamma "
+    )
+    return joined(told(f"{rigid}of Bradley's.", off), _dmt_at_zero_load(study.curves[DMT_TABOR]))
+
+
+def _dmt_at_zero_load(path: EquilibriumPath) -> str:
+    event = path.event("zero_load")
+    if event is None:
+        return ""
+    loads = _dmt_loads(event.approach, path.tabor)
+    trend = "they rise sooner" if loads.min() > 0 else "not all of them rise sooner"
+    text = (
+        f"At mu = {path.tabor:g} and alpha* = {event.approach:.3f}, where the solution's load is zero, the DMT "
+        f"theories have {loads.min():.2f} to {loads.max():.2f} R dgamma: {trend}."
+    )
+    return told(text, event.approach, loads)
+
+
+def _dmt_loads(approach: float, tabor: float) -> Array:
+    return np.array([float(load(approach, tabor)) for load in DMT.values()])
 
 
 def _figure_1b(study: Greenwood1997) -> Figure:
@@ -50,6 +96,18 @@ def _figure_1b(study: Greenwood1997) -> Figure:
     return figure
 
 
+def _see_1b(study: Greenwood1997) -> str:
+    """Pull-off force between the limits."""
+    forces = np.array([-study.curves[mu].events["pull_off"].load for mu in SCALED])
+    between = np.all((forces < -BRADLEY_PULL_OFF) & (forces > -JKR_PULL_OFF))
+    trend = "falls all along" if rises(-forces) else "does not fall all along"
+    text = (
+        f"From mu = {SCALED[0]:g} to {SCALED[-1]:g} the computed pull-off force goes from {forces[0]:.4f} to "
+        f"{forces[-1]:.4f} R dgamma: it {trend}, {'' if between else 'not '}between DMT-M's 2 pi and JKR's 3 pi/2."
+    )
+    return joined("Scaled by mu, Hertz, DMT-M and JKR are one curve each.", told(text, forces))
+
+
 def _figure_1c(study: Greenwood1997) -> Figure:
     mu = RIGID[0]
     path = study.curves[mu]
@@ -60,6 +118,20 @@ def _figure_1c(study: Greenwood1997) -> Figure:
     _dmt(axes, mu, np.linspace(0, 0.2, 200), "")
     dress(axes, style.APPROACH, style.LOAD, legend="upper left", xlim=(-0.6, 0.42), ylim=(-8, 20))
     return figure
+
+
+def _see_1c(study: Greenwood1997) -> str:
+    """The end of the compressed curve beside the DMT theories."""
+    path = study.curves[RIGID[0]]
+    approach, load = path.approach[-1], path.load[-1]
+    loads = _dmt_loads(float(approach), path.tabor)
+    trend = "later than in any" if loads.min() > load else "not later than in every"
+    apart = abs(loads[0] - loads[2])
+    text = (
+        f"The load rises {trend} DMT theory: at alpha* = {approach:.3f} it is {load:.1f} R dgamma, theirs "
+        f"{loads.min():.1f} to {loads.max():.1f}. The force method and DMT-M differ there by {apart:.1g}."
+    )
+    return told(text, approach, load, loads) or joined()
 
 
 def _figure_2a(study: Greenwood1997) -> Figure:
@@ -84,6 +156,23 @@ def _arrow(axes: Any, approach: float, load: float, landing: float) -> None:
     axes.annotate("", (approach, landing), xytext=(approach, load), arrowprops=arrow, zorder=1)
 
 
+def _see_2a(study: Greenwood1997) -> str:
+    """Jumps, and the finite elements on the curve."""
+    path, fe = study.curves[JUMPS_AT], study.elements.get(JUMPS_AT)
+    ends = [
+        told(
+            f"from {j.take_off} to {j.landing} at alpha* = {j.approach.value:.4f}",
+            j.approach.value,
+            j.load.value,
+            j.landing_load.value,
+        )
+        for j in study.states.jumps
+    ]
+    jumps = f"The surfaces jump {listed([end for end in ends if end])}." if any(ends) else ""
+    unstable = "Between the folds the branch is unstable." if np.any(~path.stable) else "No branch is unstable."
+    return joined(jumps or "No jump was found.", unstable, elements_beside(fe, path, "approach", "load"))
+
+
 def _figure_2b(study: Greenwood1997) -> Figure:
     figure, (axes,) = panels()
     for mu in SOFT:
@@ -94,35 +183,45 @@ def _figure_2b(study: Greenwood1997) -> Figure:
     return figure
 
 
-LOAD_PLOTS = (
-    Plot(
-        "1a",
-        "Load against approach around pull-off, small Tabor parameters",
-        captions.figure_1a,
-        _figure_1a,
+def _see_2b(study: Greenwood1997) -> str:
+    """How the curves close in on JKR's at zero load, and where they jump on."""
+    ends = np.array([_scaled(study, mu, "zero_load") for mu in SOFT])
+    starts = np.array([_scaled(study, mu, "jump_on") for mu in SOFT])
+    jkr = jkr_zero_load(1.0).approach
+    closing = "closes in" if rises(-np.abs(ends - jkr)) else "does not close in"
+    coming = "towards" if rises(-np.abs(starts)) else "not towards"
+    span = f"from mu = {SOFT[0]:g} to {SOFT[-1]:g}"
+    return joined(
+        told(
+            f"At zero load alpha*/mu goes from {ends[0]:.4f} to {ends[-1]:.4f} {span}: it {closing} on JKR's "
+            f"{jkr:.4f}.",
+            ends,
+        ),
+        told(f"The jump on goes from alpha*/mu = {starts[0]:.3f} to {starts[-1]:.3f}, {coming} 0.", starts),
+    )
+
+
+def _scaled(study: Greenwood1997, tabor: float, name: str) -> float:
+    event = study.curves[tabor].event(name)
+    return event.approach / tabor if event else float("nan")
+
+
+FIGURES = (
+    Picture(
+        "fig_1a", "After Fig. 1a: Load against approach around pull-off, small Tabor parameters", _figure_1a, _see_1a
     ),
-    Plot(
-        "1b",
-        "The same with the approach in units of beta^2/R",
-        captions.figure_1b,
-        _figure_1b,
-    ),
-    Plot(
-        "1c",
-        f"Deep compression at mu = {RIGID[0]:g}",
-        captions.figure_1c,
-        _figure_1c,
-    ),
-    Plot(
-        "2a",
-        f"Load against approach at mu = {JUMPS_AT:g}, and the jumps under fixed grips",
-        captions.figure_2a,
+    Picture("fig_1b", "After Fig. 1b: The same with the approach in units of beta^2/R", _figure_1b, _see_1b),
+    Picture("fig_1c", f"After Fig. 1c: Deep compression at mu = {RIGID[0]:g}", _figure_1c, _see_1c),
+    Picture(
+        "fig_2a",
+        f"After Fig. 2a: Load against approach at mu = {JUMPS_AT:g}, and the jumps under fixed grips",
         _figure_2a,
+        _see_2a,
     ),
-    Plot(
-        "2b",
-        f"Load against scaled approach for mu = {SOFT[0]:g} to {SOFT[-1]:g}",
-        captions.figure_2b,
+    Picture(
+        "fig_2b",
+        f"After Fig. 2b: Load against scaled approach for mu = {SOFT[0]:g} to {SOFT[-1]:g}",
         _figure_2b,
+        _see_2b,
     ),
 )

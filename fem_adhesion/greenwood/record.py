@@ -1,20 +1,24 @@
-"""Tables of the Greenwood study: cells with names, as CSV files and as HTML."""
+"""Tables of the Greenwood study, each with what is to be seen in it: counted and measured on its entries."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
 
-from fem_adhesion.common.numbers import digits
-from fem_adhesion.common.page_tables import Table
-from fem_adhesion.greenwood import remarks
-from fem_adhesion.greenwood.criteria import CriteriaStudy
-from fem_adhesion.greenwood.devices import DeviceStudy
-from fem_adhesion.greenwood.relaxation import NODES, Attempt
-from fem_adhesion.greenwood.study import JUMPS_AT, WINDING_AT, Greenwood1997
+import numpy as np
+
+from fem_adhesion.common.numbers import digits, plus_minus
+from fem_adhesion.common.page import Table
+from fem_adhesion.common.words import joined, rises, told
+from fem_adhesion.greenwood.criteria import CriteriaStudy, closed_ratios
+from fem_adhesion.greenwood.curves import DeviceStudy
+from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
+from fem_adhesion.greenwood.study import JUMPS_AT, WINDING_AT, Greenwood1997, PullOff
 from fem_adhesion.greenwood.tables import Printed
-from halfspace.equilibrium.events import Event
+from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 from halfspace.values import Estimate
+
+EMPTY = "Nothing was computed."
 
 
 def tables(study: Greenwood1997) -> list[Table]:
@@ -34,12 +38,12 @@ def tables(study: Greenwood1997) -> list[Table]:
 def _printed_tables(study: Greenwood1997) -> Iterator[Table]:
     printed = study.tables
     title = "Table 1: f(alpha*)/alpha*^(3/2) of the DMT force method"
-    see = remarks.table_1(printed.table_1, printed.asymptote)
+    see = _see_table_1(printed.table_1, printed.asymptote)
     yield _printed("table_1", title, see, "alpha*", printed.table_1)
     title = "Table 2: jumping on and off under fixed grips"
-    see = f"{remarks.agreement(printed.table_2)} The notes say what explains the others."
+    see = f"{_agreement(printed.table_2)} The notes say what explains the others."
     yield _printed("table_2", title, see, "mu", printed.table_2)
-    title, see = f"Pressures printed with Fig. 4, mu = {WINDING_AT:g}", remarks.profile_checks(printed.profile_checks)
+    title, see = f"Pressures printed with Fig. 4, mu = {WINDING_AT:g}", _see_profile_checks(printed.profile_checks)
     yield _printed("fig_4_checks", title, see, "gap H", printed.profile_checks)
 
 
@@ -50,6 +54,44 @@ def _printed(stem: str, title: str, see: str, column: str, entries: Sequence[Pri
 
 def _entry(p: Printed) -> tuple[str, ...]:
     return (p.row, f"{p.column:g}", p.unit, p.printed, *_cells(p.computed), f"{p.deviation:+.1e}", p.note)
+
+
+def _agreement(entries: Sequence[Printed]) -> str:
+    """How many entries agree to their last digit, and which is off most."""
+    if not entries:
+        return EMPTY
+    exact = sum(entry.to_last_digit for entry in entries)
+    known = [entry for entry in entries if math.isfinite(entry.deviation)]
+    worst = max(known, key=lambda entry: abs(entry.deviation), default=None)
+    return joined(
+        f"{exact} of {len(entries)} values agree to their last printed digit.",
+        f"The largest relative deviation is {abs(worst.deviation):.1e}, in {worst.row} at {worst.column:g}."
+        if worst
+        else "",
+        "" if len(known) == len(entries) else f"{len(entries) - len(known)} are not numbers.",
+    )
+
+
+def _see_table_1(entries: Sequence[Printed], asymptote: tuple[Estimate, Estimate]) -> str:
+    """Agreement, and the constants of the asymptote."""
+    a, b = asymptote
+    fit = (
+        f"The asymptote f = a alpha*^(3/2) - b alpha*^2, fitted between 2e-5 and 1e-4, has a = {plus_minus(a)} and b = "
+        f"{plus_minus(b)} (standard errors of the fit; the paper: 1.84 and 7.7)."
+    )
+    return joined(_agreement(entries), told(fit, a.value, b.value))
+
+
+def _see_profile_checks(entries: Sequence[Printed]) -> str:
+    """Whether the printed pressures have the sign and size of the corrected law."""
+    if not entries:
+        return EMPTY
+    same = sum(float(entry.printed) * entry.computed.value > 0 for entry in entries)
+    within = sum(entry.to_last_digit for entry in entries)
+    return (
+        f"{same} of {len(entries)} printed pressures have the sign of the corrected law, compression positive, and "
+        f"{within} its value within the error, which is that of the rounded gap."
+    )
 
 
 def _jumps(study: Greenwood1997) -> Table:
@@ -69,28 +111,22 @@ def _cycles(devices: DeviceStudy) -> Table:
     parts = (
         f"{end}: {what}" for end in ends for what in ("alpha*, eps", "error, eps", "W, R dgamma", "error, R dgamma")
     )
-    rows = tuple(
-        (
-            "fixed grips" if math.isinf(cycle.stiffness) else f"{cycle.stiffness:g}",
-            *(
-                cell
-                for jump in (cycle.jump_on, cycle.jump_off)
-                for e in (jump.take_off, jump.landing)
-                for cell in _end(e)
-            ),
-            *_cells(cycle.energy_lost),
-        )
-        for cycle in devices.cycles
-    )
+    rows = []
+    for cycle in devices.cycles:
+        states = (state for jump in (cycle.jump_on, cycle.jump_off) for state in (jump.take_off, jump.landing))
+        numbers = (state.estimate(name) for state in states for name in ("approach", "load"))
+        name = "fixed grips" if math.isinf(cycle.stiffness) else f"{cycle.stiffness:g}"
+        rows.append((name, *(cell for one in (*numbers, cycle.energy_lost) for cell in _cells(one))))
     title = f"Cycles of an apparatus, mu = {devices.tabor:g}"
     columns = ("stiffness, R dgamma/eps", *parts, "energy lost, R dgamma eps", "error, R dgamma eps")
-    return Table("devices", title, remarks.devices(devices), columns, rows)
+    return Table("devices", title, _see_devices(devices), columns, rows)
 
 
-def _end(event: Event) -> tuple[str, ...]:
-    """Approach and load where a jump takes off or lands."""
-    approach, load = event.estimate("approach"), event.estimate("load")
-    return (*_cells(approach), *_cells(load))
+def _see_devices(study: DeviceStudy) -> str:
+    """Whether a softer apparatus loses more."""
+    lost = np.array([cycle.energy_lost.value for cycle in study.cycles])
+    grows = "the more energy a cycle loses" if rises(lost) else "the energy that a cycle loses does not always grow"
+    return joined(told(f"The softer the apparatus, {grows}.", lost), "The loss is the work of the base round the loop.")
 
 
 def _relaxations(attempts: Sequence[Attempt]) -> Table:
@@ -108,14 +144,38 @@ def _relaxations(attempts: Sequence[Attempt]) -> Table:
         for a in attempts
     )
     title = f"The iterations of 1997 on {NODES} uniform nodes, from the undeformed surfaces to H(0) = 0"
-    return Table("relaxation", title, remarks.relaxations(attempts), columns, rows)
+    return Table("relaxation", title, _see_relaxations(attempts), columns, rows)
+
+
+def _see_relaxations(attempts: Sequence[Attempt]) -> str:
+    """How many of each iteration ended, and in how many sweeps."""
+    names = dict.fromkeys(attempt.method for attempt in attempts)
+    return joined(*(_iteration(name, [a for a in attempts if a.method == name]) for name in names))
+
+
+def _iteration(name: str, attempts: Sequence[Attempt]) -> str:
+    sweeps = [attempt.sweeps for attempt in attempts if attempt.sweeps is not None]
+    ended = f"{name}: {len(sweeps)} of {len(attempts)} converged"
+    return f"{ended}, in {min(sweeps)} to {max(sweeps)} sweeps." if sweeps else f"{ended}."
 
 
 def _pull_offs(study: Greenwood1997) -> Table:
     solvers = ("half-space", "finite elements")
     columns = ("mu", *(f"{solver}{what}, R dgamma" for solver in solvers for what in ("", ", error")))
     rows = tuple((f"{p.tabor:.6g}", *_cells(p.half_space), *_cells(p.finite_element)) for p in study.pull_offs)
-    return Table("pull_off", "Load at pull-off, Fig. 7", remarks.pull_offs(study.pull_offs), columns, rows)
+    return Table("pull_off", "Load at pull-off, Fig. 7", _see_pull_offs(study.pull_offs), columns, rows)
+
+
+def _see_pull_offs(found: Sequence[PullOff]) -> str:
+    """The ends beside their limits."""
+    if not found:
+        return EMPTY
+    first, last = found[0], found[-1]
+    text = (
+        f"From {first.half_space.value:.4f} at mu = {first.tabor:.3g} to {last.half_space.value:.4f} at mu = "
+        f"{last.tabor:.3g}; Bradley's is -2 pi = {BRADLEY_PULL_OFF:.4f}, JKR's -3 pi/2 = {JKR_PULL_OFF:.4f}."
+    )
+    return told(text, first.half_space.value, last.half_space.value) or joined()
 
 
 def _rises(study: Greenwood1997) -> Table:
@@ -126,8 +186,9 @@ def _rises(study: Greenwood1997) -> Table:
         for spacing, rise in study.rises.items()
         for r in rise.ripples
     )
+    see = joined(*(f"{spacing:g} beta: ended as {rise.ended}." for spacing, rise in study.rises.items()))
     title = "Least load on uniform triangles that are too wide, Fig. 7: wrong on purpose, so without an error"
-    return Table("coarse_grids", title, remarks.rises_of(study), columns, rows)
+    return Table("coarse_grids", title, see, columns, rows)
 
 
 def _true_jumps(criteria: CriteriaStudy) -> Table:
@@ -147,9 +208,20 @@ def _true_jumps(criteria: CriteriaStudy) -> Table:
         )
         for i, jump in enumerate(criteria.jumps)
     )
-    return Table(
-        "criteria", "True jumps on and the criteria's predictions", remarks.true_jumps(criteria), columns, rows
+    return Table("criteria", "True jumps on and the criteria's predictions", _see_true_jumps(criteria), columns, rows)
+
+
+def _see_true_jumps(study: CriteriaStudy) -> str:
+    """What the fundamental criterion reads at the true jumps."""
+    read = np.array([jump.fundamental for jump in study.jumps])
+    if not read.size:
+        return EMPTY
+    verdict = "states that it calls unstable are stable" if read.max() < -1 else "it does not always come too soon"
+    text = (
+        f"The fundamental criterion (4.3) expects b sigma'/sigma = -1 at the jump, where the solution has "
+        f"{read.max():.2f} to {read.min():.2f}: {verdict}."
     )
+    return told(text, read) or joined()
 
 
 def _constants(criteria: CriteriaStudy) -> Table:
@@ -161,7 +233,24 @@ def _constants(criteria: CriteriaStudy) -> Table:
     )
     span = f" for mu = {criteria.tabor[0]:g} to {criteria.tabor[-1]:g}" if criteria.jumps else ""
     title = f"Constants of the criteria, refitted{span}"
-    return Table("criteria_constants", title, remarks.constants(criteria), columns, rows)
+    return Table("criteria_constants", title, _see_constants(criteria), columns, rows)
+
+
+def _see_constants(study: CriteriaStudy) -> str:
+    """How far the closed criteria's printed constants are from the refitted ones."""
+    printed = [
+        (criterion.name, value / fitted.value)
+        for criterion in study.criteria
+        for name, value, fitted in criterion.constants
+        if name == "k" and value is not None
+    ]
+    ratios = np.array([ratio for _, ratio in printed])
+    if not ratios.size:
+        return "Least squares of logarithms."
+    low, high = min(printed, key=lambda item: item[1]), max(printed, key=lambda item: item[1])
+    size = "too large" if low[1] > 1 else "too small" if high[1] < 1 else "too small and too large"
+    text = f"The closed criteria's are {size}: {low[1]:.2f} times the refitted ({low[0]}) to {high[1]:.2f} ({high[0]})."
+    return joined("Least squares of logarithms.", told(text, ratios, closed_ratios(study)))
 
 
 def _cells(estimate: Estimate | None) -> tuple[str, str]:

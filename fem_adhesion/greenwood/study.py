@@ -15,14 +15,13 @@ import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.greenwood import curves, tables
 from fem_adhesion.greenwood.criteria import CriteriaStudy, fit, jump_on
-from fem_adhesion.greenwood.curves import Jump, Profile, fine_path
-from fem_adhesion.greenwood.devices import DeviceStudy, devices
-from fem_adhesion.greenwood.relaxation import Attempt, attempts
-from fem_adhesion.greenwood.ripple import Ripple, Rise, false_rise, ripple
+from fem_adhesion.greenwood.curves import DeviceStudy, DrawnState, LetteredJump, devices, fine_path
+from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple, Rise, attempts, false_rise, ripple
 from fem_adhesion.greenwood.tables import Printed
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.fold_birth import FIRST, tabor_of
 from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath
+from halfspace.equilibrium.events import FOLD
 from halfspace.values import Array, Estimate, Valued
 
 DRAWN = (0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0)  # Tabor parameters of the figures' curves
@@ -56,17 +55,17 @@ class States(Valued):
 
     Attributes
     ----------
-    jumps : tuple of Jump
+    jumps : tuple of LetteredJump
         Under fixed grips at mu = 2.
     folds : (n, 4) array
         Approach, load, central gap and contact radius at every fold at mu = 5, in order.
-    profiles : tuple of Profile
+    profiles : tuple of DrawnState
         Of Fig. 4, at mu = 5.
     """
 
-    jumps: tuple[Jump, ...]
+    jumps: tuple[LetteredJump, ...]
     folds: Array
-    profiles: tuple[Profile, ...]
+    profiles: tuple[DrawnState, ...]
 
 
 @dataclass(frozen=True)
@@ -207,23 +206,18 @@ SUBJECTS = (
 )
 
 
-def compute(*, quick: bool = False, progress: Callable[[str], None] | None = None) -> Greenwood1997:
+def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: None) -> Greenwood1997:
     """Compute everything.
 
     Parameters
     ----------
     quick : bool
         Take fewer points and a tolerance of 1e-5 in the tables.
-    progress : callable, optional
+    begin : callable
         Told each of `SUBJECTS`, in order, as its work begins.
     """
     began = time.perf_counter()
     extent = QUICK if quick else FULL
-
-    def begin(subject: str) -> None:
-        if progress:
-            progress(subject)
-
     begin("curves")
     drawn = {mu: _drawn(mu) for mu in DRAWN}
     begin("finite elements")
@@ -268,7 +262,7 @@ def _drawn(tabor: float) -> EquilibriumPath:
 
 
 def _states(winding: EquilibriumPath) -> States:
-    folds = np.array([fold.point.observables for fold in curves.folds(winding)])
+    folds = np.array([fold.point.observables for fold in winding.states(FOLD)])
     return States(curves.jumps(JUMPS_AT), folds, tuple(curves.profiles(winding)))
 
 
@@ -292,8 +286,7 @@ def _pull_off(tabor: float, extent: Extent) -> PullOff:
 
 
 def _least_load(path: EquilibriumPath) -> Estimate:
-    event = path.events["pull_off"]
-    return event.estimate("load")
+    return path.events["pull_off"].estimate("load")
 
 
 def _critical_tabor() -> Estimate:

@@ -11,7 +11,6 @@ from importlib import resources
 import numpy as np
 from scipy.optimize import curve_fit
 
-from fem_adhesion.greenwood.curves import states
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Condition, Event
@@ -120,15 +119,16 @@ def _quantity(quantity: str, event: Event, tabor: float) -> tuple[Estimate, str]
     if quantity == "minus_W_over_R_dgamma_AP":
         load = -float(criteria.undeformed_load(criteria.closed_gap(tabor, criteria.ATTARD_PARKER)))
         return Estimate(load, ROUNDING * load), "R dgamma"
-    scale = tabor ** (3 / 7)
-    return {
-        "minus_alpha_star": (Estimate(-event.approach, event.approach_error), "eps"),
-        "minus_alpha_star_over_mu": (Estimate(-event.approach / tabor, event.approach_error / tabor), "beta^2/R"),
-        "minus_W_over_R_dgamma": (Estimate(-event.load, event.load_error), "R dgamma"),
-        "H0": (event.estimate("central_gap"), "eps"),
-        "H0_plus_1_over_mu_3_7": (Estimate((event.central_gap + 1) / scale, event.central_gap_error / scale), "1"),
-        "a_star": (event.estimate("contact_radius"), "beta"),
+    name, size, shift, unit = {
+        "minus_alpha_star": ("approach", -1.0, 0.0, "eps"),
+        "minus_alpha_star_over_mu": ("approach", -tabor, 0.0, "beta^2/R"),
+        "minus_W_over_R_dgamma": ("load", -1.0, 0.0, "R dgamma"),
+        "H0": ("central_gap", 1.0, 0.0, "eps"),
+        "H0_plus_1_over_mu_3_7": ("central_gap", tabor ** (3 / 7), 1.0, "1"),
+        "a_star": ("contact_radius", 1.0, 0.0, "beta"),
     }[quantity]
+    found = event.estimate(name)
+    return Estimate((found.value + shift) / size, found.error / abs(size)), unit
 
 
 def explained(name: str, quantity: str, path: EquilibriumPath, computed: Estimate) -> str:
@@ -191,7 +191,7 @@ def _beyond_the_fold(name: str, computed: Estimate, column: Mapping[str, str], t
 
 def _beside(name: str, quantity: str, column: Mapping[str, str], path: EquilibriumPath) -> str:
     """State whose load is the printed one: the paper's column, if it is beside the fold and has the printed number."""
-    found = states(path, Condition(LOAD, value=-float(column["minus_W_over_R_dgamma"])))
+    found = path.states(Condition(LOAD, value=-float(column["minus_W_over_R_dgamma"])))
     if not found:
         return ""
     approach, _, gap, radius = found[0].point.observables

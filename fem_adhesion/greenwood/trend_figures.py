@@ -1,7 +1,8 @@
-"""Jumping on and pull-off against the Tabor parameter: figures after [G97] 6a to 7."""
+"""Jumping on, pull-off, and apparatus: figures after [G97] 6a to 7 and one beyond, with what is to be seen in them."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,12 +10,15 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
-from fem_adhesion.common.style import dress, panels, plain_ticks
-from fem_adhesion.greenwood import trend_captions as captions
-from fem_adhesion.greenwood.criteria import Criterion
-from fem_adhesion.greenwood.plot import Plot
+from fem_adhesion.common.numbers import digits, plus_minus
+from fem_adhesion.common.style import Picture, dress, note, panels, plain_ticks
+from fem_adhesion.common.words import joined, rises, told
+from fem_adhesion.greenwood.criteria import CriteriaStudy, Criterion, closed_ratios, is_closed
+from fem_adhesion.greenwood.numerics_1997 import Ripple
 from fem_adhesion.greenwood.study import RIPPLE_AT, Greenwood1997, PullOff
+from halfspace.equilibrium.devices import Cycle
 from halfspace.scaling import MAUGIS
+from halfspace.theories import criteria
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 from halfspace.theories.maugis import MaugisDugdale, carpick_pull_off
 from halfspace.values import Array
@@ -33,7 +37,10 @@ SPACING_STYLES: dict[float, tuple[str, Any]] = {
     0.05: (style.PINK, style.LONG),
     0.025: (style.SKY, "-"),
 }
+STIFFNESS_STYLES = {np.inf: (style.RED, "-"), 3.0: (style.GREEN, style.DASHED), 1.0: (style.ORANGE, style.CHAIN)}
 TABOR = r"Tabor parameter $\mu$"
+STEADY = 5.0  # Tabor parameter from which the scaled gap at jump-on is looked at for being constant
+CONSTANT = 0.01  # relative spread below which it is called so
 
 
 def _figure_6a(study: Greenwood1997) -> Figure:
@@ -64,6 +71,40 @@ def _criterion(axes: Any, criterion: Criterion, tabor: Array, power: float = 0.0
     axes.plot(tabor, predicted, color=colour, linestyle=dashes, label=criterion.name)
 
 
+def _see_6a(study: Greenwood1997) -> str:
+    """Too wide or too narrow a gap by the closed criteria, and how far the fits are off."""
+    return joined(_closed(study.criteria), *(_fit(study.criteria, c) for c in study.criteria.criteria))
+
+
+def _closed(study: CriteriaStudy) -> str:
+    ratio = closed_ratios(study)
+    if not ratio.size:
+        return ""
+    wide = (
+        "too wide a gap"
+        if ratio.min() > 1
+        else "too narrow a gap"
+        if ratio.max() < 1
+        else "now too wide, now too narrow a gap"
+    )
+    text = (
+        f"Attard & Parker, Pethica & Sutton and App. C expect the jump at {wide}, by factors of {ratio.min():.2f} to "
+        f"{ratio.max():.2f} in (H0 + 1)^(7/2)."
+    )
+    return told(text, ratio)
+
+
+def _fit(study: CriteriaStudy, criterion: Criterion) -> str:
+    """Largest deviation of an empirical fit as printed."""
+    if criterion.predict is None or is_closed(criterion):
+        return ""
+    use = study.tabor >= criteria.FIT_LEAST_TABOR
+    true = study.approach if criterion.of_approach else study.central_gap
+    off = np.abs(criterion.predict(study.tabor[use]) - true[use])
+    what = "approach" if criterion.of_approach else "gap"
+    return told(f"The {criterion.name} is off by up to {np.max(off, initial=0):.1g} eps in the {what}.", off)
+
+
 def _figure_6b(study: Greenwood1997) -> Figure:
     figure, (axes,) = panels()
     jumps = study.criteria
@@ -73,6 +114,22 @@ def _figure_6b(study: Greenwood1997) -> Figure:
             _criterion(axes, criterion, _tabors(study), 3 / 7)
     dress(axes, TABOR, r"$(H_0 + 1)/\mu^{3/7}$", legend="lower right", ylim=(1.2, 2.35))
     return figure
+
+
+def _see_6b(study: Greenwood1997) -> str:
+    """Whether the gap at jump-on goes as mu^(3/7)."""
+    jumps = study.criteria
+    scaled = (jumps.central_gap + 1) / jumps.tabor ** (3 / 7)
+    steady, below = scaled[jumps.tabor >= STEADY], scaled[jumps.tabor < STEADY]
+    spread = float(np.ptp(steady) / steady.mean()) if steady.size > 1 else math.nan
+    power = (
+        "the power 3/7 of the criteria holds" if spread < CONSTANT else "the power 3/7 of the criteria does not hold"
+    )
+    falls = "falls" if below.size and below[0] < steady.min(initial=np.inf) else "does not fall"
+    return joined(
+        told(f"From mu = {STEADY:g} on the scaled gap varies by {100 * spread:.2g} %: {power} there.", spread),
+        told(f"Below it {falls}, to {below[0]:.3f} at mu = {jumps.tabor[0]:.3g}." if below.size else "", below, scaled),
+    )
 
 
 def _figure_7(study: Greenwood1997) -> Figure:
@@ -130,23 +187,126 @@ def _ripples(axes: Any, study: Greenwood1997) -> None:
     axes.set_title(rf"through pull-off at $\mu = {RIPPLE_AT:g}$")
 
 
-TREND_PLOTS = (
-    Plot(
-        "6a",
-        "Central gap and approach at jump-on, with the criteria",
-        captions.figure_6a,
-        _figure_6a,
-    ),
-    Plot(
-        "6b",
-        "Central gap at jump-on, scaled by mu^(3/7)",
-        captions.figure_6b,
-        _figure_6b,
-    ),
-    Plot(
-        "7",
-        "Pull-off force against the Tabor parameter, and on coarse grids",
-        captions.figure_7,
+def _see_7(study: Greenwood1997) -> str:
+    """The true trend, what finite elements say of it, and where coarse grids turn upwards."""
+    forces = np.array([-p.half_space.value for p in study.pull_offs])
+    trend = "falls" if rises(-forces) else "does not fall"
+    ends = f"from {forces[0]:.4f} to {forces[-1]:.4f} R dgamma" if forces.size else ""
+    range_ = f"mu = {study.pull_offs[0].tabor:.3g} to {study.pull_offs[-1].tabor:.3g}" if forces.size else ""
+    return joined(
+        told(f"The true force {trend} all along, {ends} at {range_}.", forces),
+        _agreement(study),
+        *(_turn(spacing, rise.ripples) for spacing, rise in study.rises.items()),
+    )
+
+
+def _agreement(study: Greenwood1997) -> str:
+    both = [p for p in study.pull_offs if p.finite_element]
+    agreeing = sum(p.agree for p in both)
+    return f"Finite elements agree within both errors at {agreeing} of {len(both)} Tabor parameters." if both else ""
+
+
+def _turn(spacing: float, ripples: Sequence[Ripple]) -> str:
+    """Where the pull-off force on one spacing turns upwards."""
+    forces = np.array([-r.pull_off for r in ripples])
+    if forces.size < 2 or not np.all(np.isfinite(forces)):
+        return ""
+    if forces[-1] <= forces.min():
+        return f"On uniform triangles of {spacing:g} beta it does not rise up to mu = {ripples[-1].tabor:.3g}."
+    return f"On uniform triangles of {spacing:g} beta it rises from mu = {ripples[int(forces.argmin())].tabor:.3g} on."
+
+
+def _figure_8(study: Greenwood1997) -> Figure:
+    figure, (jumps, border) = panels(2)
+    devices = study.devices
+    path = study.curves[devices.tabor]
+    style.branches(jumps, path, path.approach, path.load)
+    for cycle in devices.cycles:
+        if cycle.stiffness in STIFFNESS_STYLES:
+            _arrows(jumps, cycle)
+    style.stability_key(jumps)
+    dress(jumps, style.APPROACH, style.LOAD, legend="below", xlim=(-8, 3), ylim=(-5.6, 0.5))
+    jumps.set_title(rf"jumps at $\mu = {devices.tabor:g}$")
+    _border(border, study)
+    return figure
+
+
+def _arrows(axes: Any, cycle: Cycle) -> None:
+    """Both jumps along their load lines."""
+    colour, dashes = STIFFNESS_STYLES[cycle.stiffness]
+    look = {"color": colour, "linestyle": dashes, "linewidth": 1.7}
+    for jump in (cycle.jump_on, cycle.jump_off):
+        tail, head = ((state.approach, state.load) for state in (jump.take_off, jump.landing))
+        axes.annotate("", head, tail, arrowprops={"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, **look})
+    name = "fixed grips" if np.isinf(cycle.stiffness) else rf"$k = {cycle.stiffness:g}\,R\Delta\gamma/\epsilon$"
+    axes.plot([], [], label=name, **look)
+
+
+def _border(axes: Any, study: Greenwood1997) -> None:
+    """Stiffness below which a contact jumps, against the Tabor parameter."""
+    tabor, stiffness = study.devices.border.T
+    axes.semilogy(tabor, stiffness, color=style.BLUE, linewidth=2)
+    axes.axvline(study.critical_tabor.value, color="0.5", linewidth=0.9)
+    note(axes, "follows smoothly", (0.15, 60))
+    note(axes, "jumps", (0.35, 2.2))
+    note(axes, rf"fixed grips jump from $\mu = {digits(study.critical_tabor)}$", (0.22, 550))
+    if stiffness.size and np.isfinite(stiffness[0]):
+        axes.axhline(stiffness[0], color="0.5", linewidth=0.9)
+        note(axes, rf"{stiffness[0]:.4g} at $\mu = {tabor[0]:.1g}$", (0.45, stiffness[0]), (0, -14))
+    dress(axes, r"Tabor parameter $\mu$", r"stiffness $k\,\epsilon/R\Delta\gamma$", legend=None, ylim=(1, 1000))
+    plain_ticks(axes.yaxis, (1, 3, 10, 30, 100, 300, 1000))
+    axes.set_title("where an apparatus makes the contact jump")
+
+
+def _see_8(study: Greenwood1997) -> str:
+    """What a softer apparatus does, and from what stiffness a contact jumps."""
+    cycles = study.devices.cycles
+    lost = np.array([c.energy_lost.value for c in cycles])
+    away = np.array([-c.jump_on.take_off.approach for c in cycles])
+    pull = np.array([-c.jump_off.take_off.load for c in cycles])
+    words = [
+        f"{'jumps on from farther away' if rises(away) else 'does not always jump on from farther away'}",
+        f"{'jumps off at a larger pull' if rises(pull) else 'does not always jump off at a larger pull'}",
+        f"{'loses more' if rises(lost) else 'does not always lose more'}",
+    ]
+    critical = study.critical_tabor
+    return joined(
+        told(
+            f"At mu = {study.devices.tabor:g} a softer apparatus {words[0]}, {words[1]} and {words[2]}.",
+            lost,
+            away,
+            pull,
+        ),
+        _follows(study.devices.border),
+        told(f"Fixed grips jump from mu = {plus_minus(critical)} on.", critical.value, critical.error),
+    )
+
+
+def _follows(border: Array) -> str:
+    if not border.size:
+        return ""
+    tabor, stiffness = border.T
+    grows = "grows" if rises(stiffness) else "does not grow all along"
+    text = (
+        f"The stiffness below which a contact jumps is {stiffness[0]:.4g} R dgamma/eps at mu = {tabor[0]:.2g} and "
+        f"{grows} with mu, to {stiffness[-1]:.3g} at mu = {tabor[-1]:.4g}."
+    )
+    return told(text, border)
+
+
+FIGURES = (
+    Picture("fig_6a", "After Fig. 6a: Central gap and approach at jump-on, with the criteria", _figure_6a, _see_6a),
+    Picture("fig_6b", "After Fig. 6b: Central gap at jump-on, scaled by mu^(3/7)", _figure_6b, _see_6b),
+    Picture(
+        "fig_7",
+        "After Fig. 7: Pull-off force against the Tabor parameter, and on coarse grids",
         _figure_7,
+        _see_7,
+    ),
+    Picture(
+        "fig_8",
+        "Beyond the paper, Fig. 8: Jumps of an apparatus of finite stiffness, and where they begin",
+        _figure_8,
+        _see_8,
     ),
 )

@@ -15,8 +15,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from fem_adhesion.common.files import directory_written_aside
-from fem_adhesion.common.writing import writing
+from fem_adhesion.common.files import directory_written_aside, writing
 from fem_adhesion.fields.beside import half_space_beside
 from fem_adhesion.fields.state import State
 from fem_adhesion.paraview.arrays import (

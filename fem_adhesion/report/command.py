@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_adhesion.common.options import AGREE, DISAGREE, Commands, progress_bar
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser
+from fem_adhesion.common.progress import progress_bar
 
 if TYPE_CHECKING:
     from fem_adhesion.curve.solve import Question
@@ -21,23 +22,15 @@ STUDIES = {
 }
 
 
-def add(commands: Commands) -> None:
-    """Add the command."""
-    report = commands.add_parser(
-        "report",
-        help="write one self-contained page: verdict, tables, figures, and a curve to walk along",
-        description="Compare both solvers and write one HTML page with all that shows it. Results of other commands "
-        "are taken from the directories that they wrote; what is not given is said to be not computed.",
-        epilog="example: fem-adhesion report --out report.html --tabor 0.5 2 --rtol 1e-4",
-    )
-    report.add_argument("--out", type=Path, required=True, help="the page", metavar="FILE")
+def add_options(command: Parser) -> None:
+    """Add the options."""
+    command.add_argument("--out", type=Path, required=True, help="the page", metavar="FILE")
     tabors = [0.05, 0.5, 1, 2, 3, 5]
-    report.add_argument("--tabor", nargs="+", type=float, default=tabors, help="Tabor parameters", metavar="MU")
-    report.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy of the comparison, 1e-9 to 1e-1")
-    report.add_argument("--walk", type=float, default=2.0, help="Tabor parameter of the curve shown", metavar="MU")
+    command.add_argument("--tabor", nargs="+", type=float, default=tabors, help="Tabor parameters", metavar="MU")
+    command.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy of the comparison, 1e-9 to 1e-1")
+    command.add_argument("--walk", type=float, default=2.0, help="Tabor parameter of the curve shown", metavar="MU")
     for name, what in STUDIES.items():
-        report.add_argument(f"--{name}", type=Path, help=f"directory with {what}", metavar="DIR")
-    report.set_defaults(run=run)
+        command.add_argument(f"--{name}", type=Path, help=f"directory with {what}", metavar="DIR")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -86,3 +79,14 @@ def _compute(scenes: list[Scene], rtol: float, question: Question, directories: 
             contents = replace(contents, lost=str(error))
         step("page", 0, 1)
         return "failed" if contents.lost else overall_verdict(cases), page(contents)
+
+
+COMMAND = Command(
+    "report",
+    "write one self-contained page: verdict, tables, figures, and a curve to walk along",
+    "Compare both solvers and write one HTML page with all that shows it. Results of other commands "
+    "are taken from the directories that they wrote; what is not given is said to be not computed.",
+    "--out report.html --tabor 0.5 2 --rtol 1e-4",
+    add_options,
+    run,
+)

@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from fem_adhesion.common.facts import versions
+from fem_adhesion.common.page import Section, Table
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, SOLVERS, WEAK_FORM, Row
 from fem_adhesion.crosscheck.record import told, verdict_of
 from fem_adhesion.crosscheck.study import Case, Failure
 from fem_adhesion.crosscheck.table import cells, columns
-from fem_adhesion.report.parts import Section, Table, symbols
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import tolerance_told
 
@@ -23,6 +23,7 @@ LEVELS = {
     "": ("The events", SOLVERS),
 }
 VERDICTS = ("agree", "inconclusive", "disagree")
+SETTINGS = ("Tabor parameter", "solver", "settings", "tolerance", "unknowns", "seconds")
 SUMMARY = ("level", "quantities", *VERDICTS, "largest difference / error", "largest error / budget")
 
 Cases = Sequence[Case | Failure]
@@ -31,13 +32,13 @@ Cases = Sequence[Case | Failure]
 def crosscheck_section(cases: Cases) -> Section:
     """The comparison: a summary, and tables of its levels."""
     failures = [(f"{case.scene.tabor:g}", told(case)) for case in cases if isinstance(case, Failure)]
-    lost = (Table("Not solved", ("Tabor parameter", "reason"), failures, open=True),) if failures else ()
+    lost = (Table("", "Not solved", "", ("Tabor parameter", "reason"), failures, open=True),) if failures else ()
     return Section(
         "levels",
         "The four levels",
         paragraphs=(
             "A quantity agrees only if the difference is within the sum of both error estimates and that sum within "
-            "the budget. Loads in R Δγ, approaches in ε, energies in R Δγ ε.",
+            "the budget. Loads in R dgamma, approaches in eps, energies in R dgamma eps.",
             f"Poisson's ratio {', '.join(sorted({f'{case.scene.poisson:g}' for case in cases}))}. "
             + "; ".join(f"Tabor parameter {case.scene.tabor:g}: {verdict_of(case)}" for case in cases)
             + ".",
@@ -58,7 +59,7 @@ def _level(row: Row) -> str:
 
 def _summary(cases: Cases) -> Table:
     lines = [_summary_line(LEVELS[level][0], [row for _, row in _rows(cases, level)]) for level in LEVELS]
-    return Table("Summary", SUMMARY, lines, open=True)
+    return Table("", "Summary", "", SUMMARY, lines, open=True)
 
 
 def _summary_line(title: str, rows: Sequence[Row]) -> list[str]:
@@ -74,9 +75,9 @@ def _ratio(part: float, whole: float) -> float:
 
 
 def _level_table(cases: Cases, level: str) -> Table:
-    lines = [[f"{tabor:g}", *map(symbols, cells(row))] for tabor, row in _rows(cases, level)]
+    lines = [[f"{tabor:g}", *cells(row)] for tabor, row in _rows(cases, level)]
     title, between = LEVELS[level]
-    return Table(title, ("Tabor parameter", *columns(between)), lines)
+    return Table("", title, "", ("Tabor parameter", *columns(between)), lines)
 
 
 def settings_section(cases: Cases, machine: Mapping[str, str]) -> Section:
@@ -92,8 +93,8 @@ def settings_section(cases: Cases, machine: Mapping[str, str]) -> Section:
         "settings",
         "Versions and settings",
         tables=(
-            Table("Versions", ("what", "which"), list(map(list, facts.items())), open=True),
-            Table("Settings", ("Tabor parameter", "solver", "settings", "tolerance", "unknowns", "seconds"), lines),
+            Table("", "Versions", "", ("what", "which"), list(map(list, facts.items())), open=True),
+            Table("", "Settings", "", SETTINGS, lines),
         ),
     )
 

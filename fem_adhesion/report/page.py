@@ -6,29 +6,24 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib import resources
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from fem_adhesion.common.machine import machine
+from fem_adhesion.common.facts import machine
+from fem_adhesion.common.page import Section, inlined, render, template_text
 from fem_adhesion.crosscheck.record import overall_verdict, verdict_of
 from fem_adhesion.crosscheck.study import Case, Failure
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve.lines import UNSTABLE, Line, smooth
 from fem_adhesion.curve.solve import Curves
-from fem_adhesion.report.figures import figure
 from fem_adhesion.report.levels import crosscheck_section, settings_section
-from fem_adhesion.report.parts import Section
 from fem_adhesion.report.sections import SOURCES, section_of
 from fem_adhesion.report.walk import LINES, Station, Walk
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.values import Array
-
-TEMPLATES = "report/templates"
 
 WORDS = {
     "failed": "A solver failed",
@@ -77,10 +72,9 @@ def page(contents: Contents) -> str:
     """
     cases = contents.cases
     others = [section_of(source, contents.directories.get(source.name)) for source in SOURCES]
-    environment = Environment(
-        loader=PackageLoader("fem_adhesion", TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-    )
-    return environment.get_template("report.html.j2").render(
+    return render(
+        "report/report.html.j2",
+        title="Adhesive contact of a sphere: do two solvers agree?",
         verdict="failed" if contents.lost else overall_verdict(cases),
         words=verdict_words(cases),
         cases=cases,
@@ -93,13 +87,8 @@ def page(contents: Contents) -> str:
         levels=crosscheck_section(cases),
         others=others,
         settings=settings_section(cases, machine()),
-        style=_text("report.css"),
-        script=_text("walk.js"),
+        script=template_text("report", "walk.js"),
     )
-
-
-def _text(name: str) -> str:
-    return (resources.files("fem_adhesion") / TEMPLATES / name).read_text(encoding="utf-8")
 
 
 def verdict_words(cases: Sequence[Case | Failure]) -> str:
@@ -145,7 +134,7 @@ def _curves_section(curves: Curves) -> Section:
         f"{', '.join(curve_figure.named(drawn))}. Pressure and gap at {', '.join(curve_figure.states(curves))}; the "
         f"spike of tension at the contact edge with the nodes of the grid; {last}."
     )
-    return Section("curves", f"The curve by {solvers}", figures=(figure(stream.getvalue(), "curves", text),))
+    return Section("curves", f"The curve by {solvers}", figures=(inlined(stream.getvalue(), "curves", text),))
 
 
 def walk_data(walk: Walk, curves: Curves) -> str:

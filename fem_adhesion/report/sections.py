@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from fem_adhesion.report.figures import figure
-from fem_adhesion.report.parts import Section, Table, read_table, symbols
+from fem_adhesion.common.page import Section, Table, inlined
 from halfspace.errors import InputError
 
 WELL = ("converged", "refused")
 """How a hard case may end."""
+
+MOST_ROWS = 400  # of a table that is shown
+MOST_DIGITS = 12  # of a number that was written to be read; more are those of the machine
+DIGITS = 4  # that are shown of such
 
 
 @dataclass(frozen=True)
@@ -105,11 +109,7 @@ def section_of(source: Source, directory: Path | None) -> Section:
         return Section(source.name, source.title, missing=source.made_by)
     captions = dict(source.figures) | _captions(source, directory)
     figures = tuple(
-        figure(
-            _require(directory / f"{stem}.svg", source).read_bytes(),
-            f"{source.name}-{stem}",
-            symbols(captions[stem]),
-        )
+        inlined(_require(directory / f"{stem}.svg", source).read_bytes(), f"{source.name}-{stem}", captions[stem])
         for stem, _ in source.figures
         if captions[stem]  # those without were not drawn
     )
@@ -133,9 +133,33 @@ def _captions(source: Source, directory: Path) -> dict[str, str]:
 
 
 def _outcomes(table: Table) -> Counter[str]:
-    """How many lines of a table ended how."""
+    """How many rows of a table ended how."""
     place = list(table.columns).index("outcome")
-    return Counter(line[place] for line in table.lines)
+    return Counter(row[place] for row in table.rows)
+
+
+def read_table(file: Path, title: str) -> Table:
+    """Contents of a CSV file; the title says so where rows are left out.
+
+    Raises
+    ------
+    InputError
+        If the file is empty.
+    """
+    with file.open(newline="", encoding="utf-8") as stream:
+        columns, *rows = list(csv.reader(stream)) or [[]]
+    if not columns:
+        raise InputError(f"{file} is empty; run its command again")
+    left_out = f" (first {MOST_ROWS} of {len(rows)} lines; all are in {file.name})" if len(rows) > MOST_ROWS else ""
+    shown = [[cell(text) for text in row] for row in rows[:MOST_ROWS]]
+    return Table("", title + left_out, "", [name.replace("_", " ") for name in columns], shown)
+
+
+def cell(text: str) -> str:
+    """Text of a cell, numbers as the machine has them rounded."""
+    if re.fullmatch(r"[-+]?\d+\.?\d*(e[-+]?\d+)?", text) and len(re.sub(r"e.*|\D", "", text)) > MOST_DIGITS:
+        return f"{float(text):.{DIGITS}g}"
+    return text
 
 
 def _require(file: Path, source: Source) -> Path:

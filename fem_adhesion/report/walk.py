@@ -5,7 +5,7 @@ Made for looking: profiles and lines inside the body on fixed grids, small enoug
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 
 from fem_adhesion import convergence
 from fem_adhesion.bodies.sized import Discretisation
+from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.elasticity.stress import positions, sampled
 from fem_adhesion.fields.beside import half_space_beside
 from fem_adhesion.fields.state import State, states_along
@@ -27,8 +28,6 @@ REACH = 1.6  # of the largest contact radius: how far the profiles go
 LINES = (0.0, 0.25, 0.5, 1.0, 1.5, 2.0)  # depths in beta at which lines are drawn inside the body
 ON_LINE = 81  # points of a line
 FINE = np.stack(np.meshgrid(*2 * [np.linspace(0, 1, 7)], indexing="ij")).reshape(2, -1)  # of each cell
-
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -85,7 +84,7 @@ class Walk(Valued):
     stations: tuple[Station, ...]
 
 
-def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progress: Progress | None = None) -> Walk:
+def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progress: Progress = unheard) -> Walk:
     """Trace the curve of a block by finite elements and stop at some of its states.
 
     Parameters
@@ -96,7 +95,7 @@ def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progres
         Relative accuracy of the events.
     states : int, optional
         Stops, nearly equidistant in arclength, all points of the curve unless given; the events come on top.
-    progress : callable, optional
+    progress : callable
         Told what is under way, how much is done and of how much.
     """
     scene = Scene(tabor)
@@ -106,8 +105,7 @@ def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progres
     total = (path.count if states is None else states) + len(path.events)
     stations = []
     for number, state in enumerate(states_along(scene, path, points=states, how=SEEN)):
-        if progress:
-            progress("states along the curve", number, total)
+        progress("states along the curve", number, total)
         stations.append(_station(state, radii, places))
     return Walk(scene, path, radii, places, tuple(stations))
 

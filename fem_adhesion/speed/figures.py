@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from fem_adhesion.common import style
+from fem_adhesion.common.style import Picture
 from fem_adhesion.speed.methods import Family, Method
 from fem_adhesion.speed.result import Rung, SpeedStudy, pareto_front
 
+CAPTION = "Error against wall time: half-space left, finite elements right."
 FAMILIES: tuple[Family, ...] = ("half-space", "finite elements")
 TITLES = {
     "pull_off": "Pull-off load",
@@ -24,8 +26,8 @@ ERRORS = {
     "jump_on": "error of the jump-on approach, over spacing and range of approaches",
     "hysteresis": "relative error of the energy lost",
 }
-# Okabe and Ito's colours, which colour-blind eyes tell apart, without the yellow, too pale on white; black is adaptive.
-STYLES = (("#E69F00", "X"), ("#56B4E9", "P"), ("#009E73", "s"), ("#0072B2", "^"), ("#D55E00", "v"), ("#CC79A7", "D"))
+COLOURS = (style.ORANGE, style.SKY, style.GREEN, style.BLUE, style.RED, style.PINK)  # black is adaptive
+STYLES = tuple(zip(COLOURS, "XPs^vD", strict=True))
 ADAPTIVE = {"adaptive": ("#000000", "o"), "hp": ("#000000", "o")}
 LINES = {"": "-", "clamped": "--", "monolithic": ":"}
 FRONT: dict[str, Any] = {
@@ -37,16 +39,14 @@ FRONT: dict[str, Any] = {
 }
 FLOOR: dict[str, Any] = {"color": "0.4", "linewidth": 1, "dashes": (1, 3)}
 HIDDEN: dict[str, Any] = {"color": "0.4", "linestyle": "none", "marker": r"$\downarrow$", "markersize": 11}
-LOOK: dict[Any, Any] = {"svg.fonttype": "none", "font.size": 11, "axes.spines.top": False, "axes.spines.right": False}
 
 
-def draw(study: SpeedStudy, directory: Path) -> None:
-    """Write a figure for each quantity that the study has, as SVG and PNG."""
-    with rc_context(LOOK):
-        for quantity in study.quantities:
-            figure = error_against_time(study, quantity)
-            for suffix in ("svg", "png"):
-                figure.savefig(directory / f"{quantity}.{suffix}", dpi=160)
+def pictures(study: SpeedStudy) -> list[Picture[SpeedStudy]]:
+    """A figure for each quantity that the study has."""
+    return [
+        Picture(quantity, TITLES[quantity], partial(error_against_time, quantity=quantity), lambda _: CAPTION)
+        for quantity in study.quantities
+    ]
 
 
 def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
@@ -114,8 +114,5 @@ def _style(study: SpeedStudy, method: Method) -> tuple[str, str]:
 
 def _dress(axes: Any, title: str) -> None:
     axes.set_title(title)
-    axes.set_xlabel("wall time from set-up to events, s")
-    axes.grid(True, which="major", color="0.92", linewidth=0.8)
-    axes.set_axisbelow(True)
     axes.tick_params(labelleft=True)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, frameon=False, fontsize=10, handlelength=3)
+    style.dress(axes, "wall time from set-up to events, s", axes.get_ylabel(), legend="below", columns=2)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
-from fem_adhesion.common.facts import versions
-from fem_adhesion.common.machine import machine
-from fem_adhesion.speed.figures import draw
+from fem_adhesion.common.facts import machine, versions
+from fem_adhesion.common.page import Table, markdown, write_csv
+from fem_adhesion.common.style import draw
+from fem_adhesion.speed.figures import pictures
 from fem_adhesion.speed.methods import QUANTITIES
 from fem_adhesion.speed.result import Rung, SpeedStudy, best, cheapest
 
@@ -24,12 +24,10 @@ def write(study: SpeedStudy, directory: Path) -> None:
 
     Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none.
     """
-    with (directory / "speed.csv").open("w", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow([*COLUMNS, *ERROR_COLUMNS, "outcome", "reason"])
-        table.writerows(_cells(rung, study.yardstick) for rung in study.rungs)
-    (directory / "speed.md").write_text("\n".join(page(study)) + "\n")
-    draw(study, directory)
+    rows = [_cells(rung, study.yardstick) for rung in study.rungs]
+    write_csv(Table("speed", "", "", (*COLUMNS, *ERROR_COLUMNS, "outcome", "reason"), rows), directory)
+    (directory / "speed.md").write_text("\n".join(markdown(list(parts(study)))) + "\n")
+    draw(pictures(study), study, directory)
 
 
 def _cells(rung: Rung, yardstick: float) -> list[str]:
@@ -56,20 +54,20 @@ def _number(value: float, form: str) -> str:
     return form.format(value) if math.isfinite(value) else ""
 
 
-def page(study: SpeedStudy) -> Iterator[str]:
-    """Lines of the page, in Markdown."""
+def parts(study: SpeedStudy) -> Iterator[str | Table]:
+    """Lines and tables of the page."""
     yield f"# Error against wall time at Tabor parameter {study.tabor:g}{', quick run' if study.quick else ''}"
     yield ""
     yield from verdict(study)
     yield ""
     yield from (f"* {key}: {value}" for key, value in (machine() | versions()).items())
     yield f"* yardstick, one dgesv of n = 200: {study.yardstick * 1e3:.2f} ms"
-    yield from _truths(study)
-    yield from _costs(study, "What it costs to have every quantity that a method gives", None)
-    for quantity in study.quantities:
-        yield from _costs(study, f"What it costs to have {quantity}", quantity)
-    yield from _exponents(study)
-    yield from _failures(study)
+    yield _truths(study)
+    yield _costs(study, "What it costs to have every quantity that a method gives", None)
+    yield from (_costs(study, f"What it costs to have {quantity}", quantity) for quantity in study.quantities)
+    yield _exponents(study)
+    failures = [(rung.method, rung.setting, rung.status, rung.reason) for rung in study.rungs if not rung.converged]
+    yield Table("", "Rungs without result", "", ("method", "setting", "outcome", "reason"), failures)
 
 
 def verdict(study: SpeedStudy) -> Iterator[str]:
@@ -85,27 +83,30 @@ def verdict(study: SpeedStudy) -> Iterator[str]:
         yield from (f"* {trouble}" for trouble in troubles)
 
 
-def _truths(study: SpeedStudy) -> Iterator[str]:
+def _truths(study: SpeedStudy) -> Table:
     """What the errors are taken against, and whether the two truths agree."""
     title = "The truths: each family is judged by the other; an error below the truth's own uncertainty is shown as <"
     columns = [
         f"judge of the {judged}: {truth.family}, rtol {truth.rtol:.0e}" for judged, truth in study.truths.items()
     ]
-    yield from _heading(title, ["quantity", "unit", *columns, "difference", "within both errors"])
+    rows = []
     for quantity in study.quantities:
         a, b = (truth.values[quantity] for truth in study.truths.values())
         cells = [f"{estimate.value:.12g}, error {estimate.error:.0e}" for estimate in (a, b)]
         agree = abs(a.value - b.value) <= a.error + b.error
-        yield _line([quantity, UNITS[quantity], *cells, f"{abs(a.value - b.value):.0e}", "yes" if agree else "NO"])
+        rows.append([quantity, UNITS[quantity], *cells, f"{abs(a.value - b.value):.0e}", "yes" if agree else "NO"])
+    return Table("", title, "", ("quantity", "unit", *columns, "difference", "within both errors"), rows)
 
 
-def _costs(study: SpeedStudy, title: str, quantity: str | None) -> Iterator[str]:
+def _costs(study: SpeedStudy, title: str, quantity: str | None) -> Table:
     """One line per method: seconds to each tolerance, and the best that it reached."""
-    yield from _heading(title, ["method", *(f"to {tolerance:.0e}" for tolerance in TOLERANCES), "best reached"])
+    rows = []
     for method in study.methods:
         rungs = study.of(method.name)
         cells = [_cost(cheapest(rungs, tolerance, quantity), study) for tolerance in TOLERANCES]
-        yield _line([method.name, *cells, _best(best(rungs, quantity), quantity)])
+        rows.append([method.name, *cells, _best(best(rungs, quantity), quantity)])
+    columns = ("method", *(f"to {tolerance:.0e}" for tolerance in TOLERANCES), "best reached")
+    return Table("", title, "", columns, rows)
 
 
 def _cost(rung: Rung | None, study: SpeedStudy) -> str:
@@ -122,26 +123,12 @@ def _best(rung: Rung | None, quantity: str | None) -> str:
     return f"{below}{rung.error(named):.0e} in {rung.seconds:.2f} s ({rung.setting})"
 
 
-def _exponents(study: SpeedStudy) -> Iterator[str]:
+def _exponents(study: SpeedStudy) -> Table:
     title = "How the cost grows: exponents b fitted to cost ~ x^b; the error is that of pull_off"
     costs = [f"{cost}, x = {x}" for x in ("unknowns", "1/error") for cost in ("time", "peak memory")]
-    yield from _heading(title, ["method", "rungs", *costs])
+    rows = []
     for method in study.methods:
         b = study.exponents(method.name)
         fitted = (b.time, b.memory, b.time_by_accuracy, b.memory_by_accuracy)
-        yield _line([method.name, str(b.rungs), *(_number(value, "{:.2f}") or "-" for value in fitted)])
-
-
-def _failures(study: SpeedStudy) -> Iterator[str]:
-    yield from _heading("Rungs without result", ["method", "setting", "outcome", "reason"])
-    for rung in study.rungs:
-        if not rung.converged:
-            yield _line([rung.method, rung.setting, rung.status, rung.reason])
-
-
-def _heading(title: str, columns: Sequence[str]) -> Iterator[str]:
-    yield from ("", f"## {title}", "", _line(columns), _line(["---"] * len(columns)))
-
-
-def _line(cells: Sequence[str]) -> str:
-    return f"| {' | '.join(cells)} |"
+        rows.append([method.name, str(b.rungs), *(_number(value, "{:.2f}") or "-" for value in fitted)])
+    return Table("", title, "", ("method", "rungs", *costs), rows)

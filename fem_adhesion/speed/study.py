@@ -15,7 +15,8 @@ from scipy.linalg.lapack import dgesv
 
 import fem_adhesion
 import halfspace
-from fem_adhesion.common.machine import peak_memory
+from fem_adhesion.common.facts import peak_memory
+from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed.element_methods import POISSON, element_methods
 from fem_adhesion.speed.halfspace_methods import halfspace_methods
@@ -29,14 +30,12 @@ from halfspace.values import Estimate
 TABOR_RANGE = (0.05, 2.0)  # beyond it fixed grids need too many nodes, or rigid surfaces leave nothing to compare
 TIGHTEST = 1e-9  # relative tolerance of the truths
 
-Progress = Callable[[str, int, int], None]
-
 
 def measure(
     tabor: float = 1.0,
     *,
     quick: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = unheard,
     methods: Sequence[Method] | None = None,
 ) -> SpeedStudy:
     """Time every method on its ladder of resolutions.
@@ -65,8 +64,7 @@ def measure(
     yardstick = time_yardstick()
     rungs: list[Rung] = []
     for number, method in enumerate(chosen):
-        if progress:
-            progress(method.name, number, len(chosen))
+        progress(method.name, number, len(chosen))
         rungs += _climb(method, tabor, truths[method.family], quick=quick)
     return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs))
 

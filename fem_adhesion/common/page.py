@@ -1,0 +1,216 @@
+"""Pages that can be sent alone: sections of text, figures and tables, as HTML; the tables as CSV and Markdown too.
+
+Greek letters are written by their names in all texts, and become letters on the page.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from markupsafe import Markup
+
+from halfspace.errors import InputError
+
+SYMBOLS: Mapping[str, str] = {
+    "mu": "μ",
+    "alpha": "\N{GREEK SMALL LETTER ALPHA}",
+    "dgamma": "\N{GREEK CAPITAL LETTER DELTA}\N{GREEK SMALL LETTER GAMMA}",
+    "beta": "β",
+    "eps": "ε",
+    "pi": "π",
+}
+WORDS = re.compile(rf"\b({'|'.join(SYMBOLS)})\b")
+NUMBER = re.compile(r"[-+0-9.e]+")
+LONG = 40  # letters of a cell from which on it may be broken
+SVG = "http://www.w3.org/2000/svg"
+XLINK = "http://www.w3.org/1999/xlink"
+REFERENCE = re.compile(r"url\(#([^)]*)\)")
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table and the file that holds it.
+
+    Attributes
+    ----------
+    stem, title, see : str
+        File name without suffix, empty if there is no file; heading, one sentence on what to see.
+    columns : sequence of str
+        Names with units.
+    rows : sequence of sequence of str
+        Cells.
+    open : bool
+        Whether it is seen at once where tables are folded.
+    """
+
+    stem: str
+    title: str
+    see: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    open: bool = False
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A picture as SVG that can stand inside HTML.
+
+    Attributes
+    ----------
+    markup, caption : str
+        The SVG itself; what is to be seen, which is the text alternative too.
+    title, stem : str
+        What is drawn; name of its files without suffix, empty if there are none.
+    """
+
+    markup: str
+    caption: str
+    title: str = ""
+    stem: str = ""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a page.
+
+    Attributes
+    ----------
+    name, title : str
+        For links, and for the reader.
+    missing : str
+        The command line that was not run for it, or "".
+    warning : str
+        What went wrong in it, or "".
+    paragraphs, figures, tables : sequence
+        In the order shown.
+    """
+
+    name: str
+    title: str
+    missing: str = ""
+    warning: str = ""
+    paragraphs: Sequence[str] = ()
+    figures: Sequence[Figure] = ()
+    tables: Sequence[Table] = ()
+
+
+def page(title: str, lead: Sequence[str], sections: Sequence[Section], facts: Mapping[str, str]) -> str:
+    """A page as HTML: title, paragraphs, links to its sections, these, and facts at its foot."""
+    return render("common/page.html.j2", title=title, lead=lead, sections=sections, facts=facts)
+
+
+def render(template: str, **contents: Any) -> str:
+    """Page from the template ``folder/name`` of a folder of this package; `symbols` and `kind` are filters in it."""
+    from jinja2 import Environment, PackageLoader, PrefixLoader, StrictUndefined  # here, as tables need no templates
+
+    folder = template.partition("/")[0]
+    folders = {name: PackageLoader("fem_adhesion", f"{name}/templates") for name in {"common", folder}}
+    environment = Environment(
+        loader=PrefixLoader(folders), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters |= {"symbols": symbols, "kind": kind}
+    return environment.get_template(template).render(style=template_text("common", "page.css"), **contents) + "\n"
+
+
+def template_text(folder: str, name: str) -> str:
+    """Text of a file beside the templates of a folder."""
+    return (resources.files("fem_adhesion") / folder / "templates" / name).read_text(encoding="utf-8")
+
+
+def symbols(text: str) -> str:
+    """Greek letters for their names, as in the paper, and the sign of an error; markup stays markup."""
+    return type(text)(WORDS.sub(lambda match: SYMBOLS[match[0]], text).replace("+-", "±"))
+
+
+def kind(cell: str) -> str:
+    """How a cell is set: as a ``number``, or as a ``long`` text, which is broken; empty of other text."""
+    return "number" if NUMBER.fullmatch(cell) else "long" if len(cell) > LONG else ""
+
+
+def listed(items: Sequence[str]) -> Markup:
+    """Items as a list between paragraphs."""
+    return Markup("<ul>{}</ul>").format(Markup("").join(Markup("<li>{}</li>").format(item) for item in items))
+
+
+def write_csv(table: Table, directory: Path) -> None:
+    """Write a table as a CSV file."""
+    with (directory / f"{table.stem}.csv").open("w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(table.columns)
+        writer.writerows(table.rows)
+
+
+def markdown(parts: Sequence[str | Table]) -> Iterator[str]:
+    """Lines of a page in Markdown."""
+    for part in parts:
+        if isinstance(part, Table):
+            yield from ("", f"## {part.title}", "")
+            yield from (f"| {' | '.join(cells)} |" for cells in (part.columns, ["---"] * len(part.columns), *part.rows))
+        else:
+            yield part
+
+
+def inlined(svg: bytes, name: str, caption: str, title: str = "", stem: str = "") -> Figure:
+    """A picture made ready for a page: no identifier, style or script leaks out of it.
+
+    Parameters
+    ----------
+    svg : bytes
+        The file.
+    name : str
+        Different for each picture of a page: it keeps the pictures' identifiers apart.
+    caption, title, stem : str
+        As in `Figure`.
+
+    Raises
+    ------
+    InputError
+        If the file is not SVG.
+    """
+    root = _parsed(svg, name)
+    _strip(root)
+    for element in root.iter():
+        _keep_apart(element, name)
+    root.attrib.pop("height", None)  # follows from the width and the view box
+    root.set("role", "img")
+    root.set("aria-label", symbols(f"{title}. {caption}" if title else caption))
+    ElementTree.register_namespace("", SVG)
+    ElementTree.register_namespace("xlink", XLINK)
+    return Figure(Markup(ElementTree.tostring(root, encoding="unicode")), caption, title, stem)
+
+
+def _parsed(svg: bytes, name: str) -> ElementTree.Element:
+    try:
+        root = ElementTree.fromstring(svg)
+    except ElementTree.ParseError as error:
+        raise InputError(f"the picture {name} is not SVG: {error}; write it anew") from error
+    if root.tag != f"{{{SVG}}}svg":
+        raise InputError(f"the picture {name} is not SVG: its first element is {root.tag}; write it anew")
+    return root
+
+
+def _strip(element: ElementTree.Element) -> None:
+    """Leave out metadata, scripts, and styles, which would hold for the whole page; the page has the latter."""
+    for child in list(element):
+        if child.tag.rpartition("}")[2] in ("metadata", "style", "script"):
+            element.remove(child)
+        else:
+            _strip(child)
+
+
+def _keep_apart(element: ElementTree.Element, name: str) -> None:
+    """Put the picture's name before each identifier and each reference to one."""
+    for key, value in element.attrib.items():
+        if key == "id":
+            element.set(key, f"{name}-{value}")
+        elif key in ("href", f"{{{XLINK}}}href") and value.startswith("#"):
+            element.set(key, f"#{name}-{value[1:]}")
+        else:
+            element.set(key, REFERENCE.sub(rf"url(#{name}-\1)", value))
