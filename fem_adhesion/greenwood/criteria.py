@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 
@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 import halfspace
+from fem_adhesion.common.words import told
 from halfspace.theories import criteria
 from halfspace.values import Array, Estimate, Valued
 
@@ -172,3 +173,38 @@ def closed_ratios(study: CriteriaStudy) -> Array:
     """(H0 + 1)^(7/2) by each closed criterion over that of the true jumps; shape (criteria, jumps)."""
     predicted = [c.predict(study.tabor) for c in study.criteria if is_closed(c) and c.predict]
     return (np.reshape(predicted, (len(predicted), study.tabor.size)) + 1) ** 3.5 / (study.central_gap + 1) ** 3.5
+
+
+def words_on(study: CriteriaStudy) -> Iterator[str]:
+    """How far the criteria are from the true jumps, a sentence each."""
+    yield _closed_words(study)
+    yield from (_fit_words(study, criterion) for criterion in study.criteria)
+
+
+def _closed_words(study: CriteriaStudy) -> str:
+    ratio = closed_ratios(study)
+    if not ratio.size:
+        return ""
+    wide = (
+        "too wide a gap"
+        if ratio.min() > 1
+        else "too narrow a gap"
+        if ratio.max() < 1
+        else "now too wide, now too narrow a gap"
+    )
+    text = (
+        f"Attard & Parker, Pethica & Sutton and App. C expect the jump at {wide}, by factors of {ratio.min():.2f} to "
+        f"{ratio.max():.2f} in (H0 + 1)^(7/2)."
+    )
+    return told(text, ratio)
+
+
+def _fit_words(study: CriteriaStudy, criterion: Criterion) -> str:
+    """Largest deviation of an empirical fit as printed."""
+    if criterion.predict is None or is_closed(criterion):
+        return ""
+    use = study.tabor >= criteria.FIT_LEAST_TABOR
+    true = study.approach if criterion.of_approach else study.central_gap
+    off = np.abs(criterion.predict(study.tabor[use]) - true[use])
+    what = "approach" if criterion.of_approach else "gap"
+    return told(f"The {criterion.name} is off by up to {np.max(off, initial=0):.1g} eps in the {what}.", off)

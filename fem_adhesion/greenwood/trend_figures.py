@@ -13,12 +13,11 @@ from fem_adhesion.common import style
 from fem_adhesion.common.numbers import digits, plus_minus
 from fem_adhesion.common.style import Picture, dress, note, panels, plain_ticks
 from fem_adhesion.common.words import joined, rises, told
-from fem_adhesion.greenwood.criteria import CriteriaStudy, Criterion, closed_ratios, is_closed
+from fem_adhesion.greenwood.criteria import Criterion, words_on
 from fem_adhesion.greenwood.numerics_1997 import Ripple
 from fem_adhesion.greenwood.study import RIPPLE_AT, Greenwood1997, PullOff
 from halfspace.equilibrium.devices import Cycle
 from halfspace.scaling import MAUGIS
-from halfspace.theories import criteria
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 from halfspace.theories.maugis import MaugisDugdale, carpick_pull_off
 from halfspace.values import Array
@@ -73,36 +72,7 @@ def _criterion(axes: Any, criterion: Criterion, tabor: Array, power: float = 0.0
 
 def _see_6a(study: Greenwood1997) -> str:
     """Too wide or too narrow a gap by the closed criteria, and how far the fits are off."""
-    return joined(_closed(study.criteria), *(_fit(study.criteria, c) for c in study.criteria.criteria))
-
-
-def _closed(study: CriteriaStudy) -> str:
-    ratio = closed_ratios(study)
-    if not ratio.size:
-        return ""
-    wide = (
-        "too wide a gap"
-        if ratio.min() > 1
-        else "too narrow a gap"
-        if ratio.max() < 1
-        else "now too wide, now too narrow a gap"
-    )
-    text = (
-        f"Attard & Parker, Pethica & Sutton and App. C expect the jump at {wide}, by factors of {ratio.min():.2f} to "
-        f"{ratio.max():.2f} in (H0 + 1)^(7/2)."
-    )
-    return told(text, ratio)
-
-
-def _fit(study: CriteriaStudy, criterion: Criterion) -> str:
-    """Largest deviation of an empirical fit as printed."""
-    if criterion.predict is None or is_closed(criterion):
-        return ""
-    use = study.tabor >= criteria.FIT_LEAST_TABOR
-    true = study.approach if criterion.of_approach else study.central_gap
-    off = np.abs(criterion.predict(study.tabor[use]) - true[use])
-    what = "approach" if criterion.of_approach else "gap"
-    return told(f"The {criterion.name} is off by up to {np.max(off, initial=0):.1g} eps in the {what}.", off)
+    return joined(*words_on(study.criteria))
 
 
 def _figure_6b(study: Greenwood1997) -> Figure:
