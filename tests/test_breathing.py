@@ -14,6 +14,7 @@ from halfspace.elastic.operators import FlatCoordinate, Homogeneous, Interpolate
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import Chart, find_events, trace_charts
 from halfspace.profiles.sphere import SphereSurface
+from halfspace.scales import Scales
 
 R = 4.0
 EDGE = 1.5  # contact radius at which operators are compared, between those that are known
@@ -160,7 +161,7 @@ def test_the_load_gradient_against_finite_differences_on_a_grid_that_follows_a_s
 
 def test_a_half_space_has_the_same_events_whether_homogeneous_or_interpolated():
     """On a grid with no length of its own, interpolation between any two radii is exact."""
-    charts = half_space_charts(1.0, resolution_for(1.0, 1e-4))
+    charts = half_space_charts(Scales(1.0), resolution_for(Scales(1.0), 1e-4))
     operator = charts[1].problem.operator
     inner = operator.unit.finite
     lines = inner.cells

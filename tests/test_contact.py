@@ -11,6 +11,7 @@ from halfspace.equilibrium.contact import ContactProblem, count_negative
 from halfspace.equilibrium.curve import transfer
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, PowerLaw
+from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 
 CENTRED = compliance.panels(grid.graded(0.0, 0.3, 400.0), 10)
@@ -197,7 +198,7 @@ def test_the_load_does_not_miss_the_attraction_beyond_the_grid(tabor, gap):
     """The same state on grids of any extent, its load the derivative of its energy by the approach."""
     states = []
     for extent in (6.0, 9.0, 60.0):
-        lines = rings(tabor, 0.4, 2.0, extent * tabor**0.25)
+        lines = rings(Scales(tabor), 0.4, 2.0, extent * tabor**0.25)
         problem = ContactProblem(compliance.to_infinity(compliance.panels(lines.centred, 14), 14), tabor)
         x = newton.solve(problem, approached(problem, min(gap, 1.0)), newton.central_gap(gap)).x
         states.append((problem, x, problem.observables(x)))
@@ -230,7 +231,7 @@ def test_rigid_limit_is_bradleys_along_the_whole_path():
 def test_the_energy_of_the_surfaces_goes_on_beyond_the_grid(central_gap):
     """Of rigid surfaces it is minus the work of Bradley's load from afar, -(8 pi/3) (1/h - h^-7/28)."""
     tabor = 1e-6
-    problem = half_space_charts(tabor, resolution_for(tabor, 1e-4))[0].problem
+    problem = half_space_charts(Scales(tabor), resolution_for(Scales(tabor), 1e-4))[0].problem
     energy = problem.energy(problem.undeformed(1 - central_gap))
     h = central_gap
     assert energy == pytest.approx(-8 * np.pi / 3 * (1 / h - h**-7 / 28), rel=1e-6)

@@ -14,7 +14,8 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.curve import find_events, moved
 from halfspace.equilibrium.devices import cycle, energy_lost, jumps
-from halfspace.equilibrium.reach import reaching, rigid_jump_on
+from halfspace.equilibrium.reach import reaching
+from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 
 
@@ -193,7 +194,7 @@ def test_a_soft_cantilever_jumps_on_from_beyond_the_traced_curve():
     assert on.load == pytest.approx(float(closed_forms.bradley_load(1 - gap)), rel=1e-4)
     assert abs(on.approach - (1 - gap)) < on.approach_error + 1e-6 * gap
     assert abs(on.load - float(closed_forms.bradley_load(1 - gap))) < on.load_error + 1e-6 * abs(on.load)
-    assert rigid_jump_on(stiffness) == pytest.approx(1 - gap, rel=1e-6)
+    assert Scales(path.tabor).rigid_jump_on(stiffness) == pytest.approx(1 - gap, rel=1e-6)
 
 
 @pytest.mark.parametrize("stiffness", [1e-2, 1e-4, 1e-6, 1e-9, 1e-12])

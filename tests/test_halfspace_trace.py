@@ -19,6 +19,7 @@ from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import FOLD, locate
 from halfspace.equilibrium.path import Steps, correct
 from halfspace.errors import InputError, NotConverged
+from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 
 DATA = Path(__file__).parent / "data"
@@ -116,7 +117,9 @@ def test_the_curve_runs_from_separation_to_compression(curves):
 def test_arclength_does_not_depend_on_the_grid():
     def length(rtol):
         """Length of the polyline from far separation to zero load."""
-        segments = trace_charts(half_space_charts(1.0, resolution_for(1.0, rtol)), steps=Steps(longest=0.2, turn=0.05))
+        segments = trace_charts(
+            half_space_charts(Scales(1.0), resolution_for(Scales(1.0), rtol)), steps=Steps(longest=0.2, turn=0.05)
+        )
         values = np.array([point.observables[:3] for segment in segments for point in segment.points])
         lengths = np.sqrt(np.diff(values, axis=0) ** 2 @ metric_for(1.0).weights[:3])
         return np.interp(0.0, values[-10:, 1], np.cumsum(lengths)[-10:])
@@ -126,7 +129,9 @@ def test_arclength_does_not_depend_on_the_grid():
 
 def test_the_work_along_the_curve_is_the_energy_between_its_ends():
     """Trapezoidal rule with end corrections on a finely stepped curve, against the energies of the two end states."""
-    segments = trace_charts(half_space_charts(2.0, resolution_for(2.0, 1e-8)), steps=Steps(longest=0.05, turn=0.02))
+    segments = trace_charts(
+        half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-8)), steps=Steps(longest=0.05, turn=0.02)
+    )
     points = [point for segment in segments for point in segment.points]
     first, last = segments[0].points[0], segments[-1].points[-1]
     work = 0.0
@@ -201,7 +206,7 @@ def test_the_half_space_needs_only_numpy_and_scipy():
 @pytest.mark.parametrize("tabor", [0.6973, 0.698])
 def test_a_pair_of_folds_between_two_points_is_found_though_their_tangents_do_not_tell(tabor):
     metric = metric_for(tabor)
-    segment = trace_charts(half_space_charts(tabor, resolution_for(tabor, 1e-6)))[0]
+    segment = trace_charts(half_space_charts(Scales(tabor), resolution_for(Scales(tabor), 1e-6)))[0]
     folds = [fold.point for fold in locate(segment.problem, segment.points, metric, FOLD)]
     assert len(folds) == 2
     before = [point for point in segment.points if point.arclength < folds[0].arclength][-1]
@@ -222,7 +227,7 @@ def test_a_curve_that_the_lowest_grid_cannot_carry_is_traced_on_the_next():
         asked.append(level)
         if level == 0:
             raise NotConverged("the event is not found again; refine both grids")
-        return charted_rung(half_space_charts(1.0, resolution_for(1.0, 1e-3, level)))
+        return charted_rung(half_space_charts(Scales(1.0), resolution_for(Scales(1.0), 1e-3, level)))
 
     path = climb(1e-2, rung)
     assert asked == [0, 1, 2]
@@ -276,8 +281,8 @@ def test_folds_that_a_finer_grid_loses_are_left_in_doubt():
     tabor = CRITICAL - 1e-6
 
     def rung(level):
-        resolution = resolution_for(tabor, 1e-1, level)
-        return charted_rung(half_space_charts(tabor if level else tabor + 1e-4, resolution))
+        resolution = resolution_for(Scales(tabor), 1e-1, level)
+        return charted_rung(half_space_charts(Scales(tabor if level else tabor + 1e-4), resolution))
 
     path = climb(1e-2, rung, most_rungs=1)
     assert "jump_on" not in path.events
@@ -288,7 +293,7 @@ def test_folds_that_a_finer_grid_loses_are_left_in_doubt():
 
 @pytest.mark.parametrize(("tabor", "nodes", "growth", "extent"), [(0.0394754, 5, 3.0, 16.11), (0.0603, 5, 2.5, 15.2)])
 def test_a_step_does_not_leap_over_the_end_of_a_chart_into_cells_too_coarse(tabor, nodes, growth, extent):
-    charts = half_space_charts(tabor, Resolution(nodes, 0.6, growth, extent))
+    charts = half_space_charts(Scales(tabor), Resolution(nodes, 0.6, growth, extent))
     segments = trace_charts(charts, 0.5)
     last = segments[0].points[-1]
     assert last.observables[CONTACT_RADIUS] > charts[0].until

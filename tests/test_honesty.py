@@ -20,6 +20,7 @@ import halfspace
 from fem_adhesion import Scene
 from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.equilibrium.curve import energy_released, find_events, trace_charts
+from halfspace.scales import Scales
 from halfspace.values import Estimate
 
 
@@ -95,7 +96,7 @@ def test_an_estimate_is_no_less_than_twice_the_change_from_a_grid_as_coarse_as_t
     path = halfspace.trace(0.8, rtol=1e-4)
     last = path.settings["events"]
     twin = Resolution(last["nodes"] - 1, 0.75 * last["finest"], 0.87 * last["growth"], 0.8 * last["extent"])
-    others = find_events(trace_charts(half_space_charts(0.8, twin)))
+    others = find_events(trace_charts(half_space_charts(Scales(0.8), twin)))
     counted = 0
     for name, event in path.events.items():
         best, other = (state[name].point.observables for state in (path.stages[-1], others))

@@ -23,6 +23,7 @@ from halfspace.equilibrium.path import Metric
 from halfspace.errors import ContactTooWide, NotConverged
 from halfspace.profiles import Paraboloid
 from halfspace.roots import root
+from halfspace.scales import Scales
 
 
 def ended(call):
@@ -73,7 +74,7 @@ def test_what_the_function_itself_says_goes_through():
 
 @pytest.fixture(scope="module")
 def segments():
-    return trace_charts(half_space_charts(1.0, resolution_for(1.0, 1e-1)))
+    return trace_charts(half_space_charts(Scales(1.0), resolution_for(Scales(1.0), 1e-1)))
 
 
 def test_a_curve_that_ends_too_soon_says_which_event_it_lacks(segments):

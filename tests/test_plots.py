@@ -21,6 +21,7 @@ from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.curve import trace_charts
 from halfspace.equilibrium.path import Steps
 from halfspace.laws import LENNARD_JONES
+from halfspace.scales import Scales
 from halfspace.scaling import Units
 
 UNITS = Units(100e-9, 1.1e9, 0.05, 0.3e-9)
@@ -93,7 +94,7 @@ def test_branches_and_theories_differ_in_dashes_and_in_colour(curves, tabor):
 
 def test_the_drawn_line_is_the_curve_between_the_computed_points(curves):
     """Against points ten times closer, each solved for."""
-    charts = half_space_charts(2.0, resolution_for(2.0, 1e-4))
+    charts = half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-4))
     close = [p.observables for s in trace_charts(charts, steps=Steps(longest=0.1)) for p in s.points]
     line = curve_lines.smooth(curves[2.0].path)
     drawn = np.stack([line.approach, line.load])

@@ -21,9 +21,9 @@ from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import Chart, moved
 from halfspace.equilibrium.devices import cycle
-from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import PARABOLOID, Sphere
 from halfspace.profiles.sphere import between_spheres
+from halfspace.scales import Scales
 
 HEMISPHERE = {"tabor": 1.0, "body": "hemisphere", "profile": "sphere", "radius_ratio": 30.0}
 
@@ -189,7 +189,8 @@ def test_events_share_an_operator_within_its_window_alone(part, shared):
 
 def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_tolerance():
     """By which a fold is found; against differences of whole operators over ever narrower windows, extrapolated."""
-    body = _sized_body(2.0, LENNARD_JONES, between_spheres(np.sqrt(5.0), np.inf), None, resolution_for(2.0, 1e-8))
+    scales = Scales(2.0, profile=between_spheres(np.sqrt(5.0), np.inf))
+    body = _sized_body(scales, None, resolution_for(scales, 1e-8))
     pressure = -np.exp(-8 * (body.around(1.18).problem.operator.at(1.18).radii / 1.18 - 1) ** 2)
 
     def derivative(window, count):

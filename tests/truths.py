@@ -16,18 +16,19 @@ from fem_adhesion.harmonics import Standing
 from fem_adhesion.harmonics import sized_body as series
 from halfspace.accuracy.finite_bodies import SizedBody
 from halfspace.accuracy.refinement import Charted
-from halfspace.accuracy.trace import Resolution, half_space_charts, widened
+from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.elastic import compliance
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.curve import find_events, moved, trace_charts
 from halfspace.profiles.sphere import between_spheres
+from halfspace.scales import Scales
 
 
 def half_space(tabor, *_):
     """Two grids of other gradings and extents than any that `halfspace.trace` takes; the nodes are nearly the most."""
-    extent = 10 * widened(tabor)
+    extent = 10 * Scales(tabor).widened
     return [
-        Charted(half_space_charts(tabor, Resolution(nodes, finest, growth, extent)))
+        Charted(half_space_charts(Scales(tabor), Resolution(nodes, finest, growth, extent)))
         for nodes, finest, growth in ((14, 0.45, 2.2), (16, 0.4, 2.5))
     ]
 

@@ -17,6 +17,7 @@ from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, trace_char
 from halfspace.equilibrium.devices import Cycle, Jump, cycle
 from halfspace.equilibrium.events import Condition, Located
 from halfspace.equilibrium.path import Steps
+from halfspace.scales import Scales
 from halfspace.values import Array, Estimate, Valued
 
 FINE = Steps(first=0.02, longest=0.08, turn=0.06)  # a polygon through the points looks smooth
@@ -78,7 +79,8 @@ def fine_path(
     tabor: float, *, rtol: float = SEEN, to_load: float = COMPRESSION, steps: Steps = FINE
 ) -> EquilibriumPath:
     """Trace a curve and put points on it that are close enough to be drawn; its events are the trace's."""
-    charts = half_space_charts(tabor, resolution_for(tabor, rtol), to_load)
+    scales = Scales(tabor)
+    charts = half_space_charts(scales, resolution_for(scales, rtol), to_load)
     path = halfspace.trace(tabor, rtol=rtol, to_load=to_load)
     return replace(path, segments=trace_charts(charts, to_load, steps))
 

@@ -16,12 +16,12 @@ import numpy as np
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import Interpolated, MovingGrid, SurfaceCoordinate, chebyshev_radii
-from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, ContactProblem, spike_width
+from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, ContactProblem, contact_of
 from halfspace.equilibrium.curve import COMPRESSION, Chart
 from halfspace.equilibrium.events import Located
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import Surface
-from halfspace.theories.closed_forms import jkr_radius
+from halfspace.scales import Scales
 from halfspace.values import Array, Valued
 
 LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the least that the other one knows
@@ -74,10 +74,15 @@ class SizedBody(Valued):
     law: Law = LENNARD_JONES
     softest: float = 1.0
 
+    @cached_property
+    def scales(self) -> Scales:
+        """Lengths of the contact."""
+        return Scales(self.tabor, self.law, self.profile, self.softest)
+
     @property
     def length(self) -> float:
         """Length of the cells at the contact edge in beta, and the contact radius up to which they do at the centre."""
-        return self.finest * spike_width(self.tabor) / 2
+        return self.finest * self.scales.spike_width / 2
 
     def lines(self, edge: float = 0.0) -> Array:
         """Ends of all cells that are finest at a contact edge, in the surface's coordinate, or on the axis."""
@@ -89,18 +94,17 @@ class SizedBody(Valued):
     def centred(self) -> Chart:
         """Chart fine on the axis."""
         operator, unknowns = self.make(self.lines())
-        return Chart(ContactProblem(operator, self.tabor, self.law, self.profile), unknowns, LEAVE * self.length)
+        return Chart(contact_of(self.scales, operator), unknowns, LEAVE * self.length)
 
     def following(self, moving: MovingGrid, scales: Array) -> Chart:
         """Chart that follows the contact edge, from operators at some contact radii."""
         made = [self.make(moving.lines(float(a))) for a in scales]
         operator = Interpolated(scales, [operator for operator, _ in made], moving)
-        return Chart(ContactProblem(operator, self.tabor, self.law, self.profile), made[0][1])
+        return Chart(contact_of(self.scales, operator), made[0][1])
 
     def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
-        soft = np.cbrt(self.softest) * jkr_radius(to_load)
-        widest = min(float(np.hypot(soft, 0.7 / np.sqrt(self.tabor))), WIDEST * self.profile.end)
+        widest = min(self.scales.widest_radius(to_load), WIDEST * self.profile.end)
         least = min(LEAST * LEAVE * self.length, widest / 2)
         count = 2 + int(np.ceil(np.log(widest / least) / np.log(apart)))
         end, edge = float(self.outer[0]), self.coordinate.of(widest)

@@ -21,6 +21,7 @@ from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Point, make_point
 from halfspace.errors import NotConverged
 from halfspace.roots import root
+from halfspace.scales import Scales
 from halfspace.values import Array
 
 
@@ -54,7 +55,7 @@ SECOND = Birth((3.8, 4.1), (0.3, 0.6), falling=False)
 
 def tabor_of(birth: Birth, *, rtol: float = 1e-7) -> float:
     """Tabor parameter at which the pair is born, on the half-space discretised for `rtol`."""
-    return born(birth, lambda tabor: half_space_charts(tabor, resolution_for(tabor, rtol))[0].problem)
+    return born(birth, lambda tabor: _centred(tabor, rtol))
 
 
 def born(birth: Birth, problem_at: Callable[[float], Traceable]) -> float:
@@ -106,7 +107,7 @@ def critical_stiffness(tabor: float, *, rtol: float = 1e-7) -> float:
     tabor : float
         Below the critical value `tabor_of` (FIRST).
     """
-    problem = half_space_charts(tabor, resolution_for(tabor, rtol))[0].problem
+    problem = _centred(tabor, rtol)
     x = approached(problem, STEEPEST[1])
 
     def slope(gap: float) -> float:
@@ -114,6 +115,12 @@ def critical_stiffness(tabor: float, *, rtol: float = 1e-7) -> float:
         return float(rates[LOAD] / rates[APPROACH])
 
     return -float(minimize_scalar(slope, bounds=STEEPEST, method="bounded", options={"xatol": 1e-7}).fun)
+
+
+def _centred(tabor: float, rtol: float) -> Traceable:
+    """Contact with the half-space on a grid centred on the axis."""
+    scales = Scales(tabor)
+    return half_space_charts(scales, resolution_for(scales, rtol))[0].problem
 
 
 def approached(problem: Traceable, gap: float) -> Array:
@@ -128,7 +135,7 @@ def approached(problem: Traceable, gap: float) -> Array:
 def at_gap(problem: Traceable, start: Array, gap: float) -> Point:
     """Point of the curve at a central gap, its tangent towards larger gaps."""
     solution = newton.solve(problem, start, newton.central_gap(gap))
-    return make_point(problem, solution, metric_for(problem.tabor), newton.central_gap(gap).weights, 0.0)
+    return make_point(problem, solution, metric_for(problem), newton.central_gap(gap).weights, 0.0)
 
 
 def count_folds(path: EquilibriumPath) -> int:

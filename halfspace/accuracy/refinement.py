@@ -223,7 +223,7 @@ def _ways(below: Stage, higher: Rung) -> Ways:
 
 def _folds_in_doubt(segments: Sequence[Segment]) -> State:
     """Where the curve falls most steeply, if two folds there are about to merge or to be born; nothing otherwise."""
-    metric = metric_for(segments[0].problem.tabor)
+    metric = metric_for(segments[0].problem)
     least, point, problem = min(((*steepest(s.points), s.problem) for s in segments), key=lambda one: one[0])
     return {"steepest": steepest_from(problem, point, metric)} if abs(least) < IN_DOUBT else {}
 

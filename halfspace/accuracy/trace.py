@@ -18,13 +18,14 @@ from halfspace.elastic import compliance, grid
 from halfspace.elastic.layered import Images, images_of, layered_panels
 from halfspace.elastic.layers import LayeredBody
 from halfspace.elastic.operators import FlatCoordinate, Homogeneous
-from halfspace.equilibrium.contact import ContactProblem, spike_width
+from halfspace.equilibrium.contact import contact_of
 from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
 from halfspace.equilibrium.events import REMAINING
 from halfspace.laws import LENNARD_JONES, Law
+from halfspace.laws.check import require_law
 from halfspace.limits import require_load, require_rtol, require_tabor
-from halfspace.profiles import PARABOLOID, Profile, Surface
-from halfspace.theories.closed_forms import jkr_radius
+from halfspace.profiles import PARABOLOID, Profile
+from halfspace.scales import Scales
 from halfspace.values import Array, Valued
 
 EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
@@ -52,8 +53,8 @@ class Resolution:
     growth : float
         Ratio of neighbouring panels.
     extent : float
-        Of the finite cells, in units of beta/sqrt(mu), the width of a rigid paraboloid's attraction; what lies beyond
-        it is one cell more, see `halfspace.elastic.compliance.to_infinity`.
+        Of the finite cells, in widths of a rigid paraboloid's attraction, beta/sqrt(mu), or where another profile is as
+        high; what lies beyond it is one cell more, see `halfspace.elastic.compliance.to_infinity`.
     """
 
     nodes: int
@@ -62,18 +63,13 @@ class Resolution:
     extent: float
 
 
-def resolution_for(tabor: float, rtol: float, level: int = 0) -> Resolution:
+def resolution_for(scales: Scales, rtol: float, level: int = 0) -> Resolution:
     """Resolution whose events are right to about `rtol` at level 0 and five to ten times better with each node more.
 
     The first level above it has one more, the second two more than that, and so on.
     """
     nodes = max(math.ceil(2 - math.log10(rtol) - 1e-9), 5) + level * (level + 1) // 2
-    return Resolution(min(nodes, MOST_NODES), finest=0.6, growth=3.0, extent=EXTENT * widened(tabor))
-
-
-def widened(tabor: float) -> float:
-    """Width of the attraction at jump_on, where the gap is about mu^(3/7), in those of a rigid paraboloid."""
-    return float(max(1.0, tabor) ** (3 / 14))
+    return Resolution(min(nodes, MOST_NODES), finest=0.6, growth=3.0, extent=EXTENT * scales.widened)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -85,40 +81,49 @@ class Rings(Valued):
     until: float
 
 
-def rings(tabor: float, finest: float, growth: float, extent: float, to_load: float = COMPRESSION) -> Rings:
-    """Breakpoints fine enough for the spike of tension at every contact radius up to that under the load `to_load`.
-
-    `finest` is in widths of the spike, `extent` in beta/sqrt(mu), as in `Resolution`.
-    """
-    length = finest * spike_width(tabor) / 2
-    outer = extent / np.sqrt(tabor)
-    widest = widest_radius(tabor, to_load)
-    centred = grid.graded(0.0, length, outer, growth=growth)
-    edge = grid.graded(1.0, 2 * length / widest, outer / length, growth=growth)
-    return Rings(centred, edge, until=LEAVE * float(centred[1]))  # the cells beyond the first may be too coarse
+def widened(tabor: float) -> float:
+    """Width of the attraction at jump_on, by the 3-9 law on a paraboloid."""
+    return Scales(tabor).widened
 
 
 def widest_radius(tabor: float, to_load: float) -> float:
-    """Contact radius in beta that a curve up to a load hardly exceeds: a soft and a rigid contact's together."""
-    return float(np.hypot(jkr_radius(to_load), 0.7 / np.sqrt(tabor)))
+    """Contact radius in beta that a curve up to a load hardly exceeds, by the 3-9 law on a paraboloid."""
+    return Scales(tabor).widest_radius(to_load)
 
 
-def half_space_charts(
-    tabor: float,
-    resolution: Resolution,
+def rings(
+    scales: Scales | float,
+    finest: float,
+    growth: float,
+    extent: float,
     to_load: float = COMPRESSION,
-    law: Law = LENNARD_JONES,
-    profile: Surface = PARABOLOID,
-) -> tuple[Chart, Chart]:
+    nodes: int = MOST_NODES,
+) -> Rings:
+    """Breakpoints fine enough for the spike of tension at every contact radius up to that under the load `to_load`.
+
+    `finest` is in widths of the spike, `extent` in those of the attraction, as in `Resolution`.
+    """
+    scales = scales if isinstance(scales, Scales) else Scales(scales)
+    length = finest * scales.spike_width / 2
+    outer = scales.outer_radius(extent**2 / 2)
+    widest, first = scales.widest_radius(to_load), scales.profile.first_cell(10.0**-nodes)
+    centred = grid.graded(0.0, length, outer, growth=growth)
+    edge = grid.graded(1.0, 2 * length / widest, outer / length, growth=growth)
+    until = LEAVE * float(centred[1])  # the cells beyond the first may be too coarse
+    return Rings(grid.towards_axis(centred, first), grid.towards_axis(edge, first / widest), until)
+
+
+def half_space_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:
     """Panel grids centred on the axis and following the contact edge."""
-    lines = rings(tabor, resolution.finest, resolution.growth, resolution.extent, to_load)
+    nodes = resolution.nodes
+    lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, nodes)
     centred, edge = (
-        compliance.to_infinity(compliance.panels(breaks, resolution.nodes), resolution.nodes)
+        compliance.to_infinity(compliance.panels(breaks, nodes), nodes, scales.tail_reach)
         for breaks in (lines.centred, lines.edge)
     )
     return (
-        Chart(ContactProblem(centred, tabor, law, profile), centred.radii.size, lines.until),
-        Chart(ContactProblem(Homogeneous(edge), tabor, law, profile), edge.radii.size),
+        Chart(contact_of(scales, centred), centred.radii.size, lines.until),
+        Chart(contact_of(scales, Homogeneous(edge)), edge.radii.size),
     )
 
 
@@ -163,18 +168,17 @@ def trace(
         If the curve cannot be traced.
     """
     tabor, rtol, to_load = require_tabor(tabor), require_rtol(rtol), require_load(to_load)
-    surface = profile.surface(tabor)
-    if body is not None or math.isfinite(surface.end):
+    scales = Scales(tabor, require_law(law), profile.surface(tabor))
+    if body is not None or math.isfinite(scales.profile.end):
         images = [images_of(body, spacing) if body else None for spacing in IMAGES]
-        ladder = partial(_sized_rung, tabor, law, surface, images, rtol, to_load)
-        return climb(rtol, ladder, to_load=to_load)
+        return climb(rtol, partial(_sized_rung, scales, images, rtol, to_load), to_load=to_load)
 
     def rung(level: int) -> Rung:
-        resolution, below = (resolution_for(tabor, rtol, max(n, 0)) for n in (level, level - 1))
-        curve = partial(half_space_charts, tabor, resolution, to_load, law, surface)
+        resolution, below = (resolution_for(scales, rtol, max(n, 0)) for n in (level, level - 1))
+        curve = partial(half_space_charts, scales, resolution, to_load)
         if not level:
             return Rung(curve, (), asdict(resolution))
-        fine, twin = (Charted(half_space_charts(tabor, r, to_load, law, surface)) for r in (resolution, _twin(below)))
+        fine, twin = (Charted(half_space_charts(scales, r, to_load)) for r in (resolution, _twin(below)))
         return Rung(curve, (fine,), asdict(resolution), twin, ONE_NODE if level == 1 else REMAINING)
 
     return climb(rtol, rung, to_load=to_load)
@@ -191,12 +195,10 @@ def _twin(resolution: Resolution) -> Resolution:
     )
 
 
-def _sized_rung(
-    tabor: float, law: Law, gap: Surface, images: Sequence[Images | None], rtol: float, to_load: float, level: int
-) -> Rung:
+def _sized_rung(scales: Scales, images: Sequence[Images | None], rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level for a surface that ends, as a sphere's does at its equator, or a body that has a length."""
-    resolutions = resolution_for(tabor, rtol, level), _twin(resolution_for(tabor, rtol, max(level - 1, 0)))
-    fine, other = (_sized_body(tabor, law, gap, *both) for both in zip(images, resolutions, strict=True))
+    resolutions = resolution_for(scales, rtol, level), _twin(resolution_for(scales, rtol, max(level - 1, 0)))
+    fine, other = (_sized_body(scales, *both) for both in zip(images, resolutions, strict=True))
     resolution = resolutions[0]
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(
@@ -208,23 +210,23 @@ def _sized_rung(
     )
 
 
-def _sized_body(tabor: float, law: Law, gap: Surface, images: Images | None, resolution: Resolution) -> SizedBody:
+def _sized_body(scales: Scales, images: Images | None, resolution: Resolution) -> SizedBody:
     """Body whose cells end with the surface, or so far out that nothing attracts there."""
     make = partial(layered_panels, images) if images else compliance.panels
-    softest, ends = images.softest if images else 1.0, math.isfinite(gap.end)
-    last = at_equator(tabor, gap, resolution.nodes) if ends else math.inf
-    outer = gap.end if ends else FAR * widened(tabor * softest ** (2 / 3)) / math.sqrt(tabor)
+    scales, ends = replace(scales, softest=images.softest if images else 1.0), math.isfinite(scales.profile.end)
+    last = at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf
+    outer = scales.profile.end if ends else scales.outer_radius((FAR * scales.widened) ** 2 / 2)
     return SizedBody(
-        tabor,
-        gap,
+        scales.tabor,
+        scales.profile,
         partial(_made, make, resolution.nodes),
         resolution.finest,
         resolution.growth,
         np.array([outer]),
         FlatCoordinate(),
         last,
-        law,
-        softest,
+        scales.law,
+        scales.softest,
     )
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -25,16 +26,18 @@ from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.roots import root
+from halfspace.scales import Scales
 from halfspace.values import Array, Valued
 
 APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
 
+LARGEST = 0.75  # part of a gap h by which it may shrink in a step
 WIDEST = 0.95  # of the radius of a body, that a contact may reach
 
 
 def spike_width(tabor: float) -> float:
-    """Width in beta over which the tension at a contact edge varies: mu^-2, or about mu^-1/2 when nearly rigid."""
-    return float(min(tabor**-2, 0.7 * tabor**-0.5))
+    """Width in beta of the spike of tension at a contact edge, by the 3-9 law on a paraboloid."""
+    return Scales(tabor).spike_width
 
 
 def widest_interval(nodes: int) -> float:
@@ -67,6 +70,11 @@ class ContactProblem(Valued):
     tabor: float
     law: Law = LENNARD_JONES
     profile: Surface = PARABOLOID
+
+    @cached_property
+    def scales(self) -> Scales:
+        """Lengths of the contact."""
+        return Scales(self.tabor, self.law, self.profile)
 
     @property
     def follows_contact(self) -> bool:
@@ -240,7 +248,7 @@ class ContactProblem(Valued):
         if np.isnan(radius):
             return
         spacing, intervals = body.spacing(radius), max(body.cell_nodes.shape[1] - 1, 1)
-        limit = spike_width(self.tabor) * widest_interval(body.cell_nodes.shape[1])
+        limit = self.scales.spike_width * widest_interval(body.cell_nodes.shape[1])
         if spacing > limit * (1 + 1e-9):
             raise GridTooCoarse(
                 f"grid spacing {spacing:.3g} beta at the contact edge, radius {radius:.3g} beta, "
@@ -252,24 +260,29 @@ class ContactProblem(Valued):
 
     def longest_step(self, x: Array, dx: Array) -> float:
         """Fraction of the step dx that takes no gap h, nor the scale, below a quarter of its value."""
-        positive = np.append(x[:-2] + 1, x[-1])
+        room = np.append(self.law.room(x[:-2]), x[-1])
         change = np.append(dx[:-2], dx[-1])
-        shrink = -change / positive
-        return float(min(1.0, 0.75 / max(shrink.max(), 0.75)))
+        shrink = -change / room
+        return float(min(1.0, LARGEST / max(shrink.max(), LARGEST)))
 
     def size(self, x: Array, dx: Array) -> float:
         """Relative size of the change dx of the state x."""
-        return float(np.max(np.abs(dx) / np.concatenate([x[:-2] + 1, [1 + abs(x[-2]), x[-1]]])))
+        return float(np.max(np.abs(dx) / np.concatenate([self.law.room(x[:-2]), [1 + abs(x[-2]), x[-1]]])))
 
     def misfit(self, x: Array, residual: Array) -> float:
         """Norm of the residual relative to the gaps, lest the far field of a scaled grid drown the contact."""
-        return float(np.linalg.norm(residual / np.append(x[:-2] + 1, 1)))
+        return float(np.linalg.norm(residual / np.append(self.law.room(x[:-2]), 1)))
 
     def energy(self, x: Array) -> float:
-        """Total potential energy in R dgamma eps, elastic and surface; its derivative by the approach is the load."""
+        """Total potential energy in R dgamma eps, elastic and surface; its derivative by the approach is the load.
+
+        That of the undeformed surfaces in touch is taken off where it may be infinite, as of the 3-9 law on a cone.
+        """
         H, alpha, mu, body = x[:-2], x[-2], self.tabor, self.operator_at(x)
         deflection = H + alpha - mu * self.profile.height(body.radii)
         density = self.law.energy(H, mu) + self.pressure(x) * deflection / 2
+        if self.scales.far_energy:
+            density -= self.law.energy(mu * self.profile.height(body.radii), mu)
         return float(body.weights @ density)
 
     def negative_directions(self, x: Array) -> int:
@@ -281,6 +294,11 @@ class ContactProblem(Valued):
         L = self.operator.root(float(x[-1]))
         hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * self.law.slope(x[:-2], self.tabor))[:, None])
         return count_negative(hessian)
+
+
+def contact_of(scales: Scales, operator: Operator) -> ContactProblem:
+    """Contact of these scales with an elastic operator."""
+    return ContactProblem(operator, scales.tabor, scales.law, scales.profile)
 
 
 def count_negative(matrix: Array) -> int:

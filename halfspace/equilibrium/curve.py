@@ -39,6 +39,7 @@ from halfspace.equilibrium.path import WHOLE_BODY, Metric, Point, Segment, Steps
 from halfspace.equilibrium.states import FinestCurve, States, Ways, finest_curve, require_coordinate, resampled
 from halfspace.errors import ContactTooWide, InputError, NotConverged
 from halfspace.limits import require_points
+from halfspace.scales import Scales
 from halfspace.values import Array, Estimate, Valued, shown
 
 COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwise
@@ -79,8 +80,8 @@ class EquilibriumPath(Valued):
     events : mapping of str to Event
         ``pull_off``, ``zero_load`` and, where the curve folds, ``jump_on`` and ``jump_off``.
     energy : Estimate
-        Potential energy released from `separated_approach` on the separated branch to zero approach in contact, in
-        R dgamma eps.
+        Potential energy released from `Scales.separated_approach` on the separated branch to zero approach in contact,
+        in R dgamma eps.
     stages : tuple of mappings of str to Located
         The events, and the two states of `energy`, on each discretisation from the coarsest to the finest.
     finest : callable
@@ -231,6 +232,11 @@ class EquilibriumPath(Valued):
         return np.array([point.arclength for segment in self.segments for point in segment.points])
 
     @property
+    def metric(self) -> Metric:
+        """Units of the arclength."""
+        return metric_for(self.segments[0].problem)
+
+    @property
     def points(self) -> list[Point]:
         """All points in order, on the finest discretisation."""
         return [point for segment in self.finest_curve.segments for point in segment.points]
@@ -243,7 +249,7 @@ class EquilibriumPath(Valued):
     @cached_property
     def finest_curve(self) -> FinestCurve:
         """The points solved for on the finest discretisation, when they are first asked for."""
-        return finest_curve(self.segments, self.ways, self.remaining, metric_for(self.tabor))
+        return finest_curve(self.segments, self.ways, self.remaining, self.metric)
 
     def at(
         self,
@@ -303,7 +309,7 @@ class EquilibriumPath(Valued):
         InputError
             If there are fewer than two.
         """
-        return replace(self, segments=resampled(self.segments, require_points(points), metric_for(self.tabor)))
+        return replace(self, segments=resampled(self.segments, require_points(points), self.metric))
 
     @cached_property
     def stable(self) -> NDArray[np.bool_]:
@@ -331,14 +337,10 @@ def _stable(segment: Segment) -> NDArray[np.bool_]:
     return np.array([segment.problem.negative_directions(point.x) == 0 for point in segment.points], dtype=bool)
 
 
-def metric_for(tabor: float) -> Metric:
-    """Unit of approach by which the curve's long branches take about as many steps at every Tabor parameter."""
-    return Metric(approach=2 * (1 + tabor))
-
-
-def separated_approach(tabor: float) -> float:
-    """Approach in eps at which only the separated branch exists; left of jump_off, -1.64 mu in the JKR limit."""
-    return -10 - 2 * tabor
+def metric_for(problem: Traceable | float) -> Metric:
+    """Units by which a curve's long branches take about as many steps at every Tabor parameter, law and profile."""
+    scales = Scales(problem) if isinstance(problem, (int, float)) else problem.interface.scales
+    return Metric(approach=2 * (1 + scales.tabor), load=scales.largest_load)
 
 
 def trace_charts(
@@ -355,7 +357,7 @@ def trace_charts(
     """
     segments: list[Segment] = []
     for chart in charts:
-        problem, metric = chart.problem, metric_for(chart.problem.tabor)
+        problem, metric = chart.problem, metric_for(chart.problem)
         point = _hand_over(segments[-1], problem, metric) if segments else _far_separation(problem, metric)
         radius = WIDEST * problem.interface.profile.end if np.isinf(chart.until) else chart.until
         stop = _ended(problem, to_load, radius)
@@ -389,7 +391,7 @@ def undeformed_radius(problem: Traceable, point: Point) -> float:
 
 def _far_separation(problem: Traceable, metric: Metric) -> Point:
     """First point of the path, heading towards contact."""
-    control = newton.approach(separated_approach(problem.tabor) - 10)
+    control = newton.approach(problem.interface.scales.separated_approach - 10)
     solution = newton.solve(problem, problem.undeformed(control.target), control)
     return make_point(problem, solution, metric, control.weights, 0.0)
 
@@ -435,18 +437,18 @@ def placed(finest: Finest, problem: Traceable, point: Point) -> tuple[Traceable,
     if target is problem:
         return problem, point
     start = transfer(problem, point.x, target)
-    return target, same_place(point, target, start, metric_for(target.tabor))
+    return target, same_place(point, target, start, metric_for(target))
 
 
 def moved(event: Located, problem: Traceable) -> Located:
     """Solve for an event again on another discretisation."""
     start = transfer(event.problem, event.point.x, problem)
-    return relocate(event, problem, start, metric_for(problem.tabor))
+    return relocate(event, problem, start, metric_for(problem))
 
 
 def states(segments: Sequence[Segment], condition: Condition) -> list[Located]:
     """Every state of a traced curve that meets a condition, in order."""
-    metric = metric_for(segments[0].problem.tabor)
+    metric = metric_for(segments[0].problem)
     return [e for s in segments for e in locate(s.problem, s.points, metric, condition)]
 
 
@@ -465,7 +467,7 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     NotConverged
         If the curve ends before one of those that it must have: for want of body, it is a ContactTooWide.
     """
-    tabor = segments[0].problem.tabor
+    separated = segments[0].problem.interface.scales.separated_approach
 
     def required(name: str, condition: Condition) -> list[Located]:
         return states(segments, condition) or _missing(segments[-1], name)
@@ -474,7 +476,7 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     found = {"pull_off": min(required("pull_off", EXTREMUM), key=lambda e: float(e.point.observables[LOAD]))}
     if folds:
         found |= {"jump_on": folds[0], "jump_off": folds[-1]}
-    found["separated"] = required("separation", Condition(APPROACH, value=separated_approach(tabor)))[0]
+    found["separated"] = required("separation", Condition(APPROACH, value=separated))[0]
     for name, condition in (("zero_load", ZERO_LOAD), ("zero_approach", Condition(APPROACH))):
         found[name] = required(name, condition)[-1]
     return found

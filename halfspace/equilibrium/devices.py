@@ -170,7 +170,7 @@ def _landing(problem: Traceable, start: Array, take_off: Located, compliance: fl
     """State on a discretisation at the base of a take-off."""
     base, weights = _base(take_off, compliance), np.array([1.0, compliance, 0.0, 0.0])
     solution = newton.solve(problem, start, Control(weights, base))
-    point = make_point(problem, solution, metric_for(problem.tabor), weights, 0.0)
+    point = make_point(problem, solution, metric_for(problem), weights, 0.0)
     return Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.newton import Control, Traceable
-from halfspace.equilibrium.path import Metric, Point, correct, least_slope, make_point
+from halfspace.equilibrium.path import UNFELT, Metric, Point, correct, least_slope, make_point
 from halfspace.errors import NotConverged
 from halfspace.roots import root
 from halfspace.values import Array, Estimate, Valued
@@ -202,6 +202,7 @@ def locate(problem: Traceable, points: Sequence[Point], metric: Metric, conditio
         for a, b in pairwise(points)
         for c, d in _watched(problem, a, b, condition, metric)
         if (condition.of(c) < 0) != (condition.of(d) < 0)  # their product is zero at a root, and where it underflows
+        and not _unfelt(c, d, condition)
     ]
 
 
@@ -222,11 +223,16 @@ def _watched(
 def _may_hide(a: Point, b: Point, condition: Condition) -> bool:
     """Whether a rate nearly vanishes at an end of a long interval, or inside it by the cubic through both points."""
     first, last, length = condition.of(a), condition.of(b), b.arclength - a.arclength
-    if not condition.stationary or first * last <= 0:
+    if not condition.stationary or first * last <= 0 or _unfelt(a, b, condition):
         return False
     little = NEARLY * max(abs(first), abs(last))
     inside = least_slope(first, last, (condition.level(b) - condition.level(a)) / length)
     return inside < little or (length > LONG and min(abs(first), abs(last)) < little)
+
+
+def _unfelt(a: Point, b: Point, condition: Condition) -> bool:
+    """Whether what should be stationary between two points is nothing at all at both."""
+    return condition.stationary and max(abs(condition.of(a)), abs(condition.of(b))) < UNFELT
 
 
 LEAP = 1e-3  # of what should vanish at a root in its largest value around: more is left where states leap

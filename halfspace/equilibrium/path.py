@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.contact import APPROACH, LARGEST, LOAD
 from halfspace.equilibrium.newton import Control, Equilibrium, Traceable
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.values import Array, Valued
@@ -163,7 +163,7 @@ def with_edge(problem: Traceable, before: Point, point: Point, step: float) -> A
     body = surface.operator_at(last)
     inside = [np.minimum(body.radii * (old / radius), body.extent) for old in radii]
     H0, H1 = (body.values_at(r, state[:-2]) for r, state in zip(inside, states, strict=True))
-    H = np.maximum(H1 + part * (H1 - H0), 0.25 * (1 + H1) - 1)  # no gap h falls below a quarter of its value
+    H = np.maximum(H1 + part * (H1 - H0), H1 - LARGEST * surface.law.room(H1))
     alpha = last[-2] + part * (last[-2] - states[0][-2])
     return problem.state_from_surface(np.append(H, [alpha, 1.0]), point.x)
 
@@ -259,6 +259,8 @@ def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
     Its least slope between them, in the metric's units, must clear zero by a margin that shrinks with the step, and as
     its square where it is short: so a curve that all but folds is passed, and folds are where its slope changes sign.
     """
+    if max(abs(a.rates[k]), abs(b.rates[k])) < UNFELT:
+        return False
     length = b.arclength - a.arclength
     unit = np.sqrt(metric.weights[k])
     change = unit * (b.observables[k] - a.observables[k])
@@ -267,7 +269,11 @@ def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
     )
 
 
+UNFELT = 1e-8  # eps or R dgamma in the arclength 1: surfaces so far apart that an exponential law is all but nothing
 TURNING_MARGIN, SHORT = 0.3, 0.1  # of the step's length; a step below which the cubic errs by far less than that
+
+
+STRAIGHT = 1e-10  # of the slopes: a bend that is rounding
 
 
 def least_slope(first: float, last: float, mean: float) -> float:
@@ -279,7 +285,8 @@ def least_slope(first: float, last: float, mean: float) -> float:
     if first * last <= 0:
         return float("inf")
     bend = 6 * (first + last) - 12 * mean
-    t = (4 * first + 2 * last - 6 * mean) / bend if bend else 0.0
+    straight = abs(bend) <= STRAIGHT * abs(first + last)
+    t = 0.0 if straight else (4 * first + 2 * last - 6 * mean) / bend
     if not 0 < t < 1:
         return float("inf")
     slope = first * (1 - 4 * t + 3 * t**2) + last * (3 * t**2 - 2 * t) + 6 * mean * t * (1 - t)

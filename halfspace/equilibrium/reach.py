@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -16,21 +15,16 @@ from halfspace.equilibrium.path import Metric, Point, Segment, make_point
 
 FARTHER, NEARER = 1.5, 1.1  # margins by which the points added to a curve reach past the jump and past its beginning
 POINTS = 12  # so added
-WIDTHS = 1.7  # of the attraction, sqrt(2 h/mu), that the cells should cover of which none is infinite
+WIDTHS = 1.7  # of the attraction, where the undeformed gap has doubled: what cells should cover but the infinite one
 
 
 def reaching(path: EquilibriumPath, stiffness: float) -> EquilibriumPath:
     """Extend a curve to the separation from which an apparatus of the given stiffness jumps on, if it has to be."""
-    jump = rigid_jump_on(stiffness)
     first = path.segments[0]
+    jump = first.problem.interface.scales.rigid_jump_on(stiffness)
     if jump > float(first.points[0].observables[APPROACH]) / NEARER:
         return path
     return replace(path, segments=(_far_segment(first, jump), *path.segments))
-
-
-def rigid_jump_on(stiffness: float) -> float:
-    """Approach in eps at which a rigid sphere jumps on from afar, where the attraction is (8 pi/3) h^-2."""
-    return 1 - float(np.cbrt(16 * math.pi / 3 / stiffness))
 
 
 def widened(problem: Traceable, approach: float) -> Traceable:
@@ -40,9 +34,9 @@ def widened(problem: Traceable, approach: float) -> Traceable:
     """
     if not isinstance(problem, ContactProblem) or not isinstance(problem.operator, ElasticOperator):
         return problem
-    body, h = problem.operator, 1 - approach
-    reach = WIDTHS * math.sqrt(2 * max(h, 0.0) / problem.tabor) / body.extent
-    if not body.beyond.size or reach <= 1:
+    body, h, scales = problem.operator, 1 - approach, problem.scales
+    reach = max(scales.radius_at(WIDTHS**2 * max(h, 0.0)) / body.extent, scales.tail_reach)
+    if not body.beyond.size or reach <= scales.tail_reach:
         return problem
     nodes = min(body.beyond.size, body.cell_nodes.shape[1])
     return replace(problem, operator=to_infinity(body, nodes, reach))
@@ -52,7 +46,7 @@ def _far_segment(first: Segment, jump: float) -> Segment:
     """Points of the separated branch from beyond a jump to past the first point of a curve."""
     far, near = 1 - FARTHER * jump, 1 - float(first.points[0].observables[APPROACH]) / NEARER
     problem = widened(first.problem, 1 - far)
-    metric = metric_for(problem.tabor)
+    metric = metric_for(problem)
     points: list[Point] = []
     for approach in 1 - np.geomspace(far, near, POINTS):
         points.append(_separated(problem, float(approach), metric, points[-1] if points else None))

@@ -7,27 +7,64 @@ integral of the tension from there to infinity.
 
 from __future__ import annotations
 
-from typing import Protocol
+from functools import cached_property
 
+import numpy as np
+
+from halfspace.roots import root
 from halfspace.values import Array
 
+FAR = 1e5  # gap at which a law's exponent is read off
+NEAR = 10.0 ** np.arange(-4, 8, 0.01)  # gaps among which a law's largest tension is looked for
 
-class Law(Protocol):
-    """Pressure between two surfaces as a function of their gap."""
 
-    @property
-    def edge_gap(self) -> float:
-        """H at which the tension is largest: it defines the contact edge."""
-        ...
+class Law:
+    """Pressure between two surfaces as a function of their gap.
+
+    A law of one's own is a class on this one, best a frozen dataclass, with the methods `pressure`, `slope` and
+    `energy`; the rest follows.
+    """
 
     def pressure(self, gap: Array, tabor: float) -> Array:
         """P at gaps H."""
-        ...
+        raise NotImplementedError
 
     def slope(self, gap: Array, tabor: float) -> Array:
         """dP/dH."""
-        ...
+        raise NotImplementedError
 
     def energy(self, gap: Array, tabor: float) -> Array:
         """Phi(H) with -dPhi/dH = P and Phi = 0 far apart; multiply by R dgamma eps for an energy per beta^2."""
-        ...
+        raise NotImplementedError
+
+    def room(self, gap: Array) -> Array:
+        """Size by which changes of a gap are measured: h, by which it may shrink until the bodies are one."""
+        return gap + 1
+
+    @cached_property
+    def edge_gap(self) -> float:
+        """H at which the tension is largest: it defines the contact edge."""
+        i = int(np.argmin(self.pressure(NEAR, 1.0)))
+        around = float(NEAR[max(i - 1, 0)]), float(NEAR[i + 1])
+        return root(lambda H: float(self.slope(np.array(H), 1.0)), *around, "the largest tension; mend the law")
+
+    @property
+    def strength(self) -> float:
+        """Largest tension in dgamma/eps."""
+        return -float(self.pressure(np.array(self.edge_gap), 1.0))
+
+    @property
+    def stiffness(self) -> float:
+        """Slope of the tension at equilibrium in dgamma/eps^2."""
+        return -float(self.slope(np.array(0.0), 1.0))
+
+    @cached_property
+    def decay(self) -> float:
+        """Exponent n of a tension that falls as h^-n far apart; infinite where it falls faster than any power."""
+        H = np.array(FAR)
+        tension = -float(self.pressure(H, 1.0))
+        return float((H + 1) * self.slope(H, 1.0)) / tension if tension > 0 else np.inf
+
+    def range(self, part: float) -> float:
+        """H beyond which a part of the work of adhesion is left."""
+        return root(lambda H: -float(self.energy(np.array(H), 1.0)) - part, 0.0, 1e12, "the law's range; mend the law")

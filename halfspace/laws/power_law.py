@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
+from halfspace.errors import InputError
+from halfspace.laws.law import Law
+from halfspace.limits import require_number
 from halfspace.values import Array
+
+STEEPEST = 60.0
 
 
 @dataclass(frozen=True)
-class PowerLaw:
+class PowerLaw(Law):
     """Attraction and repulsion by inverse powers of the gap, normalised to the work of adhesion.
 
     sigma(h) = c dgamma/eps [(eps/h)^n - (eps/h)^m] is the tension, zero at h = eps; the amplitude c makes
@@ -17,18 +23,36 @@ class PowerLaw:
     Parameters
     ----------
     attraction, repulsion : float
-        Exponents n < m; 3 and 9 for Lennard-Jones solids.
+        Exponents 2 < n < m <= 60; 3 and 9 for Lennard-Jones solids.
+
+    Raises
+    ------
+    InputError
+        If they are out of range.
     """
 
     attraction: float = 3
     repulsion: float = 9
+
+    def __post_init__(self) -> None:
+        n, m = (require_number(getattr(self, name), name) for name in ("attraction", "repulsion"))
+        if not n > 2:
+            raise InputError(
+                f"attraction = {n:g} of the power law is outside 2 < attraction: so slow a decay leaves profiles that "
+                "widen as a cone without a load; take 3"
+            )
+        if not n < m <= STEEPEST:
+            raise InputError(
+                f"repulsion = {m:g} of the power law is outside attraction = {n:g} < repulsion <= {STEEPEST:g}; "
+                "the surfaces need a core that the attraction does not reach, take 9"
+            )
 
     @property
     def amplitude(self) -> float:
         """c: 8/3 for the 3-9 law [G97] (1.2)."""
         return 1 / (1 / (self.attraction - 1) - 1 / (self.repulsion - 1))
 
-    @property
+    @cached_property
     def edge_gap(self) -> float:
         """H at which the tension is largest, 3^(1/6) - 1 for the 3-9 law."""
         return float((self.repulsion / self.attraction) ** (1 / (self.repulsion - self.attraction)) - 1)

@@ -4,8 +4,10 @@
 two; `table` is the surface of a body that is given as a mesh.
 """
 
+from halfspace.profiles.hyperboloid import Hyperboloid
 from halfspace.profiles.paraboloid import PARABOLOID, Paraboloid
-from halfspace.profiles.profile import Dimensionless, Profile, Surface
+from halfspace.profiles.power import Power
+from halfspace.profiles.profile import Endless, Profile, Surface
 from halfspace.profiles.sphere import Sphere
 
-__all__ = ["PARABOLOID", "Dimensionless", "Paraboloid", "Profile", "Sphere", "Surface"]
+__all__ = ["PARABOLOID", "Endless", "Hyperboloid", "Paraboloid", "Power", "Profile", "Sphere", "Surface"]

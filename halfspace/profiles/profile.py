@@ -14,7 +14,7 @@ from halfspace.values import Array
 
 
 class Surface(Protocol):
-    """Height of the undeformed surface over its pole as a function of the radius."""
+    """Height of the undeformed surface over its pole as a function of the radius, which rises."""
 
     @property
     def end(self) -> float:
@@ -29,6 +29,10 @@ class Surface(Protocol):
         """Derivative of the height by the radius."""
         ...
 
+    def first_cell(self, tolerance: float) -> float:
+        """Length in beta of the cell on the axis that leaves `tolerance`; infinite where a paraboloid's will do."""
+        ...
+
 
 class Profile(Protocol):
     """Shape of the undeformed surfaces."""
@@ -39,10 +43,18 @@ class Profile(Protocol):
 
 
 class Dimensionless:
-    """A profile that is the same surface at every Tabor parameter: it has `height`, `slope` and perhaps an `end`."""
-
-    end: float = np.inf
+    """A profile that is the same surface at every Tabor parameter, as smooth across the axis as a paraboloid."""
 
     def surface(self, tabor: float) -> Self:  # noqa: ARG002 (the same at all)
         """Return the profile itself."""
         return self
+
+    def first_cell(self, tolerance: float) -> float:  # noqa: ARG002 (smooth)
+        """Infinity: a paraboloid's will do."""
+        return np.inf
+
+
+class Endless(Dimensionless):
+    """One that goes on for ever: a profile of one's own is a class on this one with `height` and `slope`."""
+
+    end: float = np.inf

@@ -61,7 +61,7 @@ class SphereSurface(Dimensionless):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PairSurface(Valued):
+class PairSurface(Valued, Dimensionless):
     """Gap between two surfaces of radii R1 and R2, 1/R = 1/R1 + 1/R2: their heights add.
 
     Parameters

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from halfspace.profiles.profile import Dimensionless
 from halfspace.values import Array, Valued
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TabulatedSurface(Valued):
+class TabulatedSurface(Valued, Dimensionless):
     """Heights (n,) at ascending radii (n,), with their slopes: the surface of a body that is given as a mesh."""
 
     radii: Array

@@ -16,6 +16,7 @@ from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, Contac
 from halfspace.equilibrium.curve import COMPRESSION, find_events, metric_for, trace_charts, transfer
 from halfspace.equilibrium.events import ROUND_OFF, Condition, Located, locate
 from halfspace.equilibrium.path import Metric, Point, Segment, Steps
+from halfspace.scales import Scales
 from halfspace.values import Array
 from hard.measured import Measured, compare_events, newton_steps, worst
 
@@ -28,7 +29,7 @@ def traced(tabor: float, *, rtol: float = 1e-6, to_load: float = COMPRESSION) ->
     path = halfspace.trace(tabor, rtol=rtol, to_load=to_load)
 
     def rung(level: int) -> Rung:
-        return charted_rung(half_space_charts(tabor, resolution_for(tabor, rtol / 100, level), to_load))
+        return charted_rung(half_space_charts(Scales(tabor), resolution_for(Scales(tabor), rtol / 100, level), to_load))
 
     return compare_events(path, climb(rtol, rung, to_load=to_load, most_rungs=1), TIGHTER)
 
@@ -45,7 +46,9 @@ def compressed(tabor: float, load: float) -> Measured:
 
 
 def _under_load(tabor: float, load: float, rtol: float) -> Point:
-    segment = trace_charts(half_space_charts(tabor, resolution_for(tabor, rtol), 1.1 * load), 1.1 * load)[-1]
+    segment = trace_charts(
+        half_space_charts(Scales(tabor), resolution_for(Scales(tabor), rtol), 1.1 * load), 1.1 * load
+    )[-1]
     return locate(segment.problem, segment.points, metric_for(tabor), Condition(LOAD, value=load))[-1].point
 
 
@@ -67,7 +70,7 @@ def near_birth(birth: Birth, offset: float, folds: int) -> Measured:
 
 def long_steps(tabor: float, factor: float) -> Measured:
     """Trace a curve with first and longest step `factor` times too long: it must meet the same events."""
-    charts = half_space_charts(tabor, resolution_for(tabor, GRID))
+    charts = half_space_charts(Scales(tabor), resolution_for(Scales(tabor), GRID))
     usual = Steps()
     steps = Steps(first=factor * usual.first, longest=factor * usual.longest)
     segments = trace_charts(charts, steps=steps)
@@ -106,11 +109,11 @@ def from_other_branch(tabor: float, start: float, approach: float) -> Measured:
 
 
 def _centred(tabor: float) -> ContactProblem:
-    return half_space_charts(tabor, resolution_for(tabor, GRID))[0].problem.interface
+    return half_space_charts(Scales(tabor), resolution_for(Scales(tabor), GRID))[0].problem.interface
 
 
 def _curve(tabor: float, rtol: float) -> Sequence[Segment]:
-    return trace_charts(half_space_charts(tabor, resolution_for(tabor, rtol)))
+    return trace_charts(half_space_charts(Scales(tabor), resolution_for(Scales(tabor), rtol)))
 
 
 def _states_at(curve: Sequence[Segment], approach: float, metric: Metric) -> list[Located]:
@@ -157,7 +160,7 @@ def _slope(problem: ContactProblem, x: Array, gap: float) -> float:
 
 def _off_the_curve(tabor: float, solution: newton.Solution) -> Measured:
     """Distance in load from the curve on a finer grid, at the same central gap."""
-    finer = half_space_charts(tabor, resolution_for(tabor, GRID / 100))[0].problem
+    finer = half_space_charts(Scales(tabor), resolution_for(Scales(tabor), GRID / 100))[0].problem
     gap = float(solution.observables[2])
     truth = at_gap(finer, approached(finer, gap), gap).observables
     error, load = abs(truth[LOAD] - solution.observables[LOAD]), solution.observables[LOAD]

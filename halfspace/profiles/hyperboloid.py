@@ -1,0 +1,50 @@
+"""Hyperboloid: a cone with a rounded tip, z = b^2 (sqrt(1 + u^2/b^2) - 1) in beta^2/R; R is its radius at the apex."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from halfspace.errors import InputError
+from halfspace.limits import require_number
+from halfspace.profiles.profile import Endless
+from halfspace.values import Array
+
+SHARPEST = 1e-2
+
+
+@dataclass(frozen=True)
+class Hyperboloid(Endless):
+    """u^2/2 near the apex, the cone b u from u = b on; a paraboloid as b grows.
+
+    Parameters
+    ----------
+    b : float
+        In beta, 0.01 or more: R tan(angle between cone and plane)/beta.
+
+    Raises
+    ------
+    InputError
+        If it is out of range.
+    """
+
+    b: float
+
+    def __post_init__(self) -> None:
+        b = require_number(self.b, "b")
+        if not SHARPEST <= b < np.inf:
+            raise InputError(f"b = {b:g} of the hyperboloid is outside {SHARPEST:g} <= b < inf; take a blunter tip")
+        object.__setattr__(self, "b", b)
+
+    def height(self, radii: Array) -> Array:
+        """Return u^2/(1 + sqrt(1 + u^2/b^2)), without cancellation."""
+        return np.asarray(radii**2 / (1 + np.hypot(1, radii / self.b)))
+
+    def slope(self, radii: Array) -> Array:
+        """Return u/sqrt(1 + u^2/b^2)."""
+        return np.asarray(radii / np.hypot(1, radii / self.b))
+
+    def first_cell(self, tolerance: float) -> float:  # noqa: ARG002 (smooth over the length b)
+        """Return the length b of the tip."""
+        return self.b

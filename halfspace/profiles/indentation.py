@@ -1,0 +1,93 @@
+"""Frictionless contact with any profile, in closed integrals: Hertz's problem after Sneddon, and JKR's.
+
+Lengths in beta, loads in R dgamma, E* = 1, approaches in beta^2/R = mu eps. After I. N. Sneddon, Int. J. Engng Sci. 3
+(1965) 47, with r = a sin(theta),
+
+    alpha = a int z'(r) dtheta,      W = 2 a^2 int sin(theta)^2 z'(r) dtheta,      0 < theta < pi/2;
+
+adhesion draws the surface up as a flat punch would, which takes sqrt(2 pi a) of the approach and sqrt(8 pi a^3) of the
+load (D. Maugis and M. Barquins, J. Phys. D 11 (1978) 1989).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+from halfspace.errors import NotConverged
+from halfspace.profiles.profile import Surface
+from halfspace.roots import root
+from halfspace.values import Array
+
+POINTS = 64
+
+
+@cache
+def _quarter() -> tuple[Array, Array]:
+    """Sines and weights of a rule over a quarter turn, which crowds to the axis as t^3 where a slope may be a root."""
+    x, w = np.polynomial.legendre.leggauss(POINTS)
+    t = (1 + x) / 2
+    return np.sin(np.pi / 2 * t**3), np.pi / 2 * 3 * t**2 * w / 2
+
+
+def hertz_approach(surface: Surface, radius: float) -> float:
+    """Approach at a contact radius without adhesion."""
+    sine, weight = _quarter()
+    return float(radius * (weight @ surface.slope(radius * sine)))
+
+
+def hertz_load(surface: Surface, radius: float) -> float:
+    """Load at a contact radius without adhesion."""
+    sine, weight = _quarter()
+    return float(2 * radius**2 * (weight @ (sine**2 * surface.slope(radius * sine))))
+
+
+def jkr_approach(surface: Surface, radius: float) -> float:
+    """JKR's approach at a contact radius."""
+    return hertz_approach(surface, radius) - float(np.sqrt(2 * np.pi * radius))
+
+
+def jkr_load(surface: Surface, radius: float) -> float:
+    """JKR's load at a contact radius."""
+    return hertz_load(surface, radius) - float(np.sqrt(8 * np.pi * radius**3))
+
+
+def jkr_fold(surface: Surface) -> float:
+    """Least approach by JKR's theory, to a per cent: where contact is lost under fixed grips."""
+    return min(jkr_approach(surface, a) for a in _radii(surface))
+
+
+def jkr_least_load(surface: Surface) -> float:
+    """Least load by JKR's theory, to a per cent: where contact is lost under dead load, -3 pi/2 on a paraboloid."""
+    return min(jkr_load(surface, a) for a in _radii(surface))
+
+
+def _radii(surface: Surface) -> list[float]:
+    return [a for a in np.geomspace(1e-4, 1e4, 400).tolist() if a < surface.end]
+
+
+def hertz_radius(surface: Surface, load: float) -> float:
+    """Contact radius under a load without adhesion, or the end of the surface if it is wider."""
+    return _widest(lambda a: hertz_load(surface, a), surface, load)
+
+
+def jkr_radius(surface: Surface, load: float) -> float:
+    """Contact radius under a load of zero or more by JKR's theory, or the end of the surface if it is wider."""
+    return _widest(lambda a: jkr_load(surface, a), surface, load)
+
+
+def _widest(load_at: Callable[[float], float], surface: Surface, load: float) -> float:
+    """Widest contact that bears no more than a load, or the end of the surface."""
+    most = min(1.0, surface.end)
+    while load_at(most) <= load:
+        if most >= surface.end:
+            return surface.end
+        most = min(2 * most, surface.end)
+        if most > 1e12:
+            raise NotConverged(f"no contact of this profile bears {load:g} R dgamma; let it grow more steeply outwards")
+    least = most
+    while load_at(least) > load:
+        least /= 2
+    return root(lambda a: load_at(a) - load, least, most, "the contact radius under a load", xtol=1e-300, rtol=1e-15)

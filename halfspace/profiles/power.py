@@ -1,0 +1,54 @@
+"""Power of the radius, z = r^k/(k R^(k-1)) in lengths R: blunter than a sphere above k = 2, sharper below.
+
+Without adhesion a contact of radius a bears B((k + 2)/2, 1/2) a^(k+1) (L. A. Galin, 1946), B Euler's beta function.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from halfspace.errors import InputError
+from halfspace.limits import require_number
+from halfspace.profiles.profile import Endless
+from halfspace.values import Array
+
+SHARPEST, BLUNTEST = 1.5, 10.0
+
+
+@dataclass(frozen=True)
+class Power(Endless):
+    """u^k/k in beta^2/R; k = 2 is the paraboloid.
+
+    Parameters
+    ----------
+    k : float
+        Exponent, 1.5 to 10.
+
+    Raises
+    ------
+    InputError
+        If it is out of range: a cone, k = 1, has a pressure without bound on its axis.
+    """
+
+    k: float
+
+    def __post_init__(self) -> None:
+        k = require_number(self.k, "k")
+        if not SHARPEST <= k <= BLUNTEST:
+            remedy = "round a cone's tip: profiles.Hyperboloid" if k < SHARPEST else "it is a flat punch, take 10"
+            raise InputError(f"k = {k:g} of the profile is outside {SHARPEST:g} <= k <= {BLUNTEST:g}; {remedy}")
+        object.__setattr__(self, "k", k)
+
+    def height(self, radii: Array) -> Array:
+        """Return u^k/k."""
+        return np.asarray(radii**self.k / self.k)
+
+    def slope(self, radii: Array) -> Array:
+        """Return u^(k-1)."""
+        return np.asarray(radii ** (self.k - 1))
+
+    def first_cell(self, tolerance: float) -> float:
+        """Radius at which u^k is as small as the tolerance, unless it is a polynomial in u^2."""
+        return np.inf if self.k % 2 == 0 else float(tolerance ** (1 / self.k))

@@ -1,0 +1,169 @@
+"""The lengths of a contact, asked of its law and its profile: one place for all grids, meshes and curves.
+
+Each is known for the 3-9 law on a paraboloid, from derivations and trials, and goes over to others by what it depends
+on: the spike of tension at a contact edge by the law's stiffness and strength, all that is undeformed by the heights of
+the profile, contact radii by JKR's theory of the profile. Radii in beta, heights and gaps in eps where not said.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from halfspace.errors import NotConverged
+from halfspace.laws import LENNARD_JONES, Law
+from halfspace.profiles import PARABOLOID, Surface
+from halfspace.profiles.indentation import hertz_radius, jkr_fold, jkr_least_load, jkr_radius
+from halfspace.roots import root
+from halfspace.values import Array
+
+RISE = 0.245  # eps, over which the tension of the 3-9 law rises: a rigid paraboloid does so in 0.7 beta/sqrt(mu)
+NOTHING = 1e-15  # of the work of adhesion: what the tail of a law without an exponent may leave beyond the finite cells
+FARTHER = 8.0  # extents, up to which the infinite cell is cut where the tail is no polynomial
+STEP = 0.1  # of the trapezoidal rule in ln r for the tension of undeformed surfaces
+LOGARITHMS = np.arange(-16.0, 16.0, STEP)
+LEAST_LOAD = 0.1  # R dgamma, below which curves that end at loads of 5 would take too many steps
+BRADLEY = 2 * math.pi  # R dgamma, the largest tension of a rigid sphere
+OUT = 1e6  # beta, far out on a profile
+SEPARATED = 10.0  # eps: the least at which surfaces count as separated, beside what the contact draws out
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Lengths of one contact.
+
+    Parameters
+    ----------
+    tabor : float
+        Tabor parameter.
+    law : Law
+        Of the tension against the gap.
+    profile : Surface
+        Of the undeformed surfaces.
+    softest : float
+        How many times as much as a half-space of E* the body yields to waves of any length, at most.
+    """
+
+    tabor: float
+    law: Law = LENNARD_JONES
+    profile: Surface = PARABOLOID
+    softest: float = 1.0
+
+    @cached_property
+    def spike_width(self) -> float:
+        """Width over which the tension at a contact edge varies: mu^-2, or about mu^-1/2 when nearly rigid.
+
+        A stiffness f' of the law balances an elastic deflection over 1/(mu^2 f'), a strength s the work of adhesion
+        over 1/(mu s)^2.
+        """
+        return float(min(self.tabor**-2 * self._sharpness, self._rigid_width))
+
+    @cached_property
+    def _sharpness(self) -> float:
+        """Width of a soft contact's spike in those of the 3-9 law."""
+        ours, known = self.law, LENNARD_JONES
+        return min(known.stiffness / ours.stiffness, (known.strength / ours.strength) ** 2)
+
+    @property
+    def _rigid_width(self) -> float:
+        """Length over which the undeformed gap opens by as much as the tension rises over."""
+        r = self._touching_radius
+        return 2 * float(self.profile.height(np.array(r)) / self.profile.slope(np.array(r)))
+
+    @cached_property
+    def _touching_radius(self) -> float:
+        """Radius of a rigid contact: where the undeformed gap has opened by as much as the tension rises over."""
+        return self.radius_at(RISE * math.sqrt(LENNARD_JONES.stiffness / self.law.stiffness))
+
+    def widest_radius(self, to_load: float) -> float:
+        """Contact radius that a curve up to a load hardly exceeds: a soft and a rigid contact's together."""
+        soft = float(np.cbrt(self.softest)) * jkr_radius(self.profile, to_load)
+        if self.tabor < 1:
+            soft = max(soft, hertz_radius(self.profile, to_load + self.rigid_tension))
+        return float(np.hypot(soft, self._touching_radius))
+
+    @cached_property
+    def rigid_tension(self) -> float:
+        """Tension of the undeformed surfaces in touch, in R dgamma: 2 pi on a paraboloid."""
+        return -self._undeformed(self.law.pressure, 0.0)
+
+    def rigid_jump_on(self, stiffness: float) -> float:
+        """Approach in eps at which undeformed surfaces jump on from afar; the apparatus is so stiff in R dgamma/eps."""
+
+        def softer(H: float) -> float:
+            return self._undeformed(self.law.slope, H) - stiffness
+
+        if softer(self.law.edge_gap) <= 0:
+            return -self.law.edge_gap
+        return -root(softer, self.law.edge_gap, 1e9, "the jump of a soft apparatus; take a stiffer one", rtol=1e-12)
+
+    def _undeformed(self, density: Callable[[Array, float], Array], gap: float) -> float:
+        """Integral of the law's pressure or slope over undeformed surfaces at a central gap, in R dgamma."""
+        r = self.radius_at(max(gap, RISE)) * np.exp(LOGARITHMS)
+        r = r[r < self.profile.end]
+        return 2 * np.pi * STEP * float(r**2 @ density(gap + self.tabor * self.profile.height(r), self.tabor))
+
+    @cached_property
+    def largest_load(self) -> float:
+        """Size of the tensions in R dgamma: Bradley's 2 pi, but what others a profile has."""
+        found = self.rigid_tension if self.tabor < 1 else -4 / 3 * jkr_least_load(self.profile)
+        return max(found, LEAST_LOAD) if abs(math.log2(found / BRADLEY)) > 1 else BRADLEY
+
+    def outer_radius(self, height: float) -> float:
+        """Radius at which finite cells end: the undeformed gap opens by `height`, or by a tail without an exponent."""
+        return self.radius_at(max(height, self.law.range(NOTHING)) if math.isinf(self.law.decay) else height)
+
+    @property
+    def widened(self) -> float:
+        """Width of the attraction at jump_on, in those of a rigid paraboloid's.
+
+        It pulls up a bulge b = (2/E*) int sigma dr, as mu^(3/2) h^(1/2 - n) on a paraboloid, as high as the gap h.
+        """
+        return float(max(1.0, self.tabor * self.softest ** (2 / 3)) ** (0.75 / (self.law.decay + 0.5)))
+
+    @cached_property
+    def tail_reach(self) -> float:
+        """Extents of the finite cells up to which the infinite one is cut: 1 if the tail is a polynomial in 1/r."""
+        if math.isinf(self.law.decay) or math.isfinite(self.profile.end):
+            return 1.0
+        powers = np.array([self.law.decay, 1.0]) * self._growth
+        return 1.0 if np.allclose(powers, np.round(powers), rtol=0, atol=1e-4) else FARTHER
+
+    @property
+    def _growth(self) -> float:
+        """Exponent of the profile's height far out."""
+        r = np.array(OUT)
+        return float(r * self.profile.slope(r) / self.profile.height(r))
+
+    @cached_property
+    def far_energy(self) -> bool:
+        """Whether so much of the law's energy is far out that only differences from an undeformed state can be told."""
+        return math.isinf(self.profile.end) and (self.law.decay - 1) * self._growth < 4 - 1e-3
+
+    @cached_property
+    def separated_approach(self) -> float:
+        """Approach in eps at which only the separated branch exists; left of jump_off, -1.64 mu in the JKR limit."""
+        apart = max(SEPARATED, 3 * self.law.range(0.1))
+        return -apart - self.tabor * max(2.0, -1.2 * jkr_fold(self.profile))
+
+    def radius_at(self, height: float) -> float:
+        """Radius at which the undeformed gap has opened by a height in eps, or where the surface ends."""
+        z, most = height / self.tabor, min(1.0, self.profile.end)
+
+        def left(r: float) -> float:
+            return float(self.profile.height(np.array(r))) - z
+
+        while left(most) < 0:
+            if most >= self.profile.end:
+                return self.profile.end
+            most = min(2 * most, self.profile.end)
+            if most > 1e150:
+                raise NotConverged(f"the profile does not rise to {z:.3g} beta^2/R; let it grow outwards")
+        least = most
+        while left(least) > 0:
+            least /= 2
+        return root(left, least, most, "the profile's height; let it rise outwards", xtol=1e-300, rtol=1e-15)

@@ -1,0 +1,304 @@
+"""Laws and profiles as parts: what each states of itself, and what a contact makes of it, against closed forms."""
+
+import csv
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import minimize_scalar
+from scipy.special import beta
+
+import halfspace
+from halfspace.equilibrium import newton
+from halfspace.errors import InputError
+from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, LennardJones, Morse, PowerLaw
+from halfspace.laws.check import require_law
+from halfspace.profiles import PARABOLOID, Endless, Hyperboloid, Paraboloid, Power
+from halfspace.profiles.indentation import hertz_approach, hertz_load, jkr_approach, jkr_load, jkr_radius
+from halfspace.scales import Scales
+from halfspace.theories import closed_forms
+
+LAWS = [
+    LennardJones(),
+    PowerLaw(2.1, 2.5),
+    PowerLaw(2.5, 9.5),
+    PowerLaw(4, 10),
+    PowerLaw(20, 60),
+    Morse(0.3),
+    Morse(3),
+    Morse(20),
+    Exponential(3),
+    Exponential(0.5, 4),
+    Dlvo(0.3, 1.0),
+    Dlvo(-0.5, 0.3),
+]
+named = pytest.mark.parametrize("law", LAWS, ids=str)
+
+
+def tension(law, H):
+    return -float(law.pressure(np.array(H), 1.0))
+
+
+@named
+def test_a_law_adheres_with_dgamma(law):
+    ends = (0, 0.1, 1, 10, 100, np.inf)
+    work = sum(quad(lambda H: tension(law, H), a, b, epsabs=0, epsrel=1e-10)[0] for a, b in pairwise(ends))
+    assert work == pytest.approx(1, rel=1e-8)
+    assert law.energy(np.array(0.0), 2.5) == pytest.approx(-2.5, rel=1e-12)
+    assert require_law(law) is law
+
+
+@named
+def test_the_contact_ends_where_the_tension_is_largest(law):
+    found = minimize_scalar(lambda H: -tension(law, H), bounds=(0, 20 * law.edge_gap), method="bounded")
+    assert tension(law, law.edge_gap) == pytest.approx(-found.fun, rel=1e-9)
+    assert law.strength == tension(law, law.edge_gap)
+    assert law.slope(np.array(law.edge_gap), 1.0) == pytest.approx(0, abs=1e-9 * law.stiffness)
+    assert -law.energy(np.array(law.range(0.01)), 1.0) == pytest.approx(0.01, rel=1e-8)
+
+
+def test_the_default_is_lennard_jones():
+    assert PowerLaw() == LENNARD_JONES == LennardJones() == PowerLaw(attraction=3, repulsion=9)
+    assert LENNARD_JONES.decay == pytest.approx(3, rel=1e-12)
+    assert LENNARD_JONES.stiffness == pytest.approx(16, rel=1e-14)
+    assert LENNARD_JONES.range(0.01) == pytest.approx(Law.range(LENNARD_JONES, 0.01), rel=1e-12)
+    assert Law.edge_gap.func(LENNARD_JONES) == pytest.approx(LENNARD_JONES.edge_gap, rel=1e-12)
+    assert np.isinf(Morse(1).decay)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: PowerLaw(2, 9), "attraction = 2 of the power law is outside 2 < attraction"),
+        (lambda: PowerLaw(4, 4), "repulsion = 4 of the power law is outside attraction = 4 < repulsion <= 60"),
+        (lambda: PowerLaw("3"), "attraction = '3' of type str, limit: a real number"),
+        (lambda: Morse(0), "k = 0 of Morse's law is outside 0.1 <= k <= 50"),
+        (lambda: Exponential(100), "k = 100 of the exponential law is outside 0.1 <= k <= 50"),
+        (lambda: Exponential(3, 2.5), "core = 2.5 of the exponential law is outside a whole number, 2 <= core <= 60"),
+        (lambda: Dlvo(0.5, 1.0), "charge = 0.5 leaves no work of adhesion, limit: charge < 0.429 at this screening"),
+        (lambda: Dlvo(2, 1.0), "charge = 2 leaves no core"),
+        (lambda: Dlvo(0.1, 0), "screening = 0 is outside 0.02 <= screening <= 50"),
+        (lambda: Power(1), "k = 1 of the profile is outside 1.5 <= k <= 10; round a cone's tip"),
+        (lambda: Power(30), "k = 30 of the profile is outside 1.5 <= k <= 10"),
+        (lambda: Hyperboloid(0), "b = 0 of the hyperboloid is outside 0.01 <= b < inf"),
+    ],
+)
+def test_a_part_that_cannot_be_is_refused_in_one_line(make, message):
+    with pytest.raises(InputError) as refused:
+        make()
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@dataclass(frozen=True)
+class Yukawa(Law):
+    """A law of one's own: screened attraction and core, c (e^(-H) - e^(-3 H)), 1/c = 1 - 1/3."""
+
+    work: float = 1.0
+    slip: float = 0.0
+    drift: float = 0.0
+
+    def pressure(self, gap, tabor):
+        """P."""
+        return 1.5 * self.work * tabor * (np.exp(-3 * gap) - np.exp(-gap)) + self.drift * tabor
+
+    def slope(self, gap, tabor):
+        """dP/dH."""
+        return 1.5 * self.work * (1 + self.slip) * tabor * (np.exp(-gap) - 3 * np.exp(-3 * gap))
+
+    def energy(self, gap, tabor):
+        """Phi."""
+        return 1.5 * self.work * tabor * (np.exp(-3 * gap) / 3 - np.exp(-gap))
+
+    def room(self, gap):
+        """No core."""
+        return np.maximum(gap + 1, 1.0)
+
+
+@dataclass(frozen=True)
+class Blunt(Endless):
+    """A profile of one's own: a paraboloid that grows as a quartic further out."""
+
+    def height(self, radii):
+        """Return z."""
+        return radii**2 / 2 + radii**4 / 20
+
+    def slope(self, radii):
+        """Return dz/du."""
+        return radii + radii**3 / 5
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        (Yukawa(work=0.9), "the energy at H = 0 is -0.9 dgamma, limit: -1; divide the law by it"),
+        (Yukawa(work=-1), "the largest tension is 1e-09 dgamma/eps, limit: above 0; let the surfaces attract"),
+        (Yukawa(slip=0.01), "the slope is off by 0.0099 from the pressure's, limit: 0.0001; mend either"),
+        (Yukawa(drift=-0.01), "the pressure at H = 0 is -0.01 dgamma/eps, limit: 0; move its gaps"),
+        (Dlvo(0.2, 0.6), "a barrier of 0.0934 of the largest tension stands beyond it, limit: 0.05"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_a_law_that_is_none_is_refused_before_any_work(law, message):
+    with pytest.raises(InputError) as refused:
+        halfspace.trace(1.0, law=law)
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+REFERENCES = list(csv.DictReader((Path(__file__).parent / "data" / "laws_events.csv").read_text().splitlines()))
+PARTS = {
+    "power n=4 m=10": {"law": PowerLaw(4, 10)},
+    "power n=3 m=9": {},
+    "Morse k=3": {"law": Morse(3)},
+    "r^4/4 (height in beta^2/R)": {"profile": Power(4)},
+    "paraboloid": {},
+}
+
+
+@pytest.mark.parametrize(("law", "profile"), sorted({(row["law"], row["profile"]) for row in REFERENCES}))
+def test_other_laws_and_profiles_hit_the_references(law, profile):
+    path = halfspace.trace(1.0, **PARTS[law], **PARTS[profile], rtol=1e-6)
+    rows = [row for row in REFERENCES if (row["law"], row["profile"]) == (law, profile)]
+    assert len(rows) == 3
+    for row in rows:
+        event = path.event(row["event"])
+        off = abs(event.approach - float(row["approach"])), abs(event.load - float(row["load"]))
+        known = float(row["uncertainty_approach"]), float(row["uncertainty_load"])
+        assert off[0] <= min(1e-6 * path.approach_scale, event.approach_error + known[0])
+        assert off[1] <= min(1e-6 * abs(event.load), event.load_error + known[1])
+
+
+def assert_same(ours, theirs, approaches=1.0, loads=1.0):
+    """Compare the events of two curves within their errors, one's times factors."""
+    assert ours.events.keys() == theirs.events.keys()
+    for name, event in ours.events.items():
+        other = theirs.event(name)
+        error = event.approach_error + approaches * other.approach_error
+        assert abs(event.approach - approaches * other.approach) <= error
+        assert abs(event.load - loads * other.load) <= event.load_error + loads * other.load_error
+
+
+@pytest.mark.parametrize(("k", "tabor"), [(3.0, 0.2), (0.5, 4.0), (10.0, 1.0)])
+def test_morse_knows_k_and_tabor_by_their_product_alone(k, tabor):
+    """Gaps in ranges of the potential in the place of eps: neither eps nor k is in the equations any more."""
+    ours, unit = halfspace.trace(tabor, law=Morse(k)), halfspace.trace(k * tabor, law=Morse(1))
+    assert_same(ours, unit, approaches=1 / k)
+
+
+def test_a_quadratic_power_and_a_wide_hyperboloid_are_paraboloids():
+    paraboloid = halfspace.trace(0.8)
+    assert_same(halfspace.trace(0.8, profile=Power(2)), paraboloid)
+    wide = halfspace.trace(0.8, profile=Hyperboloid(1e5))
+    assert wide.event("pull_off").load == pytest.approx(paraboloid.event("pull_off").load, rel=1e-6)
+
+
+@pytest.mark.parametrize("law", [PowerLaw(2.5, 9.5), Morse(3), Exponential(3), Dlvo(0.3, 1.0)], ids=str)
+def test_a_rigid_paraboloid_adheres_with_two_pi_by_any_law(law):
+    """Bradley: the load is 2 pi times the energy across the gap on the axis, whatever the law."""
+    path = halfspace.trace(1e-7, law=law)
+    assert path.event("pull_off").load == pytest.approx(-2 * np.pi, rel=3e-6)
+    states = path.at(approach=[-3.0, -0.5], branch=None)
+    expected = 2 * np.pi * law.energy(-np.array([-3.0, -0.5]), 1.0)
+    np.testing.assert_allclose(states.load, expected, rtol=3e-6)
+
+
+@pytest.mark.parametrize("profile", [Power(1.5), Power(3), Power(6), Hyperboloid(1)], ids=str)
+def test_a_rigid_profile_adheres_with_the_integral_of_the_law(profile):
+    tabor, approach = 1e-4, -0.5
+    state = halfspace.trace(tabor, profile=profile).at(approach=approach)
+
+    def ring(x):
+        r = np.exp(x)
+        return 2 * np.pi * r**2 * float(LENNARD_JONES.pressure(tabor * profile.height(r) - approach, tabor))
+
+    middle = np.log(Scales(tabor, profile=profile).radius_at(1.0))
+    parts = [quad(ring, middle + a, middle + b, epsrel=1e-11)[0] for a, b in ((-25, -2), (-2, 2), (2, 30))]
+    assert float(state.load) == pytest.approx(sum(parts), rel=1e-4)
+    assert abs(float(state.load) - sum(parts)) < 20 * tabor * abs(sum(parts)) + float(state.load_error)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [{"law": PowerLaw(2.5, 9.5)}, {"law": Morse(1)}, {"profile": Power(1.5)}, {"profile": Power(4)}],
+    ids=str,
+)
+def test_a_soft_contact_is_jkrs_by_any_law_on_any_profile(parts):
+    """Pull-off under dead load and least approach, as the Tabor parameter grows, with the order seen at three."""
+    profile = parts.get("profile", PARABOLOID)
+    least = minimize_scalar(lambda a: jkr_load(profile, a), bounds=(0.1, 4), method="bounded", options={"xatol": 1e-10})
+    nearest = minimize_scalar(lambda a: jkr_approach(profile, a), bounds=(0.05, 4), method="bounded")
+    off = []
+    for tabor in (8.0, 16.0, 32.0):
+        path = halfspace.trace(tabor, **parts, rtol=1e-5)
+        fold = path.event("jump_off").approach / tabor
+        off.append([path.event("pull_off").load / least.fun - 1, fold / nearest.fun - 1])
+    first, second, third = np.array(off)
+    assert np.all(np.abs(third) < 0.05)
+    assert np.all(np.abs(third) < 0.75 * np.abs(second))
+    assert np.all(np.abs(second) < 0.75 * np.abs(first))
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"law": Exponential(3)},
+        {"law": Dlvo(0.3, 1)},
+        {"law": PowerLaw(2.1, 2.5)},
+        {"profile": Power(2.5)},
+        {"profile": Hyperboloid(1)},
+    ],
+    ids=str,
+)
+def test_the_energys_derivative_is_the_load(parts):
+    """Along the contact branch, by differences of the energy over the approach on one grid."""
+    segment = halfspace.trace(0.5, **parts, rtol=1e-8).segments[-1]
+    problem, x, h = segment.problem, segment.points[-3].x, 1e-3
+    states = [newton.solve(problem, x, newton.approach(x[-2] + h * n)).x for n in (-2, -1, 1, 2)]
+    before, less, more, after = (problem.energy(state) for state in states)
+    assert (before - 8 * less + 8 * more - after) / (12 * h) == pytest.approx(problem.load(x), rel=1e-6)
+
+
+def test_contact_with_a_profile_against_closed_forms():
+    """Sneddon's integrals: Hertz's and JKR's on the paraboloid, Galin's on powers."""
+    for a in (0.3, 1.7):
+        assert hertz_load(PARABOLOID, a) == pytest.approx(4 * a**3 / 3, rel=1e-13)
+        assert jkr_load(PARABOLOID, a) == pytest.approx(float(closed_forms.jkr_load(a)), rel=1e-12)
+        assert jkr_approach(PARABOLOID, a) == pytest.approx(float(closed_forms.jkr_approach(a, 1.0)), rel=1e-12)
+        for k in (1.5, 1.7, 3, 10):
+            assert hertz_load(Power(k), a) == pytest.approx(beta((k + 2) / 2, 0.5) * a ** (k + 1), rel=1e-12)
+            assert hertz_approach(Power(k), a) == pytest.approx(beta(k / 2, 0.5) / 2 * a**k, rel=1e-12)
+    for load in (0.0, 5.0, 100.0):
+        assert jkr_radius(PARABOLOID, load) == pytest.approx(float(closed_forms.jkr_radius(load)), rel=1e-13)
+
+
+@pytest.mark.parametrize("profile", [Paraboloid(), Power(1.5), Power(7), Hyperboloid(0.3), Blunt()], ids=str)
+def test_a_profiles_slope_is_that_of_its_height(profile):
+    r = np.geomspace(0.01, 20, 40)
+    by_differences = (profile.height(r * (1 + 1e-6)) - profile.height(r * (1 - 1e-6))) / (2e-6 * r)
+    np.testing.assert_allclose(profile.slope(r), by_differences, rtol=1e-8)
+    assert 0.7 * profile.height(Scales(0.7, profile=profile).radius_at(3.0)) == pytest.approx(3.0, rel=1e-12)
+
+
+def test_the_default_lengths_are_those_that_were_tried():
+    """Spike, attraction and widest contact of the 3-9 law on a paraboloid."""
+    for tabor in (0.01, 0.5, 3.0, 100.0):
+        scales = Scales(tabor)
+        assert scales.spike_width == pytest.approx(min(tabor**-2, 0.7 * tabor**-0.5), rel=1e-12)
+        assert scales.outer_radius(32.0) == pytest.approx(8 / np.sqrt(tabor), rel=1e-12)
+        assert scales.widened == pytest.approx(max(1, tabor) ** (3 / 14), rel=1e-12)
+        widest = np.hypot(closed_forms.jkr_radius(5.0), 0.7 / np.sqrt(tabor))
+        assert scales.widest_radius(5.0) == pytest.approx(widest, rel=1e-12)
+        assert (scales.tail_reach, scales.separated_approach) == (1.0, -10 - 2 * tabor)
+        assert scales.rigid_tension == pytest.approx(2 * np.pi, rel=1e-12)
+        assert scales.largest_load == 2 * np.pi
+
+
+def test_a_law_and_a_profile_of_ones_own_go_through_the_half_space():
+    path = halfspace.trace(1.0, law=Yukawa(), profile=Blunt())
+    assert not path.missed
+    tighter = halfspace.trace(1.0, law=Yukawa(), profile=Blunt(), rtol=1e-8)
+    assert_same(path, tighter)
