@@ -28,6 +28,7 @@ from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.jobs import stream
 from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.scene import Counter
+from halfspace import Coated, Layer, Layers, Stratum
 from halfspace.equilibrium.curve import energy_released, placed
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import EVENTS, Condition, Located
@@ -347,6 +348,15 @@ def _stages_under_sphere(size):
     return truths.under_sphere(*size)
 
 
+def _on_layers(scene, rtol):
+    tabor, body = scene
+    return halfspace.trace(tabor, body=body, rtol=rtol)
+
+
+def _stages_on_layers(scene):
+    return truths.layered(*scene)
+
+
 def _half_space_under(scene):
     return truths.under_sphere(scene.tabor, scene.radius_ratio)
 
@@ -373,6 +383,15 @@ def _assess(contact, _):
 
 SLIDING = _sphere(1, 30, poisson=0.3), _sphere(0.3, 30), _sphere(2, 100, poisson=0.45)
 BLOCKS = tuple(map(_block, (*USUAL[:12:2], 0.1, 0.69, 0.7, 0.8, 3, 4, 7, 10, 20)))
+LAYERED = (
+    (1.0, Layer(2.0, 0.3)),
+    (5.0, Coated(1.0, 10.0, 0.4, 0.3)),
+    (0.1, Layer(0.1, 0.4999)),
+    (0.75, Layer(20.0, 0.3, "sliding")),
+    (2.0, Coated(0.2, 0.05, 0.3, 0.2)),
+    (2.0, Layers([Stratum(0.3, 0.3), Stratum(1.0, 0.45, 0.2), Stratum(0.5, 0.3, 3.0)])),
+    (20.0, Layer(3.0, 0.45)),
+)
 FAMILIES = {
     "half-space": Family(
         Net((*USUAL, *BETWEEN, 30, 70, 100), _decades(*range(1, 10))),
@@ -394,6 +413,13 @@ FAMILIES = {
         _under_sphere,
         of_path,
         partial(relocated, _stages_under_sphere),
+    ),
+    "layers": Family(
+        Net(LAYERED, _decades(2, 3, 4, 5, 6, 7)),
+        Net(LAYERED[:2], _decades(3, 6)),
+        _on_layers,
+        of_path,
+        partial(relocated, _stages_on_layers),
     ),
     "hemisphere, sliding": _sized(
         (0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (2, 30), truth=truths.harmonics, few=3

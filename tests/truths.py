@@ -18,8 +18,10 @@ from halfspace.accuracy.finite_bodies import SizedBody
 from halfspace.accuracy.refinement import Charted
 from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.elastic import compliance
+from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.curve import find_events, moved, trace_charts
+from halfspace.profiles import PARABOLOID
 from halfspace.profiles.sphere import between_spheres
 from halfspace.scales import Scales
 
@@ -59,6 +61,21 @@ def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
         Standing(SizedBody(tabor, gap, partial(_panels, nodes), *how, outer, FlatCoordinate(), last * gap.end))
         for nodes, *how, last in ((14, 0.45, 2.5, 1e-7), (16, 0.35, 2.2, 1e-8))
     ]
+
+
+def layered(tabor, body):
+    """A layered body with other images, on finer grids that go further."""
+    hows = ((13, 0.45, 2.5, 2000.0, 1.15), (15, 0.35, 2.2, 3000.0, 1.13))
+    stages = []
+    for nodes, finest, growth, far, spacing in hows:
+        images = images_of(body, spacing)
+        make, outer = partial(_layered_panels, images, nodes), np.array([far / np.sqrt(tabor)])
+        stages.append(Standing(SizedBody(tabor, PARABOLOID, make, finest, growth, outer, FlatCoordinate())))
+    return stages
+
+
+def _layered_panels(images, nodes, lines):
+    return layered_panels(images, lines, nodes), nodes * (lines.size - 1)
 
 
 def _panels(nodes, lines):

@@ -30,12 +30,12 @@ from halfspace.values import Array, Valued
 
 EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
 MOST_NODES = 16  # of a panel
-FAR = 400.0  # of the last cell on a layered body, in the same widths: the load left out beyond is 1e-9 R dgamma
+FAR = 100.0  # of the last cell on a layered body, in extents: the energy left out beyond is 1e-10 R dgamma eps
 LEAVE = 0.8  # of the first cell: the contact radius at which the chart centred on the axis is left
 # Found by trial; what each decides at half and at double is in tests/constants.py.
 ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
 TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same
-IMAGES = (1.14, 1.12)  # ratios of the depths of a layered body's images, and of its twin's
+IMAGES = (1.14, 1.17)  # ratios of the depths of a layered body's images, and of its twin's
 
 Panels = Callable[[Array, int], compliance.ElasticOperator]
 
@@ -171,6 +171,7 @@ def trace(
     scales = Scales(tabor, require_law(law), profile.surface(tabor))
     if body is not None or math.isfinite(scales.profile.end):
         images = [images_of(body, spacing) if body else None for spacing in IMAGES]
+        scales = replace(scales, softest=images[0].softest if images[0] else 1.0)
         return climb(rtol, partial(_sized_rung, scales, images, rtol, to_load), to_load=to_load)
 
     def rung(level: int) -> Rung:
@@ -199,23 +200,23 @@ def _sized_rung(scales: Scales, images: Sequence[Images | None], rtol: float, to
     """Rung of a level for a surface that ends, as a sphere's does at its equator, or a body that has a length."""
     resolutions = resolution_for(scales, rtol, level), _twin(resolution_for(scales, rtol, max(level - 1, 0)))
     fine, other = (_sized_body(scales, *both) for both in zip(images, resolutions, strict=True))
-    resolution = resolutions[0]
+    resolution, doubt = resolutions[0], 2 if images[0] else 1  # images err alike on either
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(
         partial(fine.curve, to_load),
         (AroundEvents(fine, *surroundings(rtol, level), to_load),),
         settings,
         AroundEvents(other, *surroundings(rtol, level - 1), to_load) if level else None,
-        ONE_NODE if level == 1 else REMAINING,
+        doubt * (ONE_NODE if level == 1 else REMAINING),
     )
 
 
 def _sized_body(scales: Scales, images: Images | None, resolution: Resolution) -> SizedBody:
     """Body whose cells end with the surface, or so far out that nothing attracts there."""
     make = partial(layered_panels, images) if images else compliance.panels
-    scales, ends = replace(scales, softest=images.softest if images else 1.0), math.isfinite(scales.profile.end)
+    ends = math.isfinite(scales.profile.end)
     last = at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf
-    outer = scales.profile.end if ends else scales.outer_radius((FAR * scales.widened) ** 2 / 2)
+    outer = scales.profile.end if ends else scales.outer_radius((FAR * resolution.extent) ** 2 / 2)
     return SizedBody(
         scales.tabor,
         scales.profile,
