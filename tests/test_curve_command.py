@@ -39,7 +39,7 @@ NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 
 def _run(*arguments):
     parser = Parser(prog="fem-adhesion")
-    curve.add(parser.add_subparsers(required=True, parser_class=Parser))
+    curve.COMMAND.add_to(parser.add_subparsers(required=True, parser_class=Parser))
     options = parser.parse_args(["curve", *map(str, arguments)])
     return options.run(options)
 
@@ -416,7 +416,7 @@ def test_all_files_are_written_and_nothing_else(tmp_path, capsys):
 
 def test_the_example_of_the_help_runs(tmp_path, monkeypatch):
     commands = Parser(prog="fem-adhesion").add_subparsers(parser_class=Parser)
-    curve.add(commands)
+    curve.COMMAND.add_to(commands)
     program, command, *arguments = shlex.split(commands.choices["curve"].epilog.removeprefix("example: "))
     assert (program, command) == ("fem-adhesion", "curve")
     monkeypatch.chdir(tmp_path)

@@ -40,7 +40,7 @@ from fem_adhesion.finite_sphere.records import (
     to_plain,
 )
 from fem_adhesion.finite_sphere.study import plan, run
-from fem_adhesion.finite_sphere.table import COLUMNS, NO_PARQUET, TEXTS, Row, borders, rows, write_tables
+from fem_adhesion.finite_sphere.table import COLUMNS, NO_PARQUET, TEXTS, DeviationRow, borders, rows, write_tables
 from fem_adhesion.finite_strain.scene import find_jumps
 from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
@@ -519,7 +519,7 @@ def made_rows(law, tabors=(0.1, 10.0), cause="profile"):
     columns = zip(data.tabor, data.radius_ratio, data.deviation, data.error, strict=True)
     blank = (None, cause, "pull_off_load", "R dgamma", None, None, None)
     return [
-        Row(mu, rho, *blank, Estimate(float(value), float(error)), "solved", "", 1.0)
+        DeviationRow(mu, rho, *blank, Estimate(float(value), float(error)), "solved", "", 1.0)
         for mu, rho, value, error in columns
     ]
 

@@ -27,7 +27,7 @@ from fem_adhesion.speed import study as speed
 from fem_adhesion.speed.element_methods import element_methods
 from fem_adhesion.speed.halfspace_methods import MOST_NODES, _affordable, halfspace_methods
 from fem_adhesion.speed.methods import QUANTITIES, Method, Solved, Step
-from fem_adhesion.speed.result import Rung, SpeedStudy, Truth, best, cheapest, pareto_front, slope
+from fem_adhesion.speed.result import SpeedStudy, Timing, Truth, best, cheapest, pareto_front, slope
 from fem_adhesion.speed.study import measure
 from halfspace.elastic import compliance
 from halfspace.equilibrium import newton, relaxation
@@ -102,14 +102,14 @@ def _rung(row):
     floors = {q: float(row[f"{q}_truth_uncertainty"]) for q in errors}
     unknowns = int(row["unknowns"]) if row["unknowns"] else None
     seconds, name, setting = float(row["seconds"]), row["method"], row["setting"]
-    return Rung(name, setting, row["outcome"], seconds, row["reason"], unknowns, 1.0, errors, floors)
+    return Timing(name, setting, row["outcome"], seconds, row["reason"], unknowns, 1.0, errors, floors)
 
 
 def rung(seconds, error, method="some", **more):
-    return Rung(method, "", "converged", seconds, "", 1, 1.0, {"pull_off": error}, **more)
+    return Timing(method, "", "converged", seconds, "", 1, 1.0, {"pull_off": error}, **more)
 
 
-FAILED = Rung("some", "", "failed", 0.1, "on purpose")
+FAILED = Timing("some", "", "failed", 0.1, "on purpose")
 
 
 # --- the energy lost in a cycle ---
@@ -423,7 +423,7 @@ def test_exponents():
 
 
 def test_errors_that_the_truth_cannot_tell_do_not_bend_the_exponents():
-    made = [Rung("some", "", "converged", 10.0**n, "", 10**n, 1.0, {"pull_off": 10.0**-n}) for n in (1, 2, 3)]
+    made = [Timing("some", "", "converged", 10.0**n, "", 10**n, 1.0, {"pull_off": 10.0**-n}) for n in (1, 2, 3)]
     floor = {"pull_off": 1e-3}
     made = [dataclasses.replace(r, floors=floor) for r in (*made, dataclasses.replace(made[-1], seconds=1e9))]
     assert made_study(rungs=made).exponents("some").time_by_accuracy == pytest.approx(1)
@@ -452,7 +452,7 @@ def distinct():
             at = 2 * m + n
             errors = {q: (1 + at) * 10.0 ** -(3 + k) for k, q in enumerate(QUANTITIES)}
             floors = {q: (1 + at) * 10.0 ** -(8 + k) for k, q in enumerate(QUANTITIES)}
-            rungs.append(Rung(method.name, "ab"[n], "converged", 0.5 + at, "", 100 + at, 7.0 + at, errors, floors))
+            rungs.append(Timing(method.name, "ab"[n], "converged", 0.5 + at, "", 100 + at, 7.0 + at, errors, floors))
     return made_study(rungs, methods=methods)
 
 
@@ -568,7 +568,7 @@ def test_a_quick_run_says_so(page):
 
 
 def judged(method, *statuses):
-    return made_study([Rung("some", str(n), s, 1.0, f"why {n}") for n, s in enumerate(statuses)], methods=[method])
+    return made_study([Timing("some", str(n), s, 1.0, f"why {n}") for n, s in enumerate(statuses)], methods=[method])
 
 
 SOME = Method("half-space", "some", [Step("a", None)], 1)
@@ -592,7 +592,7 @@ def test_an_iteration_known_to_diverge_may():
 
 
 def test_a_grid_refused_above_a_coarser_one_that_was_not_is_trouble():
-    good, coarse = rung(1.0, 1e-3), Rung("some", "finer", "too coarse", 1.0, "spacing")
+    good, coarse = rung(1.0, 1e-3), Timing("some", "finer", "too coarse", 1.0, "spacing")
     assert list(made_study([coarse, good]).troubles()) == []
     assert list(made_study([good, coarse]).troubles()) == ["some at finer: spacing"]
 

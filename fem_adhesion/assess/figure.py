@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from scipy.interpolate import CubicHermiteSpline
 
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.assess.theories import Curve, loop
@@ -17,7 +16,6 @@ from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.path import Segment
 from halfspace.equilibrium.reach import reaching
 from halfspace.scaling import Units
 from halfspace.values import Array
@@ -94,24 +92,14 @@ def _line(curve: EquilibriumPath | Curve | None, assessment: Assessment) -> tupl
     """Approach and load along a curve, smooth between computed points."""
     if isinstance(curve, EquilibriumPath):
         path = reaching(curve, assessment.contact.reduced_stiffness)
-        parts = [_smooth(segment) for segment in path.finest_curve.segments]
-        return np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
+        fine = np.concatenate([each.between(BETWEEN)[0] for each in path.finest_curve.segments])
+        return fine[:, APPROACH], fine[:, LOAD]
     if curve is None:
         return np.empty(0), np.empty(0)
     touching = int(np.argmax(np.isfinite(curve.radius)))  # where the curve may leap
     load = np.where(np.arange(curve.load.size) == touching, np.nan, curve.load)
     kept = np.arange(touching % THINNED, load.size, THINNED)
     return curve.approach[kept], load[kept]
-
-
-def _smooth(segment: Segment) -> tuple[Array, Array]:
-    """Cubics through the points of a segment with their tangents."""
-    s = np.array([point.arclength for point in segment.points])
-    fine = np.interp(np.arange(BETWEEN * (s.size - 1) + 1) / BETWEEN, np.arange(s.size), s)
-    values = np.array([point.observables for point in segment.points])
-    rates = np.array([point.rates for point in segment.points])
-    spline = CubicHermiteSpline(s, values[:, : LOAD + 1], rates[:, : LOAD + 1])(fine)
-    return spline[:, APPROACH], spline[:, LOAD]
 
 
 def _jumps(assessment: Assessment) -> Iterator[tuple[Ends, Ends]]:

@@ -11,7 +11,7 @@ from fem_adhesion.assess.theories import Curve, Loop, estimated, loop
 from fem_adhesion.common.numbers import Quantity
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Jump, cycle
-from halfspace.equilibrium.events import Event, approach_scale
+from halfspace.equilibrium.events import approach_scale
 from halfspace.scaling import Units
 from halfspace.theories.closed_forms import ContactState
 from halfspace.theories.exact_sphere import JKRSphere, RigidSphere
@@ -96,8 +96,8 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
     tension, free = path.events["pull_off"], path.events["zero_load"]
     values = {
         "pull_off_force": Quantity.of(Estimate(-tension.load, tension.load_error), units.load, "N"),
-        "pull_off_radius": _radius(tension, units),
-        "zero_load_radius": _radius(free, units),
+        "pull_off_radius": Quantity.of(tension.estimate("contact_radius"), units.length, "m"),
+        "zero_load_radius": Quantity.of(free.estimate("contact_radius"), units.length, "m"),
     }
     round_trip = cycle(path, stiffness)
     if round_trip:
@@ -108,14 +108,14 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
     return Prediction(model, _known(values), path, path.missed | (round_trip.missed if round_trip else {}))
 
 
-def _radius(event: Event, units: Units) -> Quantity:
-    return Quantity.of(event.estimate("contact_radius"), units.length, "m")
-
-
 def _jump(name: str, jump: Jump, stiffness: float, units: Units) -> dict[str, Quantity]:
     at = jump.take_off
     base = Estimate(at.approach + at.load / stiffness, at.approach_error + at.load_error / stiffness)
-    separation = Estimate(1 - at.approach, at.approach_error)
+    return _positions(name, Estimate(1 - at.approach, at.approach_error), base, units)
+
+
+def _positions(name: str, separation: Estimate, base: Estimate, units: Units) -> dict[str, Quantity]:
+    """Where a jump takes off, along both axes."""
     return {
         f"{name}_separation": Quantity.of(separation, units.approach, "m"),
         f"{name}_base": Quantity.of(base, units.approach, "m"),
@@ -203,10 +203,7 @@ def _closed_jump(name: str, found: Loop, at: ContactState, stiffness: float, uni
     """Take-off of a jump; at a turning point of the base a displaced sample errs in the approach alone."""
     separation = Estimate(1 - at.approach, found.spacing)
     base = Estimate(at.approach + at.load / stiffness, found.spacing)
-    return {
-        f"{name}_separation": Quantity.of(separation, units.approach, "m"),
-        f"{name}_base": Quantity.of(base, units.approach, "m"),
-    }
+    return _positions(name, separation, base, units)
 
 
 def _known(values: Mapping[str, Quantity]) -> dict[str, Quantity]:

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
-from halfspace.equilibrium.curve import EquilibriumPath, metric_for
-from halfspace.equilibrium.events import FOLD, locate
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import FOLD
 from halfspace.equilibrium.path import Segment
 from halfspace.values import Array, Valued
 
@@ -78,16 +77,11 @@ def smooth(path: EquilibriumPath) -> Line:
 
 def _smooth(segment: Segment, stable: NDArray[np.bool_]) -> tuple[Array, NDArray[np.int8]]:
     """Approach, load and central gap, (n, 3), along one segment, and the kind of each point."""
-    s = np.array([point.arclength for point in segment.points])
-    index = np.arange(BETWEEN * (s.size - 1) + 1) / BETWEEN
-    used = [APPROACH, LOAD, CENTRAL_GAP]
-    values = np.array([point.observables[used] for point in segment.points])
-    rates = np.array([point.rates[used] for point in segment.points])
-    spline, fine = CubicHermiteSpline(s, values, rates), np.interp(index, np.arange(s.size), s)
-    d_approach, d_load, _ = spline(fine, 1).T
+    values, rates = segment.between(BETWEEN)
+    d_approach, d_load, *_ = rates.T
     kind = np.where(d_load * d_approach > 0, STABLE, GRIPS_ONLY).astype(np.int8)
     kind[~_stable_between(stable, d_approach)] = UNSTABLE
-    return np.asarray(spline(fine)), kind
+    return values[:, [APPROACH, LOAD, CENTRAL_GAP]], kind
 
 
 def _stable_between(stable: NDArray[np.bool_], rate: Array) -> NDArray[np.bool_]:
@@ -102,9 +96,7 @@ def _stable_between(stable: NDArray[np.bool_], rate: Array) -> NDArray[np.bool_]
 
 def folds(path: EquilibriumPath) -> Array:
     """Approach, load, central gap and contact radius at every fold under fixed grips, in order, (n, 4)."""
-    metric = metric_for(path.tabor)
-    found = [e.point.observables for s in path.segments for e in locate(s.problem, s.points, metric, FOLD)]
-    return np.array(found).reshape(-1, 4)
+    return np.array([fold.point.observables for fold in path.states(FOLD)]).reshape(-1, 4)
 
 
 def around_events(path: EquilibriumPath) -> Frame:

@@ -19,8 +19,8 @@ from fem_adhesion.fields.state import state_at
 from fem_adhesion.paraview.cutaway import view_of
 from fem_adhesion.paraview.solid import Pixels, solid_image
 from halfspace.equilibrium.contact import APPROACH, LOAD
-from halfspace.equilibrium.curve import EquilibriumPath, metric_for
-from halfspace.equilibrium.events import Condition, Located, locate
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import Condition, Located
 from halfspace.values import Array
 
 SIZE = (800, 500)
@@ -55,7 +55,7 @@ NEAR = 1e-6
 
 
 @dataclass(frozen=True)
-class Frame:
+class Shot:
     """A state that is shown, what is said of it, and for how many seconds."""
 
     state: Located
@@ -91,7 +91,7 @@ def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = SIZE) -> N
     file.buffer.write(gif.getbuffer())
 
 
-def experiment(path: EquilibriumPath) -> list[Frame]:
+def experiment(path: EquilibriumPath) -> list[Shot]:
     """States that a contact passes under fixed grips, up to the wall and back, the wall moving steadily.
 
     They end at the loads `FADED` and `PRESSED`, or where the path does.
@@ -103,12 +103,12 @@ def experiment(path: EquilibriumPath) -> list[Frame]:
     return frames
 
 
-def _smooth(path: EquilibriumPath) -> list[Frame]:
+def _smooth(path: EquilibriumPath) -> list[Shot]:
     contact = _contact(path, _states(path, _grid(path, []), lambda _: True))
     return _run(contact, "approaching", last="turning back") + _run(contact[-2::-1], "withdrawing")
 
 
-def _jumping(path: EquilibriumPath, on: Located, off: Located) -> list[Frame]:
+def _jumping(path: EquilibriumPath, on: Located, off: Located) -> list[Shot]:
     """Along the separated branch to its fold, onto contact, and back along contact to its own."""
     grid = _grid(path, sorted((_approach(on), _approach(off))))
     separated = _states(path, grid[grid < _approach(on)], lambda s: s < on.point.arclength)
@@ -124,9 +124,9 @@ def _jumping(path: EquilibriumPath, on: Located, off: Located) -> list[Frame]:
     ]
 
 
-def _run(states: Sequence[Located], words: str, *, first: str = "", last: str = "") -> list[Frame]:
+def _run(states: Sequence[Located], words: str, *, first: str = "", last: str = "") -> list[Shot]:
     """Frames of states in turn, of which the first and the last may rest and have words of their own."""
-    frames = [Frame(state, words) for state in states]
+    frames = [Shot(state, words) for state in states]
     for number, own in ((0, first), (-1, last)):
         if own and frames:
             frames[number] = replace(frames[number], words=own, seconds=RESTING)
@@ -141,8 +141,8 @@ def _contact(path: EquilibriumPath, states: Sequence[Located]) -> list[Located]:
 def _grid(path: EquilibriumPath, folds: list[float]) -> Array:
     """Approaches in equal steps, nearly, with those of the folds, which ascend, among them."""
     pull_off = path.events["pull_off"].load
-    low = _approach(_roots(path, Condition(LOAD, value=FADED * pull_off))[0])
-    pressed = _roots(path, Condition(LOAD, value=PRESSED * pull_off))
+    low = _approach(path.states(Condition(LOAD, value=FADED * pull_off))[0])
+    pressed = path.states(Condition(LOAD, value=PRESSED * pull_off))
     ends = [low, *folds, _approach(pressed[-1]) if pressed else float(path.approach[-1])]
     step = 2 * (ends[-1] - ends[0]) / FRAMES
     parts = [np.linspace(a, b, int(np.ceil((b - a) / step)), endpoint=False) for a, b in pairwise(ends)]
@@ -151,11 +151,11 @@ def _grid(path: EquilibriumPath, folds: list[float]) -> Array:
 
 def _states(path: EquilibriumPath, approaches: Array, kept: Callable[[float], bool]) -> list[Located]:
     """States at approaches whose arclength is kept."""
-    found = [_roots(path, Condition(APPROACH, value=float(alpha))) for alpha in approaches]
+    found = [path.states(Condition(APPROACH, value=float(alpha))) for alpha in approaches]
     return [state for roots in found for state in roots if kept(state.point.arclength)]
 
 
-def _images(curves: Curves, frames: Sequence[Frame], size: tuple[int, int]) -> Iterator[Pixels]:
+def _images(curves: Curves, frames: Sequence[Shot], size: tuple[int, int]) -> Iterator[Pixels]:
     """Frames as they are shown; a state that is passed twice is solved for and drawn once."""
     scene = curves.question.scene
     every = {id(frame.state): frame.state for frame in frames}
@@ -192,8 +192,3 @@ def _palette(image: Pixels) -> Pixels:
 
 def _approach(state: Located) -> float:
     return float(state.point.observables[APPROACH])
-
-
-def _roots(path: EquilibriumPath, condition: Condition) -> list[Located]:
-    metric = metric_for(path.tabor)
-    return [state for part in path.segments for state in locate(part.problem, part.points, metric, condition)]

@@ -41,7 +41,7 @@ STATES: Mapping[str, Look] = {
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Profile(Valued):
+class SurfaceState(Valued):
     """A state along the surface: radii in beta, pressure in dgamma/(mu eps), gap H in eps, each (n,)."""
 
     radii: Array
@@ -55,7 +55,7 @@ def state_of(path: EquilibriumPath, name: str) -> tuple[ContactProblem, Array]:
     return found.problem.interface, found.problem.surface_state(found.point.x)
 
 
-def profile(path: EquilibriumPath, name: str, radii: Array) -> Profile:
+def profile(path: EquilibriumPath, name: str, radii: Array) -> SurfaceState:
     """State of an event at radii (beta), by the polynomials of its discretisation; none beyond its end.
 
     The deflection goes through the polynomials, not the gap, in which the equator of a sphere is vertical.
@@ -65,13 +65,13 @@ def profile(path: EquilibriumPath, name: str, radii: Array) -> Profile:
     inside = radii[radii <= body.extent]
     undeformed, nodal = (problem.tabor * problem.profile.height(r) for r in (inside, body.radii))
     gap = undeformed + body.values_at(inside, x[:-2] - nodal)
-    return Profile(inside, problem.law.pressure(gap, problem.tabor), gap)
+    return SurfaceState(inside, problem.law.pressure(gap, problem.tabor), gap)
 
 
-def nodes(path: EquilibriumPath, name: str) -> Profile:
+def nodes(path: EquilibriumPath, name: str) -> SurfaceState:
     """State of an event at the nodes of its grid."""
     problem, x = state_of(path, name)
-    return Profile(problem.radii(x), problem.pressure(x), x[:-2])
+    return SurfaceState(problem.radii(x), problem.pressure(x), x[:-2])
 
 
 def widest(path: EquilibriumPath) -> float:
@@ -107,7 +107,7 @@ def draw_gap(axes: Any, curves: Curves) -> str:
     return "gap"
 
 
-def _states(curves: Curves) -> Iterator[tuple[Look, Profile]]:
+def _states(curves: Curves) -> Iterator[tuple[Look, SurfaceState]]:
     radii = np.linspace(0, WIDER * widest(curves.path), POINTS)
     for name, look in STATES.items():
         if curves.path.event(name):

@@ -8,24 +8,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import IO, Any
 
-from fem_adhesion.common.facts import plain, versions
-from fem_adhesion.curve.scales import si_sizes
+from fem_adhesion.common.facts import finite, plain, versions
+from fem_adhesion.curve.scales import EVENT_QUANTITIES as OBSERVABLES
+from fem_adhesion.curve.scales import PAPER, si_sizes
 from fem_adhesion.curve.solve import Curves
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, Jump
 from halfspace.equilibrium.events import Event, Tolerance
 from halfspace.values import Estimate
 
-OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
-UNITS: Mapping[str, str] = {
-    "arclength": "1",
-    "approach": "eps",
-    "load": "R dgamma",
-    "central_gap": "eps",
-    "contact_radius": "beta",
-    "energy": "R dgamma eps",
-    "stiffness": "R dgamma/eps",
-}
+UNITS = {"arclength": "1", **{name: PAPER[name].unit for name in (*OBSERVABLES, "energy", "stiffness")}}
 ERRORS = tuple(f"{name}_error" for name in OBSERVABLES)
 COLUMNS = ("arclength", *OBSERVABLES, *ERRORS)
 SPREAD = "_model_uncertainty"  # after an observable's name: how far apart models lie between which there is a choice
@@ -110,11 +102,6 @@ def _jump(jump: Jump, tolerance: Tolerance) -> dict[str, Any]:
 
 def _estimate(estimate: Estimate) -> dict[str, float | None]:
     return {"value": finite(estimate.value), "error": finite(estimate.error)}
-
-
-def finite(value: float) -> float | None:
-    """Number for JSON, None for what is not finite."""
-    return float(value) if math.isfinite(value) else None
 
 
 def write_csv(curves: Curves, file: IO[str]) -> None:

@@ -12,13 +12,12 @@ from rich.text import Text
 from fem_adhesion.common.numbers import Quantity, engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.curve import lines
-from fem_adhesion.curve.braille import Canvas
-from fem_adhesion.curve.scales import Scale, scales
+from fem_adhesion.curve.scales import EVENT_QUANTITIES, Scale, scales
 from fem_adhesion.curve.solve import Curves
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
 from halfspace.equilibrium.reach import reaching
-from halfspace.values import Estimate
+from halfspace.values import Array, Estimate, Index
 
 DIGITS = 8  # significant, at most
 MISSED = "*"  # after a number whose error is above the tolerance
@@ -31,8 +30,11 @@ EVENTS: Mapping[str, str] = {
 }
 LETTERS: Mapping[str, str] = {"pull_off": "P", "jump_on": "A", "jump_off": "C", "zero_load": "Z"}
 COLOURS = {lines.STABLE: "bright_blue", lines.GRIPS_ONLY: "cyan", lines.UNSTABLE: "yellow"}
-COLUMNS = ("approach", "load", "central_gap", "contact_radius")
 RANKS = {"approach": 0, "load": 0, "contact_radius": 1, "central_gap": 2}  # by which columns are left out
+DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])  # by row and column in a character
+BLANK = 0x2800
+FINE = 20  # samples between two points of a line
+THIN = 3  # every how many dots a thinned line has one
 
 
 def show(curves: Curves, console: Console) -> None:
@@ -54,7 +56,7 @@ def table(curves: Curves) -> Fitted:
     numbers = zip(*(cells(event, units, curves.paths[name].tolerance) for _, name, event in rows), strict=True)
     columns = [
         Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts, RANKS[name])
-        for name, texts in zip(COLUMNS, numbers, strict=True)
+        for name, texts in zip(EVENT_QUANTITIES, numbers, strict=True)
     ]
     return Fitted([words, solver, *columns], list(_title(curves)))
 
@@ -81,7 +83,7 @@ def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str
 def cells(event: Event, units: Mapping[str, Scale], tolerance: Tolerance) -> Iterator[str]:
     """Numbers of an event, each with the error of its last digit in brackets, and a mark if that misses a tolerance."""
     missed = tolerance.missed_by(event)
-    for name in COLUMNS:
+    for name in EVENT_QUANTITIES:
         value, error = getattr(event, name), getattr(event, f"{name}_error")
         if np.isnan(value):
             yield "-"
@@ -195,3 +197,65 @@ def _key(curves: Curves) -> list[str]:
 
 def _ticks(span: Sequence[float], scale: Scale) -> tuple[str, str]:
     return f"{span[0] * scale.size:.3g}", f"{span[1] * scale.size:.3g}"
+
+
+# Lines drawn with the eight dots of Braille characters
+
+
+class Canvas:
+    """Characters with a frame of values.
+
+    Parameters
+    ----------
+    width, height : int
+        In characters.
+    x, y : pair of float
+        Values at the left and right, lower and upper edge.
+    """
+
+    MARGIN = 10  # characters in front of it, for the values at its edges and the frame
+
+    def __init__(self, width: int, height: int, x: tuple[float, float], y: tuple[float, float]) -> None:
+        self._dots = np.zeros((height, width), dtype=int)
+        self._styles = np.full((height, width), "", dtype=object)
+        self._letters: dict[tuple[int, int], str] = {}
+        self._x, self._y = x, y
+
+    def line(self, x: Array, y: Array, style: str, *, thinned: bool = False) -> None:
+        """Draw a line through points in a colour; nan interrupts it."""
+        fine = np.linspace(0, x.size - 1, FINE * x.size)
+        columns, rows = self._place(np.interp(fine, np.arange(x.size), x), np.interp(fine, np.arange(x.size), y))
+        places = dict.fromkeys(zip(rows.tolist(), columns.tolist(), strict=True))
+        for row, column in list(places)[:: THIN if thinned else 1]:
+            if 0 <= row < 4 * self._dots.shape[0] and 0 <= column < 2 * self._dots.shape[1]:
+                self._dots[row // 4, column // 2] |= DOTS[row % 4, column % 2]
+                self._styles[row // 4, column // 2] = style
+
+    def letter(self, letter: str, x: float, y: float) -> None:
+        """Put a letter over a point."""
+        column, row = (int(value[0]) for value in self._place(np.array([x]), np.array([y])))
+        self._letters[row // 4, column // 2] = letter
+
+    def text(self, edges: tuple[str, str]) -> Text:
+        """Lines of text, with the values at the lower and upper edge in front."""
+        text, (height, width) = Text(), self._dots.shape
+        for row in range(height):
+            text.append(f"{ {0: edges[1], height - 1: edges[0]}.get(row, ''):>{self.MARGIN - 2}} │")
+            for column in range(width):
+                letter = self._letters.get((row, column))
+                text.append(
+                    letter or chr(BLANK + self._dots[row, column]), "bold" if letter else self._styles[row, column]
+                )
+            text.append("\n")
+        return text.append(" " * (self.MARGIN - 1) + "└" + "─" * width + "\n")
+
+    def _place(self, x: Array, y: Array) -> tuple[Index, Index]:
+        """Column and row of dots, counted from the upper left; outside where a value is nan."""
+        height, width = self._dots.shape
+        column = (x - self._x[0]) / (self._x[1] - self._x[0]) * 2 * width
+        row = (self._y[1] - y) / (self._y[1] - self._y[0]) * 4 * height
+        return _whole(column), _whole(row)
+
+
+def _whole(values: Array) -> Index:
+    return np.nan_to_num(np.floor(values), nan=-1.0).astype(np.intp)

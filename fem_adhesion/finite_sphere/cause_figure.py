@@ -15,7 +15,7 @@ from fem_adhesion.common.words import at_points, span
 from fem_adhesion.finite_sphere.chart_figure import no_sphere
 from fem_adhesion.finite_sphere.fit import RIGID_PULL_OFF, SOFT_PULL_OFF, fit, leading_terms
 from fem_adhesion.finite_sphere.points import Samples, panel_tabors, reference_poisson, samples
-from fem_adhesion.finite_sphere.table import Results, Row
+from fem_adhesion.finite_sphere.table import DeviationRow, Results
 from halfspace.errors import InputError
 from halfspace.values import Array
 
@@ -71,7 +71,7 @@ def _plain(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def _cause(axes: Any, rows: Sequence[Row], cause: str, tabor: float, poisson: float | None) -> None:
+def _cause(axes: Any, rows: Sequence[DeviationRow], cause: str, tabor: float, poisson: float | None) -> None:
     data = samples(rows, cause, "pull_off_load", None if cause == "profile" else poisson)
     data = data.where(data.tabor == tabor)
     colour, marker, label = CAUSES[cause]
@@ -119,7 +119,7 @@ def _caption(results: Results) -> Iterator[str]:
     yield from _given_back(rows, poisson)
 
 
-def _of(rows: Sequence[Row], cause: str, tabor: float, poisson: float | None) -> Samples:
+def _of(rows: Sequence[DeviationRow], cause: str, tabor: float, poisson: float | None) -> Samples:
     data = samples(rows, cause, "pull_off_load", None if cause == "profile" else poisson).significant
     return data.where(data.tabor == tabor)
 
@@ -142,7 +142,7 @@ def _size_at(data: Samples, ratio: float) -> float:
     return float(size[0]) if size.size else float("nan")
 
 
-def _exponents(rows: Sequence[Row], poisson: float | None) -> Iterator[str]:
+def _exponents(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[str]:
     """Powers of beta/R in which profile and body go between the two largest spheres, of the middle panel."""
     for tabor in panel_tabors(rows)[1:2]:
         found = {cause: _of(rows, cause, tabor, poisson) for cause in ("profile", "body")}
@@ -161,7 +161,7 @@ def _power(data: Samples) -> float:
     return float((y[1] - y[0]) / (x[1] - x[0]))
 
 
-def _changes(rows: Sequence[Row], poisson: float | None) -> Iterator[str]:
+def _changes(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[str]:
     """What grip and strain change beside the whole."""
     whole = samples(rows, "all", "pull_off_load", poisson)
     for cause, name in (("grip", "The grip"), ("strain", "Finite strain")):
@@ -177,7 +177,7 @@ def _changes(rows: Sequence[Row], poisson: float | None) -> Iterator[str]:
         )
 
 
-def _given_back(rows: Sequence[Row], poisson: float | None) -> Iterator[str]:
+def _given_back(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[str]:
     """Whether the law per true area undoes what the profile does."""
     shares = _ratios(
         samples(rows, "traction", "pull_off_load", poisson), samples(rows, "profile", "pull_off_load", None)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_adhesion.finite_sphere.table import Row
+from fem_adhesion.finite_sphere.table import DeviationRow
 from halfspace.errors import InputError
 from halfspace.values import Array, Valued
 
@@ -74,12 +74,12 @@ class Rule:
     tabor: tuple[float, float]
 
 
-def field_of(rows: Sequence[Row], quantity: str, poisson: float | None, cause: str = "all") -> Field:
+def field_of(rows: Sequence[DeviationRow], quantity: str, poisson: float | None, cause: str = "all") -> Field:
     """Collect a deviation from the table.
 
     Parameters
     ----------
-    rows : sequence of Row
+    rows : sequence of DeviationRow
         The table.
     quantity, poisson, cause
         Which of its rows.

@@ -17,7 +17,7 @@ from fem_adhesion.finite_sphere.chart import LEVELS, Field, contour, field_of
 from fem_adhesion.finite_sphere.findings import headline
 from fem_adhesion.finite_sphere.materials import Material, materials
 from fem_adhesion.finite_sphere.points import reference_poisson, samples
-from fem_adhesion.finite_sphere.table import Border, Results, Row
+from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results
 from halfspace.limits import SMALLEST_SPHERE
 from halfspace.values import Array
 
@@ -50,12 +50,12 @@ MARKERS: Mapping[str, tuple[str, str]] = {
 }
 
 
-def chart(rows: Sequence[Row], poisson: float | None, borders: Sequence[Border], heading: str = "") -> Figure:
+def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence[Border], heading: str = "") -> Figure:
     """Draw the contours of 0.1, 1 and 10 % for the pull-off force and for the jump-on approach, side by side.
 
     Parameters
     ----------
-    rows : sequence of Row
+    rows : sequence of DeviationRow
         The table of the study.
     poisson : float or None
         Which Poisson's ratio.

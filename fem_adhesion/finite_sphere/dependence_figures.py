@@ -21,7 +21,7 @@ from fem_adhesion.finite_sphere.points import (
     reference_poisson,
     samples,
 )
-from fem_adhesion.finite_sphere.table import Results, Row
+from fem_adhesion.finite_sphere.table import DeviationRow, Results
 from halfspace.values import Array
 
 MOST_LINES = 4
@@ -66,7 +66,7 @@ def _see_poisson(results: Results) -> Iterator[str]:
     yield from _signs(results.rows)
 
 
-def _trend(rows: Sequence[Row]) -> Iterator[str]:
+def _trend(rows: Sequence[DeviationRow]) -> Iterator[str]:
     """Which way the size of the pull-off's deviation goes from the least to the largest Poisson's ratio."""
     ends = []
     for mu, rho in points_by_poisson(rows):
@@ -81,7 +81,7 @@ def _trend(rows: Sequence[Row]) -> Iterator[str]:
         )
 
 
-def _signs(rows: Sequence[Row]) -> Iterator[str]:
+def _signs(rows: Sequence[DeviationRow]) -> Iterator[str]:
     """Where the deviation of the jump-on changes its sign with Poisson's ratio."""
     found = [by_poisson(rows, "jump_on_approach", mu, rho)[1] for mu, rho in points_by_poisson(rows)]
     known = [deviation for deviation in found if deviation.size > 1]
@@ -132,7 +132,7 @@ def _see_bulk(results: Results) -> Iterator[str]:
     )
 
 
-def _left(rows: Sequence[Row], quantity: str, poisson: float | None) -> Array:
+def _left(rows: Sequence[DeviationRow], quantity: str, poisson: float | None) -> Array:
     """Part of an approach's deviation, at most, that is left without the yield, where the whole exceeds its error."""
     whole, rest = (samples(rows, "all", quantity + suffix, poisson) for suffix in ("", "_less_bulk"))
     whole = whole.significant

@@ -13,7 +13,7 @@ from fem_adhesion.finite_sphere.chart import LEVELS, Rule, field_of, rule
 from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, Fit, compare, findings
 from fem_adhesion.finite_sphere.points import reference_poisson
 from fem_adhesion.finite_sphere.records import Record, Study
-from fem_adhesion.finite_sphere.table import Border, Results, Row
+from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results
 from halfspace.errors import InputError
 
 QUANTITIES = {
@@ -65,7 +65,7 @@ def tables(results: Results) -> list[Table]:
     ]
 
 
-def _rules(rows: Sequence[Row]) -> Table:
+def _rules(rows: Sequence[DeviationRow]) -> Table:
     poisson = reference_poisson(rows)
     lines = (_rule(rows, quantity, level, poisson) for quantity in QUANTITIES for level in LEVELS)
     columns = ("quantity", "half-space errs less than", "if R/eps >", "rule fits contour within", "mu", "why no rule")
@@ -81,7 +81,7 @@ def line(found: Rule) -> str:
     return f"{found.constant:g} {'-' if found.slope < 0 else '+'} {abs(found.slope):g} mu"
 
 
-def _rule(rows: Sequence[Row], quantity: str, level: float, poisson: float | None) -> tuple[str, ...]:
+def _rule(rows: Sequence[DeviationRow], quantity: str, level: float, poisson: float | None) -> tuple[str, ...]:
     head = (QUANTITIES[quantity], f"{100 * level:g} %")
     try:
         found = rule(field_of(rows, quantity, poisson), level)
@@ -111,7 +111,7 @@ def _fit(fit: Fit) -> tuple[str, ...]:
     return (terms, f"{fit.holds_to:.2g}", str(fit.points), f"{fit.worst:.1e}")
 
 
-def _theories(rows: Sequence[Row]) -> Table:
+def _theories(rows: Sequence[DeviationRow]) -> Table:
     columns = ("theory and term", "expected", "fitted", "error", "at mu", "why not")
     see = (
         "The profile's part of the pull-off alone, on a half-space. The theories are of the limits mu = 0 and "

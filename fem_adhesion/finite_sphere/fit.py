@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_adhesion.finite_sphere.points import Samples, samples
-from fem_adhesion.finite_sphere.table import Row
+from fem_adhesion.finite_sphere.table import DeviationRow
 from halfspace.errors import InputError
 from halfspace.values import Array, Estimate
 
@@ -67,7 +67,7 @@ def leading_terms(cause: str, quantity: str, *, one_tabor: bool = False) -> Mapp
     Parameters
     ----------
     cause, quantity : str
-        Which deviation, as in `fem_adhesion.finite_sphere.table.Row`.
+        Which deviation, as in `fem_adhesion.finite_sphere.table.DeviationRow`.
     one_tabor : bool
         For points of one Tabor parameter, where (beta/R)^2 and eps/R are one term.
     """
@@ -129,7 +129,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class TheoryCheck:
     """The leading coefficient of the pull-off's deviation by the profile beside a theory's.
 
     Attributes
@@ -150,7 +150,7 @@ class Comparison:
     fitted: Estimate
 
 
-def findings(rows: Sequence[Row], poisson: float = 0.3) -> tuple[Finding, ...]:
+def findings(rows: Sequence[DeviationRow], poisson: float = 0.3) -> tuple[Finding, ...]:
     """Fits of every quantity for every cause, at all Tabor parameters together and at each."""
     keys = dict.fromkeys((row.cause, row.quantity, row.poisson) for row in rows if row.poisson in (None, poisson))
     return tuple(finding for key in keys for finding in _findings(key[0], key[1], samples(rows, *key)))
@@ -170,7 +170,7 @@ def _finding(cause: str, quantity: str, tabor: float | None, data: Samples, term
         return Finding(cause, quantity, tabor, None, str(error))
 
 
-def compare(rows: Sequence[Row]) -> tuple[Comparison, ...]:
+def compare(rows: Sequence[DeviationRow]) -> tuple[TheoryCheck, ...]:
     """Compare the profile's part in the pull-off with the rigid sphere's and with Maugis'.
 
     Raises
@@ -190,10 +190,10 @@ def compare(rows: Sequence[Row]) -> tuple[Comparison, ...]:
     )
 
 
-def _compared(theory: str, expected: float, data: Samples, tabor: float, leading: Term) -> Comparison:
+def _compared(theory: str, expected: float, data: Samples, tabor: float, leading: Term) -> TheoryCheck:
     terms: dict[str, Term] = {"leading": leading, "square": lambda mu, rho: leading(mu, rho) ** 2}
     found = fit(data.where(data.tabor == tabor), terms, tolerance=TOLERANCE / 10)
-    return Comparison(theory, expected, tabor, found.coefficients["leading"])
+    return TheoryCheck(theory, expected, tabor, found.coefficients["leading"])
 
 
 def fit(data: Samples, terms: Mapping[str, Term] = TERMS, *, tolerance: float = TOLERANCE) -> Fit:

@@ -22,7 +22,7 @@ from fem_adhesion.finite_sphere.dependence_figures import BULK_FIGURE, POISSON_F
 from fem_adhesion.finite_sphere.findings import QUANTITIES, headline, line
 from fem_adhesion.finite_sphere.points import reference_poisson
 from fem_adhesion.finite_sphere.records import Record, Study
-from fem_adhesion.finite_sphere.table import Results, Row, results, write_tables
+from fem_adhesion.finite_sphere.table import DeviationRow, Results, results, write_tables
 from halfspace.errors import InputError
 
 PICTURES = (CHART, CAUSES_FIGURE, POISSON_FIGURE, BULK_FIGURE)
@@ -96,7 +96,7 @@ def _section(
     return Section(name, title, paragraphs=(*paragraphs, *lacking), figures=figures, tables=tables)
 
 
-def _answer(table: Sequence[Row]) -> Iterator[str]:
+def _answer(table: Sequence[DeviationRow]) -> Iterator[str]:
     """The rules in words."""
     poisson = reference_poisson(table)
     if poisson is None:

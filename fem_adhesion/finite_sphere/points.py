@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_adhesion.finite_sphere.table import Row
+from fem_adhesion.finite_sphere.table import DeviationRow
 from halfspace.values import Array, Valued
 
 FAVOURED = (0.3, 1.0, 3.0)  # Tabor parameters of a panel each
@@ -45,7 +45,7 @@ class Samples(Valued):
         return Samples(self.tabor[chosen], self.radius_ratio[chosen], self.deviation[chosen], self.error[chosen])
 
 
-def samples(rows: Iterable[Row], cause: str, quantity: str, poisson: float | None) -> Samples:
+def samples(rows: Iterable[DeviationRow], cause: str, quantity: str, poisson: float | None) -> Samples:
     """Deviations of a quantity for a cause, of the rows that have one, and a finite one."""
     chosen = [
         (row.tabor, row.radius_ratio, row.deviation.value, row.deviation.error)
@@ -56,26 +56,26 @@ def samples(rows: Iterable[Row], cause: str, quantity: str, poisson: float | Non
     return Samples(*numbers[np.isfinite(numbers).all(axis=1)].T)
 
 
-def reference_poisson(rows: Sequence[Row]) -> float | None:
+def reference_poisson(rows: Sequence[DeviationRow]) -> float | None:
     """Poisson's ratio of the figures that show one: 0.3, or the nearest to it in the table."""
     known = {row.poisson for row in rows if row.poisson is not None}
     return min(known, key=lambda nu: abs(nu - POISSON), default=None)
 
 
-def panel_tabors(rows: Sequence[Row]) -> list[float]:
+def panel_tabors(rows: Sequence[DeviationRow]) -> list[float]:
     """Tabor parameters that have a panel: those nearest to 0.3, 1 and 3 in the table."""
     known = {row.tabor for row in rows if row.cause == "all" and row.deviation}
     return sorted({min(known, key=lambda mu: abs(np.log(mu / wanted))) for wanted in FAVOURED} if known else set())
 
 
-def points_by_poisson(rows: Sequence[Row]) -> list[tuple[float, float]]:
+def points_by_poisson(rows: Sequence[DeviationRow]) -> list[tuple[float, float]]:
     """Tabor parameters and R/eps whose pull-off is known at two Poisson's ratios or more."""
     points = dict.fromkeys((row.tabor, row.radius_ratio) for row in rows if row.radius_ratio)
     known = ((mu, rho) for mu, rho in points if rho and by_poisson(rows, "pull_off_load", mu, rho)[0].size > 1)
     return sorted(known, key=lambda point: point[::-1])
 
 
-def by_poisson(rows: Sequence[Row], quantity: str, tabor: float, ratio: float) -> tuple[Array, Array]:
+def by_poisson(rows: Sequence[DeviationRow], quantity: str, tabor: float, ratio: float) -> tuple[Array, Array]:
     """Poisson's ratios, ascending, and the deviations at a point."""
     wanted = ("all", quantity, tabor, ratio)
     chosen = sorted(
@@ -90,7 +90,7 @@ def by_poisson(rows: Sequence[Row], quantity: str, tabor: float, ratio: float) -
     return nu, deviation
 
 
-def jumping_tabors(rows: Sequence[Row]) -> list[float]:
+def jumping_tabors(rows: Sequence[DeviationRow]) -> list[float]:
     """Tabor parameters whose jump-on is known on spheres of two sizes or more."""
     data = samples(rows, "all", "jump_on_approach", reference_poisson(rows))
     tabors, counts = np.unique(data.tabor, return_counts=True)

@@ -24,7 +24,7 @@ UNITS = QUANTITIES | dict.fromkeys(LESS_BULK, "eps")
 
 
 @dataclass(frozen=True)
-class Row:
+class DeviationRow:
     """One quantity of one case beside the case without its cause.
 
     Attributes
@@ -67,7 +67,7 @@ class Row:
     kind: str = ""
 
 
-def rows(records: Sequence[Record], bulk: BulkCompliance | None = None) -> tuple[Row, ...]:
+def rows(records: Sequence[Record], bulk: BulkCompliance | None = None) -> tuple[DeviationRow, ...]:
     """Lines of the table.
 
     Parameters
@@ -90,7 +90,7 @@ def rows(records: Sequence[Record], bulk: BulkCompliance | None = None) -> tuple
 
 def _rows_of(
     record: Record, cause: str, found: Mapping[Case, Record], quantities: Sequence[str], bulk: BulkCompliance | None
-) -> Iterator[Row]:
+) -> Iterator[DeviationRow]:
     case = record.case
     others = [_partner(case, model, found) for model in (CAUSES[cause].baseline, "half_space")]
     tables = [_values(one, bulk) if one else {} for one in (record, *others)]
@@ -100,7 +100,7 @@ def _rows_of(
         deviation = relative(value, baseline, scale) if value and baseline and scale else None
         head = (case.given("tabor"), case.radius_ratio, case.poisson, cause, name, UNITS[name])
         ending = (*_ending(record, others, three), record.seconds, record.kind)
-        yield Row(*head, value, baseline, half_space, deviation, *ending)
+        yield DeviationRow(*head, value, baseline, half_space, deviation, *ending)
 
 
 def _partner(case: Case, model: str, found: Mapping[Case, Record]) -> Record | None:
@@ -117,7 +117,7 @@ def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
     """Approaches of the jumps without the linear yield of the body, alpha* - kappa mu W/(R/beta)."""
     values, yielding = record.values, _yielding(record.case, bulk)
     return {
-        name: _less(values[f"{event}_approach"], yielding, values[f"{event}_load"])
+        name: _without_yield(values[f"{event}_approach"], yielding, values[f"{event}_load"])
         for name, event in LESS_BULK.items()
         if f"{event}_approach" in values
     }
@@ -134,7 +134,7 @@ def _yielding(case: Case, bulk: BulkCompliance) -> Estimate:
     return Estimate(kappa.value * tabor / R, kappa.error * tabor / R)
 
 
-def _less(approach: Estimate, compliance: Estimate, load: Estimate) -> Estimate:
+def _without_yield(approach: Estimate, compliance: Estimate, load: Estimate) -> Estimate:
     error = abs(compliance.value) * load.error + compliance.error * abs(load.value)
     return Estimate(approach.value - compliance.value * load.value, approach.error + error)
 
@@ -204,14 +204,14 @@ class Results:
     ----------
     study : Study
         What was computed.
-    rows : sequence of Row
+    rows : sequence of DeviationRow
         Its table.
     borders : sequence of Border
         Where the jumps begin.
     """
 
     study: Study
-    rows: Sequence[Row]
+    rows: Sequence[DeviationRow]
     borders: Sequence[Border]
 
 
@@ -223,18 +223,18 @@ def results(study: Study, bulk: BulkCompliance | None = None) -> Results:
 # Files: CSV for all, Parquet for those who have the library
 
 NUMBERS = ("value", "baseline", "half_space", "deviation")  # each followed by its error
-FIELDS = tuple(field.name for field in fields(Row))
+FIELDS = tuple(field.name for field in fields(DeviationRow))
 COLUMNS = tuple(n for name in FIELDS for n in ((name, f"{name}_error") if name in NUMBERS else (name,)))
 TEXTS = ("cause", "quantity", "unit", "status", "reason", "kind")
 NO_PARQUET = "no Parquet file is written, which needs the extra parquet; pip install 'fem-adhesion[parquet]'"
 
 
-def write_tables(rows: Sequence[Row], directory: Path) -> str:
+def write_tables(rows: Sequence[DeviationRow], directory: Path) -> str:
     """Write finite_sphere.csv, and finite_sphere.parquet where pyarrow is installed.
 
     Parameters
     ----------
-    rows : sequence of Row
+    rows : sequence of DeviationRow
         From `rows`.
     directory : Path
         Which exists and is to be seen by others only when it is complete.
@@ -256,13 +256,13 @@ def write_tables(rows: Sequence[Row], directory: Path) -> str:
     return ""
 
 
-def _arrow(rows: Sequence[Row]) -> Any:
+def _arrow(rows: Sequence[DeviationRow]) -> Any:
     arrow = importlib.import_module("pyarrow")
     schema = arrow.schema([(name, arrow.string() if name in TEXTS else arrow.float64()) for name in COLUMNS])
     return arrow.Table.from_pylist([_cells(row) for row in rows], schema=schema)
 
 
-def _cells(row: Row) -> dict[str, object]:
+def _cells(row: DeviationRow) -> dict[str, object]:
     """Cells of a line by the names of their columns, None where there is nothing."""
     return dict(zip(COLUMNS, (cell for name in FIELDS for cell in _cells_of(name, getattr(row, name))), strict=True))
 

@@ -1,5 +1,4 @@
 """One page that a reviewer can be sent. The command ``report``.
 
-`walk` (the states of one curve), `levels` and `sections` (the comparison, and what other commands left), `parts` and
-`figures`, `page`, `command`.
+`walk` (the states of one curve), `levels` (the comparison), `sections` (what other commands left), `page`, `command`.
 """

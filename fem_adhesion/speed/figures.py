@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from fem_adhesion.common import style
 from fem_adhesion.common.style import Picture
 from fem_adhesion.speed.methods import Family, Method
-from fem_adhesion.speed.result import Rung, SpeedStudy, pareto_front
+from fem_adhesion.speed.result import SpeedStudy, Timing, pareto_front
 
 CAPTION = "Error against wall time: half-space left, finite elements right."
 FAMILIES: tuple[Family, ...] = ("half-space", "finite elements")
@@ -71,7 +71,7 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
     return figure
 
 
-def _draw_front(axes: Any, front: Sequence[Rung], quantity: str) -> None:
+def _draw_front(axes: Any, front: Sequence[Timing], quantity: str) -> None:
     """A broad grey line behind the points that no other beats in both time and error."""
     if not front:
         return

@@ -11,7 +11,7 @@ from fem_adhesion.common.page import Table, markdown, write_csv
 from fem_adhesion.common.style import draw
 from fem_adhesion.speed.figures import pictures
 from fem_adhesion.speed.methods import QUANTITIES
-from fem_adhesion.speed.result import Rung, SpeedStudy, best, cheapest
+from fem_adhesion.speed.result import SpeedStudy, Timing, best, cheapest
 
 TOLERANCES = (1e-3, 1e-6)
 UNITS = {"pull_off": "R dgamma", "jump_on": "eps", "hysteresis": "R dgamma eps"}
@@ -30,7 +30,7 @@ def write(study: SpeedStudy, directory: Path) -> None:
     draw(pictures(study), study, directory)
 
 
-def _cells(rung: Rung, yardstick: float) -> list[str]:
+def _cells(rung: Timing, yardstick: float) -> list[str]:
     """Row of the table; what is not known is left empty."""
     errors = [
         _number(value, "{:.3e}")
@@ -109,13 +109,13 @@ def _costs(study: SpeedStudy, title: str, quantity: str | None) -> Table:
     return Table("", title, "", columns, rows)
 
 
-def _cost(rung: Rung | None, study: SpeedStudy) -> str:
+def _cost(rung: Timing | None, study: SpeedStudy) -> str:
     if rung is None:
         return "-"
     return f"{rung.seconds:.2f} s = {rung.seconds / study.yardstick:.0f} yardsticks ({rung.setting})"
 
 
-def _best(rung: Rung | None, quantity: str | None) -> str:
+def _best(rung: Timing | None, quantity: str | None) -> str:
     named = quantity or (rung.worst if rung else None)
     if rung is None or named is None:
         return "-"

@@ -43,7 +43,7 @@ class Truth:
 
 
 @dataclass(frozen=True)
-class Rung:
+class Timing:
     """One resolution of one method.
 
     Attributes
@@ -135,7 +135,7 @@ class SpeedStudy:
         Seconds that one dgesv of n = 200 took in the same run.
     methods : tuple of Method
         In the order of the report.
-    rungs : tuple of Rung
+    rungs : tuple of Timing
         In the order of the methods.
     """
 
@@ -144,14 +144,14 @@ class SpeedStudy:
     truths: Mapping[Family, Truth]
     yardstick: float
     methods: tuple[Method, ...]
-    rungs: tuple[Rung, ...]
+    rungs: tuple[Timing, ...]
 
     @property
     def quantities(self) -> tuple[str, ...]:
         """Quantities that every truth has."""
         return tuple(q for q in QUANTITIES if all(q in truth.values for truth in self.truths.values()))
 
-    def of(self, method: str) -> list[Rung]:
+    def of(self, method: str) -> list[Timing]:
         """Rungs of a method by name."""
         return [rung for rung in self.rungs if rung.method == method]
 
@@ -178,7 +178,7 @@ class SpeedStudy:
         return Exponents(len(rungs), slope(n, t), slope(n, m), slope(accuracy, t), slope(accuracy, m))
 
 
-def _troubles(method: Method, rungs: Sequence[Rung]) -> Iterator[str]:
+def _troubles(method: Method, rungs: Sequence[Timing]) -> Iterator[str]:
     """Failures of one method: a coarse grid may be refused, but not above a finer one that was not."""
     solved = False
     for rung in rungs:
@@ -191,29 +191,29 @@ def _troubles(method: Method, rungs: Sequence[Rung]) -> Iterator[str]:
         yield f"{method.name}: no rung has a result"
 
 
-def cheapest(rungs: Sequence[Rung], tolerance: float, quantity: str | None = None) -> Rung | None:
+def cheapest(rungs: Sequence[Timing], tolerance: float, quantity: str | None = None) -> Timing | None:
     """Fastest rung within the tolerance, in one quantity or in all that it gives; None if there is none."""
     good = [rung for rung in rungs if _error(rung, quantity) <= tolerance]
     return min(good, key=lambda rung: rung.seconds, default=None)
 
 
-def best(rungs: Sequence[Rung], quantity: str | None = None) -> Rung | None:
+def best(rungs: Sequence[Timing], quantity: str | None = None) -> Timing | None:
     """Most accurate rung, in one quantity or in all; None if none converged."""
     good = [rung for rung in rungs if np.isfinite(_error(rung, quantity))]
     return min(good, key=lambda rung: _error(rung, quantity), default=None)
 
 
-def _error(rung: Rung, quantity: str | None) -> float:
+def _error(rung: Timing, quantity: str | None) -> float:
     named = quantity or rung.worst
     return rung.error(named) if named else float("nan")
 
 
-def pareto_front(rungs: Sequence[Rung], quantity: str) -> list[Rung]:
+def pareto_front(rungs: Sequence[Timing], quantity: str) -> list[Timing]:
     """Rungs than which none is both faster and more accurate, from the fastest to the most accurate.
 
     Of those whose error the truth cannot tell only the fastest counts: no other is known to be more accurate.
     """
-    front: list[Rung] = []
+    front: list[Timing] = []
     known = [rung for rung in rungs if np.isfinite(rung.error(quantity))]
     for rung in sorted(known, key=lambda r: (r.seconds, r.error(quantity))):
         if not front or (rung.error(quantity) < front[-1].error(quantity) and not front[-1].hidden(quantity)):

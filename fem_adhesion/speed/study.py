@@ -21,7 +21,7 @@ from fem_adhesion.scene import Scene
 from fem_adhesion.speed.element_methods import POISSON, element_methods
 from fem_adhesion.speed.halfspace_methods import halfspace_methods
 from fem_adhesion.speed.methods import Family, Method, Solved, Step
-from fem_adhesion.speed.result import Rung, SpeedStudy, Status, Truth
+from fem_adhesion.speed.result import SpeedStudy, Status, Timing, Truth
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
@@ -62,7 +62,7 @@ def measure(
     chosen = tuple([*halfspace_methods(), *element_methods()] if methods is None else methods)
     truths = find_truths(tabor)
     yardstick = time_yardstick()
-    rungs: list[Rung] = []
+    rungs: list[Timing] = []
     for number, method in enumerate(chosen):
         progress(method.name, number, len(chosen))
         rungs += _climb(method, tabor, truths[method.family], quick=quick)
@@ -110,25 +110,25 @@ def _seconds(work: Callable[[], object]) -> float:
     return time.perf_counter() - began
 
 
-def _climb(method: Method, tabor: float, truth: Truth, *, quick: bool) -> Iterator[Rung]:
+def _climb(method: Method, tabor: float, truth: Truth, *, quick: bool) -> Iterator[Timing]:
     """Rungs of a method; in the full study those of the quick ladder, which are cheap, are timed once more, warm."""
     for number, step in enumerate(method.ladder(quick=quick)):
         yield _run(method.name, step, tabor, truth, again=not quick and number < method.quick)
 
 
-def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) -> Rung:
+def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) -> Timing:
     """One rung: run it, time it again if asked, and compare with the truth."""
     began = time.perf_counter()
     try:
         with peak_memory() as memory:
             solved = step.run(tabor)
     except (InputError, NotConverged) as error:
-        return Rung(method, step.setting, _status(error), time.perf_counter() - began, str(error))
+        return Timing(method, step.setting, _status(error), time.perf_counter() - began, str(error))
     seconds = time.perf_counter() - began
     if again:
         seconds = min(seconds, _seconds(lambda: step.run(tabor)))
     errors, floors = _errors(solved, truth), {name: truth.relative(name, e.error) for name, e in truth.values.items()}
-    return Rung(method, step.setting, "converged", seconds, "", solved.unknowns, memory.mebibytes, errors, floors)
+    return Timing(method, step.setting, "converged", seconds, "", solved.unknowns, memory.mebibytes, errors, floors)
 
 
 def _status(error: InputError | NotConverged) -> Status:

@@ -58,7 +58,7 @@ def pictures(block, tmp_path_factory):
 
 def _run(*arguments):
     parser = Parser(prog="fem-adhesion")
-    curve.add(parser.add_subparsers(required=True, parser_class=Parser))
+    curve.COMMAND.add_to(parser.add_subparsers(required=True, parser_class=Parser))
     options = parser.parse_args(["curve", *map(str, arguments)])
     return options.run(options)
 
