@@ -3,19 +3,30 @@
 import subprocess
 import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from fem_adhesion.cli import STUDIES
+from fem_adhesion import cli
+from fem_adhesion.speed import command as speed
 
 PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())["project"]
+EXTRA = {  # what each library of the extra is imported as
+    "rich": "rich",
+    "matplotlib": "matplotlib",
+    "joblib": "joblib",
+    "Pint": "pint",
+    "Jinja2": "jinja2",
+    "MarkupSafe": "markupsafe",  # comes with Jinja2
+    "pillow": "PIL",
+}
 BLOCKED = f"""
 import sys
 
 class Blocked:
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in {STUDIES}:
+        if name.partition(".")[0] in {tuple(EXTRA.values())}:
             raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
 
 sys.meta_path.insert(0, Blocked())
@@ -32,9 +43,19 @@ def names(requirements):
 
 def test_the_solvers_need_four_libraries():
     assert names(PROJECT["dependencies"]) == {"numpy", "scipy", "scikit-fem", "meshio"}
-    assert names(PROJECT["optional-dependencies"]["studies"]) == {
-        "rich", "matplotlib", "joblib", "Pint", "Jinja2", "pillow",
-    }  # fmt: skip
+    assert names(PROJECT["optional-dependencies"]["studies"]) == set(EXTRA) - {"MarkupSafe"}
+
+
+@pytest.mark.parametrize("library", EXTRA.values())
+def test_each_library_of_the_extra_is_named_with_it(library, monkeypatch, capsys):
+    def missing(_):
+        raise ModuleNotFoundError(f"No module named {library!r}", name=f"{library}.part")
+
+    monkeypatch.setattr(cli, "COMMANDS", (replace(speed.COMMAND, run=missing),))
+    assert cli.main(["speed", "--out", "out"]) == 2
+    assert capsys.readouterr().err == (
+        f"fem-adhesion: {library}.part is not installed; pip install 'fem-adhesion[studies]'\n"
+    )
 
 
 def test_a_curve_is_traced_without_the_extra():

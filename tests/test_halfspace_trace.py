@@ -102,6 +102,34 @@ def test_the_unstable_branch_lies_between_the_jumps(curves):
     assert not (path.stable_under_dead_load[1:] & path.stable_under_dead_load[:-1])[falling].any()
 
 
+def test_an_event_gives_each_of_its_numbers_with_its_own_error(curves):
+    event = curves[2.0].event("jump_off")
+    for name in ("approach", "load", "central_gap", "contact_radius"):
+        estimate = event.estimate(name)
+        assert (estimate.value, estimate.error) == (getattr(event, name), getattr(event, f"{name}_error"))
+    assert len({event.estimate(name) for name in ("approach", "load", "central_gap")}) == 3
+
+
+def test_the_states_of_a_path_that_meet_a_condition_come_in_order(curves):
+    path = curves[2.0]
+    on, off = path.states(FOLD)
+    assert on.point.arclength < off.point.arclength
+    for fold, name in ((on, "jump_on"), (off, "jump_off")):
+        assert fold.point.observables[0] == pytest.approx(path.event(name).approach, abs=1e-3)
+
+
+def test_between_its_points_a_segment_is_drawn_with_their_tangents(curves):
+    for segment in curves[2.0].segments:
+        values, rates = segment.between(4)
+        assert values.shape == rates.shape == (4 * (len(segment.points) - 1) + 1, 4)
+        ends = np.array([point.observables[:3] for point in segment.points])
+        assert values[::4, :3] == pytest.approx(ends, rel=1e-12, abs=1e-12)
+        slopes = np.array([point.rates[:3] for point in segment.points])
+        assert rates[::4, :3] == pytest.approx(slopes, rel=1e-9, abs=1e-9)
+        apart = any(np.isnan(point.observables[CONTACT_RADIUS]) for point in segment.points)
+        assert np.isnan(values[:, CONTACT_RADIUS]).all() == apart
+
+
 def test_the_curve_runs_from_separation_to_compression(curves):
     for tabor, path in curves.items():
         assert abs(path.load[0]) < 0.03
