@@ -1,14 +1,15 @@
 """Adhesive contact of elastic spheres by finite elements, checked against the integral equation of `halfspace`.
 
-Rooms, in the order of reading: `scene` (what is asked), `mesh`, `elasticity`, `bodies`, `finite_strain`, `convergence`
-(the curve that answers), `fields` and `paraview` (inside the body), a folder for each command, and `common` for what
-these share. `weak_form` is the contact problem as a textbook has it, `harmonics` the whole sphere in Legendre
-polynomials, and `monolithic` Newton's method on all unknowns; they only check the others.
+Rooms, in the order of reading: `scene` (what is asked) and its parts, `bodies` and `materials`, `mesh`, `elasticity`,
+`discretise` (from a scene to an operator), `finite_strain`, `convergence` (the curve that answers), `fields` and
+`paraview` (inside the body), a folder for each command, and `common` for what these share; `registry` has the names of
+parts. `weak_form` is the contact problem as a textbook has it, `harmonics` the whole sphere in Legendre polynomials,
+and `monolithic` Newton's method on all unknowns; they only check the others.
 
 What it is good for, and what not:
 
-* Axisymmetric and frictionless. Small strain unless a scene asks for ``strain="finite"``. The traction acts vertically
-  on the projected area; the other convention, on the surface's own area, is a scene's choice and differs by O(eps/R).
+* Axisymmetric and frictionless. Small strain unless a body is `NeoHookean`. The traction acts vertically on the
+  projected area; the other convention, on the surface's own area, is a material's choice and differs by O(eps/R).
 * At finite strain the projected area is stretched, and what the traction is counted per matters as much as the strain:
   the default conserves the attracted matter, as the wall's potential on every particle of the body does; the other
   choices of ``traction`` are beside it, and their spread is given with each event as model uncertainty. What that
@@ -28,12 +29,39 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from fem_adhesion.bodies.block import Block
+    from fem_adhesion.bodies.half_space import HalfSpace
+    from fem_adhesion.bodies.held_sphere import HeldSphere
+    from fem_adhesion.bodies.hemisphere import Hemisphere
+    from fem_adhesion.bodies.meshed import Meshed
     from fem_adhesion.convergence import trace
-    from fem_adhesion.scene import Counter, Scene
+    from fem_adhesion.crosscheck.study import compare
+    from fem_adhesion.materials import LinearElastic, NeoHookean
+    from fem_adhesion.scene import Scene, share_of
 
-__all__ = ["Counter", "Scene", "trace"]
+__all__ = [
+    "Block",
+    "HalfSpace",
+    "HeldSphere",
+    "Hemisphere",
+    "LinearElastic",
+    "Meshed",
+    "NeoHookean",
+    "Scene",
+    "compare",
+    "share_of",
+    "trace",
+]
 
-_HOMES = {"trace": "convergence", "Counter": "scene", "Scene": "scene"}
+_HOMES = {
+    **{name: f"bodies.{home}" for name, home in (("Block", "block"), ("HalfSpace", "half_space"))},
+    **{name: f"bodies.{home}" for name, home in (("Hemisphere", "hemisphere"), ("HeldSphere", "held_sphere"))},
+    "Meshed": "bodies.meshed",
+    **dict.fromkeys(("LinearElastic", "NeoHookean"), "materials"),
+    **dict.fromkeys(("Scene", "share_of"), "scene"),
+    "trace": "convergence",
+    "compare": "crosscheck.study",
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -1,58 +1,46 @@
-"""The finite-element load-approach curve to an accuracy asked for: a ladder of meshes, degrees and block sizes."""
+"""The finite-element load-approach curve to an accuracy asked for: ladders of meshes, degrees and sizes."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+import math
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
-from skfem import ElementQuadP
 
-from fem_adhesion.bodies import sized, user_mesh
-from fem_adhesion.elasticity import far_field
-from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.incompressible import stiffness_for
-from fem_adhesion.elasticity.space import Space
+from fem_adhesion.bodies.body import MOST_RINGS, Discretisation
+from fem_adhesion.discretise import (
+    CURVE_DEGREE,
+    Discretised,
+    block_size,
+    discretise,
+    finest_length,
+    size_for,
+    sized_body,
+)
 from fem_adhesion.finite_strain import scene as finite_strain_scene
-from fem_adhesion.mesh.block import graded_breaks, tensor_grid
+from fem_adhesion.mesh.block import graded_breaks
+from fem_adhesion.mesh.file import read_scaled
 from fem_adhesion.scene import Scene
+from halfspace.accuracy.finite_bodies import AroundEvents, surroundings
 from halfspace.accuracy.refinement import MOST_RUNGS, Charted, Charts, Rung, climb
-from halfspace.accuracy.trace import rings, widened, widest_radius
-from halfspace.elastic import grid
+from halfspace.accuracy.trace import TWIN, rings
 from halfspace.elastic.compliance import to_infinity
 from halfspace.elastic.operators import Homogeneous
-from halfspace.equilibrium.contact import ContactProblem, spike_width
+from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.errors import GridTooCoarse
 from halfspace.limits import require_load, require_rtol
-
-FAR_FIELDS = {"point_load": far_field.point_load, "clamped": far_field.clamped, "free": far_field.free}
+from halfspace.values import Array
 
 # Ratio of the block's radii on two successive rungs. The load left out beyond a block that goes on as a half-space
 # falls as L^-4: a decade. Held blocks err by O(1/L): half the change from L/3 to L exceeds the error at L.
-LARGER = {"point_load": 10**0.25, "clamped": 3.2, "free": 3.2}
+LARGER_ENDLESS, LARGER_HELD = 10**0.25, 3.2
 
-
-@dataclass(frozen=True)
-class Resolution:
-    """How finely the block is discretised.
-
-    Attributes
-    ----------
-    degree : int
-        Of the quadrilateral elements; the error falls about a decade a degree.
-    finest : float
-        Length of the cells at the contact edge, in widths of the spike of tension there.
-    growth : float
-        Ratio of neighbouring cells.
-    radius : float
-        Size of the block in beta.
-    """
-
-    degree: int
-    finest: float
-    growth: float
-    radius: float
+FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
+PER_DEGREE = 15.0  # what each degree divides it by
+REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
 
 
 def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> EquilibriumPath:
@@ -71,11 +59,11 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     Returns
     -------
     EquilibriumPath
-        The curve and its events. Of a block, their error estimates add the change by a higher degree and by a larger
-        block, that is, they are distances from the half-space, not from the block; of another body they are the change
-        by a higher degree, beside that from other cells if it is bonded or held over a cap, of a user's mesh that by a
-        finer one. Points of the curve, and the states between them, are
-        solved for anew when they are asked for, see `EquilibriumPath.at`.
+        The curve and its events. Of a half-space, their error estimates add the change by a higher degree and by a
+        larger block, that is, they are distances from the half-space, not from the block; of another body they are the
+        change by a higher degree, beside that from other cells if it is bonded or held over a cap, of a user's mesh
+        that by a finer one. Points of the curve, and the states between them, are solved for anew when they are asked
+        for, see `EquilibriumPath.at`.
 
     Raises
     ------
@@ -85,41 +73,57 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
         If the curve cannot be traced.
     """
     rtol, to_load = require_rtol(rtol), require_load(to_load)
-    if scene.strain == "finite":
+    if scene.material.finite:
         return finite_strain_scene.trace(scene, rtol, to_load)
-    if isinstance(scene.body, Path):
-        return user_mesh.trace(scene, rtol, to_load)
-    if scene.sized:
-        return climb(rtol, partial(sized.ladder, scene, rtol, to_load), to_load=to_load)
-    most_rungs = MOST_RUNGS if scene.radius is None else 1
-    return climb(rtol, partial(ladder, scene, rtol, to_load), to_load=to_load, most_rungs=most_rungs)
+    if scene.body.file:
+        return _trace_on_given_mesh(scene, scene.body.file, rtol, to_load)
+    steps = sized_ladder if scene.sized else ladder
+    most_rungs = MOST_RUNGS if scene.sized or block_size(scene) is None else 1
+    return climb(rtol, partial(steps, scene, rtol, to_load), to_load=to_load, most_rungs=most_rungs)
+
+
+# A half-space without a length, as a block
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How finely and how far a half-space is discretised.
+
+    Attributes
+    ----------
+    how : Discretisation
+        How finely.
+    radius : float
+        Size of the block in beta.
+    """
+
+    how: Discretisation
+    radius: float
+
+    @property
+    def settings(self) -> dict[str, float]:
+        """What was chosen, for a record."""
+        how = self.how
+        return {"degree": how.degree, "finest": how.finest, "growth": how.growth, "radius": self.radius}
 
 
 def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: first the degree of the rung below on a larger block, then one degree more."""
     above, below = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
-    wider = Resolution(below.degree, below.finest, below.growth, above.radius)
-    stages = (wider, above) if level else ()
+    stages = (replace(below, radius=above.radius), above) if level else ()
     charted = tuple(Charted(block_charts(scene, stage, to_load)) for stage in stages)
     curve = partial(block_charts, scene, above, to_load)
     # A block of given size is compared with one other size only, and if both are small most of the error is left.
-    return Rung(curve, charted, asdict(above), remaining=1.0 if scene.radius is None else 2.0)
+    return Rung(curve, charted, above.settings, remaining=1.0 if block_size(scene) is None else 2.0)
 
 
 def resolution_for(scene: Scene, rtol: float, level: int) -> Resolution:
     """Resolution of a level, whose events are right to about `rtol` at level 0 and a decade better at each above it."""
     degree = int(np.clip(np.ceil(-np.log10(rtol)), 3, 9)) + level
-    larger = LARGER[scene.far_field]
-    if scene.radius is None:
-        radius = size_for(scene.tabor, rtol) * larger**level
-    else:
-        radius = scene.radius if level else scene.radius / larger
-    return Resolution(degree, finest=0.6, growth=2.5, radius=float(radius))
-
-
-def size_for(tabor: float, rtol: float) -> float:
-    """Size in beta of a block whose far field, that of a point load, leaves errors of rtol in the events."""
-    return float(2.5 * min(rtol, 0.01) ** -0.25 * widened(tabor) / np.sqrt(tabor))
+    larger, size = LARGER_ENDLESS if scene.body.endless else LARGER_HELD, block_size(scene)
+    if size is None:
+        return Resolution(Discretisation(degree), size_for(scene.scales, rtol) * larger**level)
+    return Resolution(Discretisation(degree), size if level else size / larger)
 
 
 def block_charts(scene: Scene, resolution: Resolution, to_load: float = COMPRESSION) -> Charts:
@@ -128,29 +132,100 @@ def block_charts(scene: Scene, resolution: Resolution, to_load: float = COMPRESS
     A block continued by a half-space has no length of its own, so its mesh may follow the contact edge; one that is
     clamped or free has, and needs a mesh that is fine wherever the edge passes.
     """
-    if scene.far_field != "point_load":
-        return (_fixed_chart(scene, resolution, to_load),)
-    lines = rings(scene.tabor, resolution.finest, resolution.growth, resolution.radius * np.sqrt(scene.tabor), to_load)
-    return (
-        _chart(scene, lines.centred, resolution, until=lines.until),
-        _chart(scene, lines.edge, resolution, follows_contact=True),
+    how, radius = resolution.how, resolution.radius
+    if not scene.body.endless:
+        widest = min(scene.scales.widest_radius(to_load), radius / 2)
+        made = discretise(scene, graded_breaks(finest_length(scene, how), widest, radius), how)
+        return (Chart(made.problem, made.unknowns),)
+    extent = np.sqrt(2 * scene.tabor * float(scene.surface.height(np.array(radius))))
+    lines = rings(scene.scales, how.finest, how.growth, extent, to_load)
+    centred, edge = (_to_infinity(scene, breaks, how) for breaks in (lines.centred, lines.edge))
+    following = ContactProblem(Homogeneous(edge.operator), scene.tabor, scene.law, scene.surface)
+    return Chart(centred.problem, centred.unknowns, lines.until), Chart(following, edge.unknowns)
+
+
+def _to_infinity(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
+    """Block with one more cell, that reaches to infinity."""
+    made = discretise(scene, lines, how)
+    return replace(made, operator=to_infinity(made.operator, how.degree + 1, scene.scales.tail_reach))
+
+
+# Bodies with a length
+
+
+def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
+    """Rung of a level: the events on elements of a degree that suits the tolerance, one more on each level.
+
+    Where a body is held the stress may be singular, which a degree more does not tell: other cells are a twin there.
+    """
+    degree = degree_for(rtol) + level
+    how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
+    twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
+    other = AroundEvents(sized_body(scene, twin), *surroundings(rtol, level - 1), to_load)
+    return Rung(
+        partial(sized_body(scene, curve).curve, to_load),
+        (AroundEvents(sized_body(scene, how), *surroundings(rtol, level), to_load),),
+        asdict(how) | {"curve_degree": curve.degree},
+        other if level and scene.body.singular else None,
+        remaining=REMAINING,
+        along=True,
     )
 
 
-def _fixed_chart(scene: Scene, resolution: Resolution, to_load: float) -> Chart:
-    widest = widest_radius(scene.tabor, to_load)
-    fine = resolution.finest * spike_width(scene.tabor) / 2
-    return _chart(scene, graded_breaks(fine, min(widest, resolution.radius / 2), resolution.radius), resolution)
+def degree_for(rtol: float) -> int:
+    """Degree of the elements on the lowest rung."""
+    return int(np.clip(4 + np.ceil(np.log(FOURTH / rtol) / np.log(PER_DEGREE) - 1e-9), 4, 8))
 
 
-def _chart(
-    scene: Scene, r_breaks: np.ndarray, resolution: Resolution, *, until: float = np.inf, follows_contact: bool = False
-) -> Chart:
-    """Condense the block whose cells have these radii, graded in depth from the finest of them."""
-    depths = grid.graded(0.0, np.diff(r_breaks).min(), r_breaks[-1], growth=resolution.growth)
-    space = Space(tensor_grid(r_breaks, depths), ElementQuadP(resolution.degree))
-    stiffness = stiffness_for(scene.poisson)
-    body = condense(space, scene.poisson, far_field=FAR_FIELDS[scene.far_field], stiffness=stiffness)
-    operator = to_infinity(body.operator, resolution.degree + 1) if scene.far_field == "point_load" else body.operator
-    problem = ContactProblem(Homogeneous(operator) if follows_contact else operator, scene.tabor)
-    return Chart(problem, body.unknowns, until)
+def with_rings(degree: int) -> Discretisation:
+    """Discretisation whose rings leave less than its degree does."""
+    return Discretisation(degree, rings=min(degree - 2, MOST_RINGS))
+
+
+# A mesh that is given
+
+
+def _trace_on_given_mesh(scene: Scene, file: Path, rtol: float, to_load: float) -> EquilibriumPath:
+    """Trace on a mesh and once cut finer; raise GridTooCoarse in the file's unit if it does not carry the spike."""
+    _, unit = read_scaled(file)
+    try:
+        return climb(rtol, partial(mesh_ladder, scene, unit), to_load=to_load, most_rungs=1)
+    except GridTooCoarse as error:
+        raise _in_the_files_unit(error, scene, unit) from error
+
+
+def mesh_ladder(scene: Scene, unit: float, level: int) -> Rung:
+    """Rung of a level: the mesh, each cell cut into four as often as the level says, with quadratic elements."""
+    made = on_given_mesh(scene, level)
+    charts = (Chart(made.problem, made.unknowns),)
+    settings = {"mesh": str(scene.body.file), "pole_radius": unit, "degree": QUADRATIC.degree, "refined": level}
+    return Rung(lambda: charts, (Charted(charts),) if level else (), settings, remaining=1.0)
+
+
+QUADRATIC = Discretisation(2)
+
+
+def on_given_mesh(scene: Scene, times_refined: int = 0) -> Discretised:
+    """The mesh, each cell cut into four so many times."""
+    made = discretise(scene, np.zeros(1), QUADRATIC)
+    for _ in range(times_refined):
+        made = discretise(scene, np.zeros(len(made.operator.cells) + 1), QUADRATIC)
+    return made
+
+
+def _in_the_files_unit(error: GridTooCoarse, scene: Scene, unit: float) -> GridTooCoarse:
+    R = scene.sphere_radius
+    radius, length, limit = (value / R * unit for value in (error.radius, error.length, error.limit))
+    return GridTooCoarse(
+        f"mesh {scene.body.file}: lines of the contact are {length:.3g} long at r = {radius:.3g}, in the file's unit, "
+        f"limit {limit:.3g} for tabor {scene.tabor:g} and radius_ratio {scene.radius_ratio:g}; mesh it finer there "
+        f"(in the recipes of meshes/: fine = {_rounded_down(limit):.2g}, or a smaller growth beyond the fine part), or "
+        "take a smaller tabor or radius_ratio",
+        *(error.radius, error.length, error.limit),
+    )
+
+
+def _rounded_down(length: float) -> float:
+    """Two digits and a little less, as Gmsh exceeds the size it is given by some per cents."""
+    scale = 10.0 ** (math.floor(math.log10(length)) - 1)
+    return math.floor(0.97 * length / scale) * scale

@@ -29,13 +29,11 @@ from halfspace.accuracy.refinement import Rung, climb
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import FlatCoordinate
-from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem, spike_width
+from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
 from halfspace.equilibrium.events import Located
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol
-from halfspace.profiles import Paraboloid, Surface
-from halfspace.profiles.sphere import between_spheres
 from halfspace.values import Array, Valued
 
 # The sphere
@@ -267,7 +265,7 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
     Parameters
     ----------
     scene : Scene
-        A hemisphere in the sliding grip at small strain, with a counter-body or without.
+        Of a body that is ``checked_by`` harmonics, with a counter-body or without.
     rtol, to_load : float
         As in `halfspace.trace`.
 
@@ -301,7 +299,7 @@ def resolution_for(rtol: float, level: int) -> Resolution:
 
 def counts(scene: Scene, how: Resolution) -> list[int]:
     """Harmonics of each sphere."""
-    return [math.ceil(how.harmonics * R / spike_width(scene.tabor)) for R in _radii(scene) if math.isfinite(R)]
+    return [math.ceil(how.harmonics * R / scene.scales.spike_width) for R in scene.radii if math.isfinite(R)]
 
 
 def require_few(scene: Scene, rtol: float) -> None:
@@ -314,12 +312,6 @@ def require_few(scene: Scene, rtol: float) -> None:
         )
 
 
-def _radii(scene: Scene) -> tuple[float, ...]:
-    """Radii of the bodies in beta, infinite for a half-space."""
-    R, counter = scene.sphere_radius, scene.counter
-    return (R,) if counter is None else (R * (1 + 1 / counter.radius), R * (1 + counter.radius))
-
-
 RIM = 1.7 / (1 + 1.7**2 / 4)
 """Part of the smaller sphere's radius beyond which both bodies of a pair are taken as rigid."""
 CROWDED = 0.3 ** np.arange(5)
@@ -328,23 +320,22 @@ CROWDED = 0.3 ** np.arange(5)
 
 def sized_body(scene: Scene, how: Resolution) -> SizedBody:
     """Body of a scene, to be discretised on any cells of its surface."""
-    R, counter = _radii(scene)[0], scene.counter
-    gap = between_spheres(scene.sphere_radius, counter.radius if counter else math.inf)
-    profile: Surface = Paraboloid(R) if scene.profile == "paraboloid" else gap
-    outer = R * np.append(1 - (1 - (RIM if counter else 0.98)) * CROWDED, 1.0)
+    outer = scene.radii[0] * np.append(1 - (1 - (RIM if scene.counter else 0.98)) * CROWDED, 1.0)
     make = partial(_made, scene, how.nodes, counts(scene, how))
-    return SizedBody(scene.tabor, profile, make, how.finest, how.growth, outer, FlatCoordinate())
+    surface, law = scene.surface, scene.law
+    return SizedBody(scene.tabor, surface, make, how.finest, how.growth, outer, FlatCoordinate(), law=law)
 
 
 def _made(scene: Scene, nodes: int, harmonics: list[int], lines: Array) -> Made:
     """Sphere, or two bodies whose compliances add."""
-    (R, *others), cells, counter = _radii(scene), Cells(lines, nodes), scene.counter
+    (R, *others), cells, counter = scene.radii, Cells(lines, nodes), scene.counter
     found = sphere_compliance(R, scene.poisson, cells, harmonics[0])
     if counter:
         if math.isinf(others[0]):
             other = compliance.panels(lines, nodes).compliance
         else:
-            other = sphere_compliance(others[0], counter.poisson, cells, harmonics[1])
+            other = sphere_compliance(others[0], counter.material.poisson, cells, harmonics[1])
         yields = cells.places.ravel() < RIM * R
-        found = ((1 - counter.share) * found + counter.share * other) * np.outer(yields, yields)
+        part, rest = scene.shares
+        found = (part * found + rest * other) * np.outer(yields, yields)
     return cells.operator(found), found.shape[0]

@@ -1,84 +1,29 @@
-"""What is asked: one contact, dimensionless, validated and frozen."""
+"""What is asked: one contact, made of parts, dimensionless, validated and frozen."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Literal, get_args
+from dataclasses import dataclass, replace
+from functools import cached_property
 
+from fem_adhesion.bodies.body import Body
+from fem_adhesion.bodies.half_space import HalfSpace
+from fem_adhesion.materials import Material
+from fem_adhesion.registry import name_of
 from halfspace.errors import InputError
+from halfspace.laws import LENNARD_JONES, Law
 from halfspace.limits import (
-    require_cap_angle,
-    require_fixed_mesh,
     require_modulus,
     require_poisson,
-    require_radius,
     require_radius_ratio,
     require_share,
     require_tabor,
 )
+from halfspace.profiles import Profile, Sphere, Surface
+from halfspace.scales import Scales
+from halfspace.values import Array, Valued, keep
 
-FarFieldName = Literal["point_load", "clamped", "free"]
-BodyName = Literal["block", "hemisphere", "sphere"]
-ProfileName = Literal["paraboloid", "sphere"]
-GripName = Literal["sliding", "bonded"]
-TractionName = Literal["projected", "surface", "reference", "normal", "vertical"]
-StrainName = Literal["small", "finite"]
-
-
-@dataclass(frozen=True)
-class Counter:
-    """An elastic counter-body in the place of the rigid wall.
-
-    Parameters
-    ----------
-    share : float
-        Its part of the pair's compliance, (1 - nu2^2) E*/E2, between 0 and 1; 1/2 for equal materials.
-    poisson : float
-        Its Poisson's ratio.
-    radius : float
-        Ratio of its radius to that of the first body; infinite for a half-space.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
-    """
-
-    share: float
-    poisson: float = 0.3
-    radius: float = math.inf
-
-    def __post_init__(self) -> None:
-        _keep(self, share=require_share(self.share, self.radius), poisson=require_poisson(self.poisson))
-        _keep(self, radius=float(self.radius))
-
-    @classmethod
-    def from_moduli(
-        cls, modulus: float, poisson: float, counter_modulus: float, counter_poisson: float, *, radius: float = math.inf
-    ) -> Counter:
-        """Counter-body by the elastic constants of both bodies, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
-
-        Parameters
-        ----------
-        modulus, poisson : float
-            Young's modulus E1, in any unit, and Poisson's ratio nu1 of the first body, the scene's own.
-        counter_modulus, counter_poisson : float
-            E2, in the same unit, and nu2 of the counter-body.
-        radius : float
-            Ratio of its radius to that of the first body; infinite for a half-space.
-
-        Raises
-        ------
-        InputError
-            If a value is out of range.
-        """
-        compliances = [
-            (1 - require_poisson(nu) ** 2) / require_modulus(E)
-            for E, nu in ((modulus, poisson), (counter_modulus, counter_poisson))
-        ]
-        return cls(compliances[1] / sum(compliances), counter_poisson, radius)
+HALF_SPACE = HalfSpace()
 
 
 @dataclass(frozen=True)
@@ -88,34 +33,19 @@ class Scene:
     Parameters
     ----------
     tabor : float
-        Tabor parameter, positive.
-    poisson : float
-        Poisson's ratio, 0 <= poisson < 0.5.
-    radius : float, optional
-        Size L of a block in beta; chosen from the tolerance unless given.
-    far_field : {"point_load", "clamped", "free"}
-        What holds a block at its far boundary: a half-space beyond it that moves as under a point load, a clamp,
-        or nothing but the uniform traction that balances the load.
-    body : {"block", "hemisphere", "sphere"} or path
-        What is elastic: the half-space as a block of finite elements, a hemisphere held at its mid-plane, a sphere held
-        over a cap, or the body meshed in a file, see `fem_adhesion.mesh.file`.
-    profile : {"paraboloid", "sphere"}
-        Undeformed gap: r^2/2R or R - sqrt(R^2 - r^2). The body of a file has the profile of its own surface.
-    radius_ratio : float, optional
-        rho = R/eps; asked for by everything but a block under a paraboloid. R/beta = sqrt(rho/tabor).
-    grip : {"sliding", "bonded"}
-        Whether the held surface of a body may slide without friction, u_z = 0, or not at all, u = 0.
-    cap_angle : float
-        Half-angle in degrees of the cap over which a sphere is held.
-    traction : {"projected", "surface", "reference", "normal", "vertical"}
-        What the law's traction is counted per. At small strain: the projected area, exact for rigid shapes, or that of
-        the surface itself. At finite strain, where the projected area is stretched, "projected" is the blend that
-        conserves matter of "reference", per undeformed area, and "normal", per deformed area and normal to the surface;
-        "vertical", per deformed area, does not. See `fem_adhesion.finite_strain.traction`.
-    counter : Counter, optional
-        An elastic counter-body; the wall is rigid unless given. R and E* are then those of the pair.
-    strain : {"small", "finite"}
-        Linear elasticity or neo-Hookean.
+        Tabor parameter, positive; of two bodies with the R and E* of the pair, 1/R = 1/R1 + 1/R2.
+    body : Body
+        What is elastic, see `fem_adhesion.bodies`: `HalfSpace` (the default), `Block`, `Hemisphere`, `HeldSphere` or
+        `Meshed`. Each has the R/eps of its own.
+    profile : Profile, optional
+        Undeformed gap, see `halfspace.profiles`; that of the bodies themselves unless given, and of a half-space a
+        paraboloid.
+    law : Law
+        Of the tension between the surfaces, see `halfspace.laws`.
+    counter : Body, optional
+        A second, larger body, a `Hemisphere` or a `HalfSpace`, in the place of the rigid wall.
+    share : float, optional
+        Its part of the pair's compliance, (1 - nu2^2) E*/E2, between 0 and 1; 1/2 for equal materials, see `share_of`.
 
     Raises
     ------
@@ -124,34 +54,98 @@ class Scene:
     """
 
     tabor: float
-    poisson: float = 0.3
-    radius: float | None = None
-    far_field: FarFieldName = "point_load"
-    body: BodyName | Path = "block"
-    profile: ProfileName = "paraboloid"
-    radius_ratio: float | None = None
-    grip: GripName = "sliding"
-    cap_angle: float = 30.0
-    traction: TractionName = "projected"
-    counter: Counter | None = None
-    strain: StrainName = "small"
+    body: Body = HALF_SPACE
+    profile: Profile | None = None
+    law: Law = LENNARD_JONES
+    counter: Body | None = None
+    share: float | None = None
 
     def __post_init__(self) -> None:
-        _keep(self, tabor=require_tabor(self.tabor), poisson=require_poisson(self.poisson))
-        for name, names in CHOICES.items():
-            _require_one_of(name, getattr(self, name), names)
-        if self.radius is not None:
-            _keep(self, radius=require_radius(self.radius, self.tabor))
-        if self.far_field != "point_load":
-            require_fixed_mesh(self.tabor)
-        _keep(self, cap_angle=require_cap_angle(self.cap_angle))
-        self._require_radius_ratio()
-        self._require_fitting()
+        keep(self, tabor=require_tabor(self.tabor))
+        for name, part, kind in (("body", self.body, Body), ("counter", self.counter, Body | None)):
+            if not isinstance(part, kind):
+                raise InputError(f"{name} = {part!r} is no body; take fem_adhesion.Hemisphere(radius_ratio=100), say")
+        if self.profile is not None and self.body.file:
+            raise InputError(
+                f"profile = {self.profile} does not go with {self.body.name}; the mesh has its own surface"
+            )
+        self._require_pair()
+        if math.isfinite(self.body.size):
+            require_radius_ratio(self.body.size / (1 + self._smaller), self.tabor)
+        self.body.check(self.tabor, self.surface.end)
+
+    def _require_pair(self) -> None:
+        """Refuse a counter-body that cannot be, or a share without one."""
+        counter, share = self.counter, self.share
+        if counter is None:
+            if share is not None:
+                raise InputError(f"share = {share} without a counter-body; give counter too, or leave it out")
+            return
+        if not (self.body.meets and counter.faces):
+            raise InputError(
+                f"counter = {counter.name} does not go with body = {self.body.name}; a hemisphere meets another or a "
+                "half-space"
+            )
+        keep(self, share=require_share(share))
+        if not counter.size >= self.body.size:
+            raise InputError(
+                f"radius_ratio = {counter.size:g} of the counter-body is outside {self.body.size:g} <= radius_ratio; "
+                "let the smaller body be first"
+            )
+        for material in (self.body.material, counter.material):
+            if material.finite or material.area != "projected":
+                raise InputError(f"counter = {counter.name} does not go with material = {material}; leave one out")
+
+    @property
+    def _smaller(self) -> float:
+        """R1/R2, zero for a wall or a half-space."""
+        return self.body.size / self.counter.size if self.counter and math.isfinite(self.counter.size) else 0.0
+
+    @property
+    def material(self) -> Material:
+        """Of the first body."""
+        return self.body.material
+
+    @property
+    def poisson(self) -> float:
+        """Poisson's ratio of the first body."""
+        return self.material.poisson
+
+    def made_of(self, material: Material) -> Scene:
+        """Return the same contact of another material."""
+        return replace(self, body=replace(self.body, material=material))
+
+    @property
+    def shape(self) -> Profile:
+        """Undeformed gap: the profile that is given, or that of both bodies."""
+        if self.profile is not None:
+            return self.profile
+        if self._smaller:
+            return Sphere(self.body.size / (1 + self._smaller), 1 / self._smaller)
+        return self.body.shape
+
+    @cached_property
+    def surface(self) -> Surface:
+        """Its heights in beta^2/R, up to where the smaller body ends."""
+        surface, (end, *_) = self.shape.surface(self.tabor), self._own_radii
+        return surface if surface.end <= end else UpTo(surface, end)
+
+    @property
+    def scales(self) -> Scales:
+        """Its lengths."""
+        return Scales(self.tabor, self.law, self.surface)
 
     @property
     def sized(self) -> bool:
-        """Whether the scene has a length R of its own beside beta."""
-        return self.body != "block" or self.profile == "sphere"
+        """Whether the scene has a length of its own beside beta: a surface that ends."""
+        return math.isfinite(self.surface.end)
+
+    @property
+    def radius_ratio(self) -> float | None:
+        """Rho = R/eps of the body, the pair or the profile, None if none has one."""
+        if math.isfinite(self.body.size):
+            return self.body.size / (1 + self._smaller)
+        return getattr(self.shape, "radius_ratio", None)
 
     @property
     def sphere_radius(self) -> float:
@@ -159,80 +153,84 @@ class Scene:
         return math.sqrt(self.radius_ratio / self.tabor) if self.radius_ratio else math.inf
 
     @property
+    def radii(self) -> tuple[float, ...]:
+        """Radii of the bodies in beta; that of a half-space is where the surface over it ends, or infinite."""
+        first, *others = self._own_radii
+        return (first if math.isfinite(first) else self.surface.end, *others)
+
+    @property
+    def _own_radii(self) -> tuple[float, ...]:
+        R = self.sphere_radius if math.isfinite(self.body.size) else math.inf
+        if self.counter is None:
+            return (R,)
+        return R * (1 + self._smaller), R * (1 + 1 / self._smaller) if self._smaller else math.inf
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """Parts of the compliance 1/E* that are the bodies': each displaces as one of modulus E* times its part."""
+        return (1.0,) if self.share is None else (1.0 - self.share, self.share)
+
+    @property
     def told(self) -> list[str]:
         """What it is, in words: Tabor parameter, material and body, and what else is not as usual."""
+        material = self.material
         parts = {
-            "under a sphere": self.body == "block" and self.profile == "sphere",
-            "bonded": self.grip == "bonded",
-            f"cap of {self.cap_angle:g} degrees": self.body == "sphere",
-            f"traction per {self.traction}": self.traction != "projected",
-            "finite strain": self.strain == "finite",
+            f"under a {name_of(self.profile)}": self.profile is not None and self.profile != self.body.shape,
+            f"{name_of(self.law)} {self.law}": self.law != LENNARD_JONES,
+            f"traction per {material.traction}": material.traction != "projected",
+            "finite strain": material.finite,
         }
-        words = [f"tabor {self.tabor:g}", f"poisson {self.poisson:g}", str(self.body)]
+        words = [f"tabor {self.tabor:g}", f"poisson {self.poisson:g}", *self.body.told]
         words += [f"R/eps {self.radius_ratio:.4g}"] if self.radius_ratio else []
         words += [word for word, holds in parts.items() if holds]
         if self.counter:
-            share, radius = self.counter.share, self.counter.radius
-            words.append(f"counter-body with {share:.4g} of the compliance, radius {radius:.4g}")
+            larger = 1 / self._smaller if self._smaller else math.inf
+            words.append(f"counter-body with {self.share:.4g} of the compliance, radius {larger:.4g}")
         return words
 
-    def _require_radius_ratio(self) -> None:
-        if self.sized and self.radius_ratio is None:
-            raise InputError(f"radius_ratio = None for {self._what()}, limit: a number; give R/eps")
-        if not self.sized and self.radius_ratio is not None:
-            raise InputError(
-                f"radius_ratio = {self.radius_ratio:g} means nothing to a block under a paraboloid; leave it out, or "
-                'take body = "hemisphere" or profile = "sphere"'
-            )
-        if self.radius_ratio is not None:
-            _keep(self, radius_ratio=require_radius_ratio(self.radius_ratio, self.tabor))
 
-    def _require_fitting(self) -> None:
-        """Refuse options that the scene would not heed."""
-        sphere, hemisphere = self.body in ("hemisphere", "sphere"), self.body == "hemisphere"
-        unheeded = {
-            "radius": (self.radius is not None and self.sized, "only a block under a paraboloid has a size L"),
-            "far_field": (
-                self.far_field != "point_load" and self.sized,
-                "only a block under a paraboloid has a choice",
-            ),
-            "counter": (self.counter is not None and not hemisphere, "it meets a hemisphere only"),
-            "strain": (self.strain == "finite" and not hemisphere, "finite strain is for the hemisphere"),
-            "profile": (self.profile == "sphere" and isinstance(self.body, Path), "the mesh has a surface of its own"),
-            "traction": self._unheeded_traction(sphere),
-        }
-        for name, (ignored, why) in unheeded.items():
-            if ignored:
-                raise InputError(f"{name} = {getattr(self, name)} does not go with {self._what()}; {why}")
+@dataclass(frozen=True, eq=False, repr=False)
+class UpTo(Valued):
+    """A surface up to a radius `end` in beta, where the body ends."""
 
-    def _unheeded_traction(self, sphere: bool) -> tuple[bool, str]:
-        if self.strain == "finite":
-            return self.traction == "surface", "it is for small strain"
-        if self.traction == "surface":
-            return not sphere, "it differs on a curved surface only"
-        return self.traction != "projected", "areas differ at finite strain only"
+    surface: Surface
+    end: float
 
-    def _what(self) -> str:
-        return f'body = "{self.body}" and profile = "{self.profile}"'
+    def height(self, radii: Array) -> Array:
+        """Height in beta^2/R."""
+        return self.surface.height(radii)
+
+    def slope(self, radii: Array) -> Array:
+        """Derivative of the height by the radius."""
+        return self.surface.slope(radii)
+
+    def first_cell(self, tolerance: float) -> float:
+        """Length of the cell on the axis."""
+        return self.surface.first_cell(tolerance)
 
 
-def _keep(part: Counter | Scene, **numbers: float) -> None:
-    """Let a part being made have its numbers as floats, whatever they were given as."""
-    for name, number in numbers.items():
-        object.__setattr__(part, name, number)
+def share_of(modulus: float, poisson: float, counter_modulus: float, counter_poisson: float) -> float:
+    """Part of the compliance that a counter-body has by the elastic constants of both, 1/E* = sum (1 - nu^2)/E.
+
+    Parameters
+    ----------
+    modulus, poisson : float
+        Young's modulus E1, in any unit, and Poisson's ratio nu1 of the first body.
+    counter_modulus, counter_poisson : float
+        E2, in the same unit, and nu2 of the counter-body.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+    compliances = [
+        (1 - require_poisson(nu) ** 2) / require_modulus(E)
+        for E, nu in ((modulus, poisson), (counter_modulus, counter_poisson))
+    ]
+    return compliances[1] / sum(compliances)
 
 
-CHOICES: dict[str, Any] = {
-    "far_field": get_args(FarFieldName),
-    "body": get_args(BodyName),
-    "profile": get_args(ProfileName),
-    "grip": get_args(GripName),
-    "traction": get_args(TractionName),
-    "strain": get_args(StrainName),
-}
-
-
-def _require_one_of(name: str, value: object, names: tuple[str, ...]) -> None:
-    if value not in names and not (name == "body" and isinstance(value, Path)):
-        remedy = "a mesh is given as a pathlib.Path; " if name == "body" else ""
-        raise InputError(f"{name} = {value!r} is not one of {', '.join(names)}; {remedy}take {names[0]}")
+def facing_pair(radius_ratio: float, counter_radius: float) -> tuple[float, float]:
+    """R1/eps and R2/eps of two bodies from the pair's R/eps, 1/R = 1/R1 + 1/R2, and R2/R1."""
+    return radius_ratio * (1 + 1 / counter_radius), radius_ratio * (1 + counter_radius)

@@ -12,7 +12,7 @@ SMALLEST_SPHERE = 1.5**2
 """Least R/eps over the Tabor parameter, (R/beta)^2."""
 
 
-def require_number(value: float, name: str) -> float:
+def require_number(value: object, name: str) -> float:
     """Return a real number of any type as a float, or raise InputError for what is none."""
     if isinstance(value, bool) or not isinstance(value, Real):
         shown, kind = " ".join(reprlib.repr(value).split()), type(value).__name__
@@ -21,6 +21,12 @@ def require_number(value: float, name: str) -> float:
         return float(value)
     except OverflowError as error:
         raise InputError(f"{name} has {len(str(value))} digits, limit: 1.8e308; give a float") from error
+
+
+def require_one_of(value: object, name: str, names: tuple[str, ...]) -> None:
+    """Raise InputError unless a word is one of some names."""
+    if value not in names:
+        raise InputError(f"{name} = {value!r} is not one of {', '.join(names)}; take {names[0]}")
 
 
 def require_tabor(tabor: float) -> float:
@@ -70,7 +76,7 @@ def require_points(points: int) -> int:
     return int(points)
 
 
-def require_radius(radius: float, tabor: float) -> float:
+def require_radius(radius: float, tabor: float = math.inf) -> float:
     """Return the size of a block, or raise InputError unless the contact and its attraction fit in, and it in floats.
 
     A contact is 2 to 3 beta wide and a nearly rigid sphere attracts over some beta/sqrt(tabor); half a block must do,
@@ -78,7 +84,7 @@ def require_radius(radius: float, tabor: float) -> float:
     """
     radius = require_number(radius, "radius")
     least = 5 * max(1.0, tabor**-0.5)
-    remedy = "a contact is 2 to 3 beta wide, take 50 or more, or none to have it chosen"
+    remedy = "a contact is 2 to 3 beta wide, take 50 or more, or a half-space"
     return _require(radius, "radius", least < radius <= 1e9, f"{least:.3g} < radius <= 1e9", remedy)
 
 
@@ -159,17 +165,10 @@ def require_film(ratio: float) -> float:
     return _require(ratio, "modulus_ratio", 0.001 <= ratio <= 100, "0.001 <= modulus_ratio <= 100", remedy)
 
 
-def require_share(share: float, radius: float) -> float:
-    """Return a counter-body's part of the compliance, or raise InputError unless 0 < share < 1 and its radius is."""
+def require_share(share: float | None) -> float:
+    """Return a counter-body's part of the compliance, or raise InputError unless 0 < share < 1."""
     share = require_number(share, "share")
-    radius = require_number(radius, "radius")
-    remedy = "a rigid one is no counter-body: leave it out"
-    _require(share, "share", 0 < share < 1, "0 < share < 1", remedy)
-    if not radius >= 1:
-        raise InputError(
-            f"radius = {radius:g} of the counter-body is outside 1 <= radius; let the smaller body be first"
-        )
-    return share
+    return _require(share, "share", 0 < share < 1, "0 < share < 1", "a rigid one is no counter-body: leave it out")
 
 
 def _require(value: float, name: str, holds: bool, limit: str, remedy: str) -> float:

@@ -114,3 +114,9 @@ def _fields(value: Any) -> tuple[Field[Any], ...]:
 
 def _shown(value: Any) -> list[Field[Any]]:
     return [field for field in _fields(value) if field.repr]
+
+
+def keep(part: object, **values: object) -> None:
+    """Let a frozen part that is being made hold its values as they were checked, numbers as floats."""
+    for name, value in values.items():
+        object.__setattr__(part, name, value)

@@ -19,15 +19,15 @@ from typing import Any, NamedTuple
 
 import side_by_side
 import truths
+from scenes import pair
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene
+from fem_adhesion import HalfSpace, HeldSphere, Hemisphere, Meshed, NeoHookean, Scene
 from fem_adhesion.assess.study import assess
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.jobs import stream
 from fem_adhesion.common.progress import progress_bar
-from fem_adhesion.scene import Counter
 from halfspace import Coated, Layer, Layers, Stratum
 from halfspace.equilibrium.curve import energy_released, placed
 from halfspace.equilibrium.devices import cycle
@@ -277,18 +277,22 @@ def _in_si(contact, path, stage):
 # The families ---------------------------------------------------------------------------------------------------------
 
 
-def _sphere(tabor, radius_ratio, **more):
-    return Scene(tabor, body=more.pop("body", "hemisphere"), profile="sphere", radius_ratio=radius_ratio, **more)
+def _sphere(tabor, radius_ratio, body=Hemisphere, **of_body):
+    return Scene(tabor, body(radius_ratio=radius_ratio, **of_body))
+
+
+def _elements_under_sphere(tabor, radius_ratio, poisson):
+    return Scene(tabor, HalfSpace(poisson=poisson), halfspace.profiles.Sphere(radius_ratio))
 
 
 def _mesh(name, tabor, radius_ratio, **more):
     """A mesh file, and the body of ours that it is of."""
-    return Scene(tabor, body=MESHES / f"{name}.msh", radius_ratio=radius_ratio, **more)
+    return Scene(tabor, Meshed(MESHES / f"{name}.msh", radius_ratio=radius_ratio, **more))
 
 
 def _ours(scene):
-    body = {"hemisphere": "hemisphere", "sphere": "sphere"}[scene.body.stem]
-    return truths.elements(replace(scene, body=body, profile="sphere"))
+    body = {"hemisphere": Hemisphere, "sphere": HeldSphere}[scene.body.file.stem]
+    return truths.elements(Scene(scene.tabor, body(radius_ratio=scene.radius_ratio)))
 
 
 def _decades(*exponents):
@@ -306,9 +310,9 @@ SIZES = ((0.05, 10), (0.3, 10), (0.3, 300), (1, 6), (1, 30), (1, 1000), (2, 100)
 POISSONS = (0, 0.3, 0.45, 0.499)
 
 
-def _sized(*sizes, truth=truths.elements, few=1, **more):
+def _sized(*sizes, made=_sphere, truth=truths.elements, few=1, **more):
     """Family of bodies of some sizes, each with another Poisson's ratio; `few` is the place of that which is quick."""
-    scenes = [_sphere(*size, poisson=POISSONS[n % 4], **more) for n, size in enumerate(sizes)]
+    scenes = [made(*size, poisson=POISSONS[n % 4], **more) for n, size in enumerate(sizes)]
     nets = Net(scenes, _decades(4, 5, 6)), Net(scenes[few : few + 1], _decades(4))
     return Family(*nets, _by(fem_adhesion.trace), of_path, partial(relocated, truth))
 
@@ -316,16 +320,16 @@ def _sized(*sizes, truth=truths.elements, few=1, **more):
 def _finite_strain():
     """Spheres at finite strain, by each way of counting the traction, down to one as small as its contact."""
     scenes = [
-        _sphere(tabor, ratio, strain="finite", **more)
-        for tabor, ratio, more in (
-            (0.3, 30, {"poisson": 0.0}),
-            (1, 100, {}),
-            (0.1, 2, {"traction": "vertical"}),
-            (1, 6, {"traction": "reference"}),
-            (0.5, 30, {"poisson": 0.45, "traction": "normal"}),
-            (1, 1000, {"grip": "bonded"}),
-            (2, 100, {"poisson": 0.2}),
-            (1.5, 300, {"poisson": 0.499, "grip": "bonded"}),
+        _sphere(tabor, ratio, material=material, **more)
+        for tabor, ratio, material, more in (
+            (0.3, 30, NeoHookean(0.0), {}),
+            (1, 100, NeoHookean(), {}),
+            (0.1, 2, NeoHookean(traction="vertical"), {}),
+            (1, 6, NeoHookean(traction="reference"), {}),
+            (0.5, 30, NeoHookean(0.45, "normal"), {}),
+            (1, 1000, NeoHookean(), {"grip": "bonded"}),
+            (2, 100, NeoHookean(0.2), {}),
+            (1.5, 300, NeoHookean(0.499), {"grip": "bonded"}),
         )
     ]
     nets = Net(scenes, _decades(3, 4, 5)), Net(scenes[:1], _decades(3))
@@ -402,7 +406,7 @@ FAMILIES = {
     ),
     "block": Family(
         Net(BLOCKS, _decades(*range(1, 8))),
-        Net((Scene(0.1), Scene(1, poisson=0.499), Scene(3)), _decades(2, 4)),
+        Net((Scene(0.1), Scene(1, HalfSpace(poisson=0.499)), Scene(3)), _decades(2, 4)),
         _by(fem_adhesion.trace),
         of_path,
         partial(traced, truths.half_space, _tabor),
@@ -425,10 +429,12 @@ FAMILIES = {
         (0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (2, 30), truth=truths.harmonics, few=3
     ),
     "hemisphere, bonded": _sized(*SIZES, grip="bonded", few=3),
-    "held sphere": _sized(*SIZES[:4], body="sphere", few=3),
-    "pair of spheres": _sized(*SIZES[2:6], counter=Counter(0.4, 0.3, 2.0)),
-    "pair of spheres, bonded": _sized(*SIZES[:4], grip="bonded", counter=Counter(0.4, 0.45, 3.0), few=3),
-    "block under a sphere": _sized(*SIZES[2:6], body="block", truth=_half_space_under),
+    "held sphere": _sized(*SIZES[:4], body=HeldSphere, few=3),
+    "pair of spheres": _sized(*SIZES[2:6], made=partial(pair, share=0.4, larger=2.0)),
+    "pair of spheres, bonded": _sized(
+        *SIZES[:4], made=partial(pair, share=0.4, counter_poisson=0.45, larger=3.0), grip="bonded", few=3
+    ),
+    "block under a sphere": _sized(*SIZES[2:6], made=_elements_under_sphere, truth=_half_space_under),
     "finite strain": _finite_strain(),
     "mesh from a file": Family(
         Net([_mesh("hemisphere", 1.0, 30.0), _mesh("hemisphere", 2.0, 100.0), _mesh("sphere", 1.0, 100.0)], [1e-3]),
@@ -447,7 +453,7 @@ FAMILIES = {
     ),
     "curve, finite strain": replace(
         _finite_strain(),
-        full=Net([_sphere(0.3, 30, strain="finite"), _sphere(1, 100, strain="finite", poisson=0.45)], _decades(3, 4)),
+        full=Net([_sphere(0.3, 30, material=NeoHookean()), _sphere(1, 100, material=NeoHookean(0.45))], _decades(3, 4)),
         quick=Net([], []),
         numbers=of_curve,
         truth=partial(beside, truths.along_at_finite_strain),

@@ -13,7 +13,7 @@ import numpy as np
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene
+from fem_adhesion import HalfSpace, Scene
 from fem_adhesion.common.jobs import stream
 from fem_adhesion.common.progress import progress_bar
 from halfspace.errors import NotConverged
@@ -54,7 +54,7 @@ def compared(scene):
     """Each number with the difference of both solvers in parts of the sum of their estimates; or why there is none."""
     try:
         one = halfspace.trace(scene.tabor, rtol=scene.rtol)
-        other = fem_adhesion.trace(Scene(scene.tabor, poisson=scene.poisson), rtol=scene.fe_rtol)
+        other = fem_adhesion.trace(Scene(scene.tabor, HalfSpace(poisson=scene.poisson)), rtol=scene.fe_rtol)
     except NotConverged as error:
         return {f"not solved: {error}": math.inf}
     if one.events.keys() != other.events.keys():

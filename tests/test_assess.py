@@ -9,12 +9,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from rich.console import Console
+from scenes import pair as sphere_pair
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import cli
+from fem_adhesion import Hemisphere, cli, convergence
 from fem_adhesion.assess import figure as assess_figure
 from fem_adhesion.assess import study
 from fem_adhesion.assess import theories as assess_theories
@@ -26,7 +27,7 @@ from fem_adhesion.common import style
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.files import written_aside
 from fem_adhesion.common.numbers import KINDS, PREFIXES, Quantity, engineering, exponent_of, parse, with_error
-from fem_adhesion.scene import Counter, Scene
+from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.profiles import Sphere
@@ -214,13 +215,14 @@ PAIR = {"counter_modulus": 3e9, "counter_poisson": 0.35, "counter_radius": 250e-
 def test_the_finite_bodies_are_those_asked_for(more, poisson, counter, grip, monkeypatch):
     """The smaller body is the hemisphere, the larger one its counter-body, a flat one a half-space."""
     asked = []
-    monkeypatch.setattr(fem_adhesion, "trace", lambda scene, **_: asked.append(scene))
+    monkeypatch.setattr(convergence, "trace", lambda scene, **_: asked.append(scene))
     monkeypatch.setattr(study, "computed", lambda name, *_: name)
     contact = Contact(**SILICA, **more, grip=grip)
     name = study._finite(contact)
     (scene,) = asked
-    assert (scene.body, scene.profile, scene.grip) == ("hemisphere", "sphere", grip)
-    assert (scene.tabor, scene.radius_ratio) == (contact.units.tabor, contact.units.radius_ratio)
+    assert (scene.body.name, scene.profile, scene.body.grip) == ("hemisphere", None, grip)
+    assert scene.tabor == contact.units.tabor
+    assert scene.radius_ratio == pytest.approx(contact.units.radius_ratio, rel=1e-14)
     assert scene.poisson == poisson
     assert name == ("finite pair" if counter else "finite sphere")
     if counter is None:
@@ -228,9 +230,9 @@ def test_the_finite_bodies_are_those_asked_for(more, poisson, counter, grip, mon
     else:
         modulus, nu, radius = counter
         share = contact.units.modulus * (1 - nu**2) / modulus
-        assert scene.counter.share == pytest.approx(share, rel=1e-12, abs=1e-8)  # 0 and 1 are no shares
-        assert scene.counter.radius == pytest.approx(radius, rel=1e-12)
-        assert scene.counter.poisson == nu or not share  # of a rigid one it does not matter
+        assert scene.share == pytest.approx(share, rel=1e-12, abs=1e-8)  # 0 and 1 are no shares
+        assert scene.counter.size / scene.body.size == pytest.approx(radius, rel=1e-12)
+        assert scene.counter.material.poisson == nu or not share  # of a rigid one it does not matter
 
 
 @pytest.mark.parametrize(("counter_radius", "ratio"), [(math.inf, math.inf), (250e-9, 2.5), (50e-9, 2.0)])
@@ -260,9 +262,11 @@ def test_a_pair_is_the_same_seen_from_either_body():
     turned = {"radius": 250e-9, "modulus": 3e9, "poisson": 0.35}
     other = {"counter_radius": 100e-9, "counter_modulus": 70e9, "counter_poisson": 0.17}
     second = Contact(**(SILICA | turned), **other)
-    assert second.counter.share == pytest.approx(first.counter.share, rel=1e-12)
-    assert second.counter.radius == pytest.approx(first.counter.radius, rel=1e-12)
-    assert (second.counter.poisson, second.smaller_poisson) == (first.counter.poisson, first.smaller_poisson)
+    assert second.share == pytest.approx(first.share, rel=1e-12)
+    assert second.smaller_ratio == pytest.approx(first.smaller_ratio, rel=1e-12)
+    assert second.counter.radius_ratio == pytest.approx(first.counter.radius_ratio, rel=1e-12)
+    materials = [(one.counter.material, one.smaller_poisson) for one in (first, second)]
+    assert materials[0] == materials[1]
     assert second.units.tabor == pytest.approx(first.units.tabor, rel=1e-12)
 
 
@@ -476,7 +480,7 @@ def test_every_number_unit_and_sentence_is_whole_at_any_width(made_up, silica, b
 def test_half_space_and_finite_sphere_are_each_their_own(silica):
     """The finite sphere against a scene traced for itself, from which the half-space is well away."""
     units = silica.contact.units
-    scene = Scene(units.tabor, 0.17, body="hemisphere", profile="sphere", radius_ratio=units.radius_ratio)
+    scene = Scene(units.tabor, Hemisphere(radius_ratio=units.radius_ratio, poisson=0.17))
     truth = fem_adhesion.trace(scene, rtol=1e-3, to_load=2.0).event("pull_off")
     force = silica.finite.values["pull_off_force"]
     assert abs(force.value + truth.load * units.load) < (truth.load_error * units.load + force.error)
@@ -488,9 +492,8 @@ def test_a_pair_is_solved_as_a_pair_and_its_grip_is_heeded():
     small = SILICA | {"radius": 8e-9, "modulus": 5e9}
     pair = Contact(**small, counter_modulus=5e9, counter_poisson=0.17, counter_radius=8e-9, grip="bonded")
     found, units = study._finite(pair).values["pull_off_force"], pair.units
-    size = {"body": "hemisphere", "profile": "sphere", "radius_ratio": units.radius_ratio}
     for grip in ("bonded", "sliding"):
-        scene = Scene(units.tabor, 0.17, **size, grip=grip, counter=Counter(0.5, 0.17, 1.0))
+        scene = sphere_pair(units.tabor, units.radius_ratio, 0.5, 0.17, 1.0, poisson=0.17, grip=grip)
         event = fem_adhesion.trace(scene, rtol=1e-2, to_load=2.0).event("pull_off")
         apart, bound = abs(found.value + event.load * units.load), found.error + event.load_error * units.load
         assert (apart <= bound) == (grip == "bonded")
@@ -699,7 +702,7 @@ def test_what_a_solver_refuses_is_said_with_its_reason(error, monkeypatch):
     def fail(*_, **__):
         raise error
 
-    monkeypatch.setattr(fem_adhesion, "trace", fail)
+    monkeypatch.setattr(convergence, "trace", fail)
     monkeypatch.setattr(study, "_profile", fail)
     found = assess(Contact(**SILICA))
     assert found.cautions[-2:] == ("true profile not solved: a; do b", "finite sphere not solved: a; do b")
@@ -711,7 +714,7 @@ def test_a_defect_is_not_taken_for_a_refusal(defect, monkeypatch):
     def fail(*_, **__):
         raise defect("on purpose")
 
-    monkeypatch.setattr(fem_adhesion, "trace", fail)
+    monkeypatch.setattr(convergence, "trace", fail)
     with pytest.raises(defect, match="on purpose"):
         assess(Contact(**SILICA))
 

@@ -4,19 +4,19 @@ import math
 
 import numpy as np
 import pytest
+from scenes import hemisphere, pair
 from scipy.optimize import brentq
 from skfem import ElementQuadP
 from truths import Standing, on
 
 import fem_adhesion
-from fem_adhesion import Scene
-from fem_adhesion.bodies.sized import Discretisation, sized_body
+from fem_adhesion.bodies.body import Discretisation
+from fem_adhesion.discretise import sized_body
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import clamped
 from fem_adhesion.elasticity.incompressible import stiffness_for
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
-from fem_adhesion.scene import Counter
 from halfspace.elastic import grid
 from halfspace.equilibrium.curve import energy_released
 from halfspace.equilibrium.events import approach_scale
@@ -60,24 +60,19 @@ def test_the_error_falls_with_the_degree_however_fine_the_contact(poisson):
     assert errors[2] < 3e-9
 
 
-def bonded(tabor, radius_ratio, poisson, counter=None):
-    return Scene(
-        tabor,
-        poisson,
-        body="hemisphere",
-        profile="sphere",
-        radius_ratio=max(radius_ratio, 2.25 * tabor),
-        grip="bonded",
-        counter=counter,
-    )
+def bonded(tabor, radius_ratio, poisson, *counter):
+    radius_ratio = max(radius_ratio, 2.25 * tabor)
+    if counter:
+        return pair(tabor, radius_ratio, *counter, poisson=poisson, grip="bonded")
+    return hemisphere(tabor, radius_ratio, poisson=poisson, grip="bonded")
 
 
-PAIR = Counter(0.4, 0.45, 3.0)
-SCENES = [bonded(1.0, 100.0, 0.499), bonded(0.3, 6.0, 0.0), bonded(0.3, 10.0, 0.45, PAIR)]
+PAIR = 0.4, 0.45, 3.0
+SCENES = [bonded(1.0, 100.0, 0.499), bonded(0.3, 6.0, 0.0), bonded(0.3, 10.0, 0.45, *PAIR)]
 
 
 def named(scene):
-    pair = f"-{scene.counter.radius:g}" if scene.counter else ""
+    pair = f"-{scene.counter.radius_ratio / scene.body.radius_ratio:g}" if scene.counter else ""
     return f"{scene.tabor:g}-{scene.radius_ratio:g}-{scene.poisson:g}{pair}"
 
 

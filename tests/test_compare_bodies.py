@@ -6,24 +6,28 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scenes import hemisphere, pair
 
-from fem_adhesion import Scene, cli, harmonics
-from fem_adhesion.bodies import sized
+from fem_adhesion import HeldSphere, Hemisphere, LinearElastic, Meshed, Scene, cli, discretise, harmonics
 from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
 from fem_adhesion.crosscheck.weak_bodies import contacts
 from fem_adhesion.elasticity import space
 from fem_adhesion.mesh.spheres import Stereographic
-from fem_adhesion.scene import Counter
 from fem_adhesion.weak_form import tension
 from halfspace.errors import InputError
+from halfspace.profiles import Paraboloid, Sphere
 
 MESH = Path(__file__).parents[1] / "meshes" / "hemisphere.msh"
 
 
-def sphere(**more):
-    return Scene(1.0, radius_ratio=30.0, **({"body": "hemisphere", "profile": "sphere"} | more))
+def sphere(profile=None, **of_body):
+    return hemisphere(1.0, 30.0, profile, **of_body)
+
+
+def facing(*counter, **of_body):
+    return pair(1.0, 30.0, *counter, **of_body)
 
 
 @pytest.fixture
@@ -58,8 +62,8 @@ def test_the_command_compares_a_hemisphere_with_the_whole_sphere(tmp_path, capsy
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([*HEMISPHERE, "--strain", "finite"], "strain = finite is compared with nothing, limit: small"),
-        ([*HEMISPHERE, "--cap-angle", "20"], "--cap-angle would not be heeded, limit: with --body sphere"),
+        ([*HEMISPHERE, "--strain", "finite"], "is compared with nothing, limit: small strain"),
+        ([*HEMISPHERE, "--cap-angle", "20"], "--cap-angle would not be heeded, limit: with --body held-sphere"),
         (["--grip", "bonded"], "--grip would not be heeded"),
         (["--body", "hemisphere"], 'radius_ratio = None for body = "hemisphere"'),
         (["--counter-radius", "2"], "--counter-radius would not be heeded, limit: with --counter-share"),
@@ -79,24 +83,24 @@ def test_a_cap_is_heeded(monkeypatch):
     asked = []
     monkeypatch.setattr(crosscheck, "run", lambda scenes, **_: asked.extend(scenes) or iter(()))
     with pytest.raises(StopIteration):
-        cli.main(["compare", "--tabor", "2", "--body", "sphere", "--radius-ratio", "50", "--cap-angle", "20"])
-    assert asked == [Scene(2.0, body="sphere", radius_ratio=50.0, cap_angle=20.0)]
+        cli.main(["compare", "--tabor", "2", "--body", "held-sphere", "--radius-ratio", "50", "--cap-angle", "20"])
+    assert asked == [Scene(2.0, HeldSphere(radius_ratio=50.0, cap_angle=20.0))]
 
 
 # --- what needs no solution ---
 
 BODIES = {
-    "under a sphere": (sphere(body="block"), SOLVERS),
+    "under a sphere": (Scene(1.0, profile=Sphere(30.0)), SOLVERS),
     "hemisphere": (sphere(), HARMONICS),
     "nearly incompressible": (sphere(poisson=0.4999), HARMONICS),
-    "under a paraboloid": (sphere(profile="paraboloid"), HARMONICS),
-    "two spheres": (sphere(counter=Counter(0.3, 0.45, 2.0)), HARMONICS),
-    "sphere on a half-space": (sphere(counter=Counter(0.5, 0.2)), HARMONICS),
-    "traction on the surface": (sphere(traction="surface"), None),
+    "under a paraboloid": (sphere(Paraboloid()), HARMONICS),
+    "two spheres": (facing(0.3, 0.45, 2.0), HARMONICS),
+    "sphere on a half-space": (facing(0.5, 0.2), HARMONICS),
+    "traction on the surface": (sphere(material=LinearElastic(traction="surface")), None),
     "bonded": (sphere(grip="bonded"), None),
-    "bonded pair": (sphere(grip="bonded", counter=Counter(0.3, 0.45, 2.0)), None),
-    "held over a cap": (sphere(body="sphere"), None),
-    "a mesh": (Scene(1.0, radius_ratio=30.0, body=MESH, grip="bonded"), None),
+    "bonded pair": (facing(0.3, 0.45, 2.0, grip="bonded"), None),
+    "held over a cap": (Scene(1.0, HeldSphere(radius_ratio=30.0)), None),
+    "a mesh": (Scene(1.0, Meshed(MESH, radius_ratio=30.0, grip="bonded")), None),
 }
 
 
@@ -128,12 +132,15 @@ def _stiffer(monkeypatch):
     monkeypatch.setattr(space, "elastic_matrix", lambda nu: 1.01 * original(nu))
 
 
-def _another(**change):
+def _another(profile=None, **change):
     """Finite elements that solve another scene."""
 
     def inject(monkeypatch):
-        original = sized.sized_body
-        monkeypatch.setattr(sized, "sized_body", lambda scene, how: original(replace(scene, **change), how))
+        def other(scene):
+            return replace(scene, profile=profile, body=replace(scene.body, **change))
+
+        original = discretise.sized_body
+        monkeypatch.setattr(discretise, "sized_body", lambda scene, how: original(other(scene), how))
 
     return inject
 
@@ -141,8 +148,8 @@ def _another(**change):
 DEFECTS = {
     "1 % stiffer": (_stiffer, {"operator: ring", "equations: residual", "equations: tangent"}),
     "R/eps 1 % larger": (_another(radius_ratio=30.3), {"operator: ring", "equations: residual"}),
-    "Poisson's ratio 0.31": (_another(poisson=0.31), {"operator: ring", "equations: residual"}),
-    "profile of the paraboloid": (_another(profile="paraboloid"), {"equations: residual"}),
+    "Poisson's ratio 0.31": (_another(material=LinearElastic(0.31)), {"operator: ring", "equations: residual"}),
+    "profile of the paraboloid": (_another(Paraboloid()), {"equations: residual"}),
     "another grip": (None, {"operator: ring", "equations: residual", "equations: tangent"}),
 }
 
@@ -171,13 +178,13 @@ def test_harmonics_take_the_rim_of_a_pair_as_the_finite_elements_do():
 
 def test_harmonics_refuse_a_spike_that_takes_too_many():
     with pytest.raises(InputError, match="harmonics of the sphere, limit 5000; take a smaller one"):
-        harmonics.trace(Scene(5.0, body="hemisphere", profile="sphere", radius_ratio=1e5))
+        harmonics.trace(Scene(5.0, Hemisphere(radius_ratio=1e5)))
 
 
-@pytest.mark.parametrize("counter", [None, Counter(0.4, 0.3, 3.0)])
+@pytest.mark.parametrize("counter", [None, (0.4, 0.3, 3.0)])
 def test_the_weak_form_of_a_body_with_a_length_has_its_whole_surface(counter):
-    scene = sphere(counter=counter)
-    R = scene.sphere_radius * (1 if counter is None else 1 + 1 / counter.radius)
+    scene = sphere() if counter is None else facing(*counter)
+    R = scene.sphere_radius * (1 if counter is None else 1 + 1 / 3)
     for contact in (make(1.2) for make in contacts(scene)):
         area = contact.body.integral(np.ones_like(contact.body.radii)) + contact.rigid[1].sum()
         assert area == pytest.approx(np.pi * R**2, rel=1e-9)
@@ -185,7 +192,7 @@ def test_the_weak_form_of_a_body_with_a_length_has_its_whole_surface(counter):
         assert (contact.load_beyond(-5.0) < 0) == (counter is not None)
 
 
-HELD = [sphere(), sphere(body="sphere"), sphere(counter=Counter(0.4, 0.3, 3.0)), BODIES["a mesh"][0]]
+HELD = [sphere(), Scene(1.0, HeldSphere(radius_ratio=30.0)), facing(0.4, 0.3, 3.0), BODIES["a mesh"][0]]
 
 
 @pytest.mark.parametrize("scene", HELD)

@@ -9,7 +9,7 @@ from whole_runs import tables_in
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene, cli, convergence
+from fem_adhesion import Block, HalfSpace, Scene, cli, convergence, discretise
 from fem_adhesion.crosscheck import comparison, references
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Row
@@ -32,7 +32,7 @@ def _rejecting(case):
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
 @pytest.mark.parametrize(("tabor", "limit"), [(0.5, 1e-5), (1, 1e-5), (2, 1e-5), (5, 5e-5)])
 def test_the_solvers_agree(tabor, poisson, limit):
-    case = crosscheck.compare(Scene(tabor=tabor, poisson=poisson), rtol=1e-5, before=())
+    case = crosscheck.compare(Scene(tabor=tabor, body=HalfSpace(poisson=poisson)), rtol=1e-5, before=())
     assert _rejecting(case) == {}
     assert case.verdict == "agree"
     for row in case.rows:
@@ -92,15 +92,17 @@ def _shifted_approach(monkeypatch):
             F[:-1] += 1e-3  # eps
             return F
 
-    monkeypatch.setattr(convergence, "ContactProblem", Shifted)
+    for module in (convergence, discretise):
+        monkeypatch.setattr(module, "ContactProblem", Shifted)
 
 
 def _exponents_3_8(monkeypatch):
-    monkeypatch.setattr(
-        convergence,
-        "ContactProblem",
-        lambda *args, **kwargs: ContactProblem(*args, law=PowerLaw(3, 8), **kwargs),
-    )
+    for module in (convergence, discretise):
+        monkeypatch.setattr(
+            module,
+            "ContactProblem",
+            lambda operator, tabor, _, profile: ContactProblem(operator, tabor, PowerLaw(3, 8), profile),
+        )
 
 
 def _nothing(monkeypatch):
@@ -108,15 +110,15 @@ def _nothing(monkeypatch):
 
 
 DEFECTS = {
-    "no hoop strain": (_no_hoop_strain, {}, ["operator: Hertz", "zero_load approach"]),
-    "E for E*": (_young_for_contact_modulus, {}, ["operator: Hertz", "jump_off load", "zero_load approach"]),
-    "no 2 pi r": (_no_ring_measure, {}, ["operator: uniform disc", "operator: Hertz", "operator: ring"]),
-    "half the shear modulus": (_half_the_shear_modulus, {}, ["operator: spike", "zero_load contact_radius"]),
-    "shifted approach": (_shifted_approach, {}, ["cross-residual: pull_off", "jump_on approach"]),
-    "exponents 3-8": (_exponents_3_8, {}, ["cross-residual: jump_on", "pull_off load", "energy released"]),
+    "no hoop strain": (_no_hoop_strain, HalfSpace(), ["operator: Hertz", "zero_load approach"]),
+    "E for E*": (_young_for_contact_modulus, HalfSpace(), ["operator: Hertz", "jump_off load", "zero_load approach"]),
+    "no 2 pi r": (_no_ring_measure, HalfSpace(), ["operator: uniform disc", "operator: Hertz", "operator: ring"]),
+    "half the shear modulus": (_half_the_shear_modulus, HalfSpace(), ["operator: spike", "zero_load contact_radius"]),
+    "shifted approach": (_shifted_approach, HalfSpace(), ["cross-residual: pull_off", "jump_on approach"]),
+    "exponents 3-8": (_exponents_3_8, HalfSpace(), ["cross-residual: jump_on", "pull_off load", "energy released"]),
     "clamped at L = 10": (
         _nothing,
-        {"far_field": "clamped", "radius": 10.0},
+        Block(radius=10.0, far_field="clamped"),
         ["operator: Hertz", "zero_load approach"],
     ),
 }
@@ -124,9 +126,9 @@ DEFECTS = {
 
 @pytest.mark.parametrize("defect", DEFECTS)
 def test_a_defect_in_the_finite_elements_is_shown(defect, monkeypatch):
-    inject, scene, shown_by = DEFECTS[defect]
+    inject, body, shown_by = DEFECTS[defect]
     inject(monkeypatch)
-    (case,) = crosscheck.run([Scene(tabor=1.0, **scene)], rtol=RTOL)
+    (case,) = crosscheck.run([Scene(1.0, body)], rtol=RTOL)
     assert isinstance(case, Failure) or case.verdict != "agree"
     assert set(shown_by) <= set(_rejecting(case))
 
@@ -356,7 +358,7 @@ def test_a_failing_case_does_not_lose_the_others(monkeypatch):
 
 @pytest.mark.parametrize("far_field", ["clamped", "free"])
 def test_the_error_estimate_of_a_held_block_covers_its_distance_from_the_half_space(far_field):
-    path = fem_adhesion.trace(Scene(tabor=1.0, radius=40.0, far_field=far_field), rtol=1e-3)
+    path = fem_adhesion.trace(Scene(tabor=1.0, body=Block(radius=40.0, far_field=far_field)), rtol=1e-3)
     for name, approach, load in (("jump_on", -1.629216712, -2.139717925), ("jump_off", -1.743430144, -3.243484131)):
         event = path.event(name)
         assert 1e-4 < abs(event.approach - approach) <= 1.5 * event.approach_error
@@ -364,18 +366,19 @@ def test_the_error_estimate_of_a_held_block_covers_its_distance_from_the_half_sp
 
 
 @pytest.mark.parametrize(
-    ("kwargs", "message"),
+    ("make", "message"),
     [
-        ({"tabor": -1}, "tabor = -1 is outside 0 < tabor"),
-        ({"tabor": 1, "poisson": 0.5}, r"poisson = 0.5 is outside 0 <= poisson < 0.5; take"),
-        ({"tabor": 1, "poisson": float("nan")}, "poisson = nan"),
-        ({"tabor": 1, "radius": 2.0}, "radius = 2 is outside 5 < radius"),
-        ({"tabor": 1, "far_field": "glued"}, "far_field = 'glued' is not one of"),
+        (lambda: Scene(-1), "tabor = -1 is outside 0 < tabor"),
+        (lambda: HalfSpace(poisson=0.5), r"poisson = 0.5 is outside 0 <= poisson < 0.5; take"),
+        (lambda: HalfSpace(poisson=float("nan")), "poisson = nan"),
+        (lambda: Block(radius=2.0), "radius = 2 is outside 5 < radius"),
+        (lambda: Block(radius=50.0, far_field="glued"), "far_field = 'glued' is not one of"),
+        (lambda: Scene(0.01, Block(radius=20.0)), "radius = 20 is outside 50 < radius"),
     ],
 )
-def test_bad_scenes_are_refused(kwargs, message):
+def test_bad_scenes_are_refused(make, message):
     with pytest.raises(ValueError, match=message):
-        Scene(**kwargs)
+        make()
 
 
 def test_limits_are_checked_before_any_work():

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from PIL import Image
 from rich.console import Console
+from scenes import pair
 
-from fem_adhesion import cli
+from fem_adhesion import Hemisphere, cli
 from fem_adhesion.common.options import Parser
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.curve import command as curve
@@ -23,7 +24,8 @@ from fem_adhesion.curve import movie
 from fem_adhesion.curve import record as curve_record
 from fem_adhesion.curve import solve as study
 from fem_adhesion.curve import terminal as curve_terminal
-from fem_adhesion.scene import Counter, Scene
+from fem_adhesion.registry import part_from
+from fem_adhesion.scene import Scene
 from halfspace.equilibrium import devices
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError, NotConverged
@@ -441,14 +443,14 @@ def test_fields_inside_are_written_for_every_event(tmp_path):
         ([*MATERIAL, "--counter-share", "0.5"], "--counter-share would not be heeded, limit: with --tabor"),
         ([*MATERIAL, "--counter-modulus", "1GPa"], "counter_poisson = None"),
         ([*MATERIAL, "--profile", "sphere", "--counter-radius", "1um"], "take --body hemisphere"),
-        ([*MATERIAL, "--body", "sphere", "--counter-radius", "1um"], "it meets a hemisphere only"),
-        (["--tabor", "2", "--grip", "sliding"], "--grip would not be heeded, limit: with a body that has a size"),
+        ([*MATERIAL, "--body", "held-sphere", "--counter-radius", "1um"], "a hemisphere meets another or a half-space"),
+        (["--tabor", "2", "--grip", "sliding"], "--grip would not be heeded, limit: with --body hemisphere"),
         (["--tabor", "2", "--poisson", "0.2"], "--poisson would not be heeded, limit: with a material, fem or both"),
         (
             ["--tabor", "2", "--counter-radius", "2"],
             "--counter-radius would not be heeded, limit: with --counter",
         ),
-        (["--tabor", "2", "--counter-share", "0.5"], "it meets a hemisphere only"),
+        (["--tabor", "2", "--counter-share", "0.5"], "a hemisphere meets another or a half-space"),
         (["--tabor", "2", "--counter-share", "0.5", "--counter-radius", "1um"], "plain number in radii of the first"),
         (["--tabor", "2", "--points", "5"], "--points would not be heeded, limit: with --json, --csv, --plot or --vtk"),
         (["--tabor", "2", "--revolve", "90", "--force"], "--revolve, --force would not be heeded"),
@@ -532,7 +534,7 @@ def test_the_question_takes_the_size_of_the_sphere_from_the_material(monkeypatch
     assert question.solver == "fem"
     assert question.scene.radius_ratio == pytest.approx(100 / 0.3)
     assert question.scene.tabor == pytest.approx(question.units.tabor)
-    assert question.scene.grip == "bonded"
+    assert question.scene.body.grip == "bonded"
     assert question.scene.counter is None
     assert question.stiffness == pytest.approx(0.2 / question.units.stiffness)
 
@@ -548,28 +550,39 @@ def test_the_counter_body_of_a_material_is_heeded(monkeypatch):
     round_ = _asked(monkeypatch, *MATERIAL, *other, "--body", "hemisphere", "--profile", "sphere")
     assert round_.units == flat.units
     assert round_.scene.poisson == 0.3
-    assert round_.scene.counter.share == pytest.approx(modulus * (1 - 0.4**2) / 3e9, rel=1e-12)
-    assert (round_.scene.counter.poisson, round_.scene.counter.radius) == (0.4, pytest.approx(3.0, rel=1e-12))
+    assert round_.scene.share == pytest.approx(modulus * (1 - 0.4**2) / 3e9, rel=1e-12)
+    assert round_.scene.counter.material.poisson == 0.4
+    assert round_.scene.counter.size / round_.scene.body.size == pytest.approx(3.0, rel=1e-12)
 
 
-@pytest.mark.parametrize(("radius", "recorded"), [(math.inf, None), (2.0, 2.0)])
+@pytest.mark.parametrize(
+    ("radius", "recorded"),
+    [
+        (math.inf, {"name": "half-space"}),
+        (2.0, {"name": "hemisphere", "radius_ratio": 270.0, "grip": "sliding"}),
+    ],
+)
 def test_the_counter_body_is_in_title_and_record(both, radius, recorded):
     """JSON has no number for the radius of a flat one."""
-    scene = Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=90.0, counter=Counter(0.4, 0.2, radius))
-    pair = replace(both, question=replace(both.question, scene=scene))
-    found = json.loads(json.dumps(curve_record.record(pair), allow_nan=False))
-    assert found["scene"]["counter"] == {"share": 0.4, "poisson": 0.2, "radius": recorded}
-    assert f"counter-body with 0.4 of the compliance, radius {radius:g}" in _shown(pair, 150)
+    scene = pair(2.0, 90.0, 0.4, 0.2, radius)
+    solved = replace(both, question=replace(both.question, scene=scene))
+    found = json.loads(json.dumps(curve_record.record(solved), allow_nan=False))["scene"]
+    material = {"name": "linear-elastic", "poisson": 0.2, "traction": "projected"}
+    assert found["counter"] == recorded | {"material": material}
+    assert found["share"] == 0.4
+    assert part_from("body", found["body"]) == scene.body
+    assert part_from("body", found["counter"]) == scene.counter
+    assert f"counter-body with 0.4 of the compliance, radius {radius:g}" in _shown(solved, 150)
 
 
 def test_the_counter_body_of_a_tabor_parameter_is_heeded(monkeypatch):
     body = ("--tabor", 1, "--body", "hemisphere", "--profile", "sphere", "--radius-ratio", 90)
     plain = _asked(monkeypatch, *body)
-    assert (plain.scene.counter, plain.scene.poisson, plain.scene.grip) == (None, 0.3, "sliding")
-    pair = _asked(monkeypatch, *body, "--counter-share", 0.4)
-    assert pair.scene.counter == Counter(0.4, 0.3, math.inf)
-    pair = _asked(monkeypatch, *body, "--counter-share", 0.4, "--counter-poisson", 0.2, "--counter-radius", 3)
-    assert pair.scene.counter == Counter(0.4, 0.2, 3.0)
+    assert (plain.scene.counter, plain.scene.poisson, plain.scene.body.grip) == (None, 0.3, "sliding")
+    found = _asked(monkeypatch, *body, "--counter-share", 0.4)
+    assert found.scene == pair(1.0, 90.0, 0.4)
+    found = _asked(monkeypatch, *body, "--counter-share", 0.4, "--counter-poisson", 0.2, "--counter-radius", 3)
+    assert found.scene == pair(1.0, 90.0, 0.4, 0.2, 3.0)
 
 
 def test_a_hamaker_constant_makes_the_spacing(monkeypatch):
@@ -582,12 +595,13 @@ def test_a_hamaker_constant_makes_the_spacing(monkeypatch):
 def test_the_other_solver_of_a_true_sphere_has_its_profile(monkeypatch):
     asked = {}
     monkeypatch.setattr(study.halfspace, "trace", lambda _, **options: asked.update(options))
-    scene = Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=100)
+    scene = Scene(2.0, Hemisphere(radius_ratio=100))
     study._trace(study.Question(scene, solver="both"), study.HALF_SPACE)
     assert asked["profile"] == Sphere(100)
-    study._trace(study.Question(replace(scene, counter=Counter(0.5, 0.3, 2.0)), solver="both"), study.HALF_SPACE)
-    assert asked["profile"] == Sphere(100, 2.0)
-    study._trace(study.Question(Scene(2.0, body="hemisphere", radius_ratio=100), solver="both"), study.HALF_SPACE)
+    study._trace(study.Question(pair(2.0, 100.0, 0.5, 0.3, 2.0), solver="both"), study.HALF_SPACE)
+    assert asked["profile"].counter_radius == 2.0
+    assert asked["profile"].radius_ratio == pytest.approx(100, rel=1e-14)
+    study._trace(study.Question(replace(scene, profile=Paraboloid()), solver="both"), study.HALF_SPACE)
     assert asked["profile"] == Paraboloid()
 
 

@@ -8,6 +8,7 @@ from matplotlib import rc_context
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
+from fem_adhesion import Hemisphere
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve import lines as curve_lines
 from fem_adhesion.curve import load as load_panel
@@ -313,7 +314,7 @@ def test_the_axes_of_the_mesh_are_radius_and_height(elements):
 PAGES = {
     "nearly rigid": Question(Scene(0.05), "fem", 1e-2),
     "nearly JKR": Question(Scene(5.0), "both", 1e-2),
-    "sphere": Question(Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=60.0), "both", 1e-2, stiffness=3.0),
+    "sphere": Question(Scene(2.0, Hemisphere(radius_ratio=60.0)), "both", 1e-2, stiffness=3.0),
     "material": Question(Scene(UNITS.tabor), "fem", 1e-2, units=UNITS),
     "rigid": Question(Scene(1e-8), rtol=1e-2),
     "little load": Question(Scene(2.0), rtol=1e-2, to_load=0.01),

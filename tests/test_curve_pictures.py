@@ -7,6 +7,7 @@ import pytest
 from PIL import Image
 from scipy.interpolate import CubicSpline
 
+from fem_adhesion import Hemisphere
 from fem_adhesion.common.files import written_aside
 from fem_adhesion.common.options import Parser
 from fem_adhesion.curve import command as curve
@@ -22,7 +23,7 @@ from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.scaling import Units
 
 SMALL = (240, 150)
-HEMISPHERE = Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=200.0)
+HEMISPHERE = Scene(2.0, Hemisphere(radius_ratio=200.0))
 
 
 def _solved(scene):
@@ -88,7 +89,7 @@ def test_the_wall_over_a_sphere_is_drawn_flat_and_the_sphere_flattened_where_it_
 
 
 def test_a_small_sphere_is_drawn_to_scale():
-    curves = _solved(Scene(2.0, body="hemisphere", profile="sphere", radius_ratio=30.0))
+    curves = _solved(Scene(2.0, Hemisphere(radius_ratio=30.0)))
     state = still.event_states(curves)["pull_off"]
     view, R = view_of([state]), np.sqrt(30.0 / 2.0)
     assert view.heights == pytest.approx(1 / R)

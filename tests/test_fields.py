@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from scenes import hemisphere, pair
 from scipy.sparse.linalg import spsolve
 from skfem import CellBasis, ElementQuad2, ElementQuadP
 
 import fem_adhesion
+from fem_adhesion import HeldSphere, Hemisphere, NeoHookean
 from fem_adhesion.elasticity import stress
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress, point_load, trace_projection
@@ -14,11 +16,10 @@ from fem_adhesion.elasticity.space import Space, cell_quadrature, cell_stiffness
 from fem_adhesion.fields import state as fields
 from fem_adhesion.fields.beside import half_space_beside
 from fem_adhesion.mesh.block import tensor_grid
-from fem_adhesion.scene import Counter, Scene
+from fem_adhesion.scene import Scene
 from halfspace.elastic import grid
 
 PLACES = np.stack(np.meshgrid(np.linspace(0, 1, 5), np.linspace(0, 1, 5))).reshape(2, -1)
-HEMISPHERE = {"body": "hemisphere", "profile": "sphere", "radius_ratio": 100.0}
 
 
 def buried(space, poisson, stiffness=cell_stiffness):
@@ -155,7 +156,7 @@ def energy_inside(state):
 
 @pytest.mark.parametrize("poisson", [0.3, 0.49])
 def test_the_energy_of_the_stress_is_the_work_of_the_pressure(poisson):
-    scene = Scene(1.0, poisson=poisson, **HEMISPHERE)
+    scene = hemisphere(1.0, 100.0, poisson=poisson)
     for state in fields.states_along(scene, fem_adhesion.trace(scene, rtol=1e-2), points=0):
         functions = state.space.boundary_functions("contact")
         deflection = -(state.surface.values @ state.components[1, functions])
@@ -164,7 +165,7 @@ def test_the_energy_of_the_stress_is_the_work_of_the_pressure(poisson):
 
 
 def test_two_bodies_share_the_energy_by_their_compliance():
-    scene = Scene(1.0, counter=Counter(0.25), **HEMISPHERE)
+    scene = pair(1.0, 100.0, 0.25)
     path = fem_adhesion.trace(scene, rtol=1e-1)
     zero_load = path.stages[-1]["zero_load"]
     state = fields.state_at(scene, zero_load.problem, zero_load.point)
@@ -176,10 +177,12 @@ def test_two_bodies_share_the_energy_by_their_compliance():
     assert weighted @ own == pytest.approx(0.75 * (weighted @ both), rel=0.01)  # but for the shapes of the bodies
 
 
-@pytest.mark.parametrize("options", [{"strain": "finite"}, {"body": "sphere"}])
-def test_bodies_without_fields_are_refused_in_one_line(winding, options):
+@pytest.mark.parametrize(
+    "body", [Hemisphere(radius_ratio=100.0, material=NeoHookean()), HeldSphere(radius_ratio=100.0)], ids=type
+)
+def test_bodies_without_fields_are_refused_in_one_line(winding, body):
     with pytest.raises(ValueError, match="no fields here") as refusal:
-        list(fields.states_along(Scene(1.0, **(HEMISPHERE | options)), winding[1]))
+        list(fields.states_along(Scene(1.0, body), winding[1]))
     assert "\n" not in str(refusal.value)
 
 

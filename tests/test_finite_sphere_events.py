@@ -13,7 +13,7 @@ from whole_sphere import surface_deflection
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene, harmonics
+from fem_adhesion import Hemisphere, Scene, harmonics
 from halfspace.theories.exact_sphere import RigidSphere
 
 POISSON = 0.3
@@ -38,7 +38,7 @@ def events_of(tabor, radius_ratio):
 
 @pytest.mark.parametrize(("tabor", "radius_ratio"), [(0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (3, 100)])
 def test_the_table_against_the_sphere_in_legendre_polynomials(tabor, radius_ratio):
-    scene = Scene(tabor, POISSON, body="hemisphere", profile="sphere", radius_ratio=radius_ratio)
+    scene = Scene(tabor, Hemisphere(radius_ratio=radius_ratio, poisson=POISSON))
     path, table = harmonics.trace(scene, rtol=1e-7), events_of(tabor, radius_ratio)
     assert path.met
     assert set(table) == set(path.events)
@@ -56,7 +56,7 @@ CASES = [(0.2, 10), (1, 10), (1, 10000), (3, 10)]
 @pytest.fixture(scope="module", params=CASES, ids=lambda case: f"{case[0]:g}-{case[1]:g}")
 def traced(request):
     tabor, radius_ratio = request.param
-    scene = Scene(tabor, poisson=POISSON, body="hemisphere", profile="sphere", radius_ratio=radius_ratio)
+    scene = Scene(tabor, Hemisphere(radius_ratio=radius_ratio, poisson=POISSON))
     return fem_adhesion.trace(scene, rtol=1e-5), events_of(tabor, radius_ratio)
 
 
@@ -143,7 +143,7 @@ def test_a_nearly_rigid_hemisphere_pulls_off_as_the_rigid_one():
     assert rigid / (2 * np.pi) == pytest.approx(-1 + 9 / 7 / 30, abs=2 / 30**2)
     left = []
     for tabor in (0.02, 0.01):
-        scene = Scene(tabor, poisson=POISSON, body="hemisphere", profile="sphere", radius_ratio=30.0)
+        scene = Scene(tabor, Hemisphere(radius_ratio=30.0, poisson=POISSON))
         left.append(fem_adhesion.trace(scene, rtol=1e-3).event("pull_off").load - rigid)
     assert 0 < left[1] < 0.02 * abs(rigid)
     assert np.log2(left[0] / left[1]) == pytest.approx(1.5, abs=0.03)

@@ -19,7 +19,7 @@ from processes import alive, wait_until
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene
+from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene
 from fem_adhesion.common import store
 from fem_adhesion.common.files import NotWritten
 from fem_adhesion.common.store import open_store
@@ -44,7 +44,7 @@ from fem_adhesion.finite_sphere.table import COLUMNS, NO_PARQUET, TEXTS, Deviati
 from fem_adhesion.finite_strain.scene import find_jumps
 from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
-from halfspace.profiles import Sphere
+from halfspace.profiles import Paraboloid, Sphere
 from halfspace.theories.closed_forms import JKR_PULL_OFF
 from halfspace.theories.exact_sphere import JKRSphere
 from halfspace.values import Estimate
@@ -572,13 +572,12 @@ def test_a_hard_contact_has_no_jumps():
     assert values.keys() == {"pull_off_load", "zero_load_radius", APPROACH_SCALE}
 
 
-HEMISPHERE = {"poisson": 0.2, "body": "hemisphere", "radius_ratio": 30.0}
-SPHERE = {**HEMISPHERE, "profile": "sphere"}
+SPHERE = Hemisphere(radius_ratio=30.0, poisson=0.2)
 SCENES = {
-    "finite_body": {**HEMISPHERE, "profile": "paraboloid"},
-    "sphere": SPHERE,
-    "bonded": {**SPHERE, "grip": "bonded"},
-    "surface_traction": {**SPHERE, "traction": "surface"},
+    "finite_body": Scene(0.3, SPHERE, Paraboloid()),
+    "sphere": Scene(0.3, SPHERE),
+    "bonded": Scene(0.3, replace(SPHERE, grip="bonded")),
+    "surface_traction": Scene(0.3, replace(SPHERE, material=LinearElastic(0.2, "surface"))),
 }
 TRACTIONS = {
     "finite_strain": "projected",
@@ -606,9 +605,9 @@ def test_every_model_solves_its_own_scene(solved_once):
         "true_profile": pull_off_of(halfspace.trace(0.3, profile=Sphere(30.0), rtol=1e-2, to_load=0.5)),
     }
     for name, scene in SCENES.items():
-        wanted[name] = pull_off_of(fem_adhesion.trace(Scene(0.3, **scene), rtol=1e-2, to_load=0.5))
+        wanted[name] = pull_off_of(fem_adhesion.trace(scene, rtol=1e-2, to_load=0.5))
     for name, traction in TRACTIONS.items():
-        event = find_jumps(Scene(0.3, **SPHERE, strain="finite", traction=traction), 1e-4)["pull_off"]
+        event = find_jumps(SCENES["sphere"].made_of(NeoHookean(0.2, traction)), 1e-4)["pull_off"]
         wanted[name] = Estimate(event.load, event.load_error)
     assert solved_once == wanted
 
@@ -619,7 +618,7 @@ def test_no_two_models_are_one(solved_once):
 
 
 def test_the_grip_of_a_model_is_that_by_which_its_yield_is_taken_out():
-    grips = {name: Scene(0.3, **scene).grip for name, scene in SCENES.items()} | dict.fromkeys(TRACTIONS, "sliding")
+    grips = {name: scene.body.grip for name, scene in SCENES.items()} | dict.fromkeys(TRACTIONS, "sliding")
     for name, model in MODELS.items():
         if not name.startswith("first_jump"):
             assert model.grip == grips.get(name)
@@ -642,7 +641,7 @@ def test_the_border_of_the_jumps_divides_the_curves_that_jump_from_those_that_do
     """The curve's own folds, of the study's own solver, on either side."""
     border = finite_sphere_cases.compute(case_of("first_jump", None, 30.0, 0.2, 1e-4)).values[CRITICAL].value
     for tabor, jumps in ((border - 5e-3, False), (border + 5e-3, True)):
-        scene = Scene(tabor, **SPHERE)
+        scene = Scene(tabor, SPHERE)
         assert ("jump_on" in fem_adhesion.trace(scene, rtol=1e-3, to_load=0.5).events) == jumps
 
 

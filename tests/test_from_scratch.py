@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import fem_adhesion
-from fem_adhesion import Scene, cli, weak_form
+from fem_adhesion import HalfSpace, Scene, cli, weak_form
 from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM
@@ -108,7 +108,7 @@ RTOL = 1e-3  # the fourth level looks for mistakes
 
 @pytest.mark.parametrize(("tabor", "poisson"), [(0.02, 0.3), (0.75, 0.499), (1.5, 0.0), (8.0, 0.45)])
 def test_the_fourth_level_agrees(tabor, poisson):
-    scene = Scene(tabor, poisson)
+    scene = Scene(tabor, HalfSpace(poisson=poisson))
     rows = from_scratch.events(scene, fem_adhesion.trace(scene, rtol=1e-5))
     assert {row.quantity: row.verdict for row in rows if row.verdict != "agree"} == {}
     assert {row.between for row in rows} == {WEAK_FORM}

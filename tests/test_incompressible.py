@@ -8,7 +8,7 @@ from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene
+from fem_adhesion import HalfSpace, Scene
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import clamped, free, point_load, with_interiors
 from fem_adhesion.elasticity.incompressible import (
@@ -183,7 +183,7 @@ def test_at_the_threshold_the_remedy_is_no_worse(degree):
 
 @pytest.mark.parametrize("poisson", [0.4, 0.49, 0.4999])
 def test_a_rubber_block_answers_as_the_half_space(poisson):
-    path, truth = fem_adhesion.trace(Scene(1.0, poisson=poisson), rtol=1e-4), halfspace.trace(1.0)
+    path, truth = fem_adhesion.trace(Scene(1.0, HalfSpace(poisson=poisson)), rtol=1e-4), halfspace.trace(1.0)
     for name, event in path.events.items():
         assert abs(event.load - truth.event(name).load) <= event.load_error + 1e-9
         assert abs(event.approach - truth.event(name).approach) <= event.approach_error + 1e-9

@@ -8,7 +8,7 @@ import pytest
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Counter, Scene
+from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic, Scene
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 
@@ -32,25 +32,16 @@ def test_a_number_of_any_type_is_as_good_as_a_float(path, kind):
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
 def test_a_scene_holds_floats(kind):
-    scene = Scene(
-        kind(2),
-        poisson=kind(0),
-        body="hemisphere",
-        profile="sphere",
-        radius_ratio=kind(200),
-        cap_angle=kind(30),
-        counter=Counter(0.5, poisson=kind(0), radius=kind(2)),
-    )
-    assert scene == Scene(
-        2.0,
-        poisson=0.0,
-        body="hemisphere",
-        profile="sphere",
-        radius_ratio=200.0,
-        counter=Counter(0.5, poisson=0.0, radius=2.0),
-    )
-    numbers = (scene.tabor, scene.poisson, scene.radius_ratio, scene.cap_angle, scene.counter.poisson)
-    assert {type(number) for number in (*numbers, scene.counter.radius)} == {float}
+    def made(kind, half):
+        body = Hemisphere(radius_ratio=kind(100), poisson=kind(0))
+        counter = Hemisphere(radius_ratio=kind(200), material=LinearElastic(kind(0)))
+        return Scene(kind(2), body, counter=counter, share=half)
+
+    held, block = HeldSphere(radius_ratio=kind(200), cap_angle=kind(30)), Block(radius=kind(50))
+    scene = made(kind, np.float32(0.5))
+    assert scene == made(float, 0.5)
+    numbers = (scene.tabor, scene.poisson, scene.body.radius_ratio, scene.share, scene.counter.material.poisson)
+    assert {type(number) for number in (*numbers, held.radius_ratio, held.cap_angle, block.radius)} == {float}
 
 
 def test_tolerances_and_loads_are_floats_too(path):
@@ -71,10 +62,10 @@ def test_tolerances_and_loads_are_floats_too(path):
         ("rtol", lambda wrong: halfspace.trace(1.0, rtol=wrong)),
         ("to_load", lambda wrong: halfspace.trace(1.0, to_load=wrong)),
         ("tabor", Scene),
-        ("poisson", lambda wrong: Scene(1.0, poisson=wrong)),
+        ("poisson", lambda wrong: LinearElastic(poisson=wrong)),
         ("rtol", lambda wrong: fem_adhesion.trace(Scene(1.0), rtol=wrong)),
-        ("share", Counter),
-        ("radius", lambda wrong: Counter(0.5, radius=wrong)),
+        ("share", lambda wrong: Scene(1.0, Hemisphere(radius_ratio=9.0), counter=HalfSpace(), share=wrong)),
+        ("radius_ratio", lambda wrong: Hemisphere(radius_ratio=wrong)),
     ],
 )
 def test_what_is_no_number_is_refused_in_one_line(name, call, wrong):

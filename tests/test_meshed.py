@@ -9,7 +9,7 @@ import pytest
 from skfem import CellBasis, ElementQuad2, MeshQuad, MeshQuad2
 
 import fem_adhesion
-from fem_adhesion import Scene
+from fem_adhesion import Hemisphere, Meshed, Scene
 from fem_adhesion.mesh.file import read_body
 from fem_adhesion.mesh.refinement import refined
 from halfspace.equilibrium.contact import spike_width
@@ -19,12 +19,12 @@ MESHES = Path(__file__).parents[1] / "meshes"
 
 
 def meshed(name, radius_ratio, **changes):
-    return Scene(1.0, body=MESHES / f"{name}.msh", radius_ratio=radius_ratio, **changes)
+    return Scene(1.0, Meshed(MESHES / f"{name}.msh", radius_ratio=radius_ratio, **changes))
 
 
 def test_a_meshed_hemisphere_agrees_with_ours_within_the_estimates():
     theirs = fem_adhesion.trace(meshed("hemisphere", 30.0), rtol=1e-3)
-    ours = fem_adhesion.trace(Scene(1.0, body="hemisphere", profile="sphere", radius_ratio=30.0), rtol=1e-4)
+    ours = fem_adhesion.trace(Scene(1.0, Hemisphere(radius_ratio=30.0)), rtol=1e-4)
     for name, a in theirs.events.items():
         b = ours.events[name]
         assert abs(a.load - b.load) <= a.load_error + b.load_error
@@ -48,7 +48,7 @@ CORNERS = [("hemisphere", 2.0, 250.0), ("sphere", 1.0, 1000.0), ("tip", 2.0, 10.
 
 @pytest.mark.parametrize(("name", "tabor", "radius_ratio"), CORNERS)
 def test_an_example_works_at_the_ends_of_its_range(name, tabor, radius_ratio):
-    scene = Scene(tabor, body=MESHES / f"{name}.msh", radius_ratio=radius_ratio)
+    scene = Scene(tabor, Meshed(MESHES / f"{name}.msh", radius_ratio=radius_ratio))
     path = fem_adhesion.trace(scene, rtol=1e-2, to_load=0.5)
     assert set(path.events) == {"pull_off", "jump_on", "jump_off", "zero_load"}
     assert path.settings["events"]["pole_radius"] == pytest.approx(1.0, abs=1e-8)
@@ -82,7 +82,7 @@ def rescaled(tmp_path, unit):
 @pytest.mark.parametrize("unit", [1.0, 1.03])
 def test_a_mesh_that_cannot_carry_the_spike_is_refused_in_its_own_unit(tmp_path, unit):
     """The limit in the file's unit is the spike's, some 0.57 of its width for quadratic elements, over R."""
-    scene = Scene(2.0, body=rescaled(tmp_path, unit), radius_ratio=1e3)
+    scene = Scene(2.0, Meshed(rescaled(tmp_path, unit), radius_ratio=1e3))
     with pytest.raises(GridTooCoarse) as refused:
         fem_adhesion.trace(scene, rtol=1e-3)
     found = re.search(r"are (\S+) long at r = (\S+), .* limit (\S+) for .* fine = (\S+),", str(refused.value))
@@ -98,7 +98,7 @@ def test_a_mesh_that_cannot_carry_the_spike_is_refused_in_its_own_unit(tmp_path,
 def test_the_unit_of_a_mesh_does_not_move_the_events(tmp_path):
     """Of one that is off by 4 % the loads would be, too; R is the radius of curvature at the pole."""
     bodies = (MESHES / "hemisphere.msh", rescaled(tmp_path, 1.04))
-    ours, theirs = (fem_adhesion.trace(Scene(0.3, body=body, radius_ratio=10.0), rtol=1e-2) for body in bodies)
+    ours, theirs = (fem_adhesion.trace(Scene(0.3, Meshed(body, radius_ratio=10.0)), rtol=1e-2) for body in bodies)
     for name, event in ours.events.items():
         assert theirs.events[name].load == pytest.approx(event.load, rel=1e-6, abs=1e-9)
         assert theirs.events[name].approach == pytest.approx(event.approach, rel=1e-6, abs=0)

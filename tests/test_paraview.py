@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import fem_adhesion
-from fem_adhesion import Scene
-from fem_adhesion.bodies.sized import Discretisation
+from fem_adhesion import HalfSpace, Hemisphere, Scene
+from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.elasticity import stress
 from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.space import cell_quadrature
@@ -21,7 +21,6 @@ from fem_adhesion.paraview.arrays import COMPONENTS, MEANINGS, UNITS, in_si, ins
 from fem_adhesion.paraview.lattice import QUAD9, TRIANGLE6, Cut, Lattice, cut_for
 from fem_adhesion.paraview.revolve import revolved
 from fem_adhesion.paraview.write import TOLERANCE, write_path
-from fem_adhesion.scene import Counter
 from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import Units
 
@@ -62,7 +61,7 @@ def si(states, units, tmp_path_factory):
 @pytest.fixture(scope="module")
 def hemisphere():
     """Zero load of a sphere, which has a radius in beta and a shape of its own."""
-    scene = Scene(1.0, poisson=0.2, body="hemisphere", profile="sphere", radius_ratio=50.0)
+    scene = Scene(1.0, Hemisphere(radius_ratio=50.0, poisson=0.2))
     path = fem_adhesion.trace(scene, rtol=1e-2)
     return next(state for state in states_along(scene, path, points=0, how=DEGREE) if state.name == "zero_load")
 
@@ -421,7 +420,7 @@ def test_values_and_numbers_come_from_the_state_itself(hemisphere):
 def test_the_energy_is_that_of_the_body_s_own_modulus(hemisphere):
     """A counter-body that takes a quarter of the compliance leaves three quarters of the energy to the body."""
     cut = cut_for(hemisphere.space, hemisphere.components, TOLERANCE)
-    shared = replace(hemisphere, scene=replace(hemisphere.scene, counter=Counter(0.25)))
+    shared = replace(hemisphere, scene=replace(hemisphere.scene, counter=HalfSpace(), share=0.25))
     alone, both = (inside(state, cut, 1.0)["strain_energy_density"] for state in (hemisphere, shared))
     np.testing.assert_allclose(both, 0.75 * alone)
 

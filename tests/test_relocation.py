@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fem_adhesion
-from fem_adhesion import Scene
+from fem_adhesion import Block, Scene
 from halfspace.equilibrium import events
 from halfspace.equilibrium.events import Condition
 from halfspace.errors import NotConverged
@@ -15,7 +15,7 @@ from halfspace.errors import NotConverged
 @pytest.mark.parametrize("rtol", [1e-1, 1e-2])
 def test_events_are_found_again_on_a_clamped_block_three_times_as_large(rtol):
     """The smaller one is only two attractions wide: its pull-off load is a sixth less, all events lie elsewhere."""
-    path = fem_adhesion.trace(Scene(0.1, far_field="clamped", radius=20.0), rtol=rtol)
+    path = fem_adhesion.trace(Scene(0.1, Block(radius=20.0, far_field="clamped")), rtol=rtol)
     for stage in path.stages:
         for name, event in stage.items():
             assert abs(event.condition.of(event.point)) < 1e-9, name

@@ -1,6 +1,7 @@
 """Scenes of bodies with a length: what they refuse, and a sphere over the half-space by both solvers."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -8,12 +9,13 @@ import honesty
 import numpy as np
 import pytest
 import truths
+from scenes import pair
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene
-from fem_adhesion.bodies.sized import Discretisation, sized_body
-from fem_adhesion.scene import Counter
+from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic, Meshed, NeoHookean, Scene
+from fem_adhesion.bodies.body import Discretisation
+from fem_adhesion.discretise import sized_body
 from halfspace.accuracy.finite_bodies import AroundEvents, surroundings
 from halfspace.accuracy.trace import _sized_body, resolution_for
 from halfspace.elastic import compliance, grid
@@ -21,97 +23,131 @@ from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import Chart, moved
 from halfspace.equilibrium.devices import cycle
-from halfspace.profiles import PARABOLOID, Sphere
+from halfspace.errors import InputError
+from halfspace.profiles import PARABOLOID, Paraboloid, Sphere
 from halfspace.profiles.sphere import between_spheres
 from halfspace.scales import Scales
 
-HEMISPHERE = {"tabor": 1.0, "body": "hemisphere", "profile": "sphere", "radius_ratio": 30.0}
+HEMISPHERE = Scene(1.0, Hemisphere(radius_ratio=30.0))
+
+
+def body(of=Hemisphere, tabor=1.0, radius_ratio=30.0, **more):
+    return lambda: Scene(tabor, of(radius_ratio=radius_ratio, **more))
+
+
+def against(counter, share=0.5, of=HEMISPHERE.body):
+    return lambda: Scene(1.0, of, counter=counter, share=share)
+
 
 REFUSED = [
-    ({"tabor": 0.0}, "tabor = 0 is outside 0 < tabor"),
-    ({"tabor": 301.0}, "tabor = 301 is outside tabor <= 300"),
-    ({"tabor": float("nan")}, "tabor = nan"),
-    ({"poisson": 0.5}, "poisson = 0.5 is outside 0 <= poisson < 0.5"),
-    ({"poisson": -0.1}, "poisson = -0.1"),
-    ({"body": "cube"}, "body = 'cube' is not one of block, hemisphere, sphere"),
-    ({"body": "body.msh"}, "pathlib.Path"),
-    ({"profile": "cone"}, "profile = 'cone' is not one of paraboloid, sphere"),
-    ({"grip": "glued"}, "grip = 'glued' is not one of sliding, bonded"),
-    ({"body": Path("any.msh")}, "profile = sphere does not go with"),
-    ({"traction": "tilted"}, "traction = 'tilted' is not one of projected, surface, reference, normal, vertical"),
-    ({"strain": "large"}, "strain = 'large' is not one of small, finite"),
-    ({"far_field": "hinged"}, "far_field = 'hinged' is not one of point_load, clamped, free"),
-    ({"radius_ratio": None}, 'radius_ratio = None for body = "hemisphere" and profile = "sphere", limit: a number'),
-    ({"body": "block", "radius_ratio": None}, 'radius_ratio = None for body = "block" and profile = "sphere"'),
-    ({"body": "block", "profile": "paraboloid"}, "radius_ratio = 30 means nothing to a block under a paraboloid"),
-    ({"radius_ratio": 1.9}, "radius_ratio = 1.9 is outside 2 <= radius_ratio"),
-    ({"radius_ratio": 1e13}, "outside 2 <= radius_ratio <= 1e12"),
-    ({"radius_ratio": float("nan")}, "radius_ratio = nan"),
-    ({"radius_ratio": float("inf")}, "radius_ratio = inf"),
-    ({"tabor": 10.0, "radius_ratio": 22.0}, "radius_ratio = 22 is outside 2.25 tabor = 22.5 or more"),
-    ({"cap_angle": 0.5}, "cap_angle = 0.5 is outside 1 <= cap_angle <= 89.99 and is not 90"),
-    ({"cap_angle": 91.0}, "cap_angle = 91"),
-    ({"radius": 50.0}, "radius = 50.0 does not go with"),
-    ({"far_field": "clamped"}, "far_field = clamped does not go with"),
-    ({"body": "sphere", "counter": Counter(0.5)}, "does not go with"),
-    ({"body": "block", "counter": Counter(0.5)}, "does not go with"),
-    ({"body": "block", "strain": "finite"}, "strain = finite does not go with"),
-    ({"body": "block", "traction": "surface"}, "traction = surface does not go with"),
+    (lambda: Scene(0.0), "tabor = 0 is outside 0 < tabor"),
+    (lambda: Scene(301.0), "tabor = 301 is outside tabor <= 300"),
+    (lambda: Scene(float("nan")), "tabor = nan"),
+    (body(poisson=0.5), "poisson = 0.5 is outside 0 <= poisson < 0.5"),
+    (body(poisson=-0.1), "poisson = -0.1"),
+    (body(poisson=0.2, material=NeoHookean(0.3)), "limit: one of both"),
+    (lambda: Scene(1.0, "cube"), "body = 'cube' is no body; take fem_adhesion.Hemisphere"),
+    (lambda: Scene(1.0, Path("body.msh")), "is no body"),
+    (lambda: Scene(1.0, HEMISPHERE.body, counter="cube", share=0.5), "counter = 'cube' is no body"),
+    (body(grip="glued"), "grip = 'glued' is not one of sliding, bonded"),
+    (lambda: Scene(1.0, Meshed("any.msh", radius_ratio=30.0), Sphere(30.0)), "does not go with meshed"),
+    (lambda: LinearElastic(traction="tilted"), "traction = 'tilted' is not one of projected, surface"),
+    (lambda: LinearElastic(traction="normal"), "traction = 'normal' is not one of projected, surface"),
+    (
+        lambda: NeoHookean(traction="surface"),
+        "traction = 'surface' is not one of projected, reference",
+    ),
+    (lambda: Block(radius=50.0, far_field="hinged"), "far_field = 'hinged' is not one of point_load, clamped, free"),
+    (body(radius_ratio=None), "radius_ratio = None of type NoneType, limit: a real number"),
+    (body(radius_ratio=1.9), "radius_ratio = 1.9 is outside 2 <= radius_ratio"),
+    (body(radius_ratio=1e13), "outside 2 <= radius_ratio <= 1e12"),
+    (body(radius_ratio=float("nan")), "radius_ratio = nan"),
+    (body(radius_ratio=float("inf")), "radius_ratio = inf"),
+    (body(tabor=10.0, radius_ratio=22.0), "radius_ratio = 22 is outside 2.25 tabor = 22.5 or more"),
+    (lambda: Scene(10.0, profile=Sphere(22.0)), "radius_ratio = 22 is outside 2.25 tabor = 22.5 or more"),
+    (body(HeldSphere, cap_angle=0.5), "cap_angle = 0.5 is outside 1 <= cap_angle <= 89.99 and is not 90"),
+    (body(HeldSphere, cap_angle=91.0), "cap_angle = 91"),
+    (lambda: Scene(1.0, Block(radius=50.0), Sphere(30.0)), "does not go with block; take a half-space"),
+    (against(HalfSpace(), of=HeldSphere(radius_ratio=30.0)), "does not go with body = held-sphere"),
+    (against(HalfSpace(), of=HalfSpace()), "does not go with body = half-space"),
+    (against(HeldSphere(radius_ratio=60.0)), "counter = held-sphere does not go with"),
+    (against(HalfSpace(), of=Hemisphere(radius_ratio=30.0, material=NeoHookean())), "does not go with material"),
+    (against(HalfSpace(), of=Hemisphere(radius_ratio=30.0, material=LinearElastic(0.3, "surface"))), "surface"),
+    (lambda: HalfSpace(material=NeoHookean()), "does not go with half-space"),
+    (lambda: HalfSpace(material=LinearElastic(traction="surface")), "traction = surface does not go with half-space"),
+    (against(HalfSpace(), 0.0), "share = 0 is outside 0 < share < 1"),
+    (against(HalfSpace(), 1.0), "share = 1 is outside 0 < share < 1"),
+    (against(HalfSpace(), None), "share = None of type NoneType, limit: a real number"),
+    (against(None), "share = 0.5 without a counter-body"),
+    (against(Hemisphere(radius_ratio=15.0)), "radius_ratio = 15 of the counter-body is outside 30 <= radius_ratio"),
 ]
 
 
-@pytest.mark.parametrize(("options", "message"), REFUSED, ids=lambda x: x if isinstance(x, str) else "")
-def test_a_scene_that_cannot_be_is_refused_with_value_limit_and_remedy(options, message):
-    with pytest.raises(ValueError, match=re.escape(message)) as refusal:
-        Scene(**(HEMISPHERE | options))
+@pytest.mark.parametrize(("make", "message"), REFUSED, ids=[message for _, message in REFUSED])
+def test_a_scene_that_cannot_be_is_refused_with_value_limit_and_remedy(make, message):
+    with pytest.raises(InputError, match=re.escape(message)) as refusal:
+        make()
     text = str(refusal.value)
     assert "\n" not in text
     assert ";" in text  # after it, the remedy or the reason
 
 
 @pytest.mark.parametrize(
-    ("options", "message"),
+    "scene",
     [
-        ({"share": 0.0}, "share = 0 is outside 0 < share < 1"),
-        ({"share": 1.0}, "share = 1 is outside 0 < share < 1"),
-        ({"share": 0.5, "radius": 0.5}, "radius = 0.5 of the counter-body is outside 1 <= radius"),
-        ({"share": 0.5, "poisson": 0.5}, "poisson = 0.5"),
+        HEMISPHERE,
+        replace(HEMISPHERE, profile=Paraboloid()),
+        Scene(1.0, Hemisphere(radius_ratio=30.0, grip="bonded", material=LinearElastic(traction="surface"))),
+        Scene(1.0, HeldSphere(radius_ratio=30.0, cap_angle=90.0)),
+        Scene(1.0, profile=Sphere(30.0)),
+        Scene(1.0, Meshed("any.msh", radius_ratio=30.0)),
+        pair(1.0, 30.0, 0.5),
+        Scene(1.0, Hemisphere(radius_ratio=30.0, material=NeoHookean())),
+        Scene(10.0, Hemisphere(radius_ratio=22.5)),
     ],
 )
-def test_a_counter_body_that_cannot_be_is_refused(options, message):
-    with pytest.raises(ValueError, match=re.escape(message)):
-        Counter(**options)
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {},
-        {"profile": "paraboloid"},
-        {"grip": "bonded", "traction": "surface"},
-        {"body": "sphere", "cap_angle": 90.0},
-        {"body": "block"},
-        {"body": Path("any.msh"), "profile": "paraboloid"},
-        {"counter": Counter(0.5)},
-        {"strain": "finite"},
-        {"tabor": 10.0, "radius_ratio": 22.5},
-    ],
-)
-def test_a_scene_that_can_be_is_not_refused(options):
-    scene = Scene(**(HEMISPHERE | options))
+def test_a_scene_that_can_be_is_not_refused(scene):
     assert scene.sized
     assert scene.sphere_radius == pytest.approx(np.sqrt(scene.radius_ratio / scene.tabor))
 
 
-def test_the_half_space_under_a_paraboloid_has_no_length():
-    assert not Scene(1.0).sized
-    assert Scene(1.0).sphere_radius == np.inf
+def test_a_body_says_how_long_its_scene_is():
+    """The R/eps of a pair is that of both, and its bodies have their own in the units of the pair."""
+    scene = pair(1.0, 30.0, 0.4, 0.45, 3.0)
+    assert (scene.body.radius_ratio, scene.counter.radius_ratio) == (40.0, 120.0)
+    assert scene.radius_ratio == pytest.approx(30.0, rel=1e-14)
+    assert scene.radii == pytest.approx([np.sqrt(30.0) * 4 / 3, np.sqrt(30.0) * 4], rel=1e-14)
+    assert scene.surface.end == pytest.approx(scene.radii[0], rel=1e-14)
+
+
+@pytest.mark.parametrize("scene", [Scene(1.0, HalfSpace(poisson=0.45)), Scene(1.0, Block(radius=50.0))])
+def test_the_half_space_under_a_paraboloid_has_no_length(scene):
+    assert not scene.sized
+    assert scene.sphere_radius == np.inf
+    assert scene.radius_ratio is None
+
+
+def test_a_poissons_ratio_is_short_for_a_material():
+    assert HalfSpace(poisson=0.45) == HalfSpace(material=LinearElastic(0.45))
+    assert HalfSpace(poisson=0.45, material=LinearElastic(0.45)).material.poisson == 0.45
+    assert replace(HalfSpace(poisson=0.45), material=LinearElastic(0.2)).material.poisson == 0.2
+    assert replace(Hemisphere(radius_ratio=30.0, poisson=0.45), grip="bonded").material.poisson == 0.45
+
+
+@pytest.mark.parametrize("tabor", [1.0, 3.0])
+def test_a_surface_ends_where_its_body_does(tabor):
+    """The paraboloid over a hemisphere is one up to the equator."""
+    scene = Scene(tabor, Hemisphere(radius_ratio=30.0), Paraboloid())
+    assert scene.surface.end == pytest.approx(np.sqrt(30.0 / tabor))
+    radii = np.linspace(0, 1, 5)
+    np.testing.assert_array_equal(scene.surface.height(radii), radii**2 / 2)
+    np.testing.assert_array_equal(scene.surface.slope(radii), radii)
 
 
 @pytest.mark.parametrize("rtol", [0.0, 1.0, float("nan")])
 def test_a_tolerance_out_of_range_is_refused_before_any_work(rtol):
     with pytest.raises(ValueError, match="rtol"):
-        fem_adhesion.trace(Scene(**HEMISPHERE), rtol=rtol)
+        fem_adhesion.trace(HEMISPHERE, rtol=rtol)
 
 
 @pytest.mark.parametrize("radius_ratio", [1.0, 2.0, float("nan")])
@@ -138,7 +174,7 @@ def test_the_half_space_under_a_sphere_has_the_events_of_finite_elements(spheres
 
 @pytest.fixture(scope="module")
 def block(spheres):
-    scene = Scene(1.0, profile="sphere", radius_ratio=10.0)
+    scene = Scene(1.0, profile=Sphere(10.0))
     stage = AroundEvents(sized_body(scene, Discretisation(6)))
     found = spheres[10.0].stages[-1]
     names = ("pull_off", "jump_on", "jump_off")
@@ -165,7 +201,7 @@ def test_the_vertical_tangent_at_the_equator_leaves_no_more_than_the_estimates(s
 
 def test_a_degree_more_leaves_a_tenth_where_the_attraction_of_a_block_ends_with_the_sphere(small):
     """A quarter, where cells that are long beside the equator carry the root in its profile."""
-    (_, states), scene = small, Scene(1.0, profile="sphere", radius_ratio=6.0)
+    (_, states), scene = small, Scene(1.0, profile=Sphere(6.0))
     event = states[-1]["jump_on"]
     stages = [truths.Standing(sized_body(scene, Discretisation(degree))) for degree in (4, 5)]
     found = [moved(event, stage(event).problem).point.observables for stage in stages]

@@ -13,7 +13,7 @@ from numpy.polynomial.legendre import leggauss
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import cli
+from fem_adhesion import HalfSpace, cli, convergence
 from fem_adhesion.common import style
 from fem_adhesion.common.files import directory_written_aside
 from fem_adhesion.common.page import markdown
@@ -198,7 +198,7 @@ def test_the_best_of_each_family_finds_the_known_values(rows):
 
 
 def fe_path(rtol):
-    return fem_adhesion.trace(Scene(1.0, 0.3), rtol=rtol)
+    return fem_adhesion.trace(Scene(1.0, HalfSpace(poisson=0.3)), rtol=rtol)
 
 
 def test_clamping_the_far_boundary_tells_and_solving_whole_does_not(rows):
@@ -287,7 +287,7 @@ def called(monkeypatch):
         (relaxation, "simple"),
         (relaxation, "greenwood"),
         (halfspace, "trace"),
-        (fem_adhesion, "trace"),
+        (convergence, "trace"),
     ):
         spy(module, name, stops=True)
     return calls

@@ -9,7 +9,7 @@ import pytest
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene, cli
+from fem_adhesion import Hemisphere, Scene, cli
 from halfspace.equilibrium.curve import metric_for, placed
 from halfspace.equilibrium.states import COORDINATES, shift
 from halfspace.errors import InputError
@@ -204,7 +204,7 @@ def _segments(path):
 
 SCENES = {
     "block": Scene(1.0),
-    "hemisphere": Scene(1.0, body="hemisphere", profile="sphere", radius_ratio=100.0),
+    "hemisphere": Scene(1.0, Hemisphere(radius_ratio=100.0)),
 }
 
 

@@ -13,12 +13,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scenes import hemisphere, pair
 from scipy import sparse
 from skfem import ElementQuadP, Mesh
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Counter, Scene
+from fem_adhesion import Block, HeldSphere, Meshed, NeoHookean, Scene, share_of
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.scene import LITTLE
@@ -29,22 +30,21 @@ from halfspace.profiles import Sphere
 from halfspace.values import Valued, same, shown
 
 ROOT = Path(__file__).parents[1]
-SPHERE = {"tabor": 0.1, "body": "hemisphere", "profile": "sphere", "radius_ratio": 10.0}
 
 PATHS = {
     "half-space": partial(halfspace.trace, 1.0, rtol=1e-2),
     "half-space under a sphere": partial(halfspace.trace, 0.1, rtol=1e-1, profile=Sphere(10.0)),
     "block": partial(fem_adhesion.trace, Scene(0.1), rtol=1e-1),
-    "clamped block": partial(fem_adhesion.trace, Scene(0.3, far_field="clamped", radius=20.0), rtol=1e-1),
-    "block under a sphere": partial(fem_adhesion.trace, Scene(**SPHERE | {"body": "block"}), rtol=1e-1),
-    "hemisphere": partial(fem_adhesion.trace, Scene(**SPHERE), rtol=1e-1),
-    "held sphere": partial(fem_adhesion.trace, Scene(**SPHERE | {"body": "sphere"}), rtol=1e-1),
-    "pair": partial(fem_adhesion.trace, Scene(**SPHERE, counter=Counter(0.3, radius=2.0)), rtol=1e-1),
+    "clamped block": partial(fem_adhesion.trace, Scene(0.3, Block(radius=20.0, far_field="clamped")), rtol=1e-1),
+    "block under a sphere": partial(fem_adhesion.trace, Scene(0.1, profile=Sphere(10.0)), rtol=1e-1),
+    "hemisphere": partial(fem_adhesion.trace, hemisphere(0.1, 10.0), rtol=1e-1),
+    "held sphere": partial(fem_adhesion.trace, Scene(0.1, HeldSphere(radius_ratio=10.0)), rtol=1e-1),
+    "pair": partial(fem_adhesion.trace, pair(0.1, 10.0, 0.3, 0.3, 2.0), rtol=1e-1),
     "mesh": partial(
-        fem_adhesion.trace, Scene(0.1, body=ROOT / "meshes" / "hemisphere.msh", radius_ratio=2.0), rtol=1e-1
+        fem_adhesion.trace, Scene(0.1, Meshed(ROOT / "meshes" / "hemisphere.msh", radius_ratio=2.0)), rtol=1e-1
     ),
     "finite strain": partial(
-        fem_adhesion.trace, Scene(**SPHERE | {"radius_ratio": 2.0}, strain="finite"), rtol=1e-1, to_load=LITTLE
+        fem_adhesion.trace, hemisphere(0.1, 2.0, material=NeoHookean()), rtol=1e-1, to_load=LITTLE
     ),
 }
 
@@ -236,7 +236,7 @@ def test_what_is_public_is_listed_found_and_typed(package):
 PROGRAM = """
 import halfspace, fem_adhesion
 from fem_adhesion import Scene
-sphere = Scene(0.1, body="hemisphere", profile="sphere", radius_ratio=2.0, strain="finite")
+sphere = Scene(0.1, fem_adhesion.Hemisphere(radius_ratio=2.0, material=fem_adhesion.NeoHookean()))
 for path in (halfspace.trace(1.0, rtol=1e-2), fem_adhesion.trace(Scene(0.3), rtol=1e-1),
              fem_adhesion.trace(sphere, rtol=1e-1, to_load=0.5)):
     print([(e.name, e.approach, e.load, e.load_error) for e in path.events.values()], path.stable.sum())
@@ -265,11 +265,8 @@ def test_the_interpreters_optimisation_changes_nothing():
     ("E1", "nu1", "E2", "nu2"), [(70e9, 0.17, 160e9, 0.28), (1.0, 0.3, 1.0, 0.3), (2e6, 0.49, 5e5, 0.4)]
 )
 def test_the_share_of_a_counter_body_is_its_part_of_the_compliance(E1, nu1, E2, nu2):
-    counter = Counter.from_moduli(E1, nu1, E2, nu2, radius=3.0)
     effective = 1 / ((1 - nu1**2) / E1 + (1 - nu2**2) / E2)
-    assert counter.share == pytest.approx((1 - nu2**2) * effective / E2, rel=1e-14, abs=0)
-    assert (counter.poisson, counter.radius) == (nu2, 3.0)
-    assert Counter.from_moduli(E1, nu1, E2, nu2).radius == np.inf
+    assert share_of(E1, nu1, E2, nu2) == pytest.approx((1 - nu2**2) * effective / E2, rel=1e-14, abs=0)
 
 
 @pytest.mark.parametrize(
@@ -283,4 +280,4 @@ def test_the_share_of_a_counter_body_is_its_part_of_the_compliance(E1, nu1, E2, 
 )
 def test_moduli_that_cannot_be_are_refused(moduli, message):
     with pytest.raises(InputError, match=message):
-        Counter.from_moduli(*moduli)
+        share_of(*moduli)

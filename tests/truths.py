@@ -8,7 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from fem_adhesion.bodies import sized
+from fem_adhesion import discretise
+from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.finite_strain import meshes as finite_strain_meshes
 from fem_adhesion.finite_strain.scene import softening
 from fem_adhesion.harmonics import Resolution as Series
@@ -84,14 +85,14 @@ def _panels(nodes, lines):
 
 def elements(scene):
     """The body of a scene by finite elements of high degree."""
-    return [Standing(sized.sized_body(scene, sized.Discretisation(*how))) for how in ((8, 0.55, 2.0), (9, 0.5, 2.2))]
+    return [Standing(discretise.sized_body(scene, Discretisation(*how))) for how in ((8, 0.55, 2.0), (9, 0.5, 2.2))]
 
 
 def finite_strain(scene):
     """A sphere at finite strain by elements of higher degree than its events are given, on cells of its own."""
     finest = 1 - softening(scene)
     hows = ((7, 0.55 * finest, 2.2), (8, 0.45 * finest, 2.0))
-    found = [finite_strain_meshes.ScenesBody(scene, sized.Discretisation(*how)) for how in hows]
+    found = [finite_strain_meshes.ScenesBody(scene, Discretisation(*how)) for how in hows]
     return [finite_strain_meshes.AroundEvents(body, finite_strain_meshes.Windows(body)) for body in found]
 
 

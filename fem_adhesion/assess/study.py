@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-import fem_adhesion
 import halfspace
+from fem_adhesion import convergence
 from fem_adhesion.assess.predictions import (
     REFERENCE_TABOR,
     Prediction,
@@ -29,6 +29,7 @@ from fem_adhesion.assess.verdict import (
     verdict,
     yielding,
 )
+from fem_adhesion.bodies.hemisphere import Hemisphere
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.progress import Progress, in_turn, unheard
 from fem_adhesion.scene import Scene
@@ -213,16 +214,13 @@ def _finite(contact: Contact) -> Prediction:
     if units.tabor > FINITE_TABOR:
         raise InputError(
             f"tabor = {units.tabor:.4g} is outside tabor <= {FINITE_TABOR:g}, beyond which it takes long; "
-            "trace a Scene with body hemisphere"
+            "trace a Scene with a Hemisphere"
         )
     scene = Scene(
         tabor=units.tabor,
-        poisson=contact.smaller_poisson,
-        body="hemisphere",
-        profile="sphere",
-        radius_ratio=units.radius_ratio,
-        grip=contact.grip,
+        body=Hemisphere(radius_ratio=contact.smaller_ratio, grip=contact.grip, poisson=contact.smaller_poisson),
         counter=contact.counter,
+        share=contact.share,
     )
-    path = fem_adhesion.trace(scene, rtol=FINITE_RTOL, to_load=TO_LOAD)
+    path = convergence.trace(scene, rtol=FINITE_RTOL, to_load=TO_LOAD)
     return computed(PAIR if contact.pair else FINITE, path, contact.reduced_stiffness, units)

@@ -1,5 +1,6 @@
-"""Bodies with a length of their own, as elastic operators for the contact problem.
+"""Elastic bodies, one a file: what each is, and how it becomes a mesh. Nothing else asks which body it is.
 
-`sized` (hemisphere and held sphere, in their grips), `pair` (two of them against each other), `user_mesh` (from a
-file).
+`body` says what there is to know of one; `half_space` and `block` are endless or cut off, `hemisphere` and
+`held_sphere` have a length of their own, `meshed` comes from a file. scikit-fem takes as long to load as all else, so
+that it is imported where a mesh is made, not where a body is named.
 """

@@ -9,7 +9,10 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from fem_adhesion.scene import Counter, GripName
+from fem_adhesion.bodies.body import Body, GripName
+from fem_adhesion.bodies.half_space import HalfSpace
+from fem_adhesion.bodies.hemisphere import Hemisphere
+from fem_adhesion.scene import facing_pair
 from halfspace.errors import InputError
 from halfspace.limits import require_poisson
 from halfspace.scaling import Units, contact_modulus, equivalent_radius
@@ -96,15 +99,29 @@ class Contact:
         return max(ratio, 1 / ratio)
 
     @cached_property
-    def counter(self) -> Counter | None:
-        """The larger body as the counter-body of the smaller, or None for a rigid wall."""
+    def share(self) -> float | None:
+        """Part of the compliance that is the larger body's, or None before a rigid wall."""
         if not self.pair:
             return None
-        swapped = self.counter_radius < self.radius
         its_part = self.units.modulus * (1 - self.poisson**2) / self.modulus
-        share = min(max(its_part if swapped else 1 - its_part, RIGID), 1 - RIGID)
-        poisson = self.poisson if swapped or self._other is None else self._other[1]
-        return Counter(share, poisson, self.larger_radius)
+        share = its_part if self.counter_radius < self.radius else 1 - its_part
+        return min(max(share, RIGID), 1 - RIGID)
+
+    @cached_property
+    def counter(self) -> Body | None:
+        """The larger body, or None before a rigid wall; the wall itself is a half-space."""
+        if not self.pair:
+            return None
+        poisson = self.poisson if self.counter_radius < self.radius or self._other is None else self._other[1]
+        if math.isinf(self.larger_radius):
+            return HalfSpace(poisson=poisson)
+        _, larger = facing_pair(self.units.radius_ratio, self.larger_radius)
+        return Hemisphere(radius_ratio=larger, grip=self.grip, poisson=poisson)
+
+    @property
+    def smaller_ratio(self) -> float:
+        """R/eps of the smaller body."""
+        return facing_pair(self.units.radius_ratio, self.larger_radius)[0]
 
     @property
     def _other(self) -> tuple[float, float] | None:

@@ -8,17 +8,18 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable
-from functools import partial
+from dataclasses import MISSING, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from fem_adhesion.registry import PARTS, class_of, name_of
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
+    from fem_adhesion.bodies.body import Body, GripName
     from fem_adhesion.common.contact import Contact
     from fem_adhesion.common.options import Parser
-    from fem_adhesion.scene import BodyName, Counter, Scene
+    from fem_adhesion.scene import Scene
 
     Group = argparse._ArgumentGroup
 
@@ -63,12 +64,16 @@ def add_other_body(contact: Group, given: str, plain: str, *, in_si_only: bool =
 
 def add_body(body: Group) -> None:
     """Add the options of what is elastic."""
-    body.add_argument("--body", choices=("block", "hemisphere", "sphere"), help="what is elastic; block unless given")
-    body.add_argument("--mesh", type=Path, help="file with the mesh of the body", metavar="FILE")
-    body.add_argument("--profile", choices=("paraboloid", "sphere"), help="undeformed gap; paraboloid unless given")
+    body.add_argument("--body", choices=tuple(PARTS["body"]), help="what is elastic; half-space unless given")
+    body.add_argument("--mesh", type=Path, help="file with the mesh of the body, which is meshed then", metavar="FILE")
+    profile = "undeformed gap; the body's own unless given, of a half-space a paraboloid"
+    body.add_argument("--profile", choices=("paraboloid", "sphere"), help=profile)
     cap = "half-angle of the cap over which a sphere is held, degrees; 30 unless given"
     body.add_argument("--cap-angle", type=float, help=cap, metavar="ANGLE")
-    body.add_argument("--strain", choices=("small", "finite"), help="linear or neo-Hookean; small unless given")
+    body.add_argument("--block-radius", type=float, help="size of a block in beta", metavar="L")
+    held = "what holds a block at its far side; point_load unless given"
+    body.add_argument("--far-field", choices=("point_load", "clamped", "free"), help=held)
+    body.add_argument("--strain", choices=tuple(MATERIALS), help="linear or neo-Hookean; small unless given")
     counted = "what the surface law is counted per; projected unless given, at finite strain with matter conserved"
     tractions = ("projected", "surface", "reference", "normal", "vertical")
     body.add_argument("--traction", choices=tractions, help=counted)
@@ -76,25 +81,88 @@ def add_body(body: Group) -> None:
     body.add_argument("--radius-ratio", type=float, help=ratio, metavar="RHO")
 
 
-def body_of(options: argparse.Namespace) -> Callable[..., Scene]:
-    """What makes a scene of the body given, from the other arguments of `fem_adhesion.Scene`."""
+MATERIALS = {"small": "linear-elastic", "finite": "neo-hookean"}  # by the strain
+FIELDS = {
+    "radius_ratio": "radius_ratio",
+    "grip": "grip",
+    "cap_angle": "cap_angle",
+    "path": "mesh",
+    "radius": "block_radius",
+    "far_field": "far_field",
+}
+"""Options that say what the fields of a body are."""
+
+
+def scene_of(
+    options: argparse.Namespace,
+    tabor: float,
+    poisson: float,
+    radius_ratio: float | None,
+    counter: Body | None,
+    share: float | None,
+) -> Scene:
+    """Scene of the body given; `radius_ratio` is that of the body itself, or of the profile."""
     from fem_adhesion.scene import Scene
 
-    if options.mesh and options.body:
+    traction = {} if options.traction is None else {"traction": options.traction}
+    material = class_of("material", MATERIALS[options.strain or "small"])(poisson, **traction)
+    body = _body(options, radius_ratio, material)
+    return Scene(tabor, body, _profile(options, body, radius_ratio), counter=counter, share=share)
+
+
+def has_size(options: argparse.Namespace) -> bool:
+    """Whether the body given has a length of its own."""
+    return "radius_ratio" in _fields(_name(options))
+
+
+def _name(options: argparse.Namespace) -> str:
+    if options.mesh and options.body not in (None, "meshed"):
         raise InputError(f"mesh = {options.mesh} with body = {options.body}, limit: one of both; leave out --body")
-    if options.body != "sphere":
-        refuse(options, ("cap_angle",), "with --body sphere, which is held over a cap")
-    cap = {} if options.cap_angle is None else {"cap_angle": options.cap_angle}
-    body: BodyName | Path = options.mesh or options.body or "block"
-    return partial(
-        Scene,
-        body=body,
-        profile=options.profile or "paraboloid",
-        grip=options.grip or "sliding",
-        traction=options.traction or "projected",
-        strain=options.strain or "small",
-        **cap,
-    )
+    return "meshed" if options.mesh else options.body or "half-space"
+
+
+def _fields(name: str, kind: str = "body") -> dict[str, Any]:
+    return {field.name: field for field in fields(class_of(kind, name))}
+
+
+def _body(options: argparse.Namespace, radius_ratio: float | None, material: object) -> Any:
+    """Body of the fields given, none of which it lacks."""
+    name = _name(options)
+    own = _fields(name)
+    for field, option in FIELDS.items():
+        if field not in own and option != "radius_ratio":
+            refuse(options, (option,), "with " + " or ".join(f"--body {other}" for other in _having(field)))
+    values = {field: getattr(options, option) for field, option in FIELDS.items() if field in own}
+    if "radius_ratio" in own:
+        values["radius_ratio"] = radius_ratio
+    for field, value in values.items():
+        if value is None and own[field].default is MISSING:
+            what = {"path": "a file; give --mesh FILE", "radius": "a number; give --block-radius, in beta"}
+            raise InputError(f'{field} = None for body = "{name}", limit: {what.get(field, "a number; give R/eps")}')
+    given = {field: value for field, value in values.items() if value is not None}
+    return class_of("body", name)(material=material, **given)
+
+
+def _having(field: str) -> list[str]:
+    """Bodies that have a field."""
+    return [name for name in PARTS["body"] if field in _fields(name)]
+
+
+def _profile(options: argparse.Namespace, body: Body, radius_ratio: float | None) -> Any:
+    """Profile given, or None for the body's own."""
+    name = options.profile
+    own = name is None or (name == name_of(body.shape) and not body.file)
+    takes = not own and "radius_ratio" in _fields(name, "profile")
+    if math.isinf(body.size) and options.radius_ratio is not None and not takes:
+        raise InputError(
+            f"radius_ratio = {options.radius_ratio:g} means nothing to a {body.name} under a paraboloid; leave it out, "
+            "or take --body hemisphere or --profile sphere"
+        )
+    if own:
+        return None
+    if takes and radius_ratio is None:
+        raise InputError(f'radius_ratio = None for profile = "{name}", limit: a number; give R/eps')
+    return class_of("profile", name)(*([radius_ratio] if takes else []))
 
 
 def given(options: argparse.Namespace, *names: str) -> list[str]:
@@ -159,16 +227,24 @@ def _contact(options: argparse.Namespace) -> Contact:
     )
 
 
-def counter_of(options: argparse.Namespace) -> Counter | None:
-    """The counter-body given with a Tabor parameter, or None for a rigid wall."""
-    from fem_adhesion.scene import Counter
+def counter_of(options: argparse.Namespace) -> tuple[float | None, Body | None, float | None]:
+    """First body's R/eps, counter-body and its share as given with a Tabor parameter; both None for a rigid wall."""
+    from fem_adhesion.bodies.half_space import HalfSpace
+    from fem_adhesion.bodies.hemisphere import Hemisphere
+    from fem_adhesion.scene import facing_pair
+    from halfspace.limits import require_counter_radius
 
-    if options.counter_share is None:
+    share, ratio = options.counter_share, options.radius_ratio
+    if share is None:
         refuse(options, COUNTER, "with --counter-share where there is --tabor")
-        return None
+        return ratio, None, None
     poisson = POISSON if options.counter_poisson is None else options.counter_poisson
-    radius = math.inf if options.counter_radius is None else _plain(options, "counter_radius", "radii of the first")
-    return Counter(options.counter_share, poisson, radius)
+    larger = math.inf if options.counter_radius is None else _plain(options, "counter_radius", "radii of the first")
+    if ratio is None or math.isinf(require_counter_radius(larger)):
+        return ratio, HalfSpace(poisson=poisson), share
+    smaller_ratio, larger_ratio = facing_pair(ratio, larger)
+    grip: GripName = options.grip or "sliding"
+    return smaller_ratio, Hemisphere(radius_ratio=larger_ratio, grip=grip, poisson=poisson), share
 
 
 def stiffness_of(options: argparse.Namespace, contact: Contact | None) -> float:

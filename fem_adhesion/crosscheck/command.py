@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, console_beside, written
 from fem_adhesion.common.progress import progress_bar
-from fem_adhesion.common.scene_options import POISSON, add_body, add_other_body, body_of, counter_of, refuse
+from fem_adhesion.common.scene_options import POISSON, add_body, add_other_body, counter_of, scene_of
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -57,10 +57,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _scenes(options: argparse.Namespace) -> list[Scene]:
     """Scenes asked for, with nothing given that would not be heeded."""
-    made, counter = body_of(options), counter_of(options)
-    if not options.mesh and options.body in (None, "block"):
-        refuse(options, ("grip",), "with a body that has a size, as a half-space is held far away")
-    return [made(mu, options.poisson, radius_ratio=options.radius_ratio, counter=counter) for mu in options.tabor]
+    parts = counter_of(options)
+    return [scene_of(options, mu, options.poisson, *parts) for mu in options.tabor]
 
 
 def _compare_with_progress(scenes: Sequence[Scene], rtol: float, console: Console) -> list[Case | Failure]:
@@ -86,7 +84,7 @@ def _show(case: Case | Failure, console: Console) -> None:
         for table in crosscheck_tables(case):
             console.print(table)
     else:
-        name = ", ".join(part for part in case.scene.told if part != "block")
+        name = ", ".join(case.scene.told)
         console.print(f"{name}: failed: {told(case)}", highlight=False, markup=False)
         for row in case.rows:
             console.print(f"  {row.quantity}: {row.verdict}", highlight=False, markup=False)
@@ -97,7 +95,7 @@ COMMAND = Command(
     "compare",
     "check that two solvers which share no elasticity agree",
     "Solve the adhesive contact of a body by finite elements and by a solver that shares no operator "
-    "with them: a block by an integral equation, a hemisphere that slides by spherical harmonics. Compare "
+    "with them: a half-space by an integral equation, a hemisphere that slides by spherical harmonics. Compare "
     "operators, residuals and events, and what both share, or all of a body that only finite elements can solve, "
     "with a problem that shares nothing. "
     "Exit code 0: all agree, 1: some do not, 2: bad input.",

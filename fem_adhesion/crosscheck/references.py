@@ -2,34 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
-from skfem import ElementQuadP
 
 import halfspace
-from fem_adhesion import convergence, harmonics
-from fem_adhesion.bodies import sized
-from fem_adhesion.bodies.pair import radii_of
-from fem_adhesion.bodies.user_mesh import mesh_charts
+from fem_adhesion import convergence, discretise, harmonics
+from fem_adhesion.bodies.body import Discretisation, SolverName
+from fem_adhesion.convergence import on_given_mesh
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, Pair
-from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.incompressible import stiffness_for
-from fem_adhesion.elasticity.space import Space
-from fem_adhesion.mesh.block import tensor_grid
-from fem_adhesion.mesh.file import read_body
+from fem_adhesion.discretise import block_size
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import SizedBody, at_equator
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.equilibrium.contact import ContactProblem, spike_width
+from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
-from halfspace.profiles import PARABOLOID, Profile, Sphere
-from halfspace.profiles.sphere import SphereSurface
 from halfspace.values import Array
 
 Operators = list[ElasticOperator]
@@ -55,14 +46,23 @@ class Reference:
 
 
 def reference_for(scene: Scene) -> Reference | None:
-    """The half-space or the whole sphere by harmonics; None for a body that is neither."""
-    if scene.body == "block":
-        profile: Profile = Sphere(scene.radius_ratio) if scene.radius_ratio else PARABOLOID
-        half_space = partial(halfspace.trace, scene.tabor, profile=profile)
-        return Reference(SOLVERS, half_space, partial(_half_spaces, scene))
-    if scene.body == "hemisphere" and scene.grip == "sliding" and scene.traction == "projected":
-        return Reference(HARMONICS, partial(harmonics.trace, scene), partial(_spheres, scene))
-    return None
+    """The half-space or the whole sphere by harmonics; None for a body that neither knows."""
+    return REFERENCES[scene.body.checked_by](scene) if scene.body.checked_by else None
+
+
+def _by_integral_equation(scene: Scene) -> Reference:
+    trace = partial(halfspace.trace, scene.tabor, law=scene.law, profile=scene.shape)
+    return Reference(SOLVERS, trace, partial(_half_spaces, scene))
+
+
+def _by_harmonics(scene: Scene) -> Reference:
+    return Reference(HARMONICS, partial(harmonics.trace, scene), partial(_spheres, scene))
+
+
+REFERENCES: Mapping[SolverName, Callable[[Scene], Reference]] = {
+    "half-space": _by_integral_equation,
+    "harmonics": _by_harmonics,
+}
 
 
 def tighter(rtol: float) -> float:
@@ -72,9 +72,10 @@ def tighter(rtol: float) -> float:
 
 def require_comparable(scene: Scene, rtol: float) -> None:
     """Refuse a scene for which there is one solver only, or none in reach of a tolerance; raise InputError."""
-    if scene.strain != "small":
+    if scene.material.finite:
         raise InputError(
-            f"strain = {scene.strain} is compared with nothing, limit: small; no other solver of the house knows it"
+            f"material = {scene.material} is compared with nothing, limit: small strain; no other solver of the house "
+            "knows it"
         )
     reference = reference_for(scene)
     if reference and reference.between == HARMONICS:
@@ -100,8 +101,7 @@ def pressures_for(scene: Scene) -> dict[str, Callable[[Array], Array]]:
 
 def radius_of(scene: Scene) -> float:
     """Radius in beta at which these pressures have their edge: 1, or a sixth of that of the smaller sphere."""
-    R = radii_of(scene.sphere_radius, scene.counter)[0] if scene.counter else scene.sphere_radius
-    return R / 6 if scene.sized else 1.0
+    return scene.surface.end / 6 if scene.sized else 1.0
 
 
 # Half-spaces
@@ -110,9 +110,9 @@ def radius_of(scene: Scene) -> float:
 def _lines(scene: Scene) -> Array:
     """Ends of the cells of a block's surface."""
     if scene.sized:
-        R = np.array([scene.sphere_radius])
-        return _about(radius_of(scene), R, at_equator(scene.tabor, SphereSurface(R[0]), 8))
-    return grid.graded(1.0, FINEST, 40.0 if scene.radius is None else scene.radius)
+        last = at_equator(scene.tabor, scene.surface, 8)
+        return _about(radius_of(scene), np.array([scene.surface.end]), last)
+    return grid.graded(1.0, FINEST, block_size(scene) or 40.0)
 
 
 def _about(edge: float, outer: Array, last: float) -> Array:
@@ -121,7 +121,7 @@ def _about(edge: float, outer: Array, last: float) -> Array:
 
 
 def _half_spaces(scene: Scene, rtol: float) -> Operators:
-    degree = convergence.resolution_for(scene, rtol, 0).degree
+    degree = convergence.resolution_for(scene, rtol, 0).how.degree
     lines = _lines(scene)
     wider = lines if scene.sized else grid.graded(1.0, FINEST, 2 * lines[-1])
     return [compliance.panels(wider, k) for k in (degree + 3, degree + 5)]
@@ -134,7 +134,7 @@ HARMONIC = ((9, 2000), (11, 2600))  # nodes of the cells and harmonics, which re
 
 def _spheres(scene: Scene, _: float) -> Operators:
     R = 6 * radius_of(scene)
-    hows = [harmonics.Resolution(nodes, count * spike_width(scene.tabor) / R) for nodes, count in HARMONIC]
+    hows = [harmonics.Resolution(nodes, count * scene.scales.spike_width / R) for nodes, count in HARMONIC]
     return [_made(harmonics.sized_body(scene, how), scene) for how in hows]
 
 
@@ -148,26 +148,20 @@ def _made(body: SizedBody, scene: Scene) -> ElasticOperator:
 
 def elements_of(scene: Scene, rtol: float) -> list[ContactProblem]:
     """Problems on finite elements, the finest last; of a block the size before that, of others the degree alone."""
+    if scene.body.file:
+        return [on_given_mesh(scene, level).problem for level in (0, 1)]
     if not scene.sized:
-        return [ContactProblem(operator, scene.tabor) for operator in _blocks(scene, rtol)]
-    if isinstance(scene.body, Path):
-        mesh = read_body(scene.body)
-        return [mesh_charts(scene, mesh, level)[0].problem.interface for level in (0, 1)]
-    degree = sized.degree_for(rtol)
-    finest = 2 * FINE * radius_of(scene) / spike_width(scene.tabor)
-    hows = [replace(sized.with_rings(d), finest=finest) for d in (degree, degree + 1)]
-    made = [sized.sized_body(scene, how) for how in hows]
-    return [ContactProblem(_made(body, scene), scene.tabor, profile=body.profile) for body in made]
+        return _blocks(scene, rtol)
+    degree = convergence.degree_for(rtol)
+    finest = 2 * FINE * radius_of(scene) / scene.scales.spike_width
+    hows = [replace(convergence.with_rings(d), finest=finest) for d in (degree, degree + 1)]
+    made = [discretise.sized_body(scene, how) for how in hows]
+    return [ContactProblem(_made(body, scene), scene.tabor, scene.law, body.profile) for body in made]
 
 
-def _blocks(scene: Scene, rtol: float) -> Operators:
-    degree = convergence.resolution_for(scene, rtol, 0).degree
+def _blocks(scene: Scene, rtol: float) -> list[ContactProblem]:
+    degree = convergence.resolution_for(scene, rtol, 0).how.degree
     lines = _lines(scene)
     wider = grid.graded(1.0, FINEST, 2 * lines[-1])
-    return [_block(scene, lines, degree), _block(scene, wider, degree), _block(scene, wider, degree + 1)]
-
-
-def _block(scene: Scene, lines: Array, degree: int) -> ElasticOperator:
-    space = Space(tensor_grid(lines, grid.graded(0.0, FINEST, lines[-1])), ElementQuadP(degree))
-    far_field, stiffness = convergence.FAR_FIELDS[scene.far_field], stiffness_for(scene.poisson)
-    return condense(space, scene.poisson, far_field=far_field, stiffness=stiffness).operator
+    cases = ((lines, degree), (wider, degree), (wider, degree + 1))
+    return [discretise.discretise(scene, breaks, Discretisation(d, growth=2.0)).problem for breaks, d in cases]

@@ -47,8 +47,8 @@ def crosscheck_tables(case: Case) -> list[Fitted]:
 
 
 def scene_parts(scene: Scene) -> list[str]:
-    """What is compared, in rich's markup; a block, as usual, is not named."""
-    return [escape(part) for part in scene.told if part != "block"]
+    """What is compared, in rich's markup."""
+    return list(map(escape, scene.told))
 
 
 def crosscheck_table(rows: Sequence[Row], between: Pair = SOLVERS) -> Fitted:

@@ -8,18 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache, partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from skfem import MeshTri
 
-from fem_adhesion.bodies.pair import pair_meshes
-from fem_adhesion.mesh import spheres
-from fem_adhesion.mesh.block import tensor_grid
-from fem_adhesion.mesh.file import read_body
-from fem_adhesion.mesh.held_sphere import held_sphere
-from fem_adhesion.scene import Counter, Scene
+from fem_adhesion.bodies.body import Body as ElasticBody
+from fem_adhesion.bodies.body import Discretisation
+from fem_adhesion.discretise import finest_length, layout_of, mesh_of, pair_meshes
+from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form import (
     Body,
     Contact,
@@ -32,6 +29,7 @@ from fem_adhesion.weak_form import (
     sphere,
 )
 from halfspace.elastic import grid
+from halfspace.profiles import Paraboloid, Sphere
 from halfspace.values import Array
 
 AtRadius = Callable[[float], Contact]
@@ -49,8 +47,9 @@ def contacts(scene: Scene) -> tuple[AtRadius, AtRadius]:
     if not scene.sized:
         boxes = half_spaces(scene)
         return partial(_on_half_space, scene, boxes[0]), partial(_on_half_space, scene, boxes[1])
-    alone = scene.grip == "bonded" or scene.body == "sphere"
-    more = int(not isinstance(scene.body, Path) and (alone or scene.poisson > NEARLY))
+    if scene.body.file:
+        return partial(_on_given_mesh, scene, DEGREES[0]), partial(_on_given_mesh, scene, DEGREES[1])
+    more = int(scene.body.checked_by is None or scene.poisson > NEARLY)
     return partial(_sized, scene, DEGREES[0] + more), partial(_sized, scene, DEGREES[1] + more)
 
 
@@ -79,83 +78,63 @@ def _on_half_space(scene: Scene, body: Body, radius: float) -> Contact:
 
 # Bodies with a length
 
+GROWTH, WIDEST = 2.5, 0.95  # ratio of neighbouring cells; the place in R beyond which they are finest nowhere
+RINGS = 4  # of cells around a corner where the stress is singular
+
+
+def _on_given_mesh(scene: Scene, degree: int, _: float) -> Contact:
+    """Contact of a user's mesh."""
+    body = discretise(_given_mesh(scene), degree, scene.poisson, slides=scene.body.held == "sliding")
+    return Contact(body, scene.tabor, lambda _: scene.sphere_radius * body.depths, endless=False)
+
+
+@lru_cache(maxsize=2)
+def _given_mesh(scene: Scene) -> Any:
+    """The mesh as it is; the vertices of triangles ascend, so that neighbours agree on the places along their sides."""
+    mesh = mesh_of(scene, np.zeros(1), Discretisation(DEGREES[0]))
+    return type(mesh)(mesh.doflocs, np.sort(mesh.t, axis=0), mesh.boundaries) if isinstance(mesh, MeshTri) else mesh
+
 
 def _sized(scene: Scene, degree: int, radius: float) -> Contact:
-    """Contact of a sphere, of a pair or of a user's mesh."""
-    R = float(np.sqrt(scene.radius_ratio / scene.tabor)) if scene.radius_ratio else np.inf
-    if isinstance(scene.body, Path):
-        body = discretise(_of_file(scene.body).scaled(R), degree, scene.poisson, slides=scene.grip == "sliding")
-        return Contact(body, scene.tabor, lambda _: R * body.depths, endless=False)
+    """Contact of one body or two, whose cells are finest at a radius."""
+    R = scene.radii[0]
     radius = min(radius, WIDEST * R)  # what attracts from afar may be wider
-    if scene.counter:
-        return _pair(scene, scene.counter, R, degree, radius)
-    if scene.body == "block":
-        block = _block(R, _finest(scene) * radius, radius)
-        body = _ground(discretise(block, degree, scene.poisson, plate=True))
-        return Contact(body, scene.tabor, _heights(scene, R), endless=False)
+    how = Discretisation(degree, 2 * _finest(scene) * radius / scene.scales.spike_width, GROWTH, RINGS)
+    outer, coordinate = layout_of(scene, how)
+    core = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=GROWTH)
+    if scene.counter is None:
+        body = _standing(scene.body, mesh_of(scene, core, how), degree)
+        return Contact(body, scene.tabor, _heights(scene), endless=False)
+    meshes = pair_meshes(scene, scene.counter, core, how)
+    first, second = (_standing(*one, degree) for one in zip((scene.body, scene.counter), meshes, strict=True))
+    body = opposed(first, second, scene.shares[1])
+    return Contact(body, scene.tabor, _heights(scene), endless=False, rigid=_rim(first.rim, R))
+
+
+def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:
+    """Body as it is held."""
+    material, slides = elastic.material, elastic.held == "sliding"
     body = discretise(
-        _mesh(scene, R, _finest(scene) * radius, radius),
+        mesh,
         degree,
-        scene.poisson,
-        slides=scene.grip == "sliding",
-        on_surface=scene.traction == "surface",
+        material.poisson,
+        slides=slides,
+        plate=elastic.endless,
+        on_surface=material.area == "surface",
     )
-    return Contact(body, scene.tabor, _heights(scene, R), endless=False)
+    return _ground(body) if elastic.endless else body
 
 
-def _heights(scene: Scene, R: float) -> Heights:
-    """Undeformed gap in beta^2/R; the heights of two spheres add."""
-    if scene.profile == "paraboloid":
+def _heights(scene: Scene) -> Heights:
+    """Undeformed gap in beta^2/R, of spheres and the paraboloid by formulas of its own; those of two spheres add."""
+    shape, R = scene.shape, scene.sphere_radius
+    if isinstance(shape, Paraboloid):
         return paraboloid
-    over = scene.counter.radius if scene.counter else np.inf
+    if not isinstance(shape, Sphere):
+        return scene.surface.height
+    over = shape.counter_radius
     radii = [R * (1 + 1 / over), R * (1 + over)] if np.isfinite(over) else [R]
     return lambda r: sum((R / each * sphere(r, each) for each in radii), 0 * r)
-
-
-GROWTH, WIDEST = 2.5, 0.95  # ratio of neighbouring cells; the place in R beyond which they are finest nowhere
-RINGS = 0.2 ** np.arange(1.0, 5.0)  # sizes of rings of cells around a corner where the stress is singular
-
-
-def _mesh(scene: Scene, R: float, finest: float, radius: float) -> Any:
-    """Mesh of a sphere or hemisphere whose cells are finest at a radius."""
-    lines, depths = _lines(R, finest, radius), grid.graded(0.0, finest, spheres.DEPTH * R, growth=GROWTH)
-    if scene.body == "sphere":
-        return held_sphere(R, lines, depths, scene.cap_angle)
-    return spheres.hemisphere(R, lines, depths, rings=_rings(scene))
-
-
-def _block(R: float, finest: float, radius: float) -> Any:
-    """Mesh of a block that is a half-space to a sphere, on which the law acts as far as that reaches."""
-    beyond = R + grid.geometric(BEYOND * R, R / 4, GROWTH)[1:]
-    lines = np.append(grid.graded(radius, finest, R, growth=GROWTH), beyond)
-    mesh = tensor_grid(lines, grid.graded(0.0, finest, BEYOND * R, growth=GROWTH))
-    return spheres.with_contact_to(mesh, R)
-
-
-BEYOND = 1e3  # size of the block in R
-
-
-def _lines(R: float, finest: float, radius: float) -> Array:
-    """Lines of the core of a sphere of radius R, in its coordinate."""
-    return grid.graded(spheres.Stereographic(R).of(radius), finest, spheres.CORE * R, growth=GROWTH)
-
-
-def _rings(scene: Scene) -> Array:
-    return RINGS if scene.grip == "bonded" else spheres.NO_RINGS
-
-
-def _pair(scene: Scene, counter: Counter, R: float, degree: int, radius: float) -> Contact:
-    """Contact of two bodies, that beyond the core of the smaller one are rigid."""
-    R1, finest, slides = R * (1 + 1 / counter.radius), _finest(scene) * radius, scene.grip == "sliding"
-    lines, depths = _lines(R1, finest, radius), partial(grid.graded, 0.0, finest, growth=GROWTH)
-    meshes = pair_meshes(lines, depths, R, counter, _rings(scene))
-    first = discretise(meshes[0], degree, scene.poisson, slides=slides)
-    if np.isinf(counter.radius):
-        second = _ground(discretise(meshes[1], degree, counter.poisson, plate=True))
-    else:
-        second = discretise(meshes[1], degree, counter.poisson, slides=slides)
-    body = opposed(first, second, counter.share)
-    return Contact(body, scene.tabor, _heights(scene, R), endless=False, rigid=_rim(first.rim, R1))
 
 
 def _ground(block: Body) -> Body:
@@ -171,10 +150,3 @@ def _rim(begin: float, end: float, points: int = 12) -> tuple[Array, Array]:
     first = float(np.arcsin(begin / end))
     theta, d_theta = first + (np.pi / 2 - first) * (1 + t) / 2, (np.pi / 2 - first) * w / 2
     return end * np.sin(theta), 2 * np.pi * end**2 * np.sin(theta) * np.cos(theta) * d_theta
-
-
-@lru_cache(maxsize=2)
-def _of_file(path: Path) -> Any:
-    """Mesh of a file; the vertices of triangles ascend, so that neighbours agree on the places along their sides."""
-    mesh = read_body(path)
-    return type(mesh)(mesh.doflocs, np.sort(mesh.t, axis=0), mesh.boundaries) if isinstance(mesh, MeshTri) else mesh

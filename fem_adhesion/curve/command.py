@@ -15,10 +15,11 @@ from fem_adhesion.common.scene_options import (
     POISSON,
     add_body,
     add_contact,
-    body_of,
     counter_of,
+    has_size,
     material_unless_tabor,
     refuse,
+    scene_of,
     stiffness_of,
 )
 from halfspace.errors import InputError
@@ -178,7 +179,7 @@ def _question(options: argparse.Namespace) -> Question:
     contact = material_unless_tabor(options)
     scene = _scene(options, contact)
     inside = options.vtk or options.render or options.movie
-    solver: SolverName = options.solver or ("half-space" if scene.body == "block" and not inside else "fem")
+    solver: SolverName = options.solver or ("half-space" if scene.body.endless and not inside else "fem")
     _require_heeded(options, scene, solver, contact)
     if options.vtk:
         _require_vtk(options, scene, solver)
@@ -192,30 +193,26 @@ def _question(options: argparse.Namespace) -> Question:
 
 def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverName, contact: Contact | None) -> None:
     """Refuse what the question would not depend on."""
-    if scene.body == "block":
-        refuse(options, ("grip",), "with a body that has a size, as a half-space is held far away")
     if not contact and solver == "half-space":
         refuse(options, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it")
     if not options.vtk:
         refuse(options, ("revolve", "force"), "with --vtk DIR")
     if not (options.json or options.csv or options.plot or options.vtk):
         refuse(options, ("points",), "with --json, --csv, --plot or --vtk")
-    if contact and math.isfinite(contact.counter_radius) and scene.body == "block" and scene.profile == "sphere":
+    if contact and math.isfinite(contact.counter_radius) and not has_size(options) and scene.sized:
         raise InputError("profile = sphere of two spheres, limit: a hemisphere; take --body hemisphere")
 
 
 def _scene(options: argparse.Namespace, contact: Contact | None) -> Scene:
-    made = body_of(options)
     if contact is None:
         poisson = POISSON if options.poisson is None else options.poisson
-        return made(options.tabor, poisson, radius_ratio=options.radius_ratio, counter=counter_of(options))
-    refuse(options, ("radius_ratio",), f"with --tabor, as the material has its own {contact.units.radius_ratio:.4g}")
+        return scene_of(options, options.tabor, poisson, *counter_of(options))
     units = contact.units
-    block = not options.mesh and options.body in (None, "block")
-    counter = None if block else contact.counter  # two half-spaces are one, of their contact modulus
-    poisson = contact.smaller_poisson if counter else contact.poisson
-    ratio = None if block and options.profile != "sphere" else units.radius_ratio
-    return made(units.tabor, poisson, radius_ratio=ratio, counter=counter)
+    refuse(options, ("radius_ratio",), f"with --tabor, as the material has its own {units.radius_ratio:.4g}")
+    if not has_size(options) or not contact.pair:  # two half-spaces are one, of their contact modulus
+        return scene_of(options, units.tabor, contact.poisson, units.radius_ratio, None, None)
+    parts = contact.smaller_ratio, contact.counter, contact.share
+    return scene_of(options, units.tabor, contact.smaller_poisson, *parts)
 
 
 COMMAND = Command(

@@ -184,7 +184,7 @@ def _maugis(tabor: float, radius: Array) -> tuple[Array, Array]:
 
 def _title(curves: Curves) -> str:
     scene, units = curves.question.scene, curves.question.units
-    body = "" if scene.body == "block" else f", {scene.body if isinstance(scene.body, str) else scene.body.name}"
+    body = "" if scene.body.endless else f", {scene.body.file.name if scene.body.file else scene.body.name}"
     rho = f", $R/\\epsilon$ = {scene.radius_ratio:.4g}" if scene.radius_ratio else ""
     size = f"$R$ = {engineering(units.radius, 'm')}, " if units else ""
     return f"{size}$\\mu$ = {scene.tabor:.4g}{rho}{body}; {curves.solver}"

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from skfem import CellBasis, ElementVector, MeshTri
 
-from fem_adhesion.bodies.sized import Discretisation
+from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common import style
 from fem_adhesion.curve.profiles import LEGEND, STATES
 from fem_adhesion.curve.scales import scales
@@ -88,7 +88,7 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
     axes.add_collection(PolyCollection(list(unit.of(places + factor * moved)), **look))
     r = np.linspace(0, SHOWN * a, 200)
     sphere = factor * _sphere(state, r)
-    if scene.body == "block" and sphere[0] < HIGHEST * a:
+    if np.isinf(scene.body.size) and sphere[0] < HIGHEST * a:
         axes.plot(unit.of(r), unit.of(sphere), color="black", linewidth=1.3, label="rigid sphere")
         axes.legend(loc="lower right", **LEGEND)
     axes.set(xlim=(0, unit.size * SHOWN * a), ylim=(-unit.size * 1.6 * a, unit.size * HIGHEST * a), aspect="equal")

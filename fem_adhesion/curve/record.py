@@ -12,6 +12,7 @@ from fem_adhesion.common.facts import finite, plain, versions
 from fem_adhesion.curve.scales import EVENT_QUANTITIES as OBSERVABLES
 from fem_adhesion.curve.scales import PAPER, si_sizes
 from fem_adhesion.curve.solve import Curves
+from fem_adhesion.registry import record_of
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, Jump
 from halfspace.equilibrium.events import Event, Tolerance
@@ -35,7 +36,7 @@ def record(curves: Curves) -> dict[str, Any]:
     """
     question = curves.question
     return {
-        "scene": plain(asdict(question.scene)),
+        "scene": plain(record_of(question.scene)),
         "rtol": question.rtol,
         "to_load": question.to_load,
         "units": dict(UNITS),

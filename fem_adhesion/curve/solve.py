@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal
 
 import halfspace
@@ -16,7 +15,6 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_points, require_rtol
-from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.scaling import Units
 
 HALF_SPACE, FINITE_ELEMENTS = "half-space", "finite elements"
@@ -68,15 +66,15 @@ class Question:
             raise InputError(
                 f"stiffness = {self.stiffness:g} R dgamma/eps is outside 0 < stiffness; leave it out for fixed grips"
             )
-        if self.solver == "half-space" and self.scene.body != "block":
+        if self.solver == "half-space" and not self.scene.body.endless:
             raise InputError(
-                f'solver = half-space does not serve body = "{self.scene.body}", limit: block; take fem or both'
+                f"solver = half-space does not serve body = {self.scene.body.name}, limit: half-space; take fem or both"
             )
 
     @property
     def same_contact(self) -> bool:
         """Whether the half-space is the body that is asked for, and not only one to compare with."""
-        return self.scene.body == "block" and self.scene.far_field == "point_load"
+        return self.scene.body.endless
 
 
 @dataclass(frozen=True)
@@ -155,7 +153,4 @@ def _trace(question: Question, solver: str) -> EquilibriumPath:
     scene, rtol, to_load = question.scene, question.rtol, question.to_load
     if solver == FINITE_ELEMENTS:
         return convergence.trace(scene, rtol=rtol, to_load=to_load)
-    curved = scene.profile == "sphere" or isinstance(scene.body, Path)
-    larger = scene.counter.radius if scene.counter and curved else math.inf
-    profile: Profile = Sphere(scene.radius_ratio, larger) if curved and scene.radius_ratio else PARABOLOID
-    return halfspace.trace(scene.tabor, profile=profile, rtol=rtol, to_load=to_load)
+    return halfspace.trace(scene.tabor, law=scene.law, profile=scene.shape, rtol=rtol, to_load=to_load)

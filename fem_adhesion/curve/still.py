@@ -23,6 +23,7 @@ from fem_adhesion.curve.solve import Curves
 from fem_adhesion.fields.state import State, state_at
 from fem_adhesion.paraview.cutaway import View, view_of
 from fem_adhesion.paraview.solid import COLOURS, Pixels, solid_image
+from fem_adhesion.registry import name_of
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.errors import InputError
@@ -160,14 +161,14 @@ def _key(curves: Curves, view: View) -> str:
 
 
 def _body(scene: Scene) -> str:
+    """What is drawn: the rigid side has the shape that the body lacks."""
+    looks = scene.body.looks
     if scene.counter is not None:
-        return "elastic sphere under an elastic counter-body"
-    if scene.body == "block":
-        return "elastic half-space under a rigid sphere"
-    if scene.body == "hemisphere":
-        wall = "flat wall" if scene.profile == "sphere" else "wall, gap of a paraboloid"
-        return f"elastic sphere under a rigid {wall}"
-    return "elastic body of a mesh under a rigid flat wall"
+        return f"{looks} under an elastic counter-body"
+    if np.isinf(scene.body.size):
+        return f"{looks} under a rigid sphere"
+    wall = "flat wall" if scene.shape == scene.body.shape else f"wall, gap of a {name_of(scene.shape)}"
+    return f"{looks} under a rigid {wall}"
 
 
 def _add_bar(figure: Figure, curves: Curves, view: View) -> None:

@@ -48,7 +48,7 @@ def half_space_beside(state: State) -> Beside:
     source, tabor = state.problem.operator.at(1.0), state.scene.tabor
     cells = _clear_of(source.cells, float(state.observables[CONTACT_RADIUS]))
     operator = compliance.panels(cells, min(source.cell_nodes.shape[1], MOST_NODES))
-    problem = ContactProblem(operator, tabor, profile=state.problem.profile)
+    problem = ContactProblem(operator, tabor, state.problem.law, state.problem.profile)
     start = np.append(source.values_at(operator.radii, state.gap), state.point.x[-2:])
     solution = newton.solve(problem, start, _same(state.observables))
     P, H = problem.pressure(solution.x), solution.x[:-2]
@@ -71,7 +71,7 @@ def _clear_of(cells: Array, radius: float) -> Array:
 
 def is_same_contact(scene: Scene) -> bool:
     """Whether the half-space is the scene's body, so that the two solutions differ by their errors alone."""
-    return scene.body == "block" and scene.far_field == "point_load"
+    return scene.body.endless
 
 
 def _same(observables: Array) -> newton.Control:

@@ -15,12 +15,12 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_adhesion.bodies.sized import Discretisation
+from fem_adhesion.bodies.body import Discretisation
+from fem_adhesion.discretise import Discretised, discretised_about
 from fem_adhesion.elasticity.condensation import Surface
 from fem_adhesion.elasticity.incompressible import projected_stiffness
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.elasticity.stress import recovered_stresses
-from fem_adhesion.fields.discretise import Discretised, discretised, share_of
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
@@ -97,7 +97,7 @@ class State(Valued):
     @property
     def share(self) -> float:
         """The body's part of the compliance 1/E*: its own modulus is E*/share."""
-        return share_of(self.scene)
+        return self.scene.shares[0]
 
     @cached_property
     def stable(self) -> bool:
@@ -122,7 +122,7 @@ class State(Valued):
         _, zz, _, rz = (surface.values @ self.stress[:, functions].T).T
         n_z = 1 / np.hypot(1.0, surface.slopes)
         traction = rz * surface.slopes * n_z + zz * n_z
-        return np.asarray(-traction / (n_z if self.scene.traction == "projected" else 1.0))
+        return np.asarray(-traction / (n_z if self.scene.material.area == "projected" else 1.0))
 
 
 def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", how: Discretisation = FIELDS) -> State:
@@ -131,7 +131,7 @@ def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", 
     Parameters
     ----------
     scene : Scene
-        The contact: a block, a hemisphere or a mesh, in small strain.
+        The contact, at small strain.
     problem : Traceable
         On which the point was found: that of its segment or event.
     point : Point
@@ -151,8 +151,8 @@ def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", 
         If a user's mesh does not carry the spike of tension at the contact edge.
     """
     require_fields(scene)
-    body = discretised(scene, problem.interface, float(point.observables[CONTACT_RADIUS]), how)
-    return _solved(scene, body, problem, point, name)
+    made = discretised_about(scene, float(point.observables[CONTACT_RADIUS]), how, problem.interface)
+    return _solved(made, problem, point, name)
 
 
 def states_along(
@@ -192,10 +192,10 @@ def states_along(
 
 def require_fields(scene: Scene) -> None:
     """Raise InputError for a scene whose fields inside the body are not to be had."""
-    if scene.strain != "small":
-        raise InputError('strain = "finite" has no fields here, limit: small strain; take strain = "small"')
-    if scene.body == "sphere":
-        raise InputError('body = "sphere" has no fields here; take body = "hemisphere"')
+    if scene.material.finite:
+        raise InputError(f"material = {scene.material} has no fields here, limit: small strain; take LinearElastic")
+    if not scene.body.has_fields:
+        raise InputError(f"body = {scene.body.name} has no fields here; take hemisphere")
 
 
 def _spread(path: EquilibriumPath, count: int | None) -> list[tuple[Traceable, Point]]:
@@ -211,14 +211,14 @@ def _spread(path: EquilibriumPath, count: int | None) -> list[tuple[Traceable, P
     return [every[number] for number in np.unique(nearest).astype(int)]
 
 
-def _solved(scene: Scene, made: Discretised, source: Traceable, point: Point, name: str) -> State:
-    problem, body = made.problem, made.body
-    new = _same_place(source, point, problem, metric_for(scene.tabor))
+def _solved(made: Discretised, source: Traceable, point: Point, name: str) -> State:
+    scene, problem, body = made.scene, made.problem, made.first
+    new = _same_place(source, point, problem, metric_for(problem))
     problem.require_resolution(new.x)
     projected = body.stiffness is projected_stiffness
     u = body.displacement(problem.pressure(new.x)[: body.surface.radii.size])
     stress = recovered_stresses(body.space, body.poisson, u, projected_dilatation=projected)
-    return State(scene, name, body.space, share_of(scene) * u, stress, body.surface, problem, new)
+    return State(scene, name, body.space, scene.shares[0] * u, stress, body.surface, problem, new)
 
 
 def _same_place(source: Traceable, point: Point, problem: ContactProblem, metric: Metric) -> Point:

@@ -19,8 +19,10 @@ from math import log, pi
 
 import numpy as np
 
-from fem_adhesion.bodies.sized import Discretisation, sized_body
-from fem_adhesion.scene import GripName, Scene
+from fem_adhesion.bodies.body import Discretisation, GripName
+from fem_adhesion.bodies.hemisphere import Hemisphere
+from fem_adhesion.discretise import sized_body
+from fem_adhesion.scene import Scene
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.values import Estimate
@@ -113,7 +115,7 @@ def excess_compliance(grip: GripName, poisson: float, sphere_radius: float, how:
 
 def _operator(grip: GripName, poisson: float, R: float, how: Discretisation) -> ElasticOperator:
     """Compliance of the hemisphere's surface, its cells fine at r = beta."""
-    scene = Scene(1.0, poisson=poisson, body="hemisphere", profile="sphere", radius_ratio=R**2, grip=grip)
+    scene = Scene(1.0, Hemisphere(radius_ratio=R**2, grip=grip, poisson=poisson))
     body = sized_body(scene, how)
     lines = grid.graded(body.coordinate.of(1.0), FINEST, float(body.outer[0]), growth=how.growth)
     return body.make(np.concatenate([lines, body.outer[1:]]))[0]

@@ -12,11 +12,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import halfspace
-from fem_adhesion import Scene, trace
-from fem_adhesion.bodies.sized import Discretisation, sized_body
+from fem_adhesion.bodies.body import Discretisation, GripName
+from fem_adhesion.bodies.hemisphere import Hemisphere
+from fem_adhesion.convergence import trace
+from fem_adhesion.discretise import sized_body
 from fem_adhesion.finite_sphere.records import APPROACH_SCALE, CRITICAL, Case, InputName, Record, Values
 from fem_adhesion.finite_strain.scene import find_jumps, require_well_posed
-from fem_adhesion.scene import GripName, ProfileName, TractionName
+from fem_adhesion.materials import AreaName, LinearElastic, NeoHookean, TractionName
+from fem_adhesion.scene import Scene
 from halfspace.accuracy.fold_birth import FIRST, Birth, NoBirth, born, tabor_of
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
@@ -24,7 +27,7 @@ from halfspace.equilibrium.events import Event
 from halfspace.equilibrium.newton import Traceable
 from halfspace.errors import InputError, NotConverged
 from halfspace.limits import SMALLEST_SPHERE
-from halfspace.profiles import Sphere
+from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.values import Estimate
 
 FINITE_STRAIN_RTOL = 1e-4  # the tightest: a finer one is dear, and the effect is of the order of beta/R
@@ -122,22 +125,16 @@ def _true_profile(case: Case) -> Values:
 
 
 def hemisphere(
-    case: Case, *, profile: ProfileName = "sphere", grip: GripName = "sliding", traction: TractionName = "projected"
+    case: Case, *, profile: Profile | None = None, grip: GripName = "sliding", traction: AreaName = "projected"
 ) -> Scene:
     """Elastic hemisphere of a case, held at its mid-plane."""
-    return Scene(
-        case.given("tabor"),
-        poisson=case.given("poisson"),
-        body="hemisphere",
-        profile=profile,
-        radius_ratio=case.given("radius_ratio"),
-        grip=grip,
-        traction=traction,
-    )
+    material = LinearElastic(case.given("poisson"), traction)
+    body = Hemisphere(radius_ratio=case.given("radius_ratio"), grip=grip, material=material)
+    return Scene(case.given("tabor"), body, profile)
 
 
 def _elastic(
-    case: Case, *, profile: ProfileName = "sphere", grip: GripName = "sliding", traction: TractionName = "projected"
+    case: Case, *, profile: Profile | None = None, grip: GripName = "sliding", traction: AreaName = "projected"
 ) -> Values:
     """A linear hemisphere."""
     scene = hemisphere(case, profile=profile, grip=grip, traction=traction)
@@ -145,7 +142,7 @@ def _elastic(
 
 
 def _neo_hookean(case: Case, traction: TractionName) -> Scene:
-    return replace(hemisphere(case), strain="finite", traction=traction)
+    return hemisphere(case).made_of(NeoHookean(case.given("poisson"), traction))
 
 
 def _finite_strain(case: Case, traction: TractionName) -> Values:
@@ -188,7 +185,7 @@ def _model_of(traction: TractionName) -> Model:
     """Finite strain, its traction counted in one way; with a case of the default beside it."""
 
     def check(case: Case) -> None:
-        for name in (traction, hemisphere(case).traction):
+        for name in (traction, NeoHookean().traction):
             require_well_posed(_neo_hookean(case, name))
 
     return Model(partial(_finite_strain, traction=traction), SPHERE, "sliding", check)
@@ -197,7 +194,7 @@ def _model_of(traction: TractionName) -> Model:
 MODELS: Mapping[str, Model] = {
     "half_space": Model(_half_space, ("tabor",)),
     "true_profile": Model(_true_profile, ("tabor", "radius_ratio")),
-    "finite_body": Model(partial(_elastic, profile="paraboloid"), SPHERE, "sliding"),
+    "finite_body": Model(partial(_elastic, profile=PARABOLOID), SPHERE, "sliding"),
     "sphere": Model(_elastic, SPHERE, "sliding"),
     "bonded": Model(partial(_elastic, grip="bonded"), SPHERE, "bonded"),
     "surface_traction": Model(partial(_elastic, traction="surface"), SPHERE, "sliding"),

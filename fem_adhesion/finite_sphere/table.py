@@ -9,9 +9,9 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from fem_adhesion.bodies.body import GripName
 from fem_adhesion.finite_sphere.cases import CAUSES, MODELS, case_of
 from fem_adhesion.finite_sphere.records import APPROACH_SCALE, CRITICAL, QUANTITIES, Case, Record, Study, Values
-from fem_adhesion.scene import GripName
 from halfspace.values import Estimate
 
 BulkCompliance = Callable[[GripName, float, float], Estimate]

@@ -8,16 +8,15 @@ from dataclasses import dataclass, field
 import numpy as np
 from skfem import ElementQuadP
 
-from fem_adhesion.bodies import sized
+from fem_adhesion.bodies.body import Discretisation
+from fem_adhesion.discretise import FAR_FIELDS, finest_length, layout_of, mesh_of
 from fem_adhesion.elasticity.far_field import with_interiors
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.assembly import finite_strain_problem, material_body
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.traction import convention_of
-from fem_adhesion.mesh import spheres
 from fem_adhesion.scene import Scene
 from halfspace.elastic import grid
-from halfspace.equilibrium.contact import spike_width
 from halfspace.equilibrium.curve import Chart, undeformed_radius
 from halfspace.equilibrium.events import Located
 from halfspace.values import Array, Valued
@@ -47,30 +46,28 @@ class ScenesBody(Valued):
     """
 
     scene: Scene
-    how: sized.Discretisation
+    how: Discretisation
 
     def meshed(self, inner: float, outer: float) -> FiniteStrainProblem:
         """Discretise with cells that are fine for contact radii between these, as far as a contact may reach."""
-        scene, R = self.scene, self.scene.sphere_radius
-        coordinate = spheres.Stereographic(R)
+        scene, R, (ends, coordinate) = self.scene, self.scene.sphere_radius, layout_of(self.scene, self.how)
         first, last = (coordinate.of(min(radius, FARTHEST * R)) for radius in (inner, outer))
-        lines = fine_between(first, last, self.length, spheres.CORE * R, self.how.growth)
-        depths = grid.graded(0.0, float(np.diff(lines).min()), spheres.DEPTH * R, growth=self.how.growth)
-        mesh = spheres.hemisphere(R, lines, depths, rings=sized.corner_rings(scene, self.how))
-        space = Space(mesh, ElementQuadP(self.how.degree))
-        exterior = with_interiors(sized.GRIPS[scene.grip](space, scene.poisson), space)
+        lines = fine_between(first, last, self.length, float(ends[0]), self.how.growth)
+        space = Space(mesh_of(scene, lines, self.how), ElementQuadP(self.how.degree))
+        exterior = with_interiors(FAR_FIELDS[scene.body.held](space, scene.poisson), space)
         return finite_strain_problem(
             material_body(space, scene.poisson, 1 / R),
             exterior,
             scene.tabor,
-            profile=sized.profile_of(scene),
-            convention=convention_of(scene.traction, scene.poisson),
+            profile=scene.surface,
+            convention=convention_of(scene.material.traction, scene.poisson),
+            law=scene.law,
         )
 
     @property
     def length(self) -> float:
         """Length in beta of the cells at the contact edge."""
-        return self.how.finest * spike_width(self.scene.tabor) / 2
+        return finest_length(self.scene, self.how)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

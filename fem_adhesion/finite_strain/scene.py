@@ -10,18 +10,19 @@ from functools import partial
 
 import numpy as np
 
-from fem_adhesion.bodies import sized
+from fem_adhesion.bodies.body import FINEST, Discretisation
+from fem_adhesion.discretise import CURVE_DEGREE, sized_body
 from fem_adhesion.finite_strain.meshes import AroundEvents, ScenesBody, Windows
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.traction import convention_of
-from fem_adhesion.scene import Scene, TractionName
+from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
+from fem_adhesion.scene import Scene
 from halfspace.accuracy.refinement import Rung, climb
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, find_events, metric_for, moved, trace_charts
 from halfspace.equilibrium.events import EVENTS, Event, Located, Tolerance, estimate_event, relocate
 from halfspace.equilibrium.path import Segment
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array, Valued
 
@@ -67,13 +68,13 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
     if scene.tabor > WIDEST_TABOR:
         raise InputError(
             f"tabor = {scene.tabor:g} is outside tabor <= {WIDEST_TABOR:g} for a curve at finite strain; "
-            'take strain = "small"'
+            "take LinearElastic"
         )
     began = time.perf_counter()
     with _cause_told(scene):
         path = climb(rtol, partial(Stages(scene).rung, _lowest_degree(rtol)), to_load=to_load, most_rungs=MOST_RUNGS)
     spread = {name: _spread(path.stages[-2][name], scene) for name in path.events}
-    settings = {**path.settings, "traction": scene.traction}
+    settings = {**path.settings, "traction": scene.material.traction}
     return replace(path, spread=spread, settings=settings, seconds=time.perf_counter() - began)
 
 
@@ -102,13 +103,13 @@ class Stages(Valued):
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""
-        how = sized.Discretisation(degree)
+        how = Discretisation(degree)
         return self.along.setdefault(degree, Windows(ScenesBody(self.scene, how)))
 
     def around(self, degree: int, lowest: int) -> AroundEvents:
         """For events: the spike of tension is as wide as the surface is stiff; on the meshes of the lowest degree."""
         below = self.around(degree - 1, lowest) if degree > lowest else None
-        how = sized.Discretisation(degree, sized.FINEST * (1 - softening(self.scene)))
+        how = Discretisation(degree, FINEST * (1 - softening(self.scene)))
         stage = AroundEvents(ScenesBody(self.scene, how), self.windows(degree), below)
         return self.about.setdefault(degree, stage)
 
@@ -120,19 +121,19 @@ def _lowest_degree(rtol: float) -> int:
 
 def _spread(event: Located, scene: Scene) -> dict[str, float]:
     """How far the conservative tractions lie apart in the numbers of an event; nan if one does not have it."""
-    found = [_counted(event, replace(scene, traction=name)) for name in CONSERVATIVE]
+    found = [_counted(event, scene.made_of(NeoHookean(scene.poisson, name))) for name in CONSERVATIVE]
     return dict(zip(NUMBERS, np.ptp(found, axis=0).tolist(), strict=True))
 
 
 def _counted(event: Located, scene: Scene) -> Array:
     """Numbers of an event by another traction."""
-    convention, problem = convention_of(scene.traction, scene.poisson), event.problem
+    convention, problem = convention_of(scene.material.traction, scene.poisson), event.problem
     if not isinstance(problem, FiniteStrainProblem) or problem.convention == convention:
         return event.point.observables
     try:
         require_well_posed(scene)
         other = replace(problem, convention=convention)
-        return relocate(event, other, event.point.x, metric_for(scene.tabor)).point.observables
+        return relocate(event, other, event.point.x, metric_for(other)).point.observables
     except (InputError, NotConverged):
         return np.full(len(NUMBERS), np.nan)
 
@@ -168,9 +169,10 @@ def _cause_told(scene: Scene) -> Iterator[None]:
         if part < SOFT:
             raise
         raise NotConverged(
-            f"radius_ratio = {ratio:g} is close to its limit {ratio * part**2:.3g} for traction = {scene.traction!r}: "
-            f"the edge tension leaves {1 - part:.1%} of the surface's stiffness to short waves ({error}); take "
-            f"traction = 'reference', or radius_ratio above {ratio * (part / SOFT) ** 2:.3g}"
+            f"radius_ratio = {ratio:g} is close to its limit {ratio * part**2:.3g} for traction = "
+            f"{scene.material.traction!r}: the edge tension leaves {1 - part:.1%} of the surface's stiffness "
+            f"to short waves ({error}); take traction = 'reference', or radius_ratio above "
+            f"{ratio * (part / SOFT) ** 2:.3g}"
         ) from error
 
 
@@ -197,8 +199,7 @@ def raised(event: Located, problem: FiniteStrainProblem, done: float = 0.0) -> L
 
 def _linear_curve(scene: Scene, to_load: float) -> tuple[Segment, ...]:
     """Curve of the linear body."""
-    linear = replace(scene, strain="small", traction="projected")
-    body = sized.sized_body(linear, sized.Discretisation(sized.CURVE_DEGREE))
+    body = sized_body(scene.made_of(LinearElastic(scene.poisson)), Discretisation(CURVE_DEGREE))
     return trace_charts(body.curve(to_load), to_load)
 
 
@@ -209,8 +210,6 @@ def _require(scene: Scene, rtol: float, to_load: float) -> None:
     if rtol < TIGHTEST:
         raise InputError(f"rtol = {rtol:g} is outside {TIGHTEST:g} <= rtol for finite strain; take 1e-4")
     require_well_posed(scene)
-    if scene.counter is not None:
-        raise InputError(f"counter = {scene.counter!r} does not go with finite strain; take counter = None")
 
 
 def softening(scene: Scene) -> float:
@@ -218,13 +217,13 @@ def softening(scene: Scene) -> float:
 
     That is c sigma, at the law's largest tension, over 2 G/(3 - 4 nu): see `fem_adhesion.finite_strain.traction`.
     """
-    c, nu = convention_of(scene.traction, scene.poisson).surface_stress, scene.poisson
+    c, nu = convention_of(scene.material.traction, scene.poisson).surface_stress, scene.poisson
     return c * _edge_tension(scene) * (3 - 4 * nu) / (1 - nu)
 
 
 def _edge_tension(scene: Scene) -> float:
     """Largest tension of the law over E*."""
-    law = LENNARD_JONES
+    law = scene.law
     return -float(law.pressure(np.array(law.edge_gap), scene.tabor)) / scene.sphere_radius
 
 
@@ -234,6 +233,6 @@ def require_well_posed(scene: Scene) -> None:
     if part >= 1:
         raise InputError(
             f"radius_ratio = {ratio:g} is outside {ratio * part**2:.3g} < radius_ratio for traction = "
-            f"{scene.traction!r}, tabor {scene.tabor:g}, poisson {scene.poisson:g}: the equations are ill-posed under "
-            f"an edge tension of {_edge_tension(scene):.2g} E*; take traction = 'reference'"
+            f"{scene.material.traction!r}, tabor {scene.tabor:g}, poisson {scene.poisson:g}: the equations are "
+            f"ill-posed under an edge tension of {_edge_tension(scene):.2g} E*; take traction = 'reference'"
         )

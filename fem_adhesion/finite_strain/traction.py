@@ -45,7 +45,6 @@ import numpy as np
 from scipy import sparse
 
 from fem_adhesion.finite_strain.surface import ContactSurface, scaled
-from fem_adhesion.scene import TractionName
 from halfspace.laws import LENNARD_JONES, PowerLaw
 from halfspace.values import Array, Valued
 
@@ -71,10 +70,10 @@ class Convention:
         return self.deformed_area == self.surface_stress
 
 
-def convention_of(traction: TractionName, poisson: float) -> Convention:
-    """Convention by its name in a `fem_adhesion.scene.Scene`, of a material."""
+def convention_of(traction: str, poisson: float) -> Convention:
+    """Convention by its name in `fem_adhesion.materials.NeoHookean`."""
     share = poisson / (1 - poisson)
-    conventions: dict[TractionName, Convention] = {
+    conventions = {
         "projected": Convention(share, share),
         "reference": Convention(0.0, 0.0),
         "normal": Convention(1.0, 1.0),

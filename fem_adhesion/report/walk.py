@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 
 from fem_adhesion import convergence
-from fem_adhesion.bodies.sized import Discretisation
+from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.elasticity.stress import positions, sampled
 from fem_adhesion.fields.beside import half_space_beside

@@ -7,7 +7,8 @@ from typing import Any
 
 from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
-import fem_adhesion
+from fem_adhesion import convergence
+from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import FarField, clamped, point_load
 from fem_adhesion.elasticity.space import Space
@@ -53,7 +54,10 @@ def _method(basis: str, steps: Sequence[Step], quick: int, variant: Variant = ""
 
 
 def _fe_step(rtol: float) -> Step:
-    return Step(f"rtol={rtol:.0e}", lambda tabor: from_path(fem_adhesion.trace(Scene(tabor, POISSON), rtol=rtol)))
+    return Step(
+        f"rtol={rtol:.0e}",
+        lambda tabor: from_path(convergence.trace(Scene(tabor, HalfSpace(poisson=POISSON)), rtol=rtol)),
+    )
 
 
 Solver = Callable[[Space, float, FarField], Solved]

@@ -13,8 +13,9 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from scipy.linalg.lapack import dgesv
 
-import fem_adhesion
 import halfspace
+from fem_adhesion import convergence
+from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.common.facts import peak_memory
 from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
@@ -80,7 +81,7 @@ def require_tabor(tabor: float) -> float:
 def find_truths(tabor: float) -> dict[Family, Truth]:
     """What each family is judged by: the other one at its tightest tolerance, with its own uncertainties."""
     half_space = _truth("half-space", halfspace.trace(tabor, rtol=TIGHTEST))
-    elements = _truth("finite elements", fem_adhesion.trace(Scene(tabor, POISSON), rtol=TIGHTEST))
+    elements = _truth("finite elements", convergence.trace(Scene(tabor, HalfSpace(poisson=POISSON)), rtol=TIGHTEST))
     return {"half-space": elements, "finite elements": half_space}
 
 

@@ -11,7 +11,7 @@ from scipy.linalg.lapack import dgesv
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Scene
+from fem_adhesion import Hemisphere, Scene
 from fem_adhesion.crosscheck import study as crosscheck
 
 QUICK = bool(os.environ.get("QUICK"))  # one of each kind, once
@@ -75,6 +75,6 @@ def test_peak_memory_of_a_finite_element_trace(benchmark, capsys):
 @pytest.mark.parametrize("radius_ratio", _all(100, 10, 30, 1000, 10000))
 def test_finite_sphere_trace(benchmark, tabor, radius_ratio):
     """Hemisphere on a sliding mid-plane, true profile, poisson 0.3."""
-    scene = Scene(tabor, body="hemisphere", profile="sphere", radius_ratio=radius_ratio)
+    scene = Scene(tabor, Hemisphere(radius_ratio=radius_ratio))
     path = benchmark.pedantic(fem_adhesion.trace, (scene,), {"rtol": 1e-5}, rounds=1)
     assert path.event("pull_off").load_error < 1e-5 * abs(path.event("pull_off").load)

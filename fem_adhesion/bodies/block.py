@@ -1,0 +1,75 @@
+"""A block: a half-space that is cut off."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal, get_args
+
+import numpy as np
+
+from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout, SolverName
+from halfspace.elastic import grid
+from halfspace.elastic.operators import FlatCoordinate
+from halfspace.errors import InputError
+from halfspace.limits import require_fixed_mesh, require_one_of, require_radius
+from halfspace.values import Array, keep
+
+BlockFarField = Literal["point_load", "clamped", "free"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Block(Body):
+    """Block of fixed size under a paraboloid.
+
+    Parameters
+    ----------
+    radius : float
+        Its size L in beta.
+    far_field : {"point_load", "clamped", "free"}
+        What holds it at its far boundary: a half-space beyond it that moves as under a point load, a clamp, or nothing
+        but the uniform traction that balances the load. The last two need a fixed mesh, up to a Tabor parameter of 3.
+    """
+
+    radius: float
+    far_field: BlockFarField = "point_load"
+
+    looks: ClassVar[str] = "elastic block"
+
+    def __post_init__(self, poisson: float | None) -> None:
+        super().__post_init__(poisson)
+        keep(self, radius=require_radius(self.radius))
+        require_one_of(self.far_field, "far_field", get_args(BlockFarField))
+
+    @property
+    def checked_by(self) -> SolverName | None:
+        """By the integral equation."""
+        return "half-space"
+
+    @property
+    def held(self) -> FarFieldName:
+        """Its far field."""
+        return self.far_field
+
+    @property
+    def told(self) -> list[str]:
+        """Its size, and what holds it."""
+        return [*super().told, f"size {self.radius:g} beta", *([] if self.endless else [self.far_field])]
+
+    def check(self, tabor: float, end: float) -> None:
+        """Refuse a block smaller than its contact, one that needs a mesh too fine, or one under a sphere."""
+        if math.isfinite(end):
+            raise InputError(f"profile that ends at {end:.4g} beta does not go with {self.name}; take a half-space")
+        require_radius(self.radius, tabor)
+        if not self.endless:
+            require_fixed_mesh(tabor)
+
+    def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
+        """Its surface ends where it does."""
+        return np.array([self.radius]), FlatCoordinate()
+
+    def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
+        """Block as large as the lines."""
+        from fem_adhesion.mesh.block import tensor_grid
+
+        return tensor_grid(lines, grid.graded(0.0, np.diff(lines).min(), float(lines[-1]), growth=how.growth))

@@ -1,0 +1,230 @@
+"""What there is to know of an elastic body: it is asked for that, and by nobody for its kind."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import InitVar, dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Literal, get_args
+
+from fem_adhesion.materials import LinearElastic, Material
+from fem_adhesion.registry import name_of
+from halfspace.elastic.operators import SurfaceCoordinate
+from halfspace.errors import InputError
+from halfspace.limits import require_one_of, require_poisson, require_radius_ratio
+from halfspace.profiles import PARABOLOID, Profile, Sphere
+from halfspace.values import Array, keep
+
+FarFieldName = Literal["point_load", "clamped", "free", "sliding"]
+GripName = Literal["sliding", "bonded"]
+SolverName = Literal["half-space", "harmonics"]
+
+FINEST, GROWTH = 0.6, 2.5  # of the cells: at the contact edge in widths of the spike of tension, and of their lengths
+MOST_RINGS = 6  # around a singular corner: as many as rounding allows
+USUAL = LinearElastic()
+
+Layout = tuple[Array, SurfaceCoordinate]
+"""Ends of the last cells of a surface, which do not move with the contact, ascending; and the coordinate along it."""
+
+
+@dataclass(frozen=True)
+class Discretisation:
+    """How finely a body is discretised.
+
+    Attributes
+    ----------
+    degree : int
+        Of the quadrilateral elements; the error falls by an order of magnitude a degree.
+    finest : float
+        Length of the cells at the contact edge, in widths of the spike of tension there.
+    growth : float
+        Ratio of neighbouring cells.
+    rings : int
+        Of cells around the corner where a mid-plane meets the free surface, if it is bonded.
+    beyond : float
+        Size of what is meshed of a half-space under a surface that ends, in the radius where that does: nothing acts
+        beyond that, and the far field errs by O(L^-5).
+    """
+
+    degree: int
+    finest: float = FINEST
+    growth: float = GROWTH
+    rings: int = MOST_RINGS - 1
+    beyond: float = 1e3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body(ABC):
+    """An elastic body of revolution, below its contact surface, with all of the pair's compliance 1/E* unless shared.
+
+    Parameters
+    ----------
+    material : LinearElastic or NeoHookean
+        What it is made of.
+    poisson : float, optional
+        Short for ``material=LinearElastic(poisson)``; to be read as ``body.material.poisson``.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or does not go with the others.
+    """
+
+    material: Material = USUAL
+    poisson: InitVar[float | None] = None
+
+    stretches: ClassVar[bool] = False
+    """Whether it may be neo-Hookean."""
+
+    curved: ClassVar[bool] = False
+    """Whether the area of its surface differs from the projected one."""
+
+    meets: ClassVar[bool] = False
+    """Whether it may have a counter-body, and be one if it is not the smaller."""
+
+    faces: ClassVar[bool] = False
+    """Whether it may be a counter-body."""
+
+    has_fields: ClassVar[bool] = True
+    """Whether the fields inside it are to be had."""
+
+    looks: ClassVar[str] = "elastic body"
+    """What a picture of it shows."""
+
+    def __post_init__(self, poisson: float | None) -> None:
+        self._take(poisson)
+        if self.material.finite and not self.stretches:
+            raise InputError(
+                f"material = {self.material} does not go with {self.name}; finite strain is for a hemisphere"
+            )
+        if self.material.area != "projected" and not self.curved:
+            raise InputError(
+                f"traction = {self.material.traction} does not go with {self.name}; it differs on a curved surface only"
+            )
+
+    def _take(self, poisson: float | None) -> None:
+        """Make a Poisson's ratio that is given in short the material's."""
+        if poisson is None:
+            return
+        if self.material is USUAL:
+            keep(self, material=LinearElastic(poisson))
+        elif require_poisson(poisson) != self.material.poisson:
+            raise InputError(
+                f"poisson = {poisson:g} with material = {self.material}, limit: one of both; leave one out"
+            )
+
+    @property
+    def name(self) -> str:
+        """What it is called on the command line and in files."""
+        return name_of(self)
+
+    @property
+    def told(self) -> list[str]:
+        """What it is, in words."""
+        return [self.name]
+
+    @property
+    @abstractmethod
+    def held(self) -> FarFieldName:
+        """What holds its far boundary."""
+
+    @property
+    def checked_by(self) -> SolverName | None:
+        """Solver without finite elements that knows the body, see `fem_adhesion.crosscheck.references`."""
+        return None
+
+    @property
+    def file(self) -> Path | None:
+        """Its mesh, if it is given; other bodies are meshed anew for every contact radius."""
+        return None
+
+    @property
+    def endless(self) -> bool:
+        """Whether it goes on beyond its mesh as a half-space does."""
+        return self.held == "point_load"
+
+    @property
+    def singular(self) -> bool:
+        """Whether the stress is singular where it is held: a degree more does not tell the error there."""
+        return False
+
+    @property
+    def size(self) -> float:
+        """R/eps, R being the radius of curvature at the pole; infinite of a flat surface."""
+        return math.inf
+
+    @property
+    def shape(self) -> Profile:
+        """Profile of a contact with it."""
+        return PARABOLOID
+
+    def check(self, tabor: float, end: float) -> None:  # noqa: B027 (most serve all)
+        """Refuse a Tabor parameter, or a radius at which the surface over it ends, out of range; raise InputError."""
+
+    @abstractmethod
+    def layout(self, R: float, how: Discretisation) -> Layout:
+        """Cells of the contact surface that stand still, and the coordinate along it; see `Layout`."""
+
+    @abstractmethod
+    def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
+        """Mesh with the boundaries "axis", "contact" and "far".
+
+        Parameters
+        ----------
+        R : float
+            Radius in beta, that of the surface over a half-space; infinite if neither ends.
+        lines : (m + 1,) array
+            Ends of the cells of the contact, in the coordinate, from 0 to the first of those that stand still.
+        length : float
+            Of the cells at the contact edge, in beta.
+        how : Discretisation
+            How finely.
+        """
+
+    def facing(self, R: float, lines: Array, smaller: float, how: Discretisation) -> Any:  # noqa: ARG002
+        """Mesh of the body as a counter-body of one of the radius `smaller`, whose cells' ends are `lines`."""
+        raise InputError(f"counter = {self.name} does not face another body; take a hemisphere or a half-space")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Held(Body):
+    """A body with a length R of its own, held at its far side.
+
+    Parameters
+    ----------
+    radius_ratio : float
+        rho = R/eps, 2 to 1e12.
+    grip : {"sliding", "bonded"}
+        Whether the held surface may slide without friction, u_z = 0, or not at all, u = 0.
+    """
+
+    radius_ratio: float
+    grip: GripName = "sliding"
+
+    looks: ClassVar[str] = "elastic sphere"
+
+    def __post_init__(self, poisson: float | None) -> None:
+        super().__post_init__(poisson)
+        keep(self, radius_ratio=require_radius_ratio(self.radius_ratio))
+        require_one_of(self.grip, "grip", get_args(GripName))
+
+    @property
+    def held(self) -> FarFieldName:
+        """Slides, or is clamped."""
+        return "clamped" if self.grip == "bonded" else "sliding"
+
+    @property
+    def told(self) -> list[str]:
+        """Its name and grip."""
+        return [*super().told, *(["bonded"] if self.grip == "bonded" else [])]
+
+    @property
+    def size(self) -> float:
+        """R/eps."""
+        return self.radius_ratio
+
+    @property
+    def shape(self) -> Profile:
+        """The sphere's."""
+        return Sphere(self.radius_ratio)

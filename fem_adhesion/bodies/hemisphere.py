@@ -1,0 +1,66 @@
+"""The elastic hemisphere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fem_adhesion.bodies.body import Discretisation, Held, Layout, SolverName
+from halfspace.elastic import grid
+from halfspace.values import Array
+
+RINGS = 0.2  # ratio of the rings around a singular corner
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hemisphere(Held):
+    """Hemisphere held at its mid-plane; sliding, it is also half of a sphere squeezed between two equal walls.
+
+    As the larger of two bodies it meets the smaller one's cells with its own, and both beyond these are rigid.
+    """
+
+    stretches: ClassVar[bool] = True
+    curved: ClassVar[bool] = True
+    meets: ClassVar[bool] = True
+    faces: ClassVar[bool] = True
+
+    @property
+    def checked_by(self) -> SolverName | None:
+        """Whole sphere by harmonics."""
+        return "harmonics" if self.grip == "sliding" and self.material.area == "projected" else None
+
+    @property
+    def singular(self) -> bool:
+        """Where the bonded mid-plane meets the free surface."""
+        return self.grip == "bonded"
+
+    def rings(self, how: Discretisation) -> Array:
+        """Sizes of the rings around the equator, where stress is singular if the mid-plane is bonded.
+
+        There u ~ d^s, with d the distance and sin^2(s pi/2) = [4 (1 - nu)^2 - s^2]/(3 - 4 nu) (Williams 1952): s falls
+        from 1 at nu = 0 to 0.6 at 1/2; each ring takes the error it leaves, as d^(2 s), down by a factor of 25 to 7.
+        """
+        return np.asarray(RINGS ** np.arange(1.0, (how.rings if self.singular else 0) + 1))
+
+    def layout(self, R: float, how: Discretisation) -> Layout:
+        """Layers and rings beyond the core."""
+        from fem_adhesion.mesh.spheres import Stereographic, contact_ends
+
+        return contact_ends(R, self.rings(how)), Stereographic(R, self.material.area)
+
+    def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
+        """Graded from the contact."""
+        from fem_adhesion.mesh.spheres import DEPTH, hemisphere
+
+        depths = grid.graded(0.0, np.diff(lines).min(), DEPTH * R, growth=how.growth)
+        return hemisphere(R, lines, depths, rings=self.rings(how))
+
+    def facing(self, R: float, lines: Array, smaller: float, how: Discretisation) -> Any:
+        """Its cells end where those of the smaller one do, and beyond at its own core's end."""
+        from fem_adhesion.mesh import facing
+        from fem_adhesion.mesh.spheres import DEPTH
+
+        depths = grid.graded(0.0, np.diff(lines).min(), DEPTH * R, growth=how.growth)
+        return facing.hemisphere_over(lines, depths, smaller, R, self.rings(how))

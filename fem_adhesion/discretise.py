@@ -1,0 +1,227 @@
+"""The one road from a scene to an elastic operator: mesh, space, condensation; of two bodies their compliances add.
+
+The nodes of a pair are those of the first, smaller sphere. Beyond its core, 0.987 of its radius, both are rigid. E* and
+1/R are those of the pair, so that a body's own compliance counts by its share of 1/E*.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from skfem import ElementQuadP, ElementTriP2, MeshTri
+
+from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout
+from fem_adhesion.elasticity import far_field
+from fem_adhesion.elasticity.condensation import CondensedBody, condense
+from fem_adhesion.elasticity.far_field import FarField
+from fem_adhesion.elasticity.incompressible import stiffness_for
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.mesh.spheres import with_contact_to
+from fem_adhesion.scene import Scene
+from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator
+from halfspace.elastic import grid
+from halfspace.elastic.compliance import ElasticOperator
+from halfspace.elastic.operators import FlatCoordinate, SurfaceCoordinate
+from halfspace.equilibrium.contact import ContactProblem
+from halfspace.profiles import Surface
+from halfspace.profiles.table import TabulatedSurface
+from halfspace.scales import Scales
+from halfspace.values import Array, Valued
+
+FAR_FIELDS: Mapping[FarFieldName, FarField] = {
+    "point_load": far_field.point_load,
+    "clamped": far_field.clamped,
+    "free": far_field.free,
+    "sliding": far_field.sliding,
+}
+
+
+CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated to some 1e-4
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Discretised(Valued):
+    """The bodies of a scene and the contact problem on their surface.
+
+    Attributes
+    ----------
+    first : CondensedBody
+        The first body, as if it had the whole compliance 1/E*; see `Scene.shares`.
+    operator : ElasticOperator
+        Of both; its first nodes are those of the first body, any more are on a rim that is rigid.
+    surface : Surface
+        Undeformed gap.
+    scene : Scene
+        What was asked.
+    unknowns : int
+        Of both bodies.
+    """
+
+    first: CondensedBody
+    operator: ElasticOperator
+    surface: Surface
+    scene: Scene
+    unknowns: int
+
+    @property
+    def problem(self) -> ContactProblem:
+        """On a grid that stands still."""
+        return ContactProblem(self.operator, self.scene.tabor, self.scene.law, self.surface)
+
+
+def discretise(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
+    """Discretise the bodies of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        At small strain.
+    lines : (m + 1,) array
+        Ends of the cells of the contact surface, in its coordinate; of a mesh that is given their number counts.
+    how : Discretisation
+        How finely below.
+    """
+    outer, coordinate = layout_of(scene, how)
+    core = lines[: len(lines) - len(outer) + 1] if scene.sized else lines
+    if scene.counter:
+        return _pair(scene, scene.counter, core, lines[len(core) - 1 :], coordinate, how)
+    first = _condensed(scene.body, mesh_of(scene, core, how), how)
+    surface = _own_surface(first, scene.sphere_radius) if scene.body.file else scene.surface
+    return Discretised(first, first.operator, surface, scene, first.unknowns)
+
+
+def mesh_of(scene: Scene, core: Array, how: Discretisation) -> Any:
+    """Mesh of the first body, from the ends of the cells that move with the contact."""
+    return scene.body.mesh(scene.radii[0], core, finest_length(scene, how), how)
+
+
+def finest_length(scene: Scene, how: Discretisation) -> float:
+    """Length of the cells at the contact edge in beta."""
+    return how.finest * scene.scales.spike_width / 2
+
+
+def layout_of(scene: Scene, how: Discretisation) -> Layout:
+    """Cells of the surface that stand still, and the coordinate along it; a pair has no rings, as its rim is rigid."""
+    return scene.body.layout(scene.radii[0], replace(how, rings=0) if scene.counter else how)
+
+
+def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
+    """Bodies of a scene with a length, to be discretised on any grid of their surface."""
+    outer, coordinate = layout_of(scene, how)
+    flat = isinstance(coordinate, FlatCoordinate)
+    last = at_equator(scene.tabor, scene.surface, how.degree + 2) if flat else np.inf
+    make = partial(_made, scene, how)
+    return SizedBody(scene.tabor, scene.surface, make, how.finest, how.growth, outer, coordinate, last, scene.law)
+
+
+def discretised_about(scene: Scene, contact_radius: float, how: Discretisation, source: ContactProblem) -> Discretised:
+    """Discretise the bodies of a scene finest about a contact radius, with all that fields inside them need.
+
+    Parameters
+    ----------
+    scene : Scene
+        At small strain.
+    contact_radius : float
+        In beta; nan without contact, the mesh is then finest on the axis.
+    how : Discretisation
+        How finely; without meaning for a mesh that is given.
+    source : ContactProblem
+        Another discretisation of the scene: a mesh that is given is cut as often as there.
+    """
+    how = replace(how, beyond=BEYOND)
+    if scene.body.file:
+        return discretise(scene, source.operator.at(1.0).cells, how)
+    radius, length = 0.0 if np.isnan(contact_radius) else contact_radius, finest_length(scene, how)
+    if scene.sized:
+        body = sized_body(scene, how)
+        edge = body.coordinate.of(radius)
+        return discretise(scene, body.lines(edge if edge > length else 0.0), how)
+    size = block_size(scene) or size_for(scene.scales, LEFT_OUT)
+    return discretise(scene, grid.graded(radius if radius > length else 0.0, length, size, growth=how.growth), how)
+
+
+LEFT_OUT = 1e-5  # of the load, beyond a block that goes on as a half-space: it is then 15 to 80 beta wide
+BEYOND = 10.0  # size of a half-space under a sphere, in R: its far field errs by O(L^-5)
+
+
+def block_size(scene: Scene) -> float | None:
+    """Size in beta of a body that is cut off, None if it is to be chosen."""
+    size = layout_of(scene, Discretisation(1))[0][0]
+    return None if np.isinf(size) else float(size)
+
+
+def size_for(scales: Scales, rtol: float) -> float:
+    """Size in beta of a block whose far field, that of a point load, leaves errors of rtol in the events."""
+    return scales.outer_radius((2.5 * min(rtol, 0.01) ** -0.25 * scales.widened) ** 2 / 2)
+
+
+def _made(scene: Scene, how: Discretisation, lines: Array) -> Made:
+    found = discretise(scene, lines, how)
+    return found.operator, found.unknowns
+
+
+def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:
+    """Condense a body; quadratic triangles, which have no projected dilatation, lose accuracy from poisson 0.45 on."""
+    triangles, poisson = isinstance(mesh, MeshTri), body.material.poisson
+    space = Space(mesh, ElementTriP2() if triangles else ElementQuadP(how.degree))
+    stiffness = stiffness_for(0.0 if triangles else poisson)
+    held = FAR_FIELDS[body.held]
+    return condense(space, poisson, far_field=held, stiffness=stiffness, traction=body.material.area)
+
+
+def _own_surface(body: CondensedBody, R: float) -> Surface:
+    """Surface of a mesh that is given."""
+    surface = body.surface
+    return TabulatedSurface(surface.radii, R * surface.depths, R * surface.slopes)
+
+
+def pair_meshes(scene: Scene, counter: Body, core: Array, how: Discretisation) -> tuple[Any, Any]:
+    """Meshes of two bodies, whose contact ends with the cells that are given."""
+    (R1, R2), (_, coordinate) = scene.radii, layout_of(scene, how)
+    end = float(coordinate.radius(core[-1:])[0][0])
+    meshes = mesh_of(scene, core, how), counter.facing(R2, core, R1, how)
+    return with_contact_to(meshes[0], end), with_contact_to(meshes[1], end)
+
+
+def _pair(
+    scene: Scene, counter: Body, core: Array, rim: Array, coordinate: SurfaceCoordinate, how: Discretisation
+) -> Discretised:
+    """Both bodies, and beyond their cells the rigid rim."""
+    bodies, meshes = (scene.body, counter), pair_meshes(scene, counter, core, how)
+    one, other = (_condensed(body, mesh, how) for body, mesh in zip(bodies, meshes, strict=True))
+    a, (part, rest) = one.operator, scene.shares
+    compliance = part * a.compliance + rest * other.operator.compliance
+    both = ElasticOperator(a.radii, a.weights, compliance, a.cells, a.cell_nodes)
+    return Discretised(one, with_rigid_rim(both, rim, coordinate), scene.surface, scene, one.unknowns + other.unknowns)
+
+
+def with_rigid_rim(operator: ElasticOperator, lines: Array, coordinate: SurfaceCoordinate) -> ElasticOperator:
+    """Extend an operator by nodes that attract and do not yield.
+
+    Parameters
+    ----------
+    operator : ElasticOperator
+        Of q nodes.
+    lines : (m + 1,) array
+        Ends of m more cells in the coordinate, the first where the operator's end.
+    coordinate : SurfaceCoordinate
+        Of the surface.
+    """
+    k = operator.cell_nodes.shape[1]
+    t, w = grid.gauss_legendre(k)
+    half = np.diff(lines)[:, None] / 2
+    x = (lines[:-1, None] + half * (1 + t)).ravel()
+    q, more = operator.radii.size, x.size
+    compliance = np.zeros((q + more, q + more))
+    compliance[:q, :q] = operator.compliance
+    return ElasticOperator(
+        np.concatenate([operator.radii, coordinate.radius(x)[0]]),
+        np.concatenate([operator.weights, 2 * np.pi * coordinate.ring(x)[0] * (half * w).ravel()]),
+        compliance,
+        np.concatenate([operator.cells, coordinate.radius(lines[1:])[0]]),
+        np.arange(q + more).reshape(-1, k),
+    )

@@ -1,0 +1,82 @@
+"""A new body is one class and one line: a toy one goes through trace, compare and the command line with its files."""
+
+import json
+from dataclasses import dataclass
+
+import meshio
+import numpy as np
+import pytest
+
+import fem_adhesion
+from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene, cli, registry
+from fem_adhesion.bodies.body import Held
+from fem_adhesion.mesh.block import tensor_grid
+from fem_adhesion.registry import name_of, part_from, record_of
+from halfspace.elastic import grid
+from halfspace.elastic.operators import FlatCoordinate
+from halfspace.profiles import Paraboloid, Sphere
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drum(Held):
+    """Cylinder on its base, as wide and high as the radius of the sphere whose profile is over it."""
+
+    def layout(self, R, how):  # noqa: ARG002
+        """Flat, up to its rim."""
+        return np.array([R]), FlatCoordinate()
+
+    def mesh(self, R, lines, length, how):
+        """Free at its side."""
+        mesh = tensor_grid(lines, grid.graded(0.0, length, R, growth=how.growth))
+        return mesh.with_boundaries({"far": lambda x: x[1] == -R})
+
+
+@pytest.fixture(autouse=True)
+def _registered(monkeypatch):
+    monkeypatch.setitem(registry.PARTS["body"], "drum", Drum)
+
+
+def test_a_toy_body_is_traced_and_softer_than_a_half_space_of_its_profile():
+    drum = fem_adhesion.trace(Scene(1.0, Drum(radius_ratio=10.0)), rtol=1e-3)
+    endless = fem_adhesion.trace(Scene(1.0, profile=Sphere(10.0)), rtol=1e-3)
+    assert drum.met
+    for name in ("jump_on", "jump_off"):
+        assert abs(drum.event(name).approach - endless.event(name).approach) > 1e-2
+
+
+def test_a_toy_body_agrees_with_the_weak_form():
+    case = fem_adhesion.compare(Scene(1.0, Drum(radius_ratio=10.0)), rtol=1e-3)
+    assert {row.quantity: row.verdict for row in case.rows if row.verdict != "agree"} == {}
+    assert list(case.solutions) == ["finite elements"]
+
+
+def test_a_toy_body_is_known_to_the_command_line_and_to_its_files(tmp_path):
+    record, states = tmp_path / "drum.json", tmp_path / "states"
+    asked = ["--tabor", "1", "--body", "drum", "--radius-ratio", "10", "--grip", "bonded", "--rtol", "1e-2"]
+    assert cli.main(["curve", *asked, "--json", str(record), "--vtk", str(states), "--points", "0"]) == 0
+    scene = json.loads(record.read_text())["scene"]
+    assert part_from("body", scene["body"]) == Drum(radius_ratio=10.0, grip="bonded")
+    mesh = meshio.read(sorted(states.glob("body*.vtu"))[0])
+    assert np.abs(mesh.points).max() == pytest.approx(np.sqrt(10.0), rel=1e-9)
+
+
+def test_a_part_and_its_name_are_translated_both_ways():
+    parts = [
+        ("body", Hemisphere(radius_ratio=30.0, grip="bonded", material=NeoHookean(0.4, "normal"))),
+        ("material", LinearElastic(0.45, "surface")),
+        ("profile", Sphere(100.0)),
+        ("profile", Paraboloid()),
+    ]
+    for kind, part in parts:
+        record = record_of(part)
+        assert part_from(kind, record) == part
+        assert registry.class_of(kind, record["name"]) is type(part)
+        assert name_of(part) == record["name"]
+
+
+def test_every_name_has_its_class_and_every_body_is_public():
+    for kind, names in registry.PARTS.items():
+        for name in names:
+            assert name_of(object.__new__(registry.class_of(kind, name))) == name
+    public = {getattr(fem_adhesion, name) for name in fem_adhesion.__all__}
+    assert public >= {registry.class_of("body", name) for name in registry.PARTS["body"] if name != "drum"}
