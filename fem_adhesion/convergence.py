@@ -138,7 +138,7 @@ def block_charts(scene: Scene, resolution: Resolution, to_load: float = COMPRESS
         made = discretise(scene, graded_breaks(finest_length(scene, how), widest, radius), how)
         return (Chart(made.problem, made.unknowns),)
     extent = np.sqrt(2 * scene.tabor * float(scene.surface.height(np.array(radius))))
-    lines = rings(scene.scales, how.finest, how.growth, extent, to_load)
+    lines = rings(scene.scales, how.finest, how.growth, extent, to_load, how.degree + 2)
     centred, edge = (_to_infinity(scene, breaks, how) for breaks in (lines.centred, lines.edge))
     following = ContactProblem(Homogeneous(edge.operator), scene.tabor, scene.law, scene.surface)
     return Chart(centred.problem, centred.unknowns, lines.until), Chart(following, edge.unknowns)

@@ -12,6 +12,7 @@ from fem_adhesion.materials import Material
 from fem_adhesion.registry import name_of
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
+from halfspace.laws.check import require_law
 from halfspace.limits import (
     require_modulus,
     require_poisson,
@@ -61,7 +62,7 @@ class Scene:
     share: float | None = None
 
     def __post_init__(self) -> None:
-        keep(self, tabor=require_tabor(self.tabor))
+        keep(self, tabor=require_tabor(self.tabor), law=require_law(self.law))
         for name, part, kind in (("body", self.body, Body), ("counter", self.counter, Body | None)):
             if not isinstance(part, kind):
                 raise InputError(f"{name} = {part!r} is no body; take fem_adhesion.Hemisphere(radius_ratio=100), say")

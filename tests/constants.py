@@ -51,9 +51,10 @@ import halfspace.equilibrium.contact
 from fem_adhesion import Scene, weak_form
 from fem_adhesion.crosscheck import from_scratch, weak_bodies
 from halfspace.elastic import compliance, grid
-from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem, spike_width
+from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import moved
 from halfspace.errors import NotConverged
+from halfspace.scales import Scales
 
 FACTORS = (0.5, 1.0, 2.0)
 
@@ -131,7 +132,7 @@ def pull_off_on_wide_cells():
 
 def _off(tabor, nodes):
     event = _on_the_half_space(tabor)
-    finest = halfspace.equilibrium.contact.widest_interval(nodes) * spike_width(tabor) * (nodes - 1)
+    finest = halfspace.equilibrium.contact.widest_interval(nodes) * Scales(tabor).spike_width * (nodes - 1)
     lines = grid.graded(float(event.point.observables[CONTACT_RADIUS]), finest, 60.0, growth=1.5)
     try:
         found = moved(event, ContactProblem(compliance.panels(lines, nodes), tabor))

@@ -162,7 +162,7 @@ def charted_path(problem):
 @pytest.mark.parametrize("tabor", EVENTS)
 def test_the_events_of_the_condensed_problem(body, tabor):
     problem = assemble(body.space, NU, tabor)
-    metric = metric_for(tabor)
+    metric = metric_for(problem)
     located = find_events(trace_charts([Chart(ContactProblem(body.operator, tabor), body.unknowns)]))
     for name in EVENTS[tabor]:
         condensed = located[name]
@@ -220,7 +220,8 @@ def test_three_routes_to_the_load(approach, gaps):
 
 def test_arclength_carries_the_whole_problem_through_a_fold():
     space = SPACES["P2"]
-    problem, metric = assemble(space, NU, 1.0), metric_for(1.0)
+    problem = assemble(space, NU, 1.0)
+    metric = metric_for(problem)
     start = solved(problem, newton.central_gap(0.8), gaps=(2.0,))
     first = make_point(problem, start, metric, -newton.central_gap(0.0).weights, 0.0)
     points = follow(problem, first, metric, lambda point: point.observables[CENTRAL_GAP] < 0.55)

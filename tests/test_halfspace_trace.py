@@ -149,7 +149,7 @@ def test_arclength_does_not_depend_on_the_grid():
             half_space_charts(Scales(1.0), resolution_for(Scales(1.0), rtol)), steps=Steps(longest=0.2, turn=0.05)
         )
         values = np.array([point.observables[:3] for segment in segments for point in segment.points])
-        lengths = np.sqrt(np.diff(values, axis=0) ** 2 @ metric_for(1.0).weights[:3])
+        lengths = np.sqrt(np.diff(values, axis=0) ** 2 @ metric_for(segments[0].problem).weights[:3])
         return np.interp(0.0, values[-10:, 1], np.cumsum(lengths)[-10:])
 
     assert length(1e-3) == pytest.approx(length(1e-7), rel=2e-4)
@@ -233,8 +233,8 @@ def test_the_half_space_needs_only_numpy_and_scipy():
 
 @pytest.mark.parametrize("tabor", [0.6973, 0.698])
 def test_a_pair_of_folds_between_two_points_is_found_though_their_tangents_do_not_tell(tabor):
-    metric = metric_for(tabor)
     segment = trace_charts(half_space_charts(Scales(tabor), resolution_for(Scales(tabor), 1e-6)))[0]
+    metric = metric_for(segment.problem)
     folds = [fold.point for fold in locate(segment.problem, segment.points, metric, FOLD)]
     assert len(folds) == 2
     before = [point for point in segment.points if point.arclength < folds[0].arclength][-1]

@@ -11,7 +11,9 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 from scipy.special import beta
 
+import fem_adhesion
 import halfspace
+from fem_adhesion.scene import Scene
 from halfspace.equilibrium import newton
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, LennardJones, Morse, PowerLaw
@@ -297,8 +299,30 @@ def test_the_default_lengths_are_those_that_were_tried():
         assert scales.largest_load == 2 * np.pi
 
 
-def test_a_law_and_a_profile_of_ones_own_go_through_the_half_space():
-    path = halfspace.trace(1.0, law=Yukawa(), profile=Blunt())
-    assert not path.missed
-    tighter = halfspace.trace(1.0, law=Yukawa(), profile=Blunt(), rtol=1e-8)
-    assert_same(path, tighter)
+@pytest.mark.parametrize(("law", "profile"), sorted({(row["law"], row["profile"]) for row in REFERENCES}))
+def test_finite_elements_hit_the_references(law, profile):
+    path = fem_adhesion.trace(Scene(1.0, **PARTS[law], **PARTS[profile]), rtol=1e-5)
+    for row in (row for row in REFERENCES if (row["law"], row["profile"]) == (law, profile)):
+        event = path.event(row["event"])
+        assert abs(event.approach - float(row["approach"])) <= min(1e-5 * path.approach_scale, event.approach_error)
+        assert abs(event.load - float(row["load"])) <= min(1e-5 * abs(event.load), event.load_error)
+
+
+@pytest.mark.parametrize(
+    ("tabor", "parts"),
+    [
+        (1.0, {"law": Yukawa(), "profile": Blunt()}),
+        (1.0, {"profile": Power(1.5)}),
+        (3.0, {"profile": Power(3)}),
+        (0.3, {"law": Exponential(3), "profile": Hyperboloid(0.3)}),
+        (1.0, {"law": PowerLaw(2.5, 9.5)}),
+        (0.5, {"law": Dlvo(0.3, 1.0), "profile": Power(4)}),
+    ],
+    ids=str,
+)
+def test_both_solvers_agree_on_any_law_and_profile(tabor, parts):
+    """Of one's own, too: nothing but a class with its formulas."""
+    ours, theirs = halfspace.trace(tabor, **parts), fem_adhesion.trace(Scene(tabor, **parts), rtol=1e-4)
+    assert not ours.missed
+    assert not theirs.missed
+    assert_same(ours, theirs)

@@ -12,8 +12,8 @@ import fem_adhesion
 from fem_adhesion import Hemisphere, Meshed, Scene
 from fem_adhesion.mesh.file import read_body
 from fem_adhesion.mesh.refinement import refined
-from halfspace.equilibrium.contact import spike_width
 from halfspace.errors import GridTooCoarse
+from halfspace.scales import Scales
 
 MESHES = Path(__file__).parents[1] / "meshes"
 
@@ -91,7 +91,7 @@ def test_a_mesh_that_cannot_carry_the_spike_is_refused_in_its_own_unit(tmp_path,
     r = unit * np.sort(mesh.p[0, np.unique(mesh.facets[:, mesh.boundaries["contact"]])])
     k = np.searchsorted(r, radius)
     assert length == pytest.approx(r[k] - r[k - 1], rel=5e-3, abs=0)
-    assert limit == pytest.approx(unit * 0.567 * spike_width(2.0) / scene.sphere_radius, rel=5e-3, abs=0)
+    assert limit == pytest.approx(unit * 0.567 * Scales(2.0).spike_width / scene.sphere_radius, rel=5e-3, abs=0)
     assert 0.85 * limit < fine < 0.98 * limit
 
 

@@ -16,7 +16,6 @@ from fem_adhesion.elasticity.incompressible import stiffness_for
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh.block import block_grid
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
-from halfspace.equilibrium.curve import metric_for
 from halfspace.equilibrium.path import correct, predict
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol, require_tabor
@@ -95,7 +94,7 @@ def require_bounds(path):
 
 def require_balance_and_energy(path):
     """At the finest states the equations hold, and the energy changes by the load's work, roughly on coarse grids."""
-    metric = metric_for(path.tabor)
+    metric = path.metric
     for located in path.stages[-1].values():
         problem, point = located.problem, located.point
         assert isinstance(problem, ContactProblem)

@@ -10,7 +10,7 @@ import pytest
 import fem_adhesion
 import halfspace
 from fem_adhesion import Hemisphere, Scene, cli
-from halfspace.equilibrium.curve import metric_for, placed
+from halfspace.equilibrium.curve import placed
 from halfspace.equilibrium.states import COORDINATES, shift
 from halfspace.errors import InputError
 
@@ -224,7 +224,7 @@ def test_a_curve_takes_any_number_of_points(paths):
     assert path.approach.shape == path.load_error.shape == path.stable.shape == (150,)
     steps = np.diff([point.arclength for segment in path.segments for point in segment.points])
     np.testing.assert_allclose(steps, steps.mean(), rtol=1e-9)
-    metric = metric_for(5.0)
+    metric = path.metric
     chords = np.sqrt(np.diff([p.observables[:3] for p in path.points], axis=0) ** 2 @ metric.weights[:3])
     assert chords.max() < 1.3 * steps.mean()
     np.testing.assert_allclose(

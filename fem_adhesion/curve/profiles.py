@@ -11,7 +11,7 @@ import numpy as np
 from fem_adhesion.common import style
 from fem_adhesion.curve.scales import scales
 from fem_adhesion.curve.solve import Curves
-from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem, spike_width
+from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.values import Array, Valued
 
@@ -120,7 +120,7 @@ def draw_spike(axes: Any, curves: Curves) -> str:
     x, y = units["radius"], units["pressure"]
     name = "jump_off" if path.event("jump_off") else "pull_off"
     edge, look = state_of(path, name)[0].contact_radius(state_of(path, name)[1]), STATES[name]
-    reach = SPIKES * spike_width(path.tabor)
+    reach = SPIKES * path.segments[0].problem.interface.scales.spike_width
     low, high = max(0.0, edge - reach), edge + reach
     line, points = profile(path, name, np.linspace(low, high, POINTS)), nodes(path, name)
     shown = (points.radii >= low) & (points.radii <= high)

@@ -16,7 +16,8 @@ from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 from fem_adhesion.monolithic import assemble
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed.methods import Method, Solved, Step, Variant, from_chart, from_path, unit, widest
-from halfspace.equilibrium.contact import ContactProblem, spike_width
+from halfspace.equilibrium.contact import ContactProblem
+from halfspace.scales import Scales
 
 POISSON = 0.3
 
@@ -77,7 +78,7 @@ def _disc_step(element: Any, f: float, L: float, far_field: FarField = point_loa
     """Quarter disc of triangles whose edges grow by the fraction f of the distance."""
 
     def run(tabor: float) -> Solved:
-        size = graded_size(f * spike_width(tabor), widest(tabor), f)
+        size = graded_size(f * Scales(tabor).spike_width, widest(tabor), f)
         return solve(Space(quarter_disc(_box(L, tabor), size), element), tabor, far_field)
 
     return Step(f"f={f:g} L={L:g}", run)
@@ -90,7 +91,7 @@ def _block_step(
     element = ElementQuad2() if p == 2 else ElementQuadP(p)
 
     def run(tabor: float) -> Solved:
-        mesh = block_grid(f * spike_width(tabor), widest(tabor), _box(L, tabor), growth=growth)
+        mesh = block_grid(f * Scales(tabor).spike_width, widest(tabor), _box(L, tabor), growth=growth)
         return solve(Space(mesh, element), tabor, far_field)
 
     return Step(f"p={p} f={f:g} L={L:g}", run)

@@ -13,10 +13,11 @@ from fem_adhesion.speed.methods import Method, Solved, Step, from_chart, from_pa
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium import newton, relaxation
-from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem, spike_width
+from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
 from halfspace.equilibrium.newton import Control
 from halfspace.equilibrium.relaxation import Relaxed
 from halfspace.errors import InputError
+from halfspace.scales import Scales
 from halfspace.values import Array
 
 MOST_NODES = 3000  # of a dense operator: 70 MB, and as much again for each factorisation
@@ -35,12 +36,12 @@ def _affordable(nodes: Array) -> Array:
 
 
 def _uniform(tabor: float, f: float, U: float) -> Array:
-    return _affordable(grid.uniform(max(U * unit(tabor), 1.5 * widest(tabor)), f * spike_width(tabor)))
+    return _affordable(grid.uniform(max(U * unit(tabor), 1.5 * widest(tabor)), f * Scales(tabor).spike_width))
 
 
 def _graded(tabor: float, f: float, U: float, growth: float, fine_radius: float | None = None) -> Array:
     fine = widest(tabor) if fine_radius is None else fine_radius
-    return _affordable(graded_breaks(f * spike_width(tabor), fine, fine + U * unit(tabor), growth=growth))
+    return _affordable(graded_breaks(f * Scales(tabor).spike_width, fine, fine + U * unit(tabor), growth=growth))
 
 
 def _fixed(operator: ElasticOperator, tabor: float) -> Solved:

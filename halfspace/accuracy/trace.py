@@ -81,18 +81,8 @@ class Rings(Valued):
     until: float
 
 
-def widened(tabor: float) -> float:
-    """Width of the attraction at jump_on, by the 3-9 law on a paraboloid."""
-    return Scales(tabor).widened
-
-
-def widest_radius(tabor: float, to_load: float) -> float:
-    """Contact radius in beta that a curve up to a load hardly exceeds, by the 3-9 law on a paraboloid."""
-    return Scales(tabor).widest_radius(to_load)
-
-
 def rings(
-    scales: Scales | float,
+    scales: Scales,
     finest: float,
     growth: float,
     extent: float,
@@ -103,7 +93,6 @@ def rings(
 
     `finest` is in widths of the spike, `extent` in those of the attraction, as in `Resolution`.
     """
-    scales = scales if isinstance(scales, Scales) else Scales(scales)
     length = finest * scales.spike_width / 2
     outer = scales.outer_radius(extent**2 / 2)
     widest, first = scales.widest_radius(to_load), scales.profile.first_cell(10.0**-nodes)

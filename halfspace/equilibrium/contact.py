@@ -35,11 +35,6 @@ LARGEST = 0.75  # part of a gap h by which it may shrink in a step
 WIDEST = 0.95  # of the radius of a body, that a contact may reach
 
 
-def spike_width(tabor: float) -> float:
-    """Width in beta of the spike of tension at a contact edge, by the 3-9 law on a paraboloid."""
-    return Scales(tabor).spike_width
-
-
 def widest_interval(nodes: int) -> float:
     """Widest interval between k nodes of a cell that carries the spike, in its widths.
 

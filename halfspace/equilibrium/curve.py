@@ -39,7 +39,6 @@ from halfspace.equilibrium.path import WHOLE_BODY, Metric, Point, Segment, Steps
 from halfspace.equilibrium.states import FinestCurve, States, Ways, finest_curve, require_coordinate, resampled
 from halfspace.errors import ContactTooWide, InputError, NotConverged
 from halfspace.limits import require_points
-from halfspace.scales import Scales
 from halfspace.values import Array, Estimate, Valued, shown
 
 COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwise
@@ -337,9 +336,9 @@ def _stable(segment: Segment) -> NDArray[np.bool_]:
     return np.array([segment.problem.negative_directions(point.x) == 0 for point in segment.points], dtype=bool)
 
 
-def metric_for(problem: Traceable | float) -> Metric:
+def metric_for(problem: Traceable) -> Metric:
     """Units by which a curve's long branches take about as many steps at every Tabor parameter, law and profile."""
-    scales = Scales(problem) if isinstance(problem, (int, float)) else problem.interface.scales
+    scales = problem.interface.scales
     return Metric(approach=2 * (1 + scales.tabor), load=scales.largest_load)
 
 

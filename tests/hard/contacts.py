@@ -49,7 +49,7 @@ def _under_load(tabor: float, load: float, rtol: float) -> Point:
     segment = trace_charts(
         half_space_charts(Scales(tabor), resolution_for(Scales(tabor), rtol), 1.1 * load), 1.1 * load
     )[-1]
-    return locate(segment.problem, segment.points, metric_for(tabor), Condition(LOAD, value=load))[-1].point
+    return locate(segment.problem, segment.points, metric_for(segment.problem), Condition(LOAD, value=load))[-1].point
 
 
 def located_birth(birth: Birth) -> Measured:
@@ -102,7 +102,8 @@ def gaps_below_equilibrium(tabor: float, approach: float, gap: float) -> Measure
 
 def from_other_branch(tabor: float, start: float, approach: float) -> Measured:
     """Start Newton's method at one approach from the state in contact, or the only one, at another."""
-    problem, metric = _centred(tabor), metric_for(tabor)
+    problem = _centred(tabor)
+    metric = metric_for(problem)
     found = _states_at(_curve(tabor, GRID), start, metric)[-1]
     x = transfer(found.problem, found.point.x, problem)
     return _judged(problem, newton.solve(problem, x, newton.approach(approach)), approach)
@@ -124,7 +125,7 @@ def _states_at(curve: Sequence[Segment], approach: float, metric: Metric) -> lis
 def _judged(problem: ContactProblem, solution: newton.Solution, approach: float) -> Measured:
     """Hold a state against the nearest of all branches at its approach, if its grid can carry it at all."""
     problem.require_resolution(solution.x)
-    branches = _states_at(_curve(problem.tabor, GRID / 100), approach, metric_for(problem.tabor))
+    branches = _states_at(_curve(problem.tabor, GRID / 100), approach, metric_for(problem))
     load = solution.observables[LOAD]
     error = min(abs(_load(state) - load) for state in branches)
     return Measured("load", error, GRID * (1 + abs(load)), "nearest branch", newton_steps=solution.iterations)
