@@ -326,3 +326,14 @@ def test_both_solvers_agree_on_any_law_and_profile(tabor, parts):
     assert not ours.missed
     assert not theirs.missed
     assert_same(ours, theirs)
+
+
+@pytest.mark.parametrize("parts", [{"law": Morse(3)}, {"profile": Power(4)}], ids=str)
+def test_a_comparison_refuses_what_its_weak_form_does_not_know(parts):
+    with pytest.raises(InputError, match="unknown to the weak form of the comparison, limit: the 3-9 law"):
+        fem_adhesion.compare(Scene(1.0, **parts), rtol=1e-4)
+
+
+def test_a_scene_refuses_what_is_no_law():
+    with pytest.raises(InputError, match=r"the energy at H = 0 is -0\.9 dgamma"):
+        Scene(1.0, law=Yukawa(work=0.9))
