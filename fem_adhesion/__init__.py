@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from fem_adhesion.bodies.half_space import HalfSpace
     from fem_adhesion.bodies.held_sphere import HeldSphere
     from fem_adhesion.bodies.hemisphere import Hemisphere
+    from fem_adhesion.bodies.layer import Layer
     from fem_adhesion.bodies.meshed import Meshed
     from fem_adhesion.convergence import trace
     from fem_adhesion.crosscheck.study import compare
@@ -44,6 +45,7 @@ __all__ = [
     "HalfSpace",
     "HeldSphere",
     "Hemisphere",
+    "Layer",
     "LinearElastic",
     "Meshed",
     "NeoHookean",
@@ -56,7 +58,7 @@ __all__ = [
 _HOMES = {
     **{name: f"bodies.{home}" for name, home in (("Block", "block"), ("HalfSpace", "half_space"))},
     **{name: f"bodies.{home}" for name, home in (("Hemisphere", "hemisphere"), ("HeldSphere", "held_sphere"))},
-    "Meshed": "bodies.meshed",
+    **{name: f"bodies.{home}" for name, home in (("Layer", "layer"), ("Meshed", "meshed"))},
     **dict.fromkeys(("LinearElastic", "NeoHookean"), "materials"),
     **dict.fromkeys(("Scene", "share_of"), "scene"),
     "trace": "convergence",

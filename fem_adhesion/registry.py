@@ -17,6 +17,7 @@ PARTS: dict[str, dict[str, Any]] = {
         "block": "fem_adhesion.bodies.block:Block",
         "hemisphere": "fem_adhesion.bodies.hemisphere:Hemisphere",
         "held-sphere": "fem_adhesion.bodies.held_sphere:HeldSphere",
+        "layer": "fem_adhesion.bodies.layer:Layer",
         "meshed": "fem_adhesion.bodies.meshed:Meshed",
     },
     "material": {

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from fem_adhesion.bodies.body import Body
 from fem_adhesion.bodies.half_space import HalfSpace
+from fem_adhesion.bodies.layer import as_body
 from fem_adhesion.materials import Material
 from fem_adhesion.registry import name_of
 from halfspace.errors import InputError
@@ -36,8 +37,8 @@ class Scene:
     tabor : float
         Tabor parameter, positive; of two bodies with the R and E* of the pair, 1/R = 1/R1 + 1/R2.
     body : Body
-        What is elastic, see `fem_adhesion.bodies`: `HalfSpace` (the default), `Block`, `Hemisphere`, `HeldSphere` or
-        `Meshed`. Each has the R/eps of its own.
+        What is elastic, see `fem_adhesion.bodies`: `HalfSpace` (the default), `Block`, `Layer`, `Hemisphere`,
+        `HeldSphere` or `Meshed`. Each has the R/eps of its own.
     profile : Profile, optional
         Undeformed gap, see `halfspace.profiles`; that of the bodies themselves unless given, and of a half-space a
         paraboloid.
@@ -62,7 +63,7 @@ class Scene:
     share: float | None = None
 
     def __post_init__(self) -> None:
-        keep(self, tabor=require_tabor(self.tabor), law=require_law(self.law))
+        keep(self, tabor=require_tabor(self.tabor), law=require_law(self.law), body=as_body(self.body))
         for name, part, kind in (("body", self.body, Body), ("counter", self.counter, Body | None)):
             if not isinstance(part, kind):
                 raise InputError(f"{name} = {part!r} is no body; take fem_adhesion.Hemisphere(radius_ratio=100), say")
@@ -129,6 +130,7 @@ class Scene:
     def surface(self) -> Surface:
         """Its heights in beta^2/R, up to where the smaller body ends."""
         surface, (end, *_) = self.shape.surface(self.tabor), self._own_radii
+        end = min(end, self.body.extent(Scales(self.tabor, self.law, surface)))
         return surface if surface.end <= end else UpTo(surface, end)
 
     @property

@@ -10,10 +10,12 @@ from typing import Any, ClassVar, Literal, get_args
 
 from fem_adhesion.materials import LinearElastic, Material
 from fem_adhesion.registry import name_of
+from halfspace.elastic.layers import LayeredBody
 from halfspace.elastic.operators import SurfaceCoordinate
 from halfspace.errors import InputError
 from halfspace.limits import require_one_of, require_poisson, require_radius_ratio
 from halfspace.profiles import PARABOLOID, Profile, Sphere
+from halfspace.scales import Scales
 from halfspace.values import Array, keep
 
 FarFieldName = Literal["point_load", "clamped", "free", "sliding"]
@@ -158,6 +160,15 @@ class Body(ABC):
     def shape(self) -> Profile:
         """Profile of a contact with it."""
         return PARABOLOID
+
+    @property
+    def layered(self) -> LayeredBody | None:
+        """Strata on a base, if it is one; see `halfspace.elastic.layers`."""
+        return None
+
+    def extent(self, scales: Scales) -> float:  # noqa: ARG002 (few are cut off)
+        """Radius in beta at which its contact surface is cut off, where nothing attracts any more."""
+        return math.inf
 
     def check(self, tabor: float, end: float) -> None:  # noqa: B027 (most serve all)
         """Refuse a Tabor parameter, or a radius at which the surface over it ends, out of range; raise InputError."""

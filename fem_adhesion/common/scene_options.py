@@ -70,6 +70,9 @@ def add_body(body: Group) -> None:
     body.add_argument("--profile", choices=("paraboloid", "sphere"), help=profile)
     cap = "half-angle of the cap over which a sphere is held, degrees; 30 unless given"
     body.add_argument("--cap-angle", type=float, help=cap, metavar="ANGLE")
+    body.add_argument("--thickness", type=float, help="thickness of a layer on a rigid base in beta", metavar="T")
+    base = "whether the base holds a layer or carries it without friction; bonded unless given"
+    body.add_argument("--foundation", choices=("bonded", "sliding"), help=base)
     body.add_argument("--block-radius", type=float, help="size of a block in beta", metavar="L")
     held = "what holds a block at its far side; point_load unless given"
     body.add_argument("--far-field", choices=("point_load", "clamped", "free"), help=held)
@@ -89,6 +92,8 @@ FIELDS = {
     "path": "mesh",
     "radius": "block_radius",
     "far_field": "far_field",
+    "thickness": "thickness",
+    "foundation": "foundation",
 }
 """Options that say what the fields of a body are."""
 
@@ -137,7 +142,11 @@ def _body(options: argparse.Namespace, radius_ratio: float | None, material: obj
         values["radius_ratio"] = radius_ratio
     for field, value in values.items():
         if value is None and own[field].default is MISSING:
-            what = {"path": "a file; give --mesh FILE", "radius": "a number; give --block-radius, in beta"}
+            what = {
+                "path": "a file; give --mesh FILE",
+                "radius": "a number; give --block-radius, in beta",
+                "thickness": "a number; give --thickness, in beta",
+            }
             raise InputError(f'{field} = None for body = "{name}", limit: {what.get(field, "a number; give R/eps")}')
     given = {field: value for field, value in values.items() if value is not None}
     return class_of("body", name)(material=material, **given)

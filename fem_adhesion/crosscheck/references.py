@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -18,6 +19,7 @@ from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import SizedBody, at_equator
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
+from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
@@ -53,7 +55,7 @@ def reference_for(scene: Scene) -> Reference | None:
 
 
 def _by_integral_equation(scene: Scene) -> Reference:
-    trace = partial(halfspace.trace, scene.tabor, law=scene.law, profile=scene.shape)
+    trace = partial(halfspace.trace, scene.tabor, law=scene.law, profile=scene.shape, body=scene.body.layered)
     return Reference(SOLVERS, trace, partial(_half_spaces, scene))
 
 
@@ -112,7 +114,7 @@ def pressures_for(scene: Scene) -> dict[str, Callable[[Array], Array]]:
 
 def radius_of(scene: Scene) -> float:
     """Radius in beta at which these pressures have their edge: 1, or a sixth of that of the smaller sphere."""
-    return scene.surface.end / 6 if scene.sized else 1.0
+    return scene.surface.end / 6 if math.isfinite(scene.sphere_radius) else 1.0
 
 
 # Half-spaces
@@ -135,7 +137,9 @@ def _half_spaces(scene: Scene, rtol: float) -> Operators:
     degree = convergence.resolution_for(scene, rtol, 0).how.degree
     lines = _lines(scene)
     wider = lines if scene.sized else grid.graded(1.0, FINEST, 2 * lines[-1])
-    return [compliance.panels(wider, k) for k in (degree + 3, degree + 5)]
+    body = scene.body.layered
+    panels = partial(layered_panels, images_of(body)) if body else compliance.panels
+    return [panels(wider, k) for k in (degree + 3, degree + 5)]
 
 
 # Spheres by harmonics

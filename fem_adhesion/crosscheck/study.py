@@ -204,7 +204,7 @@ def _residual(found: Sequence[Located], equations: Located) -> Estimate:
 def _carried(event: Located, target: ContactProblem) -> Array:
     """State of an event on another solver's nodes."""
     x = transfer(event.problem, event.point.x, target)
-    if np.isfinite(target.profile.end):  # its profile is no polynomial
+    if np.isfinite([target.profile.end, event.problem.interface.profile.end]).all():  # a sphere's is no polynomial
         x[:-2] = gaps_at(event, target.operator_at(x).radii)
     return x
 

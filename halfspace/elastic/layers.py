@@ -157,7 +157,7 @@ class Layer:
         own = Stratum(self.thickness, self.poisson)
         object.__setattr__(self, "thickness", own.thickness)
         object.__setattr__(self, "poisson", own.poisson)
-        _require_foundation(self.foundation)
+        require_foundation(self.foundation)
 
     @property
     def strata(self) -> tuple[Stratum, ...]:
@@ -272,10 +272,11 @@ def _waves(zeta: Array, nu: float) -> Array:
 
 
 def _require_base(base: Foundation | Substrate) -> Foundation | Substrate:
-    return base if isinstance(base, Substrate) else _require_foundation(base)
+    return base if isinstance(base, Substrate) else require_foundation(base)
 
 
-def _require_foundation(foundation: Foundation) -> Foundation:
+def require_foundation(foundation: Foundation) -> Foundation:
+    """Return how a layer stands on its base, or raise InputError for no such way."""
     if foundation not in get_args(Foundation):
         raise InputError(f"foundation = {foundation!r} is not one of {', '.join(get_args(Foundation))}; take bonded")
     return foundation

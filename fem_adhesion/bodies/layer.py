@@ -1,0 +1,85 @@
+"""A layer on a rigid base."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout, SolverName
+from halfspace.elastic import grid, layers
+from halfspace.elastic.operators import FlatCoordinate
+from halfspace.errors import InputError
+from halfspace.limits import require_thickness
+from halfspace.scales import Scales
+from halfspace.values import Array, keep
+
+WIDTH = 800.0  # of the mesh, in widths of a rigid attraction: the load left out beyond is 1e-10 R dgamma
+
+
+@dataclass(frozen=True)
+class Layer(Body):
+    """Layer on a rigid base: a thin sample.
+
+    Parameters
+    ----------
+    thickness : float
+        In beta, 0.01 to 1000.
+    foundation : {"bonded", "sliding"}
+        Whether the base holds the layer, or carries it without friction.
+    """
+
+    thickness: float
+    foundation: layers.Foundation = "bonded"
+
+    looks: ClassVar[str] = "elastic layer"
+
+    def __post_init__(self, poisson: float | None) -> None:
+        super().__post_init__(poisson)
+        keep(self, thickness=require_thickness(self.thickness))
+        layers.require_foundation(self.foundation)
+
+    @property
+    def held(self) -> FarFieldName:
+        """Its base slides, or is clamped."""
+        return "clamped" if self.foundation == "bonded" else "sliding"
+
+    @property
+    def checked_by(self) -> SolverName | None:
+        """By the integral equation."""
+        return "half-space"
+
+    @property
+    def layered(self) -> layers.Layer:
+        """What the integral equation knows it as."""
+        return layers.Layer(self.thickness, self.material.poisson, self.foundation)
+
+    @property
+    def told(self) -> list[str]:
+        """Its thickness and foundation."""
+        return [*super().told, f"thickness {self.thickness:g} beta", self.foundation]
+
+    def extent(self, scales: Scales) -> float:
+        """Radius up to which it is meshed."""
+        return scales.outer_radius((WIDTH * scales.widened) ** 2 / 2)
+
+    def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
+        """Cells up to the end of the mesh, or of the surface over it."""
+        return np.array([R]), FlatCoordinate()
+
+    def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002 (it ends with them)
+        """Cells as deep as the layer is thick; its edge is free, far from the contact."""
+        from fem_adhesion.mesh.block import tensor_grid
+
+        depths = grid.graded(0.0, min(np.diff(lines).min(), self.thickness), self.thickness, growth=how.growth)
+        return tensor_grid(lines, depths).with_boundaries({"far": lambda x: x[1] == -depths[-1]})
+
+
+def as_body(part: object) -> object:
+    """A body of finite elements in the place of a layer as the integral equation has it; anything else as it is."""
+    if isinstance(part, layers.Layer):
+        return Layer(part.thickness, part.foundation, poisson=part.poisson)
+    if isinstance(part, layers.Coated | layers.Layers):
+        raise InputError(f"body = {part!r} is not meshed, limit: one layer on a rigid base; take halfspace.trace")
+    return part
