@@ -184,11 +184,16 @@ def assert_same(ours, theirs, approaches=1.0, loads=1.0):
         assert abs(event.load - loads * other.load) <= event.load_error + loads * other.load_error
 
 
-@pytest.mark.parametrize(("k", "tabor"), [(3.0, 0.2), (0.5, 4.0), (10.0, 1.0)])
+@pytest.mark.parametrize(("k", "tabor"), [(3.0, 0.2), (0.1, 3.0), (0.5, 4.0), (10.0, 1.0)])
 def test_morse_knows_k_and_tabor_by_their_product_alone(k, tabor):
     """Gaps in ranges of the potential in the place of eps: neither eps nor k is in the equations any more."""
     ours, unit = halfspace.trace(tabor, law=Morse(k)), halfspace.trace(k * tabor, law=Morse(1))
     assert_same(ours, unit, approaches=1 / k)
+
+
+def test_surfaces_too_far_apart_for_an_exponential_law_are_passed_in_long_steps():
+    """Where it is all but nothing no load has a turning point to look for; else it takes 357 points, or 1204."""
+    assert halfspace.trace(50.0, law=Morse(3), rtol=1e-3).count < 250
 
 
 def test_a_quadratic_power_and_a_wide_hyperboloid_are_paraboloids():
