@@ -1,7 +1,6 @@
 """What there is to know of an elastic body: it is asked for that, and by nobody for its kind."""
 
-from __future__ import annotations
-
+# Annotations are evaluated here: those of fields are read again in the modules of the bodies that inherit them.
 import math
 from abc import ABC, abstractmethod
 from dataclasses import InitVar, dataclass

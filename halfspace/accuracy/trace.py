@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from halfspace.accuracy.finite_bodies import AroundEvents, Made, SizedBody, at_equator, surroundings
+from halfspace.accuracy.finite_bodies import TIGHT, AroundEvents, Made, SizedBody, at_equator, surroundings
 from halfspace.accuracy.refinement import Charted, Rung, climb
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.layered import Images, images_of, layered_panels
@@ -189,7 +189,8 @@ def _sized_rung(scales: Scales, images: Sequence[Images | None], rtol: float, to
     """Rung of a level for a surface that ends, as a sphere's does at its equator, or a body that has a length."""
     resolutions = resolution_for(scales, rtol, level), _twin(resolution_for(scales, rtol, max(level - 1, 0)))
     fine, other = (_sized_body(scales, *both) for both in zip(images, resolutions, strict=True))
-    resolution, doubt = resolutions[0], 2 if images[0] else 1  # images err alike on either
+    resolution = resolutions[0]
+    doubt = 2 if images[0] and rtol < TIGHT else 1  # what is left at last is that of the images, who err alike
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(
         partial(fine.curve, to_load),
