@@ -2,6 +2,7 @@
 
 import pkgutil
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pdoc
@@ -14,8 +15,15 @@ def packages():
     """Both packages, with what they import late and what lies in them where pdoc looks for it."""
     for package in (halfspace, fem_adhesion):
         vars(package).update({name: getattr(package, name) for name in package.__all__})
-        package.__all__ += [module.name for module in pkgutil.iter_modules(package.__path__) if module.name[0] != "_"]
+        for room in (package, *rooms(package)):
+            room.__all__ += [module.name for module in pkgutil.iter_modules(room.__path__) if module.name[0] != "_"]
         yield package.__name__
+
+
+def rooms(package):
+    """Packages in a package that say what is public, where pdoc would look for nothing else."""
+    inner = (import_module(f"{package.__name__}.{m.name}") for m in pkgutil.iter_modules(package.__path__) if m.ispkg)
+    return [room for room in inner if hasattr(room, "__all__")]
 
 
 if __name__ == "__main__":

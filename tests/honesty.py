@@ -584,8 +584,12 @@ class Row:
         return tuple(sum(getattr(n, k) for n in self.numbers) / len(self.numbers) for k in ("held", "close"))
 
     def honest(self, net):
-        """Whether both shares are what they should be; of a few numbers one may lie outside."""
-        few = len(self.outside) <= max(1, int((1 - HELD) * len(self.numbers)))
+        """Whether both shares are what they should be; of a few numbers one may lie outside.
+
+        What two tolerances give alike, since one grid serves both, is one number.
+        """
+        numbers, outside = ({(n.error, n.estimate) for n in some} for some in (self.numbers, self.outside))
+        few = len(outside) <= max(1, int((1 - HELD) * len(numbers)))
         return few and self.shares[1] >= CLOSE[net]
 
 
