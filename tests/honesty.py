@@ -95,6 +95,11 @@ class Judged:
         return self.error <= self.estimate + self.known
 
     @property
+    def alike(self):
+        """What it is of, but for the tolerance, and what it is: equal where one grid serves two tolerances."""
+        return self.what.split(" at rtol ")[0], self.estimate, self.error
+
+    @property
     def close(self):
         """Whether the estimate tells the size of the error."""
         return self.estimate <= CLOSENESS * max(self.error, self.known, ROUNDED * (1 + self.size))
@@ -588,7 +593,7 @@ class Row:
 
         What two tolerances give alike, since one grid serves both, is one number.
         """
-        numbers, outside = ({(n.error, n.estimate) for n in some} for some in (self.numbers, self.outside))
+        numbers, outside = ({n.alike for n in some} for some in (self.numbers, self.outside))
         few = len(outside) <= max(1, int((1 - HELD) * len(numbers)))
         return few and self.shares[1] >= CLOSE[net]
 

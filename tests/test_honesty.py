@@ -24,8 +24,12 @@ from halfspace.scales import Scales
 from halfspace.values import Estimate
 
 
-def _number(estimate, error, known=0.0):
-    return Judged("a number", estimate, error, known, 1.0)
+def _number(estimate, error, known=0.0, what="a number"):
+    return Judged(what, estimate, error, known, 1.0)
+
+
+def _numbers(count, error):
+    return [_number(1.0, error, what=f"number {k} at rtol 0.1") for k in range(count)]
 
 
 @pytest.mark.parametrize(
@@ -47,9 +51,17 @@ def test_a_number_is_held_and_close_up_to_what_its_truth_is_known_to(number, hel
     ("outside", "wide", "honest"), [(0, 0, True), (2, 20, True), (3, 0, False), (0, 21, False), (1, 20, True)]
 )
 def test_a_family_is_honest_up_to_a_hundredth_outside_and_a_tenth_that_are_wide(outside, wide, honest):
-    numbers = [_number(1.0, 2.0)] * outside + [_number(1.0, 1e-3)] * wide
-    row = Row("a family", numbers + [_number(1.0, 0.5)] * (200 - len(numbers)), 0.0)
+    numbers = _numbers(outside, 2.0) + _numbers(wide, 1e-3)
+    row = Row("a family", numbers + _numbers(200 - len(numbers), 0.5), 0.0)
     assert row.honest("full") == honest
+
+
+def test_what_two_tolerances_give_alike_is_one_number():
+    """Of a hundred and fifty one may lie outside, at two tolerances alike, but not two that differ."""
+    inside, one = _numbers(148, 0.5), _number(1.0, 2.0, what="x at rtol 0.1")
+    double, other = replace(one, what="x at rtol 0.01"), replace(one, what="y at rtol 0.01")
+    assert Row("a family", [*inside, one, double], 0.0).honest("quick")
+    assert not Row("a family", [*inside, one, other], 0.0).honest("quick")
 
 
 def test_a_number_that_is_not_told_or_has_no_truth_lies_outside():
