@@ -27,7 +27,7 @@ import numpy as np
 
 from halfspace.errors import InputError
 from halfspace.limits import require_film, require_poisson, require_stiffness, require_thickness
-from halfspace.values import Array
+from halfspace.values import Array, keep
 
 Foundation = Literal["bonded", "sliding"]
 
@@ -55,8 +55,7 @@ class Substrate:
     poisson: float = 0.3
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "modulus", require_stiffness(self.modulus))
-        object.__setattr__(self, "poisson", require_poisson(self.poisson))
+        keep(self, modulus=require_stiffness(self.modulus), poisson=require_poisson(self.poisson))
 
 
 @dataclass(frozen=True)
@@ -83,9 +82,12 @@ class Stratum:
     modulus: float = 1.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "thickness", require_thickness(self.thickness))
-        object.__setattr__(self, "poisson", require_poisson(self.poisson))
-        object.__setattr__(self, "modulus", require_stiffness(self.modulus))
+        keep(
+            self,
+            thickness=require_thickness(self.thickness),
+            poisson=require_poisson(self.poisson),
+            modulus=require_stiffness(self.modulus),
+        )
 
 
 class LayeredBody(Protocol):
@@ -123,8 +125,7 @@ class Layers:
     base: Foundation | Substrate = "bonded"
 
     def __init__(self, strata: Sequence[Stratum], base: Foundation | Substrate = "bonded") -> None:
-        object.__setattr__(self, "strata", tuple(strata))
-        object.__setattr__(self, "base", _require_base(base))
+        keep(self, strata=tuple(strata), base=_require_base(base))
         if not self.strata or self.strata[0].modulus != 1:
             first = f"modulus = {self.strata[0].modulus:g} of the first stratum" if self.strata else "strata = []"
             raise InputError(f"{first} does not serve, limit: one stratum or more, the first of modulus 1; see Stratum")
@@ -154,9 +155,7 @@ class Layer:
     foundation: Foundation = "bonded"
 
     def __post_init__(self) -> None:
-        own = Stratum(self.thickness, self.poisson)
-        object.__setattr__(self, "thickness", own.thickness)
-        object.__setattr__(self, "poisson", own.poisson)
+        keep(self, thickness=require_thickness(self.thickness), poisson=require_poisson(self.poisson))
         require_foundation(self.foundation)
 
     @property
@@ -195,11 +194,13 @@ class Coated:
     substrate_poisson: float = 0.3
 
     def __post_init__(self) -> None:
-        own = Stratum(self.thickness, self.poisson)
-        object.__setattr__(self, "thickness", own.thickness)
-        object.__setattr__(self, "poisson", own.poisson)
-        object.__setattr__(self, "modulus_ratio", require_film(self.modulus_ratio))
-        object.__setattr__(self, "substrate_poisson", require_poisson(self.substrate_poisson))
+        keep(
+            self,
+            thickness=require_thickness(self.thickness),
+            poisson=require_poisson(self.poisson),
+            modulus_ratio=require_film(self.modulus_ratio),
+            substrate_poisson=require_poisson(self.substrate_poisson),
+        )
 
     @property
     def strata(self) -> tuple[Stratum, ...]:

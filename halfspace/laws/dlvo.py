@@ -9,7 +9,7 @@ import numpy as np
 from halfspace.errors import InputError
 from halfspace.laws.law import Law
 from halfspace.limits import require_number
-from halfspace.values import Array
+from halfspace.values import Array, keep
 
 LEAST, MOST = 0.02, 50.0
 
@@ -44,8 +44,7 @@ class Dlvo(Law):
         if not 3 / 8 + q / 8 - q / kappa > 0:
             most = 3 / (8 / kappa - 1)
             raise InputError(f"charge = {q:g} leaves no work of adhesion, limit: charge < {most:.3g} at this screening")
-        object.__setattr__(self, "charge", q)
-        object.__setattr__(self, "screening", kappa)
+        keep(self, charge=q, screening=kappa)
 
     @property
     def amplitude(self) -> float:

@@ -11,7 +11,7 @@ from scipy.special import expn
 from halfspace.errors import InputError
 from halfspace.laws.law import Law
 from halfspace.limits import require_number
-from halfspace.values import Array
+from halfspace.values import Array, keep
 
 LEAST, MOST = 0.1, 50.0
 SOFTEST, HARDEST = 2, 60
@@ -44,8 +44,7 @@ class Exponential(Law):
         if not (SOFTEST <= m <= HARDEST and m.is_integer()):
             limit = f"a whole number, {SOFTEST} <= core <= {HARDEST}"
             raise InputError(f"core = {m:g} of the exponential law is outside {limit}; take 9")
-        object.__setattr__(self, "k", k)
-        object.__setattr__(self, "core", int(m))
+        keep(self, k=k, core=int(m))
 
     @property
     def amplitude(self) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from halfspace.errors import InputError
 from halfspace.laws.law import Law
 from halfspace.limits import require_number
-from halfspace.values import Array
+from halfspace.values import Array, keep
 
 LEAST, MOST = 0.1, 50.0
 
@@ -39,7 +39,7 @@ class Morse(Law):
         k = require_number(self.k, "k")
         if not LEAST <= k <= MOST:
             raise InputError(f"k = {k:g} of Morse's law is outside {LEAST:g} <= k <= {MOST:g}; take 3")
-        object.__setattr__(self, "k", k)
+        keep(self, k=k)
 
     @property
     def edge_gap(self) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from halfspace.errors import InputError
 from halfspace.limits import require_number
 from halfspace.profiles.profile import Endless
-from halfspace.values import Array
+from halfspace.values import Array, keep
 
 SHARPEST = 1e-2
 
@@ -35,7 +35,7 @@ class Hyperboloid(Endless):
         b = require_number(self.b, "b")
         if not SHARPEST <= b < np.inf:
             raise InputError(f"b = {b:g} of the hyperboloid is outside {SHARPEST:g} <= b < inf; take a blunter tip")
-        object.__setattr__(self, "b", b)
+        keep(self, b=b)
 
     def height(self, radii: Array) -> Array:
         """Return u^2/(1 + sqrt(1 + u^2/b^2)), without cancellation."""

@@ -12,7 +12,7 @@ import numpy as np
 from halfspace.errors import InputError
 from halfspace.limits import require_number
 from halfspace.profiles.profile import Endless
-from halfspace.values import Array
+from halfspace.values import Array, keep
 
 SHARPEST, BLUNTEST = 1.5, 10.0
 
@@ -39,7 +39,7 @@ class Power(Endless):
         if not SHARPEST <= k <= BLUNTEST:
             remedy = "round a cone's tip: profiles.Hyperboloid" if k < SHARPEST else "it is a flat punch, take 10"
             raise InputError(f"k = {k:g} of the profile is outside {SHARPEST:g} <= k <= {BLUNTEST:g}; {remedy}")
-        object.__setattr__(self, "k", k)
+        keep(self, k=k)
 
     def height(self, radii: Array) -> Array:
         """Return u^k/k."""

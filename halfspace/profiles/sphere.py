@@ -9,7 +9,7 @@ import numpy as np
 
 from halfspace.limits import require_counter_radius, require_radius_ratio
 from halfspace.profiles.profile import Dimensionless, Surface
-from halfspace.values import Array, Valued
+from halfspace.values import Array, Valued, keep
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,11 @@ class Sphere:
     counter_radius: float = math.inf
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "radius_ratio", require_radius_ratio(self.radius_ratio))
-        object.__setattr__(self, "counter_radius", require_counter_radius(self.counter_radius))
+        keep(
+            self,
+            radius_ratio=require_radius_ratio(self.radius_ratio),
+            counter_radius=require_counter_radius(self.counter_radius),
+        )
 
     def surface(self, tabor: float) -> Surface:
         """Heights in beta^2/R; raise InputError where the sphere is as small as its contact."""
