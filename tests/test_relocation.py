@@ -37,11 +37,11 @@ def test_a_sign_that_changes_where_states_leap_is_no_event(monkeypatch, leap, fo
     monkeypatch.setattr(events, "hermite", lambda *_: None)
     a, b = (state(None, point(0.0, 0.0), s) for s in (0.0, 1.0))
     if found:
-        root = events.between(None, a, b, Condition(0), None).point
+        root = events.bracketed(None, a, b, Condition(0), None).point
         assert root.observables[0] == pytest.approx(0.0, abs=1e-9)
     else:
         with pytest.raises(NotConverged, match="different branches; take a smaller rtol"):
-            events.between(None, a, b, Condition(0), None)
+            events.bracketed(None, a, b, Condition(0), None)
 
 
 @pytest.mark.parametrize(("own", "other"), [(events.FOLD, 1), (events.EXTREMUM, 0)])

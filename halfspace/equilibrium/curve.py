@@ -29,7 +29,8 @@ from halfspace.equilibrium.events import (
     Located,
     Tolerance,
     approach_scale,
-    locate,
+    between,
+    brackets,
     relocate,
     same_place,
     tolerance_told,
@@ -445,10 +446,41 @@ def moved(event: Located, problem: Traceable) -> Located:
     return relocate(event, problem, start, metric_for(problem))
 
 
+Bracket = tuple[Traceable, Point, Point]
+
+
 def states(segments: Sequence[Segment], condition: Condition) -> list[Located]:
     """Every state of a traced curve that meets a condition, in order."""
+    return [_state(bracket, condition) for bracket in _brackets(segments, condition)]
+
+
+def _brackets(segments: Sequence[Segment], condition: Condition) -> list[Bracket]:
+    """Discretisation and pair of points for every state that meets a condition, in order."""
     metric = metric_for(segments[0].problem)
-    return [e for s in segments for e in locate(s.problem, s.points, metric, condition)]
+    return [(s.problem, a, b) for s in segments for a, b in brackets(s.problem, s.points, metric, condition)]
+
+
+def _state(bracket: Bracket, condition: Condition) -> Located:
+    problem, a, b = bracket
+    return between(problem, a, b, condition, metric_for(problem))
+
+
+def _deepest(brackets: Sequence[Bracket]) -> Located:
+    """Of the extrema of the load the deepest, where the cubics through the points beside it do not leave it open."""
+    expected = sorted((_least_load(a, b), i) for i, (_, a, b) in enumerate(brackets))
+    found = [_state(brackets[i], EXTREMUM) for low, i in expected if low <= expected[0][0] + DEEP * abs(expected[0][0])]
+    return min(found, key=lambda e: float(e.point.observables[LOAD]))
+
+
+def _least_load(a: Point, b: Point) -> float:
+    """Least load between two points, about, by the cubic through them."""
+    t, h = np.linspace(0, 1, 9), b.arclength - a.arclength
+    (f, df), (g, dg) = ((float(p.observables[LOAD]), h * float(p.rates[LOAD])) for p in (a, b))
+    cubic = f + t**2 * (3 - 2 * t) * (g - f) + t * (1 - t) * ((1 - t) * df - t * dg)
+    return float(np.min(cubic))
+
+
+DEEP = 0.1  # of the deepest load by the cubics: others as deep are solved for as well
 
 
 def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
@@ -468,16 +500,17 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     """
     separated = segments[0].problem.interface.scales.separated_approach
 
-    def required(name: str, condition: Condition) -> list[Located]:
-        return states(segments, condition) or _missing(segments[-1], name)
+    def required(name: str, condition: Condition) -> list[Bracket]:
+        return _brackets(segments, condition) or _missing(segments[-1], name)
 
-    folds = states(segments, FOLD)
-    found = {"pull_off": min(required("pull_off", EXTREMUM), key=lambda e: float(e.point.observables[LOAD]))}
+    folds = _brackets(segments, FOLD)
+    found = {"pull_off": _deepest(required("pull_off", EXTREMUM))}
     if folds:
-        found |= {"jump_on": folds[0], "jump_off": folds[-1]}
-    found["separated"] = required("separation", Condition(APPROACH, value=separated))[0]
+        found |= {"jump_on": _state(folds[0], FOLD), "jump_off": _state(folds[-1], FOLD)}
+    far = Condition(APPROACH, value=separated)
+    found["separated"] = _state(required("separation", far)[0], far)
     for name, condition in (("zero_load", ZERO_LOAD), ("zero_approach", Condition(APPROACH))):
-        found[name] = required(name, condition)[-1]
+        found[name] = _state(required(name, condition)[-1], condition)
     return found
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.newton import Control, Traceable
-from halfspace.equilibrium.path import UNFELT, Metric, Point, correct, least_slope, make_point
+from halfspace.equilibrium.path import NEARLY, UNFELT, Metric, Point, correct, least_slope, make_point
 from halfspace.errors import NotConverged
 from halfspace.roots import root
 from halfspace.values import Array, Estimate, Valued
@@ -139,11 +139,21 @@ class Condition:
     value: float = 0.0
     compliance: float = 0.0
 
+    @property
+    def weights(self) -> Array:
+        """Weights (4,) of the observables in the one at the far end of the spring."""
+        weights = np.zeros(4)
+        weights[LOAD] = self.compliance
+        weights[self.observable] += 1.0
+        return weights
+
     def of(self, point: Point) -> float:
         """Quantity whose root is sought."""
-        if self.stationary:
-            return float(point.rates[self.observable] + self.compliance * point.rates[LOAD])
-        return self.level(point) - self.value
+        return self.rate(point) if self.stationary else self.level(point) - self.value
+
+    def rate(self, point: Point) -> float:
+        """Rate of the observable at the far end of the spring."""
+        return float(point.rates[self.observable] + self.compliance * point.rates[LOAD])
 
     def level(self, point: Point) -> float:
         """Observable at the far end of the spring."""
@@ -197,8 +207,15 @@ class Located(Valued):
 
 def locate(problem: Traceable, points: Sequence[Point], metric: Metric, condition: Condition) -> list[Located]:
     """Find every root of a condition between successive points of one discretisation's path."""
+    return [between(problem, a, b, condition, metric) for a, b in brackets(problem, points, metric, condition)]
+
+
+def brackets(
+    problem: Traceable, points: Sequence[Point], metric: Metric, condition: Condition
+) -> list[tuple[Point, Point]]:
+    """Find every pair of points, the second reached from the first, between which a condition has a root."""
     return [
-        between(problem, c, d, condition, metric)
+        (c, d)
         for a, b in pairwise(points)
         for c, d in _watched(problem, a, b, condition, metric)
         if (condition.of(c) < 0) != (condition.of(d) < 0)  # their product is zero at a root, and where it underflows
@@ -213,7 +230,7 @@ def _watched(
     if not depth or not _may_hide(a, b, condition):
         return [(a, b)]
     length = b.arclength - a.arclength
-    middle = correct(problem, a, length / 2, hermite(problem, a, b, 0.5), metric, iterations=20)
+    middle = correct(problem, a, length / 2, hermite(problem, a, b, 0.5, metric), metric, iterations=20)
     rest = float((metric.weights * middle.rates)[:3] @ (b.observables - middle.observables)[:3])
     onward = replace(b, arclength=middle.arclength + rest)  # as `correct` measures it, along the first point's tangent
     halves = ((a, middle), (middle, onward))
@@ -236,18 +253,65 @@ def _unfelt(a: Point, b: Point, condition: Condition) -> bool:
 
 
 LEAP = 1e-3  # of what should vanish at a root in its largest value around: more is left where states leap
-NEARLY = 0.2  # of the larger rate at the two ends
 LONG = 0.05  # arclength
 
 
 def between(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
-    """Find the root between two points of which the second was reached from the first."""
+    """Find the root between two points of which the second was reached from the first.
+
+    Newton's method on the equilibrium together with the condition finds it from where the cubics through both points
+    have it; where that does not end between them, so does halving the interval, with the corrector at every trial.
+    """
+    length = b.arclength - a.arclength
+    part = _by_cubic(a, b, condition, metric)
+    if part is not None:
+        try:
+            found = _solved(problem, condition, hermite(problem, a, b, part, metric), metric, a, length)
+        except NotConverged:
+            return bracketed(problem, a, b, condition, metric)
+        if found and all(metric.distance(found.point, end) <= length for end in (a, b)):
+            return found
+    return bracketed(problem, a, b, condition, metric)
+
+
+def _by_cubic(a: Point, b: Point, condition: Condition, metric: Metric) -> float | None:
+    """Part of the way between two points at which a condition vanishes on the cubic through both; None on neither."""
+    length, level, slope = b.arclength - a.arclength, condition.level, condition.rate
+    first, last = length * slope(a), length * slope(b) / metric.along(a, b)
+    rise = level(b) - level(a)
+    cubic = [first + last - 2 * rise, 3 * rise - 2 * first - last, first, level(a) - condition.value]
+    found = np.roots(np.polyder(cubic) if condition.stationary else cubic)
+    inside = [float(t.real) for t in found if abs(t.imag) < 1e-9 and 0 <= t.real <= 1]
+    return inside[0] if inside else None
+
+
+def _solved(
+    problem: Traceable, condition: Condition, start: Array, metric: Metric, near: Point, reach: float
+) -> Located | None:
+    """Solve for a state that meets a condition from a start near a point; None if it is farther from it than that."""
+    direction = metric.weights * near.rates
+    if condition.stationary:
+        turn = newton.turning_point(problem, start, condition.weights, direction, reach)
+        solution, slope = turn.solution, turn.slope
+    else:
+        solution, slope = newton.solve(problem, start, Control(condition.weights, condition.value)), None
+    used = direction != 0
+    step = float(direction[used] @ (solution.observables - near.observables)[used])
+    point = make_point(problem, solution, metric, direction, near.arclength + step)
+    far = metric.distance(point, near) > reach or metric.along(near, point) <= 0
+    return None if far else Located(condition, problem, point, condition.rate(point) if slope is None else slope)
+
+
+def bracketed(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
+    """Find the root between two points by halving the interval at worst, with the corrector at every trial."""
     length = b.arclength - a.arclength
     trials = {0.0: a, length: b}
 
     def quantity(step: float) -> float:
         if step not in trials:
-            trials[step] = correct(problem, a, step, hermite(problem, a, b, step / length), metric, iterations=20)
+            trials[step] = correct(
+                problem, a, step, hermite(problem, a, b, step / length, metric), metric, iterations=20
+            )
         return condition.of(trials[step])
 
     step = root(quantity, 0.0, length, "an event; take a smaller rtol", xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
@@ -260,13 +324,16 @@ def between(problem: Traceable, a: Point, b: Point, condition: Condition, metric
     return Located(condition, problem, trials[step], (condition.of(b) - condition.of(a)) / length)
 
 
-def hermite(problem: Traceable, a: Point, b: Point, t: float) -> Array:
-    """State between two points, from the cubic through both with their tangents; gaps stay positive."""
+def hermite(problem: Traceable, a: Point, b: Point, t: float, metric: Metric) -> Array:
+    """State between two points, from the cubic through both with their tangents; gaps stay positive.
+
+    It is a cubic in the arclength as it is measured between them, along the tangent of the first.
+    """
     h = b.arclength - a.arclength
     x = (
         (1 + 2 * t) * (1 - t) ** 2 * a.x
         + t**2 * (3 - 2 * t) * b.x
-        + h * t * (1 - t) * ((1 - t) * a.tangent - t * b.tangent)
+        + h * t * (1 - t) * ((1 - t) * a.tangent - t * b.tangent / metric.along(a, b))
     )
     return np.asarray(a.x + problem.longest_step(a.x, x - a.x) * (x - a.x))
 
@@ -280,9 +347,21 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
         If the event does not exist near `start` on that discretisation.
     """
     condition = event.condition
-    nearby = same_place(event.point, problem, start, metric)
     if isinstance(condition, Steepest):
-        return steepest_from(problem, nearby, metric)
+        return steepest_from(problem, same_place(event.point, problem, start, metric), metric)
+    try:
+        found = _solved(problem, condition, start, metric, event.point, NEARBY)
+    except NotConverged:
+        found = None
+    return found if found and found.slope * event.slope > 0 else _searched(event, problem, start, metric)
+
+
+NEARBY = 0.3  # arclength within which an event is looked for on another discretisation at once
+
+
+def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located:
+    """Solve for an event farther off: in the plane across the path first, then along it to beyond the event."""
+    condition, nearby = event.condition, same_place(event.point, problem, start, metric)
     step = -PAST * condition.of(nearby) / event.slope
     if abs(step) < ARCLENGTH_TOLERANCE:
         return Located(condition, problem, nearby, event.slope)
@@ -290,7 +369,7 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
         beyond = correct(problem, nearby, step, nearby.x + step * nearby.tangent, metric, iterations=20)
         left = condition.of(beyond) / condition.of(nearby)
         if left <= 0:
-            return between(problem, nearby, beyond, condition, metric)
+            return bracketed(problem, nearby, beyond, condition, metric)
         step *= min(1 + PAST * left / (1 - left), LONGER) if left < 1 else LONGER  # as far past the secant's root
     at = event.point.observables
     raise NotConverged(

@@ -1,9 +1,15 @@
-"""Damped Newton's method on an equilibrium problem bordered by one control."""
+"""Damped Newton's method on an equilibrium problem bordered by one control.
+
+A factorisation serves once more where the step after it was so short that the next is as good with the old factors: the
+last step, which only tells that the one before was right, and the tangent of the path cost no factorisation of their
+own. Each ends at the rounding all the same, since what is left is told by how fast the steps shrink.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -14,6 +20,21 @@ from halfspace.values import Array, Valued
 
 GROWTH = 10.0  # of the relative residual, let through in one step
 ROUND_OFF = 1e-10  # relative size of a step below which the residual may be no more than rounding
+NEAR = 1e-3  # relative size of a step after which the factors from before it serve once more
+SLOW = 0.1  # part of a step that may be left after one with old factors; if it is more, they are made anew
+LEFT = 1e-4  # of the tolerance: error left by the last step, of either kind
+REFINED = 1e-13  # relative error left in a tangent
+
+
+Solver = Callable[[Array], Array]
+
+
+class Linear(Protocol):
+    """A matrix, dense or sparse."""
+
+    def __matmul__(self, other: Array, /) -> Array:
+        """Product with a vector."""
+        ...
 
 
 class Equilibrium(Protocol):
@@ -23,7 +44,11 @@ class Equilibrium(Protocol):
         """Left-hand sides of all equations but the control."""
         ...
 
-    def bordered_solver(self, x: Array, row: Array) -> Callable[[Array], Array]:
+    def jacobian(self, x: Array) -> Linear:
+        """Derivative of the residual, with one row less than columns."""
+        ...
+
+    def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Solver for the linearised equations with the control row below them; raise NotConverged if singular."""
         ...
 
@@ -150,13 +175,20 @@ class Solution(Valued):
     iterations : int
         Newton steps taken.
     update : float
-        Relative size of the last step; the error left is of the order of its square.
+        Relative size of the last step; the error left is of the order of its square, or less than `LEFT` of the
+        tolerance.
+    control : Control
+        What was prescribed.
+    solver : callable
+        For the linearised equations, bordered by the control, at the state or very near to it.
     """
 
     x: Array
     observables: Array
     iterations: int
     update: float
+    control: Control
+    solver: Solver
 
 
 def solve(
@@ -188,17 +220,142 @@ def solve(
     F = _equations(problem, x, control)
     if np.isnan(F[-1]):
         raise NotConverged("the start has no contact radius to be prescribed; start from a state in contact")
+    before, solver = np.inf, None
     for iteration in range(1, max_iterations + 1):
-        row = problem.gradient(x, control.weights)
-        dx = -problem.bordered_solver(x, row)(F)
+        fresh = solver is None
+        solver = solver or problem.bordered_solver(x, problem.gradient(x, control.weights))
+        dx = -solver(F)
         update = problem.size(x, dx)
         x, F, damping = _damped(problem, x, F, dx, control)
-        if damping == 1 and update < tolerance:
-            return Solution(x, problem.observables(x), iteration, update)
+        left = update * min(1.0, update if fresh else update / before)
+        if damping == 1 and update < tolerance and left < LEFT * tolerance:
+            return Solution(x, problem.observables(x), iteration, update, control, solver)
+        if damping < 1 or update > NEAR or (not fresh and update > SLOW * before):
+            solver = None
+        before = update
     raise NotConverged(
         f"no convergence in {max_iterations} Newton steps (last relative step {update:.1e}, limit {tolerance:.0e}, "
         f"relative residual {_misfit(problem, x, F):.1e}); try a nearer start, a smaller change or another control"
     )
+
+
+def tangent(problem: Equilibrium, solution: Solution) -> Array:
+    """Direction of the path at a solution in which the weighted observables of its control change by 1.
+
+    The factors at hand give it to the size of the last step; what they leave is solved for by them again.
+    """
+    J, row = problem.jacobian(solution.x), problem.gradient(solution.x, solution.control.weights)
+    unit = _last(row.size)
+    t, before = solution.solver(unit), 1.0
+    for _ in range(REFINEMENTS):
+        change = solution.solver(unit - np.append(J @ t, row @ t))
+        t = t + change
+        size = float(np.linalg.norm(change) / np.linalg.norm(t))
+        if size * min(1.0, size / before) < REFINED:
+            return t
+        before = size
+    return problem.bordered_solver(solution.x, row)(unit)
+
+
+REFINEMENTS = 4  # of a tangent by old factors, before they are made anew
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Turn(Valued):
+    """A state at which a weighted sum of observables turns along the path, and how fast its rate changes there."""
+
+    solution: Solution
+    slope: float
+
+
+def turning_point(problem: Equilibrium, start: Array, weights: Array, direction: Array, reach: float) -> Turn:
+    """Solve for the state near a start at which a weighted sum of the observables is stationary along the path.
+
+    Newton's method on the equilibrium and the sum's rate psi = c t, c the sum's gradient, t the tangent of the path.
+
+    Parameters
+    ----------
+    weights : (4,) array
+        Of the observables in the sum.
+    direction : (4,) array
+        The arclength's gradient at a point nearby.
+    reach : float
+        Arclength by which a step may move along the path.
+
+    Raises
+    ------
+    NotConverged
+        If there is no such state so near.
+    """
+    x = start
+    for iteration in range(1, TURNS + 1):
+        here = _Tangent(problem, x, weights, direction)
+        dx = -here.solver(np.append(problem.residual(x), 0.0))  # towards the path, across it
+        near = problem.size(x, dx) < ASTRAY
+        if near:
+            slope, bend = here.changes(here.tangent)
+            step = -(here.rate + here.changes(dx)[0]) / slope if slope else np.inf
+            if not abs(step) <= reach:
+                break
+            dx = dx + step * here.tangent + step**2 / 2 * bend
+        update, damping = problem.size(x, dx), problem.longest_step(x, dx)
+        x = x + damping * dx
+        if near and damping == 1 and update < TURNED:
+            control = Control(direction, 0.0)
+            return Turn(Solution(x, problem.observables(x), iteration, update, control, here.solver), slope)
+    raise NotConverged("the path does not turn here; take a smaller rtol")
+
+
+TURNS = 12  # steps towards a turning point
+ASTRAY = 0.01  # relative size of a step to the path, from where it cannot be told how the path goes
+TURNED = 1e-8  # relative size of the last of them
+LITTLE = 1e-6  # relative size of a change by which a derivative is taken
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class _Tangent(Valued):
+    """Tangent of the path at a state, B t = e, B the Jacobian bordered by the arclength's gradient."""
+
+    problem: Equilibrium
+    x: Array
+    weights: Array
+    direction: Array
+
+    @cached_property
+    def solver(self) -> Solver:
+        return self.problem.bordered_solver(self.x, self.problem.gradient(self.x, self.direction))
+
+    @cached_property
+    def tangent(self) -> Array:
+        return self.solver(_last(self.x.size))
+
+    @cached_property
+    def gradient(self) -> Array:
+        return self.problem.gradient(self.x, self.weights)
+
+    @cached_property
+    def rate(self) -> float:
+        """Of the weighted sum along the path, psi = c t."""
+        return float(self.gradient @ self.tangent)
+
+    def changes(self, v: Array) -> tuple[float, Array]:
+        """Changes of psi and t with a change v of the state: c' t - c B^-1 B' t and -B^-1 B' t, by a difference."""
+        size = self.problem.size(self.x, v)
+        if not size:
+            return 0.0, np.zeros_like(v)
+        h, t = LITTLE / size, self.tangent
+        beside = self.x + h * v
+        bordered = np.append(self.problem.jacobian(beside) @ t, self.problem.gradient(beside, self.direction) @ t)
+        turned = -self.solver(bordered - _last(t.size)) / h
+        own = (self.problem.gradient(beside, self.weights) - self.gradient) @ t / h
+        return float(own + self.gradient @ turned), turned
+
+
+def _last(size: int) -> Array:
+    """Right-hand side of a tangent: no equation is out of balance, and the control changes by 1."""
+    unit = np.zeros(size)
+    unit[-1] = 1.0
+    return unit
 
 
 def _damped(problem: Equilibrium, x: Array, F: Array, dx: Array, control: Control) -> tuple[Array, Array, float]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.contact import APPROACH, LARGEST, LOAD
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LARGEST, LOAD
 from halfspace.equilibrium.newton import Control, Equilibrium, Traceable
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.values import Array, Valued
@@ -30,6 +30,14 @@ class Metric:
     def weights(self) -> Array:
         """Inverse squares of the units; the contact radius, which need not exist, has none."""
         return np.array([self.approach**-2, self.load**-2, self.central_gap**-2, 0.0])
+
+    def distance(self, a: Point, b: Point) -> float:
+        """Length of the straight line between two points."""
+        return float(np.sqrt(self.weights[:3] @ (b.observables - a.observables)[:3] ** 2))
+
+    def along(self, a: Point, b: Point) -> float:
+        """Cosine of the angle between the path at two points."""
+        return float(self.weights @ (a.rates * b.rates))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,12 +123,9 @@ def make_point(
     direction : (4,) array
         Covector on the observables: the arclength's gradient at a point nearby.
     """
-    row = problem.gradient(solution.x, direction)
-    rhs = np.zeros(solution.x.size)
-    rhs[-1] = 1
-    tangent = problem.bordered_solver(solution.x, row)(rhs)
+    tangent = newton.tangent(problem, solution)
     rates = _rates(problem, solution, tangent)
-    length = np.sqrt(metric.weights @ rates**2)
+    length = np.copysign(np.sqrt(metric.weights @ rates**2), direction @ rates)
     return Point(solution.x, solution.observables, tangent / length, rates / length, arclength, solution.iterations)
 
 
@@ -272,18 +277,19 @@ def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
 
     Its least slope between them, in the metric's units, must clear zero by a margin that shrinks with the step, and as
     its square where it is short: so a curve that all but folds is passed, and folds are where its slope changes sign.
+    No more than a part of the larger slope at the ends is asked for, since curves of soft bodies wind in little.
     """
     if max(abs(a.rates[k]), abs(b.rates[k])) < UNFELT:
         return False
-    length = b.arclength - a.arclength
-    unit = np.sqrt(metric.weights[k])
-    change = unit * (b.observables[k] - a.observables[k])
-    return least_slope(unit * a.rates[k], unit * b.rates[k], change / length) < TURNING_MARGIN * length * min(
-        1.0, length / SHORT
-    )
+    length, unit = b.arclength - a.arclength, float(np.sqrt(metric.weights[k]))
+    first, last = unit * float(a.rates[k]), unit * float(b.rates[k])
+    mean = unit * float(b.observables[k] - a.observables[k]) / length
+    margin = TURNING_MARGIN * length * min(1.0, length / SHORT)
+    return least_slope(first, last, mean) < min(margin, NEARLY * max(abs(first), abs(last)))
 
 
 UNFELT = 1e-8  # eps or R dgamma in the arclength 1: surfaces so far apart that an exponential law is all but nothing
+NEARLY = 0.2  # of the larger of two slopes: one that nearly vanishes
 TURNING_MARGIN, SHORT = 0.3, 0.1  # of the step's length; a step below which the cubic errs by far less than that
 
 
@@ -309,14 +315,18 @@ def least_slope(first: float, last: float, mean: float) -> float:
 
 def _turn(a: Point, b: Point, metric: Metric) -> float:
     """Angle between two tangents in radians."""
-    return float(np.arccos(np.clip(metric.weights @ (a.rates * b.rates), -1, 1)))
+    return float(np.arccos(np.clip(metric.along(a, b), -1, 1)))
 
 
 def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -> float:
     """Lengthen the step while Newton's method and the curvature allow, shorten it where they do not."""
     by_turn = steps.turn / max(_turn(points[-2], points[-1], metric), 1e-6)
     by_effort = steps.usual / points[-1].iterations
-    return float(min(step * np.clip(min(by_turn, by_effort), 0.3, 2.0), steps.longest))
+    wide = (1 + points[-1].observables[CENTRAL_GAP]) * np.sqrt(metric.weights[CENTRAL_GAP]) / RATIO
+    return float(min(step * np.clip(min(by_turn, by_effort), 0.3, 2.0), steps.longest * max(1.0, wide)))
+
+
+RATIO = 4.0  # of a gap to the step by which it closes at most, where that is longer than the longest
 
 
 def loaded_to(load: float) -> Callable[[Point], bool]:

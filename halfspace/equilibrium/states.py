@@ -334,5 +334,5 @@ def _spread(segment: Segment, places: Array, metric: Metric) -> Iterator[Point]:
         i = int(np.clip(np.searchsorted(s, place) - 1, 0, s.size - 2))
         a, b = points[i], points[i + 1]
         step = float(place - a.arclength)
-        guess = hermite(problem, a, b, step / (b.arclength - a.arclength))
+        guess = hermite(problem, a, b, step / (b.arclength - a.arclength), metric)
         yield correct(problem, a, step, guess, metric, iterations=20)
