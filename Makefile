@@ -15,7 +15,7 @@ compare: $(VENV)/installed ## compare both solvers at six Tabor parameters
 	$(BIN)/fem-adhesion compare
 
 test: $(VENV)/installed-dev ## run the test suite
-	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder
 
 check: $(VENV)/installed-dev ## check format, style and types
 	$(BIN)/ruff format --check .

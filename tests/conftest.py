@@ -8,7 +8,28 @@ import numpy as np
 import pytest
 from whole_runs import whole_run
 
+# Files that take longest, begun first, so that no worker is left with one of them when the others are done.
+LONGEST = (
+    "test_make.py",
+    "test_report.py",
+    "test_finite_strain_scene.py",
+    "test_crosscheck.py",
+    "test_fem_monolithic.py",
+    "test_honesty.py",
+    "test_states.py",
+    "test_compare_bodies.py",
+    "test_speed.py",
+    "test_curve_pictures.py",
+    "test_layers.py",
+    "test_curve_figure.py",
+    "test_readme.py",
+)
 ORIGINAL, RELATIVE, ABSOLUTE = pytest.approx, 1e-6, 1e-12
+
+
+def pytest_collection_modifyitems(items):
+    """Begin with the files that take longest."""
+    items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
 
 
 @pytest.fixture(autouse=True)

@@ -10,6 +10,7 @@ from pathlib import Path
 import honesty
 import pytest
 import side_by_side
+from conftest import LONGEST
 from whole_runs import BIN, ROOT, tables_in
 
 MAKEFILE = (ROOT / "Makefile").read_text()
@@ -75,7 +76,13 @@ def test_test_runs_all_tests_on_all_processors(made):
     """A rehearsal: the real one is what runs this."""
     run = made("test")
     assert run.code == 0
-    assert run.out.split() == [f"{BIN}/python", "-m", "pytest", "--numprocesses", "auto", "--dist", "loadfile"]
+    program, *arguments = run.out.split()
+    assert program == f"{BIN}/python"
+    assert arguments == ["-m", "pytest", "--numprocesses", "auto", "--dist", "loadfile", "--no-loadscope-reorder"]
+
+
+def test_the_files_that_take_longest_are_there():
+    assert [name for name in LONGEST if not (ROOT / "tests" / name).exists()] == []
 
 
 def test_bench_times_every_solver_beside_the_yardstick(made):
