@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from typing import Any
 
-from scipy.optimize import brentq
-
 from halfspace.errors import NotConverged
 
+EPSILON = sys.float_info.epsilon
 MOST_ITERATIONS = 100  # of Brent's method, which halves its interval at worst every third
 
 
@@ -25,7 +25,7 @@ def root(function: Callable[[float], float], first: float, last: float, what: st
     what : str
         What is sought and what to do if it is not there, for the error message: "the contact edge; refine the grid".
     **tolerances
-        ``xtol`` and ``rtol`` of `scipy.optimize.brentq`.
+        ``xtol``, absolute, and ``rtol``, of the place: the root is known to their sum.
 
     Raises
     ------
@@ -46,7 +46,55 @@ def root(function: Callable[[float], float], first: float, last: float, what: st
             f"{sought} is not between {first:.6g} and {last:.6g}, where the signs are the same ({at[0]:.2g} and "
             f"{at[1]:.2g}); {remedy}"
         )
-    found, how = brentq(number, first, last, maxiter=MOST_ITERATIONS, full_output=True, disp=False, **tolerances)
-    if not how.converged:
-        raise NotConverged(f"{sought} is not pinned down in {MOST_ITERATIONS} steps, limit: xtol; {remedy}")
-    return float(found)
+    return _brent(number, (first, last), at, what=sought, remedy=remedy, **tolerances)
+
+
+def _brent(
+    function: Callable[[float], float],
+    places: tuple[float, float],
+    values: tuple[float, float],
+    *,
+    what: str,
+    remedy: str,
+    xtol: float = 2e-12,
+    rtol: float = 4 * EPSILON,
+) -> float:
+    """Brent's method (Algorithms for Minimization Without Derivatives, 1973, chapter 4) between two changed signs.
+
+    Of three places b is the best, a the one before it and c beyond the root. SciPy has it in a part that takes longer
+    to load than a curve to trace.
+    """
+    (a, b), (fa, fb) = places, values
+    c, fc = a, fa
+    step = before = b - a
+    for _ in range(MOST_ITERATIONS):
+        if (fb > 0) == (fc > 0):
+            c, fc, step, before = a, fa, b - a, b - a
+        if abs(fc) < abs(fb):
+            a, b, c, fa, fb, fc = b, c, b, fb, fc, fb
+        half, tolerance = (c - b) / 2, (xtol + rtol * abs(b)) / 2
+        if abs(half) <= tolerance or fb == 0:
+            return b
+        step, before = _interpolated(a, b, c, fa, fb, fc, before, step, tolerance)
+        a, fa = b, fb
+        b += step if abs(step) > tolerance else math.copysign(tolerance, half)
+        fb = function(b)
+    raise NotConverged(f"{what} is not pinned down in {MOST_ITERATIONS} steps, limit: xtol; {remedy}")
+
+
+def _interpolated(
+    a: float, b: float, c: float, fa: float, fb: float, fc: float, before: float, step: float, tolerance: float
+) -> tuple[float, float]:
+    """Next step and the one before: by the inverse parabola or the secant if they shrink enough, else by halving."""
+    half = (c - b) / 2
+    if abs(before) < tolerance or abs(fa) <= abs(fb):
+        return half, half
+    s, q, r = fb / fa, fa / fc, fb / fc
+    if a == c:
+        up, down = 2 * half * s, 1 - s
+    else:
+        up, down = s * (2 * half * q * (q - r) - (b - a) * (r - 1)), (q - 1) * (r - 1) * (s - 1)
+    up, down = abs(up), -down if up > 0 else down
+    if 2 * up < min(3 * half * down - abs(tolerance * down), abs(before * down)):
+        return up / down, step
+    return half, half

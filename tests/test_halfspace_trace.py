@@ -231,6 +231,20 @@ def test_the_half_space_needs_only_numpy_and_scipy():
     )
 
 
+@pytest.mark.parametrize(
+    ("code", "unneeded"),
+    [
+        ("", ("scipy",)),
+        ("halfspace.trace(1.0)", ("scipy.optimize", "scipy.interpolate", "scipy.sparse", "scipy.spatial")),
+    ],
+    ids=["import", "trace"],
+)
+def test_what_takes_long_to_load_is_not_loaded_unless_it_is_needed(code, unneeded):
+    """By the modules that are there afterwards, not by the clock."""
+    code = f"import sys, halfspace; {code or None}; print([m for m in {unneeded} if m in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
 @pytest.mark.parametrize("tabor", [0.6973, 0.698])
 def test_a_pair_of_folds_between_two_points_is_found_though_their_tangents_do_not_tell(tabor):
     segment = trace_charts(half_space_charts(Scales(tabor), resolution_for(Scales(tabor), 1e-6)))[0]

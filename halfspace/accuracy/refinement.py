@@ -37,17 +37,20 @@ from halfspace.equilibrium.events import (
     Located,
     Tolerance,
     estimate_event,
+    hermite,
     steepest,
     steepest_from,
 )
-from halfspace.equilibrium.path import Segment
+from halfspace.equilibrium.path import Segment, correct
 from halfspace.equilibrium.states import Ways
 from halfspace.errors import InputError, NotConverged
+from halfspace.scales import BRADLEY
 from halfspace.values import Estimate, Valued
 
 MOST_RUNGS = 4  # above the lowest
 FOLDS = ("jump_on", "jump_off")
 IN_DOUBT = 0.02  # eps/(R dgamma), of the least -d(alpha*)/dW between the points: the Tabor parameter is 0.65 to 0.74
+# on a paraboloid, and as much less as the tensions of another profile are larger
 FLAT = 1e-9  # eps/(R dgamma), of it: what the last of the parabolas and rounding leave
 
 Charts = Sequence[Chart]
@@ -224,8 +227,13 @@ def _ways(below: Stage, higher: Rung) -> Ways:
 def _folds_in_doubt(segments: Sequence[Segment]) -> State:
     """Where the curve falls most steeply, if two folds there are about to merge or to be born; nothing otherwise."""
     metric = metric_for(segments[0].problem)
-    least, point, problem = min(((*steepest(s.points), s.problem) for s in segments), key=lambda one: one[0])
-    return {"steepest": steepest_from(problem, point, metric)} if abs(least) < IN_DOUBT else {}
+    parts = [(*steepest(s.points), s.problem) for s in segments if len(s.points) > 1]
+    least, part, a, b, problem = min(parts, key=lambda one: one[0])
+    if abs(least) >= IN_DOUBT * BRADLEY / metric.load:
+        return {}
+    step = part * (b.arclength - a.arclength)
+    point = correct(problem, a, step, hermite(problem, a, b, part, metric), metric, iterations=20) if step else a
+    return {"steepest": steepest_from(problem, point, metric)}
 
 
 def _margin(chains: Sequence[Sequence[State]], remaining: float) -> Estimate | None:

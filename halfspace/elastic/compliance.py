@@ -149,12 +149,9 @@ class ElasticOperator(Valued):
 
     def values_beyond(self, radii: Array, values: Array) -> Array:
         """Interpolate nodal values (q,) that die out at infinity at radii (n,) past the extent, in t = extent/r."""
-        from scipy.interpolate import PchipInterpolator  # it takes as long to load as all else, and few need it
-
         t = self.extent / self.radii[self.beyond][::-1]
-        return np.asarray(
-            PchipInterpolator(np.append(0.0, t), np.append(0.0, values[self.beyond][::-1]))(self.extent / radii)
-        )
+        known = np.append(0.0, values[self.beyond][::-1])
+        return np.asarray(np.interp(self.extent / radii, np.append(0.0, t), known))
 
     @cached_property
     def axis_row(self) -> Array:

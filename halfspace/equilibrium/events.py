@@ -16,7 +16,7 @@ import numpy as np
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.newton import Control, Traceable
-from halfspace.equilibrium.path import NEARLY, UNFELT, Metric, Point, correct, least_slope, make_point
+from halfspace.equilibrium.path import NEARLY, UNFELT, Metric, Point, correct, least_slope, make_point, predict
 from halfspace.errors import NotConverged
 from halfspace.roots import root
 from halfspace.values import Array, Estimate, Valued
@@ -366,7 +366,7 @@ def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) 
     if abs(step) < ARCLENGTH_TOLERANCE:
         return Located(condition, problem, nearby, event.slope)
     for _ in range(TRIALS):
-        beyond = correct(problem, nearby, step, nearby.x + step * nearby.tangent, metric, iterations=20)
+        beyond = correct(problem, nearby, step, predict(problem, nearby, step), metric, iterations=20)
         left = condition.of(beyond) / condition.of(nearby)
         if left <= 0:
             return bracketed(problem, nearby, beyond, condition, metric)
@@ -381,21 +381,22 @@ def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) 
 TRIALS, PAST, LONGER = 4, 1.5, 3.0  # steps to beyond an event: how many, how far past it, how many times the last
 
 
-def steepest(points: Sequence[Point]) -> tuple[float, Point]:
-    """Least compliance between the points of a curve by cubics through them, and the nearest point."""
-    found = [(_least_compliance(a, b), min(a, b, key=STEEPEST.of)) for a, b in pairwise(points)]
-    return min(found, key=lambda one: one[0], default=(np.inf, points[0]))
+def steepest(points: Sequence[Point]) -> tuple[float, float, Point, Point]:
+    """Least compliance between the points of a curve by the cubics: its value, the part of the way, both points."""
+    return min(((*_least_compliance(a, b), a, b) for a, b in pairwise(points)), key=lambda one: one[0])
 
 
-def _least_compliance(a: Point, b: Point) -> float:
-    """Least compliance between two points, by the cubics of approach and load."""
-    t, h = np.linspace(0, 1, 17)[:, None], b.arclength - a.arclength
+def _least_compliance(a: Point, b: Point) -> tuple[float, float]:
+    """Least compliance between two points, by the cubics of approach and load, and the part of the way to it."""
+    t, h = np.linspace(0, 1, 17), b.arclength - a.arclength
     slopes = (
-        (1 - 4 * t + 3 * t**2) * a.rates
-        + (3 * t**2 - 2 * t) * b.rates
-        + 6 * t * (1 - t) * (b.observables - a.observables) / h
+        np.outer(1 - 4 * t + 3 * t**2, a.rates)
+        + np.outer(3 * t**2 - 2 * t, b.rates)
+        + np.outer(6 * t * (1 - t), (b.observables - a.observables) / h)
     )
-    return float(compliance(slopes[:, APPROACH], slopes[:, LOAD]).min())
+    compliances = compliance(slopes[:, APPROACH], slopes[:, LOAD])
+    least = int(np.argmin(compliances))
+    return float(compliances[least]), float(t[least])
 
 
 def steepest_from(problem: Traceable, point: Point, metric: Metric) -> Located:
@@ -407,15 +408,13 @@ def steepest_from(problem: Traceable, point: Point, metric: Metric) -> Located:
         If there is no such place near.
     """
     for width in WIDTHS:
-        sides = [
-            correct(problem, point, h, point.x + h * point.tangent, metric, iterations=20) for h in (-width, width)
-        ]
+        sides = [correct(problem, point, h, predict(problem, point, h), metric, iterations=20) for h in (-width, width)]
         before, here, after = (STEEPEST.of(p) for p in (sides[0], point, sides[1]))
         bend = before - 2 * here + after
         if not (np.isfinite(bend) and bend > 0):
             raise NotConverged("the curve has no steepest fall here; take a smaller rtol")
         step = float(np.clip((before - after) / (2 * bend), -3, 3)) * width
-        point = correct(problem, point, step, point.x + step * point.tangent, metric, iterations=20)
+        point = correct(problem, point, step, predict(problem, point, step), metric, iterations=20)
     return Located(STEEPEST, problem, point, 1.0)
 
 

@@ -15,6 +15,7 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from halfspace.errors import NotConverged
 from halfspace.profiles.profile import Surface
@@ -32,50 +33,53 @@ def _quarter() -> tuple[Array, Array]:
     return np.sin(np.pi / 2 * t**3), np.pi / 2 * 3 * t**2 * w / 2
 
 
-def hertz_approach(surface: Surface, radius: float) -> float:
-    """Approach at a contact radius without adhesion."""
+def hertz_approach(surface: Surface, radius: ArrayLike) -> Array:
+    """Approach at contact radii without adhesion."""
     sine, weight = _quarter()
-    return float(radius * (weight @ surface.slope(radius * sine)))
+    a = np.asarray(radius, float)
+    return np.asarray(a * (surface.slope(a[..., None] * sine) @ weight))
 
 
-def hertz_load(surface: Surface, radius: float) -> float:
-    """Load at a contact radius without adhesion."""
+def hertz_load(surface: Surface, radius: ArrayLike) -> Array:
+    """Load at contact radii without adhesion."""
     sine, weight = _quarter()
-    return float(2 * radius**2 * (weight @ (sine**2 * surface.slope(radius * sine))))
+    a = np.asarray(radius, float)
+    return np.asarray(2 * a**2 * (surface.slope(a[..., None] * sine) @ (weight * sine**2)))
 
 
-def jkr_approach(surface: Surface, radius: float) -> float:
-    """JKR's approach at a contact radius."""
-    return hertz_approach(surface, radius) - float(np.sqrt(2 * np.pi * radius))
+def jkr_approach(surface: Surface, radius: ArrayLike) -> Array:
+    """JKR's approach at contact radii."""
+    return hertz_approach(surface, radius) - np.sqrt(2 * np.pi * np.asarray(radius))
 
 
-def jkr_load(surface: Surface, radius: float) -> float:
-    """JKR's load at a contact radius."""
-    return hertz_load(surface, radius) - float(np.sqrt(8 * np.pi * radius**3))
+def jkr_load(surface: Surface, radius: ArrayLike) -> Array:
+    """JKR's load at contact radii."""
+    return hertz_load(surface, radius) - np.sqrt(8 * np.pi * np.asarray(radius) ** 3)
 
 
 def jkr_fold(surface: Surface) -> float:
     """Least approach by JKR's theory, to a per cent: where contact is lost under fixed grips."""
-    return min(jkr_approach(surface, a) for a in _radii(surface))
+    return float(jkr_approach(surface, _radii(surface)).min())
 
 
 def jkr_least_load(surface: Surface) -> float:
     """Least load by JKR's theory, to a per cent: where contact is lost under dead load, -3 pi/2 on a paraboloid."""
-    return min(jkr_load(surface, a) for a in _radii(surface))
+    return float(jkr_load(surface, _radii(surface)).min())
 
 
-def _radii(surface: Surface) -> list[float]:
-    return [a for a in np.geomspace(1e-4, 1e4, 400).tolist() if a < surface.end]
+def _radii(surface: Surface) -> Array:
+    a = np.geomspace(1e-4, 1e4, 400)
+    return a[a < surface.end]
 
 
 def hertz_radius(surface: Surface, load: float) -> float:
     """Contact radius under a load without adhesion, or the end of the surface if it is wider."""
-    return _widest(lambda a: hertz_load(surface, a), surface, load)
+    return _widest(lambda a: float(hertz_load(surface, a)), surface, load)
 
 
 def jkr_radius(surface: Surface, load: float) -> float:
     """Contact radius under a load of zero or more by JKR's theory, or the end of the surface if it is wider."""
-    return _widest(lambda a: jkr_load(surface, a), surface, load)
+    return _widest(lambda a: float(jkr_load(surface, a)), surface, load)
 
 
 def _widest(load_at: Callable[[float], float], surface: Surface, load: float) -> float:
