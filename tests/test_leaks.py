@@ -12,6 +12,7 @@ from scipy import sparse
 
 import halfspace
 from fem_adhesion.elasticity.condensation import Factorised
+from fem_adhesion.elasticity.elimination import factor
 from fem_adhesion.finite_strain.solve import _inverse
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
@@ -122,6 +123,8 @@ def test_singular_matrices_are_a_solvers_end():
         _inverse(np.zeros((1, 2, 2)))
     with pytest.raises(NotConverged, match="stiffness is singular; hold the body"):
         Factorised(sparse.csc_array((3, 3))).solve(np.ones(3))
+    with pytest.raises(NotConverged, match="stiffness is singular; hold the body"):
+        factor(np.zeros((2, 2)))
 
 
 @given(

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 from scipy import sparse
+from scipy.linalg.blas import dtrsm
 from scipy.sparse.linalg import splu
 
 from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
+from fem_adhesion.elasticity.elimination import SINGULAR, condensed_to, factor, reduced_cells
 from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load
 from fem_adhesion.elasticity.space import CellStiffness, Space, cell_stiffness, ring_measure, scatter
 from halfspace.elastic.compliance import ElasticOperator
@@ -24,24 +26,32 @@ class Skeleton(Valued):
 
     Attributes
     ----------
-    stiffness : (N, N) sparse array
-        Numbered as all N unknowns; rows and columns of interior unknowns are empty.
-    inner, outer : (n_i,) and (n_o,) int arrays
-        Positions of the interior and of the shared unknowns among those of a cell.
-    recovery : (cells, n_i, n_o) array
-        Interior unknowns of each cell from its shared ones.
+    cells : (cells, n_o, n_o) array
+        Stiffness of each cell, without its interior unknowns.
+    outer, inner : (n_o, cells) and (n_i, cells) int array
+        Numbers of its shared and of its interior unknowns.
+    K_ii, K_io : (cells, n_i, n_i) and (cells, n_i, n_o) array
+        Parts of its stiffness with the interior unknowns.
+    size : int
+        Number N of all unknowns.
     """
 
-    stiffness: sparse.csc_array
-    inner: Index
+    cells: Array
     outer: Index
-    recovery: Array
+    inner: Index
+    K_ii: Array
+    K_io: Array
+    size: int
 
-    def recovered(self, u: Array, space: Space) -> Array:
+    @cached_property
+    def stiffness(self) -> sparse.csc_array:
+        """Of the whole body, numbered as all N unknowns; rows and columns of interior unknowns are empty."""
+        return scatter(self.cells, self.outer, self.size)
+
+    def recovered(self, u: Array) -> Array:
         """Return the displacement u, (N,), with its interior unknowns filled in."""
         full = u.copy()
-        outer, inner = space.cell_dofs[self.outer], space.cell_dofs[self.inner]
-        full[inner.T] = np.einsum("cio,oc->ci", self.recovery, u[outer])
+        full[self.inner.T] = -np.linalg.solve(self.K_ii, self.K_io @ u[self.outer].T[:, :, None])[:, :, 0]
         return full
 
 
@@ -93,7 +103,7 @@ class Factorised(Valued):
         try:
             return splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
         except RuntimeError as error:  # SuperLU's way of saying so
-            raise NotConverged("the stiffness is singular; hold the body, and mesh it without empty cells") from error
+            raise NotConverged(SINGULAR) from error
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -114,8 +124,6 @@ class CondensedBody(Valued):
         Stiffness of its cells.
     skeleton, exterior, surface
         The parts it was made of.
-    factors : Factorised
-        The (n, n) reduced stiffness.
     """
 
     operator: ElasticOperator
@@ -125,7 +133,11 @@ class CondensedBody(Valued):
     skeleton: Skeleton
     exterior: Exterior
     surface: Surface
-    factors: Factorised
+
+    @cached_property
+    def factors(self) -> Factorised:
+        """The (n, n) reduced stiffness, factorised for fields inside."""
+        return factorise(self.skeleton, self.exterior)
 
     @property
     def unknowns(self) -> int:
@@ -154,7 +166,7 @@ class CondensedBody(Valued):
         """Return all (N,) displacement unknowns, in beta, interior ones included."""
         u = self.exterior.reduction @ self.reduced_displacement(pressure)
         u += self.exterior.rigid_compliance * (self.operator.weights @ pressure) * self.translation
-        return self.skeleton.recovered(u, self.space)
+        return self.skeleton.recovered(u)
 
     def far_reaction(self, pressure: Array) -> float:
         """Return the upward force with which the exterior holds the far boundary, in E* beta^2: equal to the load."""
@@ -217,9 +229,8 @@ def condense(
     surface = contact_surface(space, points, traction)
     exterior = far_field(space, poisson)
     skeleton = eliminate_interiors(space, stiffness(space, poisson))
-    factors = factorise(skeleton, exterior)
-    operator = surface_operator(surface, exterior, factors)
-    return CondensedBody(operator, space, poisson, stiffness, skeleton, exterior, surface, factors)
+    operator = surface_operator(surface, exterior, flexibility(space, skeleton, exterior, surface.unknowns))
+    return CondensedBody(operator, space, poisson, stiffness, skeleton, exterior, surface)
 
 
 def contact_surface(space: Space, points: int, traction: str = "projected") -> Surface:
@@ -238,14 +249,13 @@ def contact_surface(space: Space, points: int, traction: str = "projected") -> S
 
 
 def eliminate_interiors(space: Space, K: Array) -> Skeleton:
-    """Eliminate the interior unknowns from the (cells, 2 n, 2 n) cell matrices and add up what is left."""
+    """Eliminate the interior unknowns from the (cells, 2 n, 2 n) cell matrices."""
     n, shared = len(K[0]) // 2, len(K[0]) // 2 - space.element.interior_dofs
     functions = np.arange(2 * n).reshape(2, n)
     outer, inner = functions[:, :shared].ravel(), functions[:, shared:].ravel()
-    K_io = K[:, inner[:, None], outer]
-    recovery = np.negative(np.linalg.solve(K[:, inner[:, None], inner], K_io), dtype=np.float64)
-    K_oo = K[:, outer[:, None], outer] + K_io.transpose(0, 2, 1) @ recovery
-    return Skeleton(scatter(K_oo, space.cell_dofs[outer], space.unknowns), inner, outer, recovery)
+    K_ii, K_io = K[:, inner[:, None], inner], K[:, inner[:, None], outer]
+    K_oo = K[:, outer[:, None], outer] - K_io.transpose(0, 2, 1) @ np.linalg.solve(K_ii, K_io)
+    return Skeleton(K_oo, space.cell_dofs[outer], space.cell_dofs[inner], K_ii, K_io, space.unknowns)
 
 
 def factorise(skeleton: Skeleton, exterior: Exterior) -> Factorised:
@@ -254,10 +264,24 @@ def factorise(skeleton: Skeleton, exterior: Exterior) -> Factorised:
     return Factorised(sparse.csc_array(T.T @ skeleton.stiffness @ T + exterior.stiffness))
 
 
-def surface_operator(surface: Surface, exterior: Exterior, factors: Any) -> ElasticOperator:
-    """Return the compliance of the surface, from one right-hand side per vertical unknown on it."""
-    T = exterior.reduction.tocsr()[surface.unknowns]
-    flexibility = T @ factors.solve(T.T.toarray())
+def flexibility(space: Space, skeleton: Skeleton, exterior: Exterior, surface: Index) -> Array:
+    """Displacements (m, m) of the m unknowns on the surface under unit forces on each of them.
+
+    Unknowns that the exterior couples, or that move more than one of the body's, are kept to the last with them.
+    """
+    T, S = exterior.reduction, exterior.stiffness
+    rows = T.tocsr()[surface]
+    cells, unknowns = reduced_cells(skeleton.cells, skeleton.outer, T)
+    kept = np.diff(S.indptr) > 0
+    kept[rows.indices] = True
+    numbers, stiffness = condensed_to(space.mesh, cells, unknowns, kept)
+    lower = factor(stiffness + S[numbers][:, numbers].toarray())
+    half = dtrsm(1.0, lower, rows[:, numbers].T.toarray(), lower=1)
+    return np.asarray(half.T @ half)
+
+
+def surface_operator(surface: Surface, exterior: Exterior, flexibility: Array) -> ElasticOperator:
+    """Return the compliance of the surface, from the displacements of its vertical unknowns under unit forces."""
     N = surface.values
     C = (N @ (N @ flexibility).T).T * surface.weights
     C -= exterior.rigid_compliance * surface.weights

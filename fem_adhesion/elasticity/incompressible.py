@@ -17,7 +17,7 @@ from scipy.sparse.linalg import splu
 from skfem import Dofs
 
 from fem_adhesion.elasticity.condensation import contact_surface, surface_operator
-from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load, with_interiors
+from fem_adhesion.elasticity.far_field import FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import (
     CellStiffness,
     Space,
@@ -119,8 +119,9 @@ def taylor_hood(
     saddle = sparse.block_array([[A, (coupling @ T).T], [coupling @ T, -volume / lam]], format="csc")
     factors = splu(saddle, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     surface = contact_surface(space, space.degree + 2 if points is None else points)
-    padded = sparse.hstack([T, sparse.csc_array((T.shape[0], volume.shape[0]))], format="csc")
-    return surface_operator(surface, Exterior(padded, exterior.stiffness, exterior.rigid_compliance), factors)
+    rows = T.tocsr()[surface.unknowns]
+    forces = sparse.vstack([rows.T, sparse.csr_array((volume.shape[0], len(surface.unknowns)))]).toarray()
+    return surface_operator(surface, exterior, rows @ factors.solve(forces)[: T.shape[1]])
 
 
 def _mixed_matrices(
