@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -40,6 +40,7 @@ FAR_FIELDS: Mapping[FarFieldName, FarField] = {
 }
 
 
+TRIANGLE, quadrilateral = ElementTriP2(), cache(ElementQuadP)  # one of each, lest they be evaluated for every mesh
 CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated to some 1e-4
 
 
@@ -167,7 +168,7 @@ def _made(scene: Scene, how: Discretisation, lines: Array) -> Made:
 def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:
     """Condense a body; quadratic triangles, which have no projected dilatation, lose accuracy from poisson 0.45 on."""
     triangles, poisson = isinstance(mesh, MeshTri), body.material.poisson
-    space = Space(mesh, ElementTriP2() if triangles else ElementQuadP(how.degree))
+    space = Space(mesh, TRIANGLE if triangles else quadrilateral(how.degree))
     stiffness = stiffness_for(0.0 if triangles else poisson)
     held = FAR_FIELDS[body.held]
     return condense(space, poisson, far_field=held, stiffness=stiffness, traction=body.material.area)

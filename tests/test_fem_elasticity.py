@@ -19,7 +19,7 @@ from skfem import (
 )
 from skfem.helpers import ddot, div, sym_grad
 
-from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
+from fem_adhesion.elasticity.boundaries import boundary_basis, trace_on
 from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress, trace_projection
 from fem_adhesion.elasticity.space import (
     Space,
@@ -39,6 +39,8 @@ from fem_adhesion.mesh.block import (
     tensor_grid,
     with_named_boundaries,
 )
+from fem_adhesion.mesh.held_sphere import held_sphere
+from fem_adhesion.mesh.refinement import refined
 
 NU = 0.3
 
@@ -228,7 +230,7 @@ def solve_manufactured(space):
     f = loads(space, cells, body_force(*cells.global_coordinates())) + loads(space, surface, np.array([rz, zz]))
     u = np.zeros(space.unknowns)
     far = space.components[:, space.boundary_functions("far")]
-    u[far] = trace_projection(space, "far", exact_displacement)
+    u[far] = trace_projection(trace_on(space, "far", space.degree + 6), exact_displacement)
     axis = space.components[0, space.boundary_functions("axis")]
     u[axis] = 0.0
     free = np.setdiff1d(np.arange(space.unknowns), np.union1d(far, axis))
@@ -321,8 +323,28 @@ def test_boussinesq_hemisphere_carries_the_load_and_the_surface_none():
 @pytest.mark.parametrize("element", [ElementTriP3(), ElementTriP1()])
 def test_trace_projection_reproduces_linear_fields(element):
     space = Space(quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), element)
-    coefficients = trace_projection(space, "far", lambda r, z: np.array([2.0 * r - z, 1.0 + z]))
-    basis = boundary_basis(space, "far", 3)
-    r, z = (x.ravel() for x in basis.global_coordinates())
-    values = trace_matrix(basis, space.boundary_functions("far")) @ coefficients.T
+    coefficients = trace_projection(trace_on(space, "far", 9), lambda r, z: np.array([2.0 * r - z, 1.0 + z]))
+    trace = trace_on(space, "far", 3)
+    r, z = trace.places.reshape(2, -1)
+    values = trace.values @ coefficients.T
     np.testing.assert_allclose(values.T, [2.0 * r - z, 1.0 + z], atol=1e-13)
+
+
+@pytest.mark.parametrize("name", ["contact", "far"])
+@pytest.mark.parametrize(
+    "space",
+    [
+        Space(quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), ElementTriP3()),
+        Space(refined(quarter_disc(5.0, graded_size(0.7, 1.0, 0.5))), ElementTriP2()),
+        Space(block_grid(0.5, 1.5, 10.0), ElementQuadP(4)),
+        Space(held_sphere(3.0, np.linspace(0, 5.1, 5), np.linspace(0, 2.7, 4), 30.0), ElementQuadP(5)),
+    ],
+    ids=["triangles", "curved triangles", "rectangles", "held sphere"],
+)
+def test_traces_are_those_of_scikit_fem(space, name):
+    basis, trace = boundary_basis(space, name, 4), trace_on(space, name, 4)
+    np.testing.assert_allclose(trace.places, basis.global_coordinates(), atol=1e-12)
+    np.testing.assert_allclose(trace.normals, basis.normals, atol=1e-9)
+    np.testing.assert_allclose(trace.lengths, basis.dx, rtol=1e-10)
+    u = np.sin(np.arange(1.0, basis.N + 1))
+    np.testing.assert_allclose(trace.values @ u[trace.functions], np.ravel(basis.interpolate(u)), atol=1e-10)

@@ -9,6 +9,7 @@ from skfem import CellBasis, ElementQuad2, ElementQuadP
 import fem_adhesion
 from fem_adhesion import HeldSphere, Hemisphere, NeoHookean
 from fem_adhesion.elasticity import stress
+from fem_adhesion.elasticity.boundaries import trace_on
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress, point_load, trace_projection
 from fem_adhesion.elasticity.incompressible import projected_stiffness
@@ -27,7 +28,8 @@ def buried(space, poisson, stiffness=cell_stiffness):
     u, held = np.zeros(space.unknowns), np.zeros(space.unknowns, bool)
     for name in ("contact", "far"):
         unknowns = space.components[:, space.boundary_functions(name)]
-        u[unknowns] = trace_projection(space, name, lambda r, z: boussinesq_displacement(r, z - 1, poisson))
+        trace = trace_on(space, name, space.degree + 6)
+        u[unknowns] = trace_projection(trace, lambda r, z: boussinesq_displacement(r, z - 1, poisson))
         held[unknowns] = True
     axis = space.components[0, space.boundary_functions("axis")]
     u[axis], held[axis] = 0, True

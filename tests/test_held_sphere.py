@@ -7,7 +7,7 @@ import pytest
 from scipy import sparse
 from skfem import Basis, ElementQuadP, ElementTriP2
 
-from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
+from fem_adhesion.elasticity.boundaries import trace_on
 from fem_adhesion.elasticity.condensation import condense, contact_surface, eliminate_interiors, factorise
 from fem_adhesion.elasticity.far_field import Exterior, clamped, sliding
 from fem_adhesion.elasticity.space import Space, cell_stiffness, cell_strains, ring_measure
@@ -55,8 +55,8 @@ def held(mesh, degree, grip=clamped):
 
 
 def surface_area(space, name):
-    basis = boundary_basis(space, name, 10)
-    return np.sum(ring_measure(basis.global_coordinates()[0]) * basis.dx)
+    trace = trace_on(space, name, 10)
+    return np.sum(ring_measure(trace.places[0]) * trace.lengths)
 
 
 @pytest.mark.parametrize("make", [sphere, coarse_sphere])
@@ -157,10 +157,10 @@ def between_two_walls(degree):
     load = surface.weights @ gaussian(surface.radii)
     forces = np.zeros(space.unknowns)
     forces[surface.unknowns] -= surface.values.T @ (surface.weights * gaussian(surface.radii))
-    far, functions = boundary_basis(space, "far", degree + 4), space.boundary_functions("far")
-    r, normal = np.asarray(far.global_coordinates())[0], np.asarray(far.normals)[1]
-    upwards = (-normal * gaussian(r) * ring_measure(r) * far.dx).ravel()
-    forces[space.components[1, functions]] += trace_matrix(far, functions).T @ upwards
+    far = trace_on(space, "far", degree + 4)
+    r, normal = far.places[0], far.normals[1]
+    upwards = (-normal * gaussian(r) * ring_measure(r) * far.lengths).ravel()
+    forces[space.components[1, far.functions]] += far.values.T @ upwards
     u = T @ factors.solve(T.T @ forces)
     pole = np.argmin(np.hypot(*space.mesh.p))
     return -u[space.components[1, space.scalar_dofs.nodal_dofs[0, pole]]] / load

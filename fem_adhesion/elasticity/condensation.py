@@ -11,7 +11,7 @@ from scipy import sparse
 from scipy.linalg.blas import dtrsm
 from scipy.sparse.linalg import splu
 
-from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
+from fem_adhesion.elasticity.boundaries import trace_on
 from fem_adhesion.elasticity.elimination import SINGULAR, condensed_to, factor, reduced_cells
 from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load
 from fem_adhesion.elasticity.space import CellStiffness, Space, cell_stiffness, ring_measure, scatter
@@ -235,17 +235,15 @@ def condense(
 
 def contact_surface(space: Space, points: int, traction: str = "projected") -> Surface:
     """Return the Gauss points of the contact facets, sorted by radius, with the weights of the area asked for."""
-    basis = boundary_basis(space, "contact", points)
-    functions = space.boundary_functions("contact")
-    radii, heights = (x.ravel() for x in np.asarray(basis.global_coordinates()))
+    trace = trace_on(space, "contact", points)
+    radii, heights = trace.places.reshape(2, -1)
     order = np.argsort(radii)
-    n_r, n_z = np.asarray(basis.normals)
-    lengths = basis.dx if traction == "surface" else n_z * basis.dx
+    n_r, n_z = trace.normals
+    lengths = trace.lengths if traction == "surface" else n_z * trace.lengths
     weights = (ring_measure(radii) * lengths.ravel())[order]
     ends = space.mesh.p[0, np.unique(space.mesh.facets[:, space.mesh.boundaries["contact"]])]
-    values = trace_matrix(basis, functions)[order]
-    vertical, slopes = space.components[1, functions], (n_r / n_z).ravel()[order]
-    return Surface(radii[order], weights, vertical, values, np.sort(ends), -heights[order], slopes)
+    vertical, slopes = space.components[1, trace.functions], (n_r / n_z).ravel()[order]
+    return Surface(radii[order], weights, vertical, trace.values[order], np.sort(ends), -heights[order], slopes)
 
 
 def eliminate_interiors(space: Space, K: Array) -> Skeleton:

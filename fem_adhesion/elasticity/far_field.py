@@ -15,7 +15,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from fem_adhesion.elasticity.boundaries import boundary_basis, trace_matrix
+from fem_adhesion.elasticity.boundaries import Trace, trace_on
 from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure
 from halfspace.values import Array, Index, Valued
 
@@ -81,25 +81,24 @@ def point_load(space: Space, poisson: float) -> Exterior:
     u_B, and the matrix stays symmetric. c tends to the load W as L^-2; the deflection near a pressure that ends
     within the block is in error by O(L^-5), both measured in tests/test_fem_condensed.py.
     """
-    unknowns = space.components[:, space.boundary_functions("far")].ravel()
-    u_B = trace_projection(space, "far", lambda r, z: boussinesq_displacement(r, z, poisson)).ravel()
+    far = trace_on(space, "far", space.degree + TRACE_POINTS)
+    unknowns = space.components[:, far.functions].ravel()
+    u_B = trace_projection(far, lambda r, z: boussinesq_displacement(r, z, poisson)).ravel()
     u_B[np.isin(unknowns, _axis_unknowns(space))] = 0.0
 
     column = sparse.csc_array((u_B, (unknowns, 0 * unknowns)), shape=(space.unknowns, 1))
     T = sparse.csc_array(sparse.hstack([_selection(space, dropped=unknowns), column]))
     n = T.shape[1]
-    return Exterior(T, sparse.csc_array(([exterior_stiffness(space, poisson)], ([n - 1], [n - 1])), shape=(n, n)))
+    return Exterior(T, sparse.csc_array(([exterior_stiffness(far, poisson)], ([n - 1], [n - 1])), shape=(n, n)))
 
 
-def exterior_stiffness(space: Space, poisson: float) -> float:
+def exterior_stiffness(far: Trace, poisson: float) -> float:
     """Return k_B = -oint u_B . sigma_B n dA over the far boundary, n pointing out of the block, in 1/(E* beta)."""
-    basis = boundary_basis(space, "far", space.degree + TRACE_POINTS)
-    r, z = basis.global_coordinates()
-    n_r, n_z = np.asarray(basis.normals)
+    (r, z), (n_r, n_z) = far.places, far.normals
     u_r, u_z = boussinesq_displacement(r, z, poisson)
     rr, zz, _, rz = boussinesq_stress(r, z, poisson)
     work = u_r * (rr * n_r + rz * n_z) + u_z * (rz * n_r + zz * n_z)
-    return -float(np.sum(work * ring_measure(r) * basis.dx))
+    return -float(np.sum(work * ring_measure(r) * far.lengths))
 
 
 def free(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (nothing is outside, whatever the material)
@@ -108,39 +107,34 @@ def free(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (nothing is 
     A spring on the mean of u_z holds the body; it carries the whole load, so that its deflection is known and
     taken off: the result does not depend on the spring's stiffness.
     """
-    far = space.boundary_functions("far")
-    basis = boundary_basis(space, "far", space.degree + 1)
-    r = basis.global_coordinates()[0]
-    area = (ring_measure(r) * basis.dx).ravel()
-    mean = trace_matrix(basis, far).T @ area / np.sum(area)
-    mean = sparse.csc_array((mean, (space.components[1, far], 0 * far)), shape=(space.unknowns, 1))
+    far = trace_on(space, "far", space.degree + 1)
+    r = far.places[0]
+    area = (ring_measure(r) * far.lengths).ravel()
+    parts = far.values.T @ area / np.sum(area)
+    mean = sparse.csc_array((parts, (space.components[1, far.functions], 0 * far.functions)), shape=(space.unknowns, 1))
     T = _selection(space, dropped=np.array([], dtype=np.intp))
     spring = float(np.max(r))  # of the order of the block's own stiffness E* L
     return Exterior(T, sparse.csc_array(spring * (T.T @ mean) @ (T.T @ mean).T), 1.0 / spring)
 
 
-def trace_projection(space: Space, name: str, field: Callable[[Array, Array], Array]) -> Array:
-    """Return the coefficients of the best approximation to a vector field on the named boundary.
+def trace_projection(trace: Trace, field: Callable[[Array, Array], Array]) -> Array:
+    """Return the coefficients of the best approximation to a vector field on a boundary.
 
     Parameters
     ----------
-    space : Space
-        Mesh and element.
-    name : str
-        Name of the boundary.
+    trace : Trace
+        The boundary, with enough points for the field.
     field : callable
         field(r, z) returns (2, ...), its components at the given points.
 
     Returns
     -------
     (2, m) array
-        Coefficients of the m functions ``space.boundary_functions(name)``, u_r first.
+        Coefficients of the m functions of the trace, u_r first.
     """
-    basis = boundary_basis(space, name, space.degree + TRACE_POINTS)
-    N = trace_matrix(basis, space.boundary_functions(name))
-    weighted = N.T * basis.dx.ravel()
-    values = field(*basis.global_coordinates()).reshape(2, -1)
-    coefficients: Array = splu(sparse.csc_array(weighted @ N)).solve(weighted @ values.T).T
+    weighted = trace.values.T * trace.lengths.ravel()
+    values = field(*trace.places).reshape(2, -1)
+    coefficients: Array = splu(sparse.csc_array(weighted @ trace.values)).solve(weighted @ values.T).T
     return coefficients
 
 

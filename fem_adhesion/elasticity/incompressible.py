@@ -25,6 +25,7 @@ from fem_adhesion.elasticity.space import (
     cell_stiffness,
     cell_strains,
     lame_parameters,
+    reference_functions,
     scatter,
     scatter_pairs,
     shear_matrix,
@@ -129,7 +130,7 @@ def _mixed_matrices(
 ) -> tuple[sparse.csc_array, sparse.csc_array, sparse.csc_array]:
     """Shear stiffness (N, N), work of each pressure in each dilatation (M, N) and products of pressures (M, M)."""
     dofs, D = Dofs(space.mesh, pressure), shear_matrix(poisson)
-    q = _reference_values(pressure, cell_quadrature(space)[0], len(dofs.element_dofs))
+    q = reference_functions(pressure, cell_quadrature(space)[0])[0]
     blocks: list[tuple[Array, Array, Array]] = []
     for _, B, dA in cell_strains(space):
         weighted = q * dA[:, None, :]
@@ -141,8 +142,3 @@ def _mixed_matrices(
         scatter_pairs(coupling, pressures, space.cell_dofs, (dofs.N, space.unknowns)),
         scatter(volume, pressures, dofs.N),
     )
-
-
-def _reference_values(element: Any, points: Array, count: int) -> Array:
-    """Values of the element's functions at points of the reference cell, (count, points)."""
-    return np.array([np.broadcast_to(element.lbasis(points, i)[0], points.shape[1:]) for i in range(count)])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -58,7 +58,7 @@ class Space(Valued):
         pairs[1, self.scalar_dofs.element_dofs] = by_turns[1::2]
         return pairs
 
-    @property
+    @cached_property
     def cell_dofs(self) -> Index:
         """Unknowns of each cell, (2 n, cells): first u_r of all n functions, then u_z."""
         return np.concatenate(list(self.components[:, self.scalar_dofs.element_dofs]))
@@ -204,21 +204,40 @@ def cell_strains(space: Space) -> Iterator[tuple[Index, Array, Array]]:
     points, weights = cell_quadrature(space)
     value, slopes = reference_functions(space.element, points)
     mapping = space.mesh.mapping()
+    radii, (inverse, area) = np.asarray(mapping.F(points)[0]), inverted(mapping.DF(points))
     for cells in _batches(space, len(weights)):
-        r = mapping.F(points, tind=cells)[0]
-        grad = np.einsum("ijcq,niq->njcq", mapping.invDF(points, tind=cells), slopes, optimize=True)
-        dA = ring_measure(r) * np.abs(mapping.detDF(points, tind=cells)) * weights
+        r = radii[cells]
+        grad = np.einsum("ijcq,niq->njcq", inverse[:, :, cells], slopes, optimize=True)
+        dA = ring_measure(r) * area[cells] * weights
         yield cells, strain_displacement(np.broadcast_to(value[:, None], (len(value), *r.shape)), grad, r), dA
 
 
+def inverted(jacobian: Array) -> tuple[Array, Array]:
+    """Inverses of Jacobian matrices (2, 2, ...) and the sizes of their determinants (...)."""
+    (a, b), (c, d) = jacobian
+    determinant = a * d - b * c
+    return np.array([[d, -b], [-c, a]]) / determinant, np.abs(determinant)
+
+
 def reference_functions(element: Any, points: Array) -> tuple[Array, Array]:
-    """Values (n, q) and derivatives (n, 2, q) of an element's functions at points (2, q) of the reference cell."""
+    """Values (n, q) and derivatives (n, 2, q) of an element's functions at points (2, q) of the reference cell.
+
+    They are kept, and not to be written to: all meshes of the same element ask for the same.
+    """
+    return _functions(element, points.shape, points.tobytes())
+
+
+@lru_cache(maxsize=100)
+def _functions(element: Any, shape: tuple[int, ...], places: bytes) -> tuple[Array, Array]:
+    points = np.frombuffer(places).reshape(shape)
     count = (
         element.refdom.nnodes * element.nodal_dofs + element.refdom.nfacets * element.facet_dofs + element.interior_dofs
     )
     found = [element.lbasis(points, i) for i in range(count)]
     values = np.array([np.broadcast_to(value, points.shape[1:]) for value, _ in found])
-    return values, np.array([np.broadcast_to(slope, points.shape) for _, slope in found])
+    slopes = np.array([np.broadcast_to(slope, points.shape) for _, slope in found])
+    values.flags.writeable = slopes.flags.writeable = False
+    return values, slopes
 
 
 def scatter(blocks: Array, dofs: Index, size: int) -> sparse.csc_array:

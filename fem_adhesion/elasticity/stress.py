@@ -14,7 +14,15 @@ from scipy.sparse.linalg import splu
 from skfem import CellBasis
 
 from fem_adhesion.elasticity.incompressible import pressure_modes
-from fem_adhesion.elasticity.space import Space, cell_quadrature, elastic_matrix, lame_parameters, scatter, shear_matrix
+from fem_adhesion.elasticity.space import (
+    Space,
+    cell_quadrature,
+    elastic_matrix,
+    lame_parameters,
+    reference_functions,
+    scatter,
+    shear_matrix,
+)
 from halfspace.values import Array
 
 ON_AXIS = 1e-12
@@ -38,7 +46,7 @@ def sampled(space: Space, coefficients: Array, places: Array) -> Array:
     (..., cells, k) array
     """
     dofs = space.scalar_dofs.element_dofs
-    values = _reference_values(space, places)
+    values = reference_functions(space.element, places)[0]
     return np.asarray(np.einsum("...nc,nk->...ck", coefficients[..., dofs], values, optimize=True))
 
 
@@ -126,7 +134,7 @@ def recovered_stresses(
 def projection(space: Space, values: Array) -> Array:
     """Return the coefficients (m, functions) of the fields nearest to values (m, cells, k) at `cell_quadrature`."""
     points, weights = cell_quadrature(space)
-    N, dA = _reference_values(space, points), _basis(space, points, weights).dx
+    N, dA = reference_functions(space.element, points)[0], _basis(space, points, weights).dx
     dA = dA / dA.sum(axis=1, keepdims=True)
     dofs, size = np.asarray(space.scalar_dofs.element_dofs, dtype=np.intp), int(space.scalar_dofs.N)
     mass = scatter(np.einsum("ik,ck,jk->cij", N, dA, N, optimize=True), dofs, size)
@@ -175,12 +183,6 @@ def energy_density(stress: Array, poisson: float) -> Array:
     """
     compliance = np.linalg.inv(elastic_matrix(poisson))
     return np.asarray(np.einsum("i...,ij,j...->...", stress, compliance, stress) / 2)
-
-
-def _reference_values(space: Space, places: Array) -> Array:
-    """Values of a cell's n functions at points of the reference cell, (n, k)."""
-    n = len(space.scalar_dofs.element_dofs)
-    return np.array([np.broadcast_to(space.element.lbasis(places, i)[0], places.shape[1:]) for i in range(n)])
 
 
 def _basis(space: Space, places: Array, weights: Array | None = None) -> Any:
