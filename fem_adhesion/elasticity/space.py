@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 from scipy import sparse
-from skfem import Dofs, ElementVector
+from skfem import Dofs, ElementQuadP, ElementVector
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
+from fem_adhesion.elasticity.tensor import integrated, products
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
@@ -164,9 +165,12 @@ def cell_quadrature(space: Space) -> tuple[Array, Array]:
     where u_r = 0, and rational elsewhere. Its error is below a thousandth of the element's own: six more points in each
     direction change the deflection by quadrilaterals of degree 6 by 2e-12, which is in error by 1e-7.
     """
-    order = 2 * space.degree + (2 if space.element.refdom is RefTri else 1)
-    points, weights = get_quadrature(space.element, order)
+    points, weights = get_quadrature(space.element, _order(space))
     return points, weights
+
+
+def _order(space: Space) -> int:
+    return 2 * space.degree + (2 if space.element.refdom is RefTri else 1)
 
 
 def cell_stiffness(space: Space, poisson: float) -> Array:
@@ -184,11 +188,35 @@ def cell_stiffness(space: Space, poisson: float) -> Array:
     (cells, 2 n, 2 n) array
         In units of E* beta, rows and columns ordered as in ``space.cell_dofs``.
     """
-    D = elastic_matrix(poisson)
-    K = np.empty((space.mesh.nelements, *2 * [len(space.cell_dofs)]))
+    D, size = elastic_matrix(poisson), len(space.cell_dofs)
+    K = np.empty((space.mesh.nelements, size, size))
+    if isinstance(space.element, ElementQuadP):
+        for cells, blocks in _product_stiffness(space, D):
+            parts = K[cells].reshape(-1, 2, size // 2, 2, size // 2)
+            parts[:, 0, :, 0], parts[:, 1, :, 0], parts[:, 1, :, 1] = blocks
+            parts[:, 0, :, 1] = blocks[1].transpose(0, 2, 1)
+        return K
     for cells, B, dA in cell_strains(space):
         K[cells] = strain_products(D, B, dA)
     return K
+
+
+def _product_stiffness(space: Space, D: Array) -> Iterator[tuple[slice, Array]]:
+    """Stiffness of u_r with u_r, u_z with u_r and u_z with u_z, (3, cells, n, n), batch by batch."""
+    functions, (points, weights) = products(space.element, _order(space)), cell_quadrature(space)
+    mapping, q = space.mesh.mapping(), round(np.sqrt(len(weights)))
+    radii, (inverse, area) = np.asarray(mapping.F(points)[0]), inverted(mapping.DF(points))
+    for cells in _batches(space, len(weights)):
+        # Of a function whose value or one of whose slopes is 1.
+        r, value, grad = radii[cells], np.zeros((3, *radii[cells].shape)), np.zeros((3, 2, *radii[cells].shape))
+        value[0], grad[1:] = 1.0, inverse[:, :, cells]
+        B = strain_displacement(value, grad, r)
+        stress = (D @ B.reshape(*B.shape[:2], -1)).reshape(B.shape)
+        stress *= (ring_measure(r) * area[cells] * weights)[:, None, :, None]
+        u_r, u_z = slice(0, 3), slice(3, 6)
+        pairs = (u_r, u_r), (u_z, u_r), (u_z, u_z)
+        work = np.array([np.einsum("ceqa,ceqb->cabq", B[..., a], stress[..., b]) for a, b in pairs])
+        yield cells, integrated(work.reshape(*work.shape[:-1], q, q), functions)
 
 
 def strain_products(D: Array, B: Array, dA: Array) -> Array:
@@ -199,7 +227,7 @@ def strain_products(D: Array, B: Array, dA: Array) -> Array:
     return products
 
 
-def cell_strains(space: Space) -> Iterator[tuple[Index, Array, Array]]:
+def cell_strains(space: Space) -> Iterator[tuple[slice, Array, Array]]:
     """Cut the cells into batches: their numbers, their strains B, (cells, 4, q, 2 n), and 2 pi r dr dz, (cells, q)."""
     points, weights = cell_quadrature(space)
     value, slopes = reference_functions(space.element, points)
@@ -252,7 +280,7 @@ def scatter_pairs(blocks: Array, row_dofs: Index, column_dofs: Index, shape: tup
     return sparse.csc_array((blocks.ravel(), (rows, columns)), shape=shape)
 
 
-def _batches(space: Space, points: int) -> list[Index]:
+def _batches(space: Space, points: int) -> list[slice]:
     """Cut the cells into batches, given their quadrature points."""
-    per_cell = 4 * points * len(space.cell_dofs)
-    return np.array_split(np.arange(space.mesh.nelements), -(-space.mesh.nelements * per_cell // BATCH))
+    step = max(1, BATCH // (4 * points * len(space.cell_dofs)))
+    return [slice(first, first + step) for first in range(0, space.mesh.nelements, step)]
