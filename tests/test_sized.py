@@ -17,10 +17,11 @@ from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
 from halfspace.accuracy.finite_bodies import AroundEvents, surroundings
+from halfspace.accuracy.refinement import _on_all
 from halfspace.accuracy.trace import _sized_body, resolution_for
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
-from halfspace.equilibrium.contact import ContactProblem
+from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.curve import Chart, moved
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
@@ -221,6 +222,15 @@ def test_events_share_an_operator_within_its_window_alone(part, shared):
         stage(SimpleNamespace(problem=problem, point=SimpleNamespace(observables=observables)))
     assert len(made) == (1 if shared else 2)
     assert {(window, count) for _, window, count in made} == {(2e-3, 5)}
+
+
+def test_an_event_that_moves_out_of_a_window_is_solved_for_on_an_operator_of_its_own():
+    path = halfspace.trace(1.0, profile=Sphere(30.0), rtol=1e-2)
+    coarse, stage = path.stages[0]["pull_off"], replace(path.finest, window=1e-7, charts=[])
+    (found,) = _on_all({"pull_off": coarse}, stage).values()
+    radii = [float(event.point.observables[CONTACT_RADIUS]) for event in (coarse, found)]
+    assert abs(radii[1] / radii[0] - 1) > 1e-6
+    assert found.problem.operator.scales.mean() == pytest.approx(radii[1], rel=1e-7)
 
 
 def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_tolerance():
