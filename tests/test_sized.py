@@ -228,9 +228,8 @@ def test_an_event_that_moves_out_of_a_window_is_solved_for_on_an_operator_of_its
     path = halfspace.trace(1.0, profile=Sphere(30.0), rtol=1e-2)
     coarse, stage = path.stages[0]["pull_off"], replace(path.finest, window=1e-7, charts=[])
     (found,) = _on_all({"pull_off": coarse}, stage).values()
-    radii = [float(event.point.observables[CONTACT_RADIUS]) for event in (coarse, found)]
-    assert abs(radii[1] / radii[0] - 1) > 1e-6
-    assert found.problem.operator.scales.mean() == pytest.approx(radii[1], rel=1e-7)
+    before, after = (float(event.point.observables[CONTACT_RADIUS]) for event in (coarse, found))
+    assert abs(found.problem.operator.scales.mean() - after) < 0.01 * abs(after - before)
 
 
 def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_tolerance():
