@@ -23,7 +23,8 @@ from halfspace.values import Array
 
 RISE = 0.245  # eps, over which the tension of the 3-9 law rises: a rigid paraboloid does so in 0.7 beta/sqrt(mu)
 NOTHING = 1e-15  # of the work of adhesion: what the tail of a law without an exponent may leave beyond the finite cells
-FARTHER = 8.0  # extents, up to which the infinite cell is cut where the tail is no polynomial
+FARTHER = 8.0  # extents, up to which the infinite cell is cut where the tail is no polynomial, at least
+UNTOLD, CROWD = 1e-7, 64.0  # of the load beyond, what the last cell may leave of it; how much nearer its nodes are
 STEP = 0.1  # of the trapezoidal rule in ln r for the tension of undeformed surfaces
 LOGARITHMS = np.arange(-16.0, 16.0, STEP)
 LEAST_LOAD = 0.1  # R dgamma, below which curves that end at loads of 5 would take too many steps
@@ -89,7 +90,11 @@ class Scales:
     @cached_property
     def rigid_tension(self) -> float:
         """Tension of the undeformed surfaces in touch, in R dgamma: 2 pi on a paraboloid."""
-        return -self._undeformed(self.law.pressure, 0.0)
+        return -self.rigid_load(0.0)
+
+    def rigid_load(self, approach: float) -> float:
+        """Load on undeformed surfaces at an approach in eps, Bradley's on a paraboloid by the 3-9 law, in R dgamma."""
+        return self._undeformed(self.law.pressure, -approach)
 
     def rigid_jump_on(self, stiffness: float) -> float:
         """Approach in eps at which undeformed surfaces jump on from afar; the apparatus is so stiff in R dgamma/eps."""
@@ -127,11 +132,16 @@ class Scales:
 
     @cached_property
     def tail_reach(self) -> float:
-        """Extents of the finite cells up to which the infinite one is cut: 1 if the tail is a polynomial in 1/r."""
+        """Extents of the finite cells up to which the infinite one is cut: 1 if the tail is a polynomial in 1/r.
+
+        The load beyond r falls as r^(2 - n) under a pressure that falls as r^-n, slowly if n is little more than 2.
+        """
         if math.isinf(self.law.decay) or math.isfinite(self.profile.end):
             return 1.0
         powers = np.array([self.law.decay, 1.0]) * self._growth
-        return 1.0 if np.allclose(powers, np.round(powers), rtol=0, atol=1e-4) else FARTHER
+        if np.allclose(powers, np.round(powers), rtol=0, atol=1e-4):
+            return 1.0
+        return float(max(FARTHER, UNTOLD ** (-1 / (powers[0] - 2)) / CROWD))
 
     @property
     def _growth(self) -> float:

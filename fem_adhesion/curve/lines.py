@@ -21,6 +21,7 @@ KINDS: Mapping[int, str] = {
     UNSTABLE: "unstable",
 }
 BETWEEN = 12  # points drawn from one computed point to the next
+ROUNDED = 1e-9  # of the pull-off force: a load that may be none
 FADED = 0.04  # of the pull-off force: the attraction at which a frame begins
 MARGIN = 0.08  # of the frame, around what it shows
 HIGHEST = 0.5  # load in pull-off forces that is shown around the events
@@ -107,7 +108,7 @@ def around_events(path: EquilibriumPath) -> Frame:
 def frame(path: EquilibriumPath, highest: float) -> Frame:
     """Frame from where attraction is felt to a load in R dgamma."""
     lowest, line = path.events["pull_off"].load, smooth(path)
-    shown = ((line.load < FADED * lowest) | (line.load > 0)) & (line.load <= highest)
+    shown = ((line.load < FADED * lowest) | (line.load > -ROUNDED * lowest)) & (line.load <= highest)
     x = np.append(line.approach[shown], path.events["zero_load"].approach)
     return Frame(_padded(float(x.min()), float(x.max())), _padded(lowest, highest))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,10 +15,13 @@ from fem_adhesion.curve.lines import Frame
 from fem_adhesion.curve.profiles import LEGEND, STATES
 from fem_adhesion.curve.scales import Scale, scales
 from fem_adhesion.curve.solve import Curves
+from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.reach import reaching
+from halfspace.laws import LENNARD_JONES
+from halfspace.profiles import Paraboloid, Sphere
+from halfspace.profiles.indentation import jkr_approach, jkr_load
 from halfspace.scaling import MAUGIS
-from halfspace.theories.closed_forms import bradley_load, hertz_radius, jkr_approach, jkr_load
 from halfspace.theories.maugis import MaugisDugdale
 from halfspace.values import Array
 
@@ -36,6 +39,7 @@ GRIPS: dict[str, Any] = {"color": "black", "linestyle": "-"}
 APPARATUS: dict[str, Any] = {"color": style.GREEN, "linestyle": "-"}
 SAMPLES = 600
 APART = 0.06  # least distance of points drawn on a line, of the frame
+WIDER, CLOSE = 1.3, 0.99  # contact radii of theories: than the curve's widest, and of the body's end at most
 FAR_BEYOND = 3  # the highest load, in that of the frame around the events, from which on they are enlarged
 
 Ends = tuple[float, float]
@@ -67,7 +71,7 @@ def _seen(axes: Any) -> list[Any]:
 
 def _draw_frame(axes: Any, curves: Curves, frame: Frame) -> None:
     x, y = scales(curves)["approach"], scales(curves)["load"]
-    for name, (approach, load) in _theories(curves.path.tabor, frame):
+    for name, (approach, load) in _theories(curves.question.scene, frame):
         axes.plot(x.of(approach), y.of(load), label=name, **THEORIES[name])
     line = lines.smooth(reaching(curves.path, curves.question.stiffness))
     for kind, load in line.parts(line.load):
@@ -163,15 +167,24 @@ def _clipped(tail: Ends, head: Ends, frame: Frame) -> tuple[Ends, Ends] | None:
     return (ends[0], ends[1]) if first < last else None
 
 
-def _theories(tabor: float, frame: Frame) -> Iterator[tuple[str, tuple[Array, Array]]]:
-    """Approach and load of the closed theories, inside a frame."""
-    widest = float(hertz_radius(frame.load[1]) + 3)
-    a = np.linspace(1e-3, widest, SAMPLES)
-    yield "JKR", (jkr_approach(a, tabor), jkr_load(a))
+def _theories(scene: Scene, frame: Frame) -> Iterator[tuple[str, tuple[Array, Array]]]:
+    """Approach and load of the closed theories on a half-space under the profile, inside a frame; of layers the rigid.
+
+    Maugis's is that of a paraboloid, and matched with the 3-9 law.
+    """
+    scales, surface, tabor = scene.scales, scene.surface, scene.tabor
+    a = np.linspace(1e-3, min(WIDER * scales.widest_radius(frame.load[1]), CLOSE * surface.end), SAMPLES)
+    if scene.body.layered is None:
+        yield "JKR", (_each(lambda r: tabor * jkr_approach(surface, r), a), _each(lambda r: jkr_load(surface, r), a))
     apart = np.linspace(frame.approach[0], min(0.6, frame.approach[1]), SAMPLES)
-    yield "Bradley", (apart, bradley_load(apart))
-    if 1e-6 <= MAUGIS.of(tabor) <= 1e6:
+    yield "Bradley", (apart, _each(scales.rigid_load, apart))
+    matched = scene.law == LENNARD_JONES and isinstance(scene.shape, Paraboloid | Sphere)
+    if scene.body.layered is None and matched and 1e-6 <= MAUGIS.of(tabor) <= 1e6:
         yield "Maugis-Dugdale", _maugis(tabor, a)
+
+
+def _each(of: Callable[[float], float], values: Array) -> Array:
+    return np.array([of(value) for value in values.tolist()])
 
 
 def _maugis(tabor: float, radius: Array) -> tuple[Array, Array]:
