@@ -45,27 +45,57 @@ from halfspace.values import Valued
 Array = NDArray[np.float64]
 Heights = Callable[[Array], Array]
 
-# The law: Lennard-Jones 3-9. The attraction of two bodies does the work dgamma = 1 from h = 1 to infinity.
+# The law
 
 
-def tension(h: Any) -> Any:
-    """Return sigma in dgamma/eps at the gap h in eps."""
-    return 8 / 3 * (h**-3 - h**-9)
+@dataclass(frozen=True)
+class Law:
+    """A law of the tension between two surfaces, by its potential alone; what else it is are differences of that.
+
+    Attributes
+    ----------
+    potential : callable
+        w = -int_h^inf sigma in dgamma at gaps h in eps; the attraction of two bodies does the work -w(1) = 1.
+    grain : float
+        Part of a gap over which the tension varies: (sigma'(1))^(-1/2).
+    room : float
+        Gap in eps that counts as one at least: surfaces without a core may come closer than none.
+    """
+
+    potential: Callable[[Array], Array]
+    grain: float = 0.25
+    room: float = 0.0
+
+    def size(self, h: Array) -> Array:
+        """Size by which changes of a gap are measured."""
+        return np.maximum(h, self.room)
+
+    def tension(self, h: Array) -> Array:
+        """Return sigma = dw/dh in dgamma/eps."""
+        return self._difference(h, FIRST, 1)
+
+    def slope(self, h: Array) -> Array:
+        """Return sigma' in dgamma/eps^2."""
+        return self._difference(h, SECOND, 2)
+
+    def _difference(self, h: Array, weights: Array, order: int) -> Array:
+        """Difference of eighth order at steps that are small beside both the gap and what the tension varies over."""
+        d = STEP * self.grain * self.size(h)
+        places = np.arange(-(weights.size // 2), weights.size // 2 + 1)
+        return np.asarray(sum(w * self.potential(h + n * d) for n, w in zip(places, weights, strict=True)) / d**order)
 
 
-def tension_slope(h: Any) -> Any:
-    """Return sigma', in dgamma/eps^2."""
-    return 8 / 3 * (-3 * h**-4 + 9 * h**-10)
+STEP = 4e-3
+FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
+SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
 
 
-def surface_energy(h: Any) -> Any:
-    """Return w = -int_h^inf sigma, in dgamma."""
+def lennard_jones(h: Array) -> Array:
+    """Potential of the 3-9 law."""
     return 8 / 3 * (h**-8 / 8 - h**-2 / 2)
 
 
-def energy_beyond(h: Any) -> Any:
-    """Integral of w from h to infinity, in dgamma eps."""
-    return 8 / 3 * (h**-7 / 56 - h**-1 / 2)
+LENNARD_JONES = Law(lennard_jones)
 
 
 # The profile
@@ -246,13 +276,15 @@ def on_spring(body: Body, stiffness: float) -> Body:
     return replace(body, stiffness=sparse.csc_array(K), reaction=body.reaction - stiffness * foot)
 
 
-def half_space(finest: float, size: float, degree: int, poisson: float) -> Body:
+def half_space(finest: float, size: float, degree: int, poisson: float, tip: float = np.inf) -> Body:
     """Box of a half-space as wide and deep as its size, whose cells grow from `finest` at radius 1 of the surface on.
+
+    Under a sharp tip the cell on the axis is `tip` long, or less.
 
     It stands on a spring that yields as what is beyond would: Hertz's pressure sqrt(1 - r^2), of the load 2 pi/3, does
     the work 4 pi^2/15 on a half-space, and what it falls short of that on the box is done on the spring.
     """
-    body = discretise(half_space_mesh(finest, size), degree, poisson, plate=True)
+    body = discretise(half_space_mesh(finest, size, tip), degree, poisson, plate=True)
     return on_ground(body, np.sqrt(np.maximum(1 - body.radii**2, 0)), 2 * np.pi / 3, 4 * np.pi**2 / 15)
 
 
@@ -280,10 +312,12 @@ def last(size: int) -> Array:
     return np.asarray(np.eye(1, size, size - 1)[0])
 
 
-def half_space_mesh(finest: float, size: float) -> Any:
+def half_space_mesh(finest: float, size: float, tip: float = np.inf) -> Any:
     """Mesh of that box."""
-    r_steps, z_steps = _graded(finest, size, EVEN), _graded(finest, size, 1)
-    r = np.concatenate([[0.0], 1 - r_steps[r_steps < INNER][::-1], [1.0], 1 + r_steps])
+    r_steps, z_steps = _graded(finest, size, EVEN), _graded(min(finest, tip), size, 1)
+    inner = 1 - r_steps[r_steps < INNER][::-1]
+    core = inner[0] * GROWTH ** -np.arange(1.0, np.ceil(np.log(max(inner[0] / tip, 1.0)) / np.log(GROWTH)) + 1)
+    r = np.concatenate([[0.0], core[::-1], inner, [1.0], 1 + r_steps])
     mesh = MeshQuad.init_tensor(r, np.append(-z_steps[::-1], 0.0))
     far = {"far": lambda x: (x[0] == r[-1]) | (x[1] == -z_steps[-1])}
     return mesh.with_boundaries({"axis": lambda x: x[0] == 0, "contact": lambda x: x[1] == 0} | far)
@@ -301,6 +335,8 @@ EVEN, GROWTH, INNER = 3, 3.0, 0.7  # cells next to the edge, ratio of the others
 
 # Newton's method
 
+POINTS, FAR = 40, 4  # of the rule from the rim to infinity, and the power by which they crowd there
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Contact(Valued):
@@ -315,35 +351,53 @@ class Contact(Valued):
     heights : callable
         z of the undeformed surface at radii in beta.
     endless : bool
-        Whether the surfaces go on beyond the mesh, undeformed: a paraboloid over a half-space. As dh = mu r dr, the
-        load left out is 2 pi w and the energy 2 pi int w dh, both from the gap at the rim on.
-    rigid : pair of (k,) arrays
-        Radii and parts of dA of points beyond the mesh that attract and do not yield.
+        Whether the surfaces go on for ever beyond the mesh, as over a half-space.
+    rim : pair of (k,) arrays
+        Radii and parts of dA of points beyond the mesh of a body with an end that attract and do not yield.
+    law : Law
+        Of the tension between the surfaces.
     """
 
     body: Body
     tabor: float
     heights: Heights = paraboloid
     endless: bool = True
-    rigid: tuple[Array, Array] = (np.empty(0), np.empty(0))
+    rim: tuple[Array, Array] = (np.empty(0), np.empty(0))
+    law: Law = LENNARD_JONES
+
+    @property
+    def sharpness(self) -> float:
+        """Tabor parameter of a contact by the 3-9 law whose edge is as sharp."""
+        return self.tabor * LENNARD_JONES.grain / self.law.grain
 
     @cached_property
     def height(self) -> Array:
         """Height z at the points."""
         return self.heights(self.body.radii)
 
+    @cached_property
+    def rigid(self) -> tuple[Array, Array]:
+        """Radii and parts of dA of the points beyond the mesh; those on to infinity crowd there, where little is."""
+        if not self.endless:
+            return self.rim
+        s, ds = np.polynomial.legendre.leggauss(POINTS)
+        s, ds = (1 + s) / 2, ds / 2
+        r = self.body.rim / s**FAR
+        return r, 2 * np.pi * r**2 * FAR * ds / s
+
     def gap(self, u: Array | None, approach: float) -> Array:
         """Gap h at the points under displacements u, or of the undeformed surfaces."""
         return np.asarray(1 - approach + self.tabor * (self.height - (0.0 if u is None else self.body.rise(u))))
 
-    def _rim(self, approach: float) -> float:
-        """Gap where the mesh ends; infinite, so that nothing is left out, where the surfaces do."""
-        return 1 - approach + self.tabor * float(self.heights(np.array(self.body.rim))) if self.endless else np.inf
+    @cached_property
+    def _far_height(self) -> Array:
+        """Height z at the rigid points."""
+        r = self.rigid[0]
+        return self.heights(r) if r.size else r
 
     def _beyond(self, approach: float) -> Array:
         """Gaps at the rigid points."""
-        r = self.rigid[0]
-        return np.asarray(1 - approach + self.tabor * self.heights(r)) if r.size else r
+        return np.asarray(1 - approach + self.tabor * self._far_height)
 
     def load(self, tension: Array, approach: float) -> float:
         """W in R dgamma, positive in compression, of the tension at the points."""
@@ -351,27 +405,30 @@ class Contact(Valued):
 
     def load_beyond(self, approach: float) -> float:
         """Part of the load that is beyond the mesh."""
-        rigid = self.tabor * float(self.rigid[1] @ tension(self._beyond(approach)))
-        return 2 * np.pi * float(surface_energy(self._rim(approach))) - rigid
+        return -self.tabor * float(self.rigid[1] @ self.law.tension(self._beyond(approach)))
 
     def load_slope(self, rate: Array, approach: float) -> float:
         """dW/dalpha in R dgamma/eps of the rate -dsigma/dalpha."""
-        rigid = self.tabor * float(self.rigid[1] @ tension_slope(self._beyond(approach)))
-        return self.tabor * self.body.integral(rate) - 2 * np.pi * float(tension(self._rim(approach))) + rigid
+        rigid = self.rigid[1] @ self.law.slope(self._beyond(approach))
+        return self.tabor * (self.body.integral(rate) + float(rigid))
 
     def displacement(self, h: Array) -> Array:
         """What the tensions of given gaps make of the body, whether or not it leaves those gaps."""
-        return np.asarray(self.body.yielding(self.tabor * self.body.forces(tension(h))))
+        return np.asarray(self.body.yielding(self.tabor * self.body.forces(self.law.tension(h))))
 
     def energy(self, u: Array, approach: float) -> float:
-        """Potential energy in R dgamma eps."""
-        inside = float(u @ (self.body.stiffness @ u)) / 2 + self.body.integral(surface_energy(self.gap(u, approach)))
-        inside += float(self.rigid[1] @ surface_energy(self._beyond(approach)))
-        return self.tabor * inside + 2 * np.pi * float(energy_beyond(self._rim(approach)))
+        """Potential energy in R dgamma eps, less that of the undeformed surfaces in touch, which may be infinite."""
+        inside = float(u @ (self.body.stiffness @ u)) / 2
+        inside += self.body.integral(self._released(self.gap(u, approach), self.height))
+        return self.tabor * (inside + float(self.rigid[1] @ self._released(self._beyond(approach), self._far_height)))
+
+    def _released(self, h: Array, height: Array) -> Array:
+        """Potential per dA at gaps h less that of the undeformed surfaces in touch."""
+        return np.asarray(self.law.potential(h) - self.law.potential(1 + self.tabor * height))
 
     def far_reaction(self, u: Array, h: Array) -> float:
         """Upward force of what holds the body, displaced by the tensions of given gaps: their load, in equilibrium."""
-        return float(self.body.reaction @ u) - self.tabor * self.body.integral(self.body.borne * tension(h))
+        return float(self.body.reaction @ u) - self.tabor * self.body.integral(self.body.borne * self.law.tension(h))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -410,21 +467,21 @@ def newton(contact: Contact, h: Array, approach: float, *, load: float | None = 
     NotConverged
         If the steps run out.
     """
-    body, mu = contact.body, contact.tabor
+    body, mu, law = contact.body, contact.tabor, contact.law
     for _ in range(MOST_STEPS):
-        slope = tension_slope(h)
+        slope, size = law.slope(h), law.size(h)
         factors = factorise(body.softened(mu**2 * slope))
-        straight = tension(h) + slope * (contact.gap(None, approach) - h)
+        straight = law.tension(h) + slope * (contact.gap(None, approach) - h)
         u, rate = (factors.solve(mu * body.forces(line)) for line in (straight, -slope))  # rate is du/dalpha
         change, gap_rate = contact.gap(u, approach) - h, -1 - mu * body.rise(rate)
         stiffness = contact.load_slope(slope * -gap_rate, approach)
-        missing = 0.0 if load is None else load - contact.load(tension(h) + slope * change, approach)
+        missing = 0.0 if load is None else load - contact.load(law.tension(h) + slope * change, approach)
         d = missing / stiffness
         change += d * gap_rate
-        part = min(1.0, 0.75 / max(float((-change / h).max()), 0.75))  # lest the surfaces pass through each other
+        part = min(1.0, 0.75 / max(float((-change / size).max()), 0.75))  # lest the surfaces pass through each other
         h, approach = h + part * change, approach + part * d
-        if part == 1 and np.abs(change / h).max() < NEAR:
-            found = contact.load(tension(h), approach)
+        if part == 1 and np.abs(change / size).max() < NEAR:
+            found = contact.load(law.tension(h), approach)
             return Equilibrium(h, approach, found, gap_rate, stiffness, *determinant(factors))
     raise NotConverged(f"no equilibrium in {MOST_STEPS} Newton steps of the weak form; try a nearer start")
 
@@ -480,7 +537,8 @@ def turning_point(
     """
     place = approach if under_load else load
     # The extremum of the load is flat; along the load an edge moves by a spike's width soon.
-    step = FLAT * (1 + abs(place)) if under_load else NEARBY * (1 + abs(place)) * min(1.0, 9 / contact.tabor**2)
+    flat = FLAT * (1 + abs(place)) * min(1.0, contact.law.grain / LENNARD_JONES.grain)
+    step = flat if under_load else NEARBY * (1 + abs(place)) * min(1.0, 9 / contact.sharpness**2)
     step /= finer
     a = _at(contact, place - step, h, approach, under_load=under_load)
     place, step = place - step, 2 * step

@@ -3,7 +3,7 @@
 A family is data: its scenes, how they are solved, which numbers are told, and their truth, which is known to what two
 truths differ by. A number is held if its true error is no more than its estimate and that, and close if its estimate is
 no more than a hundred times its true error, or that, or what rounding leaves. A table tells the shares, and the worst
-of what lies outside. `side_by_side` makes a second table.
+of what lies outside. `side_by_side` makes a second table, `combinations` compares laws, profiles and bodies.
 """
 
 import argparse
@@ -17,6 +17,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import combinations
 import side_by_side
 import truths
 from scenes import pair
@@ -636,6 +637,8 @@ def main(arguments=None):
     print(HEAD, flush=True)
     dishonest = [row.name for row in rows_of(net, asked.families) if not printed(row).honest(net)]
     agreed = side_by_side.searched(net, asked.seed)
+    if net == "full":
+        agreed &= combinations.compared()
     print(
         f"not honest: {', '.join(dishonest) or 'none'}; both solvers {'agree' if agreed else 'contradict each other'}"
     )

@@ -15,7 +15,7 @@ from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
 from fem_adhesion.crosscheck.weak_bodies import contacts
 from fem_adhesion.elasticity import space
 from fem_adhesion.mesh.spheres import Stereographic
-from fem_adhesion.weak_form import tension
+from fem_adhesion.weak_form import LENNARD_JONES
 from halfspace.errors import InputError
 from halfspace.profiles import Paraboloid, Sphere
 
@@ -200,5 +200,5 @@ def test_what_holds_a_body_bears_the_whole_load(scene):
     """Also the tension at the corner where the surface is held, which deforms nothing."""
     contact = contacts(scene)[0](1.2)
     h = 1.1 + 0.2 * contact.body.radii
-    load = contact.load(tension(h), -5.0) - contact.load_beyond(-5.0)
+    load = contact.load(LENNARD_JONES.tension(h), -5.0) - contact.load_beyond(-5.0)
     assert contact.far_reaction(contact.displacement(h), h) == pytest.approx(load, rel=1e-9)

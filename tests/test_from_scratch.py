@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 import fem_adhesion
 from fem_adhesion import HalfSpace, Scene, cli, scene, weak_form
@@ -12,13 +11,14 @@ from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM
 from fem_adhesion.crosscheck.study import Failure
+from fem_adhesion.crosscheck.weak_bodies import law_of
 from fem_adhesion.weak_form import Contact, half_space, newton, turning_point
 from halfspace.accuracy import trace
 from halfspace.equilibrium import events as halfspace_events
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.events import FOLD
 from halfspace.errors import NotConverged
-from halfspace.laws import PowerLaw
+from halfspace.laws import Dlvo, Exponential, Morse, PowerLaw
 from halfspace.profiles import Paraboloid
 
 # --- the weak form ---
@@ -29,15 +29,21 @@ def box():
     return half_space(0.04, 30.0, 4, 0.3)
 
 
-def test_tension_slope_and_energies_are_derivatives_of_each_other():
-    h, d = np.array([0.9, 1.0, 1.3, 4.0]), 1e-5
-    for function, derivative in (
-        (weak_form.surface_energy, weak_form.tension),
-        (weak_form.tension, weak_form.tension_slope),
-        (weak_form.energy_beyond, lambda h: -weak_form.surface_energy(h)),
-    ):
-        np.testing.assert_allclose((function(h + d) - function(h - d)) / (2 * d), derivative(h), rtol=1e-7, atol=1e-7)
-    assert quad(weak_form.tension, 1, np.inf)[0] == pytest.approx(1, rel=1e-10)
+@pytest.mark.parametrize("law", [PowerLaw(), PowerLaw(20, 60), Morse(0.3), Exponential(3), Dlvo(0.3, 1.0)], ids=str)
+def test_tension_and_slope_are_those_of_the_potential_alone(law):
+    """At the gaps at which they count; the 3-9 law's potential is a formula of its own."""
+    found, H = law_of(Scene(1.0, law=law)), np.array([-0.05, 0.0, 0.3, 3.0])
+    np.testing.assert_allclose(found.potential(1 + H), law.energy(H, 1.0), rtol=1e-12)
+    np.testing.assert_allclose(found.tension(1 + H), -law.pressure(H, 1.0), rtol=1e-7, atol=1e-7 * law.strength)
+    np.testing.assert_allclose(found.slope(1 + H), -law.slope(H, 1.0), rtol=1e-5, atol=1e-5 * law.stiffness)
+    assert (found.potential is weak_form.lennard_jones) == (law == PowerLaw())
+
+
+def test_points_beyond_the_box_bear_what_a_profile_attracts_there(box):
+    """On a paraboloid dh = mu r dr, so that the load left out is 2 pi w at the rim."""
+    contact = Contact(box, 0.7)
+    rim = 1 + 0.5 + 0.7 * box.rim**2 / 2
+    assert contact.load_beyond(-0.5) == pytest.approx(2 * np.pi * weak_form.lennard_jones(rim), rel=1e-10, abs=0)
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.499])

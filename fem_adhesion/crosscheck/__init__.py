@@ -16,11 +16,12 @@ How independent the two solvers are:
   (JKR) limits, the printed values of the paper, energies against work, converged reference values.
 * Where cells begin and end: the same radial lines; error estimates by refinement on each side.
 * All that is shared is checked by a weak form with its own law, profile, energy, Newton's method and determinant, on
-  its own mesh. It imports nothing of the solvers. Each event of the finite elements is put into it: do the gaps
-  balance, does the far side carry the load, does the determinant of the tangent change its sign at a fold, is the
-  energy that? Law, load, residual and tangent are compared at a state made up as well, so that a solver which does not
-  converge is told what is wrong with it. It looks for mistakes, not digits: its budget is a part in a thousand. Beyond
-  a Tabor parameter of 6 it only checks that pull-off and jump-off are equilibria, not that they turn there.
+  its own mesh. Of laws but the 3-9 it is told the potential alone, of profiles but spheres the height. It imports
+  nothing of the solvers. Each event of the finite elements is put into it: do the gaps balance, does the far side carry
+  the load, does the determinant of the tangent change its sign at a fold, is the energy that? Law, load, residual and
+  tangent are compared at a state made up as well, so that a solver which does not converge is told what is wrong with
+  it. It looks for mistakes, not digits: its budget is a part in a thousand. Beyond a Tabor parameter of 6, or at an
+  edge as sharp, it only checks that pull-off and jump-off are equilibria, not that they turn there.
 
 A hemisphere that slides, or a pair, is compared with whole spheres in Legendre polynomials in the place of the
 half-space (`fem_adhesion.harmonics`), whose elasticity is summed mode by mode. Bonded bodies, spheres held over a cap

@@ -11,37 +11,51 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.integrate import quad
 
 import halfspace
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
-from fem_adhesion.crosscheck.weak_bodies import SHARP, AtRadius, contacts
+from fem_adhesion.crosscheck.weak_bodies import SHARP, AtRadius, contacts, sharpness
 from fem_adhesion.scene import Scene
-from fem_adhesion.weak_form import Contact, Turn, newton, tension, tension_slope, turning_point
+from fem_adhesion.weak_form import Contact, Turn, newton, turning_point
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Located
 from halfspace.errors import NotConverged
-from halfspace.laws import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Estimate, Valued
 
 BUDGET = 1e-3  # of each quantity
 ROUND_OFF = 1e-10
+LEAST = BUDGET / 20  # of each number that the weak form knows none better than: both its bodies may err alike
+WORK_LEFT = (0.5, 0.1, 0.01, 1e-4)  # of dgamma, beyond the gaps at which the law's integral is cut
 
 # Closed forms
 
 
-def closed_forms() -> list[Row]:
-    """Law and limits: what the shared code makes of them, beside what is known."""
-    work, error = quad(lambda H: -float(LENNARD_JONES.pressure(np.array(H), 1.0)), 0, np.inf, epsabs=0, epsrel=1e-9)
-    adhesion = Estimate(1.0, 0.0), Estimate(work, error)
+def closed_forms(law: Law = LENNARD_JONES) -> list[Row]:
+    """Law and limits of the default: what the shared code makes of them, beside what is known."""
+    adhesion = Estimate(1.0, 0.0), _work(law)
     return [
         Row("limit: integral of tension", "dgamma", *adhesion, difference(*adhesion), 1e-6, CLOSED_FORM),
         _limit("limit: Bradley pull_off load", -2 * np.pi, (1e-9,)),
         _limit("limit: JKR pull_off load", -1.5 * np.pi, (50.0, 100.0)),
     ]
+
+
+def _work(law: Law) -> Estimate:
+    """Integral of the tension from equilibrium to infinity."""
+    ends = (0.0, law.edge_gap, *map(law.range, WORK_LEFT), np.inf)
+
+    def tension(H: float) -> float:
+        return -float(law.pressure(np.array(H), 1.0))
+
+    parts = [quad(tension, a, b, epsabs=1e-10, epsrel=1e-9, limit=500)[:2] for a, b in pairwise(sorted(ends))]
+    value, error = np.sum(parts, axis=0).tolist()
+    return Estimate(value, error)
 
 
 def _limit(quantity: str, value: float, tabors: Sequence[float]) -> Row:
@@ -70,8 +84,10 @@ def equations(scene: Scene, problems: Sequence[ContactProblem], radius: float) -
     apart = np.array([_apart(contact(radius), radius) for contact in contacts(scene)])
     shared = np.array([_shared(problem, radius) for problem in problems])
     sizes = np.abs(apart[1, 4:])
+    # Of each the largest, lest both bodies agree by chance on one.
+    doubt = max(LEAST, float(np.max(np.abs(np.diff(apart[:, :4], axis=0)) / sizes)))
     for n, (name, unit) in enumerate(EQUATIONS.items()):
-        first, second = (_estimate(side[:, n].tolist()) for side in (apart, shared))
+        first, second = Estimate(float(apart[1, n]), doubt * sizes[n]), _estimate(shared[:, n].tolist())
         yield Row(f"equations: {name}", unit, first, second, difference(first, second), BUDGET * sizes[n], WEAK_FORM)
 
 
@@ -98,14 +114,14 @@ def _apart(contact: Contact, radius: float) -> list[float]:
     """The same by the weak form, and of each the elastic part alone."""
     body, mu = contact.body, contact.tabor
     H, dH, weight = _made_up(body.radii / radius)
-    tensions = mu * tension(1 + H), mu * tension_slope(1 + H) * dH
+    tensions = mu * contact.law.tension(1 + H), mu * contact.law.slope(1 + H) * dH
 
     def mean(field: Array) -> float:
         return body.integral(field * weight) / radius**2
 
     rise, further = (mu * mean(body.rise(body.yielding(body.forces(values)))) for values in tensions)
     load, slope = (-body.integral(values) for values in tensions)
-    load -= mu * float(contact.rigid[1] @ tension(1 + _made_up(contact.rigid[0] / radius)[0]))
+    load -= mu * float(contact.rim[1] @ contact.law.tension(1 + _made_up(contact.rim[0] / radius)[0]))
     residual, tangent = mean(H + APPROACH - mu * contact.height) + rise, mean(dH + CHANGE) + further
     return [residual, tangent, load, slope, rise, further, load, slope]
 
@@ -150,18 +166,19 @@ def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
     largest of their differences counts for all, relative to the sizes.
     """
     both = contacts(scene)
-    found = [row for name in path.events for row in _of_event(name, path, *both, sized=scene.sized)]
-    coarse, fine = (_energy_released(contact, path, sized=scene.sized) for contact in both)
+    found = [row for name in path.events for row in _of_event(name, scene, path, *both)]
+    coarse, fine = (_energy_released(contact, path) for contact in both)
     found.append(Compared("energy released", "R dgamma eps", (coarse, fine), path.energy, abs(path.energy.value)))
-    doubt = max(compared.change for compared in found)
+    doubt = max(LEAST, *(compared.change for compared in found))
     return [compared.row(doubt) for compared in found]
 
 
 def _of_event(
-    name: str, path: EquilibriumPath, on_coarse: AtRadius, on_fine: AtRadius, *, sized: bool
+    name: str, scene: Scene, path: EquilibriumPath, on_coarse: AtRadius, on_fine: AtRadius
 ) -> Iterator[Compared]:
     event, located = path.events[name], path.stages[-1][name]
-    coarse, fine = (_state(contact(_size(located, sized=sized)), located) for contact in (on_coarse, on_fine))
+    radius = _size(located)
+    coarse, fine = (_state(contact(radius), located) for contact in (on_coarse, on_fine))
     approach, load = map(event.estimate, ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
     balances, reactions = (coarse.balance, fine.balance), (coarse.reaction, fine.reaction)
@@ -171,9 +188,9 @@ def _of_event(
         doubted = Estimate(load.value, load.error + doubt)
         yield Compared(f"{name} reaction", "R dgamma", reactions, doubted, force)
     # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
-    smooth = name == "jump_on"
+    smooth, sharp = name == "jump_on", sharpness(scene, radius) > SHARP
     a = (_turn if smooth else _beside)(name, coarse)
-    b = (_turn if smooth or fine.contact.tabor <= SHARP else _beside)(name, fine)
+    b = (_turn if smooth or not sharp else _beside)(name, fine)
     if name != "pull_off":
         yield Compared(f"{name} approach", "eps", _numbers(a, b, lambda turn: turn.approach), approach, width)
     if name in ("pull_off", "jump_on"):
@@ -211,26 +228,31 @@ class State(Valued):
         return self.contact.far_reaction(self.u, self.gap) + self.contact.load_beyond(self.approach)
 
 
-def _size(event: Located, *, sized: bool) -> float:
-    """Radius in beta at which cells are finest: of the contact or, where that is larger, of the attraction.
-
-    A half-space has fine cells inside as well; on a body with a length the contact comes first, unless it is small.
-    """
+def _size(event: Located) -> float:
+    """Radius in beta at which cells are finest: of the contact or, if it is small or none, of the attraction."""
     _, _, central_gap, radius = (float(value) for value in event.point.observables)
-    attraction = 0.7 * float(np.sqrt(2 * (1 + central_gap) / event.problem.tabor))
-    return radius if sized and radius > SMALL * attraction else float(np.fmax(radius, attraction))
+    scales = event.problem.interface.scales
+    attraction = scales.radius_at(_opening(scales.law, central_gap))
+    return radius if radius > SMALL * attraction else attraction
 
 
 SMALL = 0.25  # contact, in the radius of the attraction
+OPENING, CLOSEST = 0.49, 0.1  # of a gap by the 3-9 law: what it opens by in that radius; eps, the least that counts
+
+
+def _opening(law: Law, central_gap: float) -> float:
+    """What the gap opens by, in eps, where the attraction has fallen as much as by the 3-9 law."""
+    grain = float(np.sqrt(LENNARD_JONES.stiffness / law.stiffness))
+    return OPENING * grain * max(1 + central_gap, CLOSEST)
 
 
 def _state(contact: Contact, event: Located) -> State:
     """Take over the gaps."""
     approach, load = (float(value) for value in event.point.observables[:2])
     h = 1 + _gaps(event, contact)
-    u, weight = contact.displacement(h), np.abs(tension(h))
-    off = (contact.gap(u, approach) - h) * weight
-    return State(contact, h, approach, load, u, contact.body.integral(off) / contact.body.integral(weight))
+    u, weight = contact.displacement(h), np.abs(contact.law.tension(h))
+    off = contact.body.integral((contact.gap(u, approach) - h) * weight) / contact.body.integral(weight)
+    return State(contact, h, approach, load, u, off)
 
 
 def _gaps(event: Located, contact: Contact) -> Array:
@@ -245,17 +267,15 @@ def _gaps(event: Located, contact: Contact) -> Array:
 def gaps_at(event: Located, radii: Array) -> Array:
     """Gaps H of a state at radii on its cells.
 
-    Under a sphere it is the deflection that is interpolated, by the angle sin(theta) = r/R: its profile is no
-    polynomial of the radius, and at the equator nor is what it leaves.
+    It is the deflection that is interpolated, whereas the profile is exact; under a surface that ends by the angle
+    sin(theta) = r/R, since at the equator it is no polynomial of the radius.
     """
     problem, x = event.problem.interface, event.problem.surface_state(event.point.x)
     operator, mu, profile = problem.operator_at(x), problem.tabor, problem.profile
     within = np.minimum(radii, operator.extent)
-    if np.isinf(profile.end):
-        return operator.values_at(within, x[:-2])
 
     def angle(r: Array) -> Array:
-        return np.asarray(np.arcsin(np.minimum(r / profile.end, 1.0)))
+        return r if np.isinf(profile.end) else np.asarray(np.arcsin(np.minimum(r / profile.end, 1.0)))
 
     by_angle = replace(operator, radii=angle(operator.radii), cells=angle(operator.cells))
     deflection = by_angle.values_at(angle(within), x[:-2] - mu * profile.height(operator.radii))
@@ -286,8 +306,8 @@ def _beside(name: str, state: State) -> Turn | None:
     return Turn(found.load, found.approach)
 
 
-def _energy_released(on: AtRadius, path: EquilibriumPath, *, sized: bool) -> float:
+def _energy_released(on: AtRadius, path: EquilibriumPath) -> float:
     """Potential energy between the two states of `EquilibriumPath.energy`; its error is of second order in theirs."""
     ends = (path.stages[-1][name] for name in ("separated", "zero_approach"))
-    before, after = (_state(on(_size(event, sized=sized)), event) for event in ends)
+    before, after = (_state(on(_size(event)), event) for event in ends)
     return before.contact.energy(before.u, before.approach) - after.contact.energy(after.u, after.approach)

@@ -23,8 +23,6 @@ from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
-from halfspace.laws import LENNARD_JONES
-from halfspace.profiles import Paraboloid, Sphere
 from halfspace.values import Array
 
 Operators = list[ElasticOperator]
@@ -81,15 +79,6 @@ def require_comparable(scene: Scene, rtol: float) -> None:
             f"material = {scene.material} is compared with nothing, limit: small strain; no other solver of the house "
             "knows it"
         )
-    for name, part, known in (
-        ("law", scene.law, scene.law == LENNARD_JONES),
-        ("profile", scene.shape, isinstance(scene.shape, (Paraboloid, Sphere))),
-    ):
-        if not known:
-            raise InputError(
-                f"{name} = {part} is unknown to the weak form of the comparison, limit: the 3-9 law, paraboloids and "
-                "spheres; hold fem_adhesion.trace against halfspace.trace"
-            )
     reference = reference_for(scene)
     if reference and reference.between == HARMONICS:
         harmonics.require_few(scene, tighter(rtol))

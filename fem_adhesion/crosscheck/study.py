@@ -126,7 +126,7 @@ def run(scenes: Sequence[Scene], *, rtol: float = 1e-5) -> Iterator[Case | Failu
         body = scene if scene.sized else replace(scene, tabor=1.0)
         try:
             if body not in before:
-                before[body] = unsolved(scene, rtol=rtol)
+                before[body] = unsolved(body, rtol=rtol)
             yield compare(scene, rtol=rtol, before=before[body])
         except NotConverged as error:
             yield Failure(scene, str(error), tuple(before.get(body, ())))
@@ -140,7 +140,7 @@ def unsolved(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
         both = reference.operators(rtol), [problem.operator.at(1.0) for problem in problems]
         under = pressures_for(scene).items()
         rows = [_compare_fields(name, pressure, *both, rtol, edge, reference.between) for name, pressure in under]
-    return [*rows, *from_scratch.equations(scene, problems[-2:], edge), *from_scratch.closed_forms()]
+    return [*rows, *from_scratch.equations(scene, problems[-2:], edge), *from_scratch.closed_forms(scene.law)]
 
 
 # Level 1: operators
@@ -183,8 +183,8 @@ def _cross_residuals(other: EquilibriumPath, fe: EquilibriumPath, rtol: float, b
         if name in fe.events:
             of_other = _residual([stage[name] for stage in other.stages], fe.stages[-1][name])
             of_fe = _residual([stage[name] for stage in fe.stages], other.stages[-1][name])
-            largest = max(of_other.value, of_fe.value)
-            yield Row(f"cross-residual: {name}", "eps", of_other, of_fe, largest, RESIDUAL * rtol, between)
+            largest, budget = max(of_other.value, of_fe.value), RESIDUAL * rtol * other.approach_scale
+            yield Row(f"cross-residual: {name}", "eps", of_other, of_fe, largest, budget, between)
 
 
 def _residual(found: Sequence[Located], equations: Located) -> Estimate:
@@ -202,10 +202,11 @@ def _residual(found: Sequence[Located], equations: Located) -> Estimate:
 
 
 def _carried(event: Located, target: ContactProblem) -> Array:
-    """State of an event on another solver's nodes."""
-    x = transfer(event.problem, event.point.x, target)
-    if np.isfinite([target.profile.end, event.problem.interface.profile.end]).all():  # a sphere's is no polynomial
-        x[:-2] = gaps_at(event, target.operator_at(x).radii)
+    """State of an event on another solver's nodes; on the cells it is its deflection that is carried over."""
+    x, source = transfer(event.problem, event.point.x, target), event.problem.interface
+    radii = target.operator_at(x).radii
+    inside = radii <= source.operator_at(event.problem.surface_state(event.point.x)).extent
+    x[:-2][inside] = gaps_at(event, radii[inside])
     return x
 
 

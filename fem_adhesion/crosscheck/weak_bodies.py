@@ -21,14 +21,17 @@ from fem_adhesion.weak_form import (
     Body,
     Contact,
     Heights,
+    Law,
     discretise,
     half_space,
+    lennard_jones,
     on_ground,
     opposed,
     paraboloid,
     sphere,
 )
 from halfspace.elastic import grid
+from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Paraboloid, Sphere
 from halfspace.values import Array
 
@@ -36,44 +39,78 @@ AtRadius = Callable[[float], Contact]
 """The contact on cells that are finest at a radius in beta."""
 
 FINENESS = ((3, 10.0), (4, 30.0))  # degree of the elements, size of the box in contact radii: coarse, fine
-DEGREES = (3, 4)  # of the elements of a body with a length; one more of spheres if nothing else checks them, or if
-NEARLY = 0.45  # they are nearly incompressible: Poisson's ratio beyond
+WIDE = 2.5  # beta: wider contacts have narrower spikes of tension in contact radii than soft ones on paraboloids
+TIP = 1e-4  # what the cell under a sharp tip may leave
+FARTHER = 10.0  # times as large for an attraction that falls slowly
+DEGREES = (3, 4)  # of the elements of a body with a length; one more of layers, of bodies that nothing else checks, or
+NEARLY = 0.45  # if they are nearly incompressible: Poisson's ratio beyond
+LOCKING = 0.499  # Poisson's ratio beyond which elements of a half-space have a degree more, as by other laws
 SHARP = 6.0
-"""Tabor parameter beyond which the spike of tension is too narrow for the weak form to show where a contact turns."""
+"""Sharpness of an edge beyond which its spike of tension is too narrow for the weak form to show where it turns."""
+
+
+def sharpness(scene: Scene, radius: float) -> float:
+    """How narrow the spike of tension at an edge is: the Tabor parameter, of a soft contact by the 3-9 law.
+
+    On a wide contact it is narrow in contact radii.
+    """
+    return float(np.sqrt(max(radius / WIDE, 1.0) / scene.scales.spike_width))
+
+
+def law_of(scene: Scene) -> Law:
+    """Law by its potential: the 3-9 law's in a formula of its own, any other's as it states it."""
+    law = scene.law
+    if law == LENNARD_JONES:
+        return Law(lennard_jones)
+    room = float(law.room(np.array(-1.0)))
+    return Law(lambda h: law.energy(h - 1, 1.0), law.stiffness**-0.5, room)
 
 
 def contacts(scene: Scene) -> tuple[AtRadius, AtRadius]:
     """Contact of a scene on a coarse and on a fine body."""
     if not scene.sized:
-        boxes = half_spaces(scene)
-        return partial(_on_half_space, scene, boxes[0]), partial(_on_half_space, scene, boxes[1])
+        return partial(_on_half_space, scene, FINENESS[0]), partial(_on_half_space, scene, FINENESS[1])
     if scene.body.file:
         return partial(_on_given_mesh, scene, DEGREES[0]), partial(_on_given_mesh, scene, DEGREES[1])
-    more = int(scene.body.checked_by is None or scene.poisson > NEARLY)
+    more = int(scene.body.checked_by is None or scene.poisson > NEARLY or scene.body.layered is not None)
     return partial(_sized, scene, DEGREES[0] + more), partial(_sized, scene, DEGREES[1] + more)
 
 
 # Half-spaces
 
 
-def half_spaces(scene: Scene) -> tuple[Body, ...]:
-    """Half-spaces, coarse and fine, with cells at the contact edge finer than the spike of tension there."""
-    more = int(scene.tabor > SHARP) + int(scene.tabor > 3 * SHARP)
-    return tuple(_half_space(_finest(scene), size, degree + more, scene.poisson) for degree, size in FINENESS)
+def _on_half_space(scene: Scene, fineness: tuple[int, float], radius: float) -> Contact:
+    """Contact on a box with cells at a radius that are finer than the spike of tension there."""
+    degree, size = fineness
+    size *= _wider(scene, radius)
+    sharp = sharpness(scene, radius)
+    more = int(sharp > SHARP) + int(sharp > 3 * SHARP) + int(scene.law != LENNARD_JONES or scene.poisson > LOCKING)
+    body = _half_space(_finest(scene, radius), size, degree + more, scene.poisson, _tip(scene, radius))
+    return Contact(body.scaled(radius), scene.tabor, _heights(scene), law=law_of(scene))
 
 
-def _finest(scene: Scene) -> float:
-    """Length of the cells at the contact edge in contact radii."""
-    return float(0.04 * 3.0 ** -max(0.0, np.ceil(np.log(scene.tabor**2 / 4) / np.log(3))))
+def _wider(scene: Scene, radius: float) -> float:
+    """How much larger a box is than for a contact whose attraction reaches about as far, by powers of 2."""
+    if scene.scales.far_energy:
+        return FARTHER
+    reach = scene.scales.radius_at(scene.law.range(0.1))
+    return float(2.0 ** np.round(np.log2(max(reach / radius, 1.0))))
+
+
+def _finest(scene: Scene, radius: float) -> float:
+    """Length of the cells at the contact edge in contact radii, by powers of 3 so that few bodies serve all."""
+    return float(0.04 * 3.0 ** -max(0.0, np.ceil(np.log(sharpness(scene, radius) ** 2 / 4) / np.log(3))))
+
+
+def _tip(scene: Scene, radius: float) -> float:
+    """Length of the cell under a sharp tip in contact radii, by powers of 2 so that few bodies serve all."""
+    first = scene.surface.first_cell(TIP) / radius
+    return float(2.0 ** np.floor(np.log2(first))) if np.isfinite(first) else np.inf
 
 
 @lru_cache(maxsize=8)
-def _half_space(finest: float, size: float, degree: int, poisson: float) -> Body:
-    return half_space(finest, size, degree, poisson)
-
-
-def _on_half_space(scene: Scene, body: Body, radius: float) -> Contact:
-    return Contact(body.scaled(radius), scene.tabor)
+def _half_space(finest: float, size: float, degree: int, poisson: float, tip: float) -> Body:
+    return half_space(finest, size, degree, poisson, tip)
 
 
 # Bodies with a length
@@ -85,7 +122,7 @@ RINGS = 4  # of cells around a corner where the stress is singular
 def _on_given_mesh(scene: Scene, degree: int, _: float) -> Contact:
     """Contact of a user's mesh."""
     body = discretise(_given_mesh(scene), degree, scene.poisson, slides=scene.body.held == "sliding")
-    return Contact(body, scene.tabor, lambda _: scene.sphere_radius * body.depths, endless=False)
+    return Contact(body, scene.tabor, lambda _: scene.sphere_radius * body.depths, False, law=law_of(scene))
 
 
 @lru_cache(maxsize=2)
@@ -99,16 +136,16 @@ def _sized(scene: Scene, degree: int, radius: float) -> Contact:
     """Contact of one body or two, whose cells are finest at a radius."""
     R = scene.radii[0]
     radius = min(radius, WIDEST * R)  # what attracts from afar may be wider
-    how = Discretisation(degree, 2 * _finest(scene) * radius / scene.scales.spike_width, GROWTH, RINGS)
+    how = Discretisation(degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, GROWTH, RINGS)
     outer, coordinate = layout_of(scene, how)
     core = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=GROWTH)
     if scene.counter is None:
         body = _standing(scene.body, mesh_of(scene, core, how), degree)
-        return Contact(body, scene.tabor, _heights(scene), endless=False)
+        return Contact(body, scene.tabor, _heights(scene), False, law=law_of(scene))
     meshes = pair_meshes(scene, scene.counter, core, how)
     first, second = (_standing(*one, degree) for one in zip((scene.body, scene.counter), meshes, strict=True))
     body = opposed(first, second, scene.shares[1])
-    return Contact(body, scene.tabor, _heights(scene), endless=False, rigid=_rim(first.rim, R))
+    return Contact(body, scene.tabor, _heights(scene), False, _rim(first.rim, R), law_of(scene))
 
 
 def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:

@@ -1,0 +1,69 @@
+"""Laws, profiles and bodies that are hard together, each through `compare`: all must agree.
+
+Long and short ranges, soft and hard cores, tips from nearly a cone to nearly a punch, layers from 0.05 to 100 beta.
+"""
+
+import time
+
+from fem_adhesion import HalfSpace, Layer, Scene
+from fem_adhesion.common.jobs import stream
+from fem_adhesion.common.progress import progress_bar
+from fem_adhesion.crosscheck import study as crosscheck
+from halfspace.laws import Dlvo, Exponential, Morse, PowerLaw
+from halfspace.profiles import Hyperboloid, Power, Sphere
+
+RTOL = 1e-4
+RUBBER, SLIDING = HalfSpace(poisson=0.4999), Layer(0.5, "sliding")
+SCENES = (
+    Scene(1.0, law=PowerLaw(2.1, 2.5)),
+    Scene(0.5, law=PowerLaw(20, 60)),
+    Scene(5.0, law=Morse(0.3)),
+    Scene(0.2, law=Morse(20)),
+    Scene(1e-6, law=Morse(3)),
+    Scene(0.05, law=Exponential(3)),
+    Scene(3.0, law=Dlvo(-0.5, 0.3)),
+    Scene(2.0, RUBBER, law=Dlvo(0.3, 1.0)),
+    Scene(2.0, RUBBER, law=Morse(3)),
+    Scene(1.0, profile=Power(1.5)),
+    Scene(0.1, profile=Power(10)),
+    Scene(3.0, profile=Power(3)),
+    Scene(1.0, profile=Hyperboloid(1)),
+    Scene(0.3, RUBBER, profile=Power(6)),
+    Scene(1.0, law=PowerLaw(4, 10), profile=Power(10)),
+    Scene(1.0, law=Dlvo(0.3, 1.0), profile=Power(4)),
+    Scene(1.0, law=PowerLaw(3.5, 9.5), profile=Hyperboloid(0.3)),
+    Scene(1.0, law=Exponential(0.5, 4), profile=Power(3)),
+    Scene(1.0, law=Morse(3), profile=Power(1.5)),
+    Scene(1.0, law=Morse(3), profile=Sphere(30)),
+    Scene(2.0, law=PowerLaw(2.5, 9.5), profile=Sphere(10)),
+    Scene(0.5, law=Exponential(3), profile=Sphere(3)),
+    Scene(1.0, Layer(0.05)),
+    Scene(1.0, Layer(2.0), law=Morse(3)),
+    Scene(1.0, Layer(100.0), law=Dlvo(0.3, 1.0)),
+    Scene(3.0, Layer(1.0, poisson=0.45), law=PowerLaw(4, 10)),
+    Scene(1.0, SLIDING, profile=Power(1.5)),
+    Scene(1.0, Layer(1.0, poisson=0.4999), profile=Power(4)),
+    Scene(0.3, Layer(5.0, poisson=0.0), law=Exponential(3), profile=Power(3)),
+    Scene(0.5, SLIDING, law=PowerLaw(2.5, 9.5), profile=Power(4)),
+)
+
+
+def verdict(scene):
+    """Whether a comparison agrees, or the rows that do not and why it failed."""
+    (case,) = crosscheck.run([scene], rtol=RTOL)
+    rows = [f"{row.quantity} {row.verdict}" for row in case.rows if row.verdict != "agree"]
+    return ", ".join([*rows, *([case.reason] if isinstance(case, crosscheck.Failure) else [])]) or "agree"
+
+
+def compared(scenes=SCENES):
+    """Compare all scenes and print what does not agree; whether all do."""
+    began, wrong = time.perf_counter(), 0
+    with progress_bar() as told:
+        for k, (scene, found) in enumerate(stream(verdict, scenes), start=1):
+            told("combinations", k, len(scenes))
+            if found != "agree":
+                wrong += 1
+                print(f"    {', '.join(scene.told)}: {found}", flush=True)
+    print(f"combinations of law, profile and body: {len(scenes) - wrong} of {len(scenes)} agree", end=" ")
+    print(f"in {time.perf_counter() - began:.0f} s", flush=True)
+    return not wrong
