@@ -5,6 +5,7 @@ A class is imported when it is first asked for. A new part is a class in a file 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from importlib import import_module
@@ -55,6 +56,13 @@ def name_of(part: object) -> str:
     known = (own, f"{own.__module__}:{own.__qualname__}")
     names = (name for table in PARTS.values() for name, home in table.items() if home in known)
     return next(names, own.__qualname__)
+
+
+def told(part: Any) -> str:
+    """Name of a law or a profile and its numbers, in words; R/eps, which a scene tells, left out."""
+    own = {field.name: getattr(part, field.name) for field in fields(part)} if is_dataclass(part) else {}
+    numbers = [f"{name} {value:g}" for name, value in own.items() if name != "radius_ratio" and math.isfinite(value)]
+    return " ".join([name_of(part), *numbers])
 
 
 def record_of(part: Any) -> Any:

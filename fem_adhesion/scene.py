@@ -10,7 +10,7 @@ from fem_adhesion.bodies.body import Body
 from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.bodies.layer import as_body
 from fem_adhesion.materials import Material
-from fem_adhesion.registry import name_of
+from fem_adhesion.registry import told
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.check import require_law
@@ -178,8 +178,8 @@ class Scene:
         """What it is, in words: Tabor parameter, material and body, and what else is not as usual."""
         material = self.material
         parts = {
-            f"under a {name_of(self.profile)}": self.profile is not None and self.profile != self.body.shape,
-            f"{name_of(self.law)} {self.law}": self.law != LENNARD_JONES,
+            f"under a {told(self.profile)}": self.profile is not None and self.profile != self.body.shape,
+            f"law {told(self.law)}": self.law != LENNARD_JONES,
             f"traction per {material.traction}": material.traction != "projected",
             "finite strain": material.finite,
         }

@@ -29,12 +29,15 @@ from fem_adhesion.scene import Scene
 from halfspace.equilibrium import devices
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError, NotConverged
-from halfspace.profiles import Paraboloid, Sphere
+from halfspace.laws import Dlvo, Exponential, Morse, PowerLaw
+from halfspace.profiles import Hyperboloid, Paraboloid, Power, Sphere
 from halfspace.scaling import Units
 from halfspace.values import Estimate
 
 MATERIAL = ("--radius", "100nm", "--modulus", "1GPa", "--poisson", "0.3", "--work-of-adhesion", "50mJ/m^2")
+BY_HAMAKER = (*MATERIAL, "--hamaker", "65zJ")
 MATERIAL = (*MATERIAL, "--spacing", "0.3nm")
+MORSE = ("--law", "morse", "--law-parameter", "3")
 UNITS = Units(100e-9, 1.1e9, 0.05, 0.3e-9)
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 
@@ -426,6 +429,28 @@ def test_the_example_of_the_help_runs(tmp_path, monkeypatch):
     assert {file.name for file in tmp_path.iterdir()} == {"curve.svg", "curve.json"}
 
 
+@pytest.mark.parametrize(
+    ("arguments", "part"),
+    [
+        (MORSE, {"law": Morse(3)}),
+        (("--law", "exponential", "--law-parameter", "3"), {"law": Exponential(3)}),
+        (("--law", "dlvo", "--law-parameter", "-0.5", "0.3"), {"law": Dlvo(-0.5, 0.3)}),
+        (("--law", "power-law", "--law-parameter", "4", "10"), {"law": PowerLaw(4, 10)}),
+        (("--profile", "power", "--profile-parameter", "4"), {"profile": Power(4)}),
+        (("--profile", "hyperboloid", "--profile-parameter", "0.5"), {"profile": Hyperboloid(0.5)}),
+        (("--profile", "sphere", "--radius-ratio", "50", *MORSE), {"law": Morse(3), "profile": Sphere(50)}),
+    ],
+)
+def test_laws_and_profiles_are_heeded(arguments, part, monkeypatch):
+    assert _asked(monkeypatch, "--tabor", 2, *arguments).scene == Scene(2.0, **part)
+
+
+def test_a_material_has_its_law(monkeypatch):
+    asked = _asked(monkeypatch, *MATERIAL, *MORSE)
+    assert asked.scene.law == Morse(3)
+    assert asked.scene.told[-1] == "law morse k 3"
+
+
 def test_fields_inside_are_written_for_every_event(tmp_path):
     pytest.importorskip("pyvista")
     assert _run("--tabor", 0.3, "--rtol", 1e-2, "--vtk", tmp_path / "fields", "--points", 0) == 0
@@ -461,6 +486,19 @@ def test_fields_inside_are_written_for_every_event(tmp_path):
         (["--tabor", "2", "--stiffness", "-1"], "outside 0 < stiffness"),
         (["--tabor", "2", "--plot", "a.gif"], "ends in '.gif', limit: one of .png, .svg, .pdf"),
         (["--tabor", "2", "--body", "hemisphere"], "radius_ratio = None"),
+        (["--tabor", "2", "--law-parameter", "3"], "--law-parameter would not be heeded, limit: with --law"),
+        (["--tabor", "2", "--law", "morse"], "law_parameter = None for law = morse, limit: k; give them in this order"),
+        (["--tabor", "2", "--law", "exponential"], "limit: k [core]; give them in this order"),
+        (["--tabor", "2", "--law", "morse", "--law-parameter", "3nm"], "law_parameter = 3nm, limit: a plain number"),
+        (["--tabor", "2", "--law", "dlvo", "--law-parameter", "0.5", "1"], "charge = 0.5 leaves no work of adhesion"),
+        (
+            ["--tabor", "2", "--profile-parameter", "3"],
+            "--profile-parameter would not be heeded, limit: with",
+        ),
+        (["--tabor", "2", "--profile", "power"], "profile_parameter = None for profile = power, limit: k; give them"),
+        (["--tabor", "2", "--profile", "paraboloid", "--profile-parameter", "3"], "limit: none; leave it out"),
+        (["--tabor", "2", "--profile", "power", "--profile-parameter", "1"], "round a cone's tip"),
+        ([*BY_HAMAKER, *MORSE], "--hamaker would not be heeded, limit: the 3-9 law"),
         (
             ["--tabor", "2", "--solver", "half-space", "--body", "hemisphere", "--radius-ratio", "99"],
             "take fem or both",

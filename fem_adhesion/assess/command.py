@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from fem_adhesion.common.options import AGREE, Command, Parser, console_beside, require_distinct, written
 from fem_adhesion.common.progress import progress_bar
-from fem_adhesion.common.scene_options import add_contact, material_of, refuse
+from fem_adhesion.common.scene_options import add_contact, add_law, material_of, refuse
 
 if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 def add_options(command: Parser) -> None:
     """Add the options."""
     add_contact(command, in_si_only=True)
+    add_law(command.add_argument_group("law"))
     results = command.add_argument_group("results")
     results.add_argument(
         "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
@@ -49,9 +50,10 @@ def run(options: argparse.Namespace) -> int:
 
 def _contact(options: argparse.Namespace) -> Contact:
     """The contact, with nothing given that would not be heeded."""
-    from fem_adhesion.assess.study import FINITE_TABOR
+    from fem_adhesion.assess.study import FINITE_TABOR, require_known
 
     contact = material_of(options)
+    require_known(contact)
     tabor = contact.units.tabor
     if tabor > FINITE_TABOR:
         refuse(

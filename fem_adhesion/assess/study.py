@@ -36,6 +36,7 @@ from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import tolerance_told
 from halfspace.errors import InputError, NotConverged
+from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Sphere
 from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
 
@@ -157,6 +158,14 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
     )
 
 
+def require_known(contact: Contact) -> None:
+    """Refuse a law at a Tabor parameter at which a closed theory, known for the 3-9 law, is as good; InputError."""
+    tabor = contact.units.tabor
+    if contact.law != LENNARD_JONES and not RIGID_TABOR <= tabor <= REFERENCE_TABOR:
+        limit = f"{RIGID_TABOR:g} <= tabor <= {REFERENCE_TABOR:g} with --law"
+        raise InputError(f"tabor = {tabor:.4g}, limit: {limit}; leave it out, as all laws have the same limits there")
+
+
 def _half_space(contact: Contact) -> Prediction:
     """The computed half-space, or the closed theory that is as good."""
     units, stiffness = contact.units, contact.reduced_stiffness
@@ -164,7 +173,7 @@ def _half_space(contact: Contact) -> Prediction:
         return large_tabor(units.tabor, stiffness, units)
     if units.tabor < RIGID_TABOR:
         return closed("rigid half-space", bradley, units.tabor, stiffness, units)
-    path = halfspace.trace(units.tabor, rtol=RTOL, to_load=TO_LOAD)
+    path = halfspace.trace(units.tabor, law=contact.law, rtol=RTOL, to_load=TO_LOAD)
     return computed(HALF_SPACE, path, stiffness, units)
 
 
@@ -204,7 +213,7 @@ def _profile(contact: Contact) -> Prediction:
     if units.tabor < RIGID_TABOR:
         return rigid_sphere(units)
     profile = Sphere(units.radius_ratio, larger)
-    path = halfspace.trace(units.tabor, profile=profile, rtol=RTOL, to_load=TO_LOAD)
+    path = halfspace.trace(units.tabor, law=contact.law, profile=profile, rtol=RTOL, to_load=TO_LOAD)
     return computed(PROFILE, path, contact.reduced_stiffness, units)
 
 
@@ -218,6 +227,7 @@ def _finite(contact: Contact) -> Prediction:
         )
     scene = Scene(
         tabor=units.tabor,
+        law=contact.law,
         body=Hemisphere(radius_ratio=contact.smaller_ratio, grip=contact.grip, poisson=contact.smaller_poisson),
         counter=contact.counter,
         share=contact.share,

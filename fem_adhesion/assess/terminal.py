@@ -14,6 +14,8 @@ from fem_adhesion.assess.study import Assessment
 from fem_adhesion.common.facts import plain, versions
 from fem_adhesion.common.numbers import PREFIXES, Quantity, engineering, exponent_of, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
+from fem_adhesion.registry import record_of, told
+from halfspace.laws import LENNARD_JONES
 
 DIGITS_OF_RATIO = 4  # significant, at most
 RANKS = {"both": 0, "true profile": 1, "finite body": 1}  # by which columns of the differences are left out
@@ -41,6 +43,8 @@ def _head(assessment: Assessment) -> Iterator[RenderableType]:
     yield Flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in sizes), *ratios])
     law = (("spacing eps", units.spacing, "m"), ("work of adhesion", units.work_of_adhesion, "J/m^2"))
     implied = f"with them the Hamaker constant 16 pi dgamma eps^2 = {engineering(units.hamaker, 'J')}"
+    if contact.law != LENNARD_JONES:
+        implied = f"law {told(contact.law)}"
     yield Flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in law), implied])
     fixed = math.isinf(contact.stiffness)
     yield Text("fixed grips" if fixed else f"cantilever: {engineering(contact.stiffness, 'N/m')}")
@@ -132,7 +136,7 @@ def record(assessment: Assessment) -> dict[str, object]:
     """Everything as plain data for JSON, without infinities: a quantity is a value, an error and a unit in SI."""
     contact = assessment.contact
     return {
-        "input": plain(asdict(contact)),
+        "input": plain({**asdict(contact), "law": record_of(contact.law)}),
         "equivalent_radius": contact.units.radius,
         "contact_modulus": contact.units.modulus,
         "hamaker": contact.units.hamaker,

@@ -9,6 +9,7 @@ from fem_adhesion.assess.predictions import QUANTITIES, RADII, WORDS, Prediction
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.numbers import Quantity
 from fem_adhesion.finite_strain.traction import yielded_adhesion
+from halfspace.laws import LENNARD_JONES
 
 # Tabor parameters between which neither limit serves, [G97] and Johnson & Greenwood 1997.
 RIGID_TO, SOFT_FROM = 0.1, 5.0
@@ -129,11 +130,11 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
 
 
 def yielding(contact: Contact) -> Iterator[str]:
-    """What the yield of the attracted layer, which no surface law has, does to the work of adhesion of one sphere."""
+    """What the yield of the attracted layer, which no surface law has, does to one sphere's adhesion by the 3-9 law."""
     units = contact.units
-    ratio = yielded_adhesion(units.tabor, units.radius_ratio, contact.poisson)
-    if contact.pair:
+    if contact.pair or contact.law != LENNARD_JONES:
         return
+    ratio = yielded_adhesion(units.tabor, units.radius_ratio, contact.poisson)
     yield (
         "yield of the attracted layer is left out: to the first order it deepens the work of adhesion by "
         f"{_percent(ratio - 1)}, to {units.work_of_adhesion * ratio:.4g} J/m^2; give that to include it"

@@ -14,6 +14,8 @@ from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.bodies.hemisphere import Hemisphere
 from fem_adhesion.scene import facing_pair
 from halfspace.errors import InputError
+from halfspace.laws import LENNARD_JONES, Law
+from halfspace.laws.check import require_law
 from halfspace.limits import require_poisson
 from halfspace.scaling import Units, contact_modulus, equivalent_radius
 
@@ -40,6 +42,8 @@ class Contact:
         Of the cantilever in N/m; infinite for fixed grips.
     grip : {"sliding", "bonded"}
         How spheres are held at their mid-planes.
+    law : Law
+        Of the tension between the surfaces.
 
     Raises
     ------
@@ -57,9 +61,11 @@ class Contact:
     counter_radius: float = math.inf
     stiffness: float = math.inf
     grip: GripName = "sliding"
+    law: Law = LENNARD_JONES
 
     def __post_init__(self) -> None:
         require_poisson(self.poisson)
+        require_law(self.law)
         if not self.stiffness > 0:
             raise InputError(
                 f"stiffness = {self.stiffness:g} N/m is outside 0 < stiffness; leave it out for fixed grips"

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_adhesion.registry import PARTS, class_of, name_of
 from halfspace.errors import InputError
+from halfspace.laws import LENNARD_JONES, Law
 
 if TYPE_CHECKING:
     from fem_adhesion.bodies.body import Body, GripName
@@ -67,7 +68,8 @@ def add_body(body: Group) -> None:
     body.add_argument("--body", choices=tuple(PARTS["body"]), help="what is elastic; half-space unless given")
     body.add_argument("--mesh", type=Path, help="file with the mesh of the body, which is meshed then", metavar="FILE")
     profile = "undeformed gap; the body's own unless given, of a half-space a paraboloid"
-    body.add_argument("--profile", choices=("paraboloid", "sphere"), help=profile)
+    _add_part(body, "profile", profile)
+    add_law(body)
     cap = "half-angle of the cap over which a sphere is held, degrees; 30 unless given"
     body.add_argument("--cap-angle", type=float, help=cap, metavar="ANGLE")
     body.add_argument("--thickness", type=float, help="thickness of a layer on a rigid base in beta", metavar="T")
@@ -84,6 +86,18 @@ def add_body(body: Group) -> None:
     body.add_argument("--radius-ratio", type=float, help=ratio, metavar="RHO")
 
 
+def add_law(group: Group) -> None:
+    """Add the options of the law of tension."""
+    _add_part(group, "law", "of the tension between the surfaces; power-law unless given")
+
+
+def _add_part(group: Group, kind: str, what: str) -> None:
+    """Add the options of a law or a profile: its name, and its parameters in their order."""
+    group.add_argument(f"--{kind}", choices=tuple(PARTS[kind]), help=what)
+    taken = "; ".join(f"{name}: {' '.join(own)}" for name in PARTS[kind] if (own := _parameters(kind, name)))
+    group.add_argument(f"--{kind}-parameter", nargs="+", help=f"its own, in order ({taken})", metavar="X")
+
+
 MATERIALS = {"small": "linear-elastic", "finite": "neo-hookean"}  # by the strain
 FIELDS = {
     "radius_ratio": "radius_ratio",
@@ -96,6 +110,7 @@ FIELDS = {
     "foundation": "foundation",
 }
 """Options that say what the fields of a body are."""
+GIVEN_OTHERWISE = ("radius_ratio", "counter_radius", "end")  # of a profile: by options of a body, or by the body
 
 
 def scene_of(
@@ -112,7 +127,42 @@ def scene_of(
     traction = {} if options.traction is None else {"traction": options.traction}
     material = class_of("material", MATERIALS[options.strain or "small"])(poisson, **traction)
     body = _body(options, radius_ratio, material)
-    return Scene(tabor, body, _profile(options, body, radius_ratio), counter=counter, share=share)
+    profile, law = _profile(options, body, radius_ratio), law_of(options)
+    return Scene(tabor, body, profile, law, counter=counter, share=share)
+
+
+def law_of(options: argparse.Namespace) -> Law:
+    """Law given, or the 3-9 law."""
+    if options.law is None:
+        refuse(options, ("law_parameter",), "with --law")
+        return LENNARD_JONES
+    law: Law = class_of("law", options.law)(*_values(options, "law"))
+    return law
+
+
+def _values(options: argparse.Namespace, kind: str) -> list[float]:
+    """Parameters of a law or a profile."""
+    name, given = getattr(options, kind), getattr(options, f"{kind}_parameter") or []
+    own = _parameters(kind, name)
+    least = sum(_fields(name, kind)[field].default is MISSING for field in own)
+    if not least <= len(given) <= len(own):
+        optional = [f"[{field}]" for field in own[least:]]
+        listed = " ".join([*own[:least], *optional]) or "none"
+        remedy = "give them in this order" if own else "leave it out"
+        raise InputError(f"{kind}_parameter = {' '.join(given) or None} for {kind} = {name}, limit: {listed}; {remedy}")
+    return [_number(f"{kind}_parameter", text) for text in given]
+
+
+def _parameters(kind: str, name: str) -> list[str]:
+    """Fields of a law or a profile that are numbers of its own, none of which other options give."""
+    return [field for field in _fields(name, kind) if field not in GIVEN_OTHERWISE]
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError as error:
+        raise InputError(f"{name} = {text}, limit: a plain number; give one without a unit") from error
 
 
 def has_size(options: argparse.Namespace) -> bool:
@@ -161,17 +211,20 @@ def _profile(options: argparse.Namespace, body: Body, radius_ratio: float | None
     """Profile given, or None for the body's own."""
     name = options.profile
     own = name is None or (name == name_of(body.shape) and not body.file)
+    if name is None:
+        refuse(options, ("profile_parameter",), "with --profile")
     takes = not own and "radius_ratio" in _fields(name, "profile")
     if math.isinf(body.size) and options.radius_ratio is not None and not takes:
         raise InputError(
             f"radius_ratio = {options.radius_ratio:g} means nothing to a {body.name} under a paraboloid; leave it out, "
             "or take --body hemisphere or --profile sphere"
         )
+    values = [] if name is None else _values(options, "profile")
     if own:
         return None
     if takes and radius_ratio is None:
         raise InputError(f'radius_ratio = None for profile = "{name}", limit: a number; give R/eps')
-    return class_of("profile", name)(*([radius_ratio] if takes else []))
+    return class_of("profile", name)(*([radius_ratio] if takes else []), *values)
 
 
 def given(options: argparse.Namespace, *names: str) -> list[str]:
@@ -208,7 +261,7 @@ def material_of(options: argparse.Namespace) -> Contact:
 
 
 def _require_whole(options: argparse.Namespace) -> None:
-    """Refuse a material that lacks something, or whose law is given twice."""
+    """Refuse a material that lacks something, or whose spacing is given twice, or by a constant of another law."""
     missing = [f"--{name.replace('_', '-')}" for name in MATERIAL if getattr(options, name) is None]
     laws = given(options, *LAW)
     if not laws:
@@ -217,6 +270,8 @@ def _require_whole(options: argparse.Namespace) -> None:
         raise InputError(f"{', '.join(missing)} missing, limit: a whole material; give it too")
     if len(laws) == 2:
         raise InputError(f"{' with '.join(laws)}, limit: one of both, as each follows from the other; leave one out")
+    if options.law is not None and law_of(options) != LENNARD_JONES:
+        refuse(options, ("hamaker",), "the 3-9 law, by whose tail it gives the spacing, and --spacing with others")
 
 
 def _contact(options: argparse.Namespace) -> Contact:
@@ -233,6 +288,7 @@ def _contact(options: argparse.Namespace) -> Contact:
         poisson=options.poisson,
         counter_poisson=options.counter_poisson,
         grip=options.grip or "sliding",
+        law=law_of(options),
     )
 
 
