@@ -13,7 +13,6 @@ reference for `fem_adhesion.elasticity.condensation`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -29,7 +28,7 @@ from fem_adhesion.elasticity.condensation import contact_surface
 from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space, cell_quadrature, lame_parameters
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.equilibrium.contact import ContactProblem
+from halfspace.equilibrium.contact import ContactProblem, Solver
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Valued
@@ -98,6 +97,11 @@ class MonolithicProblem(Valued):
     interface: ContactProblem
 
     @property
+    def reuse(self) -> float:
+        """As of the condensed problem."""
+        return self.interface.reuse
+
+    @property
     def tabor(self) -> float:
         """Tabor parameter mu."""
         return self.interface.tabor
@@ -150,7 +154,7 @@ class MonolithicProblem(Valued):
         pressure = self.interface.law.pressure(self._facet_gaps(x), self.tabor)
         return np.asarray(pressure_work.assemble(self.contact, pressure=pressure))
 
-    def bordered_solver(self, x: Array, row: Array) -> Callable[[Array], Array]:
+    def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
         J = sparse.csc_array(sparse.vstack([self.jacobian(x), sparse.csr_array(row[None])]))
         try:
@@ -158,7 +162,7 @@ class MonolithicProblem(Valued):
             factors = splu(J, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options={"SymmetricMode": True})
         except RuntimeError as error:  # SuperLU's way of saying so
             raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start") from error
-        return lambda rhs: np.asarray(factors.solve(rhs))
+        return lambda rhs, _=0.0: np.asarray(factors.solve(rhs))
 
     def surface_state(self, x: Array) -> Array:
         """State as the interface knows it: H at the q points by radius, alpha*, and the radii's fixed scale 1."""

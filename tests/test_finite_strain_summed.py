@@ -13,7 +13,7 @@ from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import sliding, with_interiors
 from fem_adhesion.elasticity.space import Space, cell_quadrature, reference_functions
 from fem_adhesion.finite_strain.assembly import finite_strain_problem
-from fem_adhesion.finite_strain.bodies import displacement_body
+from fem_adhesion.finite_strain.body import displacement_body
 from fem_adhesion.finite_strain.meshes import fine_between
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.mesh import spheres
@@ -60,14 +60,14 @@ class Summed:
     """Equilibrium of the body's reduced unknowns and the approach under the wall's potential in its volume."""
 
     def __init__(self, problem):
-        self.problem, self.T = problem, problem.exterior.reduction
+        self.problem, self.T = problem, problem.held.exterior.reduction
         self.scale = TABOR / problem.stretch  # eps per beta
         space = problem.body.space
         points, _ = cell_quadrature(space)
         self.values, _ = reference_functions(space.element, points)
         self.depth = -self.scale * space.mesh.mapping().F(points)[1]  # of the undeformed body, in eps
-        self.volume = np.concatenate([cells.measure for cells in problem.body.cells])
-        self.dofs = np.concatenate([cells.dofs for cells in problem.body.cells])[:, len(self.values) :]
+        self.volume = problem.body.measure
+        self.dofs = problem.body.displacements[:, len(self.values) :]
 
     def derivatives(self, x):
         """All displacements, and the potential's first two derivatives by the gap at every point, times its volume."""

@@ -13,7 +13,7 @@ from scipy import sparse
 import halfspace
 from fem_adhesion.elasticity.condensation import Factorised
 from fem_adhesion.elasticity.elimination import factor
-from fem_adhesion.finite_strain.solve import _inverse
+from fem_adhesion.finite_strain.held import _inverse
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import LOAD

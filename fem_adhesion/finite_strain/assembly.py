@@ -3,26 +3,17 @@
 from __future__ import annotations
 
 from scipy import sparse
-from skfem import ElementQuadP
 
 from fem_adhesion.elasticity.far_field import Exterior
-from fem_adhesion.elasticity.incompressible import REMEDY_FROM
-from fem_adhesion.elasticity.space import Space
-from fem_adhesion.finite_strain.bodies import Body, displacement_body, mixed_body
+from fem_adhesion.finite_strain.body import Body
+from fem_adhesion.finite_strain.held import HeldBody
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
-from fem_adhesion.finite_strain.surface import contact_surface, rigid_operator
+from fem_adhesion.finite_strain.surface import contact_surface
 from fem_adhesion.finite_strain.traction import Convention
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
-
-
-def material_body(space: Space, poisson: float, stretch: float) -> Body:
-    """Body of displacements alone, or with a pressure where these would lock."""
-    if poisson < REMEDY_FROM:
-        return displacement_body(space, poisson, stretch)
-    return mixed_body(space, poisson, stretch, ElementQuadP(space.degree - 1))
 
 
 def finite_strain_problem(
@@ -40,7 +31,7 @@ def finite_strain_problem(
     Parameters
     ----------
     body : Body
-        From `fem_adhesion.finite_strain.bodies`, its `displacement_body` or `mixed_body`.
+        From `fem_adhesion.finite_strain.body`, its `displacement_body` or `mixed_body`.
     exterior : Exterior
         Of all displacement unknowns of its space, interior ones included: see
         `fem_adhesion.elasticity.far_field.with_interiors`.
@@ -64,8 +55,8 @@ def finite_strain_problem(
     whole = _with_pressures(exterior, body)
     space = body.space
     surface = contact_surface(space, whole, space.degree + 2 if points is None else points)
-    rigid = rigid_operator(space, surface)
-    return FiniteStrainProblem(body, whole, surface, ContactProblem(rigid, tabor, law, profile), convention)
+    interface = ContactProblem(surface.rigid, tabor, law, profile)
+    return FiniteStrainProblem(HeldBody(body, whole, surface.unknowns), surface, interface, convention)
 
 
 def _with_pressures(exterior: Exterior, body: Body) -> Exterior:

@@ -12,7 +12,8 @@ from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import FAR_FIELDS, finest_length, layout_of, mesh_of
 from fem_adhesion.elasticity.far_field import with_interiors
 from fem_adhesion.elasticity.space import Space
-from fem_adhesion.finite_strain.assembly import finite_strain_problem, material_body
+from fem_adhesion.finite_strain.assembly import finite_strain_problem
+from fem_adhesion.finite_strain.body import material_body
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.scene import Scene

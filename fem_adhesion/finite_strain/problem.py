@@ -16,18 +16,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
-from scipy import sparse
+from scipy.sparse.linalg import LinearOperator
 
-from fem_adhesion.elasticity.far_field import Exterior
-from fem_adhesion.finite_strain.bodies import Body
-from fem_adhesion.finite_strain.solve import Elimination, Step, elimination
+from fem_adhesion.finite_strain.body import Body
+from fem_adhesion.finite_strain.held import HeldBody, Tangent
 from fem_adhesion.finite_strain.surface import ContactSurface
 from fem_adhesion.finite_strain.traction import Convention, Traction
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.profiles import Surface
+from halfspace.equilibrium.contact import (
+    APPROACH,
+    CENTRAL_GAP,
+    CONTACT_RADIUS,
+    LOAD,
+    ContactProblem,
+    Solver,
+    count_negative,
+)
 from halfspace.values import Array, Valued
 
 MOST_STEPS, ENOUGH = 12, 1e-4  # to a start under a given pressure, and its relative accuracy
@@ -42,10 +47,8 @@ class FiniteStrainProblem(Valued):
 
     Attributes
     ----------
-    body : Body
-        Forces, tangent and energy of the material.
-    exterior : Exterior
-        How it is held or goes on: maps the n reduced unknowns, those beyond the displacements last, to all.
+    held : HeldBody
+        Forces, tangent and energy of the material, and how the body is held or goes on; n reduced unknowns.
     surface : ContactSurface
         Where the surface law acts.
     interface : ContactProblem
@@ -54,21 +57,25 @@ class FiniteStrainProblem(Valued):
         What the law's traction is counted per, and its direction.
     """
 
-    body: Body
-    exterior: Exterior
+    held: HeldBody
     surface: ContactSurface
     interface: ContactProblem
     convention: Convention
 
     @property
+    def body(self) -> Body:
+        """The body as if it were not held."""
+        return self.held.body
+
+    @property
+    def reuse(self) -> float:
+        """None: the body's factors serve many states anyway, see `HeldBody`."""
+        return 0.0
+
+    @property
     def tabor(self) -> float:
         """Tabor parameter mu."""
         return self.interface.tabor
-
-    @property
-    def profile(self) -> Surface:
-        """Of the undeformed surface."""
-        return self.interface.profile
 
     @property
     def stretch(self) -> float:
@@ -82,23 +89,28 @@ class FiniteStrainProblem(Valued):
 
     def stretched(self, stretch: float) -> FiniteStrainProblem:
         """Return the same problem at another delta, the undeformed shape unchanged."""
-        return replace(self, body=self.body.stretched(stretch))
+        return replace(self, held=replace(self.held, body=self.body.stretched(stretch)))
 
     def undeformed(self, approach: float) -> Array:
         """State without deformation, as a start for Newton's method."""
-        return np.append(np.zeros(self.exterior.reduction.shape[1]), approach)
+        return np.append(np.zeros(self.held.size), approach)
 
     def displacement(self, x: Array) -> Array:
         """All N displacements of a state, in beta^2/R."""
-        return np.asarray((self.exterior.reduction @ x[:-1])[: self.body.space.unknowns])
+        return self.held.unknowns(x[:-1])[: self.body.space.unknowns]
+
+    def surface_unknowns(self, x: Array) -> Array:
+        """Those that move the surface, s, (m,)."""
+        return x[self.surface.unknowns]
 
     def gaps(self, x: Array) -> Array:
         """H at the surface's points, (q,)."""
-        return np.asarray(self.interface.undeformed(x[-1])[:-2] - self.tabor * (self.surface.vertical @ x[:-1]))
+        deflected = self.tabor * (self.surface.vertical @ self.surface_unknowns(x))
+        return np.asarray(self.interface.undeformed(x[-1])[:-2] - deflected)
 
     def areas(self, x: Array) -> Array:
         """Weights of the horizontal area that the law's traction acts on, (q,), in beta^2."""
-        return self.traction.areas(x[:-1])
+        return self.traction.areas(self.surface_unknowns(x))
 
     def pressure(self, x: Array) -> Array:
         """P at the surface's points, (q,)."""
@@ -110,68 +122,59 @@ class FiniteStrainProblem(Valued):
 
     def residual(self, x: Array) -> Array:
         """Forces on the reduced unknowns that are out of balance, in R dgamma, shape (n,)."""
-        return self._unbalanced(x[:-1], *self._law(x))
+        P, Phi, _ = self._law(x)
+        return self._unbalanced(x[:-1], P, Phi)
 
     def _unbalanced(self, y: Array, P: Array, Phi: Array) -> Array:
         """Forces of body, exterior, and a pressure and energy at the surface's points, (n,)."""
-        T, S = self.exterior.reduction, self.exterior.stiffness
-        return np.asarray(T.T @ self.body.forces(T @ y) + S @ y + self.traction.forces(y, P, Phi))
+        forces = self.held.forces(y)
+        forces[self.surface.unknowns] += self.traction.forces(self.surface_unknowns(y), P, Phi)
+        return forces
 
-    def jacobian(self, x: Array) -> sparse.csc_array:
-        """Derivative of the residual, (n, n + 1)."""
-        T = self.exterior.reduction
-        body = T.T @ self.body.tangent(T @ x[:-1]) @ T
-        return sparse.csc_array(
-            sparse.hstack(
-                [
-                    body + self._surface_tangent(x) + self.exterior.stiffness,
-                    sparse.csc_array(self._by_approach(x)[:, None]),
-                ]
-            )
-        )
+    def _law(self, x: Array) -> tuple[Array, Array, Array]:
+        """P, Phi and dP/dH at the surface's points."""
+        gaps, mu, law = self.gaps(x), self.tabor, self.interface.law
+        return law.pressure(gaps, mu), law.energy(gaps, mu), law.slope(gaps, mu)
 
-    def _law(self, x: Array) -> tuple[Array, Array]:
-        """P and Phi at the surface's points."""
-        gaps, mu = self.gaps(x), self.tabor
-        return self.interface.law.pressure(gaps, mu), self.interface.law.energy(gaps, mu)
+    def _surface_tangent(self, x: Array) -> Array:
+        """Derivative of the surface law's forces by the surface's unknowns and the approach, (m, m + 1).
 
-    def _by_approach(self, x: Array) -> Array:
-        """Derivative of the residual by the approach, (n,): H falls by one, P by its slope, and Phi rises by P."""
-        slope = self.interface.law.slope(self.gaps(x), self.tabor)
-        return self.traction.forces(x[:-1], -slope, self.pressure(x))
+        As the approach grows H falls by as much, P by its slope, and Phi rises by P.
+        """
+        (P, Phi, slope), s = self._law(x), self.surface_unknowns(x)
+        return np.column_stack([self.traction.tangent(s, P, Phi, slope), self.traction.forces(s, -slope, P)])
 
-    def _surface_tangent(self, x: Array) -> sparse.csr_array:
-        """Derivative by y of the surface law's forces, (n, n)."""
-        slope = self.interface.law.slope(self.gaps(x), self.tabor)
-        return self.traction.tangent(x[:-1], *self._law(x), slope)
+    def jacobian(self, x: Array) -> LinearOperator:
+        """Derivative of the residual, (n, n + 1), as a product."""
+        change, product, n = self._surface_tangent(x), self.held.tangent_product(x[:-1]), x.size - 1
 
-    @cached_property
-    def _elimination(self) -> Elimination:
-        return elimination(self.body, self.exterior, self.surface.unknowns)
+        def along(dx: Array) -> Array:
+            forces = product(dx.ravel()[:-1])
+            forces[self.surface.unknowns] += change @ np.append(self.surface_unknowns(dx.ravel()), dx.ravel()[-1])
+            return forces
 
-    def bordered_solver(self, x: Array, row: Array) -> Callable[[Array], Array]:
-        """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
-        cells = self.body.cell_tangents(self.exterior.reduction @ x[:-1])
-        return self._elimination.factorise(
-            cells, self._surface_tangent(x) + self.exterior.stiffness, self._by_approach(x), row
-        ).solve
+        return LinearOperator((n, n + 1), matvec=along, dtype=np.float64)
+
+    def bordered_solver(self, x: Array, row: Array) -> Solver:
+        """Solve the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
+        ends = np.append(self.surface_unknowns(row), row[-1])
+        return self.held.solver(x[:-1], self._surface_tangent(x), ends)
 
     def negative_directions(self, x: Array) -> int:
         """Number of directions in which the body moves on by itself at fixed approach; 0 means stable.
 
-        Counted as the negative pivots of the tangent's triangular factors, without exchanges, but for one of each
-        pressure unknown. Where there is an energy that is the number of directions in which it falls, by Sylvester's
-        law of inertia. The tangent of the vertical traction per deformed area is not symmetric, but is so up to terms
-        of the order of delta; then the number changes where the determinant does its sign, that is at the folds.
+        Counted as the negative pivots of the body's tangent, but for one of each pressure unknown, and what the law
+        adds to those of the surface, (C^-1 + S). Where there is an energy that is the number of directions in which it
+        falls (Haynsworth: inertia is additive in Schur complements). The tangent of the vertical traction per deformed
+        area is not symmetric, but is so up to terms of the order of delta; then the number changes where the
+        determinant does its sign, that is at the folds.
         """
-        step = self._held(x[:-1], self._surface_tangent(x), pivoting=0.0)
-        return step.negative_pivots() - (self.body.unknowns - self.body.space.unknowns)
-
-    @cached_property
-    def _undeformed(self) -> Step:
-        """Factors of the undeformed body's tangent, positive definite or a saddle point; for norms."""
-        n = self.exterior.reduction.shape[1]
-        return self._held(np.zeros(n), sparse.csr_array((n, n)))
+        tangent = self.held.tangent(x[:-1])
+        own = np.linalg.inv(tangent.flexibility)
+        own = (own + own.T) / 2
+        whole = own + self._surface_tangent(x)[:, :-1]
+        added = np.sum(np.linalg.eigvals(whole).real < 0) - count_negative(own)
+        return int(tangent.negative_pivots() + added) - (self.body.unknowns - self.body.space.unknowns)
 
     def surface_state(self, x: Array) -> Array:
         """State as the interface knows it: H, alpha*, and the radii's fixed scale 1."""
@@ -180,31 +183,33 @@ class FiniteStrainProblem(Valued):
     def state_from_surface(self, state: Array, near: Array | None = None) -> Array:
         """State of the body under the pressure that the gaps of an interface's state make, as a start.
 
-        By steps with the undeformed body's stiffness as long as they converge, else with that of where they led; the
-        first alone gives the linear body.
+        By steps with the tangent at hand, from its own state unless one is near, as long as they converge, else with
+        that of where they led; the first alone gives the linear body.
         """
-        law, mu, y = self.interface.law, self.tabor, self.undeformed(0.0)[:-1] if near is None else near[:-1]
-        acting = law.pressure(state[:-2], mu), law.energy(state[:-2], mu)
-        stiffness, last = self._undeformed, np.inf
+        law, mu = self.interface.law, self.tabor
+        P, Phi = law.pressure(state[:-2], mu), law.energy(state[:-2], mu)
+        tangent, last = self.held.near(np.zeros(self.held.size)), np.inf
+        y = tangent.y if near is None else near[:-1]
         for _ in range(MOST_STEPS):
-            unbalanced = np.append(self._unbalanced(y, *acting), 0.0)
-            dy = -stiffness.solve(unbalanced)[:-1]
+            unbalanced = np.append(self._unbalanced(y, P, Phi), 0.0)
+            dy = -self._under(tangent, y, P, Phi)(unbalanced)[:-1]
             if not np.abs(dy).max() < SLOW * last:
-                stiffness = self._held(y, self.traction.tangent(y, *acting, np.zeros(acting[0].size)))
-                dy = -stiffness.solve(unbalanced)[:-1]
+                tangent = self.held.tangent(y)
+                dy = -self._under(tangent, y, P, Phi)(unbalanced)[:-1]
             y, last = y + self._unturned(y, dy, 1.0) * dy, float(np.abs(dy).max())
             if last < ENOUGH * np.abs(y).max():
                 break
         return np.append(y, state[-2])
 
-    def _held(self, y: Array, surface: sparse.csr_array, pivoting: float = 0.01) -> Step:
-        """Factorise the tangent at a fixed approach, for that of the surface's forces."""
-        cells = self.body.cell_tangents(self.exterior.reduction @ y)
-        apart = np.zeros(y.size), np.eye(1, y.size + 1, y.size)[0]
-        return self._elimination.factorise(cells, surface + self.exterior.stiffness, *apart, pivoting=pivoting)
+    def _under(self, tangent: Tangent, y: Array, P: Array, Phi: Array) -> Callable[[Array], Array]:
+        """Solver under a given pressure and energy at the surface's points, at a fixed approach."""
+        follower = self.traction.tangent(self.surface_unknowns(y), P, Phi, 0 * P)
+        m = self.surface.unknowns.size
+        return tangent.bordered(np.column_stack([follower, np.zeros(m)]), np.eye(1, m + 1, m)[0])
 
     def _surface_change(self, dx: Array) -> Array:
-        return np.append(-self.tabor * (self.surface.vertical @ dx[:-1]) - dx[-1], [dx[-1], 0.0])
+        deflected = self.tabor * (self.surface.vertical @ self.surface_unknowns(dx))
+        return np.append(-deflected - dx[-1], [dx[-1], 0.0])
 
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap and contact radius as deformed (nan without contact), shape (4,)."""
@@ -218,7 +223,7 @@ class FiniteStrainProblem(Valued):
         if np.isnan(radius):
             return radius
         row, _ = self.interface.operator.at(1.0).continuous(radius)
-        return float(row @ self.surface.deformed_radii(x[:-1], self.stretch))
+        return float(row @ self.surface.deformed_radii(self.surface_unknowns(x), self.stretch))
 
     def weighted_observables(self, x: Array, weights: Array) -> float:
         """Sum of the observables by the given weights; one of weight zero need not exist."""
@@ -227,16 +232,17 @@ class FiniteStrainProblem(Valued):
 
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative by x of the weighted sum of the observables, shape (n + 1,)."""
-        by_gap, row = weights[CENTRAL_GAP] * self.interface.operator.axis_row, np.zeros(x.size)
+        by_gap, s = weights[CENTRAL_GAP] * self.interface.operator.axis_row, self.surface_unknowns(x)
+        by_unknown, row = np.zeros(s.size), np.zeros(x.size)
         if weights[LOAD]:
             by_gap = by_gap + weights[LOAD] * self.areas(x) * self.interface.law.slope(self.gaps(x), self.tabor)
-            row[:-1] += weights[LOAD] * self.traction.area_gradient(x[:-1], self.pressure(x))
+            by_unknown += weights[LOAD] * self.traction.area_gradient(s, self.pressure(x))
         if weights[CONTACT_RADIUS]:
             by_gap = by_gap + weights[CONTACT_RADIUS] * self._radius_by_gap(x)
             at_edge, _ = self._edge_rows(x)
-            row[:-1] += weights[CONTACT_RADIUS] * self.stretch * (self.surface.radial.T @ at_edge)
-        row[:-1] -= self.tabor * (self.surface.vertical.T @ by_gap)
-        row[-1] += weights[APPROACH] - by_gap.sum()
+            by_unknown += weights[CONTACT_RADIUS] * self.stretch * (at_edge @ self.surface.radial)
+        row[self.surface.unknowns] = by_unknown - self.tabor * (by_gap @ self.surface.vertical)
+        row[-1] = weights[APPROACH] - by_gap.sum()
         return row
 
     def _edge_rows(self, x: Array) -> tuple[Array, Array]:
@@ -246,7 +252,7 @@ class FiniteStrainProblem(Valued):
     def _radius_by_gap(self, x: Array) -> Array:
         """Derivative of the deformed contact radius by the gaps, as the edge moves over the surface, (q,)."""
         value, slope = self._edge_rows(x)
-        r_d = self.surface.deformed_radii(x[:-1], self.stretch)
+        r_d = self.surface.deformed_radii(self.surface_unknowns(x), self.stretch)
         return np.asarray(-value * (slope @ r_d) / (slope @ self.gaps(x)))
 
     def longest_step(self, x: Array, dx: Array) -> float:
@@ -256,9 +262,8 @@ class FiniteStrainProblem(Valued):
 
     def _unturned(self, y: Array, dy: Array, fraction: float) -> float:
         """Part of a step, a fraction of it at most, that turns no cell inside out."""
-        T = self.exterior.reduction
-        least = min(LEAST_VOLUME, self.body.least_volume_ratio(T @ y) / 2)
-        while self.body.least_volume_ratio(T @ (y + fraction * dy)) < least:
+        least = min(LEAST_VOLUME, self.held.least_volume_ratio(y) / 2)
+        while self.held.least_volume_ratio(y + fraction * dy) < least:
             fraction /= 2
         return fraction
 
@@ -268,8 +273,8 @@ class FiniteStrainProblem(Valued):
         return max(displacements, self.interface.size(self.surface_state(x), self._surface_change(dx)))
 
     def misfit(self, x: Array, residual: Array) -> float:
-        """Norm, relative to the gaps, of the undeformed body's deflection due to the forces out of balance."""
-        dH = -self.tabor * (self.surface.vertical @ self._undeformed.solve(np.append(residual, 0.0))[:-1])
+        """Norm, relative to the gaps, of the body's deflection due to the forces out of balance."""
+        dH = -self.tabor * (self.surface.vertical @ self.held.near(x[:-1]).surface_change(residual))
         return self.interface.misfit(self.surface_state(x), np.append(dH, 0.0))
 
     def require_resolution(self, x: Array) -> None:
@@ -278,9 +283,7 @@ class FiniteStrainProblem(Valued):
 
     def elastic_energy(self, x: Array) -> float:
         """Elastic energy of body and exterior in R dgamma eps."""
-        y = x[:-1]
-        outside = y @ (self.exterior.stiffness @ y) / 2
-        return self.tabor * (self.body.energy(self.exterior.reduction @ y) + float(outside))
+        return self.tabor * self.held.energy(x[:-1])
 
     def energy(self, x: Array) -> float:
         """Elastic and surface energy in R dgamma eps, the latter int Phi(H) dA; nan unless conservative.

@@ -42,9 +42,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
 
-from fem_adhesion.finite_strain.surface import ContactSurface, scaled
+from fem_adhesion.finite_strain.surface import ContactSurface
 from halfspace.laws import LENNARD_JONES, PowerLaw
 from halfspace.values import Array, Valued
 
@@ -114,35 +113,36 @@ class Traction(Valued):
     stretch: float
     convention: Convention
 
-    def areas(self, y: Array) -> Array:
+    def areas(self, s: Array) -> Array:
         """Weights of the horizontal area, (q,), in beta^2."""
-        part, s = self.convention.deformed_area, self.surface
-        undeformed, deformed = (s.areas(y, stretch) for stretch in (0.0, self.stretch))
+        part = self.convention.deformed_area
+        undeformed, deformed = (self.surface.areas(s, stretch) for stretch in (0.0, self.stretch))
         return np.asarray((1 - part) * undeformed + part * deformed)
 
-    def area_gradient(self, y: Array, amounts: Array) -> Array:
-        """Derivative by y of the areas, summed with the given amounts (q,), (n,)."""
-        return self.surface.area_gradient(y, self.stretch, self.convention.deformed_area * amounts)
+    def area_gradient(self, s: Array, amounts: Array) -> Array:
+        """Derivative by s of the areas, summed with the given amounts (q,), (m,)."""
+        return self.surface.area_gradient(s, self.stretch, self.convention.deformed_area * amounts)
 
-    def forces(self, y: Array, P: Array, Phi: Array) -> Array:
-        """Less the forces on the reduced unknowns, (n,), in R dgamma: upwards where the pressure is downwards.
+    def forces(self, s: Array, P: Array, Phi: Array) -> Array:
+        """Less the forces on the surface's unknowns, (m,), in R dgamma: upwards where the pressure is downwards.
 
         Parameters
         ----------
-        y : (n,) array
-            Reduced unknowns.
+        s : (m,) array
+            Unknowns of the surface.
         P, Phi : (q,) array
             Pressure and energy of the law.
         """
-        spreading = self.surface.area_gradient(y, self.stretch, self.convention.surface_stress / self.tabor * Phi)
-        return np.asarray(self.surface.vertical.T @ (P * self.areas(y)) + spreading)
+        spreading = self.surface.area_gradient(s, self.stretch, self.convention.surface_stress / self.tabor * Phi)
+        return np.asarray((P * self.areas(s)) @ self.surface.vertical + spreading)
 
-    def tangent(self, y: Array, P: Array, Phi: Array, slope: Array) -> sparse.csr_array:
-        """Derivative of `forces` by y, (n, n), for the law's slope dP/dH, (q,)."""
-        s, mu, delta, c = self.surface, self.tabor, self.stretch, self.convention
-        tangent = s.vertical.T @ scaled(-mu * slope * self.areas(y), s.vertical)
-        if c.deformed_area or c.surface_stress:
-            coupling = s.vertical.T @ scaled(P, s.area_rates(y, delta))
-            spreading = s.area_curvature(delta, c.surface_stress / mu * Phi)
-            tangent = tangent + c.deformed_area * coupling + c.surface_stress * coupling.T + spreading
-        return sparse.csr_array(tangent)
+    def tangent(self, s: Array, P: Array, Phi: Array, slope: Array) -> Array:
+        """Derivative of `forces` by s, (m, m), for the law's slope dP/dH, (q,)."""
+        surface, mu, delta, c = self.surface, self.tabor, self.stretch, self.convention
+        V = surface.vertical
+        tangent = V.T @ ((-mu * slope * self.areas(s))[:, None] * V)
+        if delta and (c.deformed_area or c.surface_stress):
+            coupling = V.T @ (P[:, None] * surface.area_rates(s, delta))
+            tangent += c.deformed_area * coupling + c.surface_stress * coupling.T
+            tangent += surface.area_curvature(delta, c.surface_stress / mu * Phi)
+        return np.asarray(tangent)

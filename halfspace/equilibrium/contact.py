@@ -12,9 +12,9 @@ spike of tension at the contact edge on the same nodes all along the path.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -32,6 +32,7 @@ from halfspace.values import Array, Valued
 APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
 
 LARGEST = 0.75  # part of a gap h by which it may shrink in a step
+NEAR = 1e-3
 WIDEST = 0.95  # of the radius of a body, that a contact may reach
 
 
@@ -43,6 +44,14 @@ def widest_interval(nodes: int) -> float:
     """
     k = nodes - 1
     return max(0.1, min(0.1 * k, 0.021 * k**2))
+
+
+class Solver(Protocol):
+    """Of the linearised equations with the control row below them."""
+
+    def __call__(self, rhs: Array, accuracy: float = 0.0, /) -> Array:
+        """Solution; one that is iterated for may stop at a relative accuracy, 0 for all digits."""
+        ...
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -65,6 +74,11 @@ class ContactProblem(Valued):
     tabor: float
     law: Law = LENNARD_JONES
     profile: Surface = PARABOLOID
+
+    @property
+    def reuse(self) -> float:
+        """Relative size of a step after which the factors from before it serve once more."""
+        return NEAR
 
     @cached_property
     def scales(self) -> Scales:
@@ -125,12 +139,12 @@ class ContactProblem(Valued):
             J[-1, -1] = 1
         return J
 
-    def bordered_solver(self, x: Array, row: Array) -> Callable[[Array], Array]:
+    def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
         lu, pivots, info = dgetrf(np.vstack([self.jacobian(x), row]), overwrite_a=True)
         if info > 0:
             raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start")
-        return lambda rhs: np.asarray(dgetrs(lu, pivots, rhs)[0])
+        return lambda rhs, _=0.0: np.asarray(dgetrs(lu, pivots, rhs)[0])  # factors have all digits
 
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap and contact radius (nan without contact), shape (4,)."""

@@ -7,26 +7,21 @@ own. Each ends at the rounding all the same, since what is left is told by how f
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem, Solver
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued
 
 GROWTH = 10.0  # of the relative residual, let through in one step
 ROUND_OFF = 1e-10  # relative size of a step below which the residual may be no more than rounding
-NEAR = 1e-3  # relative size of a step after which the factors from before it serve once more
 SLOW = 0.1  # part of a step that may be left after one with old factors; if it is more, they are made anew
-LEFT = 1e-4  # of the tolerance: error left by the last step, of either kind
+LEFT = 1e-4  # of the tolerance: error left by the last step, of either kind; and of any step that is iterated for
 REFINED = 1e-13  # relative error left in a tangent
-
-
-Solver = Callable[[Array], Array]
 
 
 class Linear(Protocol):
@@ -39,6 +34,11 @@ class Linear(Protocol):
 
 class Equilibrium(Protocol):
     """What the solver, the path and the events need to know of a contact problem, condensed or not."""
+
+    @property
+    def reuse(self) -> float:
+        """Relative size of a step after which a solver serves once more; 0 where making one is the least work."""
+        ...
 
     def residual(self, x: Array) -> Array:
         """Left-hand sides of all equations but the control."""
@@ -224,13 +224,13 @@ def solve(
     for iteration in range(1, max_iterations + 1):
         fresh = solver is None
         solver = solver or problem.bordered_solver(x, problem.gradient(x, control.weights))
-        dx = -solver(F)
+        dx = -solver(F, LEFT)
         update = problem.size(x, dx)
         x, F, damping = _damped(problem, x, F, dx, control)
         left = update * min(1.0, update if fresh else update / before)
         if damping == 1 and update < tolerance and left < LEFT * tolerance:
             return Solution(x, problem.observables(x), iteration, update, control, solver)
-        if damping < 1 or update > NEAR or (not fresh and update > SLOW * before):
+        if damping < 1 or update > problem.reuse or (not fresh and update > SLOW * before):
             solver = None
         before = update
     raise NotConverged(
@@ -246,6 +246,8 @@ def tangent(problem: Equilibrium, solution: Solution) -> Array:
     """
     J, row = problem.jacobian(solution.x), problem.gradient(solution.x, solution.control.weights)
     unit = _last(row.size)
+    if not problem.reuse:
+        return problem.bordered_solver(solution.x, row)(unit)
     t, before = solution.solver(unit), 1.0
     for _ in range(REFINEMENTS):
         change = solution.solver(unit - np.append(J @ t, row @ t))
@@ -290,7 +292,7 @@ def turning_point(problem: Equilibrium, start: Array, weights: Array, direction:
     x = start
     for iteration in range(1, TURNS + 1):
         here = _Tangent(problem, x, weights, direction)
-        dx = -here.solver(np.append(problem.residual(x), 0.0))  # towards the path, across it
+        dx = -here.solver(np.append(problem.residual(x), 0.0), LEFT)  # towards the path, across it
         near = problem.size(x, dx) < ASTRAY
         if near:
             slope, bend = here.changes(here.tangent)
@@ -346,7 +348,7 @@ class _Tangent(Valued):
         h, t = LITTLE / size, self.tangent
         beside = self.x + h * v
         bordered = np.append(self.problem.jacobian(beside) @ t, self.problem.gradient(beside, self.direction) @ t)
-        turned = -self.solver(bordered - _last(t.size)) / h
+        turned = -self.solver(bordered - _last(t.size), LEFT) / h
         own = (self.problem.gradient(beside, self.weights) - self.gradient) @ t / h
         return float(own + self.gradient @ turned), turned
 

@@ -1,0 +1,285 @@
+"""A neo-Hookean body by finite elements: forces, tangent and energy of its unknowns, total Lagrangian.
+
+Displacements are in beta^2/R, stresses in E* beta/R, forces in R dgamma, energies in R dgamma mu eps; see
+`fem_adhesion.finite_strain.material`. At zero stretch the body is the linear one. Displacements alone lock as Poisson's
+ratio nears 1/2. Then a continuous pressure joins them (Taylor and Hood): the energy density
+
+    psi = psi_shear(F) + p ln J - p^2/(2 lambda)
+
+is stationary at p = lambda ln J, where it is that of the displacements alone; but p comes from a space one degree below
+theirs, so that no more conditions on J are left at nu -> 1/2 than the displacements can meet. Pressures are in
+E* beta/R and positive in tension. J. Bonet and R. D. Wood, Nonlinear Continuum Mechanics for Finite Element Analysis,
+2nd ed. (2008), section 8.6, with ln J for J - 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+from skfem import Dofs, ElementQuadP
+
+from fem_adhesion.elasticity.incompressible import REMEDY_FROM
+from fem_adhesion.elasticity.space import (
+    Space,
+    cell_quadrature,
+    lame_parameters,
+    reference_functions,
+    ring_measure,
+    scatter,
+)
+from fem_adhesion.finite_strain import material
+from halfspace.errors import InputError
+from halfspace.values import Array, Index, Valued
+
+RECENT = 3  # states whose deformation is kept: the last, its trial, and the one before
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Body(Valued):
+    """A neo-Hookean body of N displacement and M pressure unknowns, in this order; M = 0 for displacements alone.
+
+    Attributes
+    ----------
+    space : Space
+        Mesh and element of the displacements.
+    poisson : float
+        Poisson's ratio of small strains.
+    stretch : float
+        Stretch parameter delta = beta/R = sqrt(mu/rho), zero for the linear body.
+    functions : (3, n, q) array
+        A cell's n scalar functions at its q quadrature points, and their derivatives on the reference cell.
+    inverse : (2, 2, cells, q) array
+        Derivatives of the reference cell's coordinates by r and z.
+    radii, measure : (cells, q) array
+        r, and 2 pi r dr dz.
+    pressure_functions : (m, q) array
+        The pressure's m functions there, the same in every cell.
+    pressures : (cells, m) int array
+        Pressure unknowns of each cell, from 0.
+    products : (M, M) sparse array
+        Products of pressures, integrated over the body.
+    """
+
+    space: Space
+    poisson: float
+    stretch: float
+    functions: Array
+    inverse: Array
+    radii: Array
+    measure: Array
+    pressure_functions: Array
+    pressures: Index
+    products: sparse.csc_array
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns N + M."""
+        return self.space.unknowns + self.products.shape[0]
+
+    def stretched(self, stretch: float) -> Body:
+        """Return the same body at another delta."""
+        return replace(self, stretch=stretch)
+
+    @cached_property
+    def displacements(self) -> Index:
+        """Displacement unknowns of each cell, (cells, 2 n): u_r of the n functions, then u_z."""
+        return np.ascontiguousarray(self.space.cell_dofs.T)
+
+    @cached_property
+    def cell_dofs(self) -> Index:
+        """Unknowns of each cell, (cells, k): displacements, then pressures."""
+        return np.concatenate([self.displacements, self.space.unknowns + self.pressures], axis=1)
+
+    @property
+    def inside(self) -> Index:
+        """Positions among the k of displacements that no other cell shares, as in the space's `interior_dofs`."""
+        n, own = self.functions.shape[1], self.space.element.interior_dofs
+        return np.concatenate([np.arange(n - own, n), np.arange(2 * n - own, 2 * n)])
+
+    def gradient(self, u: Array) -> Array:
+        """Components of grad u at the points, (5, cells, q), in the order of `fem_adhesion.finite_strain.material`."""
+        cells = u[self.displacements].reshape(len(self.displacements), 2, -1)
+        value, *slopes = (cells.transpose(1, 0, 2)[:, None] @ self.functions).transpose(1, 0, 2, 3)
+        plane = slopes[0][:, None] * self.inverse[0] + slopes[1][:, None] * self.inverse[1]
+        return np.concatenate([value[:1] / self.radii, plane.reshape(4, *self.radii.shape)])
+
+    def works(self, stress: Array) -> Array:
+        """Work of a stress, (5, cells, q), in each unit displacement, (N,)."""
+        weighted, (_, n, q) = stress * self.measure, self.functions.shape
+        plane, amounts = weighted[1:].reshape(2, 2, *self.radii.shape), np.zeros((2, len(self.radii), 3, q))
+        amounts[0, :, 0] = weighted[0] / self.radii
+        for i in range(2):
+            amounts[:, :, 1 + i] = plane[:, 0] * self.inverse[i, 0] + plane[:, 1] * self.inverse[i, 1]
+        cells = amounts.reshape(2, len(self.radii), 3 * q) @ self.functions.transpose(0, 2, 1).reshape(3 * q, n)
+        return _summed(self.displacements, cells.transpose(1, 0, 2), self.space.unknowns)
+
+    def deformation(self, u: Array) -> material.Deformation:
+        """Deformation at the points under all unknowns; of the last few states it is known."""
+        for known, state in self._recent:
+            if np.array_equal(known, u):
+                return state
+        self._recent.insert(0, (u.copy(), material.Deformation(self.gradient(u), self.stretch)))
+        del self._recent[RECENT:]
+        return self._recent[0][1]
+
+    @cached_property
+    def _recent(self) -> list[tuple[Array, material.Deformation]]:
+        return []
+
+    def forces(self, u: Array) -> Array:
+        """Forces on the displacements, in R dgamma, and what is left of p = lambda ln J in each pressure, (N + M,)."""
+        lam, G = self._lame
+        forces = self.works(material.stress(self.deformation(u), G, self._pressure(u)))
+        return np.append(forces, self.log_volumes(u) - self.products @ u[self.space.unknowns :] / lam)
+
+    def tangent_product(self, u: Array) -> Callable[[Array], Array]:
+        """Derivative of the forces along any change of the unknowns."""
+        (lam, _), D, f, N = self._lame, self._moduli(u), self.deformation(u).inverse_transpose, self.space.unknowns
+
+        def product(v: Array) -> Array:
+            A = self.gradient(v)
+            stress = np.einsum("abcq,bcq->acq", D, A)
+            if not self._mixed:
+                return self.works(stress)
+            work = self._of_pressures(np.sum(f * A, axis=0)) - self.products @ v[N:] / lam
+            return np.append(self.works(stress + f * self._at_points(v[N:])), work)
+
+        return product
+
+    def cell_tangents(self, u: Array) -> Array:
+        """The same, symmetric, cell by cell, (cells, k, k): with pressures each a saddle point."""
+        (lam, _), n, f = self._lame, self.functions.shape[1], self.deformation(u).inverse_transpose
+        D = (self._moduli(u) * self.measure).transpose(2, 3, 0, 1)
+        blocks = np.empty((len(self.radii), *2 * [self.cell_dofs.shape[1]]))
+        for i, (own, rows) in enumerate(self._shapes):
+            for j, (other, columns) in enumerate(self._shapes):
+                DB = np.ascontiguousarray(D[..., own, other]) @ columns
+                blocks[:, i * n : (i + 1) * n, j * n : (j + 1) * n] = _rows(rows).transpose(0, 2, 1) @ _rows(DB)
+            weighted = (f[own] * self.measure).transpose(1, 2, 0)[..., None] * self.pressure_functions.T[:, None]
+            blocks[:, i * n : (i + 1) * n, 2 * n :] = _rows(rows).transpose(0, 2, 1) @ _rows(weighted)
+        blocks[:, 2 * n :, : 2 * n] = blocks[:, : 2 * n, 2 * n :].transpose(0, 2, 1)
+        blocks[:, 2 * n :, 2 * n :] = (self.measure[:, None] * self.pressure_functions) @ self.pressure_functions.T
+        blocks[:, 2 * n :, 2 * n :] /= -lam or 1.0
+        return blocks
+
+    @cached_property
+    def _shapes(self) -> tuple[tuple[slice, Array], tuple[slice, Array]]:
+        """Which components of grad u unit displacements have, and these, (cells, q, 3 or 2, n): of u_r, and of u_z."""
+        value, *slopes = self.functions.transpose(0, 2, 1)
+        rr, zz = (self.inverse[0, j][..., None] * slopes[0] + self.inverse[1, j][..., None] * slopes[1] for j in (0, 1))
+        hoop = value / self.radii[..., None]
+        return (slice(0, 3), np.stack([hoop, rr, zz], axis=2)), (slice(3, 5), np.stack([rr, zz], axis=2))
+
+    def tangent(self, u: Array) -> sparse.csc_array:
+        """Sum of these, (N + M, N + M)."""
+        return scatter(self.cell_tangents(u), self.cell_dofs.T, self.unknowns)
+
+    def energy(self, u: Array) -> float:
+        """Elastic energy in R dgamma mu eps."""
+        (lam, G), state, p = self._lame, self.deformation(u), self._pressure(u)
+        volumetric = p * state.log_volume - p**2 / (2 * lam) if self._mixed else p * state.log_volume / 2
+        return float(np.sum(self.measure * (material.shear_energy(state, G) + volumetric)))
+
+    def least_volume_ratio(self, u: Array) -> float:
+        """Least J at any quadrature point; the body is turned inside out where it is not positive."""
+        return float(self.deformation(u).volume_ratio.min())
+
+    def log_volumes(self, u: Array) -> Array:
+        """Integral of ln(J)/delta with each pressure function, (M,)."""
+        return self._of_pressures(self.deformation(u).log_volume)
+
+    @property
+    def _mixed(self) -> bool:
+        return len(self.pressure_functions) > 0
+
+    @property
+    def _lame(self) -> tuple[float, float]:
+        return lame_parameters(self.poisson)
+
+    def _pressure(self, u: Array) -> Array:
+        """Pressure at the points."""
+        if self._mixed:
+            return self._at_points(u[self.space.unknowns :])
+        return self._lame[0] * self.deformation(u).log_volume
+
+    def _moduli(self, u: Array) -> Array:
+        """Derivative of the stress by grad u, at fixed pressure unknowns, (5, 5, cells, q)."""
+        (lam, G), state = self._lame, self.deformation(u)
+        D, f = material.moduli(state, G, self._pressure(u)), state.inverse_transpose
+        return D if self._mixed else D + lam * f[:, None] * f
+
+    def _at_points(self, p: Array) -> Array:
+        return np.asarray(p[self.pressures] @ self.pressure_functions)
+
+    def _of_pressures(self, amounts: Array) -> Array:
+        """Amounts at the points, integrated with each pressure function, (M,)."""
+        if not self._mixed:
+            return np.zeros(0)
+        return _summed(self.pressures, (self.measure * amounts) @ self.pressure_functions.T, self.products.shape[0])
+
+
+def _rows(values: Array) -> Array:
+    """Merge points and components, (cells, q, c, n) to (cells, q c, n)."""
+    return values.reshape(len(values), values.shape[1] * values.shape[2], values.shape[3])
+
+
+def _summed(dofs: Index, values: Array, size: int) -> Array:
+    """Add up values to the unknowns of the same order, (size,)."""
+    return np.asarray(np.bincount(dofs.ravel(), weights=values.ravel(), minlength=size), dtype=np.float64)
+
+
+def material_body(space: Space, poisson: float, stretch: float) -> Body:
+    """Body of displacements alone, or with a pressure where these would lock."""
+    if poisson < REMEDY_FROM:
+        return displacement_body(space, poisson, stretch)
+    return mixed_body(space, poisson, stretch, ElementQuadP(space.degree - 1))
+
+
+def displacement_body(space: Space, poisson: float, stretch: float) -> Body:
+    """Prepare a body of displacements; raise InputError if poisson or stretch is out of range."""
+    lame_parameters(poisson)
+    points, weights = cell_quadrature(space)
+    value, slopes = reference_functions(space.element, points)
+    mapping = space.mesh.mapping()
+    radii = np.asarray(mapping.F(points)[0])
+    measure = ring_measure(radii) * np.abs(mapping.detDF(points)) * weights
+    functions = np.ascontiguousarray(np.concatenate([value[None], slopes.transpose(1, 0, 2)]))
+    inverse, radii, measure = (np.ascontiguousarray(part) for part in (mapping.invDF(points), radii, measure))
+    none = np.zeros((0, len(weights))), np.zeros((len(radii), 0), dtype=np.intp), sparse.csc_array((0, 0))
+    return Body(space, poisson, require_stretch(stretch), functions, inverse, radii, measure, *none)
+
+
+def mixed_body(space: Space, poisson: float, stretch: float, pressure: Any) -> Body:
+    """Prepare a body of displacements and pressures.
+
+    Parameters
+    ----------
+    space, poisson, stretch
+        As in `displacement_body`.
+    pressure : skfem.Element
+        One degree below the displacement's: ElementTriP1 with ElementTriP2, ElementQuadP(p - 1) with ElementQuadP(p).
+
+    Raises
+    ------
+    InputError
+        If poisson is zero, at which the pressure is undetermined, or poisson or stretch is out of range.
+    """
+    if lame_parameters(poisson)[0] == 0.0:
+        raise InputError("poisson = 0 leaves the pressure undetermined; use displacement_body, nothing locks there")
+    body, dofs = displacement_body(space, poisson, stretch), Dofs(space.mesh, pressure)
+    by_cell = np.asarray(dofs.element_dofs, dtype=np.intp)
+    values, _ = reference_functions(pressure, cell_quadrature(space)[0])
+    products = scatter((body.measure[:, None] * values) @ values.T, by_cell, dofs.N)
+    return replace(body, pressure_functions=values, pressures=by_cell.T, products=products)
+
+
+def require_stretch(stretch: float) -> float:
+    """Return delta = beta/R, or raise InputError unless 0 <= stretch <= 2: a sphere smaller than its own contact."""
+    if not 0.0 <= stretch <= 2.0:
+        raise InputError(f"stretch = {stretch} is outside 0 <= stretch <= 2; give beta/R = sqrt(tabor/radius_ratio)")
+    return stretch
