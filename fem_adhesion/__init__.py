@@ -1,10 +1,10 @@
 """Adhesive contact of elastic spheres by finite elements, checked against the integral equation of `halfspace`.
 
 Rooms, in the order of reading: `scene` (what is asked) and its parts, `bodies` and `materials`, `mesh`, `elasticity`,
-`discretise` (from a scene to an operator), `finite_strain`, `convergence` (the curve that answers), `fields` and
-`paraview` (inside the body), a folder for each command, and `common` for what these share; `registry` has the names of
-parts. `weak_form` is the contact problem as a textbook has it, `harmonics` the whole sphere in Legendre polynomials,
-and `monolithic` Newton's method on all unknowns; they only check the others.
+`discretise` (from a scene to an operator), `finite_strain` (every unknown at once), `convergence` (the curve that
+answers), `fields` and `paraview` (inside the body), a folder for each command, and `common` for what these share;
+`registry` has the names of parts. `weak_form` is the contact problem as a textbook has it and `harmonics` the whole
+sphere in Legendre polynomials; they only check the others.
 
 What it is good for, and what not:
 

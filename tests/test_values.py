@@ -22,9 +22,9 @@ import halfspace
 from fem_adhesion import Block, HeldSphere, Meshed, NeoHookean, Scene, share_of
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain.assembly import assemble
 from fem_adhesion.finite_strain.scene import LITTLE
 from fem_adhesion.mesh.block import block_grid
-from fem_adhesion.monolithic import assemble
 from halfspace.errors import InputError
 from halfspace.profiles import Sphere
 from halfspace.values import Valued, same, shown
@@ -126,7 +126,7 @@ def test_problems_and_bodies_are_values_too():
     pressure = np.linspace(1, 0, one.operator.radii.size)
     np.testing.assert_array_equal(again.displacement(pressure), one.displacement(pressure))
     whole = assemble(space, 0.3, 1.0)
-    whole.state_from(0.0, pressure)  # leaves its factors behind
+    whole.negative_directions(whole.undeformed(-3.0))  # leaves its factors behind
     assert pickle.loads(pickle.dumps(whole)).interface == whole.interface
 
 

@@ -1,7 +1,7 @@
-"""Spheres at finite strain: a neo-Hookean body whose surface stretches under the law.
+"""The contact problem of a whole body, every unknown at once: a neo-Hookean sphere, or at zero stretch a linear block.
 
-In the order of reading: `material` (stress and tangent at a point), `cells` and `bodies` (forces, tangent and energy of
-a body, with a pressure where displacements alone would lock), `surface` (its Gauss points, and how they move),
-`traction` (what the law's traction is counted per), `problem` (every unknown at once) with `solve` (its linear
-equations) and `assembly` (from its parts), `meshes` (fine where the contact is), `scene` (curve and events).
+In the order of reading: `material` (stress and tangent at a point), `body` (forces, tangent and energy, with a pressure
+where displacements alone would lock), `held` (what holds it, and its linear equations), `surface` (its Gauss points,
+and how they move), `traction` (what the law's traction is counted per), `problem` (the equations) and `assembly` (from
+its parts), `meshes` (fine where the contact is), `scene` (curve and events).
 """

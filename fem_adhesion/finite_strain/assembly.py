@@ -1,11 +1,12 @@
-"""A contact problem at finite strain from its parts: a body for the material, its exterior, and its surface."""
+"""A contact problem of a whole body from its parts: a body for the material, its exterior, and its surface."""
 
 from __future__ import annotations
 
 from scipy import sparse
 
-from fem_adhesion.elasticity.far_field import Exterior
-from fem_adhesion.finite_strain.body import Body
+from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load, with_interiors
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain.body import Body, displacement_body
 from fem_adhesion.finite_strain.held import HeldBody
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.surface import contact_surface
@@ -57,6 +58,35 @@ def finite_strain_problem(
     surface = contact_surface(space, whole, space.degree + 2 if points is None else points)
     interface = ContactProblem(surface.rigid, tabor, law, profile)
     return FiniteStrainProblem(HeldBody(body, whole, surface.unknowns), surface, interface, convention)
+
+
+def assemble(
+    space: Space,
+    poisson: float,
+    tabor: float,
+    *,
+    far_field: FarField = point_load,
+    points: int | None = None,
+    law: Law = LENNARD_JONES,
+) -> FiniteStrainProblem:
+    """Contact problem of a linear block under a rigid paraboloid, none of its unknowns condensed but in the solver.
+
+    Parameters
+    ----------
+    space, poisson, points
+        As in `fem_adhesion.elasticity.condensation.condense`, whose problem has the same solutions.
+    tabor, law
+        As in `halfspace.equilibrium.contact.ContactProblem`.
+    far_field : callable
+        `point_load` or `clamped`.
+
+    Raises
+    ------
+    InputError
+        If poisson is out of range, or as of `finite_strain_problem`.
+    """
+    body, exterior = displacement_body(space, poisson, 0.0), with_interiors(far_field(space, poisson), space)
+    return finite_strain_problem(body, exterior, tabor, convention=Convention(0.0, 0.0), points=points, law=law)
 
 
 def _with_pressures(exterior: Exterior, body: Body) -> Exterior:

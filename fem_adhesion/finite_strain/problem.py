@@ -69,8 +69,8 @@ class FiniteStrainProblem(Valued):
 
     @property
     def reuse(self) -> float:
-        """None: the body's factors serve many states anyway, see `HeldBody`."""
-        return 0.0
+        """As of a condensed body where it is linear; else none, as the body's factors serve many states anyway."""
+        return 0.0 if self.stretch else self.interface.reuse
 
     @property
     def tabor(self) -> float:
@@ -292,4 +292,8 @@ class FiniteStrainProblem(Valued):
         """
         if not self.convention.conservative:
             return float("nan")
-        return self.elastic_energy(x) + float(self.areas(x) @ self.interface.law.energy(self.gaps(x), self.tabor))
+        scales, mu = self.interface.scales, self.tabor
+        density = scales.law.energy(self.gaps(x), mu)
+        if scales.far_energy:
+            density -= scales.law.energy(mu * scales.profile.height(self.surface.radii), mu)
+        return self.elastic_energy(x) + float(self.areas(x) @ density)

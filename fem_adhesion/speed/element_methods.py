@@ -12,8 +12,8 @@ from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import FarField, clamped, point_load
 from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain.assembly import assemble
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
-from fem_adhesion.monolithic import assemble
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed.methods import Method, Solved, Step, Variant, from_chart, from_path, unit, widest
 from halfspace.equilibrium.contact import ContactProblem
