@@ -14,9 +14,10 @@ from fem_adhesion.finite_sphere.command import COMMAND as FINITE_SPHERE
 from fem_adhesion.greenwood.command import COMMAND as GREENWOOD
 from fem_adhesion.report.command import COMMAND as REPORT
 from fem_adhesion.speed.command import COMMAND as SPEED
+from fem_adhesion.sweep.command import COMMAND as SWEEP
 from halfspace.errors import InputError, NotConverged
 
-COMMANDS = (COMPARE, CURVE, ASSESS, FINITE_SPHERE, SPEED, GREENWOOD, REPORT)
+COMMANDS = (COMPARE, CURVE, SWEEP, ASSESS, FINITE_SPHERE, SPEED, GREENWOOD, REPORT)
 
 STUDIES = ("PIL", "jinja2", "joblib", "markupsafe", "matplotlib", "pint", "rich")
 """Libraries of the extra that every command needs, the solvers none."""

@@ -1,8 +1,9 @@
 """Adhesive contact of an elastic sphere with an elastic half-space, by an integral equation, after Greenwood (1997).
 
-`trace` gives the whole load-approach curve with its events. Rooms, in the order of reading: `laws` and `profiles` (the
-parts of a contact), `elastic` (half-space and layers alone), `equilibrium` (contact, path, events), `accuracy` (to the
-digits asked for), `theories` (closed forms); under them `scaling` (SI, and other people's parameters).
+`trace` gives the whole load-approach curve with its events, `sweep` those of many. Rooms, in the order of reading:
+`laws` and `profiles` (the parts of a contact), `elastic` (half-space and layers alone), `equilibrium` (contact, path,
+events), `accuracy` (to the digits asked for), `theories` (closed forms); under them `scaling` (SI, and other people's
+parameters).
 
 Conventions are Greenwood's, everywhere. R is the equivalent radius, E* the contact modulus, dgamma the work of
 adhesion, eps the spacing at which the surfaces are in equilibrium, mu = (R dgamma^2/(E*^2 eps^3))^(1/3) the Tabor
@@ -33,6 +34,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from halfspace import laws, profiles, scaling, theories
+    from halfspace.accuracy.sweep import Sweep, sweep
     from halfspace.accuracy.trace import trace
     from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate
     from halfspace.equilibrium.curve import EquilibriumPath
@@ -53,9 +55,11 @@ __all__ = [
     "NotConverged",
     "Stratum",
     "Substrate",
+    "Sweep",
     "laws",
     "profiles",
     "scaling",
+    "sweep",
     "theories",
     "trace",
 ]
@@ -63,6 +67,8 @@ __all__ = [
 _ROOMS = ("laws", "profiles", "scaling", "theories")
 _HOMES = {
     "trace": "accuracy.trace",
+    "sweep": "accuracy.sweep",
+    "Sweep": "accuracy.sweep",
     "EquilibriumPath": "equilibrium.curve",
     "Estimate": "equilibrium.curve",
     "Event": "equilibrium.events",

@@ -165,7 +165,7 @@ def test_a_file_keeps_its_old_content_until_the_new_one_is_whole(tmp_path):
 
 HELPS = [
     [],
-    *([name] for name in ("compare", "curve", "assess", "finite-sphere", "speed", "greenwood", "report")),
+    *([name] for name in ("compare", "curve", "sweep", "assess", "finite-sphere", "speed", "greenwood", "report")),
 ]
 
 

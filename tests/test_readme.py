@@ -42,6 +42,7 @@ LINES = {
     "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve": (
         "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve"
     ),
+    "fem-adhesion sweep --tabor 0.1:10:7 --csv sweep.csv": "fem-adhesion sweep --tabor 0.1:10:7 --csv sweep.csv",
     "pip install 'fem-adhesion[view]'": INSTALL,
     "pip install '.[studies]'": INSTALL,
     "fem-adhesion report --out report.html": "fem-adhesion report --out report.html",

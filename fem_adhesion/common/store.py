@@ -105,7 +105,7 @@ def _cases(count: int) -> str:
     return "1 case" if count == 1 else f"{count} cases"
 
 
-def open_store(directory: Path, code: str, *, resume: bool = False, force: bool = False) -> Store:
+def open_store(directory: Path, code: str, *, resume: bool = False, force: bool | None = False) -> Store:
     """Store in a directory, which is checked but not yet touched.
 
     Parameters
@@ -116,8 +116,8 @@ def open_store(directory: Path, code: str, *, resume: bool = False, force: bool 
         Digest of the code that computes the results: those of other code are not used.
     resume : bool
         Go on with the cases that it holds.
-    force : bool
-        Accept one that is not empty.
+    force : bool or None
+        Accept one that is not empty; None where that cannot be asked for.
 
     Raises
     ------
@@ -132,7 +132,8 @@ def open_store(directory: Path, code: str, *, resume: bool = False, force: bool 
     present = len(list(directory.iterdir())) if directory.is_dir() else 0
     if present and not force and not (resume and (directory / FOLDER).is_dir()):
         remedy = "it is no study to resume, choose another" if resume else "choose another or use --resume"
-        raise InputError(f"{directory} holds {present} files, limit 0; {remedy} or --force")
+        forced = "" if force is None else " or --force"
+        raise InputError(f"{directory} holds {present} files, limit 0; {remedy}{forced}")
     return Store(directory, code)
 
 

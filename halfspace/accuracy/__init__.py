@@ -2,7 +2,8 @@
 
 In the order of reading: `trace` (the half-space, from a tolerance to a curve), `refinement` (the ladder of ever finer
 stages, and what two of them say of the error), `finite_bodies` (the same for bodies with a length, whose operator
-changes with the contact), `fold_birth` (the Tabor parameter at which a pair of folds is born).
+changes with the contact), `sweep` (many curves as arrays), `fold_birth` (the Tabor parameter at which a pair of folds
+is born).
 
 An elastic body without a length of its own is homogeneous, so one compliance matrix serves every contact radius: the
 grid breathes with the contact, the radius joins the unknowns, and the spike of tension at the contact edge, whose width

@@ -1,0 +1,112 @@
+"""``fem-adhesion sweep``: the events of many curves as one table."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_adhesion.common.options import AGREE, DISAGREE, STANDARD, Command, Parser, ended, written
+from fem_adhesion.common.progress import progress_bar
+from halfspace.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from halfspace.accuracy.sweep import Summary
+
+
+def add_options(command: Parser) -> None:
+    """Add the options."""
+    tabor = "Tabor parameters, or FROM:TO:COUNT for as many in equal ratios"
+    command.add_argument("--tabor", nargs="+", required=True, help=tabor, metavar="MU")
+    command.add_argument("--rtol", type=float, default=1e-6, help="relative accuracy, 1e-9 to 1e-1")
+    command.add_argument(
+        "--to-load", type=float, default=5.0, help="load in R dgamma at which a curve ends", metavar="W"
+    )
+    command.add_argument(
+        "--csv", type=Path, required=True, help="write the table; - for standard output", metavar="FILE"
+    )
+    resume = "keep each curve in the directory as soon as it is there, and go on with those that it holds"
+    command.add_argument("--resume", type=Path, help=resume, metavar="DIR")
+    command.add_argument("--jobs", type=int, help="processes; as many as cores unless given", metavar="N")
+    command.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
+
+
+def tabors_of(texts: Sequence[str]) -> list[float]:
+    """Tabor parameters, each once: numbers, and FROM:TO:COUNT for some in equal ratios."""
+    from halfspace.limits import require_tabor
+
+    found = [require_tabor(value) for text in texts for value in _values(text)]
+    return list(dict.fromkeys(found))
+
+
+def _values(text: str) -> Sequence[float]:
+    from numpy import geomspace
+
+    parts = text.split(":")
+    try:
+        if len(parts) == 1:
+            return [float(text)]
+        first, last, count = float(parts[0]), float(parts[1]), int(parts[2])
+    except (ValueError, IndexError) as error:
+        raise InputError(f"tabor = {text} is no number and not FROM:TO:COUNT; write 0.05:50:200, say") from error
+    if len(parts) > 3 or count < 2 or min(first, last) <= 0:
+        raise InputError(
+            f"tabor = {text}, limit: FROM:TO:COUNT, both positive, COUNT 2 or more; write 0.05:50:200, say"
+        )
+    return [float(value) for value in geomspace(first, last, count)]
+
+
+def run(options: argparse.Namespace) -> int:
+    """Trace the curves or what is left of them, and write the table.
+
+    Returns
+    -------
+    int
+        1 if any curve could not be traced, else 0.
+    """
+    from fem_adhesion.common.store import open_store
+    from fem_adhesion.sweep import study
+    from halfspace.limits import require_load, require_rtol
+
+    tabors = tabors_of(options.tabor)
+    question = study.Question(require_rtol(options.rtol), require_load(options.to_load))
+    store = open_store(options.resume, study.code(), resume=True, force=None) if options.resume else None
+    try:
+        with written(options.csv) as file, progress_bar() as step:
+            curves = study.run(tabors, question, store, jobs=options.jobs, dask=options.dask, progress=step)
+            if file:
+                study.write_csv(curves, file)
+    except KeyboardInterrupt as how:
+        kept = f"what is done is kept in {options.resume}, the same command goes on" if store else "nothing was written"
+        return ended(how, kept)
+    for line in store.notes if store else ():
+        print(f"fem-adhesion: {line}", file=sys.stderr)
+    failed = [curve for curve in curves if curve.reason]
+    out = sys.stderr if options.csv == STANDARD else sys.stdout
+    print(f"{_told(curves, options.rtol)}; written: {options.csv}", file=out)
+    for curve in failed:
+        print(f"fem-adhesion: tabor {curve.tabor:g}: {curve.reason}", file=sys.stderr)
+    return DISAGREE if failed else AGREE
+
+
+def _told(curves: Sequence[Summary], rtol: float) -> str:
+    """How many curves there are, how many fold, and how accurate they are, in one line."""
+    solved = [curve for curve in curves if not curve.reason]
+    folding = sum("jump_on" in curve.events for curve in solved)
+    met = sum(not curve.missed for curve in solved)
+    return f"{len(solved)} of {len(curves)} curves traced, {folding} fold, {met} as accurate as asked, rtol {rtol:g}"
+
+
+COMMAND = Command(
+    "sweep",
+    "trace the curves at many Tabor parameters and write their events as one table",
+    "Pull-off, jumps and zero load of many curves on the half-space, the energy set free and the energy lost in a "
+    "cycle, each with its error, on all cores. What is interrupted goes on with --resume. Exits with 1 if a curve "
+    "cannot be traced.",
+    "--tabor 0.05:50:200 --csv sweep.csv",
+    add_options,
+    run,
+)

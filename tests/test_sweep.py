@@ -1,0 +1,177 @@
+"""Many curves as arrays, and as a table of the command line that goes on where it was interrupted."""
+
+import csv
+import io
+from concurrent.futures import ProcessPoolExecutor
+
+import numpy as np
+import pytest
+
+import halfspace
+from fem_adhesion import cli
+from fem_adhesion.common.jobs import WorkerDied
+from fem_adhesion.common.store import open_store
+from fem_adhesion.sweep import study
+from halfspace.accuracy import sweep as sweeping
+from halfspace.accuracy.sweep import NUMBERS, UNKNOWN, Summary, summary
+from halfspace.equilibrium.devices import cycle
+from halfspace.errors import InputError, NotConverged
+
+TABORS = (2.0, 0.3, 1.0)  # of which the second does not fold
+RTOL = 1e-3
+QUESTION = study.Question(RTOL, 5.0)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return halfspace.sweep(TABORS, rtol=RTOL)
+
+
+def test_the_arrays_hold_the_numbers_of_each_curve_in_the_order_asked(found):
+    assert found.tabor.tolist() == list(TABORS)
+    for i, tabor in enumerate(TABORS):
+        path = halfspace.trace(tabor, rtol=RTOL)
+        assert (found.energy[i], found.energy_error[i]) == (path.energy.value, path.energy.error)
+        for name, series in found.events.items():
+            event = path.event(name)
+            for number in NUMBERS:
+                expected = getattr(event, number) if event else np.nan
+                np.testing.assert_equal(getattr(series, number)[i], expected)
+        lost = cycle(path)
+        assert found.energy_lost[i] == (lost.energy_lost.value if lost else 0.0)
+        assert found.energy_lost_error[i] == (lost.energy_lost.error if lost else 0.0)
+        assert found.met[i] == path.met
+    assert not found.reasons
+
+
+def test_a_pool_of_processes_finds_the_same(found):
+    with ProcessPoolExecutor(2) as pool:
+        assert halfspace.sweep(TABORS, rtol=RTOL, map=pool.map) == found
+
+
+def test_parts_of_the_contact_reach_every_curve(found):
+    other = halfspace.sweep([1.0], rtol=RTOL, profile=halfspace.profiles.Power(4), to_load=3.0)
+    assert (
+        other.events["pull_off"].load[0]
+        == halfspace.trace(1.0, rtol=RTOL, profile=halfspace.profiles.Power(4), to_load=3.0).event("pull_off").load
+    )
+    assert abs(other.events["pull_off"].load[0] - found.events["pull_off"].load[2]) > 0.1
+
+
+def test_a_loss_that_cannot_be_told_is_not_told():
+    near = halfspace.sweep(0.697214614, rtol=RTOL)
+    assert np.isnan(near.energy_lost).all()
+    assert np.isfinite(near.energy).all()
+
+
+def test_a_curve_that_cannot_be_traced_leaves_the_others(monkeypatch, found):
+    trace = sweeping.trace
+
+    def failing(tabor, **settings):
+        if tabor == 0.3:
+            raise NotConverged("it ends here; take another")
+        return trace(tabor, **settings)
+
+    monkeypatch.setattr(sweeping, "trace", failing)
+    rest = halfspace.sweep(TABORS, rtol=RTOL)
+    assert rest.reasons == {0.3: "it ends here; take another"}
+    assert rest.met.tolist() == [True, False, True]
+    assert np.isnan(rest.energy).tolist() == [False, True, False]
+    np.testing.assert_array_equal(rest.events["pull_off"].load[[0, 2]], found.events["pull_off"].load[[0, 2]])
+
+
+@pytest.mark.parametrize(
+    "asked", [{"tabors": [1.0, 400.0]}, {"tabors": [1.0], "rtol": 1.0}, {"tabors": [1.0], "to_load": -1}]
+)
+def test_what_is_out_of_range_is_refused_before_any_work(monkeypatch, asked):
+    monkeypatch.setattr(sweeping, "trace", lambda *_, **__: pytest.fail("it has begun"))
+    with pytest.raises(InputError, match="outside"):
+        halfspace.sweep(**asked)
+
+
+# --- the command ---
+
+
+def rows_of(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def test_the_table_has_the_numbers_of_the_sweep(capsys, found):
+    assert cli.main(["sweep", "--tabor", *map(str, TABORS), "--rtol", str(RTOL), "--csv", "-", "--jobs", "1"]) == 0
+    out = capsys.readouterr()
+    rows = rows_of(out.out)
+    assert "3 of 3 curves traced, 2 fold, 3 as accurate as asked, rtol 0.001; written: -" in out.err
+    for i, row in enumerate(rows):
+        assert float(row["tabor"]) == TABORS[i]
+        assert float(row["energy_R_dgamma_eps"]) == found.energy[i]
+        assert float(row["energy_lost_error_R_dgamma_eps"]) == found.energy_lost_error[i]
+        for name, series in found.events.items():
+            for number, unit in study.UNITS.items():
+                for column, values in ((number, number), (f"{number}_error", f"{number}_error")):
+                    told, value = row[f"{name}_{column}_{unit}"], getattr(series, values)[i]
+                    assert told == ("" if np.isnan(value) else repr(float(value)))
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [("0.05:50:4", [0.05, 0.5, 5.0, 50.0]), ("3:1:2", [3.0, 1.0]), ("2", [2.0])],
+)
+def test_a_range_is_of_equal_ratios_with_both_ends(text, values):
+    from fem_adhesion.sweep.command import tabors_of
+
+    assert tabors_of([text]) == pytest.approx(values, rel=1e-12, abs=0)
+    assert tabors_of([text, text]) == tabors_of([text])
+
+
+@pytest.mark.parametrize("text", ["1:2", "a", "1:2:x", "0:1:5", "-1:2:5", "1:2:1", "1:2:3:4", "400", "nan"])
+def test_what_is_no_tabor_parameter_is_refused_in_one_line(capsys, tmp_path, text):
+    table = tmp_path / "table.csv"
+    assert cli.main(["sweep", f"--tabor={text}", "--csv", str(table)]) == 2
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1
+    assert "; " in err
+    assert not table.exists()
+
+
+def counted(tabor, question):
+    counted.calls.append(tabor)
+    return summary(
+        tabor, law=halfspace.laws.PowerLaw(3, 9), profile=halfspace.profiles.Paraboloid(), body=None, **vars(question)
+    )
+
+
+counted.calls = []
+
+
+def test_what_is_kept_is_not_traced_again(tmp_path):
+    store = open_store(tmp_path / "kept", "code", resume=True)
+    first = study.run(TABORS[:2], QUESTION, store, jobs=1, work=counted)
+    again = study.run(TABORS, QUESTION, open_store(tmp_path / "kept", "code", resume=True), jobs=1, work=counted)
+    assert counted.calls == list(TABORS)
+    assert repr(again[:2]) == repr(first)  # nan is not equal to itself
+    other = open_store(tmp_path / "kept", "other code", resume=True)
+    study.run(TABORS[:1], QUESTION, other, jobs=1, work=counted)
+    assert counted.calls == [*TABORS, TABORS[0]]
+    assert other.notes == ("1 case computed by other code: computed again",)
+    study.run(TABORS[:1], study.Question(RTOL / 2, 5.0), store, jobs=1, work=counted)
+    assert len(counted.calls) == 5
+
+
+def test_a_curve_whose_worker_died_is_tried_again(monkeypatch, tmp_path):
+    store = open_store(tmp_path / "kept", "code", resume=True)
+    monkeypatch.setattr(study, "stream", lambda *_, **__: (item for item in [(1.0, WorkerDied("killed"))]))
+    (died,) = study.run([1.0], QUESTION, store)
+    assert died == Summary(1.0, {}, UNKNOWN, UNKNOWN, {}, "killed")
+    assert store.get(study._inputs(1.0, QUESTION)) is None
+
+
+def test_the_exit_code_says_that_a_curve_is_missing(monkeypatch, capsys, tmp_path):
+    lost = Summary(2.0, {}, UNKNOWN, UNKNOWN, {}, "it ends here")
+    monkeypatch.setattr(study, "run", lambda *_, **__: [lost])
+    table = tmp_path / "table.csv"
+    assert cli.main(["sweep", "--tabor", "2", "--csv", str(table)]) == 1
+    out = capsys.readouterr()
+    assert out.err == "fem-adhesion: tabor 2: it ends here\n"
+    assert out.out.startswith("0 of 1 curves traced")
+    (row,) = rows_of(table.read_text())
+    assert (row["tabor"], row["reason"], row["pull_off_load_R_dgamma"]) == ("2.0", "it ends here", "")
