@@ -112,6 +112,14 @@ def test_the_table_has_the_numbers_of_the_sweep(capsys, found):
                     assert told == ("" if np.isnan(value) else repr(float(value)))
 
 
+def test_the_law_reaches_every_curve(capsys):
+    words = ["--law", "morse", "--law-parameter", "3", "--rtol", str(RTOL), "--csv", "-", "--jobs", "1"]
+    assert cli.main(["sweep", "--tabor", "1", *words]) == 0
+    (row,) = rows_of(capsys.readouterr().out)
+    path = halfspace.trace(1.0, law=halfspace.laws.Morse(3.0), rtol=RTOL)
+    assert float(row["pull_off_load_R_dgamma"]) == path.event("pull_off").load
+
+
 @pytest.mark.parametrize(
     ("text", "values"),
     [("0.05:50:4", [0.05, 0.5, 5.0, 50.0]), ("3:1:2", [3.0, 1.0]), ("2", [2.0])],
@@ -135,9 +143,7 @@ def test_what_is_no_tabor_parameter_is_refused_in_one_line(capsys, tmp_path, tex
 
 def counted(tabor, question):
     counted.calls.append(tabor)
-    return summary(
-        tabor, law=halfspace.laws.PowerLaw(3, 9), profile=halfspace.profiles.Paraboloid(), body=None, **vars(question)
-    )
+    return summary(tabor, profile=halfspace.profiles.Paraboloid(), body=None, **vars(question))
 
 
 counted.calls = []

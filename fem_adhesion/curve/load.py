@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -175,16 +175,12 @@ def _theories(scene: Scene, frame: Frame) -> Iterator[tuple[str, tuple[Array, Ar
     scales, surface, tabor = scene.scales, scene.surface, scene.tabor
     a = np.linspace(1e-3, min(WIDER * scales.widest_radius(frame.load[1]), CLOSE * surface.end), SAMPLES)
     if scene.body.layered is None:
-        yield "JKR", (_each(lambda r: tabor * jkr_approach(surface, r), a), _each(lambda r: jkr_load(surface, r), a))
+        yield "JKR", (tabor * jkr_approach(surface, a), jkr_load(surface, a))
     apart = np.linspace(frame.approach[0], min(0.6, frame.approach[1]), SAMPLES)
-    yield "Bradley", (apart, _each(scales.rigid_load, apart))
+    yield "Bradley", (apart, np.array([scales.rigid_load(value) for value in apart.tolist()]))
     matched = scene.law == LENNARD_JONES and isinstance(scene.shape, Paraboloid | Sphere)
     if scene.body.layered is None and matched and 1e-6 <= MAUGIS.of(tabor) <= 1e6:
         yield "Maugis-Dugdale", _maugis(tabor, a)
-
-
-def _each(of: Callable[[float], float], values: Array) -> Array:
-    return np.array([of(value) for value in values.tolist()])
 
 
 def _maugis(tabor: float, radius: Array) -> tuple[Array, Array]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from fem_adhesion.common.options import AGREE, DISAGREE, STANDARD, Command, Parser, ended, written
 from fem_adhesion.common.progress import progress_bar
+from fem_adhesion.common.scene_options import add_law, law_of
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ def add_options(command: Parser) -> None:
     """Add the options."""
     tabor = "Tabor parameters, or FROM:TO:COUNT for as many in equal ratios"
     command.add_argument("--tabor", nargs="+", required=True, help=tabor, metavar="MU")
+    add_law(command.add_argument_group("contact"))
     command.add_argument("--rtol", type=float, default=1e-6, help="relative accuracy, 1e-9 to 1e-1")
     command.add_argument(
         "--to-load", type=float, default=5.0, help="load in R dgamma at which a curve ends", metavar="W"
@@ -72,7 +74,7 @@ def run(options: argparse.Namespace) -> int:
     from halfspace.limits import require_load, require_rtol
 
     tabors = tabors_of(options.tabor)
-    question = study.Question(require_rtol(options.rtol), require_load(options.to_load))
+    question = study.Question(require_rtol(options.rtol), require_load(options.to_load), law_of(options))
     store = open_store(options.resume, study.code(), resume=True, force=None) if options.resume else None
     try:
         with written(options.csv) as file, progress_bar() as step:

@@ -15,8 +15,11 @@ from fem_adhesion.common.facts import plain
 from fem_adhesion.common.jobs import WorkerDied, stream
 from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.common.store import Plain, Store
+from fem_adhesion.registry import record_of
 from halfspace.accuracy.sweep import UNKNOWN, Summary, summary
 from halfspace.equilibrium.events import EVENTS, Event
+from halfspace.laws import LENNARD_JONES, Law
+from halfspace.profiles import PARABOLOID
 from halfspace.values import Estimate
 
 UNITS = {"approach": "eps", "load": "R_dgamma", "central_gap": "eps", "contact_radius": "beta"}
@@ -33,10 +36,13 @@ class Question:
         Relative accuracy.
     to_load : float
         Load in R dgamma at which a curve ends.
+    law : Law
+        Of the tension between the surfaces.
     """
 
     rtol: float
     to_load: float
+    law: Law = LENNARD_JONES
 
 
 def code() -> str:
@@ -46,10 +52,8 @@ def code() -> str:
 
 def compute(tabor: float, question: Question) -> Summary:
     """Trace one curve."""
-    from halfspace.laws import LENNARD_JONES
-    from halfspace.profiles import PARABOLOID
-
-    return summary(tabor, law=LENNARD_JONES, profile=PARABOLOID, body=None, **asdict(question))
+    to_load, rtol, law = question.to_load, question.rtol, question.law
+    return summary(tabor, law=law, profile=PARABOLOID, body=None, rtol=rtol, to_load=to_load)
 
 
 def run(
@@ -100,7 +104,7 @@ def run(
 
 
 def _inputs(tabor: float, question: Question) -> Plain:
-    return {"tabor": tabor, **asdict(question)}
+    return {"tabor": tabor, "rtol": question.rtol, "to_load": question.to_load, "law": record_of(question.law)}
 
 
 def _stored(tabors: Sequence[float], question: Question, store: Store) -> Iterator[tuple[float, Summary]]:
