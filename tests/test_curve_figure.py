@@ -96,7 +96,7 @@ def test_branches_and_theories_differ_in_dashes_and_in_colour(curves, tabor):
 def test_the_drawn_line_is_the_curve_between_the_computed_points(curves):
     """Against points ten times closer, each solved for."""
     charts = half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-4))
-    close = [p.observables for s in trace_charts(charts, steps=Steps(longest=0.1)) for p in s.points]
+    close = [p.observables for s in trace_charts(charts, steps=Steps(longest=0.05)) for p in s.points]
     line = curve_lines.smooth(curves[2.0].path)
     drawn = np.stack([line.approach, line.load])
     nearest = [_distance(drawn, point[: LOAD + 1]) for point in close if point[LOAD] <= line.load[-1]]
