@@ -11,7 +11,8 @@ from fem_adhesion.common.progress import progress_bar
 
 def add_options(command: Parser) -> None:
     """Add the options."""
-    command.add_argument("--tabor", type=float, default=1.0, help="Tabor parameter, 0.05 to 2", metavar="MU")
+    long = "Tabor parameter, 0.05 to 2; at 2 uniform grids and the iterations of 1997 take over ten times as long as at 1"
+    command.add_argument("--tabor", type=float, default=1.0, help=long, metavar="MU")
     command.add_argument("--quick", action="store_true", help="climb the lower rungs only")
     add_output(command)
 
