@@ -11,7 +11,7 @@ from fem_adhesion.common.progress import progress_bar
 
 def add_options(command: Parser) -> None:
     """Add the options."""
-    long = "Tabor parameter, 0.05 to 2; at 2 uniform grids and the iterations of 1997 take over ten times as long as at 1"
+    long = "Tabor parameter, 0.05 to 2; at 2 uniform grids and iterations of 1997 take ten times as long as at 1"
     command.add_argument("--tabor", type=float, default=1.0, help=long, metavar="MU")
     command.add_argument("--quick", action="store_true", help="climb the lower rungs only")
     add_output(command)
