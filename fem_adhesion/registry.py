@@ -30,6 +30,7 @@ PARTS: dict[str, dict[str, Any]] = {
         "morse": "halfspace.laws.morse:Morse",
         "exponential": "halfspace.laws.exponential:Exponential",
         "dlvo": "halfspace.laws.dlvo:Dlvo",
+        "dugdale": "halfspace.laws.dugdale:Dugdale",
     },
     "profile": {
         "paraboloid": "halfspace.profiles.paraboloid:Paraboloid",

@@ -16,6 +16,7 @@ import numpy as np
 
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
+from halfspace.laws.law import NEAR
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.profiles.indentation import hertz_radius, jkr_fold, jkr_least_load, jkr_radius
 from halfspace.roots import root
@@ -24,6 +25,7 @@ from halfspace.values import Array
 RISE = 0.245  # eps, over which the tension of the 3-9 law rises: a rigid paraboloid does so in 0.7 beta/sqrt(mu)
 NOTHING = 1e-15  # of the work of adhesion: what the tail of a law without an exponent may leave beyond the finite cells
 FARTHER = 8.0  # extents, up to which the infinite cell is cut where the tail is no polynomial, at least
+SUDDEN = 0.7  # of the largest tension, by which it may fall within a gap as wide as that from the edge
 UNTOLD, CROWD = 1e-7, 64.0  # of the load beyond, what the last cell may leave of it; how much nearer its nodes are
 STEP = 0.1  # of the trapezoidal rule in ln r for the tension of undeformed surfaces
 LOGARITHMS = np.arange(-16.0, 16.0, STEP)
@@ -68,6 +70,17 @@ class Scales:
         """Width of a soft contact's spike in those of the 3-9 law."""
         ours, known = self.law, LENNARD_JONES
         return min(known.stiffness / ours.stiffness, (known.strength / ours.strength) ** 2)
+
+    @cached_property
+    def gradual(self) -> float:
+        """Part of the growth of cells away from the edge that the law allows: less where the tension ends by a step.
+
+        A gap beyond the edge by H has opened over some distance d, so that a tension which falls within a part of H
+        does within that part of d.
+        """
+        beyond = NEAR[self.law.edge_gap < NEAR]
+        steepness = (beyond - self.law.edge_gap) * np.abs(self.law.slope(beyond, 1.0)) / self.law.strength
+        return float(min(1.0, SUDDEN / steepness.max()))
 
     @property
     def _rigid_width(self) -> float:

@@ -9,7 +9,7 @@ import combinations
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 from scipy.special import beta
 
 import fem_adhesion
@@ -19,12 +19,13 @@ from fem_adhesion.crosscheck.references import elements_of
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium import newton
 from halfspace.errors import InputError
-from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, LennardJones, Morse, PowerLaw
+from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
 from halfspace.laws.check import require_law
 from halfspace.profiles import PARABOLOID, Endless, Hyperboloid, Paraboloid, Power
 from halfspace.profiles.indentation import hertz_approach, hertz_load, jkr_approach, jkr_load, jkr_radius
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
+from halfspace.theories.maugis import TENSION_TO_MAUGIS, MaugisDugdale
 
 LAWS = [
     LennardJones(),
@@ -39,6 +40,7 @@ LAWS = [
     Exponential(0.5, 4),
     Dlvo(0.3, 1.0),
     Dlvo(-0.5, 0.3),
+    Dugdale(0.2),
 ]
 named = pytest.mark.parametrize("law", LAWS, ids=str)
 
@@ -86,6 +88,7 @@ def test_the_default_is_lennard_jones():
         (lambda: Dlvo(0.5, 1.0), "charge = 0.5 leaves no work of adhesion, limit: charge < 0.429 at this screening"),
         (lambda: Dlvo(2, 1.0), "charge = 2 leaves no core"),
         (lambda: Dlvo(0.1, 0), "screening = 0 is outside 0.02 <= screening <= 50"),
+        (lambda: Dugdale(0.01), "width = 0.01 of Dugdale's law is outside 0.07 <= width <= 0.5; extrapolate from"),
         (lambda: Power(1), "k = 1 of the profile is outside 1.5 <= k <= 10; round a cone's tip"),
         (lambda: Power(30), "k = 30 of the profile is outside 1.5 <= k <= 10"),
         (lambda: Hyperboloid(0), "b = 0 of the hyperboloid is outside 0.01 <= b < inf"),
@@ -250,6 +253,30 @@ def test_a_soft_contact_is_jkrs_by_any_law_on_any_profile(parts):
     assert np.all(np.abs(third) < 0.05)
     assert np.all(np.abs(third) < 0.75 * np.abs(second))
     assert np.all(np.abs(second) < 0.75 * np.abs(first))
+
+
+@pytest.mark.parametrize("tabor", [0.5, 1.0])
+def test_dugdales_law_tends_to_maugiss_as_its_steps_narrow(tabor):
+    """Pull-off and the approach under no load by terms in w^2 and w^4, to a part in ten thousand; radii in w^(2/3)."""
+    widths = 0.16 * 2.0 ** -np.array([0.0, 0.5, 1.0])
+    paths = [halfspace.trace(tabor, law=Dugdale(width)) for width in widths]
+    free = [path.event("zero_load") for path in paths]
+    found = [
+        [path.event("pull_off").load, at.approach, at.contact_radius] for path, at in zip(paths, free, strict=True)
+    ]
+    theory = MaugisDugdale(TENSION_TO_MAUGIS * tabor, tabor)
+    radius = brentq(theory.load, 1, 3, xtol=1e-14)
+    sharp = np.array([theory.pull_off().load, float(theory.approach(radius)), radius])
+    by_squares = np.linalg.solve(widths[:, None] ** [0, 2, 4], found)[0]
+    assert np.abs(by_squares / sharp - 1)[:2].max() < 1e-4
+    off = np.array(found)[:, 2] - radius
+    np.testing.assert_allclose(off[1:] / off[:-1], 2 ** (-1 / 3), rtol=0.03)
+
+
+def test_only_a_law_that_ends_by_a_step_has_cells_that_grow_more_slowly():
+    for law in LAWS[:-1]:
+        assert Scales(1.0, law).gradual == 1
+    assert Scales(1.0, Dugdale(0.1)).gradual < 0.5 * Scales(1.0, Dugdale(0.2)).gradual < 0.5
 
 
 @pytest.mark.parametrize(

@@ -96,6 +96,7 @@ def rings(
     length = finest * scales.spike_width / 2
     outer = scales.outer_radius(extent**2 / 2)
     widest, first = scales.widest_radius(to_load), scales.profile.first_cell(10.0**-nodes)
+    growth = 1 + (growth - 1) * scales.gradual
     centred = grid.graded(0.0, length, outer, growth=growth)
     edge = grid.graded(1.0, 2 * length / widest, outer / length, growth=growth)
     until = LEAVE * float(centred[1])  # the cells beyond the first may be too coarse
