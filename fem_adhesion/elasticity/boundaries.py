@@ -72,36 +72,37 @@ class Trace(Valued):
 
 def trace_on(space: Space, name: str, points: int) -> Trace:
     """Evaluate a space at so many Gauss points on each facet of a named boundary."""
-    mesh, corners = space.mesh, space.element.refdom.p
+    mesh, functions = space.mesh, space.boundary_functions(name)
     facets = mesh.boundaries[name]
     cells, (X, weights) = mesh.f2t[0, facets], get_quadrature(RefLine, 2 * points - 1)
-    first, second = (np.argmax(mesh.t[:, cells] == vertex, axis=0) for vertex in mesh.facets[:, facets])
-    start, along = corners[:, first], corners[:, second] - corners[:, first]
-    Y = start[:, :, None] + along[:, :, None] * X[0]
-    J = mesh.mapping().DF(Y, tind=cells)
-    tangents = np.einsum("ijfk,jf->ifk", J, along)
-    # Outwards is to the right of the tangent where the rest of the cell is to its left.
-    towards = corners.mean(axis=1)[:, None] - start
-    left = np.sign(along[0] * towards[1] - along[1] * towards[0])[:, None] * np.sign(
-        J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0]
-    )
-    lengths = np.hypot(*tangents)
-    functions = space.boundary_functions(name)
-    values = _values(space, functions, cells, (first, second), Y)
-    normals = left * np.array([tangents[1], -tangents[0]]) / lengths
-    return Trace(mesh.mapping().F(Y, tind=cells), normals, lengths * weights, functions, values)
+    ends = [np.argmax(mesh.t[:, cells] == vertex, axis=0) for vertex in mesh.facets[:, facets]]
+    places, normals = np.empty((2, 2, cells.size, points))
+    lengths, values = np.empty((cells.size, points)), np.empty((len(space.scalar_dofs.element_dofs), *places.shape[1:]))
+    for side in np.unique(ends, axis=1).T:  # all facets between the same corners at once
+        alike = np.all(np.transpose(ends) == side, axis=1)
+        Y, along, outwards = _side(space.element.refdom.p, side[0], side[1], X[0])
+        J = np.asarray(mesh.mapping().DF(Y, tind=cells[alike]))
+        tangents = np.einsum("ijfk,j->ifk", J, along)
+        lengths[alike] = np.hypot(*tangents)
+        turned = outwards * np.sign(J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0])
+        normals[:, alike] = turned * np.array([tangents[1], -tangents[0]]) / lengths[alike]
+        places[:, alike] = mesh.mapping().F(Y, tind=cells[alike])
+        values[:, alike] = reference_functions(space.element, Y)[0][:, None]
+    rows = _rows(values, np.asarray(space.scalar_dofs.element_dofs)[:, cells], functions)
+    return Trace(places, normals, lengths * weights, functions, rows)
 
 
-def _values(space: Space, functions: Index, cells: Index, ends: tuple[Index, Index], Y: Array) -> sparse.csr_array:
-    """Values of functions at the points Y (2, facets, k) of cells; alike on all facets between the same corners."""
-    dofs, k = space.scalar_dofs.element_dofs[:, cells], Y.shape[2]
-    values = np.empty((len(dofs), *Y.shape[1:]))
-    sides = ends[0] * len(space.mesh.t) + ends[1]
-    for side in np.unique(sides):
-        alike = np.flatnonzero(sides == side)
-        values[:, alike] = reference_functions(space.element, Y[:, alike[0]])[0][:, None]
-    found = np.isin(dofs, functions)
+def _side(corners: Array, first: int, second: int, X: Array) -> tuple[Array, Array, float]:
+    """Points of the reference cell on a side, its direction, and 1 if outwards is to the right of that, -1 if not."""
+    along, inwards = corners[:, second] - corners[:, first], corners.mean(axis=1) - corners[:, first]
+    Y = corners[:, first, None] + along[:, None] * X
+    return Y, along, float(np.sign(along[0] * inwards[1] - along[1] * inwards[0]))
+
+
+def _rows(values: Array, dofs: Index, functions: Index) -> sparse.csr_array:
+    """Rows of the values (n, facets, k) of the unknowns dofs (n, facets), for some functions."""
+    k, found = values.shape[2], np.isin(dofs, functions)
     columns = np.broadcast_to(np.searchsorted(functions, dofs)[:, :, None], values.shape)
-    rows = np.broadcast_to(np.arange(cells.size * k).reshape(-1, k), values.shape)
+    rows = np.broadcast_to(np.arange(values[0].size).reshape(-1, k), values.shape)
     entries = values[found].ravel(), (rows[found].ravel(), columns[found].ravel())
-    return sparse.csr_array(entries, shape=(cells.size * k, len(functions)))
+    return sparse.csr_array(entries, shape=(values[0].size, len(functions)))

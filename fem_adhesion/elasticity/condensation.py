@@ -12,7 +12,7 @@ from scipy.linalg.blas import dtrsm
 from scipy.sparse.linalg import splu
 
 from fem_adhesion.elasticity.boundaries import trace_on
-from fem_adhesion.elasticity.elimination import SINGULAR, condensed_to, factor, reduced_cells
+from fem_adhesion.elasticity.elimination import SINGULAR, condensed_to, eliminated, factor, reduced_cells
 from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load
 from fem_adhesion.elasticity.space import CellStiffness, Space, cell_stiffness, ring_measure, scatter
 from halfspace.elastic.compliance import ElasticOperator
@@ -28,30 +28,33 @@ class Skeleton(Valued):
     ----------
     cells : (cells, n_o, n_o) array
         Stiffness of each cell, without its interior unknowns.
-    outer, inner : (n_o, cells) and (n_i, cells) int array
-        Numbers of its shared and of its interior unknowns.
-    K_ii, K_io : (cells, n_i, n_i) and (cells, n_i, n_o) array
-        Parts of its stiffness with the interior unknowns.
+    whole : (cells, 2 n, 2 n) array
+        The same with them.
+    dofs : (2 n, cells) int array
+        Numbers of a cell's unknowns.
+    inner, outer : (n_i,) and (n_o,) int arrays
+        Positions of the interior and of the shared unknowns among them.
     size : int
         Number N of all unknowns.
     """
 
     cells: Array
-    outer: Index
+    whole: Array
+    dofs: Index
     inner: Index
-    K_ii: Array
-    K_io: Array
+    outer: Index
     size: int
 
     @cached_property
     def stiffness(self) -> sparse.csc_array:
         """Of the whole body, numbered as all N unknowns; rows and columns of interior unknowns are empty."""
-        return scatter(self.cells, self.outer, self.size)
+        return scatter(self.cells, self.dofs[self.outer], self.size)
 
     def recovered(self, u: Array) -> Array:
         """Return the displacement u, (N,), with its interior unknowns filled in."""
-        full = u.copy()
-        full[self.inner.T] = -np.linalg.solve(self.K_ii, self.K_io @ u[self.outer].T[:, :, None])[:, :, 0]
+        full, inside = u.copy(), self.whole[:, self.inner]
+        carried = inside[:, :, self.outer] @ u[self.dofs[self.outer]].T[:, :, None]
+        full[self.dofs[self.inner].T] = -np.linalg.solve(inside[:, :, self.inner], carried)[:, :, 0]
         return full
 
 
@@ -248,12 +251,12 @@ def contact_surface(space: Space, points: int, traction: str = "projected") -> S
 
 def eliminate_interiors(space: Space, K: Array) -> Skeleton:
     """Eliminate the interior unknowns from the (cells, 2 n, 2 n) cell matrices."""
-    n, shared = len(K[0]) // 2, len(K[0]) // 2 - space.element.interior_dofs
+    n, interior = len(K[0]) // 2, space.element.interior_dofs
     functions = np.arange(2 * n).reshape(2, n)
-    outer, inner = functions[:, :shared].ravel(), functions[:, shared:].ravel()
-    K_ii, K_io = K[:, inner[:, None], inner], K[:, inner[:, None], outer]
-    K_oo = K[:, outer[:, None], outer] - K_io.transpose(0, 2, 1) @ np.linalg.solve(K_ii, K_io)
-    return Skeleton(K_oo, space.cell_dofs[outer], space.cell_dofs[inner], K_ii, K_io, space.unknowns)
+    outer, inner = functions[:, : n - interior].ravel(), functions[:, n - interior :].ravel()
+    order = np.concatenate([inner, outer])
+    cells = [eliminated(cell.take(order, axis=0).take(order, axis=1), inner.size) for cell in K]
+    return Skeleton(np.array(cells), K, space.cell_dofs, inner, outer, space.unknowns)
 
 
 def factorise(skeleton: Skeleton, exterior: Exterior) -> Factorised:
@@ -269,7 +272,7 @@ def flexibility(space: Space, skeleton: Skeleton, exterior: Exterior, surface: I
     """
     T, S = exterior.reduction, exterior.stiffness
     rows = T.tocsr()[surface]
-    cells, unknowns = reduced_cells(skeleton.cells, skeleton.outer, T)
+    cells, unknowns = reduced_cells(skeleton.cells, skeleton.dofs[skeleton.outer], T)
     kept = np.diff(S.indptr) > 0
     kept[rows.indices] = True
     numbers, stiffness = condensed_to(space.mesh, cells, unknowns, kept)

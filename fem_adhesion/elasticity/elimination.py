@@ -8,8 +8,9 @@ is left at last is the stiffness of the surface itself: no right-hand side is so
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -27,23 +28,39 @@ LEAST = 8  # cells of the smallest regions: with fewer there are more steps, wit
 SINGULAR = "the stiffness is singular; hold the body, and mesh it without empty cells"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Region:
-    """Stiffness of some cells, as that of one or more parts.
+    """Some cells, and how their stiffness is put together; the same for all meshes whose cells meet alike.
 
     Attributes
     ----------
-    unknowns : (parts, k) int array
-        Numbers of the unknowns that are left, below 0 where they are held.
-    shares : (parts, k) int array
-        How many of the cells have each of them.
-    stiffness : (parts, k, k) array
-        Symmetric.
+    parts : tuple of Region
+        The two that it joins, none if it consists of cells.
+    cells : (m,) int array
+        Their numbers.
+    unknowns, shares : (k,) int array
+        Numbers of the unknowns that are left, and how many of the cells have each of them.
+    entries : (...) int array
+        Places of the entries of the cells', or the parts', matrices in its own.
+    size, complete : int
+        Of that matrix, and how many of its first unknowns are eliminated.
     """
 
+    parts: tuple[Region, ...]
+    cells: Index
     unknowns: Index
     shares: Index
-    stiffness: Array
+    entries: Index
+    size: int
+    complete: int
+
+    def stiffness(self, K: Array) -> Array:
+        """Stiffness (k, k) of the unknowns that are left, from that of all cells."""
+        matrices = [part.stiffness(K).ravel() for part in self.parts] if self.parts else [K[self.cells].ravel()]
+        joined = np.bincount(self.entries, np.concatenate(matrices), self.size**2)
+        used = self.complete + self.unknowns.size
+        square = np.asarray(joined, dtype=np.float64).reshape(self.size, self.size)
+        return eliminated(square[:used, :used], self.complete)
 
 
 def condensed_to(mesh: Any, K: Array, unknowns: Index, kept: Mask) -> tuple[Index, Array]:
@@ -70,19 +87,19 @@ def condensed_to(mesh: Any, K: Array, unknowns: Index, kept: Mask) -> tuple[Inde
     NotConverged
         If the stiffness is singular.
     """
-    complete = np.bincount(unknowns[unknowns >= 0], minlength=kept.size)
-    complete[kept] = 0  # as it is in no region
     steps = np.array([_steps(mesh, mesh.f2t[0, mesh.boundaries[name]]) for name in ("axis", "contact")])
+    shares = np.bincount(unknowns[unknowns >= 0], minlength=kept.size).astype(np.intp)
+    shares[kept] = 0  # in no region is it complete
+    whole = _dissected(unknowns.tobytes(), steps.tobytes(), shares.tobytes(), len(K))
+    return whole.unknowns, whole.stiffness(K)
 
-    def region(cells: Index) -> Region:
-        if cells.size <= LEAST:
-            own = unknowns[:, cells].T
-            return _joined([Region(own, np.ones(own.shape, dtype=np.intp), K[cells])], complete)
-        first = _half(steps[:, cells])
-        return _joined([region(cells[first]), region(cells[~first])], complete)
 
-    whole = region(np.arange(len(K)))
-    return whole.unknowns[0], whole.stiffness[0]
+def eliminated(K: Array, count: int) -> Array:
+    """Stiffness without the first unknowns, so many; raise NotConverged unless it is positive definite in them."""
+    if not count:
+        return K
+    W = dtrsm(1.0, factor(K[:count, :count]), K[count:, :count], side=1, lower=1, trans_a=1)
+    return np.asarray(K[count:, count:] - W @ W.T)
 
 
 def factor(matrix: Array) -> Array:
@@ -122,26 +139,38 @@ def reduced_cells(K: Array, dofs: Index, T: sparse.csc_array) -> tuple[Array, In
     return extended, np.vstack([unknowns, np.where(t.any(axis=1), gathering, -1).T])
 
 
-def _joined(regions: Sequence[Region], complete: Index) -> Region:
-    """Regions joined to one part, without the unknowns that are complete then."""
-    numbers, places = np.unique(np.concatenate([r.unknowns.ravel() for r in regions]), return_inverse=True)
-    shares = np.bincount(places, np.concatenate([r.shares.ravel() for r in regions])).astype(np.intp)
+@lru_cache(maxsize=4)
+def _dissected(unknowns: bytes, steps: bytes, shares: bytes, cells: int) -> Region:
+    """All cells as a tree of regions; kept, as bodies are meshed for several contact radii near each other."""
+    numbers, away = (np.frombuffer(data, dtype=np.intp).reshape(-1, cells) for data in (unknowns, steps))
+    complete = np.frombuffer(shares, dtype=np.intp)
+
+    def region(chosen: Index) -> Region:
+        if chosen.size <= LEAST:
+            own = numbers[:, chosen].T
+            return _region((), chosen, own, np.ones_like(own), complete)
+        first = _half(away[:, chosen])
+        parts = region(chosen[first]), region(chosen[~first])
+        return _region(parts, chosen, [part.unknowns for part in parts], [part.shares for part in parts], complete)
+
+    return region(np.arange(cells))
+
+
+def _region(
+    parts: tuple[Region, ...], cells: Index, unknowns: Iterable[Index], shares: Iterable[Index], complete: Index
+) -> Region:
+    """Region of matrices with these unknowns: first those that are complete, then those left, then those held."""
+    unknowns = list(unknowns)
+    numbers, places = np.unique(np.concatenate(unknowns), return_inverse=True)
+    shared = np.bincount(places, np.concatenate(list(shares))).astype(np.intp)
     held = numbers < 0
-    done = ~held & (shares == complete[numbers])
+    done = ~held & (shared == complete[numbers])
     order = np.argsort(np.where(held, 2, ~done), kind="stable")
-    n, k = numbers.size, np.count_nonzero(done)
-    places, left = np.argsort(order)[places], order[k : n - np.count_nonzero(held)]
-    splits = np.split(places, np.cumsum([r.unknowns.size for r in regions])[:-1])
-    rows = [part.reshape(r.unknowns.shape) for part, r in zip(splits, regions, strict=True)]
-    entries = np.concatenate([(row[:, :, None] * n + row[:, None, :]).ravel() for row in rows])
-    values = np.concatenate([r.stiffness.ravel() for r in regions])
-    K = np.asarray(np.bincount(entries, values, n * n), dtype=np.float64).reshape(n, n)
-    rest = slice(k, k + left.size)
-    condensed = K[rest, rest]
-    if k:
-        W = dtrsm(1.0, factor(K[:k, :k]), K[rest, :k], side=1, lower=1, trans_a=1)
-        condensed = condensed - W @ W.T
-    return Region(numbers[left][None], shares[left][None], condensed[None])
+    places = np.argsort(order)[places]
+    rows = np.split(places, np.cumsum([own.size for own in unknowns])[:-1])
+    entries = np.concatenate([(row[:, None] * numbers.size + row).ravel() for row in rows])
+    left = order[done.sum() : numbers.size - np.count_nonzero(held)]
+    return Region(parts, cells, numbers[left], shared[left], entries, numbers.size, int(done.sum()))
 
 
 def _half(steps: Index) -> Mask:

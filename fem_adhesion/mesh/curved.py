@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -66,35 +66,19 @@ class CurvedMapping(MappingIsoparametric):  # type: ignore[misc]
         self.points = points
         self.degree = round(np.sqrt(points.shape[2])) - 1
         self._latest = (np.empty(0), np.empty(0))  # points of facets and their reference places
-        self._shaped = (np.empty(0), self._shapes(np.zeros((2, 1))))  # the last reference points and their shapes
 
     def Fmap(self, i: int, X: Array, tind: Any = None) -> Array:
         """Coordinate i of points of the cells."""
-        values, _ = self._shapes_at(X)
+        values, _ = shapes(self.degree, X)
         return self._sum(i, values, tind)
 
     def _J(self, i: int, j: int, X: Array, tind: Any = None) -> Array:
-        _, derivatives = self._shapes_at(X)
+        _, derivatives = shapes(self.degree, X)
         return self._sum(i, derivatives[j], tind)
 
     def _sum(self, i: int, shapes: Array, tind: Any) -> Array:
         points = self.points[i] if tind is None else self.points[i][tind]
         return np.asarray(points @ shapes if shapes.ndim == 2 else np.einsum("cn,ncq->cq", points, shapes))
-
-    def _shapes_at(self, X: Array) -> tuple[Array, tuple[Array, Array]]:
-        """Shapes, kept: scikit-fem asks for two coordinates and four derivatives at the same points in turn."""
-        if not np.array_equal(X, self._shaped[0]):
-            self._shaped = X.copy(), self._shapes(X)
-        return self._shaped[1]
-
-    def _shapes(self, X: Array) -> tuple[Array, tuple[Array, Array]]:
-        """Products of Lagrange polynomials at reference points (2, ...), and their two derivatives."""
-        (a, da), (b, db) = (lagrange_values(self.degree, x) for x in X)
-
-        def product(f: Array, g: Array) -> Array:
-            return (f[:, None] * g[None]).reshape(-1, *f.shape[1:])
-
-        return product(a, b), (product(da, b), product(a, db))
 
     def G(self, X: Array, find: Any = None) -> Array:
         """Points of facets."""
@@ -169,6 +153,21 @@ def of_cells(t: Index, points: Array) -> CurvedQuads:
     for local, (s, u) in enumerate(CORNERS.T.astype(int) * DEGREE):
         p[:, t[local]] = points[:, :, s * (DEGREE + 1) + u]
     return CurvedQuads(p, t, points=points)
+
+
+def shapes(degree: int, X: Array) -> tuple[Array, tuple[Array, Array]]:
+    """Products of Lagrange polynomials at reference points (2, ...), and their two derivatives; kept."""
+    return _shapes(degree, X.shape, X.tobytes())
+
+
+@lru_cache(maxsize=100)
+def _shapes(degree: int, shape: tuple[int, ...], places: bytes) -> tuple[Array, tuple[Array, Array]]:
+    (a, da), (b, db) = (lagrange_values(degree, x) for x in np.frombuffer(places).reshape(shape))
+
+    def product(f: Array, g: Array) -> Array:
+        return (f[:, None] * g[None]).reshape(-1, *f.shape[1:])
+
+    return product(a, b), (product(da, b), product(a, db))
 
 
 def chebyshev_points(degree: int) -> Array:
