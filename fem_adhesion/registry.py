@@ -26,36 +26,46 @@ PARTS: dict[str, dict[str, Any]] = {
         "neo-hookean": "fem_adhesion.materials:NeoHookean",
     },
     "law": {
-        "power-law": "halfspace.laws.power_law:PowerLaw",
-        "morse": "halfspace.laws.morse:Morse",
-        "exponential": "halfspace.laws.exponential:Exponential",
-        "dlvo": "halfspace.laws.dlvo:Dlvo",
-        "dugdale": "halfspace.laws.dugdale:Dugdale",
+        "power-law": "halfspace.laws.power_law:PowerLaw(attraction, repulsion)",
+        "morse": "halfspace.laws.morse:Morse(k)",
+        "exponential": "halfspace.laws.exponential:Exponential(k, core)",
+        "dlvo": "halfspace.laws.dlvo:Dlvo(charge, screening)",
+        "dugdale": "halfspace.laws.dugdale:Dugdale(width)",
     },
     "profile": {
         "paraboloid": "halfspace.profiles.paraboloid:Paraboloid",
         "sphere": "halfspace.profiles.sphere:Sphere",
-        "power": "halfspace.profiles.power:Power",
-        "hyperboloid": "halfspace.profiles.hyperboloid:Hyperboloid",
+        "power": "halfspace.profiles.power:Power(k)",
+        "hyperboloid": "halfspace.profiles.hyperboloid:Hyperboloid(b)",
     },
 }
-"""Classes, or where they are, by their names."""
+"""Classes, or where they are, by their names; in brackets the numbers that a law or a profile takes, for its help."""
 
 
 def class_of(kind: str, name: str) -> Any:
     """Class of a part by the name of its kind and its own."""
     found = PARTS[kind][name]
     if isinstance(found, str):
-        module, _, attribute = found.partition(":")
+        module, _, attribute = _place(found).partition(":")
         found = getattr(import_module(module), attribute)
     return found
+
+
+def _place(home: Any) -> str:
+    return home.partition("(")[0] if isinstance(home, str) else ""
+
+
+def numbers_told(kind: str) -> dict[str, str]:
+    """What numbers the parts of a kind take, in their order, by the parts' names; nothing is imported for it."""
+    homes = {name: home for name, home in PARTS[kind].items() if isinstance(home, str)}
+    return {name: home.partition("(")[2].rstrip(")").replace(",", "") for name, home in homes.items() if "(" in home}
 
 
 def name_of(part: object) -> str:
     """Name of a part; that of its class if it is not in the table."""
     own = type(part)
-    known = (own, f"{own.__module__}:{own.__qualname__}")
-    names = (name for table in PARTS.values() for name, home in table.items() if home in known)
+    place = f"{own.__module__}:{own.__qualname__}"
+    names = (name for table in PARTS.values() for name, home in table.items() if home is own or _place(home) == place)
     return next(names, own.__qualname__)
 
 

@@ -10,6 +10,7 @@ import pytest
 import fem_adhesion
 from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene, cli, registry
 from fem_adhesion.bodies.body import Held
+from fem_adhesion.common.scene_options import _parameters
 from fem_adhesion.mesh.block import tensor_grid
 from fem_adhesion.registry import name_of, part_from, record_of
 from halfspace.elastic import grid
@@ -80,3 +81,10 @@ def test_every_name_has_its_class_and_every_body_is_public():
             assert name_of(object.__new__(registry.class_of(kind, name))) == name
     public = {getattr(fem_adhesion, name) for name in fem_adhesion.__all__}
     assert public >= {registry.class_of("body", name) for name in registry.PARTS["body"] if name != "drum"}
+
+
+@pytest.mark.parametrize("kind", ["law", "profile"])
+def test_the_help_of_a_part_tells_the_numbers_it_takes(kind):
+    """They are written beside its name, as help is to load nothing."""
+    own = {name: " ".join(_parameters(kind, name)) for name in registry.PARTS[kind]}
+    assert registry.numbers_told(kind) == {name: numbers for name, numbers in own.items() if numbers}

@@ -12,15 +12,15 @@ from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_adhesion.registry import PARTS, class_of, name_of
+from fem_adhesion.registry import PARTS, class_of, name_of, numbers_told
 from halfspace.errors import InputError
-from halfspace.laws import LENNARD_JONES, Law
 
 if TYPE_CHECKING:
     from fem_adhesion.bodies.body import Body, GripName
     from fem_adhesion.common.contact import Contact
     from fem_adhesion.common.options import Parser
     from fem_adhesion.scene import Scene
+    from halfspace.laws import Law
 
     Group = argparse._ArgumentGroup
 
@@ -94,7 +94,7 @@ def add_law(group: Group) -> None:
 def _add_part(group: Group, kind: str, what: str) -> None:
     """Add the options of a law or a profile: its name, and its parameters in their order."""
     group.add_argument(f"--{kind}", choices=tuple(PARTS[kind]), help=what)
-    taken = "; ".join(f"{name}: {' '.join(own)}" for name in PARTS[kind] if (own := _parameters(kind, name)))
+    taken = "; ".join(f"{name}: {numbers}" for name, numbers in numbers_told(kind).items())
     group.add_argument(f"--{kind}-parameter", nargs="+", help=f"its own, in order ({taken})", metavar="X")
 
 
@@ -133,6 +133,8 @@ def scene_of(
 
 def law_of(options: argparse.Namespace) -> Law:
     """Law given, or the 3-9 law."""
+    from halfspace.laws import LENNARD_JONES
+
     if options.law is None:
         refuse(options, ("law_parameter",), "with --law")
         return LENNARD_JONES
@@ -270,7 +272,7 @@ def _require_whole(options: argparse.Namespace) -> None:
         raise InputError(f"{', '.join(missing)} missing, limit: a whole material; give it too")
     if len(laws) == 2:
         raise InputError(f"{' with '.join(laws)}, limit: one of both, as each follows from the other; leave one out")
-    if options.law is not None and law_of(options) != LENNARD_JONES:
+    if options.law is not None and law_of(options) != class_of("law", "power-law")():
         refuse(options, ("hamaker",), "the 3-9 law, by whose tail it gives the spacing, and --spacing with others")
 
 
