@@ -4,6 +4,7 @@ import os
 import resource
 import subprocess
 import sys
+from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import pytest
@@ -32,11 +33,25 @@ def test_yardstick_dgesv_of_200(benchmark):
     assert info == 0
 
 
-@pytest.mark.parametrize("tabor", _all(1, 0.05, 2, 5, 100))
+@pytest.mark.parametrize("tabor", _all(1, 0.05, 2, 5, 50, 100, 300))
 @pytest.mark.parametrize("rtol", _all(1e-6, 1e-8))
 def test_halfspace_trace(benchmark, tabor, rtol):
     path = benchmark.pedantic(halfspace.trace, (tabor,), {"rtol": rtol}, rounds=_rounds(5), warmup_rounds=1)
     assert path.event("pull_off").load_error < rtol * 10
+
+
+PARTS = {
+    "sphere": {"profile": halfspace.profiles.Sphere(100)},
+    "layer": {"body": halfspace.Layer(thickness=2.0, poisson=0.3)},
+    "morse": {"law": halfspace.laws.Morse(10)},
+    "power-1.5": {"profile": halfspace.profiles.Power(1.5)},
+}
+
+
+@pytest.mark.parametrize("parts", _all(*PARTS))
+def test_halfspace_trace_of_other_parts(benchmark, parts):
+    path = benchmark.pedantic(halfspace.trace, (1.0,), PARTS[parts], rounds=_rounds(3), warmup_rounds=1)
+    assert path.met
 
 
 @pytest.mark.parametrize("tabor", _all(1, 0.05, 5))
@@ -55,6 +70,16 @@ def test_pull_off_curve_of_60_tabor_parameters(benchmark):
 
     loads = benchmark.pedantic(curve, rounds=1)
     assert np.all(np.diff(loads) > 0)
+
+
+def test_sweep_of_200_tabor_parameters_on_all_cores(benchmark):
+    """By a pool of processes, which is made before; of 20 in the quick form."""
+    with ProcessPoolExecutor() as pool:
+        list(pool.map(abs, range(100)))
+        tabors = np.geomspace(0.05, 50, 20 if QUICK else 200)
+        found = benchmark.pedantic(halfspace.sweep, (tabors,), {"rtol": 1e-6, "map": pool.map}, rounds=1)
+    assert not found.reasons
+    assert found.met.mean() > 0.99
 
 
 def test_comparison(benchmark):
