@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Protocol
+from functools import cached_property, partial
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from halfspace.elastic.compliance import ElasticOperator, lagrange
 from halfspace.elastic.grid import gauss_legendre
-from halfspace.values import Array, Valued
+from halfspace.values import Array, Index, Valued
 
 
 class Operator(Protocol):
@@ -51,17 +51,20 @@ class Operator(Protocol):
         ...
 
 
+Made = TypeVar("Made")
+
+
 @dataclass
-class _Latest:
-    """The operator asked for last: an equilibrium asks several times for the same."""
+class _Latest(Generic[Made]):
+    """What was made for the scale asked for last: an equilibrium asks several times for the same."""
 
     scale: float = np.nan
-    operator: ElasticOperator | None = None
+    made: Made | None = None
 
-    def get(self, scale: float, make: Callable[[float], ElasticOperator]) -> ElasticOperator:
-        if self.operator is None or scale != self.scale:
-            self.scale, self.operator = scale, make(scale)
-        return self.operator
+    def get(self, scale: float, make: Callable[[float], Made]) -> Made:
+        if self.made is None or scale != self.scale:
+            self.scale, self.made = scale, make(scale)
+        return self.made
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,7 +78,7 @@ class Homogeneous(Valued):
     """
 
     unit: ElasticOperator
-    _latest: _Latest = field(default_factory=_Latest, compare=False, repr=False)
+    _latest: _Latest[ElasticOperator] = field(default_factory=_Latest, compare=False, repr=False)
     follows_contact = True
 
     @property
@@ -193,7 +196,7 @@ class Interpolated(Valued):
     scales: Array
     operators: Sequence[ElasticOperator]
     grid: MovingGrid
-    _latest: _Latest = field(default_factory=_Latest, compare=False, repr=False)
+    _latest: _Latest[_AtScale] = field(default_factory=_Latest, compare=False, repr=False)
     follows_contact = True
 
     @cached_property
@@ -208,22 +211,25 @@ class Interpolated(Valued):
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
-        return self._latest.get(scale, self._at)
-
-    def _at(self, scale: float) -> ElasticOperator:
-        nodes, values = self._nodes(scale), self._rows(scale)[0]
-        compliance = self._combined(values) / np.maximum.outer(nodes.radii, nodes.radii) * nodes.weights
-        ends = self.grid.coordinate.radius(self.grid.lines(scale))[0]
-        return ElasticOperator(nodes.radii, nodes.weights, compliance, ends, self.operators[0].cell_nodes)
+        return self._at(scale).operator
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""
-        nodes, body, slopes = self._nodes(scale), self.at(scale), self._rows(scale)[1]
-        larger = np.maximum.outer(np.arange(nodes.radii.size), np.arange(nodes.radii.size))
-        by_kernel = (self._combined(slopes) / nodes.radii[larger]) @ (nodes.weights * pressure)
-        by_radii = (body.compliance * (nodes.d_radii / nodes.radii)[larger]) @ pressure
+        here = self._at(scale)
+        nodes, body = here.nodes, here.operator
+        by_kernel = here.kernel_rate @ (nodes.weights * pressure)
+        by_radii = (body.compliance * (nodes.d_radii / nodes.radii)[self._larger]) @ pressure
         by_weights = body.compliance @ (nodes.d_weights / nodes.weights * pressure)
         return nodes.d_radii, nodes.d_weights, by_kernel - by_radii + by_weights
+
+    def _at(self, scale: float) -> _AtScale:
+        return self._latest.get(scale, partial(_AtScale, self))
+
+    @cached_property
+    def _larger(self) -> Index:
+        """Which of two nodes is farther out, (q, q)."""
+        order = np.arange(self.operators[0].radii.size)
+        return np.maximum.outer(order, order)
 
     def root(self, scale: float) -> Array:
         """Square root of the balanced compliance."""
@@ -269,6 +275,34 @@ class Interpolated(Valued):
     def _barycentric(self) -> Array:
         t = self._log_edges
         return np.asarray(1 / (t[:, None] - t + np.eye(t.size)).prod(axis=1))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class _AtScale(Valued):
+    """All that an interpolated operator has at one contact radius, each when it is first asked for."""
+
+    body: Interpolated
+    scale: float
+
+    @cached_property
+    def nodes(self) -> _Nodes:
+        return self.body._nodes(self.scale)
+
+    @cached_property
+    def _rows(self) -> tuple[Array, Array]:
+        return self.body._rows(self.scale)
+
+    @cached_property
+    def operator(self) -> ElasticOperator:
+        body, nodes = self.body, self.nodes
+        compliance = body._combined(self._rows[0]) / nodes.radii[body._larger] * nodes.weights
+        ends = body.grid.coordinate.radius(body.grid.lines(self.scale))[0]
+        return ElasticOperator(nodes.radii, nodes.weights, compliance, ends, body.operators[0].cell_nodes)
+
+    @cached_property
+    def kernel_rate(self) -> Array:
+        """Derivative of the kernel by the scale, but for that of the radii, (q, q)."""
+        return self.body._combined(self._rows[1]) / self.nodes.radii[self.body._larger]
 
 
 def chebyshev_radii(least: float, most: float, count: int) -> Array:

@@ -12,6 +12,7 @@ spike of tension at the contact edge on the same nodes all along the path.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -27,7 +28,7 @@ from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.roots import root
 from halfspace.scales import Scales
-from halfspace.values import Array, Valued
+from halfspace.values import Array, Valued, appended
 
 APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
 
@@ -117,7 +118,7 @@ class ContactProblem(Valued):
         H, alpha, s = x[:-2], x[-2], x[-1]
         mu, body = self.tabor, self.operator_at(x)
         w = body.compliance @ self.law.pressure(H, mu)
-        return np.append(H + alpha - mu * (self.profile.height(body.radii) + w), self._scale_equation(H, s))
+        return appended(H + alpha - mu * (self.profile.height(body.radii) + w), self._scale_equation(H, s))
 
     def _scale_equation(self, H: Array, s: float) -> float:
         return float(self.operator.edge_row @ H - self.law.edge_gap) if self.follows_contact else s - 1
@@ -269,18 +270,18 @@ class ContactProblem(Valued):
 
     def longest_step(self, x: Array, dx: Array) -> float:
         """Fraction of the step dx that takes no gap h, nor the scale, below a quarter of its value."""
-        room = np.append(self.law.room(x[:-2]), x[-1])
-        change = np.append(dx[:-2], dx[-1])
-        shrink = -change / room
-        return float(min(1.0, LARGEST / max(shrink.max(), LARGEST)))
+        shrink = max(float(np.max(-dx[:-2] / self.law.room(x[:-2]))), float(-dx[-1] / x[-1]))
+        return min(1.0, LARGEST / max(shrink, LARGEST))
 
     def size(self, x: Array, dx: Array) -> float:
         """Relative size of the change dx of the state x."""
-        return float(np.max(np.abs(dx) / np.concatenate([self.law.room(x[:-2]), [1 + abs(x[-2]), x[-1]]])))
+        gaps = float(np.max(np.abs(dx[:-2]) / self.law.room(x[:-2])))
+        return max(gaps, float(abs(dx[-2]) / (1 + abs(x[-2]))), float(abs(dx[-1] / x[-1])))
 
     def misfit(self, x: Array, residual: Array) -> float:
         """Norm of the residual relative to the gaps, lest the far field of a scaled grid drown the contact."""
-        return float(np.linalg.norm(residual / np.append(self.law.room(x[:-2]), 1)))
+        gaps = residual[:-1] / self.law.room(x[:-2])
+        return math.sqrt(float(gaps @ gaps) + float(residual[-1]) ** 2)
 
     def energy(self, x: Array) -> float:
         """Total potential energy in R dgamma eps, elastic and surface; its derivative by the approach is the load.

@@ -7,6 +7,7 @@ own. Each ends at the rounding all the same, since what is left is told by how f
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -15,7 +16,7 @@ import numpy as np
 
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem, Solver
 from halfspace.errors import NotConverged
-from halfspace.values import Array, Valued
+from halfspace.values import Array, Valued, appended
 
 GROWTH = 10.0  # of the relative residual, let through in one step
 ROUND_OFF = 1e-10  # relative size of a step below which the residual may be no more than rounding
@@ -250,9 +251,9 @@ def tangent(problem: Equilibrium, solution: Solution) -> Array:
         return problem.bordered_solver(solution.x, row)(unit)
     t, before = solution.solver(unit), 1.0
     for _ in range(REFINEMENTS):
-        change = solution.solver(unit - np.append(J @ t, row @ t))
+        change = solution.solver(unit - appended(J @ t, float(row @ t)))
         t = t + change
-        size = float(np.linalg.norm(change) / np.linalg.norm(t))
+        size = math.sqrt(float(change @ change) / float(t @ t))
         if size * min(1.0, size / before) < REFINED:
             return t
         before = size
@@ -292,7 +293,7 @@ def turning_point(problem: Equilibrium, start: Array, weights: Array, direction:
     x = start
     for iteration in range(1, TURNS + 1):
         here = _Tangent(problem, x, weights, direction)
-        dx = -here.solver(np.append(problem.residual(x), 0.0), LEFT)  # towards the path, across it
+        dx = -here.solver(appended(problem.residual(x), 0.0), LEFT)  # towards the path, across it
         near = problem.size(x, dx) < ASTRAY
         if near:
             slope, bend = here.changes(here.tangent)
@@ -347,7 +348,7 @@ class _Tangent(Valued):
             return 0.0, np.zeros_like(v)
         h, t = LITTLE / size, self.tangent
         beside = self.x + h * v
-        bordered = np.append(self.problem.jacobian(beside) @ t, self.problem.gradient(beside, self.direction) @ t)
+        bordered = appended(self.problem.jacobian(beside) @ t, float(self.problem.gradient(beside, self.direction) @ t))
         turned = -self.solver(bordered - _last(t.size), LEFT) / h
         own = (self.problem.gradient(beside, self.weights) - self.gradient) @ t / h
         return float(own + self.gradient @ turned), turned
@@ -380,9 +381,9 @@ def _damped(problem: Equilibrium, x: Array, F: Array, dx: Array, control: Contro
 
 
 def _equations(problem: Equilibrium, x: Array, control: Control) -> Array:
-    return np.append(problem.residual(x), problem.weighted_observables(x, control.weights) - control.target)
+    return appended(problem.residual(x), problem.weighted_observables(x, control.weights) - control.target)
 
 
 def _misfit(problem: Equilibrium, x: Array, F: Array) -> float:
     """Size of the equations' left-hand sides, the problem's relative to its gaps and the control's as it is."""
-    return float(np.hypot(problem.misfit(x, F[:-1]), F[-1]))
+    return math.hypot(problem.misfit(x, F[:-1]), float(F[-1]))

@@ -132,8 +132,11 @@ def make_point(
 def _rates(problem: Equilibrium, solution: newton.Solution, tangent: Array) -> Array:
     exists = np.isfinite(solution.observables)
     return np.array(
-        [problem.gradient(solution.x, row) @ tangent if e else 0.0 for row, e in zip(np.eye(4), exists, strict=True)]
+        [problem.gradient(solution.x, row) @ tangent if e else 0.0 for row, e in zip(EACH, exists, strict=True)]
     )
+
+
+EACH = np.eye(4)  # weights of each observable alone
 
 
 def correct(
