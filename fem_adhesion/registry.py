@@ -31,12 +31,14 @@ PARTS: dict[str, dict[str, Any]] = {
         "exponential": "halfspace.laws.exponential:Exponential(k, core)",
         "dlvo": "halfspace.laws.dlvo:Dlvo(charge, screening)",
         "dugdale": "halfspace.laws.dugdale:Dugdale(width)",
+        "tabulated": "halfspace.laws.tabulated:Tabulated(path)",
     },
     "profile": {
         "paraboloid": "halfspace.profiles.paraboloid:Paraboloid",
         "sphere": "halfspace.profiles.sphere:Sphere",
         "power": "halfspace.profiles.power:Power(k)",
         "hyperboloid": "halfspace.profiles.hyperboloid:Hyperboloid(b)",
+        "tabulated": "halfspace.profiles.tabulated:Tabulated(path)",
     },
 }
 """Classes, or where they are, by their names; in brackets the numbers that a law or a profile takes, for its help."""
@@ -70,10 +72,11 @@ def name_of(part: object) -> str:
 
 
 def told(part: Any) -> str:
-    """Name of a law or a profile and its numbers, in words; R/eps, which a scene tells, left out."""
+    """Name of a law or a profile, its numbers and what it tells; R/eps, which a scene tells, left out."""
     own = {field.name: getattr(part, field.name) for field in fields(part)} if is_dataclass(part) else {}
-    numbers = [f"{name} {value:g}" for name, value in own.items() if name != "radius_ratio" and math.isfinite(value)]
-    return " ".join([name_of(part), *numbers])
+    own = {name: value for name, value in own.items() if name != "radius_ratio" and value != math.inf}
+    numbers = [f"{name} {value.name if isinstance(value, Path) else f'{value:g}'}" for name, value in own.items()]
+    return ", ".join([" ".join([name_of(part), *numbers]), *getattr(part, "told", ())])
 
 
 def record_of(part: Any) -> Any:

@@ -10,10 +10,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import Field, dataclass, fields, is_dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from halfspace.errors import InputError
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -128,3 +131,27 @@ def appended(values: Array, last: float) -> Array:
     longer[:-1] = values
     longer[-1] = last
     return longer
+
+
+def read_columns(path: Path, fewest: int) -> tuple[Array, Array]:
+    """Two columns of a CSV file, the first ascending; lines that are no numbers may come before."""
+    try:
+        lines = [line.split(",") for line in path.read_text().splitlines() if line.strip()]
+        while lines and not _are_numbers(lines[0]):
+            lines.pop(0)
+        rows = np.array([[float(word) for word in line[:2]] for line in lines])
+    except (OSError, UnicodeDecodeError, ValueError) as error:
+        why = " ".join(str(error).split())
+        raise InputError(f"{path} cannot be read: {why}, limit: two columns of numbers; give a CSV file") from error
+    if not (rows.ndim == 2 and rows.shape[1:] == (2,) and len(rows) >= fewest):
+        raise InputError(f"{path} has {len(rows)} rows, limit: {fewest} of two numbers or more; give more points")
+    if not (np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all()):
+        raise InputError(f"{path}: the first column does not rise, limit: finite, ascending numbers; sort it")
+    return rows[:, 0], rows[:, 1]
+
+
+def _are_numbers(words: list[str]) -> bool:
+    try:
+        return bool([float(word) for word in words])
+    except ValueError:
+        return False

@@ -142,7 +142,7 @@ def law_of(options: argparse.Namespace) -> Law:
     return law
 
 
-def _values(options: argparse.Namespace, kind: str) -> list[float]:
+def _values(options: argparse.Namespace, kind: str) -> list[float | Path]:
     """Parameters of a law or a profile."""
     name, given = getattr(options, kind), getattr(options, f"{kind}_parameter") or []
     own = _parameters(kind, name)
@@ -152,7 +152,8 @@ def _values(options: argparse.Namespace, kind: str) -> list[float]:
         listed = " ".join([*own[:least], *optional]) or "none"
         remedy = "give them in this order" if own else "leave it out"
         raise InputError(f"{kind}_parameter = {' '.join(given) or None} for {kind} = {name}, limit: {listed}; {remedy}")
-    return [_number(f"{kind}_parameter", text) for text in given]
+    named = zip(own, given, strict=False)
+    return [Path(text) if field == "path" else _number(f"{kind}_parameter", text) for field, text in named]
 
 
 def _parameters(kind: str, name: str) -> list[str]:
@@ -226,7 +227,7 @@ def _profile(options: argparse.Namespace, body: Body, radius_ratio: float | None
         return None
     if takes and radius_ratio is None:
         raise InputError(f'radius_ratio = None for profile = "{name}", limit: a number; give R/eps')
-    return class_of("profile", name)(*([radius_ratio] if takes else []), *values)
+    return class_of("profile", name)(*values, *([radius_ratio] if takes else []))
 
 
 def given(options: argparse.Namespace, *names: str) -> list[str]:

@@ -1,0 +1,155 @@
+"""A law that is known by a table of tensions, measured or from a finer model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from halfspace.errors import InputError
+from halfspace.laws.law import Law
+from halfspace.values import Array, keep, read_columns
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
+
+FEWEST = 12
+HOLE = 0.1  # of the largest tension, or of a larger pressure there, by which the spline may leave a straight line
+SLOWEST = 2.0  # decay as a power of the gap, which must be faster
+
+
+@dataclass(frozen=True)
+class Tabulated(Law):
+    """Cubic spline through a table of gaps and tensions, in any units: spacing and work of adhesion are its own.
+
+    Beyond the last gap the tension falls as the power of the gap that it ends with, before the first the pressure rises
+    as the exponential that it begins with.
+
+    Parameters
+    ----------
+    path : Path
+        CSV file with two columns, gap and tension (negative where the surfaces repel), and any header.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, has holes, no repulsive core or no decay.
+    """
+
+    path: Path
+
+    def __post_init__(self) -> None:
+        keep(self, path=Path(self.path))
+        h, tension = self._table
+        strength = float(tension.max())
+        for value, holds, limit, remedy in (
+            (f"the largest tension is {strength:g}", strength > 0, "above 0", "let the surfaces attract"),
+            (f"the first tension is {tension[0]:g}", tension[0] <= -strength, f"{-strength:g}", "begin in the core"),
+            (f"the last tension is {tension[-1]:g}", tension[-1] > 0, "above 0", "end where they attract"),
+        ):
+            self._require(holds, value, limit, remedy)
+        self._require(np.count_nonzero(np.diff(np.sign(tension))) == 1, "the tension changes sign again", "once", MEND)
+        self._require(self._fall > SLOWEST, f"it ends as gap^-{self._fall:.3g}", f"above {SLOWEST:g}", "give it a tail")
+        middle, straight = (h[1:] + h[:-1]) / 2, (tension[1:] + tension[:-1]) / 2
+        size = np.maximum(strength, np.abs(straight))
+        apart = np.abs(self._spline(middle) - straight) / size
+        worst = int(np.argmax(apart))
+        place = f"{apart[worst]:.2g} of the tension between gaps {h[worst]:g} and {h[worst + 1]:g}"
+        self._require(bool(apart[worst] < HOLE), f"the spline bends by {place}", f"{HOLE:g}", "give more points there")
+
+    def _require(self, holds: bool, value: str, limit: str, remedy: str) -> None:
+        if not holds:
+            raise InputError(f"{self.path}: {value}, limit: {limit}; {remedy}")
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array]:
+        """Gaps and tensions."""
+        h, tension = read_columns(self.path, FEWEST)
+        self._require(bool(h[0] > 0), f"the first gap is {h[0]:g}", "above 0", "gaps are distances of the surfaces")
+        return h, tension
+
+    @cached_property
+    def _spline(self) -> CubicSpline:
+        from scipy.interpolate import CubicSpline  # it takes as long to load as all else, and few need it
+
+        return CubicSpline(*self._table)
+
+    @cached_property
+    def _fall(self) -> float:
+        """Exponent of the tension beyond the last gap."""
+        last = self._table[0][-1]
+        return float(-last * self._spline(last, 1) / self._spline(last))
+
+    @cached_property
+    def _rise(self) -> float:
+        """Inverse length of the pressure before the first gap."""
+        first = self._table[0][0]
+        return float(-self._spline(first, 1) / self._spline(first))
+
+    @cached_property
+    def spacing(self) -> float:
+        """Gap without tension, in the table's unit."""
+        h, tension = self._table
+        roots = self._spline.roots(extrapolate=False)
+        i = int(np.flatnonzero(tension > 0)[0])
+        return float(roots[(roots >= h[i - 1]) & (roots <= h[i])][0])
+
+    @cached_property
+    def work_of_adhesion(self) -> float:
+        """Integral of the tension from there to infinity, in the table's units."""
+        return self._left(np.array([self.spacing])).item()
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """What it has found."""
+        return (
+            f"spacing {self.spacing:.6g}",
+            f"work of adhesion {self.work_of_adhesion:.6g} in the units of the table",
+        )
+
+    def _tension(self, h: Array, order: int = 0) -> Array:
+        """Tension at gaps, or its derivative, in the table's units."""
+        (first, last), gaps = self._ends, np.asarray(h, float)
+        before, beyond = gaps < first, gaps > last
+        found = np.asarray(self._spline(np.clip(gaps, first, last), order))
+        core = float(self._spline(first)) * np.exp(self._rise * (first - np.minimum(gaps, first)))
+        tail = float(self._spline(last)) * (np.maximum(gaps, last) / last) ** -self._fall
+        if order:
+            core, tail = -self._rise * core, -self._fall / np.maximum(gaps, last) * tail
+        return np.where(before, core, np.where(beyond, tail, found))
+
+    def _left(self, h: Array) -> Array:
+        """Integral of the tension from gaps to infinity, in the table's units."""
+        (first, last), gaps = self._ends, np.asarray(h, float)
+        integral = self._spline.antiderivative()
+        at_end = float(self._spline(last)) * last / (self._fall - 1)
+        inside = at_end + integral(last) - integral(np.clip(gaps, first, last))
+        core = float(self._spline(first)) * np.expm1(self._rise * (first - np.minimum(gaps, first))) / self._rise
+        tail = at_end * (np.maximum(gaps, last) / last) ** (1 - self._fall)
+        return np.asarray(np.where(gaps > last, tail, inside + core))
+
+    @property
+    def _ends(self) -> tuple[float, float]:
+        return float(self._table[0][0]), float(self._table[0][-1])
+
+    def pressure(self, gap: Array, tabor: float) -> Array:
+        """P, in dgamma/eps of the table."""
+        return -tabor * self.spacing / self.work_of_adhesion * self._tension(self.spacing * (1 + gap))
+
+    def slope(self, gap: Array, tabor: float) -> Array:
+        """dP/dH."""
+        return -tabor * self.spacing**2 / self.work_of_adhesion * self._tension(self.spacing * (1 + gap), 1)
+
+    def energy(self, gap: Array, tabor: float) -> Array:
+        """Phi."""
+        return -tabor / self.work_of_adhesion * self._left(self.spacing * (1 + gap))
+
+    def room(self, gap: Array) -> Array:
+        """As for other laws, but over four lengths of the core at least."""
+        return np.maximum(gap + 1, 4 / (self._rise * self.spacing))
+
+
+MEND = "a table with a barrier or two minima is served by a law of one's own"

@@ -1,0 +1,128 @@
+"""A profile that is known by a table, as of a tip from blind reconstruction."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from halfspace.errors import InputError
+from halfspace.limits import require_radius_ratio
+from halfspace.profiles.profile import Dimensionless, Surface
+from halfspace.values import Array, Valued, keep, read_columns
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
+
+FEWEST, MOST, DEGREE = 12, 30, 5  # points of a piece; pieces, and their degree in the square of the radius
+CHECKED = 1000  # radii at which it must rise
+
+
+@dataclass(frozen=True)
+class Tabulated:
+    """Smooth spline through a table of radii and heights, even in the radius; it ends where the table does.
+
+    Parameters
+    ----------
+    path : Path
+        CSV file with two columns, radius and height in one unit, say m, and any header.
+    radius_ratio : float
+        R/eps, of the radius at the apex; R is `radius` in the table's unit.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or turns back.
+    """
+
+    path: Path
+    radius_ratio: float
+
+    def __post_init__(self) -> None:
+        keep(self, path=Path(self.path), radius_ratio=require_radius_ratio(self.radius_ratio))
+        r = np.linspace(0, 1, CHECKED) * self.end
+        falls = r[self._spline(r**2, 1) <= 0]
+        if falls.size:
+            where = f"{self.path} turns back at radius {falls[0]:.4g}"
+            raise InputError(f"{where}, limit: a height that rises; cut it there")
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array]:
+        r, z = read_columns(self.path, FEWEST)
+        if not r[0] >= 0:
+            raise InputError(f"{self.path}: the first radius is {r[0]:g}, limit: 0 or more; measure it from the axis")
+        return r, z
+
+    @cached_property
+    def _spline(self) -> BSpline:
+        """Height by the square of the radius, so that it is even; generalised cross-validation chooses the knots."""
+        r, z = self._table
+        splines = [_fitted(r**2, z, pieces) for pieces in range(1, min(r.size // FEWEST, MOST) + 1)]
+        return min(splines, key=lambda s: float(np.mean((s(r**2) - z) ** 2)) / (1 - len(s.c) / r.size) ** 2)
+
+    @property
+    def end(self) -> float:
+        """Radius at which it ends, in the table's unit."""
+        return float(self._table[0][-1])
+
+    @cached_property
+    def radius(self) -> float:
+        """R at the apex, in the table's unit."""
+        return float(0.5 / self._spline(0.0, 1))
+
+    @cached_property
+    def residual(self) -> float:
+        """Root mean square of what the spline leaves of the table, in its unit."""
+        r, z = self._table
+        return float(np.sqrt(np.mean((self._spline(r**2) - z) ** 2)))
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """What it has found."""
+        return f"apex radius {self.radius:.6g}", f"residual {self.residual:.2g} in the table's unit"
+
+    def surface(self, tabor: float) -> Surface:
+        """Heights in beta^2/R; raise InputError where the tip is as small as its contact."""
+        return Tip(self, self.radius / math.sqrt(require_radius_ratio(self.radius_ratio, tabor) / tabor))
+
+
+def _fitted(x: Array, z: Array, pieces: int) -> BSpline:
+    """Spline of least squares of so many pieces, of as many points each."""
+    from scipy.interpolate import make_lsq_spline  # it takes as long to load as all else, and few need it
+
+    inner = x[np.linspace(0, x.size - 1, pieces + 1).astype(int)[1:-1]]
+    return make_lsq_spline(x, z, np.concatenate([[x[0]] * (DEGREE + 1), inner, [x[-1]] * (DEGREE + 1)]), DEGREE)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Tip(Valued, Dimensionless):
+    """A table's surface.
+
+    Parameters
+    ----------
+    table : Tabulated
+        In its own unit.
+    beta : float
+        In that unit.
+    """
+
+    table: Tabulated
+    beta: float
+
+    @property
+    def end(self) -> float:
+        """Radius in beta at which it ends."""
+        return self.table.end / self.beta
+
+    def height(self, radii: Array) -> Array:
+        """Height over the apex."""
+        spline = self.table._spline
+        return np.asarray((spline((radii * self.beta) ** 2) - spline(0.0)) * self.table.radius / self.beta**2)
+
+    def slope(self, radii: Array) -> Array:
+        """Its derivative."""
+        return np.asarray(2 * radii * self.table._spline((radii * self.beta) ** 2, 1) * self.table.radius)
