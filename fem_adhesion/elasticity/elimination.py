@@ -139,7 +139,7 @@ def reduced_cells(K: Array, dofs: Index, T: sparse.csc_array) -> tuple[Array, In
     return extended, np.vstack([unknowns, np.where(t.any(axis=1), gathering, -1).T])
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=1)
 def _dissected(unknowns: bytes, steps: bytes, shares: bytes, cells: int) -> Region:
     """All cells as a tree of regions; kept, as bodies are meshed for several contact radii near each other."""
     numbers, away = (np.frombuffer(data, dtype=np.intp).reshape(-1, cells) for data in (unknowns, steps))

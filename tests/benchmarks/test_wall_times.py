@@ -61,6 +61,20 @@ def test_finite_element_trace(benchmark, tabor, rtol):
     assert path.event("pull_off").load_error < rtol * 10
 
 
+BODIES = {
+    "tabor 20": Scene(20.0),
+    "tabor 50": Scene(50.0),
+    "layer": Scene(1.0, fem_adhesion.Layer(2.0)),
+    "held sphere": Scene(1.0, fem_adhesion.HeldSphere(radius_ratio=100)),
+}
+
+
+@pytest.mark.parametrize("name", _all(*BODIES))
+def test_finite_element_trace_of_larger_and_other_bodies(benchmark, name):
+    path = benchmark.pedantic(fem_adhesion.trace, (BODIES[name],), {"rtol": 1e-5}, rounds=1)
+    assert path.event("pull_off").load_error < 1e-5 * abs(path.event("pull_off").load)
+
+
 def test_pull_off_curve_of_60_tabor_parameters(benchmark):
     """The curve of [G97] Fig. 7 to 1e-6, on one core; of 6 in the quick form."""
 
