@@ -34,6 +34,8 @@ from halfspace.equilibrium.curve import energy_released, placed
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import EVENTS, Condition, Located
 from halfspace.equilibrium.states import COORDINATES
+from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
+from halfspace.profiles import Hyperboloid, Power
 from halfspace.values import Estimate
 
 MESHES = Path(__file__).parents[1] / "meshes"
@@ -375,8 +377,12 @@ def _block(tabor):
     return Scene(tabor)
 
 
-def _itself(tabor):
-    return tabor
+def _itself(scene):
+    return scene
+
+
+def _by_law_and_profile(scene, rtol):
+    return halfspace.trace(scene.tabor, law=scene.law, profile=scene.shape, rtol=rtol)
 
 
 def _tabor(scene):
@@ -402,6 +408,23 @@ LAYERED = (
     (2.0, Layers([Stratum(0.3, 0.3), Stratum(1.0, 0.45, 0.2), Stratum(0.5, 0.3, 3.0)])),
     (20.0, Layer(3.0, 0.45)),
 )
+LAWS_AND_PROFILES = (
+    Scene(1.0, law=Morse(3)),
+    Scene(0.5, law=Dlvo(0.3, 1.0), profile=Power(4)),
+    Scene(2.0, law=PowerLaw(4, 10)),
+    Scene(1.0, law=PowerLaw(2.5, 9.5)),
+    Scene(0.3, law=Morse(20)),
+    Scene(5.0, law=Morse(0.3)),
+    Scene(0.05, law=Exponential(3)),
+    Scene(3.0, law=Dlvo(-0.5, 0.3)),
+    Scene(1.0, law=Dugdale(0.2)),
+    Scene(1.0, profile=Power(1.5)),
+    Scene(0.1, profile=Power(10)),
+    Scene(3.0, profile=Power(3)),
+    Scene(0.3, profile=Hyperboloid(0.1)),
+    Scene(1.0, law=Morse(3), profile=Hyperboloid(1)),
+    Scene(1.0, law=PowerLaw(3.5, 9.5), profile=Hyperboloid(0.3)),
+)
 FAMILIES = {
     "half-space": Family(
         Net((*USUAL, *BETWEEN, 30, 70, 100), _decades(*range(1, 10))),
@@ -423,6 +446,13 @@ FAMILIES = {
         _under_sphere,
         of_path,
         partial(relocated, _stages_under_sphere),
+    ),
+    "laws and profiles": Family(
+        Net(LAWS_AND_PROFILES, _decades(2, 3, 4, 5, 6, 7, 8)),
+        Net(LAWS_AND_PROFILES[:2], _decades(3, 6)),
+        _by_law_and_profile,
+        of_path,
+        partial(traced, truths.half_space_of, _itself),
     ),
     "layers": Family(
         Net(LAYERED, _decades(2, 3, 4, 5, 6, 7)),

@@ -29,9 +29,18 @@ from halfspace.scales import Scales
 
 def half_space(tabor, *_):
     """Two grids of other gradings and extents than any that `halfspace.trace` takes; the nodes are nearly the most."""
-    extent = 10 * Scales(tabor).widened
+    return _half_spaces(Scales(tabor))
+
+
+def half_space_of(scene):
+    """The same of any law and profile."""
+    return _half_spaces(scene.scales)
+
+
+def _half_spaces(scales):
+    extent = 10 * scales.widened
     return [
-        Charted(half_space_charts(Scales(tabor), Resolution(nodes, finest, growth, extent)))
+        Charted(half_space_charts(scales, Resolution(nodes, finest, growth, extent)))
         for nodes, finest, growth in ((14, 0.45, 2.2), (16, 0.4, 2.5))
     ]
 
