@@ -174,12 +174,19 @@ class Scene:
         return (1.0,) if self.share is None else (1.0 - self.share, self.share)
 
     @property
+    def _as_lennard_jones(self) -> str:
+        """Tabor parameters of the 3-9 law that has the same work of adhesion and is as strong, or as stiff."""
+        by_strength = self.tabor * self.law.strength / LENNARD_JONES.strength
+        by_stiffness = self.tabor * math.sqrt(self.law.stiffness / LENNARD_JONES.stiffness)
+        return f"as strong as the 3-9 law at tabor {by_strength:.4g}, as stiff at {by_stiffness:.4g}"
+
+    @property
     def told(self) -> list[str]:
         """What it is, in words: Tabor parameter, material and body, and what else is not as usual."""
         material = self.material
         parts = {
             f"under a {told(self.profile)}": self.profile is not None and self.profile != self.body.shape,
-            f"law {told(self.law)}": self.law != LENNARD_JONES,
+            f"law {told(self.law)}, {self._as_lennard_jones}": self.law != LENNARD_JONES,
             f"traction per {material.traction}": material.traction != "projected",
             "finite strain": material.finite,
         }

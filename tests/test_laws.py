@@ -383,6 +383,14 @@ def test_a_law_whose_potential_and_pressure_differ_is_rejected():
     assert "disagree" in {row.verdict for row in rows}
 
 
+def test_a_scene_tells_the_tabor_parameters_of_the_3_9_law_as_strong_and_as_stiff():
+    """Morse's law is as stiff at k = sqrt 8 and as strong at k/2 = 16/(9 sqrt 3), with which both are told."""
+    told = Scene(2.0, law=Morse(np.sqrt(8))).told[-1]
+    strength = 2 * np.sqrt(2) / (16 / 9 / np.sqrt(3))
+    assert told == f"law morse k 2.82843, as strong as the 3-9 law at tabor {strength:.4g}, as stiff at 2"
+    assert Scene(2.0).told == ["tabor 2", "poisson 0.3"]
+
+
 def test_a_scene_refuses_what_is_no_law():
     with pytest.raises(InputError, match=r"the energy at H = 0 is -0\.9 dgamma"):
         Scene(1.0, law=Yukawa(work=0.9))
