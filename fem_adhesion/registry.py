@@ -38,6 +38,7 @@ PARTS: dict[str, dict[str, Any]] = {
         "sphere": "halfspace.profiles.sphere:Sphere",
         "power": "halfspace.profiles.power:Power(k)",
         "hyperboloid": "halfspace.profiles.hyperboloid:Hyperboloid(b)",
+        "rounded-punch": "halfspace.profiles.rounded_punch:RoundedPunch(flat)",
         "tabulated": "halfspace.profiles.tabulated:Tabulated(path)",
     },
 }

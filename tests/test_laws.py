@@ -21,7 +21,7 @@ from halfspace.equilibrium import newton
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
 from halfspace.laws.check import require_law
-from halfspace.profiles import PARABOLOID, Endless, Hyperboloid, Paraboloid, Power
+from halfspace.profiles import PARABOLOID, Endless, Hyperboloid, Paraboloid, Power, RoundedPunch
 from halfspace.profiles.indentation import hertz_approach, hertz_load, jkr_approach, jkr_load, jkr_radius
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
@@ -91,6 +91,7 @@ def test_the_default_is_lennard_jones():
         (lambda: Dugdale(0.01), "width = 0.01 of Dugdale's law is outside 0.07 <= width <= 0.5; extrapolate from"),
         (lambda: Power(1), "k = 1 of the profile is outside 1.5 <= k <= 10; round a cone's tip"),
         (lambda: Power(30), "k = 30 of the profile is outside 1.5 <= k <= 10"),
+        (lambda: RoundedPunch(20), "flat = 20 of the punch is outside 0.1 <= flat <= 5"),
         (lambda: Hyperboloid(0), "b = 0 of the hyperboloid is outside 0.01 <= b < inf"),
     ],
 )
@@ -219,7 +220,7 @@ def test_a_rigid_paraboloid_adheres_with_two_pi_by_any_law(law):
     np.testing.assert_allclose(states.load, expected, rtol=3e-6)
 
 
-@pytest.mark.parametrize("profile", [Power(1.5), Power(3), Power(6), Hyperboloid(1)], ids=str)
+@pytest.mark.parametrize("profile", [Power(1.5), Power(3), Power(6), Hyperboloid(1), RoundedPunch(1)], ids=str)
 def test_a_rigid_profile_adheres_with_the_integral_of_the_law(profile):
     tabor, approach = 1e-4, -0.5
     state = halfspace.trace(tabor, profile=profile).at(approach=approach)
@@ -312,7 +313,9 @@ def test_contact_with_a_profile_against_closed_forms():
         assert jkr_radius(PARABOLOID, load) == pytest.approx(float(closed_forms.jkr_radius(load)), rel=1e-13)
 
 
-@pytest.mark.parametrize("profile", [Paraboloid(), Power(1.5), Power(7), Hyperboloid(0.3), Blunt()], ids=str)
+@pytest.mark.parametrize(
+    "profile", [Paraboloid(), Power(1.5), Power(7), Hyperboloid(0.3), RoundedPunch(2), Blunt()], ids=str
+)
 def test_a_profiles_slope_is_that_of_its_height(profile):
     r = np.geomspace(0.01, 20, 40)
     by_differences = (profile.height(r * (1 + 1e-6)) - profile.height(r * (1 - 1e-6))) / (2e-6 * r)
@@ -350,6 +353,7 @@ def test_finite_elements_hit_the_references(law, profile):
         (1.0, {"profile": Power(1.5)}),
         (3.0, {"profile": Power(3)}),
         (0.3, {"law": Exponential(3), "profile": Hyperboloid(0.3)}),
+        (1.0, {"profile": RoundedPunch(2)}),
         (1.0, {"law": PowerLaw(2.5, 9.5)}),
         (0.5, {"law": Dlvo(0.3, 1.0), "profile": Power(4)}),
     ],

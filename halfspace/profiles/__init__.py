@@ -9,7 +9,19 @@ from halfspace.profiles.hyperboloid import Hyperboloid
 from halfspace.profiles.paraboloid import PARABOLOID, Paraboloid
 from halfspace.profiles.power import Power
 from halfspace.profiles.profile import Endless, Profile, Surface
+from halfspace.profiles.rounded_punch import RoundedPunch
 from halfspace.profiles.sphere import Sphere
 from halfspace.profiles.tabulated import Tabulated
 
-__all__ = ["PARABOLOID", "Endless", "Hyperboloid", "Paraboloid", "Power", "Profile", "Sphere", "Surface", "Tabulated"]
+__all__ = [
+    "PARABOLOID",
+    "Endless",
+    "Hyperboloid",
+    "Paraboloid",
+    "Power",
+    "Profile",
+    "RoundedPunch",
+    "Sphere",
+    "Surface",
+    "Tabulated",
+]
