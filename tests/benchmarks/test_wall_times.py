@@ -62,10 +62,10 @@ def test_finite_element_trace(benchmark, tabor, rtol):
 
 
 BODIES = {
-    "tabor 20": Scene(20.0),
-    "tabor 50": Scene(50.0),
+    "tabor-20": Scene(20.0),
+    "tabor-50": Scene(50.0),
     "layer": Scene(1.0, fem_adhesion.Layer(2.0)),
-    "held sphere": Scene(1.0, fem_adhesion.HeldSphere(radius_ratio=100)),
+    "held-sphere": Scene(1.0, fem_adhesion.HeldSphere(radius_ratio=100)),
 }
 
 
