@@ -274,6 +274,18 @@ def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, points,
     assert len(made) <= factorisations
 
 
+def test_factors_that_serve_twice_leave_points_and_tangents_exact():
+    """Against factors made anew at each point."""
+    for segment in trace_charts(half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-6))):
+        problem = segment.problem
+        for point in segment.points:
+            assert problem.misfit(point.x, problem.residual(point.x)) < 1e-10
+            row = problem.gradient(point.x, np.array([1.0, 1.0, -1.0, 0.0]))
+            exact = problem.bordered_solver(point.x, row)(np.eye(1, row.size, row.size - 1)[0])
+            exact *= point.tangent[0] / exact[0]
+            np.testing.assert_allclose(point.tangent[:-2], exact[:-2], rtol=1e-7, atol=1e-9)
+
+
 @pytest.mark.parametrize("condition", [FOLD, EXTREMUM], ids=["fold", "extremum"])
 def test_newtons_method_finds_the_turning_points_that_halving_finds(condition):
     """At tabor 50 the curve winds, in folds of 0.01 eps at loads that change by 1e-4."""
