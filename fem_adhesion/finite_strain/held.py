@@ -208,7 +208,7 @@ class HeldBody(Valued):
             return np.append(forces, row @ ends)
 
         def solve(rhs: Array, accuracy: float = 0.0) -> Array:
-            tangent = self.near(y)
+            tangent = self.near
             nearly = tangent.bordered(change, row)
             x = nearly(rhs)
             if self._exact(tangent, y):
@@ -220,9 +220,15 @@ class HeldBody(Valued):
 
         return solve
 
-    def near(self, y: Array) -> Tangent:
-        """The tangent made last, or else that of the state."""
-        return self._made[-1] if self._made else self.tangent(y)
+    @property
+    def near(self) -> Tangent:
+        """The tangent made last, or else that of the undeformed body."""
+        return self._made[-1] if self._made else self.undeformed
+
+    @cached_property
+    def undeformed(self) -> Tangent:
+        """Tangent of the undeformed body."""
+        return self._factorised(np.zeros(self.size))
 
     def tangent(self, y: Array) -> Tangent:
         """Tangent of a state, made unless it was the last."""

@@ -183,28 +183,29 @@ class FiniteStrainProblem(Valued):
     def state_from_surface(self, state: Array, near: Array | None = None) -> Array:
         """State of the body under the pressure that the gaps of an interface's state make, as a start.
 
-        By steps with the tangent at hand, from its own state unless one is near, as long as they converge, else with
-        that of where they led; the first alone gives the linear body.
+        By steps with the undeformed body's tangent, or the one at hand where a state is near, as long as they converge,
+        else with that of where they led; the first alone gives the linear body.
         """
         law, mu = self.interface.law, self.tabor
         P, Phi = law.pressure(state[:-2], mu), law.energy(state[:-2], mu)
-        tangent, last = self.held.near(np.zeros(self.held.size)), np.inf
+        tangent, last = self.held.undeformed if near is None else self.held.near, np.inf
         y = tangent.y if near is None else near[:-1]
+        solve = self._under(tangent, np.zeros(2 * self.surface.unknowns.shape))
         for _ in range(MOST_STEPS):
             unbalanced = np.append(self._unbalanced(y, P, Phi), 0.0)
-            dy = -self._under(tangent, y, P, Phi)(unbalanced)[:-1]
+            dy = -solve(unbalanced)[:-1]
             if not np.abs(dy).max() < SLOW * last:
-                tangent = self.held.tangent(y)
-                dy = -self._under(tangent, y, P, Phi)(unbalanced)[:-1]
+                follower = self.traction.tangent(self.surface_unknowns(y), P, Phi, 0 * P)
+                solve = self._under(self.held.tangent(y), follower)
+                dy = -solve(unbalanced)[:-1]
             y, last = y + self._unturned(y, dy, 1.0) * dy, float(np.abs(dy).max())
             if last < ENOUGH * np.abs(y).max():
                 break
         return np.append(y, state[-2])
 
-    def _under(self, tangent: Tangent, y: Array, P: Array, Phi: Array) -> Callable[[Array], Array]:
-        """Solver under a given pressure and energy at the surface's points, at a fixed approach."""
-        follower = self.traction.tangent(self.surface_unknowns(y), P, Phi, 0 * P)
-        m = self.surface.unknowns.size
+    def _under(self, tangent: Tangent, follower: Array) -> Callable[[Array], Array]:
+        """Solver under forces of the surface with this derivative by its unknowns, (m, m), at a fixed approach."""
+        m = len(follower)
         return tangent.bordered(np.column_stack([follower, np.zeros(m)]), np.eye(1, m + 1, m)[0])
 
     def _surface_change(self, dx: Array) -> Array:
@@ -274,7 +275,7 @@ class FiniteStrainProblem(Valued):
 
     def misfit(self, x: Array, residual: Array) -> float:
         """Norm, relative to the gaps, of the body's deflection due to the forces out of balance."""
-        dH = -self.tabor * (self.surface.vertical @ self.held.near(x[:-1]).surface_change(residual))
+        dH = -self.tabor * (self.surface.vertical @ self.held.near.surface_change(residual))
         return self.interface.misfit(self.surface_state(x), np.append(dH, 0.0))
 
     def require_resolution(self, x: Array) -> None:
