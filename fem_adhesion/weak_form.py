@@ -67,8 +67,8 @@ class Law:
     room: float = 0.0
 
     def size(self, h: Array) -> Array:
-        """Size by which changes of a gap are measured."""
-        return np.maximum(h, self.room)
+        """Size by which changes of a gap are measured; a start may have surfaces that overlap."""
+        return np.maximum(np.abs(h), max(self.room, CLOSEST))
 
     def tension(self, h: Array) -> Array:
         """Return sigma = dw/dh in dgamma/eps."""
@@ -85,7 +85,7 @@ class Law:
         return np.asarray(sum(w * self.potential(h + n * d) for n, w in zip(places, weights, strict=True)) / d**order)
 
 
-STEP = 4e-3
+STEP, CLOSEST = 4e-3, 1e-6  # of a gap and its grain; the least gap in eps that counts as one
 FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
 SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
 
