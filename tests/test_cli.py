@@ -10,6 +10,7 @@ import pytest
 from fem_adhesion import cli
 from fem_adhesion.common.files import written_aside
 from halfspace.errors import NotConverged
+from halfspace.laws import Morse
 
 
 def run(*arguments):
@@ -215,7 +216,7 @@ def test_a_contact_has_the_same_options_in_every_command_that_takes_one(capsys):
     contact = {"--radius", "--modulus", "--poisson", "--work-of-adhesion", "--spacing", "--hamaker"}
     contact |= {"--counter-modulus", "--counter-poisson", "--counter-radius", "--grip", "--stiffness"}
     assert contact <= set(curve)
-    assert set(assess) == contact | {"--help", "--json", "--plot"}
+    assert set(assess) == contact | {"--law", "--law-parameter", "--help", "--json", "--plot"}
 
 
 @pytest.mark.parametrize("module", ["fem_adhesion", "fem_adhesion.cli"])
@@ -263,8 +264,9 @@ def test_the_command_line_of_a_contact_is_heeded_to_the_last_option(monkeypatch)
     asked = []
     monkeypatch.setattr("fem_adhesion.assess.study.assess", lambda contact, _: asked.append(contact))
     other = ["--counter-modulus", "3GPa", "--counter-poisson", "0.41", "--counter-radius", "0.7um"]
+    held = ["--grip", "bonded", "--stiffness", "0.2N/m"]
     with pytest.raises(AttributeError):
-        cli.main(["assess", *MATERIAL, "--spacing", "1nm", *other, "--grip", "bonded", "--stiffness", "0.2N/m"])
+        cli.main(["assess", *MATERIAL, "--spacing", "1nm", *other, *held, "--law", "morse", "--law-parameter", "3.3"])
     assert {name: value for name, value in vars(asked[0]).items() if name != "units"} == {
         "radius": pytest.approx(1e-7),
         "modulus": pytest.approx(7e10),
@@ -276,6 +278,7 @@ def test_the_command_line_of_a_contact_is_heeded_to_the_last_option(monkeypatch)
         "counter_radius": pytest.approx(7e-7),
         "stiffness": pytest.approx(0.2),
         "grip": "bonded",
+        "law": Morse(3.3),
     }
 
 

@@ -206,7 +206,7 @@ def _solver_dataclasses():
 @pytest.mark.parametrize("kind", list(_solver_dataclasses()), ids=lambda k: f"{k.__module__}.{k.__name__}")
 def test_whatever_holds_an_array_compares_as_a_value(kind):
     """The comparison that dataclasses write would raise."""
-    held = [str(field.type) for field in fields(kind) if field.compare]
+    held = [text for field in fields(kind) if field.compare and not (text := str(field.type)).startswith("Callable")]
     arrays = any(word in text for text in held for word in ("Array", "Index", "sparse", "ndarray", "Problem", "Chart"))
     assert issubclass(kind, (Valued, Mesh)) or not arrays  # a mesh is scikit-fem's
 

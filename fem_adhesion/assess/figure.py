@@ -93,6 +93,8 @@ def _line(curve: EquilibriumPath | Curve | None, assessment: Assessment) -> tupl
     if isinstance(curve, EquilibriumPath):
         path = reaching(curve, assessment.contact.reduced_stiffness)
         fine = np.concatenate([each.between(BETWEEN)[0] for each in path.finest_curve.segments])
+        lowest, pull_off = np.argmin(fine[:, LOAD]), path.events["pull_off"]
+        fine[lowest, [APPROACH, LOAD]] = pull_off.approach, pull_off.load  # solved for, not between points
         return fine[:, APPROACH], fine[:, LOAD]
     if curve is None:
         return np.empty(0), np.empty(0)

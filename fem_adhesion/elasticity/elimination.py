@@ -20,7 +20,7 @@ from scipy.linalg.blas import dtrsm
 from scipy.linalg.lapack import dpotrf
 
 from halfspace.errors import NotConverged
-from halfspace.values import Array, Index
+from halfspace.values import Array, Index, Valued
 
 Mask = NDArray[np.bool_]
 
@@ -28,8 +28,8 @@ LEAST = 8  # cells of the smallest regions: with fewer there are more steps, wit
 SINGULAR = "the stiffness is singular; hold the body, and mesh it without empty cells"
 
 
-@dataclass(frozen=True, eq=False)
-class Region:
+@dataclass(frozen=True, eq=False, repr=False)
+class Region(Valued):
     """Some cells, and how their stiffness is put together; the same for all meshes whose cells meet alike.
 
     Attributes

@@ -447,8 +447,9 @@ def estimate_event(
     chains : sequence of sequences of Located
         The event on discretisations that differ in one respect from one to the next, all chains ending with the best.
         Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
-        share by accident is not taken for exact. Where there is but one, or `along`, gap and radius, which at a point
-        err more than the rest and in turns, are known no better than to what the polynomials there end with.
+        share by accident is not taken for exact. The radius, which at a point errs more than the rest and in turns, is
+        known no better than to what the polynomials there end with; where there is but one chain, or `along`, nor is
+        the gap.
     remaining : float
         Part of that change that may be left.
     along : bool
@@ -469,10 +470,10 @@ def estimate_event(
     errors = remaining * np.maximum(np.max(changes, axis=0), least) + ROUND_OFF * (1 + np.abs(values))
     if along:
         errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
-    if along or len(chains) == 1:
-        best = chains[0][-1]
-        ripples = best.problem.interface.ripples(best.problem.surface_state(best.point.x))
-        errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], ripples)
+    best = chains[0][-1]
+    gap, radius = best.problem.interface.ripples(best.problem.surface_state(best.point.x))
+    alone = along or len(chains) == 1
+    errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], [gap if alone else 0.0, radius])
     return Event(name, *map(float, values), *map(float, errors))
 
 
