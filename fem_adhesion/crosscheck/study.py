@@ -183,8 +183,8 @@ def _cross_residuals(other: EquilibriumPath, fe: EquilibriumPath, rtol: float, b
         if name in fe.events:
             of_other = _residual([stage[name] for stage in other.stages], fe.stages[-1][name])
             of_fe = _residual([stage[name] for stage in fe.stages], other.stages[-1][name])
-            largest, budget = max(of_other.value, of_fe.value), RESIDUAL * rtol * other.approach_scale
-            yield Row(f"cross-residual: {name}", "eps", of_other, of_fe, largest, budget, between)
+            largest = max(of_other.value, of_fe.value)
+            yield Row(f"cross-residual: {name}", "eps", of_other, of_fe, largest, RESIDUAL * rtol, between)
 
 
 def _residual(found: Sequence[Located], equations: Located) -> Estimate:
