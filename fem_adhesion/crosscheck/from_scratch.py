@@ -172,10 +172,9 @@ def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
     """
     both = contacts(scene)
     found = [row for name in path.events for row in _of_event(name, scene, path, *both)]
-    coarse, fine = (_energy_released(contact, path) for contact in both)
+    coarse, fine = (_energy_released(contact, scene, path) for contact in both)
     found.append(Compared("energy released", "R dgamma eps", (coarse, fine), path.energy, abs(path.energy.value)))
-    usual = scene.law == LENNARD_JONES and isinstance(scene.shape, (Paraboloid, Sphere))
-    doubt = max(LEAST, (1.0 if usual else OTHERS) * max(compared.change for compared in found))
+    doubt = max(LEAST, (1.0 if _usual(scene) else OTHERS) * max(compared.change for compared in found))
     return [compared.row(doubt) for compared in found]
 
 
@@ -183,7 +182,7 @@ def _of_event(
     name: str, scene: Scene, path: EquilibriumPath, on_coarse: AtRadius, on_fine: AtRadius
 ) -> Iterator[Compared]:
     event, located = path.events[name], path.stages[-1][name]
-    radius = _size(located)
+    radius = _size(scene, located)
     coarse, fine = (_state(contact(radius), located) for contact in (on_coarse, on_fine))
     approach, load = map(event.estimate, ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
@@ -234,12 +233,22 @@ class State(Valued):
         return self.contact.far_reaction(self.u, self.gap) + self.contact.load_beyond(self.approach)
 
 
-def _size(event: Located) -> float:
-    """Radius in beta at which cells are finest: of the contact or, if it is small or none, of the attraction."""
+def _usual(scene: Scene) -> bool:
+    """Whether law and profile are those that the weak form's bodies were tried for."""
+    return scene.law == LENNARD_JONES and isinstance(scene.shape, (Paraboloid, Sphere))
+
+
+def _size(scene: Scene, event: Located) -> float:
+    """Radius in beta at which cells are finest: of the contact or, where that is larger, of the attraction.
+
+    A half-space has fine cells inside as well; on a body with a length, by other laws and under other profiles the
+    contact comes first, unless it is small or none.
+    """
     _, _, central_gap, radius = (float(value) for value in event.point.observables)
     scales = event.problem.interface.scales
     attraction = scales.radius_at(_opening(scales.law, central_gap))
-    return radius if radius > SMALL * attraction else attraction
+    by_contact = (scene.sized or not _usual(scene)) and radius > SMALL * attraction
+    return radius if by_contact else float(np.fmax(radius, attraction))
 
 
 SMALL = 0.25  # contact, in the radius of the attraction
@@ -312,8 +321,8 @@ def _beside(name: str, state: State) -> Turn | None:
     return Turn(found.load, found.approach)
 
 
-def _energy_released(on: AtRadius, path: EquilibriumPath) -> float:
+def _energy_released(on: AtRadius, scene: Scene, path: EquilibriumPath) -> float:
     """Potential energy between the two states of `EquilibriumPath.energy`; its error is of second order in theirs."""
     ends = (path.stages[-1][name] for name in ("separated", "zero_approach"))
-    before, after = (_state(on(_size(event)), event) for event in ends)
+    before, after = (_state(on(_size(scene, event)), event) for event in ends)
     return before.contact.energy(before.u, before.approach) - after.contact.energy(after.u, after.approach)
