@@ -49,8 +49,9 @@ from halfspace.values import Estimate, Valued
 
 MOST_RUNGS = 4  # above the lowest
 FOLDS = ("jump_on", "jump_off")
-IN_DOUBT = 0.02  # eps/(R dgamma), of the least -d(alpha*)/dW between the points: the Tabor parameter is 0.65 to 0.74
-# on a paraboloid, and as much less as the tensions of another profile are larger
+# eps/(R dgamma), of the least -d(alpha*)/dW between points: the Tabor parameter of a paraboloid is then 0.65 to 0.74;
+# of another profile as much less as its tensions are larger
+IN_DOUBT = 0.02
 FLAT = 1e-9  # eps/(R dgamma), of it: what the last of the parabolas and rounding leave
 
 Charts = Sequence[Chart]
