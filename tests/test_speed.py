@@ -13,7 +13,7 @@ from numpy.polynomial.legendre import leggauss
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import HalfSpace, cli, convergence
+from fem_adhesion import HalfSpace, Hemisphere, cli, convergence
 from fem_adhesion.common import style
 from fem_adhesion.common.files import directory_written_aside
 from fem_adhesion.common.page import markdown
@@ -25,9 +25,10 @@ from fem_adhesion.speed import halfspace_methods as halfspace_methods_module
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
 from fem_adhesion.speed.element_methods import element_methods
+from fem_adhesion.speed.growth import QUESTIONS, Question, grown, growth_questions, slope
 from fem_adhesion.speed.halfspace_methods import MOST_NODES, _affordable, halfspace_methods
 from fem_adhesion.speed.methods import QUANTITIES, Method, Solved, Step
-from fem_adhesion.speed.result import SpeedStudy, Timing, Truth, best, cheapest, pareto_front, slope
+from fem_adhesion.speed.result import SpeedStudy, Timing, Truth, best, cheapest, pareto_front
 from fem_adhesion.speed.study import measure
 from halfspace.elastic import compliance
 from halfspace.equilibrium import newton, relaxation
@@ -38,7 +39,7 @@ from halfspace.values import Estimate
 
 METHODS = [*halfspace_methods(), *element_methods()]
 PREFIX = {"half-space": "", "finite elements": "FE "}
-FILES = {"speed.csv", "speed.md"} | {f"{q}.{suffix}" for q in QUANTITIES for suffix in ("svg", "png")}
+FILES = {"speed.csv", "growth.csv", "speed.md"} | {f"{q}.{suffix}" for q in QUANTITIES for suffix in ("svg", "png")}
 TRUE = {"pull_off": -5.24854818839, "jump_on": -1.62921671169, "hysteresis": 0.2507086026}  # at a Tabor parameter of 1
 SIZES = {"pull_off": 5.24854818839, "jump_on": 4.81849957889, "hysteresis": 0.2507086026}
 REACHED = {  # best relative error of the pull-off load on the quick ladder, at most
@@ -251,7 +252,7 @@ def test_a_wrong_half_space_is_not_its_own_judge(monkeypatch):
     monkeypatch.setattr(halfspace, "trace", off)
     monkeypatch.setattr(speed, "TIGHTEST", 1e-5)
     adaptive = next(m for m in METHODS if m.name == "adaptive")
-    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)])
+    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)], questions=[])
     assert found.rungs[0].error("pull_off") == pytest.approx(0.01, rel=1e-2)
     assert any("the truths disagree in pull_off" in trouble for trouble in found.troubles())
 
@@ -326,7 +327,7 @@ def test_each_method_is_solved_by_what_its_name_says(called, name):
 
 def test_no_jumps_below_the_critical_tabor_parameter():
     adaptive = next(m for m in METHODS if m.name == "adaptive")
-    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)])
+    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)], questions=[])
     assert found.quantities == ("pull_off",)
     assert set(found.rungs[0].errors) == {"pull_off"}
     assert list(found.troubles()) == []
@@ -347,7 +348,7 @@ def test_what_is_run_depends_on_the_ladder_alone(monkeypatch, quick, expected):
     truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
     monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
     runs = []
-    measure(1.0, quick=quick, methods=[counted_method(runs, 2)])
+    measure(1.0, quick=quick, methods=[counted_method(runs, 2)], questions=[])
     assert runs == expected
 
 
@@ -361,7 +362,7 @@ def test_a_rung_is_recorded_by_how_it_ended(monkeypatch, error, status):
 
     truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
     monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
-    found = measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)]).rungs[0]
+    found = measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)], questions=[]).rungs[0]
     assert (found.status, found.reason) == (status, "on purpose")
 
 
@@ -372,7 +373,7 @@ def test_a_defect_is_no_outcome(monkeypatch):
     truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
     monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
     with pytest.raises(ValueError, match="broadcast"):
-        measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)])
+        measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)], questions=[])
 
 
 def test_too_many_nodes_are_refused_before_any_work():
@@ -634,7 +635,60 @@ def test_every_number_in_the_pages_own_words_is_computed():
     page = "\n".join(lines_of_page(made_study([], methods=[SOME])))
     kept = [line for line in page.splitlines() if not line.startswith("* ") and "judge" not in line]
     numbers = set(re.findall(r"\d[\d.e+-]*", "\n".join(kept)))
-    assert numbers <= {"1", "0", "1e-03", "1e-06", "0e+00"} | {"-5", "5", "1.5", "0.25", "1e-09", "2e-09", "3e-09"}
+    assert numbers <= {"1", "0", "1e-03", "1e-05", "1e-06", "0e+00"} | {
+        "-5",
+        "5",
+        "1.5",
+        "0.25",
+        "1e-09",
+        "2e-09",
+        "3e-09",
+    }
+
+
+# --- how time grows ---
+
+
+def test_the_time_of_each_solver_is_told_for_all_that_grows(run, page):
+    """The quick run's table has each question's exponent, of the times in the file."""
+    told = {(row["solver"], row["x"]): row for row in section(page, "How the time of the solvers")}
+    rows = list(csv.DictReader((run / "speed" / "growth.csv").read_text().splitlines()))
+    assert set(told) == {(q.solver, q.grows) for q in QUESTIONS}
+    for question in growth_questions(quick=True):
+        mine = [row for row in rows if (row["solver"], row["grows"]) == (question.solver, question.grows)]
+        assert [float(row["at"]) for row in mine] == list(question.at)
+        (x, y), (s, t) = question.at, (float(row["seconds"]) for row in mine)
+        found = float(told[question.solver, question.grows]["b"])
+        assert found == pytest.approx(math.log(t / s) / math.log(y / x), abs=0.02)
+
+
+def test_growth_is_measured_where_it_is_asked_and_its_exponent_is_that_of_the_times():
+    seen = []
+    question = Question("some", "digits", 3.0, (1.0, 2.0, 4.0), seen.append)
+
+    def seconds_of(work):
+        work()
+        return 0.5 * seen[-1] ** 3
+
+    growth = grown(question, seconds_of)
+    assert seen == [1.0, 2.0, 4.0]
+    assert growth.seconds == (0.5, 4.0, 32.0)
+    assert growth.exponent == pytest.approx(3)
+    study = dataclasses.replace(made_study([]), growths=(growth,))
+    row = section("\n".join(lines_of_page(study)), "How the time of the solvers")[0]
+    cells = ["some", "digits", "0.50 s at 1, 4.00 s at 2, 32.00 s at 4", "3.00", "3"]
+    assert list(row.values()) == cells
+
+
+def test_each_question_solves_what_it_says(monkeypatch):
+    """Digits are -log10 rtol; mu and R/eps go where they should."""
+    seen = []
+    monkeypatch.setattr(halfspace, "trace", lambda tabor, *, rtol: seen.append((tabor, rtol)))
+    monkeypatch.setattr(convergence, "trace", lambda scene, *, rtol: seen.append((scene.tabor, scene.body, rtol)))
+    for question in QUESTIONS:
+        question.solve(4.0)
+    block, sphere = HalfSpace(poisson=0.3), Hemisphere(radius_ratio=4.0, poisson=0.3)
+    assert seen == [(1.0, 1e-4), (1.0, block, 1e-4), (4.0, 1e-5), (4.0, block, 1e-5), (1.0, sphere, 1e-5)]
 
 
 # --- directories of results ---

@@ -66,7 +66,10 @@ SOURCES = (
             ("jump_on", "Error of the approach at jump-on against wall time: half-space left, finite elements right."),
             ("hysteresis", "Error of the energy lost in a cycle: half-space left, finite elements right."),
         ),
-        (("speed", "Every method on every rung of its ladder"),),
+        (
+            ("speed", "Every method on every rung of its ladder"),
+            ("growth", "How the time of the solvers with error control grows"),
+        ),
     ),
     Source(
         "hard",

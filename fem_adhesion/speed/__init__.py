@@ -1,4 +1,5 @@
 """What a digit costs. The command ``speed``.
 
-`methods` of both families (`halfspace_methods`, `element_methods`), `study`, `result`; `figures`, `page`, `command`.
+`methods` of both families (`halfspace_methods`, `element_methods`), `growth` of the time of those with error control;
+`study`, `result`; `figures`, `page`, `command`.
 """

@@ -10,22 +10,25 @@ from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.page import Table, markdown, write_csv
 from fem_adhesion.common.style import draw
 from fem_adhesion.speed.figures import pictures
+from fem_adhesion.speed.growth import RTOL, TABOR
 from fem_adhesion.speed.methods import QUANTITIES
 from fem_adhesion.speed.result import SpeedStudy, Timing, best, cheapest
 
 TOLERANCES = (1e-3, 1e-6)
+GROWTH_COLUMNS = ("solver", "grows", "at", "seconds", "yardsticks")
 UNITS = {"pull_off": "R dgamma", "jump_on": "eps", "hysteresis": "R dgamma eps"}
 COLUMNS = ("method", "setting", "unknowns", "seconds", "yardsticks", "peak_mebibytes")
 ERROR_COLUMNS = tuple(f"{quantity}_{what}" for quantity in QUANTITIES for what in ("error", "truth_uncertainty"))
 
 
 def write(study: SpeedStudy, directory: Path) -> None:
-    """Write ``speed.csv``, ``speed.md`` and a plot for each quantity, SVG and PNG, into a directory that exists.
+    """Write ``speed.csv``, ``growth.csv``, ``speed.md`` and plots of each quantity, SVG and PNG, into a directory.
 
     Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none.
     """
     rows = [_cells(rung, study.yardstick) for rung in study.rungs]
     write_csv(Table("speed", "", "", (*COLUMNS, *ERROR_COLUMNS, "outcome", "reason"), rows), directory)
+    write_csv(Table("growth", "", "", GROWTH_COLUMNS, list(_growth_cells(study))), directory)
     (directory / "speed.md").write_text("\n".join(markdown(list(parts(study)))) + "\n")
     draw(pictures(study), study, directory)
 
@@ -66,6 +69,7 @@ def parts(study: SpeedStudy) -> Iterator[str | Table]:
     yield _costs(study, "What it costs to have every quantity that a method gives", None)
     yield from (_costs(study, f"What it costs to have {quantity}", quantity) for quantity in study.quantities)
     yield _exponents(study)
+    yield _growths(study)
     failures = [(rung.method, rung.setting, rung.status, rung.reason) for rung in study.rungs if not rung.converged]
     yield Table("", "Rungs without result", "", ("method", "setting", "outcome", "reason"), failures)
 
@@ -132,3 +136,30 @@ def _exponents(study: SpeedStudy) -> Table:
         fitted = (b.time, b.memory, b.time_by_accuracy, b.memory_by_accuracy)
         rows.append([method.name, str(b.rungs), *(_number(value, "{:.2f}") or "-" for value in fitted)])
     return Table("", title, "", ("method", "rungs", *costs), rows)
+
+
+def _growths(study: SpeedStudy) -> Table:
+    title = (
+        "How the time of the solvers with error control grows: exponents b of time ~ x^b, 0 where only the logarithm "
+        f"of x counts; at a Tabor parameter of {TABOR:g} and an rtol of {RTOL:.0e}, unless they are what grows"
+    )
+    rows = [
+        [
+            growth.question.solver,
+            growth.question.grows,
+            ", ".join(
+                f"{seconds:.2f} s at {x:g}" for x, seconds in zip(growth.question.at, growth.seconds, strict=True)
+            ),
+            _number(growth.exponent, "{:.2f}") or "-",
+            f"{growth.question.expected:g}",
+        ]
+        for growth in study.growths
+    ]
+    return Table("", title, "", ("solver", "x", "time", "b", "b expected at most"), rows)
+
+
+def _growth_cells(study: SpeedStudy) -> Iterator[list[str]]:
+    for growth in study.growths:
+        for x, seconds in zip(growth.question.at, growth.seconds, strict=True):
+            asked = growth.question
+            yield [asked.solver, asked.grows, f"{x:g}", f"{seconds:.4f}", f"{seconds / study.yardstick:.0f}"]

@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from fem_adhesion.speed.growth import Growth, slope
 from fem_adhesion.speed.methods import QUANTITIES, Family, Method
 from halfspace.values import Estimate
 
@@ -137,6 +138,8 @@ class SpeedStudy:
         In the order of the report.
     rungs : tuple of Timing
         In the order of the methods.
+    growths : tuple of Growth
+        How the time of the solvers with error control grows with what is asked of them.
     """
 
     tabor: float
@@ -145,6 +148,7 @@ class SpeedStudy:
     yardstick: float
     methods: tuple[Method, ...]
     rungs: tuple[Timing, ...]
+    growths: tuple[Growth, ...] = ()
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -219,11 +223,3 @@ def pareto_front(rungs: Sequence[Timing], quantity: str) -> list[Timing]:
         if not front or (rung.error(quantity) < front[-1].error(quantity) and not front[-1].hidden(quantity)):
             front.append(rung)
     return front
-
-
-def slope(x: np.ndarray, y: np.ndarray) -> float:
-    """Exponent b of y ~ x^b by least squares of the logarithms; nan from fewer than two different points."""
-    use = np.isfinite(x) & np.isfinite(y) & (x > 0) & (y > 0)
-    if np.unique(x[use]).size < 2:
-        return float("nan")
-    return float(np.polyfit(np.log(x[use]), np.log(y[use]), 1)[0])

@@ -2,7 +2,8 @@
 
 Each method climbs a ladder of resolutions; a rung is timed from the set-up to the events. Its errors are those of three
 quantities against the tightest solution of the other family: no elasticity is judged by itself. Which rungs are climbed
-is a matter of the ladders alone, so it is the same on every machine; time is only reported.
+is a matter of the ladders alone, so it is the same on every machine; time is only reported. How the time of the solvers
+with error control grows with what is asked of them is measured beside it.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from fem_adhesion.common.facts import peak_memory
 from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed.element_methods import POISSON, element_methods
+from fem_adhesion.speed.growth import Question, grown, growth_questions
 from fem_adhesion.speed.halfspace_methods import halfspace_methods
 from fem_adhesion.speed.methods import Family, Method, Solved, Step
 from fem_adhesion.speed.result import SpeedStudy, Status, Timing, Truth
@@ -38,6 +40,7 @@ def measure(
     quick: bool = False,
     progress: Progress = unheard,
     methods: Sequence[Method] | None = None,
+    questions: Sequence[Question] | None = None,
 ) -> SpeedStudy:
     """Time every method on its ladder of resolutions.
 
@@ -51,6 +54,8 @@ def measure(
         Called before each method with its name, and how many of how many are done.
     methods : sequence of Method, optional
         All unless given.
+    questions : sequence of Question, optional
+        How time grows, of `fem_adhesion.speed.growth`; all unless given.
 
     Raises
     ------
@@ -67,7 +72,11 @@ def measure(
     for number, method in enumerate(chosen):
         progress(method.name, number, len(chosen))
         rungs += _climb(method, tabor, truths[method.family], quick=quick)
-    return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs))
+    progress("how time grows", len(chosen), len(chosen))
+    growths = tuple(
+        grown(question, _seconds) for question in (growth_questions(quick=quick) if questions is None else questions)
+    )
+    return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs), growths)
 
 
 def require_tabor(tabor: float) -> float:

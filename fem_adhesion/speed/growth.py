@@ -1,0 +1,103 @@
+"""How the time of the solvers with error control grows: with digits, with Tabor's parameter, with R/eps.
+
+Cells are graded towards the contact edge, whose spike is as wide as 1/mu^2: their number grows as ln(mu), where that of
+a uniform grid grows as mu^2 and more. So no power of mu or R/eps is expected, but those of logarithms. Each digit asks
+for a degree more: the half-space has then so many more unknowns, whose dense factors cost their third power, and a cell
+of finite elements of degree p has p^2 inside, whose elimination costs p^6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+import halfspace
+from fem_adhesion import convergence
+from fem_adhesion.bodies.half_space import HalfSpace
+from fem_adhesion.bodies.hemisphere import Hemisphere
+from fem_adhesion.scene import Scene
+from fem_adhesion.speed.element_methods import POISSON
+from halfspace.values import Array
+
+TABOR = 1.0  # where digits and R/eps grow
+RTOL = 1e-5  # where the Tabor parameter and R/eps grow
+LOGARITHMIC = 0.0
+
+
+@dataclass(frozen=True)
+class Question:
+    """What grows for which solver.
+
+    Attributes
+    ----------
+    solver, grows : str
+        Who solves, and what of the scene grows.
+    expected : float
+        Highest exponent expected of the time, 0 if only logarithms are.
+    at : tuple of float
+        Values of what grows, from small to large.
+    solve : callable
+        Solves at one of them.
+    """
+
+    solver: str
+    grows: str
+    expected: float
+    at: tuple[float, ...]
+    solve: Callable[[float], object]
+
+
+@dataclass(frozen=True)
+class Growth:
+    """A question and its answer: seconds, one for each value."""
+
+    question: Question
+    seconds: tuple[float, ...]
+
+    @property
+    def exponent(self) -> float:
+        """Exponent b of seconds ~ x^b; nan of fewer than two values."""
+        return slope(np.array(self.question.at), np.array(self.seconds))
+
+
+def _block(tabor: float, rtol: float) -> object:
+    return convergence.trace(Scene(tabor, HalfSpace(poisson=POISSON)), rtol=rtol)
+
+
+def _hemisphere(radius_ratio: float) -> object:
+    return convergence.trace(Scene(TABOR, Hemisphere(radius_ratio=radius_ratio, poisson=POISSON)), rtol=RTOL)
+
+
+def _rtol(digits: float) -> float:
+    return float(10**-digits)
+
+
+DIGITS = tuple(map(float, range(3, 9)))
+QUESTIONS = (
+    Question("half-space", "digits", 3.0, DIGITS, lambda x: halfspace.trace(TABOR, rtol=_rtol(x))),
+    Question("finite elements", "digits", 6.0, DIGITS, lambda x: _block(TABOR, _rtol(x))),
+    Question("half-space", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0, 100.0), lambda x: halfspace.trace(x, rtol=RTOL)),
+    Question("finite elements", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0), lambda x: _block(x, RTOL)),
+    Question("hemisphere", "R/eps", LOGARITHMIC, (10.0, 100.0, 1e3, 1e4), _hemisphere),
+)
+
+
+def growth_questions(*, quick: bool) -> tuple[Question, ...]:
+    """All questions; each of the two smallest values only if it is to be quick."""
+    return tuple(replace(q, at=q.at[:2]) for q in QUESTIONS) if quick else QUESTIONS
+
+
+def grown(question: Question, seconds_of: Callable[[Callable[[], object]], float]) -> Growth:
+    """Time a question at each of its values."""
+    return Growth(question, tuple(seconds_of(partial(question.solve, x)) for x in question.at))
+
+
+def slope(x: Array, y: Array) -> float:
+    """Exponent b of y ~ x^b by least squares of the logarithms; nan from fewer than two different points."""
+    use = np.isfinite(x) & np.isfinite(y) & (x > 0) & (y > 0)
+    if np.unique(x[use]).size < 2:
+        return float("nan")
+    return float(np.polyfit(np.log(x[use]), np.log(y[use]), 1)[0])
