@@ -37,6 +37,7 @@ FAR_FIELDS: Mapping[FarFieldName, FarField] = {
     "clamped": far_field.clamped,
     "free": far_field.free,
     "sliding": far_field.sliding,
+    "sheet": far_field.sheet,
 }
 
 

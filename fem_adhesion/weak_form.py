@@ -122,8 +122,8 @@ def strains(u: Any, r: Array) -> tuple[Array, Array, Array, Array]:
 
 def elasticity(poisson: float) -> Any:
     """a(u, v) of a body of revolution without twist, whose hoop strain is u_r/r."""
-    E = 1 - poisson**2
-    lam, G = E * poisson / ((1 + poisson) * (1 - 2 * poisson)), E / (2 * (1 + poisson))
+    G = shear_modulus(poisson)
+    lam = 2 * G * poisson / (1 - 2 * poisson)
 
     def form(u: Any, v: Any, w: Any) -> Any:
         r = w.x[0]
@@ -133,6 +133,19 @@ def elasticity(poisson: float) -> Any:
         return (lam * dilatations + 2 * G * normal + G * shear_u * shear_v) * 2 * np.pi * r
 
     return BilinearForm(form)
+
+
+def going_on(poisson: float) -> Any:
+    """What a layer on a plane without friction is held by at its edge r = L, where it goes on as a sheet.
+
+    It moves as c/r there, which takes the tension 2 G u_r/L.
+    """
+    return BilinearForm(lambda u, v, _: 2 * shear_modulus(poisson) * u[0] * v[0] * 2 * np.pi)
+
+
+def shear_modulus(poisson: float) -> float:
+    """G = E/(2 (1 + nu)), where E* = E/(1 - nu^2) = 1."""
+    return (1 - poisson) / 2
 
 
 # The body
@@ -212,7 +225,8 @@ def discretise(
     Parameters
     ----------
     mesh : skfem.Mesh
-        In beta, the body below its contact surface, of quadrilaterals or triangles.
+        In beta, the body below its contact surface, of quadrilaterals or triangles. If it slides, it goes on beyond
+        the boundary edge, if there is one.
     degree : int
         Of the elements, 3 or more; 4 at most of triangles.
     poisson : float
@@ -237,6 +251,9 @@ def discretise(
     moved = sparse.csc_array(np.isin(np.arange(basis.N), upwards).astype(float)[:, None])
     T = sparse.csc_array(sparse.hstack([T, moved])) if plate else T
     K = sparse.csr_array(elasticity(poisson).assemble(basis))
+    if slides and "edge" in mesh.boundaries:
+        edge = FacetBasis(mesh, element, mapping=_mapping(mesh), facets="edge", intorder=2 * degree)
+        K += going_on(poisson).assemble(edge)
     reaction = 0 * last(T.shape[1]) if plate else (moved.T @ K @ T).toarray()[0]
     (radii, heights), rim = surface.global_coordinates(), float(mesh.p[0, mesh.facets[:, surface.find]].max())
     area = 2 * np.pi * radii * surface.dx * (1.0 if on_surface else surface.normals[1])

@@ -17,7 +17,7 @@ from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.scales import Scales
 from halfspace.values import Array, keep
 
-FarFieldName = Literal["point_load", "clamped", "free", "sliding"]
+FarFieldName = Literal["point_load", "clamped", "free", "sliding", "sheet"]
 GripName = Literal["sliding", "bonded"]
 SolverName = Literal["half-space", "harmonics"]
 

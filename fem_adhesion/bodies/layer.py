@@ -16,6 +16,9 @@ from halfspace.scales import Scales
 from halfspace.values import Array, keep
 
 WIDTH = 800.0  # of the mesh, in widths of a rigid attraction: the load left out beyond is 1e-10 R dgamma
+# Thicknesses that it is wider: what dies out falls by e^(-0.74 r/t) at least, there and back again to 1e-13. From the
+# roots of what its yield is divided by, (3 - 4 nu) cosh 2x + 2 x^2 + 5 - 12 nu + 8 nu^2, the first at nu = 1/2.
+DIED_OUT = 20.0
 
 
 @dataclass(frozen=True)
@@ -42,8 +45,8 @@ class Layer(Body):
 
     @property
     def held(self) -> FarFieldName:
-        """Its base slides, or is clamped."""
-        return "clamped" if self.foundation == "bonded" else "sliding"
+        """Its base is clamped, or slides and the layer goes on beyond its edge."""
+        return "clamped" if self.foundation == "bonded" else "sheet"
 
     @property
     def checked_by(self) -> SolverName | None:
@@ -62,18 +65,19 @@ class Layer(Body):
 
     def extent(self, scales: Scales) -> float:
         """Radius up to which it is meshed."""
-        return scales.outer_radius((WIDTH * scales.widened) ** 2 / 2)
+        return scales.outer_radius((WIDTH * scales.widened) ** 2 / 2) + DIED_OUT * self.thickness
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
         """Cells up to the end of the mesh, or of the surface over it."""
         return np.array([R]), FlatCoordinate()
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002 (it ends with them)
-        """Cells as deep as the layer is thick; its edge is free, far from the contact."""
+        """Cells as deep as the layer is thick."""
         from fem_adhesion.mesh.block import tensor_grid
 
         depths = grid.graded(0.0, min(np.diff(lines).min(), self.thickness), self.thickness, growth=how.growth)
-        return tensor_grid(lines, depths).with_boundaries({"far": lambda x: x[1] == -depths[-1]})
+        sides = {"far": lambda x: x[1] == -depths[-1], "edge": lambda x: x[0] == lines[-1]}
+        return tensor_grid(lines, depths).with_boundaries(sides)
 
 
 def as_body(part: object) -> object:

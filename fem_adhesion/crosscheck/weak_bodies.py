@@ -150,7 +150,7 @@ def _sized(scene: Scene, degree: int, radius: float) -> Contact:
 
 def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:
     """Body as it is held."""
-    material, slides = elastic.material, elastic.held == "sliding"
+    material, slides = elastic.material, elastic.held in ("sliding", "sheet")
     body = discretise(
         mesh,
         degree,

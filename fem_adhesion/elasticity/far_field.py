@@ -1,4 +1,4 @@
-"""What holds the far boundary of a body: a clamp, a plane without friction, Boussinesq's point load, or nothing.
+"""What holds the far boundary of a body: a clamp, a plane without friction, what goes on beyond, or nothing.
 
 Each is a linear map u = T x from the reduced unknowns x to all of them and a stiffness S on x, so that the
 body's stiffness K becomes T' K T + S. T also imposes u_r = 0 on the axis, and leaves out the unknowns
@@ -43,7 +43,7 @@ class Exterior(Valued):
 
 
 class FarField(Protocol):
-    """A kind of far boundary: `clamped`, `sliding`, `point_load` or `free`."""
+    """A kind of far boundary: `clamped`, `sliding`, `sheet`, `point_load` or `free`."""
 
     def __call__(self, space: Space, poisson: float) -> Exterior:
         """Return the condition for the far boundary of this space's mesh."""
@@ -70,6 +70,21 @@ def sliding(space: Space, poisson: float) -> Exterior:  # noqa: ARG001
     """
     T = _selection(space, dropped=space.components[1, space.boundary_functions("far")])
     return Exterior(T, sparse.csc_array((T.shape[1], T.shape[1])))
+
+
+def sheet(space: Space, poisson: float) -> Exterior:
+    """Hold the base of a layer as `sliding` does, and let it go on beyond its edge, which moves outwards as a whole.
+
+    A layer that is pressed spreads, far from there as a sheet under no load does: u_r = c L/r, u_z = 0. What goes on
+    beyond the edge, r = L, stores 2 pi G t c^2, G the shear modulus and t the thickness; the one added unknown c is the
+    last. All else has died out if the edge is some thicknesses away. A free edge would let it yield by O(1/L^2) more.
+    """
+    moved, held = space.boundary_functions("edge"), space.components[1, space.boundary_functions("far")]
+    unknowns, thickness = space.components[0, moved], float(np.ptp(space.mesh.p[1]))
+    column = sparse.csc_array((space.constant[moved], (unknowns, 0 * moved)), shape=(space.unknowns, 1))
+    T = sparse.csc_array(sparse.hstack([_selection(space, dropped=np.append(held, unknowns)), column]))
+    n, stiffness = T.shape[1], 4 * np.pi * lame_parameters(poisson)[1] * thickness
+    return Exterior(T, sparse.csc_array(([stiffness], ([n - 1], [n - 1])), shape=(n, n)))
 
 
 def point_load(space: Space, poisson: float) -> Exterior:
