@@ -9,8 +9,7 @@ from fem_adhesion.assess.predictions import Prediction
 from fem_adhesion.assess.verdict import ranked
 from fem_adhesion.common.numbers import Quantity
 from fem_adhesion.crosscheck import study as crosscheck
-from fem_adhesion.finite_sphere.cases import case_of, quantities_of
-from fem_adhesion.finite_sphere.records import Record
+from fem_adhesion.finite_sphere.cases import Record, case_of, quantities_of
 from fem_adhesion.finite_sphere.table import rows
 from fem_adhesion.greenwood.tables import table_2
 from fem_adhesion.speed.study import _truth

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from fem_adhesion.common import code_digest as digests
-from fem_adhesion.common.code_digest import code_digest, sources
+from fem_adhesion.common import facts as digests
+from fem_adhesion.common.facts import code_digest, sources
 
 CASES = "fem_adhesion.finite_sphere.cases"
 ROOT = Path(__file__).parents[1]
@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[1]
 def digest_in(tree):
     """Digest of the code in a copy of the sources, by a fresh interpreter; and whether NumPy was loaded for it."""
     code = (
-        f"import sys; from fem_adhesion.common.code_digest import code_digest; print(code_digest({CASES!r}), "
+        f"import sys; from fem_adhesion.common.facts import code_digest; print(code_digest({CASES!r}), "
         "'numpy' in sys.modules)"
     )
     done = subprocess.run(
@@ -55,7 +55,7 @@ def test_it_is_the_same_in_another_place_and_loads_nothing_heavy(tree):
         ("fem_adhesion/finite_strain/material.py", True),  # through four others
         ("fem_adhesion/convergence.py", True),  # through __getattr__ of the package
         ("fem_adhesion/finite_sphere/cases.py", True),
-        ("fem_adhesion/finite_sphere/findings.py", False),
+        ("fem_adhesion/finite_sphere/page.py", False),
         ("fem_adhesion/cli.py", False),
     ],
 )
@@ -76,7 +76,7 @@ def test_it_knows_every_module_of_this_project_that_computing_a_case_loads():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = {name for name in ast.literal_eval(done.stdout) if name.split(".")[0] in ("halfspace", "fem_adhesion")}
-    kept = {f"fem_adhesion.common.{name}" for name in ("store", "jobs", "code_digest", "files", "progress")} | {
+    kept = {f"fem_adhesion.common.{name}" for name in ("store", "jobs", "facts", "files", "progress", "numbers")} | {
         "fem_adhesion.common"
     }
     assert loaded - kept - {"fem_adhesion.finite_sphere.study"} <= set(sources(CASES))

@@ -15,7 +15,7 @@ from fem_adhesion.crosscheck.comparison import Row
 from fem_adhesion.crosscheck.record import EVENT_NAMES, VERDICTS, crosscheck_record, overall_verdict
 from fem_adhesion.crosscheck.study import Failure
 from fem_adhesion.crosscheck.table import STYLES, columns, crosscheck_table, crosscheck_tables
-from fem_adhesion.report import levels
+from fem_adhesion.report import sections
 from fem_adhesion.report.page import WORDS, verdict_words
 from halfspace.values import Estimate
 
@@ -126,7 +126,7 @@ def section_text(section):
 
 
 def test_the_levels_of_the_report_hold_each_value_under_its_header():
-    section = levels.crosscheck_section([case(AGREE, DISAGREE), FAILED])
+    section = sections.crosscheck_section([case(AGREE, DISAGREE), FAILED])
     summary, lost, operators, residuals, equations, apart, limits, events = tables(section_text(section))
     assert residuals == equations == apart == limits == []
     assert lost == [{"Tabor parameter": "3", "reason": FAILED.reason}]
@@ -145,14 +145,14 @@ def test_the_levels_of_the_report_hold_each_value_under_its_header():
 
 def test_a_difference_without_an_error_is_not_left_out_of_the_summary():
     certain = replace(DISAGREE, first=Estimate(1.0, 0.0), second=Estimate(2.0, 0.0), difference=1.0)
-    summary = tables(section_text(levels.crosscheck_section([case(certain)])))[0]
+    summary = tables(section_text(sections.crosscheck_section([case(certain)])))[0]
     assert summary[-1]["largest difference / error"] == "inf"
-    (missing,) = (line for line in tables(section_text(levels.crosscheck_section([case(MISSING)])))[0][-1:])
+    (missing,) = (line for line in tables(section_text(sections.crosscheck_section([case(MISSING)])))[0][-1:])
     assert (missing["disagree"], missing["largest difference / error"]) == ("1", "none")
 
 
 def test_settings_and_costs_stand_beside_their_solver():
-    section = levels.settings_section([case(AGREE)], {"processor": "abacus"})
+    section = sections.settings_section([case(AGREE)], {"processor": "abacus"})
     versions, settings = tables(section_text(section))
     assert {"what": "processor", "which": "abacus"} in versions
     halfspace, elements = settings
@@ -170,7 +170,7 @@ CODES = {"agree": 0, "inconclusive": 1, "disagree": 1, "failed": 1}
 
 def test_every_verdict_has_an_ending_and_a_name():
     assert set(VERDICTS) == set(WORDS) == set(ENDINGS)
-    assert set(STYLES) == {"agree", "inconclusive", "disagree"} == set(levels.VERDICTS)
+    assert set(STYLES) == {"agree", "inconclusive", "disagree"} == set(sections.VERDICTS)
 
 
 @pytest.mark.parametrize("verdict", ENDINGS)

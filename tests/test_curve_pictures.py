@@ -16,8 +16,8 @@ from fem_adhesion.curve.lines import smooth
 from fem_adhesion.curve.load import KINDS
 from fem_adhesion.curve.profiles import STATES
 from fem_adhesion.curve.solve import Question, solve
-from fem_adhesion.paraview import solid as solid_view
-from fem_adhesion.paraview.cutaway import section, surfaces, view_of
+from fem_adhesion.paraview import picture as solid_view
+from fem_adhesion.paraview.picture import section, surfaces, view_of
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.scaling import Units

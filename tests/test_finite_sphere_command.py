@@ -17,8 +17,7 @@ from processes import PATIENCE, alive, wait_until
 from fem_adhesion import cli
 from fem_adhesion.finite_sphere import cases
 from fem_adhesion.finite_sphere import page as finite_sphere_page
-from fem_adhesion.finite_sphere.cases import MODELS
-from fem_adhesion.finite_sphere.records import CRITICAL
+from fem_adhesion.finite_sphere.cases import CRITICAL, MODELS
 from halfspace.errors import ContactTooWide, NotConverged
 from halfspace.values import Estimate
 

@@ -10,15 +10,14 @@ import pytest
 from whole_sphere import sphere_operator
 
 from fem_adhesion.common import style
-from fem_adhesion.finite_sphere import cause_figure, chart_figure
+from fem_adhesion.finite_sphere import chart_figure, figures
 from fem_adhesion.finite_sphere import page as finite_sphere_page
 from fem_adhesion.finite_sphere.bulk import FINE, bulk_compliance, coefficients, excess_compliance
-from fem_adhesion.finite_sphere.cases import CAUSES, MODELS, case_of
+from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CAUSES, CRITICAL, MODELS, Record, case_of
 from fem_adhesion.finite_sphere.chart import Field, contour, field_of, rule, safe_from
-from fem_adhesion.finite_sphere.findings import QUANTITIES
 from fem_adhesion.finite_sphere.fit import FIXED_GRIPS, leading_terms
-from fem_adhesion.finite_sphere.records import APPROACH_SCALE, CRITICAL, Record, Study
-from fem_adhesion.finite_sphere.study import plan
+from fem_adhesion.finite_sphere.page import SHOWN
+from fem_adhesion.finite_sphere.study import Study, plan
 from fem_adhesion.finite_sphere.table import borders, results, rows, write_tables
 from halfspace.elastic import grid
 from halfspace.values import Estimate
@@ -344,7 +343,7 @@ def test_the_axes_of_the_causes_say_what_is_drawn(distinct):
         assert x == r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
         assert y in ("|relative deviation from the half-space|", "")
         for cause in ("all", "profile", "body", "grip", "traction", "strain"):
-            label = cause_figure.CAUSES[cause][2]
+            label = figures.CAUSES[cause][2]
             assert label.startswith(f"{cause}: ")
             at = sorted(np.transpose(line_of(panel, label)).tolist(), reverse=True)
             wanted = [
@@ -487,7 +486,7 @@ def test_nothing_is_concluded_from_numbers_that_are_none(value, tmp_path):
         assert picture.lacks(found)
     finite_sphere_page.write(found.study, tmp_path)
     page = (tmp_path / "index.html").read_text()
-    assert page.count("nowhere that is known") == len(QUANTITIES)
+    assert page.count("nowhere that is known") == len(SHOWN)
     assert "nan" not in page.partition("<footer>")[0].replace("nancy", "")
 
 

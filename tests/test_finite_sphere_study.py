@@ -26,21 +26,32 @@ from fem_adhesion.common.store import open_store
 from fem_adhesion.finite_sphere import cases as finite_sphere_cases
 from fem_adhesion.finite_sphere import fit as finite_sphere_fit
 from fem_adhesion.finite_sphere import study as finite_sphere
-from fem_adhesion.finite_sphere.cases import CAUSES, MODELS, case_of, quantities_of
-from fem_adhesion.finite_sphere.fit import SOFT_PULL_OFF, fit
-from fem_adhesion.finite_sphere.materials import materials
-from fem_adhesion.finite_sphere.points import Samples
-from fem_adhesion.finite_sphere.records import (
+from fem_adhesion.finite_sphere.cases import (
     APPROACH_SCALE,
+    CAUSES,
     CRITICAL,
+    MODELS,
     QUANTITIES,
     Case,
     Record,
+    case_of,
     from_plain,
+    quantities_of,
     to_plain,
 )
+from fem_adhesion.finite_sphere.chart import materials
+from fem_adhesion.finite_sphere.fit import SOFT_PULL_OFF, fit
 from fem_adhesion.finite_sphere.study import plan, run
-from fem_adhesion.finite_sphere.table import COLUMNS, NO_PARQUET, TEXTS, DeviationRow, borders, rows, write_tables
+from fem_adhesion.finite_sphere.table import (
+    COLUMNS,
+    NO_PARQUET,
+    TEXTS,
+    DeviationRow,
+    Samples,
+    borders,
+    rows,
+    write_tables,
+)
 from fem_adhesion.finite_strain.scene import find_jumps
 from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
 from halfspace.laws import LENNARD_JONES

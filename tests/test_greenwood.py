@@ -18,14 +18,14 @@ from matplotlib import rc_context
 import halfspace
 from fem_adhesion import cli
 from fem_adhesion.common import style
+from fem_adhesion.common.numbers import NOTHING
 from fem_adhesion.common.page import symbols
-from fem_adhesion.common.words import NOTHING
 from fem_adhesion.greenwood import numerics_1997
 from fem_adhesion.greenwood import page as greenwood_page
 from fem_adhesion.greenwood import study as greenwood
 from fem_adhesion.greenwood import tables as greenwood_tables
 from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, fit
-from fem_adhesion.greenwood.record import tables
+from fem_adhesion.greenwood.page import tables
 from fem_adhesion.greenwood.tables import LAST_DIGIT, ROUNDED
 from halfspace.equilibrium.contact import CENTRAL_GAP
 from halfspace.errors import NotConverged

@@ -16,10 +16,9 @@ from fem_adhesion.elasticity import stress
 from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.space import cell_quadrature
 from fem_adhesion.elasticity.stress import sampled
-from fem_adhesion.fields.state import states_along
+from fem_adhesion.fields import states_along
 from fem_adhesion.paraview.arrays import COMPONENTS, MEANINGS, UNITS, in_si, inside, numbers, unit_of
-from fem_adhesion.paraview.lattice import QUAD9, TRIANGLE6, Cut, Lattice, cut_for
-from fem_adhesion.paraview.revolve import revolved
+from fem_adhesion.paraview.cells import QUAD9, TRIANGLE6, Cut, Lattice, cut_for, revolved
 from fem_adhesion.paraview.write import TOLERANCE, write_path
 from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import Units

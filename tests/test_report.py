@@ -15,8 +15,7 @@ from fem_adhesion import Scene, cli
 from fem_adhesion.common.page import inlined, symbols
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.curve.solve import Question, solve
-from fem_adhesion.fields.beside import Beside
-from fem_adhesion.fields.state import state_at
+from fem_adhesion.fields import Beside, state_at
 from fem_adhesion.report.page import WORDS, Contents, page, walk_data
 from fem_adhesion.report.sections import MOST_ROWS, cell, read_table
 from fem_adhesion.report.walk import SEEN, _station, walk

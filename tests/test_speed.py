@@ -20,14 +20,12 @@ from fem_adhesion.common.page import markdown
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed import element_methods as element_methods_module
-from fem_adhesion.speed import figures
-from fem_adhesion.speed import halfspace_methods as halfspace_methods_module
+from fem_adhesion.speed import methods as halfspace_methods_module
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
 from fem_adhesion.speed.element_methods import element_methods
 from fem_adhesion.speed.growth import QUESTIONS, Question, grown, growth_questions, slope
-from fem_adhesion.speed.halfspace_methods import MOST_NODES, _affordable, halfspace_methods
-from fem_adhesion.speed.methods import QUANTITIES, Method, Solved, Step
+from fem_adhesion.speed.methods import MOST_NODES, QUANTITIES, Method, Solved, Step, _affordable, halfspace_methods
 from fem_adhesion.speed.result import SpeedStudy, Timing, Truth, best, cheapest, pareto_front
 from fem_adhesion.speed.study import measure
 from halfspace.elastic import compliance
@@ -475,7 +473,7 @@ def test_each_value_stands_under_its_name_in_the_csv(distinct, tmp_path):
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_axes_are_labelled_with_what_is_drawn_along_them(distinct, quantity):
-    figure = figures.error_against_time(distinct, quantity)
+    figure = speed_page.error_against_time(distinct, quantity)
     words = {"pull_off": "pull-off load", "jump_on": "jump-on approach", "hysteresis": "energy lost"}
     assert words[quantity] in figure.axes[0].get_ylabel()
     assert "error" in figure.axes[0].get_ylabel()
@@ -528,18 +526,18 @@ def test_an_error_below_the_truths_uncertainty_is_shown_as_such():
     hidden = rung(1.0, 2e-9, floors={"pull_off": 2e-9})
     study = made_study([hidden])
     assert "<2e-09 in 1.00 s" in "\n".join(lines_of_page(study))
-    axes = figures.error_against_time(study, "pull_off").axes[0]
+    axes = speed_page.error_against_time(study, "pull_off").axes[0]
     arrows = next(line for line in axes.lines if line.get_label() == "within that uncertainty")
     assert list(arrows.get_xdata()) == [1.0]
     told = made_study([rung(1.0, 3e-9, floors={"pull_off": 2e-9})])
     assert "<" not in "\n".join(lines_of_page(told)).split("What it costs")[1]
-    labels = [line.get_label() for line in figures.error_against_time(told, "pull_off").axes[0].lines]
+    labels = [line.get_label() for line in speed_page.error_against_time(told, "pull_off").axes[0].lines]
     assert "within that uncertainty" not in labels
 
 
 def test_a_legend_names_only_what_is_drawn(study):
     for quantity in QUANTITIES:
-        figure = figures.error_against_time(study, quantity)
+        figure = speed_page.error_against_time(study, quantity)
         for axes in figure.axes:
             for text, line in zip(axes.get_legend().get_texts(), axes.get_legend().legend_handles, strict=True):
                 drawn = next(x for x in axes.lines if x.get_label() == text.get_text())
@@ -550,7 +548,7 @@ def test_a_legend_names_only_what_is_drawn(study):
 def test_nothing_is_cut_off_or_overprinted(study):
     for quantity in QUANTITIES:
         with rc_context(style.LOOK):
-            figure = figures.error_against_time(study, quantity)
+            figure = speed_page.error_against_time(study, quantity)
             figure.draw_without_rendering()
         boxes = [axes.get_tightbbox() for axes in figure.axes]
         assert all(box.x0 >= 0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0 for box in boxes)
@@ -617,7 +615,7 @@ def test_a_result_that_is_not_a_number_is_neither_best_nor_cheapest_nor_drawn():
     text = "\n".join(lines_of_page(absurd))
     assert section(text, "What it costs to have pull_off")[0]["best reached"] == "-"
     assert "FAILED" in text
-    lines = figures.error_against_time(absurd, "pull_off").axes[0].lines
+    lines = speed_page.error_against_time(absurd, "pull_off").axes[0].lines
     assert [line.get_label() for line in lines] == ["uncertainty of the truth"]
 
 

@@ -165,7 +165,9 @@ def test_what_is_kept_is_not_traced_again(tmp_path):
 
 def test_a_curve_whose_worker_died_is_tried_again(monkeypatch, tmp_path):
     store = open_store(tmp_path / "kept", "code", resume=True)
-    monkeypatch.setattr(study, "stream", lambda *_, **__: (item for item in [(1.0, WorkerDied("killed"))]))
+    monkeypatch.setattr(
+        "fem_adhesion.common.store.stream", lambda *_, **__: (item for item in [(1.0, WorkerDied("killed"))])
+    )
     (died,) = study.run([1.0], QUESTION, store)
     assert died == Summary(1.0, {}, UNKNOWN, UNKNOWN, {}, "killed")
     assert store.get(study._inputs(1.0, QUESTION)) is None

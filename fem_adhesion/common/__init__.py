@@ -1,6 +1,6 @@
 """What studies share, each once.
 
-Numbers with units and errors: `numbers`; sentences made of them: `words`. Pages and pictures: `page`, `style`. Files:
-`files`, `facts` (what records say besides). The terminal: `options`, `scene_options`, `terminal`, `progress`. Contacts
-in SI: `contact`. Long work: `jobs`, `store`, `code_digest`.
+Numbers with units and errors, and sentences made of them: `numbers`. Pages and pictures: `page`, `style`. Files:
+`files`, `facts` (what records say besides, the code's digest). The terminal: `options`, `scene_options`, `terminal`,
+`progress`. Contacts in SI: `contact`. Long work: `jobs`, `store`.
 """

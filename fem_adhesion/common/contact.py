@@ -30,14 +30,10 @@ class Contact:
     ----------
     radius, modulus, poisson : float
         Radius in m, Young's modulus in Pa and Poisson's ratio of the sphere, 0 <= poisson <= 0.499999.
-    work_of_adhesion : float
-        In J/m^2.
-    spacing : float
-        Equilibrium spacing of the surface law in m.
-    counter_modulus, counter_poisson : float, optional
-        Of the other body; rigid unless both are given.
-    counter_radius : float
-        Of the other body in m; flat by default.
+    work_of_adhesion, spacing : float
+        In J/m^2; equilibrium spacing of the surface law in m.
+    counter_modulus, counter_poisson, counter_radius : float, optional
+        Of the other body; rigid unless both of the former are given, flat by default.
     stiffness : float
         Of the cantilever in N/m; infinite for fixed grips.
     grip : {"sliding", "bonded"}

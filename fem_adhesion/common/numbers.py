@@ -1,16 +1,21 @@
-"""Numbers with unit and error: read from text into SI, kept with both, and written as text."""
+"""Numbers with unit and error: read from text into SI, kept with both, written as text, and told in sentences.
+
+A sentence is left unsaid where one of its numbers is missing.
+"""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from halfspace.errors import InputError
-from halfspace.values import Estimate
+from halfspace.values import Array, Estimate
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)(?![a-zA-Z])"
 NUMBER_AND_UNIT = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*")
@@ -51,14 +56,9 @@ class Quantity:
 
 
 def parse(text: str, name: str) -> float:
-    """Read a positive quantity with its unit, such as ``100nm``, and return it in SI.
+    """Read a positive quantity with its unit, such as ``100nm``, one of `KINDS` by its name, and return it in SI.
 
-    Parameters
-    ----------
-    text : str
-        A number and a unit that pint knows; for a work of adhesion mN/m is as good as mJ/m^2.
-    name : str
-        Which quantity, one of `KINDS`.
+    Any unit that pint knows will do: for a work of adhesion mN/m is as good as mJ/m^2.
 
     Raises
     ------
@@ -100,16 +100,9 @@ def _registry() -> Any:
 
 
 def with_error(quantity: Quantity, scale: float = 1.0, digits: int = DIGITS) -> str:
-    """Number with the error of its last digit in brackets, rounded up: 60.4440(1).
+    """Number, times a scale, with the error of its last digit in brackets, rounded up: 60.4440(1).
 
-    Parameters
-    ----------
-    quantity : Quantity
-        With its error.
-    scale : float
-        By which both are multiplied first.
-    digits : int
-        Significant ones, at most.
+    It has so many significant digits at most.
     """
     value, error = quantity.value * scale, quantity.error * scale
     most = digits - 1 - _decade(value)
@@ -144,3 +137,43 @@ def exponent_of(value: float) -> int:
 
 def _decade(value: float) -> int:
     return math.floor(math.log10(abs(value))) if value else 0
+
+
+NOTHING = "No numbers were found to tell of."
+
+
+def told(text: str, *numbers: float | Array) -> str:
+    """The text, or nothing if a number that it rests on is missing or not finite."""
+    known = all(np.size(number) and np.all(np.isfinite(number)) for number in numbers)
+    return text if known else ""
+
+
+def joined(*sentences: str) -> str:
+    """Sentences that have something to tell, as one paragraph."""
+    return " ".join(filter(None, sentences)) or NOTHING
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names with commas and an `and`."""
+    return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
+
+
+def counted(count: int, what: str) -> str:
+    """How many there are of something: 1 case, 2 cases."""
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def rises(values: Array) -> bool:
+    """Whether each value exceeds the one before it; there must be two."""
+    return values.size > 1 and bool(np.all(np.diff(values) > 0))
+
+
+def span(values: Sequence[float] | Array) -> str:
+    """Least and largest of some numbers, to two digits or to the last before the point."""
+    ends = (float(np.min(values)), float(np.max(values)))
+    return " to ".join(dict.fromkeys(f"{end:.2g}" if abs(end) < 99.5 else f"{end:.0f}" for end in ends))
+
+
+def at_points(count: int) -> str:
+    """At how many points something was found."""
+    return f" ({counted(count, 'point')})"

@@ -106,16 +106,9 @@ class Commands(Protocol):
 
 @dataclass(frozen=True)
 class Command:
-    """A command of the program.
+    """A command of the program: one line on what it does, more than that, and arguments to begin with.
 
-    Attributes
-    ----------
-    name, help, description, example : str
-        Its name, one line on what it does, more than that, and arguments to begin with.
-    add_options : callable
-        Adds its options to a parser.
-    run : callable
-        Does what the options ask for and returns the exit code.
+    `run` does what the options ask for and returns the exit code.
     """
 
     name: str
@@ -145,6 +138,12 @@ def add_output(command: Parser) -> None:
     results = command.add_argument_group("results")
     results.add_argument("--out", type=Path, required=True, help="directory for the results", metavar="DIR")
     results.add_argument("--force", action="store_true", help="replace files in a directory that is not empty")
+
+
+def add_workers(command: Parser) -> None:
+    """Add the options of where many cases are worked on."""
+    command.add_argument("--jobs", type=int, help="processes; as many as cores unless given", metavar="N")
+    command.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
 
 
 def require_distinct(*paths: Path | None) -> None:

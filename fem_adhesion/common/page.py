@@ -36,18 +36,10 @@ REFERENCE = re.compile(r"url\(#([^)]*)\)")
 
 @dataclass(frozen=True)
 class Table:
-    """A table and the file that holds it.
+    """A table and the file that holds it: `stem` is its name without suffix, empty if there is no file.
 
-    Attributes
-    ----------
-    stem, title, see : str
-        File name without suffix, empty if there is no file; heading, one sentence on what to see.
-    columns : sequence of str
-        Names with units.
-    rows : sequence of sequence of str
-        Cells.
-    open : bool
-        Whether it is seen at once where tables are folded.
+    Columns are names with units, `see` a sentence on what to see, `open` whether it is seen at once where tables are
+    folded.
     """
 
     stem: str
@@ -60,14 +52,9 @@ class Table:
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture as SVG that can stand inside HTML.
+    """A picture as SVG that can stand inside HTML; its caption, what is to be seen, is the text alternative too.
 
-    Attributes
-    ----------
-    markup, caption : str
-        The SVG itself; what is to be seen, which is the text alternative too.
-    title, stem : str
-        What is drawn; name of its files without suffix, empty if there are none.
+    The title says what is drawn; `stem` is the name of its files without suffix, empty if there are none.
     """
 
     markup: str
@@ -78,18 +65,10 @@ class Figure:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of a page.
+    """A part of a page: its name for links, and its title.
 
-    Attributes
-    ----------
-    name, title : str
-        For links, and for the reader.
-    missing : str
-        The command line that was not run for it, or "".
-    warning : str
-        What went wrong in it, or "".
-    paragraphs, figures, tables : sequence
-        In the order shown.
+    `missing` is the command line that was not run for it, and `warning` what went wrong in it, or ""; paragraphs,
+    figures and tables are shown in this order.
     """
 
     name: str
@@ -158,16 +137,9 @@ def markdown(parts: Sequence[str | Table]) -> Iterator[str]:
 
 
 def inlined(svg: bytes, name: str, caption: str, title: str = "", stem: str = "") -> Figure:
-    """A picture made ready for a page: no identifier, style or script leaks out of it.
+    """A picture, as the bytes of an SVG file, made ready for a page: no identifier, style or script leaks out of it.
 
-    Parameters
-    ----------
-    svg : bytes
-        The file.
-    name : str
-        Different for each picture of a page: it keeps the pictures' identifiers apart.
-    caption, title, stem : str
-        As in `Figure`.
+    The name, different for each picture of a page, keeps their identifiers apart; the rest is as of `Figure`.
 
     Raises
     ------

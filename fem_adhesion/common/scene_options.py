@@ -161,11 +161,11 @@ def _parameters(kind: str, name: str) -> list[str]:
     return [field for field in _fields(name, kind) if field not in GIVEN_OTHERWISE]
 
 
-def _number(name: str, text: str) -> float:
+def _number(name: str, text: str, why: str = ", limit: a plain number; give one without a unit") -> float:
     try:
         return float(text)
     except ValueError as error:
-        raise InputError(f"{name} = {text}, limit: a plain number; give one without a unit") from error
+        raise InputError(f"{name} = {text}{why}") from error
 
 
 def has_size(options: argparse.Namespace) -> bool:
@@ -323,8 +323,4 @@ def stiffness_of(options: argparse.Namespace, contact: Contact | None) -> float:
 
 
 def _plain(options: argparse.Namespace, name: str, unit: str) -> float:
-    text = getattr(options, name)
-    try:
-        return float(text)
-    except ValueError as error:
-        raise InputError(f"{name} = {text} is not a plain number in {unit}; give one, or a material") from error
+    return _number(name, getattr(options, name), f" is not a plain number in {unit}; give one, or a material")

@@ -1,5 +1,7 @@
 """Results of a study on disk, one file a case, each written at once and whole: whatever happens, they are there.
 
+`solve_all` goes through the cases of any study, on all cores, and leaves out those whose results are there.
+
 A file is named after a hash of the case's inputs. It holds besides them the number of the format, a digest of the code
 that computed the result, and a checksum, so that a result is used again only for exactly what it was computed from and
 as it was computed. Nothing but such files is ever read or replaced.
@@ -11,11 +13,16 @@ import hashlib
 import json
 import os
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Generic, TypeVar
 
 from fem_adhesion.common.files import writing
+from fem_adhesion.common.jobs import WorkerDied, stream
+from fem_adhesion.common.numbers import counted
+from fem_adhesion.common.progress import Progress, unheard
 from halfspace.errors import InputError
 
 SCHEMA = 2  # raised whenever what is stored changes
@@ -23,18 +30,18 @@ FOLDER = "cases"
 OTHER_CODE, OTHER_FORMAT = "other code", "another format"
 
 Plain = Mapping[str, object]  # what JSON can hold
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True)
 class Store:
-    """A directory of results.
+    """A directory of results, whose files are in its folder ``cases``, made when the first result comes.
 
     Attributes
     ----------
-    directory : Path
-        The study's; the files are in its folder ``cases``. Made when the first result comes.
     code : str
-        Digest of the code that computes the results, see `fem_adhesion.common.code_digest`.
+        Digest of the code that computes the results, see `fem_adhesion.common.facts.code_digest`.
     outdated : Counter of str
         How many results were found that something else computed, by what: they are to be computed again.
     damaged : dict of str to str
@@ -49,7 +56,9 @@ class Store:
     @property
     def notes(self) -> Sequence[str]:
         """What was found and not used, in lines."""
-        outdated = (f"{_cases(count)} computed by {what}: computed again" for what, count in self.outdated.items())
+        outdated = (
+            f"{counted(count, 'case')} computed by {what}: computed again" for what, count in self.outdated.items()
+        )
         return (*outdated, *(f"{file} is computed again: {why}" for file, why in self.damaged.items()))
 
     def path(self, inputs: Plain) -> Path:
@@ -101,19 +110,13 @@ def _digest(content: object) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def _cases(count: int) -> str:
-    return "1 case" if count == 1 else f"{count} cases"
-
-
 def open_store(directory: Path, code: str, *, resume: bool = False, force: bool | None = False) -> Store:
-    """Store in a directory, which is checked but not yet touched.
+    """Store in a directory, an existing one or new in a folder that exists, which is checked but not yet touched.
 
     Parameters
     ----------
-    directory : Path
-        An existing one or a new one in a folder that exists.
-    code : str
-        Digest of the code that computes the results: those of other code are not used.
+    directory, code
+        As of `Store`: results of other code are not used.
     resume : bool
         Go on with the cases that it holds.
     force : bool or None
@@ -135,6 +138,91 @@ def open_store(directory: Path, code: str, *, resume: bool = False, force: bool 
         forced = "" if force is None else " or --force"
         raise InputError(f"{directory} holds {present} files, limit 0; {remedy}{forced}")
     return Store(directory, code)
+
+
+@dataclass(frozen=True)
+class Kept(Generic[Item, Result]):
+    """How the results of a study are kept.
+
+    Attributes
+    ----------
+    inputs, name : callable
+        Of an item: what its result depends on, and what it is called for the eye.
+    write, read : callable
+        From a result to plain data and, with the item, back; InputError if they are none of a result.
+    died : callable
+        Result of an item whose worker died, for a reason.
+    """
+
+    inputs: Callable[[Item], Plain]
+    name: Callable[[Item], str]
+    write: Callable[[Result], Plain]
+    read: Callable[[Item, Plain], Result]
+    died: Callable[[Item, str], Result]
+
+
+def solve_all(
+    items: Sequence[Item],
+    store: Store | None,
+    *,
+    work: Callable[[Item], Result],
+    kept: Kept[Item, Result],
+    fresh: bool = False,
+    jobs: int | None = None,
+    dask: str | None = None,
+    progress: Progress = unheard,
+) -> tuple[Result, ...]:
+    """Results of all items in their order: those that the store holds, and the others computed and stored at once.
+
+    What a worker died of is not stored: it is tried again when the study is resumed.
+
+    Parameters
+    ----------
+    items : sequence
+        Each once.
+    store : Store or None
+        From `open_store`, if results are kept.
+    work : callable
+        Computes the result of an item; a function of a module.
+    kept : Kept
+        How results are kept.
+    fresh : bool
+        Compute all, whatever the store holds.
+    jobs, dask : int and str, optional
+        Local processes, or the address of a cluster: see `fem_adhesion.common.jobs.stream`.
+    progress : callable
+        Called with the last item's name, how many are done, and of how many.
+
+    Raises
+    ------
+    InputError
+        Before any work, if jobs is not positive or the cluster does not answer.
+    """
+    found = dict(_stored(items, store, kept)) if store and not fresh else {}
+    todo = [item for item in items if item not in found]
+    with closing(stream(work, todo, jobs=jobs, dask=dask)) as results:
+        progress("starting", len(found), len(items))
+        for item, result in results:
+            if isinstance(result, WorkerDied):
+                found[item] = kept.died(item, result.reason)
+            else:
+                found[item] = result
+                if store:
+                    store.put(kept.inputs(item), kept.write(result))
+            progress(kept.name(item), len(found), len(items))
+    return tuple(found[item] for item in items)
+
+
+def _stored(items: Sequence[Item], store: Store, kept: Kept[Item, Result]) -> Iterator[tuple[Item, Result]]:
+    """Items whose results the store holds."""
+    for item in items:
+        inputs = kept.inputs(item)
+        if (plain := store.get(inputs)) is None:
+            continue
+        try:
+            yield item, kept.read(item, plain)
+        except InputError as error:
+            store.distrust(inputs, str(error))
 
 
 def _write_through(path: Path, text: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fem_adhesion.common import page
+from fem_adhesion.common.numbers import joined
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
 from halfspace.values import Array
@@ -140,6 +141,11 @@ def theory(axes: Any, name: str, x: Array, y: Array, label: str | None = None, *
     axes.plot(x, y, label=label or name, **{**THEORIES[name], **style})
 
 
+def arrow(axes: Any, tail: tuple[float, float], head: tuple[float, float], *, zorder: float = 3, **look: Any) -> None:
+    """Arrow of a jump, from point to point."""
+    axes.annotate("", head, tail, arrowprops={"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, **look}, zorder=zorder)
+
+
 def note(axes: Any, text: str, at: tuple[float, float], offset: tuple[float, float] = (6, 4), **style: Any) -> None:
     """Text beside a point, offset in points."""
     axes.annotate(text, at, xytext=offset, textcoords="offset points", fontsize=10.5, **style)
@@ -159,8 +165,8 @@ class Picture(Generic[Results]):
     ----------
     stem, title : str
         File name without its suffix, and what is drawn.
-    draw, see : callable
-        What draws it from the results, and what says in words what is to be seen in it.
+    draw, sentences : callable
+        What draws it from the results, and what says in words what is to be seen in it; empty ones are left out.
     lacks : callable
         What the results lack to be drawn, or empty.
     """
@@ -168,8 +174,12 @@ class Picture(Generic[Results]):
     stem: str
     title: str
     draw: Callable[[Results], Figure]
-    see: Callable[[Results], str]
+    sentences: Callable[[Results], Iterable[str]]
     lacks: Callable[[Results], str] = lambda _: ""
+
+    def see(self, results: Results) -> str:
+        """What is to be seen in it, as one paragraph."""
+        return joined(*self.sentences(results))
 
 
 def draw(

@@ -56,17 +56,7 @@ def make_console(*, to_error: bool = False) -> Console:
 
 @dataclass(frozen=True)
 class Flow:
-    """Parts of a line, such as ``R = 100 nm``, that is broken between them only.
-
-    Parameters
-    ----------
-    parts : sequence of str
-        In rich's markup.
-    separator : str
-        Between two on a line.
-    style : str
-        Of the whole.
-    """
+    """Parts of a line in rich's markup, such as ``R = 100 nm``, that is broken between them only."""
 
     parts: Sequence[str]
     separator: str = "; "
@@ -125,22 +115,18 @@ def _wrapped(cell: str, width: int) -> Text:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table.
+    """A column of a table, its cells in rich's markup.
 
-    Parameters
+    Attributes
     ----------
     header : str
         Its name, with its unit below.
-    cells : sequence of str
-        In rich's markup.
     rank : int
         0 if it stays; the higher, the sooner it is left out. Columns of one rank go together.
-    text : bool
-        Whether it is words, to the left, rather than numbers.
-    wraps : bool
-        Whether its words may go on in the next line.
+    text, wraps : bool
+        Whether it is words, to the left, rather than numbers; whether they may go on in the next line.
     wrapped : int
-        Columns that it has even so.
+        Columns of the terminal that it has even so.
     """
 
     header: str
@@ -174,14 +160,7 @@ class Column:
 class Fitted:
     """A table that leaves out columns until it fits, and becomes a list where not even those of rank 0 do.
 
-    Parameters
-    ----------
-    columns : sequence of Column
-        The first names the row.
-    title, caption : sequence of str
-        Parts of the lines above and below.
-    styles : sequence of str
-        Of the rows, empty unless given.
+    The first column names the row; title and caption are parts of the lines above and below, styles those of the rows.
     """
 
     columns: Sequence[Column]

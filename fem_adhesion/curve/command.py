@@ -102,7 +102,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _write_vtk(options: argparse.Namespace, curves: Curves, aside: Path) -> None:
-    from fem_adhesion.fields.state import states_along
+    from fem_adhesion.fields import states_along
     from fem_adhesion.paraview.write import write_states
 
     question = curves.question
@@ -134,8 +134,8 @@ def _require_drawing(options: argparse.Namespace, scene: Scene, solver: SolverNa
         raise InputError(
             "picture with solver = half-space, which has no fields inside, limit: fem or both; take --solver fem"
         )
-    from fem_adhesion.fields.state import require_fields
-    from fem_adhesion.paraview.solid import require_drawing
+    from fem_adhesion.fields import require_fields
+    from fem_adhesion.paraview.picture import require_drawing
 
     require_fields(scene)
     require_drawing()
@@ -143,8 +143,8 @@ def _require_drawing(options: argparse.Namespace, scene: Scene, solver: SolverNa
 
 def _require_vtk(options: argparse.Namespace, scene: Scene, solver: SolverName) -> None:
     """Refuse what cannot be written for ParaView before any work."""
-    from fem_adhesion.fields.state import require_fields
-    from fem_adhesion.paraview.revolve import require_angle
+    from fem_adhesion.fields import require_fields
+    from fem_adhesion.paraview.cells import require_angle
     from fem_adhesion.paraview.write import require_pyvista
 
     if solver == "half-space":

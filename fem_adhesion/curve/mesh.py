@@ -13,7 +13,7 @@ from fem_adhesion.common import style
 from fem_adhesion.curve.profiles import LEGEND, STATES
 from fem_adhesion.curve.scales import scales
 from fem_adhesion.curve.solve import Curves
-from fem_adhesion.fields.state import State, require_fields, state_at
+from fem_adhesion.fields import State, require_fields, state_at
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS
 from halfspace.errors import InputError

@@ -15,9 +15,8 @@ from scipy.spatial import KDTree
 
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.curve.still import composed, contact_words, state_words
-from fem_adhesion.fields.state import state_at
-from fem_adhesion.paraview.cutaway import view_of
-from fem_adhesion.paraview.solid import Pixels, solid_image
+from fem_adhesion.fields import state_at
+from fem_adhesion.paraview.picture import Pixels, solid_image, view_of
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Condition, Located

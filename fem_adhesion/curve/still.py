@@ -20,9 +20,8 @@ from fem_adhesion.curve.load import KINDS
 from fem_adhesion.curve.profiles import STATES
 from fem_adhesion.curve.scales import scales
 from fem_adhesion.curve.solve import Curves
-from fem_adhesion.fields.state import State, state_at
-from fem_adhesion.paraview.cutaway import View, view_of
-from fem_adhesion.paraview.solid import COLOURS, Pixels, solid_image
+from fem_adhesion.fields import State, state_at
+from fem_adhesion.paraview.picture import COLOURS, Pixels, View, solid_image, view_of
 from fem_adhesion.registry import name_of
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.contact import APPROACH, LOAD

@@ -37,14 +37,8 @@ HERTZ_MEAN = 0.6  # E* beta/W: approach of the load on the half-space, 3/4 at th
 class Bulk:
     """Coefficients of kappa = constant + logarithm ln(beta/R) + O(beta/R), in 1/(E* R).
 
-    Attributes
-    ----------
-    constant : Estimate
-        kappa_0, measured; its error is by the order of the elements and by what is left of the linear term.
-    logarithm : float
-        kappa_1, exact.
-    linear : float
-        Size of the coefficient of beta/R, measured where beta/R is 0.1.
+    The constant kappa_0 is measured, its error by the order of the elements and by what is left of the linear term,
+    whose coefficient is measured where beta/R is 0.1. The logarithm's, kappa_1, is exact.
     """
 
     constant: Estimate
@@ -53,22 +47,10 @@ class Bulk:
 
 
 def bulk_compliance(grip: GripName, poisson: float, sphere_radius: float) -> Estimate:
-    """What a hemisphere yields more than the half-space, per load.
+    """What a hemisphere of R/beta yields more than the half-space, per load: kappa in 1/(E* R).
 
-    Parameters
-    ----------
-    grip : {"sliding", "bonded"}
-        What holds the mid-plane.
-    poisson : float
-        Poisson's ratio.
-    sphere_radius : float
-        R/beta.
-
-    Returns
-    -------
-    Estimate
-        kappa in 1/(E* R), positive if the body is the softer one, without its part that vanishes with beta/R, which is
-        in the error. As an approach in eps it is kappa mu W/(R/beta).
+    It is positive if the body is the softer one, and without its part that vanishes with beta/R, which is in the error.
+    As an approach in eps it is kappa mu W/(R/beta).
 
     Raises
     ------
@@ -82,13 +64,7 @@ def bulk_compliance(grip: GripName, poisson: float, sphere_radius: float) -> Est
 
 @cache
 def coefficients(grip: GripName, poisson: float) -> Bulk:
-    """Coefficients of the bulk compliance, from finite-element solutions at R = 10 and 100 beta.
-
-    Parameters
-    ----------
-    grip, poisson
-        As of `bulk_compliance`.
-    """
+    """Coefficients of the bulk compliance, from finite-element solutions at R = 10 and 100 beta."""
     logarithm = -((1 - 2 * poisson) ** 2) / (2 * pi * (1 - poisson))
     small, large = (excess_compliance(grip, poisson, R, FINE) + logarithm * log(R) for R in (SMALL, LARGE))
     coarse = excess_compliance(grip, poisson, LARGE, COARSE) + logarithm * log(LARGE)
@@ -97,15 +73,7 @@ def coefficients(grip: GripName, poisson: float) -> Bulk:
 
 
 def excess_compliance(grip: GripName, poisson: float, sphere_radius: float, how: Discretisation) -> float:
-    """Approach under Hertz's pressure on r < beta, less the half-space's, over the load, in 1/(E* R).
-
-    Parameters
-    ----------
-    grip, poisson, sphere_radius
-        As of `bulk_compliance`.
-    how : Discretisation
-        Of the finite elements.
-    """
+    """Approach under Hertz's pressure on r < beta, less the half-space's, over the load, in 1/(E* R)."""
     operator = _operator(grip, poisson, sphere_radius, how)
     pressure = np.sqrt(np.maximum(1 - operator.radii**2, 0))
     force = operator.weights * pressure

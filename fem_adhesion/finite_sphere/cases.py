@@ -1,22 +1,23 @@
-"""What one case of the study of the finite sphere computes, and which difference of two cases isolates which cause.
+"""What one case of the study of the finite sphere computes, which difference of two isolates which cause, and records.
 
 Between a paraboloid on a half-space and a true elastic sphere lie several assumptions. A case is a contact under one
-set of them; two that differ in one assumption tell what it does.
+set of them; two that differ in one assumption tell what it does. Cases and records are plain data for the disk, too.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
+from typing import Literal
 
 import halfspace
 from fem_adhesion.bodies.body import Discretisation, GripName
 from fem_adhesion.bodies.hemisphere import Hemisphere
 from fem_adhesion.convergence import trace
 from fem_adhesion.discretise import sized_body
-from fem_adhesion.finite_sphere.records import APPROACH_SCALE, CRITICAL, Case, InputName, Record, Values
 from fem_adhesion.finite_strain.scene import find_jumps, require_well_posed
 from fem_adhesion.materials import AreaName, LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
@@ -30,6 +31,120 @@ from halfspace.limits import SMALLEST_SPHERE
 from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.values import Estimate
 
+Status = Literal["solved", "refused", "died", "left out"]
+InputName = Literal["tabor", "radius_ratio", "poisson"]
+Values = Mapping[str, Estimate]
+
+CRITICAL = "critical_tabor"
+APPROACH_SCALE = "approach_scale"  # in eps, of a whole curve: see `halfspace.equilibrium.events.approach_scale`
+QUANTITIES = {
+    "pull_off_load": "R dgamma",
+    "jump_on_approach": "eps",
+    "jump_on_load": "R dgamma",
+    "jump_off_approach": "eps",
+    "jump_off_load": "R dgamma",
+    "hysteresis": "R dgamma eps",
+    "zero_load_radius": "beta",
+}
+"""Quantities of a curve and their units; hysteresis is the energy lost in a cycle under fixed grips."""
+
+STORED: Mapping[str, Status] = {"solved": "solved", "refused": "refused"}  # endings that are kept for the next run
+
+
+@dataclass(frozen=True)
+class Case:
+    """One contact under one set of assumptions, a key of `MODELS`; an input on which they do not depend is None.
+
+    Its inputs are the Tabor parameter, R/eps and Poisson's ratio; `rtol` is what is asked of the solver.
+    """
+
+    model: str
+    tabor: float | None = None
+    radius_ratio: float | None = None
+    poisson: float | None = None
+    rtol: float = 1e-5
+
+    @property
+    def name(self) -> str:
+        """For the eye."""
+        parts = (("tabor", self.tabor), ("R/eps", self.radius_ratio), ("poisson", self.poisson))
+        return ", ".join([self.model, *(f"{word} {value:g}" for word, value in parts if value is not None)])
+
+    def given(self, name: InputName) -> float:
+        """Input of a model that depends on it, or InputError if the case has none."""
+        inputs = {"tabor": self.tabor, "radius_ratio": self.radius_ratio, "poisson": self.poisson}
+        value = inputs[name]
+        if value is None:
+            raise InputError(f"{name} = None for the model {self.model}, limit: a number; give it")
+        return value
+
+
+@dataclass(frozen=True)
+class Record:
+    """How a case ended.
+
+    Attributes
+    ----------
+    status : str
+        ``solved``; ``refused`` by the solver; ``died`` with the process that worked on it; ``left out`` beforehand, as
+        beyond the limits of the solver.
+    values : mapping of str to Estimate
+        Quantities in the units of `QUANTITIES`; those that the contact does not have, as the jumps of a hard one, are
+        absent.
+    reason, kind : str
+        Why it is not solved, and which error says so, as ``ContactTooWide``; empty if it is solved, the kind if it
+        died.
+    seconds : float
+        Wall time.
+    """
+
+    case: Case
+    status: Status
+    values: Values = field(default_factory=dict)
+    reason: str = ""
+    seconds: float = 0.0
+    kind: str = ""
+
+    @property
+    def failed(self) -> bool:
+        """Whether it was tried and has no solution."""
+        return self.status in ("refused", "died")
+
+
+def to_plain(record: Record) -> dict[str, object]:
+    """Contents of a record but for its case, as JSON can hold them."""
+    return {key: value for key, value in asdict(record).items() if key != "case"}
+
+
+def from_plain(case: Case, plain: Mapping[str, object]) -> Record:
+    """Record of a case from what `to_plain` made.
+
+    Raises
+    ------
+    InputError
+        If that is not what it is: a key is missing, a number is none or not finite, a status or quantity is unknown.
+    """
+    match plain:
+        case {
+            "status": str(status),
+            "values": dict(values),
+            "reason": str(reason),
+            "seconds": float(seconds),
+            "kind": str(kind),
+        } if status in STORED and (status == "refused") == bool(kind) and (status == "solved") != bool(reason):
+            found = {str(name): _estimate(str(name), pair) for name, pair in values.items()}
+            return Record(case, STORED[status], found, reason, seconds, kind)
+    raise InputError("it is no record of a case")
+
+
+def _estimate(name: str, pair: object) -> Estimate:
+    known = name in (*QUANTITIES, CRITICAL, APPROACH_SCALE)
+    match pair:
+        case {"value": float(value), "error": float(error)} if known and math.isfinite(value) and 0 <= error < math.inf:
+            return Estimate(value, error)
+    raise InputError(f"its {name} is no number with an error")
+
+
 FINITE_STRAIN_RTOL = 1e-4  # the tightest: a finer one is dear, and the effect is of the order of beta/R
 TO_LOAD = 0.5  # R dgamma: past every event, and little, since a sphere is no wider than it is
 FEWEST, MOST = 0.4, 1.25  # Tabor parameters between which the first jump of every sphere is, small or bonded
@@ -39,18 +154,10 @@ DEGREES = (5, 6)  # of the elements on which it is solved for
 
 @dataclass(frozen=True)
 class Model:
-    """A set of assumptions.
+    """A set of assumptions: what solves a case, or raises InputError or NotConverged; the inputs on which it depends.
 
-    Attributes
-    ----------
-    solve : callable
-        Computes the quantities of a case; raises InputError or NotConverged where there are none.
-    inputs : tuple of str
-        Those on which it depends.
-    grip : {"sliding", "bonded"}, optional
-        What holds the body; none for the half-space.
-    check : callable
-        Raises InputError if a case is beyond limits that only this model has.
+    `grip` is what holds the body, none for the half-space; `check` refuses a case beyond limits that only this model
+    has.
     """
 
     solve: Callable[[Case], Values]
@@ -61,15 +168,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Cause:
-    """An assumption: the model that drops it less the one that makes it.
-
-    Attributes
-    ----------
-    model, baseline : str
-        Keys of `MODELS`.
-    meaning : str
-        What is switched, in words.
-    """
+    """An assumption in words, and the keys of `MODELS`: the model that drops it, less the baseline that makes it."""
 
     model: str
     baseline: str

@@ -2,18 +2,26 @@
 
 Along R/eps at each Tabor parameter the deviation is a power law between neighbouring points, or where its sign changes
 linear in ln(R/eps). A contour is the largest R/eps at which the deviation has a given size, above which it is smaller.
+
+Of the materials on it the work of adhesion and the Hamaker constant A are what is known. The spacing of the surface law
+follows, eps^2 = A/(16 pi dgamma), so that law and source have the same attraction from afar: 0.14 to 0.15 nm, near the
+cut-off D0 = 0.165 nm between two continua and not the diameter of an atom, of which the law between planes knows
+nothing.
 """
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fem_adhesion.finite_sphere.table import DeviationRow
 from halfspace.errors import InputError
+from halfspace.scaling import Units, contact_modulus, spacing_of
 from halfspace.values import Array, Valued
 
 LEVELS = (0.1, 0.01, 0.001)
@@ -28,10 +36,8 @@ class Field(Valued):
 
     Attributes
     ----------
-    tabor : (m,) array
-        Tabor parameters, ascending.
-    radius_ratio : (n,) array
-        R/eps, ascending.
+    tabor, radius_ratio : (m,) and (n,) array
+        Ascending.
     deviation, error : (m, n) array
         Of the sphere from the half-space, relative to it, and its bound; nan where there is none.
     ending : (m, n) array of str
@@ -55,16 +61,8 @@ class Field(Valued):
 class Rule:
     """The half-space errs by less than a level if R/eps > constant + slope mu.
 
-    Attributes
-    ----------
-    level : float
-        Relative deviation.
-    constant, slope : float
-        Fitted to the contour, to two digits.
-    misfit : float
-        Largest relative difference between the contour and the rule.
-    tabor : tuple of float
-        Least and largest Tabor parameter of the contour.
+    Constant and slope are fitted to the contour, to two digits; `misfit` is the largest relative difference between
+    contour and rule, `tabor` the least and largest Tabor parameter of the contour.
     """
 
     level: float
@@ -75,15 +73,7 @@ class Rule:
 
 
 def field_of(rows: Sequence[DeviationRow], quantity: str, poisson: float | None, cause: str = "all") -> Field:
-    """Collect a deviation from the table.
-
-    Parameters
-    ----------
-    rows : sequence of DeviationRow
-        The table.
-    quantity, poisson, cause
-        Which of its rows.
-    """
+    """Deviation of a quantity at a Poisson's ratio, for a cause, from the table."""
     chosen = [r for r in rows if (r.cause, r.quantity, r.poisson) == (cause, quantity, poisson) and r.radius_ratio]
     tabor = np.unique([row.tabor for row in chosen])
     ratio = np.unique([float(row.radius_ratio or 0) for row in chosen])
@@ -98,20 +88,7 @@ def field_of(rows: Sequence[DeviationRow], quantity: str, poisson: float | None,
 
 
 def contour(field: Field, level: float) -> Array:
-    """R/eps of a contour at each Tabor parameter.
-
-    Parameters
-    ----------
-    field : Field
-        The deviation.
-    level : float
-        Its size on the contour.
-
-    Returns
-    -------
-    (m,) array
-        Nan where no two neighbours among the points have the contour between them.
-    """
+    """R/eps at which a deviation has a level, (m,); nan where no two neighbours of the points have it between them."""
     return np.array([_last_crossing(field.radius_ratio, deviation, level) for deviation in field.deviation])
 
 
@@ -182,3 +159,36 @@ def _require_true(field: Field, found: Rule) -> None:
             f"the deviation at tabor {field.tabor[i]:g}, R/eps {rho[j]:g} is {field.deviation[i, j]:.2g}, "
             f"limit {found.level:g} for a rule; read the chart"
         )
+
+
+FILE = Path(__file__).parent / "data" / "materials.csv"
+
+
+@dataclass(frozen=True)
+class Material:
+    """An elastic sphere against a rigid wall: what it is, and how large; its Poisson's ratio.
+
+    Its units have the Tabor parameter, R/eps and the Hamaker constant; source and note say where the values are from,
+    and what was assumed.
+    """
+
+    name: str
+    units: Units
+    poisson: float
+    source: str
+    note: str
+
+
+def materials() -> tuple[Material, ...]:
+    """All materials of the file ``data/materials.csv``."""
+    with FILE.open(newline="") as file:
+        return tuple(_material(line) for line in csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def _material(line: dict[str, str]) -> Material:
+    poisson = float(line["poisson"])
+    modulus = contact_modulus(float(line["young_Pa"]), poisson)
+    adhesion = float(line["work_of_adhesion_J_per_m2"])
+    spacing = spacing_of(float(line["hamaker_J"]), adhesion)
+    units = Units(float(line["radius_m"]), modulus, adhesion, spacing)
+    return Material(line["name"], units, poisson, line["source"], line["note"])

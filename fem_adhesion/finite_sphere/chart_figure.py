@@ -13,11 +13,8 @@ from matplotlib.patches import Rectangle
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.common.style import Picture
-from fem_adhesion.finite_sphere.chart import LEVELS, Field, contour, field_of
-from fem_adhesion.finite_sphere.findings import headline
-from fem_adhesion.finite_sphere.materials import Material, materials
-from fem_adhesion.finite_sphere.points import reference_poisson, samples
-from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results
+from fem_adhesion.finite_sphere.chart import LEVELS, Field, Material, contour, field_of, materials
+from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results, reference_poisson, samples
 from halfspace.limits import SMALLEST_SPHERE
 from halfspace.values import Array
 
@@ -53,16 +50,7 @@ MARKERS: Mapping[str, tuple[str, str]] = {
 def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence[Border], heading: str = "") -> Figure:
     """Draw the contours of 0.1, 1 and 10 % for the pull-off force and for the jump-on approach, side by side.
 
-    Parameters
-    ----------
-    rows : sequence of DeviationRow
-        The table of the study.
-    poisson : float or None
-        Which Poisson's ratio.
-    borders : sequence of Border
-        Where the jumps begin.
-    heading : str
-        What to know of the whole, as that a part was not solved.
+    `borders` are where the jumps begin, `heading` what to know of the whole, as that a part was not solved.
     """
     figure, panels = style.panels(2, height=7.4)
     for axes, (quantity, title) in zip(panels, PANELS.items(), strict=True):
@@ -215,7 +203,7 @@ def _borders(borders: Sequence[Border]) -> Iterator[str]:
 
 def _figure_chart(results: Results) -> Figure:
     partly = results.study.quick or results.study.failed
-    heading = headline(results.study) if partly else ""
+    heading = results.study.headline if partly else ""
     return chart(results.rows, reference_poisson(results.rows), results.borders, heading)
 
 
@@ -225,10 +213,4 @@ def no_sphere(results: Results) -> str:
     return "" if solved.tabor.size else "no elastic sphere was solved beside the half-space"
 
 
-CHART = Picture(
-    "chart",
-    "Where the half-space is good enough",
-    _figure_chart,
-    lambda results: " ".join(_caption(results)),
-    no_sphere,
-)
+CHART = Picture("chart", "Where the half-space is good enough", _figure_chart, _caption, no_sphere)

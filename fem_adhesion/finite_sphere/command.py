@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_output, ended
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_output, add_workers, ended
 from fem_adhesion.common.progress import in_turn, progress_bar
 
 
@@ -20,8 +20,7 @@ def add_options(command: Parser) -> None:
         "--quick", action="store_true", help="finish in half a minute: three by three points, less accurate"
     )
     command.add_argument("--resume", action="store_true", help="go on with the cases that the directory holds")
-    command.add_argument("--jobs", type=int, help="processes; as many as cores unless given", metavar="N")
-    command.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
+    add_workers(command)
     add_output(command)
 
 
@@ -37,8 +36,6 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.common.store import open_store
     from fem_adhesion.finite_sphere import page
     from fem_adhesion.finite_sphere import study as finite_sphere
-    from fem_adhesion.finite_sphere.findings import headline
-    from fem_adhesion.finite_sphere.records import Study
 
     plan = finite_sphere.plan(options.tabor, options.radius_ratio, options.poisson, quick=options.quick)
     store = open_store(options.out, finite_sphere.code(), resume=options.resume, force=options.force)
@@ -46,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         with progress_bar() as step:
             solved = finite_sphere.run(plan.cases, store, progress=step, **settings)
-        study = Study((*solved, *plan.left_out), options.quick)
+        study = finite_sphere.Study((*solved, *plan.left_out), options.quick)
         with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
             note = page.write(study, aside, in_turn(step, len(page.PARTS)))
             page.remove_outdated(options.out, aside)
@@ -54,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
         return ended(how, f"what is done is kept in {options.out}, --resume goes on")
     for line in filter(None, (*store.notes, note)):
         print(f"fem-adhesion: {line}", file=sys.stderr)
-    print(f"{headline(study)}; written: {options.out / 'index.html'}")
+    print(f"{study.headline}; written: {options.out / 'index.html'}")
     return DISAGREE if study.failed else AGREE
 
 

@@ -18,8 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_adhesion.finite_sphere.points import Samples, samples
-from fem_adhesion.finite_sphere.table import DeviationRow
+from fem_adhesion.finite_sphere.table import DeviationRow, Samples, samples
 from halfspace.errors import InputError
 from halfspace.values import Array, Estimate
 
@@ -62,15 +61,7 @@ FIXED_GRIPS = ("jump_on_approach", "jump_on_load", "jump_off_approach", "jump_of
 
 
 def leading_terms(cause: str, quantity: str, *, one_tabor: bool = False) -> Mapping[str, Term]:
-    """Terms of a deviation.
-
-    Parameters
-    ----------
-    cause, quantity : str
-        Which deviation, as in `fem_adhesion.finite_sphere.table.DeviationRow`.
-    one_tabor : bool
-        For points of one Tabor parameter, where (beta/R)^2 and eps/R are one term.
-    """
+    """Terms of a deviation; among points of one Tabor parameter (beta/R)^2 and eps/R are one term."""
     if cause in OF_THE_SHAPE:
         return EVEN_POWERS if one_tabor else EVEN
     if quantity not in FIXED_GRIPS:
@@ -88,12 +79,10 @@ class Fit:
     coefficients : mapping of str to Estimate
         By the names of the terms. The error is two standard deviations and the change when the points of more than half
         the largest beta/R are left out.
-    holds_to : float
-        Largest beta/R of the points fitted, up to which the fit is within the tolerance.
+    holds_to, points : float and int
+        Largest beta/R of the points fitted, up to which the fit is within the tolerance, and how many they are.
     tolerance : float
         Part of the sum of the terms' sizes by which a point may be off, beyond its own error.
-    points : int
-        Fitted.
     worst : float
         Largest residual, in relative deviation.
     """
@@ -107,19 +96,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class Finding:
-    """What governs one deviation.
-
-    Attributes
-    ----------
-    cause, quantity : str
-        Which deviation.
-    tabor : float or None
-        Tabor parameter, or None for all together.
-    fit : Fit or None
-        Leading terms.
-    reason : str
-        Why there are none, or empty.
-    """
+    """What governs one deviation at a Tabor parameter, None for all together: leading terms, or why there are none."""
 
     cause: str
     quantity: str
@@ -130,18 +107,9 @@ class Finding:
 
 @dataclass(frozen=True)
 class TheoryCheck:
-    """The leading coefficient of the pull-off's deviation by the profile beside a theory's.
+    """The leading coefficient of the pull-off's deviation by the profile beside a theory's, in that theory's limit.
 
-    Attributes
-    ----------
-    theory : str
-        Which, and of what its number is the coefficient.
-    expected : float
-        In the theory's limit of the Tabor parameter.
-    tabor : float
-        Tabor parameter of the fit, the nearest to that limit.
-    fitted : Estimate
-        As in `Fit`.
+    It is fitted at the Tabor parameter nearest to that limit.
     """
 
     theory: str
@@ -197,16 +165,9 @@ def _compared(theory: str, expected: float, data: Samples, tabor: float, leading
 
 
 def fit(data: Samples, terms: Mapping[str, Term] = TERMS, *, tolerance: float = TOLERANCE) -> Fit:
-    """Fit the terms on all points up to the largest beta/R that allows it.
+    """Fit terms, functions of the Tabor parameter and R/eps, on all points up to the largest beta/R that allows it.
 
-    Parameters
-    ----------
-    data : Samples
-        Points and deviations.
-    terms : mapping of str to callable
-        Functions of arrays of the Tabor parameter and R/eps.
-    tolerance : float
-        Part of the sum of the terms' sizes by which a point may be off, beyond its own error.
+    A point may be off by its own error and the tolerance, a part of the sum of the terms' sizes.
 
     Raises
     ------

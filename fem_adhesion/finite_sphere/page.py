@@ -1,4 +1,4 @@
-"""The study of the finite sphere as a directory: table, figures, and a page: whether the half-space will do."""
+"""The study of the finite sphere as a directory: tables, figures, and a page: whether the half-space will do."""
 
 from __future__ import annotations
 
@@ -10,20 +10,146 @@ import numpy as np
 from markupsafe import Markup
 
 from fem_adhesion.common.facts import machine, versions
+from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.common.page import Section, Table, listed, page, write_csv
 from fem_adhesion.common.style import Picture, captions, draw, shown
-from fem_adhesion.finite_sphere import findings
-from fem_adhesion.finite_sphere.bulk import bulk_compliance
-from fem_adhesion.finite_sphere.cases import CAUSES
-from fem_adhesion.finite_sphere.cause_figure import CAUSES_FIGURE
-from fem_adhesion.finite_sphere.chart import Field, field_of, rule, safe_from
+from fem_adhesion.finite_sphere.bulk import bulk_compliance, coefficients
+from fem_adhesion.finite_sphere.cases import CAUSES, Record
+from fem_adhesion.finite_sphere.chart import LEVELS, Field, Rule, field_of, rule, safe_from
 from fem_adhesion.finite_sphere.chart_figure import CHART
-from fem_adhesion.finite_sphere.dependence_figures import BULK_FIGURE, POISSON_FIGURE
-from fem_adhesion.finite_sphere.findings import QUANTITIES, headline, line
-from fem_adhesion.finite_sphere.points import reference_poisson
-from fem_adhesion.finite_sphere.records import Record, Study
-from fem_adhesion.finite_sphere.table import DeviationRow, Results, results, write_tables
+from fem_adhesion.finite_sphere.figures import BULK_FIGURE, CAUSES_FIGURE, POISSON_FIGURE
+from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, Fit, compare, findings
+from fem_adhesion.finite_sphere.study import Study
+from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results, reference_poisson, results, write_tables
 from halfspace.errors import InputError
+
+SHOWN = {
+    "pull_off_load": "pull-off force",
+    "zero_load_radius": "contact radius under no load",
+    "jump_on_approach": "approach at jump-on",
+    "jump_on_approach_less_bulk": "approach at jump-on, bulk yield taken out",
+    "jump_off_approach": "approach at jump-off",
+    "jump_off_approach_less_bulk": "approach at jump-off, bulk yield taken out",
+    "hysteresis": "energy lost in a cycle",
+}
+"""Quantities on the page; the files have the others besides."""
+
+
+def all_tables(results: Results) -> list[Table]:
+    """All tables in the order of the page, of results that have the approaches less the bulk yield."""
+    rows, records = results.rows, results.study.records
+    found = findings(rows, reference_poisson(rows) or 0.0)
+    return [
+        _rules(rows),
+        _borders(results.borders),
+        _fits(found),
+        _theories(rows),
+        _bulk(records),
+        _failures(records),
+    ]
+
+
+def _rules(rows: Sequence[DeviationRow]) -> Table:
+    poisson = reference_poisson(rows)
+    lines = (_rule(rows, quantity, level, poisson) for quantity in SHOWN for level in LEVELS)
+    columns = ("quantity", "half-space errs less than", "if R/eps >", "rule fits contour within", "mu", "why no rule")
+    see = (
+        "Lines a + b mu through the contours of the chart, refused where a point contradicts them: within the range of "
+        "mu, the deviation is below its bound at all points solved that lie above the line by more than its misfit."
+    )
+    return Table("rules", "Rules of thumb", see, columns, tuple(lines))
+
+
+def line(found: Rule) -> str:
+    """Right-hand side of a rule."""
+    return f"{found.constant:g} {'-' if found.slope < 0 else '+'} {abs(found.slope):g} mu"
+
+
+def _rule(rows: Sequence[DeviationRow], quantity: str, level: float, poisson: float | None) -> tuple[str, ...]:
+    head = (SHOWN[quantity], f"{100 * level:g} %")
+    try:
+        found = rule(field_of(rows, quantity, poisson), level)
+    except InputError as error:
+        return (*head, "", "", "", str(error))
+    return (*head, line(found), f"{100 * found.misfit:.2g} %", f"{found.tabor[0]:g} to {found.tabor[1]:g}", "")
+
+
+def _fits(found: Sequence[Finding]) -> Table:
+    columns = ("quantity", "cause", "mu", "leading terms", "up to beta/R", "points", "largest residual", "why no fit")
+    see = (
+        f"Errors are {DEVIATIONS:g} standard deviations and the change when the points farther than half-way are left "
+        f"out; up to the beta/R stated, every point is within {100 * TOLERANCE:g} % of the terms beside its own error."
+    )
+    shown = [f for f in found if f.quantity in SHOWN and (f.cause == "all" or f.quantity == "pull_off_load")]
+    return Table("fits", "Leading terms of the relative deviations", see, columns, tuple(map(_finding, shown)))
+
+
+def _finding(finding: Finding) -> tuple[str, ...]:
+    tabor = "all" if finding.tabor is None else f"{finding.tabor:g}"
+    head = (SHOWN[finding.quantity], finding.cause, tabor)
+    return (*head, *(_fit(finding.fit) if finding.fit else ("", "", "", "")), finding.reason)
+
+
+def _fit(fit: Fit) -> tuple[str, ...]:
+    terms = "; ".join(f"({plus_minus(c)}) {name}" for name, c in fit.coefficients.items())
+    return (terms, f"{fit.holds_to:.2g}", str(fit.points), f"{fit.worst:.1e}")
+
+
+def _theories(rows: Sequence[DeviationRow]) -> Table:
+    columns = ("theory and term", "expected", "fitted", "error", "at mu", "why not")
+    see = (
+        "The profile's part of the pull-off alone, on a half-space. The theories are of the limits mu = 0 and "
+        "infinity, the fits of the mu stated."
+    )
+    try:
+        lines = tuple(
+            (c.theory, f"{c.expected:.4f}", f"{c.fitted.value:.4f}", f"{c.fitted.error:.1e}", f"{c.tabor:g}", "")
+            for c in compare(rows)
+        )
+    except InputError as error:
+        lines = (("", "", "", "", "", str(error)),)
+    return Table("theories", "Leading coefficients beside theories", see, columns, lines)
+
+
+def _bulk(records: Sequence[Record]) -> Table:
+    known = sorted({r.case.poisson for r in records if r.case.poisson is not None})
+    columns = ("grip", "Poisson's ratio", "kappa_0", "error", "kappa_1", "size of the term in beta/R")
+    see = (
+        "The body approaches by W/(E* R) (kappa_0 + kappa_1 ln(beta/R)) more than the half-space, in eps by mu beta/R "
+        "times as much. kappa_1 = -(1 - 2 nu)^2/(2 pi (1 - nu)) is exact, kappa_0 is measured under Hertz's pressure "
+        "on r < beta; the term in beta/R is not taken out, but counted as error."
+    )
+    return Table("bulk", "The body's linear yield, in 1/(E* R)", see, columns, tuple(_yields(known)))
+
+
+def _yields(poissons: Sequence[float]) -> Iterator[tuple[str, ...]]:
+    for grip in ("sliding", "bonded"):
+        for poisson in poissons:
+            found = coefficients(grip, poisson)
+            constant = (f"{found.constant.value:.4f}", f"{found.constant.error:.1e}")
+            yield (grip, f"{poisson:g}", *constant, f"{found.logarithm:.5f}", f"{found.linear:.2g}")
+
+
+def _failures(records: Sequence[Record]) -> Table:
+    lines = tuple((r.case.name, r.status, r.kind, r.reason) for r in records if r.status != "solved")
+    see = f"{len(lines)} of {len(records)} cases."
+    return Table("failures", "What was not solved, and why", see, ("case", "status", "kind", "reason"), lines)
+
+
+def _borders(borders: Sequence[Border]) -> Table:
+    columns = ("R/eps", "Poisson's ratio", "mu", "error", "why none")
+    see = (
+        "From this mu on the approach turns back along the curve; the spheres are held on a sliding mid-plane. Errors "
+        "are the changes from elements one degree lower, or from a coarser grid."
+    )
+    return Table("first_jumps", "Where jumps under fixed grips begin", see, columns, tuple(map(_border, borders)))
+
+
+def _border(border: Border) -> tuple[str, ...]:
+    size = "half-space" if border.radius_ratio is None else f"{border.radius_ratio:g}"
+    found = (f"{border.tabor.value:.9g}", f"{border.tabor.error:.1e}") if border.tabor else ("", "")
+    return (size, "" if border.poisson is None else f"{border.poisson:g}", *found, border.reason)
+
 
 PICTURES = (CHART, CAUSES_FIGURE, POISSON_FIGURE, BULK_FIGURE)
 LEVEL = 0.01  # of the answer on top
@@ -34,28 +160,15 @@ PARTS = ("table", *(f"figure {picture.stem}" for picture in PICTURES), "page")
 def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _: None) -> str:
     """Write the table, every figure as SVG and PNG, the findings as CSV, and ``index.html``, into a directory.
 
-    Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none.
-
-    Parameters
-    ----------
-    study : Study
-        What was computed.
-    directory : Path
-        Where to write, which exists.
-    begin : callable
-        Told what is done next, once for each of `PARTS`.
-
-    Returns
-    -------
-    str
-        How to get the Parquet file if there is none, else empty.
+    Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none. `begin`
+    is told each of `PARTS` in turn. Returns how to get the Parquet file if there is none, else nothing.
     """
     begin("table")
     found = results(study, bulk_compliance)
     note = write_tables(found.rows, directory)
     draw(PICTURES, found, directory, begin)
     begin("page")
-    tables = findings.tables(found)
+    tables = all_tables(found)
     for one in (*tables, captions(PICTURES, found)):
         write_csv(one, directory)
     (directory / "index.html").write_text(_page(found, tables, directory), encoding="utf-8")
@@ -74,7 +187,7 @@ def _page(found: Results, tables: Sequence[Table], directory: Path) -> str:
     rules, *others = tables
     chart = _section("where", CHART.title, (CHART,), found, directory, tables=[rules])
     causes = _section("why", "Causes", PICTURES[1:], found, directory, _causes())
-    lead = [Markup("<strong>{}.</strong>").format(headline(found.study)), *_answer(found.rows)]
+    lead = [Markup("<strong>{}.</strong>").format(found.study.headline), *_answer(found.rows)]
     sections = [chart, causes, Section("tables", "Tables", tables=others), _settings(records)]
     spent = f"{sum(r.seconds for r in records):.0f} s of work on {len(records)} cases"
     facts = {**machine(), **versions(), "computed in": spent}
@@ -102,7 +215,7 @@ def _answer(table: Sequence[DeviationRow]) -> Iterator[str]:
     if poisson is None:
         yield "No elastic sphere was solved."
         return
-    fields = {name: field_of(table, quantity, poisson) for quantity, name in QUANTITIES.items()}
+    fields = {name: field_of(table, quantity, poisson) for quantity, name in SHOWN.items()}
     yield Markup("By the points solved at Poisson's ratio {:g} it errs by less than {:g} % in").format(
         poisson, 100 * LEVEL
     ) + listed(

@@ -6,17 +6,16 @@ each result stored as it comes; `fem_adhesion.finite_sphere.table` sets them bes
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from itertools import product
 
-from fem_adhesion.common.code_digest import code_digest
-from fem_adhesion.common.jobs import WorkerDied, stream
-from fem_adhesion.common.progress import Progress, unheard
-from fem_adhesion.common.store import Store
-from fem_adhesion.finite_sphere.cases import MODELS, case_of, compute
-from fem_adhesion.finite_sphere.records import STORED, Case, Record, from_plain, to_plain
+from fem_adhesion.common.facts import code_digest
+from fem_adhesion.common.numbers import counted
+from fem_adhesion.common.store import Kept, solve_all
+from fem_adhesion.finite_sphere.cases import MODELS, Case, Record, case_of, compute, from_plain, to_plain
 from halfspace.errors import InputError
 from halfspace.limits import require_poisson, require_radius_ratio, require_tabor
 
@@ -31,6 +30,38 @@ RTOL, QUICK_RTOL = 1e-5, 1e-4
 
 
 @dataclass(frozen=True)
+class Study:
+    """All records of a study, with those left out, and whether it was a quick one: few points, a lower accuracy."""
+
+    records: Sequence[Record]
+    quick: bool = False
+
+    @property
+    def failed(self) -> tuple[Record, ...]:
+        """Cases that were tried and have no solution."""
+        return tuple(record for record in self.records if record.failed)
+
+    @property
+    def left_out(self) -> tuple[Record, ...]:
+        """Cases that were not tried."""
+        return tuple(record for record in self.records if record.status == "left out")
+
+    @property
+    def headline(self) -> str:
+        """How the study went, in one line."""
+        tried, failed = len(self.records) - len(self.left_out), self.failed
+        kinds = Counter(record.kind or record.status for record in failed)
+        ended = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+        lost = f"{len(failed)} of {counted(tried, 'case')} not solved ({ended})"
+        parts = [
+            "quick study, of few points" if self.quick else "",
+            lost if failed else f"{counted(tried, 'case')}, all solved" if tried else "no case",
+            f"{counted(len(self.left_out), 'case')} left out, beyond the limits" if self.left_out else "",
+        ]
+        return "; ".join(filter(None, parts))
+
+
+@dataclass(frozen=True)
 class Sweep:
     """All combinations of these inputs, under these models."""
 
@@ -42,15 +73,7 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Plan:
-    """Cases of the study, each once.
-
-    Attributes
-    ----------
-    cases : tuple of Case
-        To be computed.
-    left_out : tuple of Record
-        Those beyond the limits of the solvers, with the reason.
-    """
+    """Cases of the study, each once: those to compute, and those beyond the limits of the solvers, with reasons."""
 
     cases: tuple[Case, ...]
     left_out: tuple[Record, ...]
@@ -63,15 +86,10 @@ def plan(
     *,
     quick: bool = False,
 ) -> Plan:
-    """Plan of the study.
+    """Plan of the study: all combinations of the inputs but for spheres too small for their Tabor parameter.
 
-    Parameters
-    ----------
-    tabors, radius_ratios, poissons : sequence of float, optional
-        All combinations of these but for spheres too small for their Tabor parameter, Poisson's ratio being 0.3 unless
-        given. If none of the three is given, it is varied besides, at some points.
-    quick : bool
-        Three by three points unless given, at a lower accuracy.
+    Poisson's ratio is 0.3 unless given. If none of the three inputs is given, it is varied besides, at some points. A
+    quick study has three by three points unless given, and a lower accuracy.
 
     Raises
     ------
@@ -144,63 +162,10 @@ def code() -> str:
     return code_digest(compute.__module__)
 
 
-def run(
-    cases: Sequence[Case],
-    store: Store,
-    *,
-    jobs: int | None = None,
-    dask: str | None = None,
-    progress: Progress = unheard,
-    fresh: bool = False,
-    work: Callable[[Case], Record] = compute,
-) -> tuple[Record, ...]:
-    """Compute the cases that the store does not hold, and store each at once.
-
-    Parameters
-    ----------
-    cases : sequence of Case
-        From `plan`.
-    store : Store
-        From `fem_adhesion.common.store.open_store`.
-    jobs, dask : int and str, optional
-        Local processes, or the address of a cluster: see `fem_adhesion.common.jobs.stream`.
-    progress : callable
-        Called with the last case, how many cases are done, and of how many.
-    fresh : bool
-        Compute all, whatever the store holds.
-    work : callable
-        Computes a case; a function of a module.
-
-    Returns
-    -------
-    tuple of Record
-        In the order of the cases. A case whose worker died is among them but not in the store: it is tried again when
-        the study is resumed.
-
-    Raises
-    ------
-    InputError
-        Before any work, if jobs is not positive or the cluster does not answer.
-    """
-    records = {} if fresh else dict(_stored(cases, store))
-    todo = [case for case in cases if case not in records]
-    with closing(stream(work, todo, jobs=jobs, dask=dask)) as results:
-        progress("starting", len(records), len(cases))
-        for case, result in results:
-            record = Record(case, "died", {}, result.reason) if isinstance(result, WorkerDied) else result
-            if record.status in STORED:
-                store.put(asdict(case), to_plain(record))
-            records[case] = record
-            progress(case.name, len(records), len(cases))
-    return tuple(records[case] for case in cases)
+def _died(case: Case, reason: str) -> Record:
+    return Record(case, "died", {}, reason)
 
 
-def _stored(cases: Sequence[Case], store: Store) -> Iterator[tuple[Case, Record]]:
-    """Cases that the store holds."""
-    for case in cases:
-        if (plain := store.get(asdict(case))) is None:
-            continue
-        try:
-            yield case, from_plain(case, plain)
-        except InputError as error:
-            store.distrust(asdict(case), str(error))
+KEPT = Kept(asdict, lambda case: case.name, to_plain, from_plain, _died)
+run = partial(solve_all, work=compute, kept=KEPT)
+"""Records of cases of a plan: `fem_adhesion.common.store.solve_all`."""

@@ -1,18 +1,34 @@
-"""The results of the finite sphere as a table: each quantity of each case beside the same without one cause."""
+"""The results of the finite sphere as a table: each quantity of each case beside the same without one cause.
+
+Of its lines `Samples` are taken, and the points that figures and sentences speak of.
+"""
 
 from __future__ import annotations
 
 import csv
 import importlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from fem_adhesion.bodies.body import GripName
-from fem_adhesion.finite_sphere.cases import CAUSES, MODELS, case_of
-from fem_adhesion.finite_sphere.records import APPROACH_SCALE, CRITICAL, QUANTITIES, Case, Record, Study, Values
-from halfspace.values import Estimate
+from fem_adhesion.finite_sphere.cases import (
+    APPROACH_SCALE,
+    CAUSES,
+    CRITICAL,
+    MODELS,
+    QUANTITIES,
+    Case,
+    Record,
+    Values,
+    case_of,
+)
+from fem_adhesion.finite_sphere.study import Study
+from halfspace.values import Array, Estimate, Valued
 
 BulkCompliance = Callable[[GripName, float, float], Estimate]
 """Of grip, Poisson's ratio and R/beta: what a body yields more than the half-space under a load, in 1/(E* R)."""
@@ -31,10 +47,8 @@ class DeviationRow:
     ----------
     tabor, radius_ratio, poisson : float or None
         Inputs; None for one on which the case does not depend, as it always does on the first.
-    cause : str
-        Key of `fem_adhesion.finite_sphere.cases.CAUSES`.
-    quantity, unit : str
-        Key of `UNITS`, and the unit of values and errors.
+    cause, quantity, unit : str
+        Keys of `fem_adhesion.finite_sphere.cases.CAUSES` and of `UNITS`, and the unit of values and errors.
     value, baseline, half_space : Estimate or None
         With the cause, without it, and on the half-space under a paraboloid.
     deviation : Estimate or None
@@ -42,13 +56,7 @@ class DeviationRow:
         its value, see `halfspace.equilibrium.events.approach_scale`; its error bounded by those of all three.
     status : str
         ``solved``; ``absent`` where one of the three contacts does not have the quantity; else what ended the case, as
-        in `Record`.
-    reason : str
-        Why there is no deviation, or empty.
-    seconds : float
-        Wall time of the case.
-    kind : str
-        Of the error that ended the case, as in `Record`.
+        in `Record`, like its reason, seconds and kind.
     """
 
     tabor: float
@@ -68,15 +76,7 @@ class DeviationRow:
 
 
 def rows(records: Sequence[Record], bulk: BulkCompliance | None = None) -> tuple[DeviationRow, ...]:
-    """Lines of the table.
-
-    Parameters
-    ----------
-    records : sequence of Record
-        Of a study, in any order.
-    bulk : callable, optional
-        If given, the approaches of the jumps are listed also less the linear yield of the body.
-    """
+    """Lines of the table, of records in any order; with `bulk` approaches of jumps also less the body's yield."""
     found = {record.case: record for record in records}
     quantities = [name for name in UNITS if bulk or name not in LESS_BULK]
     return tuple(
@@ -160,16 +160,9 @@ def _ending(record: Record, others: Sequence[Record | None], three: Sequence[Est
 
 @dataclass(frozen=True)
 class Border:
-    """Tabor parameter from which on a contact jumps under fixed grips.
+    """Tabor parameter from which on a contact jumps under fixed grips; of the half-space without R/eps and poisson.
 
-    Attributes
-    ----------
-    radius_ratio, poisson : float or None
-        Of the sphere; None for the half-space.
-    tabor : Estimate or None
-        Where it begins to jump, or None if it does not as far as it is large enough, or was not solved.
-    reason : str
-        Why there is none, or empty.
+    It is None, and the reason says why, if the contact does not jump as far as it is large enough, or was not solved.
     """
 
     radius_ratio: float | None
@@ -198,17 +191,7 @@ def _border(record: Record) -> Border:
 
 @dataclass(frozen=True)
 class Results:
-    """All that figures and page are made of.
-
-    Attributes
-    ----------
-    study : Study
-        What was computed.
-    rows : sequence of DeviationRow
-        Its table.
-    borders : sequence of Border
-        Where the jumps begin.
-    """
+    """All that figures and page are made of: what was computed, its table, and where the jumps begin."""
 
     study: Study
     rows: Sequence[DeviationRow]
@@ -230,20 +213,7 @@ NO_PARQUET = "no Parquet file is written, which needs the extra parquet; pip ins
 
 
 def write_tables(rows: Sequence[DeviationRow], directory: Path) -> str:
-    """Write finite_sphere.csv, and finite_sphere.parquet where pyarrow is installed.
-
-    Parameters
-    ----------
-    rows : sequence of DeviationRow
-        From `rows`.
-    directory : Path
-        Which exists and is to be seen by others only when it is complete.
-
-    Returns
-    -------
-    str
-        How to get the Parquet file if there is none, else empty.
-    """
+    """Write finite_sphere.csv, and finite_sphere.parquet where pyarrow is installed, else return how to get it."""
     with (directory / "finite_sphere.csv").open("w", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
@@ -271,3 +241,83 @@ def _cells_of(name: str, content: object) -> tuple[object, ...]:
     if name not in NUMBERS:
         return (content,)
     return (content.value, content.error) if isinstance(content, Estimate) else (None, None)
+
+
+FAVOURED = (0.3, 1.0, 3.0)  # Tabor parameters of a panel each
+POISSON = 0.3
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Samples(Valued):
+    """Relative deviations of one quantity for one cause at n points, and the bounds of their errors; arrays (n,)."""
+
+    tabor: Array
+    radius_ratio: Array
+    deviation: Array
+    error: Array
+
+    @property
+    def stretch(self) -> Array:
+        """beta/R = sqrt(mu/rho)."""
+        return np.asarray(np.sqrt(self.tabor / self.radius_ratio))
+
+    @property
+    def significant(self) -> Samples:
+        """Those that exceed their errors."""
+        return self.where(np.abs(self.deviation) > self.error)
+
+    def where(self, chosen: NDArray[np.bool_]) -> Samples:
+        """Those chosen."""
+        return Samples(self.tabor[chosen], self.radius_ratio[chosen], self.deviation[chosen], self.error[chosen])
+
+
+def samples(rows: Iterable[DeviationRow], cause: str, quantity: str, poisson: float | None) -> Samples:
+    """Deviations of a quantity for a cause, of the rows that have one, and a finite one."""
+    chosen = [
+        (row.tabor, row.radius_ratio, row.deviation.value, row.deviation.error)
+        for row in rows
+        if (row.cause, row.quantity, row.poisson) == (cause, quantity, poisson) and row.deviation and row.radius_ratio
+    ]
+    numbers = np.array(chosen, float).reshape(-1, 4)
+    return Samples(*numbers[np.isfinite(numbers).all(axis=1)].T)
+
+
+def reference_poisson(rows: Sequence[DeviationRow]) -> float | None:
+    """Poisson's ratio of the figures that show one: 0.3, or the nearest to it in the table."""
+    known = {row.poisson for row in rows if row.poisson is not None}
+    return min(known, key=lambda nu: abs(nu - POISSON), default=None)
+
+
+def panel_tabors(rows: Sequence[DeviationRow]) -> list[float]:
+    """Tabor parameters that have a panel: those nearest to 0.3, 1 and 3 in the table."""
+    known = {row.tabor for row in rows if row.cause == "all" and row.deviation}
+    return sorted({min(known, key=lambda mu: abs(np.log(mu / wanted))) for wanted in FAVOURED} if known else set())
+
+
+def points_by_poisson(rows: Sequence[DeviationRow]) -> list[tuple[float, float]]:
+    """Tabor parameters and R/eps whose pull-off is known at two Poisson's ratios or more."""
+    points = dict.fromkeys((row.tabor, row.radius_ratio) for row in rows if row.radius_ratio)
+    known = ((mu, rho) for mu, rho in points if rho and by_poisson(rows, "pull_off_load", mu, rho)[0].size > 1)
+    return sorted(known, key=lambda point: point[::-1])
+
+
+def by_poisson(rows: Sequence[DeviationRow], quantity: str, tabor: float, ratio: float) -> tuple[Array, Array]:
+    """Poisson's ratios, ascending, and the deviations at a point."""
+    wanted = ("all", quantity, tabor, ratio)
+    chosen = sorted(
+        (row.poisson, row.deviation.value)
+        for row in rows
+        if (row.cause, row.quantity, row.tabor, row.radius_ratio) == wanted
+        and row.poisson is not None
+        and row.deviation
+        and np.isfinite(row.deviation.value)
+    )
+    nu, deviation = np.array(chosen, float).reshape(-1, 2).T
+    return nu, deviation
+
+
+def jumping_tabors(rows: Sequence[DeviationRow]) -> list[float]:
+    """Tabor parameters whose jump-on is known on spheres of two sizes or more."""
+    data = samples(rows, "all", "jump_on_approach", reference_poisson(rows))
+    tabors, counts = np.unique(data.tabor, return_counts=True)
+    return [float(tabor) for tabor in tabors[counts > 1]]

@@ -1,6 +1,6 @@
 """Greenwood (1997), computed again. The command ``greenwood``.
 
 Computation: `study`, which calls `curves`, `tables`, `criteria` and `numerics_1997`. What is seen: `load_figures`,
-`state_figures` and `trend_figures`, each figure with its caption; `record`, the tables with theirs; `page`. And
+`state_figures` and `trend_figures`, each figure with its caption, and `page`, with the tables and theirs. And
 `command`.
 """

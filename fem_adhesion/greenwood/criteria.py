@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 import halfspace
-from fem_adhesion.common.words import told
+from fem_adhesion.common.numbers import told
 from halfspace.theories import criteria
 from halfspace.values import Array, Estimate, Valued
 
@@ -41,9 +41,7 @@ class Criterion(Valued):
     name, formula : str
         What it is; the constants are k, c, n.
     predict : callable
-        Central gap or approach at a Tabor parameter by the printed constants.
-    of_approach : bool
-        Whether it predicts the approach instead of the central gap.
+        Central gap, or if `of_approach` the approach, at a Tabor parameter by the printed constants.
     constants : tuple of (str, float or None, Estimate)
         Name, printed and refitted value, the latter with the standard error of the fit.
     scatter : float
@@ -185,16 +183,10 @@ def _closed_words(study: CriteriaStudy) -> str:
     ratio = closed_ratios(study)
     if not ratio.size:
         return ""
-    wide = (
-        "too wide a gap"
-        if ratio.min() > 1
-        else "too narrow a gap"
-        if ratio.max() < 1
-        else "now too wide, now too narrow a gap"
-    )
+    wide = "too wide" if ratio.min() > 1 else "too narrow" if ratio.max() < 1 else "now too wide, now too narrow"
     text = (
-        f"Attard & Parker, Pethica & Sutton and App. C expect the jump at {wide}, by factors of {ratio.min():.2f} to "
-        f"{ratio.max():.2f} in (H0 + 1)^(7/2)."
+        f"Attard & Parker, Pethica & Sutton and App. C expect the jump at {wide} a gap, by factors of "
+        f"{ratio.min():.2f} to {ratio.max():.2f} in (H0 + 1)^(7/2)."
     )
     return told(text, ratio)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import halfspace
-from fem_adhesion.common.words import told
+from fem_adhesion.common.numbers import told
 from halfspace.accuracy.fold_birth import FIRST, critical_stiffness, tabor_of
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS
@@ -33,17 +33,7 @@ STIFFNESSES = (math.inf, 100.0, 10.0, 3.0, 1.0, 0.3, 0.1)  # R dgamma/eps, of an
 
 @dataclass(frozen=True)
 class LetteredJump:
-    """A jump under fixed grips.
-
-    Attributes
-    ----------
-    take_off, landing : str
-        Letters of [G97] Fig. 2a.
-    approach : Estimate
-        In eps, the same before and after.
-    load, landing_load : Estimate
-        Before and after, in R dgamma.
-    """
+    """A jump under fixed grips, between two letters of [G97] Fig. 2a, and the loads before and after."""
 
     take_off: str
     landing: str
@@ -56,14 +46,8 @@ class LetteredJump:
 class DrawnState(Valued):
     """Shape and pressure of one state.
 
-    Attributes
-    ----------
-    central_gap, approach, load : float
-        In eps, eps and R dgamma.
-    contact_radius : float
-        In beta, nan where the central gap exceeds 3^(1/6) eps.
-    radii, gap, pressure : (n,) arrays
-        In beta, eps and dgamma/(mu eps).
+    Central gap and approach in eps, load in R dgamma, contact radius in beta, nan where the central gap exceeds 3^(1/6)
+    eps; radii in beta, gap in eps and pressure in dgamma/(mu eps), (n,) arrays.
     """
 
     central_gap: float
@@ -153,16 +137,10 @@ def _farthest(points: tuple[Array, Array], line: tuple[Array, Array]) -> float:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DeviceStudy(Valued):
-    """Cycles by stiffness, and the border between jumping and following.
+    """Cycles at a Tabor parameter by falling stiffness, fixed grips first, and the border of jumping and following.
 
-    Attributes
-    ----------
-    tabor : float
-        Of the cycles.
-    cycles : tuple of Cycle
-        From fixed grips to the softest apparatus.
-    border : (n, 2) array
-        Tabor parameter below the critical one, and the stiffness in R dgamma/eps below which that contact jumps.
+    `border` (n, 2) has Tabor parameters below the critical one, and the stiffness in R dgamma/eps below which they
+    jump.
     """
 
     tabor: float

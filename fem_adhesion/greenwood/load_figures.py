@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
-from fem_adhesion.common.style import Picture, curve, dress, note, panels, theory
-from fem_adhesion.common.words import joined, listed, rises, told
+from fem_adhesion.common.numbers import listed, rises, told
+from fem_adhesion.common.style import curve, dress, note, panels, theory
 from fem_adhesion.greenwood.curves import elements_beside
 from fem_adhesion.greenwood.study import JUMPS_AT, Greenwood1997
-from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.theories import dmt
 from halfspace.theories.closed_forms import (
     BRADLEY_PULL_OFF,
@@ -55,28 +55,22 @@ def _dmt(axes: Any, tabor: float, approach: Array, suffix: str) -> None:
     theory(axes, "Hertz", approach, hertz_load(hertz_radius_at(approach, tabor)), f"Hertz{suffix}")
 
 
-def _see_1a(study: Greenwood1997) -> str:
+def _see_1a(study: Greenwood1997) -> Iterator[str]:
     """Bradley's curve far from contact, the DMT theories at zero load."""
     path = study.curves[RIGID[0]]
     apart = (path.approach > -1.8) & (path.approach < 0)
     off = np.abs(path.load - bradley_load(path.approach))[apart]
-    rigid = (
-        f"Apart, at -1.8 < alpha* < 0, the load at mu = {RIGID[0]:g} is within {np.max(off, initial=0):.2g} R dgamma "
-    )
-    return joined(told(f"{rigid}of Bradley's.", off), _dmt_at_zero_load(study.curves[DMT_TABOR]))
-
-
-def _dmt_at_zero_load(path: EquilibriumPath) -> str:
-    event = path.event("zero_load")
-    if event is None:
-        return ""
-    loads = _dmt_loads(event.approach, path.tabor)
-    trend = "they rise sooner" if loads.min() > 0 else "not all of them rise sooner"
-    text = (
-        f"At mu = {path.tabor:g} and alpha* = {event.approach:.3f}, where the solution's load is zero, the DMT "
-        f"theories have {loads.min():.2f} to {loads.max():.2f} R dgamma: {trend}."
-    )
-    return told(text, event.approach, loads)
+    near = f"{np.max(off, initial=0):.2g} R dgamma of Bradley's"
+    yield told(f"Apart, at -1.8 < alpha* < 0, the load at mu = {RIGID[0]:g} is within {near}.", off)
+    softer = study.curves[DMT_TABOR]
+    if event := softer.event("zero_load"):
+        loads = _dmt_loads(event.approach, softer.tabor)
+        trend = "they rise sooner" if loads.min() > 0 else "not all of them rise sooner"
+        text = (
+            f"At mu = {softer.tabor:g} and alpha* = {event.approach:.3f}, where the solution's load is zero, the DMT "
+            f"theories have {loads.min():.2f} to {loads.max():.2f} R dgamma: {trend}."
+        )
+        yield told(text, event.approach, loads)
 
 
 def _dmt_loads(approach: float, tabor: float) -> Array:
@@ -96,16 +90,17 @@ def _figure_1b(study: Greenwood1997) -> Figure:
     return figure
 
 
-def _see_1b(study: Greenwood1997) -> str:
+def _see_1b(study: Greenwood1997) -> Iterator[str]:
     """Pull-off force between the limits."""
     forces = np.array([-study.curves[mu].events["pull_off"].load for mu in SCALED])
     between = np.all((forces < -BRADLEY_PULL_OFF) & (forces > -JKR_PULL_OFF))
     trend = "falls all along" if rises(-forces) else "does not fall all along"
+    yield "Scaled by mu, Hertz, DMT-M and JKR are one curve each."
     text = (
         f"From mu = {SCALED[0]:g} to {SCALED[-1]:g} the computed pull-off force goes from {forces[0]:.4f} to "
         f"{forces[-1]:.4f} R dgamma: it {trend}, {'' if between else 'not '}between DMT-M's 2 pi and JKR's 3 pi/2."
     )
-    return joined("Scaled by mu, Hertz, DMT-M and JKR are one curve each.", told(text, forces))
+    yield told(text, forces)
 
 
 def _figure_1c(study: Greenwood1997) -> Figure:
@@ -120,7 +115,7 @@ def _figure_1c(study: Greenwood1997) -> Figure:
     return figure
 
 
-def _see_1c(study: Greenwood1997) -> str:
+def _see_1c(study: Greenwood1997) -> Iterator[str]:
     """The end of the compressed curve beside the DMT theories."""
     path = study.curves[RIGID[0]]
     approach, load = path.approach[-1], path.load[-1]
@@ -131,7 +126,7 @@ def _see_1c(study: Greenwood1997) -> str:
         f"The load rises {trend} DMT theory: at alpha* = {approach:.3f} it is {load:.1f} R dgamma, theirs "
         f"{loads.min():.1f} to {loads.max():.1f}. The force method and DMT-M differ there by {apart:.1g}."
     )
-    return told(text, approach, load, loads) or joined()
+    yield told(text, approach, load, loads)
 
 
 def _figure_2a(study: Greenwood1997) -> Figure:
@@ -142,7 +137,10 @@ def _figure_2a(study: Greenwood1997) -> Figure:
     if fe := study.elements.get(JUMPS_AT):
         style.elements(axes, fe, fe.approach, fe.load)
     for jump in study.states.jumps:
-        _arrow(axes, jump.approach.value, jump.load.value, jump.landing_load.value)
+        at = jump.approach.value
+        style.arrow(
+            axes, (at, jump.load.value), (at, jump.landing_load.value), color=style.RED, linewidth=1.6, zorder=1
+        )
         left = jump.take_off == "C"
         for letter, load in ((jump.take_off, jump.load), (jump.landing, jump.landing_load)):
             note(axes, letter, (jump.approach.value, load.value), (-14, -4) if left else (7, 2), weight="bold")
@@ -151,26 +149,17 @@ def _figure_2a(study: Greenwood1997) -> Figure:
     return figure
 
 
-def _arrow(axes: Any, approach: float, load: float, landing: float) -> None:
-    arrow = {"arrowstyle": "-|>", "color": style.RED, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (approach, landing), xytext=(approach, load), arrowprops=arrow, zorder=1)
-
-
-def _see_2a(study: Greenwood1997) -> str:
+def _see_2a(study: Greenwood1997) -> Iterator[str]:
     """Jumps, and the finite elements on the curve."""
     path, fe = study.curves[JUMPS_AT], study.elements.get(JUMPS_AT)
-    ends = [
-        told(
-            f"from {j.take_off} to {j.landing} at alpha* = {j.approach.value:.4f}",
-            j.approach.value,
-            j.load.value,
-            j.landing_load.value,
-        )
+    jumps = [
+        f"from {j.take_off} to {j.landing} at alpha* = {j.approach.value:.4f}"
         for j in study.states.jumps
+        if np.isfinite([j.approach.value, j.load.value, j.landing_load.value]).all()
     ]
-    jumps = f"The surfaces jump {listed([end for end in ends if end])}." if any(ends) else ""
-    unstable = "Between the folds the branch is unstable." if np.any(~path.stable) else "No branch is unstable."
-    return joined(jumps or "No jump was found.", unstable, elements_beside(fe, path, "approach", "load"))
+    yield f"The surfaces jump {listed(jumps)}." if jumps else "No jump was found."
+    yield "Between the folds the branch is unstable." if np.any(~path.stable) else "No branch is unstable."
+    yield elements_beside(fe, path, "approach", "load")
 
 
 def _figure_2b(study: Greenwood1997) -> Figure:
@@ -183,7 +172,7 @@ def _figure_2b(study: Greenwood1997) -> Figure:
     return figure
 
 
-def _see_2b(study: Greenwood1997) -> str:
+def _see_2b(study: Greenwood1997) -> Iterator[str]:
     """How the curves close in on JKR's at zero load, and where they jump on."""
     ends = np.array([_scaled(study, mu, "zero_load") for mu in SOFT])
     starts = np.array([_scaled(study, mu, "jump_on") for mu in SOFT])
@@ -191,14 +180,9 @@ def _see_2b(study: Greenwood1997) -> str:
     closing = "closes in" if rises(-np.abs(ends - jkr)) else "does not close in"
     coming = "towards" if rises(-np.abs(starts)) else "not towards"
     span = f"from mu = {SOFT[0]:g} to {SOFT[-1]:g}"
-    return joined(
-        told(
-            f"At zero load alpha*/mu goes from {ends[0]:.4f} to {ends[-1]:.4f} {span}: it {closing} on JKR's "
-            f"{jkr:.4f}.",
-            ends,
-        ),
-        told(f"The jump on goes from alpha*/mu = {starts[0]:.3f} to {starts[-1]:.3f}, {coming} 0.", starts),
-    )
+    at_zero = f"At zero load alpha*/mu goes from {ends[0]:.4f} to {ends[-1]:.4f} {span}"
+    yield told(f"{at_zero}: it {closing} on JKR's {jkr:.4f}.", ends)
+    yield told(f"The jump on goes from alpha*/mu = {starts[0]:.3f} to {starts[-1]:.3f}, {coming} 0.", starts)
 
 
 def _scaled(study: Greenwood1997, tabor: float, name: str) -> float:
@@ -206,22 +190,12 @@ def _scaled(study: Greenwood1997, tabor: float, name: str) -> float:
     return event.approach / tabor if event else float("nan")
 
 
+SMALL = "Load against approach around pull-off, small Tabor parameters"
+JUMPING = f"Load against approach at mu = {JUMPS_AT:g}, and the jumps under fixed grips"
 FIGURES = (
-    Picture(
-        "fig_1a", "After Fig. 1a: Load against approach around pull-off, small Tabor parameters", _figure_1a, _see_1a
-    ),
-    Picture("fig_1b", "After Fig. 1b: The same with the approach in units of beta^2/R", _figure_1b, _see_1b),
-    Picture("fig_1c", f"After Fig. 1c: Deep compression at mu = {RIGID[0]:g}", _figure_1c, _see_1c),
-    Picture(
-        "fig_2a",
-        f"After Fig. 2a: Load against approach at mu = {JUMPS_AT:g}, and the jumps under fixed grips",
-        _figure_2a,
-        _see_2a,
-    ),
-    Picture(
-        "fig_2b",
-        f"After Fig. 2b: Load against scaled approach for mu = {SOFT[0]:g} to {SOFT[-1]:g}",
-        _figure_2b,
-        _see_2b,
-    ),
+    ("1a", SMALL, _figure_1a, _see_1a),
+    ("1b", "The same with the approach in units of beta^2/R", _figure_1b, _see_1b),
+    ("1c", f"Deep compression at mu = {RIGID[0]:g}", _figure_1c, _see_1c),
+    ("2a", JUMPING, _figure_2a, _see_2a),
+    ("2b", f"Load against scaled approach for mu = {SOFT[0]:g} to {SOFT[-1]:g}", _figure_2b, _see_2b),
 )

@@ -39,17 +39,7 @@ class Unguarded(ContactProblem):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ripple(Valued):
-    """The curve near pull-off on a uniform grid.
-
-    Attributes
-    ----------
-    tabor : float
-        Tabor parameter.
-    spacing : float
-        Of the nodes, in beta.
-    approach, load : (n,) arrays
-        In eps and R dgamma, at falling contact radii.
-    """
+    """The curve near pull-off on a uniform grid of a spacing in beta: approach (eps) and load (R dgamma), both (n,)."""
 
     tabor: float
     spacing: float
@@ -73,18 +63,8 @@ class Rise:
 def ripple(path: EquilibriumPath, spacing: float, window: float, steps: int = STEPS_DRAWN) -> Ripple:
     """Separate the surfaces through pull-off on uniform triangles, from a resolved path's state in contact.
 
-    The contact radius is prescribed, which goes on falling where approach and load ripple.
-
-    Parameters
-    ----------
-    path : EquilibriumPath
-        Resolved curve.
-    spacing : float
-        Of the nodes, in beta.
-    window : float
-        Contact radii followed on both sides of that at pull-off, in beta.
-    steps : int
-        Of the contact radius to a spacing.
+    The contact radius is prescribed, which goes on falling where approach and load ripple: from a window in beta above
+    that at pull-off to as far below, in a number of steps to a spacing.
 
     Raises
     ------
@@ -139,20 +119,10 @@ Iteration = Callable[[ContactProblem, Array], relaxation.Relaxed]
 
 @dataclass(frozen=True)
 class Attempt:
-    """How one iteration fared.
+    """How one iteration fared at a Tabor parameter; without sweeps if it did not converge.
 
-    Attributes
-    ----------
-    tabor : float
-        Tabor parameter.
-    method : str
-        Name of the iteration.
-    sweeps : int or None
-        None if it did not converge.
-    outcome : str
-        Largest deviation of the load from Newton's, or why there is none.
-    seconds, newton_seconds : float
-        Of the iteration, and of Newton's method through a dozen central gaps from far away.
+    The outcome is the largest deviation of the load from Newton's, or why there is none; Newton's method goes through a
+    dozen central gaps from far away.
     """
 
     tabor: float

@@ -1,39 +1,54 @@
-"""The Greenwood study as a directory: figures, tables, and a page that shows them all."""
+"""The Greenwood study as a directory: figures, tables, and a page that shows them all.
+
+What is to be seen in each table is counted and measured on its entries.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from itertools import starmap
 from pathlib import Path
 
+import numpy as np
 from markupsafe import Markup
+from matplotlib.figure import Figure
 
 from fem_adhesion.common.facts import machine, versions
-from fem_adhesion.common.numbers import plus_minus
-from fem_adhesion.common.page import Section, listed, page, write_csv
-from fem_adhesion.common.style import captions, draw, shown
+from fem_adhesion.common.numbers import digits, joined, plus_minus, rises, told
+from fem_adhesion.common.page import Section, Table, listed, page, write_csv
+from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.greenwood import load_figures, state_figures, trend_figures
-from fem_adhesion.greenwood.record import tables
-from fem_adhesion.greenwood.study import Greenwood1997
+from fem_adhesion.greenwood.criteria import CriteriaStudy, closed_ratios
+from fem_adhesion.greenwood.curves import DeviceStudy
+from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
+from fem_adhesion.greenwood.study import JUMPS_AT, WINDING_AT, Greenwood1997, PullOff
+from fem_adhesion.greenwood.tables import Printed
+from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
+from halfspace.values import Estimate
 
-FIGURES = (*load_figures.FIGURES, *state_figures.FIGURES, *trend_figures.FIGURES)  # in the paper's order
 PAPER = "J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1277-1297"
 DOI = "10.1098/rspa.1997.0070"
+
+
+def _picture(
+    number: str, title: str, draw: Callable[[Greenwood1997], Figure], see: Callable[[Greenwood1997], Iterator[str]]
+) -> Picture[Greenwood1997]:
+    """Picture under the number that it has in the paper, or would have."""
+    origin = "Beyond the paper," if number in BEYOND else "After"
+    return Picture(f"fig_{number}", f"{origin} Fig. {number}: {title}", draw, see)
+
+
+BEYOND = ("8",)
+DRAWN = (*load_figures.FIGURES, *state_figures.FIGURES, *trend_figures.FIGURES)  # in the paper's order
+FIGURES = tuple(starmap(_picture, DRAWN))
 
 
 def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = lambda _: None) -> None:
     """Write every figure as SVG and PNG, every table and the captions as CSV, and ``index.html``.
 
-    Give it a directory made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none.
-
-    Parameters
-    ----------
-    study : Greenwood1997
-        What was computed.
-    directory : Path
-        Where to write.
-    begin : callable
-        Told what is drawn next, once for each of `FIGURES`.
+    Give it a directory made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none;
+    `begin` is told what is drawn next, once for each of `FIGURES`.
     """
     draw(FIGURES, study, directory, begin)
     written = tables(study)
@@ -64,3 +79,243 @@ def lead(study: Greenwood1997) -> Iterator[str]:
         critical = Markup("<strong>mu = {}</strong>").format(plus_minus(study.critical_tabor))
         first = Markup("The curve under fixed grips first has a vertical tangent at {}; the paper says about 1.")
         yield first.format(critical)
+
+
+EMPTY = "Nothing was computed."
+
+
+def tables(study: Greenwood1997) -> list[Table]:
+    """All tables in the order of the page."""
+    return [
+        *_printed_tables(study),
+        _jumps(study),
+        _cycles(study.devices),
+        _relaxations(study.relaxations),
+        _pull_offs(study),
+        _rises(study),
+        _true_jumps(study.criteria),
+        _constants(study.criteria),
+    ]
+
+
+def _printed_tables(study: Greenwood1997) -> Iterator[Table]:
+    printed = study.tables
+    title = "Table 1: f(alpha*)/alpha*^(3/2) of the DMT force method"
+    see = _see_table_1(printed.table_1, printed.asymptote)
+    yield _printed("table_1", title, see, "alpha*", printed.table_1)
+    title = "Table 2: jumping on and off under fixed grips"
+    see = f"{_agreement(printed.table_2)} The notes say what explains the others."
+    yield _printed("table_2", title, see, "mu", printed.table_2)
+    title, see = f"Pressures printed with Fig. 4, mu = {WINDING_AT:g}", _see_profile_checks(printed.profile_checks)
+    yield _printed("fig_4_checks", title, see, "gap H", printed.profile_checks)
+
+
+def _printed(stem: str, title: str, see: str, column: str, entries: Sequence[Printed]) -> Table:
+    columns = ("row", column, "unit", "printed", "computed", "error", "relative deviation", "note")
+    return Table(stem, title, see, columns, tuple(_entry(p) for p in entries))
+
+
+def _entry(p: Printed) -> tuple[str, ...]:
+    return (p.row, f"{p.column:g}", p.unit, p.printed, *_cells(p.computed), f"{p.deviation:+.1e}", p.note)
+
+
+def _agreement(entries: Sequence[Printed]) -> str:
+    """How many entries agree to their last digit, and which is off most."""
+    if not entries:
+        return EMPTY
+    exact = sum(entry.to_last_digit for entry in entries)
+    known = [entry for entry in entries if math.isfinite(entry.deviation)]
+    worst = max(known, key=lambda entry: abs(entry.deviation), default=None)
+    return joined(
+        f"{exact} of {len(entries)} values agree to their last printed digit.",
+        f"The largest relative deviation is {abs(worst.deviation):.1e}, in {worst.row} at {worst.column:g}."
+        if worst
+        else "",
+        "" if len(known) == len(entries) else f"{len(entries) - len(known)} are not numbers.",
+    )
+
+
+def _see_table_1(entries: Sequence[Printed], asymptote: tuple[Estimate, Estimate]) -> str:
+    """Agreement, and the constants of the asymptote."""
+    a, b = asymptote
+    fit = (
+        f"The asymptote f = a alpha*^(3/2) - b alpha*^2, fitted between 2e-5 and 1e-4, has a = {plus_minus(a)} and b = "
+        f"{plus_minus(b)} (standard errors of the fit; the paper: 1.84 and 7.7)."
+    )
+    return joined(_agreement(entries), told(fit, a.value, b.value))
+
+
+def _see_profile_checks(entries: Sequence[Printed]) -> str:
+    """Whether the printed pressures have the sign and size of the corrected law."""
+    if not entries:
+        return EMPTY
+    same = sum(float(entry.printed) * entry.computed.value > 0 for entry in entries)
+    within = sum(entry.to_last_digit for entry in entries)
+    return (
+        f"{same} of {len(entries)} printed pressures have the sign of the corrected law, compression positive, and "
+        f"{within} its value within the error, which is that of the rounded gap."
+    )
+
+
+def _jumps(study: Greenwood1997) -> Table:
+    loads = (f"{what} {when}, R dgamma" for when in ("before", "after") for what in ("W", "error of W"))
+    columns = ("jump", "alpha*, eps", "error of alpha*, eps", *loads)
+    rows = tuple(
+        (f"{j.take_off} to {j.landing}", *_cells(j.approach), *_cells(j.load), *_cells(j.landing_load))
+        for j in study.states.jumps
+    )
+    see = "Where each jump takes off and lands." if rows else "No jump was found."
+    return Table("jumps", f"Jumps of Fig. 2a, mu = {JUMPS_AT:g}, fixed grips", see, columns, rows)
+
+
+def _cycles(devices: DeviceStudy) -> Table:
+    """Both jumps and the loss of every apparatus."""
+    ends = ("jump on", "landing in contact", "jump off", "landing apart")
+    parts = (
+        f"{end}: {what}" for end in ends for what in ("alpha*, eps", "error, eps", "W, R dgamma", "error, R dgamma")
+    )
+    rows = []
+    for cycle in devices.cycles:
+        states = (state for jump in (cycle.jump_on, cycle.jump_off) for state in (jump.take_off, jump.landing))
+        numbers = (state.estimate(name) for state in states for name in ("approach", "load"))
+        name = "fixed grips" if math.isinf(cycle.stiffness) else f"{cycle.stiffness:g}"
+        rows.append((name, *(cell for one in (*numbers, cycle.energy_lost) for cell in _cells(one))))
+    title = f"Cycles of an apparatus, mu = {devices.tabor:g}"
+    columns = ("stiffness, R dgamma/eps", *parts, "energy lost, R dgamma eps", "error, R dgamma eps")
+    return Table("devices", title, _see_devices(devices), columns, rows)
+
+
+def _see_devices(study: DeviceStudy) -> str:
+    """Whether a softer apparatus loses more."""
+    lost = np.array([cycle.energy_lost.value for cycle in study.cycles])
+    grows = "the more energy a cycle loses" if rises(lost) else "the energy that a cycle loses does not always grow"
+    return joined(told(f"The softer the apparatus, {grows}.", lost), "The loss is the work of the base round the loop.")
+
+
+def _relaxations(attempts: Sequence[Attempt]) -> Table:
+    """Sweeps and times of the iterations of 1997."""
+    columns = ("mu", "iteration", "sweeps", "seconds", "Newton, seconds", "outcome")
+    rows = tuple(
+        (
+            f"{a.tabor:g}",
+            a.method,
+            "not converged" if a.sweeps is None else str(a.sweeps),
+            f"{a.seconds:.3f}",
+            f"{a.newton_seconds:.3f}",
+            a.outcome,
+        )
+        for a in attempts
+    )
+    title = f"The iterations of 1997 on {NODES} uniform nodes, from the undeformed surfaces to H(0) = 0"
+    return Table("relaxation", title, _see_relaxations(attempts), columns, rows)
+
+
+def _see_relaxations(attempts: Sequence[Attempt]) -> str:
+    """How many of each iteration ended, and in how many sweeps."""
+    names = dict.fromkeys(attempt.method for attempt in attempts)
+    return joined(*(_iteration(name, [a for a in attempts if a.method == name]) for name in names))
+
+
+def _iteration(name: str, attempts: Sequence[Attempt]) -> str:
+    sweeps = [attempt.sweeps for attempt in attempts if attempt.sweeps is not None]
+    ended = f"{name}: {len(sweeps)} of {len(attempts)} converged"
+    return f"{ended}, in {min(sweeps)} to {max(sweeps)} sweeps." if sweeps else f"{ended}."
+
+
+def _pull_offs(study: Greenwood1997) -> Table:
+    solvers = ("half-space", "finite elements")
+    columns = ("mu", *(f"{solver}{what}, R dgamma" for solver in solvers for what in ("", ", error")))
+    rows = tuple((f"{p.tabor:.6g}", *_cells(p.half_space), *_cells(p.finite_element)) for p in study.pull_offs)
+    return Table("pull_off", "Load at pull-off, Fig. 7", _see_pull_offs(study.pull_offs), columns, rows)
+
+
+def _see_pull_offs(found: Sequence[PullOff]) -> str:
+    """The ends beside their limits."""
+    if not found:
+        return EMPTY
+    first, last = found[0], found[-1]
+    text = (
+        f"From {first.half_space.value:.4f} at mu = {first.tabor:.3g} to {last.half_space.value:.4f} at mu = "
+        f"{last.tabor:.3g}; Bradley's is -2 pi = {BRADLEY_PULL_OFF:.4f}, JKR's -3 pi/2 = {JKR_PULL_OFF:.4f}."
+    )
+    return told(text, first.half_space.value, last.half_space.value) or joined()
+
+
+def _rises(study: Greenwood1997) -> Table:
+    """Least loads met on grids that are too coarse, wrong on purpose."""
+    columns = ("spacing, beta", "mu", "least load, R dgamma")
+    rows = tuple(
+        (f"{spacing:g}", f"{r.tabor:.6g}", f"{r.pull_off:.4f}")
+        for spacing, rise in study.rises.items()
+        for r in rise.ripples
+    )
+    see = joined(*(f"{spacing:g} beta: ended as {rise.ended}." for spacing, rise in study.rises.items()))
+    title = "Least load on uniform triangles that are too wide, Fig. 7: wrong on purpose, so without an error"
+    return Table("coarse_grids", title, see, columns, rows)
+
+
+def _true_jumps(criteria: CriteriaStudy) -> Table:
+    """True jumps beside what the criteria predict for them."""
+    usable = [c for c in criteria.criteria if c.predict is not None]
+    predicted = [c.predict(criteria.tabor) for c in usable if c.predict]
+    names = (f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps" for c in usable)
+    errors = ("error of alpha*, eps", "error of H0, eps")
+    columns = ("mu", "alpha*, eps", errors[0], "H0, eps", errors[1], "b sigma'/sigma", *names)
+    rows = tuple(
+        (
+            f"{jump.tabor:.6g}",
+            *_cells(jump.approach),
+            *_cells(jump.central_gap),
+            f"{jump.fundamental:.5f}",
+            *(f"{values[i]:.5f}" for values in predicted),
+        )
+        for i, jump in enumerate(criteria.jumps)
+    )
+    return Table("criteria", "True jumps on and the criteria's predictions", _see_true_jumps(criteria), columns, rows)
+
+
+def _see_true_jumps(study: CriteriaStudy) -> str:
+    """What the fundamental criterion reads at the true jumps."""
+    read = np.array([jump.fundamental for jump in study.jumps])
+    if not read.size:
+        return EMPTY
+    verdict = "states that it calls unstable are stable" if read.max() < -1 else "it does not always come too soon"
+    text = (
+        f"The fundamental criterion (4.3) expects b sigma'/sigma = -1 at the jump, where the solution has "
+        f"{read.max():.2f} to {read.min():.2f}: {verdict}."
+    )
+    return told(text, read) or joined()
+
+
+def _constants(criteria: CriteriaStudy) -> Table:
+    columns = ("criterion", "formula", "constant", "printed", "refitted", "standard error", "scatter of ln(left side)")
+    rows = tuple(
+        (c.name, c.formula, name, "" if printed is None else f"{printed:.6g}", *_cells(fitted), f"{c.scatter:.1e}")
+        for c in criteria.criteria
+        for name, printed, fitted in c.constants
+    )
+    span = f" for mu = {criteria.tabor[0]:g} to {criteria.tabor[-1]:g}" if criteria.jumps else ""
+    title = f"Constants of the criteria, refitted{span}"
+    return Table("criteria_constants", title, _see_constants(criteria), columns, rows)
+
+
+def _see_constants(study: CriteriaStudy) -> str:
+    """How far the closed criteria's printed constants are from the refitted ones."""
+    printed = [
+        (criterion.name, value / fitted.value)
+        for criterion in study.criteria
+        for name, value, fitted in criterion.constants
+        if name == "k" and value is not None
+    ]
+    ratios = np.array([ratio for _, ratio in printed])
+    if not ratios.size:
+        return "Least squares of logarithms."
+    low, high = min(printed, key=lambda item: item[1]), max(printed, key=lambda item: item[1])
+    size = "too large" if low[1] > 1 else "too small" if high[1] < 1 else "too small and too large"
+    text = f"The closed criteria's are {size}: {low[1]:.2f} times the refitted ({low[0]}) to {high[1]:.2f} ({high[0]})."
+    return joined("Least squares of logarithms.", told(text, ratios, closed_ratios(study)))
+
+
+def _cells(estimate: Estimate | None) -> tuple[str, str]:
+    """Value and error; empty if there is none."""
+    return ("", "") if estimate is None else (digits(estimate), f"{estimate.error:.1e}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
@@ -9,9 +10,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
-from fem_adhesion.common.numbers import plus_minus
-from fem_adhesion.common.style import Picture, branches, curve, dress, note, panels, theory
-from fem_adhesion.common.words import joined, listed, rises, told
+from fem_adhesion.common.numbers import listed, plus_minus, rises, told
+from fem_adhesion.common.style import branches, curve, dress, note, panels, theory
 from fem_adhesion.greenwood.curves import elements_beside, gap_falls
 from fem_adhesion.greenwood.study import WINDING_AT, Greenwood1997
 from halfspace.accuracy.fold_birth import count_folds
@@ -27,12 +27,7 @@ RADII_AT = (0.5, 2.0, 5.0)  # of Fig. 5
 NEAR = 0.01  # relative difference below which two heights are called the same
 INSIDE = 0.8  # of the contact radius: where the gap is looked at for being flat
 THEORIES_AT = (0.5, 2.0)
-FOLD_NUMBERS = (
-    (0, (8, 0)),
-    (1, (-16, -3)),
-    (1, (8, -3)),
-    (0, (-4, 9)),
-)  # panel and offset in points
+FOLD_NUMBERS = ((0, (8, 0)), (1, (-16, -3)), (1, (8, -3)), (0, (-4, 9)))  # panel and offset in points
 PROFILE_STYLES = (
     (style.SKY, "-"),
     (style.BLUE, style.DASHED),
@@ -60,15 +55,13 @@ def _name(axes: Any, tabor: float, at: tuple[float, float]) -> None:
     axes.text(*at, rf"$\mu = {tabor:g}$", color=style.OF_TABOR[tabor], fontsize=11, weight="bold")
 
 
-def _see_3a(study: Greenwood1997) -> str:
+def _see_3a(study: Greenwood1997) -> Iterator[str]:
     """Folds of each curve, and the first of all."""
     folds = [f"{count_folds(study.curves[mu])} at mu = {mu:g}" for mu in GAPS_AT]
     finite = all(np.all(np.isfinite(study.curves[mu].approach)) for mu in GAPS_AT)
     critical = study.critical_tabor
-    return joined(
-        f"The approach turns so many times: {listed(folds)}." if finite else "",
-        told(f"It first turns at mu = {plus_minus(critical)}.", critical.value, critical.error),
-    )
+    yield f"The approach turns so many times: {listed(folds)}." if finite else ""
+    yield told(f"It first turns at mu = {plus_minus(critical)}.", critical.value, critical.error)
 
 
 def _figure_3b(study: Greenwood1997) -> Figure:
@@ -84,17 +77,15 @@ def _figure_3b(study: Greenwood1997) -> Figure:
     return figure
 
 
-def _see_3b(study: Greenwood1997) -> str:
+def _see_3b(study: Greenwood1997) -> Iterator[str]:
     """The gap as a control, at pull-off, and by finite elements."""
     gaps = np.array([study.curves[mu].events["pull_off"].central_gap for mu in GAPS_AT])
-    falling = [gap_falls(study.curves[mu]) for mu in GAPS_AT]
+    falling = all(gap_falls(study.curves[mu]) for mu in GAPS_AT)
     told_of = "negative at each" if np.all(gaps < 0) else "not negative at each"
-    every = [elements_beside(study.elements.get(mu), study.curves[mu], "load", "central_gap") for mu in GAPS_AT]
-    return joined(
-        "The central gap falls all along every curve." if all(falling) else "The central gap does not fall all along.",
-        told(f"At pull-off it is {gaps.min():.4f} to {gaps.max():.4f} eps, {told_of} mu.", gaps),
-        *every,
-    )
+    yield f"The central gap {'falls all along every curve' if falling else 'does not fall all along'}."
+    yield told(f"At pull-off it is {gaps.min():.4f} to {gaps.max():.4f} eps, {told_of} mu.", gaps)
+    for mu in GAPS_AT:
+        yield elements_beside(study.elements.get(mu), study.curves[mu], "load", "central_gap")
 
 
 def _figure_3c(study: Greenwood1997) -> Figure:
@@ -114,15 +105,13 @@ def _figure_3c(study: Greenwood1997) -> Figure:
     return figure
 
 
-def _see_3c(study: Greenwood1997) -> str:
+def _see_3c(study: Greenwood1997) -> Iterator[str]:
     """How many folds there are, and what falls."""
     path, count = study.curves[WINDING_AT], len(study.states.folds)
     between = f", {count - 2} of them between jump-on and jump-off" if count > 2 else ""
     falls = "falls" if gap_falls(path) else "does not fall"
-    return joined(
-        f"The approach has {count} folds{between}.",
-        told(f"The central gap {falls} all along the curve.", path.central_gap),
-    )
+    yield f"The approach has {count} folds{between}."
+    yield told(f"The central gap {falls} all along the curve.", path.central_gap)
 
 
 def _figure_4(study: Greenwood1997, quantity: str, label: str, ylim: tuple[float, float]) -> Figure:
@@ -136,11 +125,11 @@ def _figure_4(study: Greenwood1997, quantity: str, label: str, ylim: tuple[float
     return figure
 
 
-def _see_4a(study: Greenwood1997) -> str:
+def _see_4a(study: Greenwood1997) -> Iterator[str]:
     """How flat the gap is inside the last contact."""
     shown = study.states.profiles
     if not shown:
-        return joined()
+        return
     last = shown[-1]
     inside = last.gap[last.radii < INSIDE * last.contact_radius]
     spread = float(np.ptp(inside)) if inside.size else float("nan")
@@ -149,14 +138,14 @@ def _see_4a(study: Greenwood1997) -> str:
         f"{last.central_gap:.4g} eps; in the last the gap varies by {spread:.2g} eps inside {INSIDE:g} of the contact "
         f"radius, {last.contact_radius:.3f} beta."
     )
-    return told(text, spread, shown[0].central_gap, last.central_gap) or joined()
+    yield told(text, spread, shown[0].central_gap, last.central_gap)
 
 
-def _see_4b(study: Greenwood1997) -> str:
+def _see_4b(study: Greenwood1997) -> Iterator[str]:
     """Height and place of the largest tension."""
     touching = [p for p in study.states.profiles if np.isfinite(p.contact_radius)]
     if not touching:
-        return joined()
+        return
     heights = np.array([-p.pressure.min() for p in touching]) / WINDING_AT
     places = np.array([p.radii[p.pressure.argmin()] for p in touching])
     strength = -float(LENNARD_JONES.pressure(np.array(LENNARD_JONES.edge_gap), 1.0))
@@ -167,7 +156,7 @@ def _see_4b(study: Greenwood1997) -> str:
         f"{heights.min():.3f} to {heights.max():.3f} mu. Its place {outwards}, from {places[0]:.2f} to "
         f"{places[-1]:.2f} beta."
     )
-    return told(text, heights, places) or joined()
+    yield told(text, heights, places)
 
 
 def _figure_5(study: Greenwood1997) -> Figure:
@@ -196,7 +185,7 @@ def _maugis(axes: Any, tabor: float, radius: Array) -> None:
     axes.plot(load, carpick_radius(load, MAUGIS.of(tabor)), linestyle=style.DOTTED, label=label, **thin)
 
 
-def _see_5(study: Greenwood1997) -> str:
+def _see_5(study: Greenwood1997) -> Iterator[str]:
     """Radius at zero load beside JKR's and Maugis-Dugdale's."""
     radii = np.array([_zero_load_radius(study.curves[mu]) for mu in RADII_AT])
     jkr = jkr_zero_load(1.0).contact_radius
@@ -204,14 +193,10 @@ def _see_5(study: Greenwood1997) -> str:
     maugis = float(MaugisDugdale.matched(RADII_AT[0]).load(radii[0])) if np.isfinite(radii[0]) else float("nan")
     size = "smaller" if maugis > 0 else "not smaller"
     sizes = listed([f"{radius:.3f} at mu = {mu:g}" for mu, radius in zip(RADII_AT, radii, strict=True)])
-    return joined(
-        told(
-            f"At zero load the radius is {sizes}, in beta: it {closing} on JKR's {jkr:.3f} all along.",
-            radii,
-        ),
-        told(f"Maugis-Dugdale's, the inner edge of its ring of tension, is {size} at mu = {RADII_AT[0]:g}.", maugis),
-        *(elements_beside(study.elements.get(mu), study.curves[mu], "load", "contact_radius") for mu in RADII_AT),
-    )
+    yield told(f"At zero load the radius is {sizes}, in beta: it {closing} on JKR's {jkr:.3f} all along.", radii)
+    yield told(f"Maugis-Dugdale's, the inner edge of its ring of tension, is {size} at mu = {RADII_AT[0]:g}.", maugis)
+    for mu in RADII_AT:
+        yield elements_beside(study.elements.get(mu), study.curves[mu], "load", "contact_radius")
 
 
 def _zero_load_radius(path: EquilibriumPath) -> float:
@@ -219,26 +204,13 @@ def _zero_load_radius(path: EquilibriumPath) -> float:
     return event.contact_radius if event else float("nan")
 
 
+GAPS = partial(_figure_4, quantity="gap", label="gap $H$", ylim=(-0.3, 8))
+PRESSURES = partial(_figure_4, quantity="pressure", label="pressure $P$", ylim=(-5.6, 1.4))
 FIGURES = (
-    Picture("fig_3a", "After Fig. 3a: Central gap against approach", _figure_3a, _see_3a),
-    Picture("fig_3b", "After Fig. 3b: Central gap against load", _figure_3b, _see_3b),
-    Picture(
-        "fig_3c",
-        f"After Fig. 3c: Central gap against approach at mu = {WINDING_AT:g}, and its folds",
-        _figure_3c,
-        _see_3c,
-    ),
-    Picture(
-        "fig_4a",
-        f"After Fig. 4a: Gap profiles along the curve at mu = {WINDING_AT:g}",
-        partial(_figure_4, quantity="gap", label="gap $H$", ylim=(-0.3, 8)),
-        _see_4a,
-    ),
-    Picture(
-        "fig_4b",
-        "After Fig. 4b: Pressure profiles of the same states",
-        partial(_figure_4, quantity="pressure", label="pressure $P$", ylim=(-5.6, 1.4)),
-        _see_4b,
-    ),
-    Picture("fig_5", "After Fig. 5: Contact radius against load", _figure_5, _see_5),
+    ("3a", "Central gap against approach", _figure_3a, _see_3a),
+    ("3b", "Central gap against load", _figure_3b, _see_3b),
+    ("3c", f"Central gap against approach at mu = {WINDING_AT:g}, and its folds", _figure_3c, _see_3c),
+    ("4a", f"Gap profiles along the curve at mu = {WINDING_AT:g}", GAPS, _see_4a),
+    ("4b", "Pressure profiles of the same states", PRESSURES, _see_4b),
+    ("5", "Contact radius against load", _figure_5, _see_5),
 )

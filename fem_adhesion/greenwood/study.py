@@ -6,7 +6,7 @@ J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,19 +70,14 @@ class States(Valued):
 
 @dataclass(frozen=True)
 class Tables:
-    """Printed beside computed.
+    """Printed beside computed: both tables, and the pressures printed with Fig. 4.
 
-    Attributes
-    ----------
-    table_1, table_2, profile_checks : tuple of Printed
-        Both tables, and the pressures printed with Fig. 4.
-    asymptote : pair of Estimate
-        Constants of f = a alpha*^(3/2) - b alpha*^2, with the standard errors of their fit.
+    `asymptote` has the constants of f = a alpha*^(3/2) - b alpha*^2, with the standard errors of their fit.
     """
 
-    table_1: tuple[Printed, ...]
-    table_2: tuple[Printed, ...]
-    profile_checks: tuple[Printed, ...]
+    table_1: Sequence[Printed]
+    table_2: Sequence[Printed]
+    profile_checks: Sequence[Printed]
     asymptote: tuple[Estimate, Estimate]
 
 
@@ -94,28 +89,20 @@ class Greenwood1997:
     ----------
     curves, elements : mapping of float to EquilibriumPath
         Curves on the half-space and by finite elements, by Tabor parameter.
-    states : States
-        Jumps, folds and profiles.
-    pull_offs : tuple of PullOff
-        By rising Tabor parameter.
-    ripples : tuple of Ripple
-        Curves at mu = 2 on grids that are too coarse.
-    rises : mapping of float to Rise
-        By spacing: the false rise of the pull-off force.
-    criteria : CriteriaStudy
-        Of jumping on.
-    tables : Tables
-        Printed beside computed.
+    states, pull_offs : States, tuple of PullOff
+        Jumps, folds and profiles; pull-off by rising Tabor parameter.
+    ripples, rises : tuple of Ripple, mapping of float to Rise
+        Curves at mu = 2 on grids that are too coarse; by spacing, the false rise of the pull-off force.
+    criteria, tables : CriteriaStudy, Tables
+        Of jumping on; printed beside computed.
     relaxations : tuple of Attempt
         The iterations of 1997 on 200 nodes.
     devices : DeviceStudy
         Apparatus of finite stiffness, at mu = 2.
     critical_tabor : Estimate
         Where the curve first has a vertical tangent.
-    seconds : float
-        Wall time of the computation.
-    quick : bool
-        Whether fewer points were computed.
+    seconds, quick : float, bool
+        Wall time of the computation; whether fewer points were computed.
     """
 
     curves: Mapping[float, EquilibriumPath]
@@ -150,17 +137,9 @@ class Greenwood1997:
 class Extent:
     """How much is computed.
 
-    Attributes
-    ----------
-    elements, pull_offs, element_pull_offs, jumps, rising : tuples
-        Tabor parameters: of finite-element curves, of pull-off loads on the half-space and by finite elements, of
-        true jumps, of the false rise.
-    rises : tuple
-        Spacings of the false rise.
-    sweeps : int
-        Allowed to Greenwood's iteration.
-    rtol : float
-        Relative accuracy of the tables.
+    Tabor parameters of finite-element curves, of pull-off loads on the half-space and by finite elements, of true
+    jumps, and of the false rise; its spacings; the sweeps allowed to Greenwood's iteration; the tables' relative
+    accuracy.
     """
 
     elements: tuple[float, ...]
@@ -207,14 +186,9 @@ SUBJECTS = (
 
 
 def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: None) -> Greenwood1997:
-    """Compute everything.
+    """Compute everything; `begin` is told each of `SUBJECTS`, in order, as its work begins.
 
-    Parameters
-    ----------
-    quick : bool
-        Take fewer points and a tolerance of 1e-5 in the tables.
-    begin : callable
-        Told each of `SUBJECTS`, in order, as its work begins.
+    A quick study takes fewer points, and a tolerance of 1e-5 in the tables.
     """
     began = time.perf_counter()
     extent = QUICK if quick else FULL
@@ -239,21 +213,8 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     critical_tabor = _critical_tabor()
     states = _states(drawn[WINDING_AT])
     seconds = time.perf_counter() - began
-    return Greenwood1997(
-        drawn,
-        elements,
-        states,
-        pull_offs,
-        ripples,
-        rises,
-        criteria,
-        printed,
-        relaxations,
-        apparatus,
-        critical_tabor,
-        seconds,
-        quick,
-    )
+    parts = drawn, elements, states, pull_offs, ripples, rises, criteria, printed, relaxations, apparatus
+    return Greenwood1997(*parts, critical_tabor, seconds, quick)
 
 
 def _drawn(tabor: float) -> EquilibriumPath:
@@ -274,9 +235,7 @@ def _rises(extent: Extent) -> dict[float, Rise]:
 
 def _printed(extent: Extent) -> Tables:
     paths = {mu: halfspace.trace(mu, rtol=extent.rtol) for mu in tables.TABORS}
-    return Tables(
-        tuple(tables.table_1()), tuple(tables.table_2(paths)), tuple(tables.profile_checks()), tables.excess_asymptote()
-    )
+    return Tables(tables.table_1(), tables.table_2(paths), tables.profile_checks(), tables.excess_asymptote())
 
 
 def _pull_off(tabor: float, extent: Extent) -> PullOff:

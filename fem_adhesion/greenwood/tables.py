@@ -35,14 +35,10 @@ class Printed:
 
     Attributes
     ----------
-    row : str
-        Row of the table.
-    column : float
-        Column: alpha* of Table 1, the Tabor parameter of Table 2, the gap of Fig. 4.
-    unit : str
-        Of both values.
-    printed : str
-        As printed.
+    row, column : str, float
+        Of the table: alpha* of Table 1, the Tabor parameter of Table 2, the gap of Fig. 4.
+    unit, printed : str
+        Of both values; as printed.
     computed : Estimate
         Converged value with its error.
     note : str

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
-from fem_adhesion.common.numbers import digits, plus_minus
-from fem_adhesion.common.style import Picture, dress, note, panels, plain_ticks
-from fem_adhesion.common.words import joined, rises, told
+from fem_adhesion.common.numbers import digits, listed, plus_minus, rises, told
+from fem_adhesion.common.style import dress, note, panels, plain_ticks
 from fem_adhesion.greenwood.criteria import Criterion, words_on
 from fem_adhesion.greenwood.numerics_1997 import Ripple
 from fem_adhesion.greenwood.study import RIPPLE_AT, Greenwood1997, PullOff
@@ -70,9 +69,9 @@ def _criterion(axes: Any, criterion: Criterion, tabor: Array, power: float = 0.0
     axes.plot(tabor, predicted, color=colour, linestyle=dashes, label=criterion.name)
 
 
-def _see_6a(study: Greenwood1997) -> str:
+def _see_6a(study: Greenwood1997) -> Iterator[str]:
     """Too wide or too narrow a gap by the closed criteria, and how far the fits are off."""
-    return joined(*words_on(study.criteria))
+    return words_on(study.criteria)
 
 
 def _figure_6b(study: Greenwood1997) -> Figure:
@@ -86,33 +85,24 @@ def _figure_6b(study: Greenwood1997) -> Figure:
     return figure
 
 
-def _see_6b(study: Greenwood1997) -> str:
+def _see_6b(study: Greenwood1997) -> Iterator[str]:
     """Whether the gap at jump-on goes as mu^(3/7)."""
     jumps = study.criteria
     scaled = (jumps.central_gap + 1) / jumps.tabor ** (3 / 7)
     steady, below = scaled[jumps.tabor >= STEADY], scaled[jumps.tabor < STEADY]
     spread = float(np.ptp(steady) / steady.mean()) if steady.size > 1 else math.nan
-    power = (
-        "the power 3/7 of the criteria holds" if spread < CONSTANT else "the power 3/7 of the criteria does not hold"
-    )
+    power = f"the power 3/7 of the criteria {'holds' if spread < CONSTANT else 'does not hold'}"
     falls = "falls" if below.size and below[0] < steady.min(initial=np.inf) else "does not fall"
-    return joined(
-        told(f"From mu = {STEADY:g} on the scaled gap varies by {100 * spread:.2g} %: {power} there.", spread),
-        told(f"Below it {falls}, to {below[0]:.3f} at mu = {jumps.tabor[0]:.3g}." if below.size else "", below, scaled),
-    )
+    yield told(f"From mu = {STEADY:g} on the scaled gap varies by {100 * spread:.2g} %: {power} there.", spread)
+    if below.size:
+        yield told(f"Below it {falls}, to {below[0]:.3f} at mu = {jumps.tabor[0]:.3g}.", scaled)
 
 
 def _figure_7(study: Greenwood1997) -> Figure:
     figure, (trend, ripple) = panels(2, height=6.6)
     tabor = np.array([p.tabor for p in study.pull_offs])
-    trend.semilogx(
-        tabor,
-        [-p.half_space.value for p in study.pull_offs],
-        color=style.BLUE,
-        linewidth=2,
-        marker=".",
-        label="half-space",
-    )
+    force = [-p.half_space.value for p in study.pull_offs]
+    trend.semilogx(tabor, force, color=style.BLUE, linewidth=2, marker=".", label="half-space")
     _elements(trend, [p for p in study.pull_offs if p.finite_element])
     maugis = [-MaugisDugdale.matched(mu).pull_off().load for mu in tabor]
     trend.semilogx(tabor, maugis, color=style.GREEN, linestyle=style.CHAIN, label="Maugis-Dugdale")
@@ -135,9 +125,8 @@ def _elements(axes: Any, pull_offs: Sequence[PullOff]) -> None:
 
 def _spacing(axes: Any, spacing: float, x: Sequence[float] | Array, y: Sequence[float] | Array) -> None:
     colour, dashes = SPACING_STYLES[spacing]
-    axes.plot(
-        x, y, color=colour, linestyle=dashes, linewidth=1.4, zorder=3, label=rf"uniform triangles, ${spacing:g}\,\beta$"
-    )
+    label = rf"uniform triangles, ${spacing:g}\,\beta$"
+    axes.plot(x, y, color=colour, linestyle=dashes, linewidth=1.4, zorder=3, label=label)
 
 
 def _limits(axes: Any, left: float, right: float) -> None:
@@ -157,23 +146,17 @@ def _ripples(axes: Any, study: Greenwood1997) -> None:
     axes.set_title(rf"through pull-off at $\mu = {RIPPLE_AT:g}$")
 
 
-def _see_7(study: Greenwood1997) -> str:
+def _see_7(study: Greenwood1997) -> Iterator[str]:
     """The true trend, what finite elements say of it, and where coarse grids turn upwards."""
     forces = np.array([-p.half_space.value for p in study.pull_offs])
     trend = "falls" if rises(-forces) else "does not fall"
     ends = f"from {forces[0]:.4f} to {forces[-1]:.4f} R dgamma" if forces.size else ""
     range_ = f"mu = {study.pull_offs[0].tabor:.3g} to {study.pull_offs[-1].tabor:.3g}" if forces.size else ""
-    return joined(
-        told(f"The true force {trend} all along, {ends} at {range_}.", forces),
-        _agreement(study),
-        *(_turn(spacing, rise.ripples) for spacing, rise in study.rises.items()),
-    )
-
-
-def _agreement(study: Greenwood1997) -> str:
-    both = [p for p in study.pull_offs if p.finite_element]
-    agreeing = sum(p.agree for p in both)
-    return f"Finite elements agree within both errors at {agreeing} of {len(both)} Tabor parameters." if both else ""
+    yield told(f"The true force {trend} all along, {ends} at {range_}.", forces)
+    if both := [p.agree for p in study.pull_offs if p.finite_element]:
+        yield f"Finite elements agree within both errors at {sum(both)} of {len(both)} Tabor parameters."
+    for spacing, rise in study.rises.items():
+        yield _turn(spacing, rise.ripples)
 
 
 def _turn(spacing: float, ripples: Sequence[Ripple]) -> str:
@@ -204,10 +187,10 @@ def _figure_8(study: Greenwood1997) -> Figure:
 def _arrows(axes: Any, cycle: Cycle) -> None:
     """Both jumps along their load lines."""
     colour, dashes = STIFFNESS_STYLES[cycle.stiffness]
-    look = {"color": colour, "linestyle": dashes, "linewidth": 1.7}
+    look: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 1.7}
     for jump in (cycle.jump_on, cycle.jump_off):
         tail, head = ((state.approach, state.load) for state in (jump.take_off, jump.landing))
-        axes.annotate("", head, tail, arrowprops={"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, **look})
+        style.arrow(axes, tail, head, **look)
     name = "fixed grips" if np.isinf(cycle.stiffness) else rf"$k = {cycle.stiffness:g}\,R\Delta\gamma/\epsilon$"
     axes.plot([], [], label=name, **look)
 
@@ -228,28 +211,21 @@ def _border(axes: Any, study: Greenwood1997) -> None:
     axes.set_title("where an apparatus makes the contact jump")
 
 
-def _see_8(study: Greenwood1997) -> str:
+def _see_8(study: Greenwood1997) -> Iterator[str]:
     """What a softer apparatus does, and from what stiffness a contact jumps."""
     cycles = study.devices.cycles
     lost = np.array([c.energy_lost.value for c in cycles])
     away = np.array([-c.jump_on.take_off.approach for c in cycles])
     pull = np.array([-c.jump_off.take_off.load for c in cycles])
     words = [
-        f"{'jumps on from farther away' if rises(away) else 'does not always jump on from farther away'}",
-        f"{'jumps off at a larger pull' if rises(pull) else 'does not always jump off at a larger pull'}",
-        f"{'loses more' if rises(lost) else 'does not always lose more'}",
+        "jumps on from farther away" if rises(away) else "does not always jump on from farther away",
+        "jumps off at a larger pull" if rises(pull) else "does not always jump off at a larger pull",
+        "loses more" if rises(lost) else "does not always lose more",
     ]
     critical = study.critical_tabor
-    return joined(
-        told(
-            f"At mu = {study.devices.tabor:g} a softer apparatus {words[0]}, {words[1]} and {words[2]}.",
-            lost,
-            away,
-            pull,
-        ),
-        _follows(study.devices.border),
-        told(f"Fixed grips jump from mu = {plus_minus(critical)} on.", critical.value, critical.error),
-    )
+    yield told(f"At mu = {study.devices.tabor:g} a softer apparatus {listed(words)}.", lost, away, pull)
+    yield _follows(study.devices.border)
+    yield told(f"Fixed grips jump from mu = {plus_minus(critical)} on.", critical.value, critical.error)
 
 
 def _follows(border: Array) -> str:
@@ -265,18 +241,8 @@ def _follows(border: Array) -> str:
 
 
 FIGURES = (
-    Picture("fig_6a", "After Fig. 6a: Central gap and approach at jump-on, with the criteria", _figure_6a, _see_6a),
-    Picture("fig_6b", "After Fig. 6b: Central gap at jump-on, scaled by mu^(3/7)", _figure_6b, _see_6b),
-    Picture(
-        "fig_7",
-        "After Fig. 7: Pull-off force against the Tabor parameter, and on coarse grids",
-        _figure_7,
-        _see_7,
-    ),
-    Picture(
-        "fig_8",
-        "Beyond the paper, Fig. 8: Jumps of an apparatus of finite stiffness, and where they begin",
-        _figure_8,
-        _see_8,
-    ),
+    ("6a", "Central gap and approach at jump-on, with the criteria", _figure_6a, _see_6a),
+    ("6b", "Central gap at jump-on, scaled by mu^(3/7)", _figure_6b, _see_6b),
+    ("7", "Pull-off force against the Tabor parameter, and on coarse grids", _figure_7, _see_7),
+    ("8", "Jumps of an apparatus of finite stiffness, and where they begin", _figure_8, _see_8),
 )

@@ -1,5 +1,4 @@
 """Bodies for the eye.
 
-`arrays` and `write` (VTK files), `lattice` and `revolve` (sections and solids in cells of the second order), `cutaway`
-and `solid` (pictures by pyvista).
+`arrays` and `write` (VTK files), `cells` (sections and solids in cells of the second order), `picture` (by pyvista).
 """

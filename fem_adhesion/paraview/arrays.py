@@ -10,10 +10,8 @@ import numpy as np
 
 from fem_adhesion.common.facts import plain
 from fem_adhesion.elasticity import stress as stresses
-from fem_adhesion.fields.beside import Beside, is_same_contact
-from fem_adhesion.fields.state import State
-from fem_adhesion.paraview.lattice import Cut
-from fem_adhesion.paraview.revolve import Solid
+from fem_adhesion.fields import Beside, State, is_same_contact
+from fem_adhesion.paraview.cells import Cut, Solid
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.events import EVENTS
 from halfspace.errors import InputError
@@ -53,16 +51,9 @@ COMPONENTS_OF_SOLID = COMPONENTS | dict.fromkeys(VECTORS, ("x", "y", "z"))
 
 @dataclass(frozen=True)
 class Unit:
-    """Unit of an array.
+    """Unit of an array: the paper's in words, and that of SI as part of a name, none of a number without a dimension.
 
-    Attributes
-    ----------
-    words : str
-        The paper's.
-    suffix : str
-        That of SI, as part of a name; none of a number without a dimension.
-    size : callable
-        The paper's unit of a material in that of SI.
+    `size` is the paper's unit of a material in that of SI.
     """
 
     words: str
@@ -169,8 +160,7 @@ def turned(arrays: Named, solid: Solid) -> Named:
 def on_surface(state: State, beside: Beside, scale: float) -> Named:
     """Arrays on the nodes of the contact surface; those of the half-space say so, and whether it is another body."""
     other = "half_space" if is_same_contact(state.scene) else "half_space_which_is_another_body"
-    functions = state.space.boundary_functions("contact")
-    u_r, u_z = (state.surface.values @ state.components[:, functions].T).T
+    u_r, u_z = state.surface_displacement
     displacement = np.stack([u_r, np.zeros_like(u_r), u_z], axis=1)
     return _displacements(state, displacement, scale) | {
         "pressure": state.pressure,

@@ -16,8 +16,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from fem_adhesion.common.files import directory_written_aside, writing
-from fem_adhesion.fields.beside import half_space_beside
-from fem_adhesion.fields.state import State
+from fem_adhesion.fields import State, half_space_beside
 from fem_adhesion.paraview.arrays import (
     COMPONENTS,
     COMPONENTS_OF_SOLID,
@@ -32,8 +31,7 @@ from fem_adhesion.paraview.arrays import (
     turned,
     words,
 )
-from fem_adhesion.paraview.lattice import cut_for
-from fem_adhesion.paraview.revolve import require_angle, revolved
+from fem_adhesion.paraview.cells import cut_for, require_angle, revolved
 from halfspace.errors import InputError
 from halfspace.scaling import Units
 from halfspace.values import Array, Index
@@ -67,15 +65,13 @@ def write_path(
     Parameters
     ----------
     states : iterable of State
-        Of one scene, in order, from `fem_adhesion.fields.state.states_along`.
-    directory : Path
-        Where to; made unless it exists.
+        Of one scene, in order, from `fem_adhesion.fields.states_along`.
+    directory, force : Path, bool
+        Where to; made unless it exists, and accepted if it is not empty only by force.
     units : Units, optional
         Of a material: points and arrays are in SI then, and the names of arrays end in their unit.
     revolve : float, optional
         Angle of the solid in degrees, 360 for all round; no solid unless given.
-    force : bool
-        Accept a directory that is not empty.
 
     Returns
     -------

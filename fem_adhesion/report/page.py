@@ -19,8 +19,7 @@ from fem_adhesion.crosscheck.study import Case, Failure
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve.lines import UNSTABLE, Line, smooth
 from fem_adhesion.curve.solve import Curves
-from fem_adhesion.report.levels import crosscheck_section, settings_section
-from fem_adhesion.report.sections import SOURCES, section_of
+from fem_adhesion.report.sections import SOURCES, crosscheck_section, section_of, settings_section
 from fem_adhesion.report.walk import LINES, Station, Walk
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.values import Array
@@ -45,10 +44,8 @@ class Contents:
     ----------
     cases : sequence of Case or Failure
         The cross-check.
-    curves : Curves or None
-        One curve by both solvers, if it could be solved.
-    walk : Walk or None
-        The same curve, state by state.
+    curves, walk : Curves and Walk, or None
+        One curve by both solvers, if it could be solved, and state by state.
     directories : mapping of str to Path
         Results of other commands, by the commands' names.
     lost : str

@@ -15,8 +15,7 @@ from fem_adhesion import convergence
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.elasticity.stress import positions, sampled
-from fem_adhesion.fields.beside import half_space_beside
-from fem_adhesion.fields.state import State, states_along
+from fem_adhesion.fields import State, half_space_beside, states_along
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import NotConverged
@@ -63,18 +62,9 @@ class Station(Valued):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Walk(Valued):
-    """States along a curve.
+    """States along the curve of a scene by finite elements, in order.
 
-    Attributes
-    ----------
-    scene : Scene
-        The contact.
-    path : EquilibriumPath
-        The curve by finite elements.
-    radii, places : (n,) and (m,) array
-        Of the profiles and of the points on the lines inside the body, in beta.
-    stations : tuple of Station
-        In order.
+    Radii (n,) of the profiles and places (m,) of the points on the lines inside the body are in beta.
     """
 
     scene: Scene
@@ -85,18 +75,10 @@ class Walk(Valued):
 
 
 def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progress: Progress = unheard) -> Walk:
-    """Trace the curve of a block by finite elements and stop at some of its states.
+    """Trace the curve of a block by finite elements and stop at some of its states, and at the events.
 
-    Parameters
-    ----------
-    tabor : float
-        Tabor parameter.
-    rtol : float
-        Relative accuracy of the events.
-    states : int, optional
-        Stops, nearly equidistant in arclength, all points of the curve unless given; the events come on top.
-    progress : callable
-        Told what is under way, how much is done and of how much.
+    The states are nearly equidistant in arclength, all points of the curve unless their number is given. `progress` is
+    told what is under way, how much is done and of how much.
     """
     scene = Scene(tabor)
     path = convergence.trace(scene, rtol=rtol)
@@ -113,18 +95,8 @@ def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progres
 def _station(state: State, radii: Array, places: Array) -> Station:
     approach, load, central_gap, contact_radius = (float(value) for value in state.observables)
     pressure, gap = (np.array(list(both)) for both in zip(*_profiles(state, radii), strict=True))
-    return Station(
-        state.name,
-        state.arclength,
-        approach,
-        load,
-        central_gap,
-        contact_radius,
-        state.stable,
-        pressure,
-        gap,
-        _lines(state, places),
-    )
+    point = state.name, state.arclength, approach, load, central_gap, contact_radius, state.stable
+    return Station(*point, pressure, gap, _lines(state, places))
 
 
 def _profiles(state: State, radii: Array) -> Iterator[tuple[Array, Array]]:

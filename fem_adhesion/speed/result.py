@@ -20,17 +20,9 @@ VISIBLE = 4.0  # MiB of memory below which a growth says nothing
 class Truth:
     """What errors are taken against: a solution at a tight tolerance by the family that is not judged by it.
 
-    Attributes
-    ----------
-    family : str
-        Whose elasticity it is.
-    rtol : float
-        Its tolerance.
-    values : mapping of str to Estimate
-        Pull-off load in R dgamma, jump_on approach in eps, hysteresis energy in R dgamma eps; the last two only where
-        the curve folds.
-    approach_scale : float
-        What errors of approaches are relative to, in eps, see `halfspace.equilibrium.events.approach_scale`.
+    Values are the pull-off load in R dgamma, the jump_on approach in eps and the hysteresis energy in R dgamma eps, the
+    last two only where the curve folds; `approach_scale` in eps is what errors of approaches are relative to, see
+    `halfspace.equilibrium.events.approach_scale`.
     """
 
     family: Family
@@ -51,21 +43,17 @@ class Timing:
     ----------
     method, setting : str
         Whose rung, and how fine.
-    status : str
-        How it ended: ``converged``; ``too coarse``, as its grid cannot carry the spike of tension; ``refused`` before
-        any work; ``failed``.
+    status, reason : str
+        How it ended, and why: ``converged``; ``too coarse``, as its grid cannot carry the spike of tension; ``refused``
+        before any work; ``failed``.
     seconds : float
         Wall time from the set-up to the events, or to the failure.
-    reason : str
-        For having no result.
     unknowns : int or None
         Elastic ones included; None without result.
     memory : float
         Growth of the peak memory of the process in MiB; nan where the system does not tell.
-    errors : mapping of str to float
-        For each quantity found, as by `Truth.relative`; not below `floors`.
-    floors : mapping of str to float
-        Uncertainty of the truth on the same scale.
+    errors, floors : mapping of str to float
+        For each quantity found, as by `Truth.relative`; not below the uncertainty of the truth on the same scale.
     """
 
     method: str
@@ -103,14 +91,8 @@ class Timing:
 class Exponents:
     """Slopes of a method's cost in log-log scale, nan where fewer than two rungs converged.
 
-    Attributes
-    ----------
-    rungs : int
-        That converged.
-    time, memory : float
-        Against unknowns.
-    time_by_accuracy, memory_by_accuracy : float
-        Against 1/error, error that of the pull-off load where it exceeds the truth's uncertainty.
+    Time and memory are taken against unknowns, and against 1/error, that of the pull-off load where it exceeds the
+    truth's uncertainty.
     """
 
     rungs: int
@@ -122,24 +104,10 @@ class Exponents:
 
 @dataclass(frozen=True)
 class SpeedStudy:
-    """All rungs of all methods.
+    """All rungs of all methods, in the order of the methods, at one Tabor parameter.
 
-    Attributes
-    ----------
-    tabor : float
-        Tabor parameter.
-    quick : bool
-        Whether only the lower rungs were climbed.
-    truths : mapping of str to Truth
-        By the family that is judged.
-    yardstick : float
-        Seconds that one dgesv of n = 200 took in the same run.
-    methods : tuple of Method
-        In the order of the report.
-    rungs : tuple of Timing
-        In the order of the methods.
-    growths : tuple of Growth
-        How the time of the solvers with error control grows with what is asked of them.
+    The truths are by the family that is judged; the yardstick is the seconds that one dgesv of n = 200 took in the same
+    run. `growths` tell how the time of the solvers with error control grows with what is asked of them.
     """
 
     tabor: float

@@ -22,8 +22,7 @@ from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed.element_methods import POISSON, element_methods
 from fem_adhesion.speed.growth import Question, grown, growth_questions
-from fem_adhesion.speed.halfspace_methods import halfspace_methods
-from fem_adhesion.speed.methods import Family, Method, Solved, Step
+from fem_adhesion.speed.methods import Family, Method, Solved, Step, halfspace_methods
 from fem_adhesion.speed.result import SpeedStudy, Status, Timing, Truth
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
@@ -42,20 +41,11 @@ def measure(
     methods: Sequence[Method] | None = None,
     questions: Sequence[Question] | None = None,
 ) -> SpeedStudy:
-    """Time every method on its ladder of resolutions.
+    """Time every method, all unless given, on its ladder of resolutions.
 
-    Parameters
-    ----------
-    tabor : float
-        Tabor parameter, 0.05 to 2.
-    quick : bool
-        Climb the lower rungs only, which `Method.quick` counts, and each once.
-    progress : callable
-        Called before each method with its name, and how many of how many are done.
-    methods : sequence of Method, optional
-        All unless given.
-    questions : sequence of Question, optional
-        How time grows, of `fem_adhesion.speed.growth`; all unless given.
+    A quick study climbs the lower rungs only, which `Method.quick` counts, and each once. `progress` is called before
+    each method with its name, and how many of how many are done. All questions of
+    `fem_adhesion.speed.growth`, how time grows, are asked unless some are given.
 
     Raises
     ------

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_adhesion.common.options import AGREE, DISAGREE, STANDARD, Command, Parser, ended, written
+from fem_adhesion.common.options import AGREE, DISAGREE, STANDARD, Command, Parser, add_workers, ended, written
 from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.scene_options import add_law, law_of
 from halfspace.errors import InputError
@@ -32,8 +32,7 @@ def add_options(command: Parser) -> None:
     )
     resume = "keep each curve in the directory as soon as it is there, and go on with those that it holds"
     command.add_argument("--resume", type=Path, help=resume, metavar="DIR")
-    command.add_argument("--jobs", type=int, help="processes; as many as cores unless given", metavar="N")
-    command.add_argument("--dask", help="scheduler of a Dask cluster to use instead of processes", metavar="ADDRESS")
+    add_workers(command)
 
 
 def tabors_of(texts: Sequence[str]) -> list[float]:

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from typing import IO, Any
 
-from fem_adhesion.common.code_digest import code_digest
-from fem_adhesion.common.facts import plain
-from fem_adhesion.common.jobs import WorkerDied, stream
-from fem_adhesion.common.progress import Progress, unheard
-from fem_adhesion.common.store import Plain, Store
+from fem_adhesion.common.facts import code_digest, plain
+from fem_adhesion.common.store import Kept, Plain, Store, solve_all
 from fem_adhesion.registry import record_of
 from halfspace.accuracy.sweep import UNKNOWN, Summary, summary
 from halfspace.equilibrium.events import EVENTS, Event
+from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID
 from halfspace.values import Estimate
@@ -61,12 +58,12 @@ def run(
     question: Question,
     store: Store | None = None,
     *,
-    jobs: int | None = None,
-    dask: str | None = None,
-    progress: Progress = unheard,
     work: Callable[..., Summary] = compute,
-) -> list[Summary]:
+    **how: Any,
+) -> tuple[Summary, ...]:
     """Trace the curves that the store does not hold, and store each at once.
+
+    What could not be traced says why; where a worker died it is not stored.
 
     Parameters
     ----------
@@ -76,60 +73,36 @@ def run(
         What is asked of every curve.
     store : Store, optional
         From `fem_adhesion.common.store.open_store`.
-    jobs, dask : int and str, optional
-        Local processes, or the address of a cluster: see `fem_adhesion.common.jobs.stream`.
-    progress : callable
-        Called with the last curve, how many are done, and of how many.
     work : callable
         Traces a curve of a `question`; a function of a module.
-
-    Returns
-    -------
-    list of Summary
-        In the order of the Tabor parameters. What could not be traced says why; where a worker died it is not stored.
+    how
+        Further keywords of `fem_adhesion.common.store.solve_all`: jobs, dask, progress.
     """
-    found = dict(_stored(tabors, question, store)) if store else {}
-    todo = [tabor for tabor in tabors if tabor not in found]
-    with closing(stream(partial(work, question=question), todo, jobs=jobs, dask=dask)) as results:
-        progress("starting", len(found), len(tabors))
-        for tabor, result in results:
-            if isinstance(result, WorkerDied):
-                found[tabor] = Summary(tabor, {}, UNKNOWN, UNKNOWN, {}, result.reason)
-            else:
-                found[tabor] = result
-                if store:
-                    store.put(_inputs(tabor, question), _to_plain(result))
-            progress(f"tabor {tabor:g}", len(found), len(tabors))
-    return [found[tabor] for tabor in tabors]
+    kept = Kept(partial(_inputs, question=question), "tabor {:g}".format, _to_plain, _from_plain, _died)
+    return solve_all(tabors, store, work=partial(work, question=question), kept=kept, **how)
 
 
 def _inputs(tabor: float, question: Question) -> Plain:
     return {"tabor": tabor, "rtol": question.rtol, "to_load": question.to_load, "law": record_of(question.law)}
 
 
-def _stored(tabors: Sequence[float], question: Question, store: Store) -> Iterator[tuple[float, Summary]]:
-    """Curves that the store holds."""
-    for tabor in tabors:
-        inputs = _inputs(tabor, question)
-        kept = store.get(inputs)
-        if kept is None:
-            continue
-        try:
-            yield tabor, _from_plain(kept)
-        except (KeyError, TypeError) as error:
-            store.distrust(inputs, f"it is no curve ({error})")
+def _died(tabor: float, reason: str) -> Summary:
+    return Summary(tabor, {}, UNKNOWN, UNKNOWN, {}, reason)
 
 
 def _to_plain(curve: Summary) -> Plain:
     return {name: plain(value) if isinstance(value, dict) else value for name, value in asdict(curve).items()}
 
 
-def _from_plain(kept: Mapping[str, Any]) -> Summary:
+def _from_plain(_: float, kept: Mapping[str, Any]) -> Summary:
     """Read a curve of the store, where what is not a number is None."""
-    events = {name: Event(**_numbers(event)) for name, event in kept["events"].items()}
-    energy, lost = (Estimate(**_numbers(kept[name])) for name in ("energy", "energy_lost"))
-    missed = {name: tuple(numbers) for name, numbers in kept["missed"].items()}
-    return Summary(kept["tabor"], events, energy, lost, missed, kept["reason"])
+    try:
+        events = {name: Event(**_numbers(event)) for name, event in kept["events"].items()}
+        energy, lost = (Estimate(**_numbers(kept[name])) for name in ("energy", "energy_lost"))
+        missed = {name: tuple(numbers) for name, numbers in kept["missed"].items()}
+        return Summary(kept["tabor"], events, energy, lost, missed, kept["reason"])
+    except (KeyError, TypeError) as error:
+        raise InputError(f"it is no curve ({error})") from error
 
 
 def _numbers(kept: Mapping[str, Any]) -> dict[str, Any]:

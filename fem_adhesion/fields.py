@@ -2,9 +2,11 @@
 
 The curve is traced on the surface alone. Here a state of it is solved for again on a body whose cells are finest at
 its contact edge, in the plane across the curve through it, so that folds are no obstacle, and the displacement inside
-follows from the pressure. Units: lengths in beta, displacement in beta^2/R = mu eps, strain in beta/R, stress and
-pressure in E* beta/R = dgamma/(mu eps). `halfspace.scaling.Units` has the SI values of beta (`length`), of the stress
-(`pressure`) and of eps (`approach`), which times mu is that of the displacement.
+follows from the pressure. Beside it stands the half-space at the same contact radius or central gap.
+
+Units: lengths in beta, displacement in beta^2/R = mu eps, strain in beta/R, stress and pressure in E* beta/R =
+dgamma/(mu eps). `halfspace.scaling.Units` has the SI values of beta (`length`), of the stress (`pressure`) and of eps
+(`approach`), which times mu is that of the displacement.
 """
 
 from __future__ import annotations
@@ -22,8 +24,9 @@ from fem_adhesion.elasticity.incompressible import projected_stiffness
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.elasticity.stress import recovered_stresses
 from fem_adhesion.scene import Scene
+from halfspace.elastic import compliance
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath, metric_for, transfer
 from halfspace.equilibrium.events import EVENTS
 from halfspace.equilibrium.newton import Control, Traceable
@@ -115,6 +118,12 @@ class State(Valued):
         """Coefficients (2, functions) of u_r and u_z."""
         return self.displacement[self.space.components]
 
+    @property
+    def surface_displacement(self) -> Array:
+        """u_r and u_z at the nodes of the surface, shape (2, q)."""
+        functions = self.space.boundary_functions("contact")
+        return np.asarray((self.surface.values @ self.components[:, functions].T).T)
+
     def recovered_pressure(self) -> Array:
         """Pressure P at the nodes that the stress inside exerts, shape (q,): to be compared with the law's."""
         surface = self.surface
@@ -132,10 +141,8 @@ def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", 
     ----------
     scene : Scene
         The contact, at small strain.
-    problem : Traceable
-        On which the point was found: that of its segment or event.
-    point : Point
-        Of a path traced by `fem_adhesion.trace`.
+    problem, point : Traceable, Point
+        Of a path traced by `fem_adhesion.trace`, and on which it was found: that of its segment or event.
     name : str
         To go with the state.
     how : Discretisation
@@ -228,3 +235,64 @@ def _same_place(source: Traceable, point: Point, problem: ContactProblem, metric
     control = Control(weights, float(weights[used] @ point.observables[used]))
     solution = newton.solve(problem, transfer(source, point.x, problem), control)
     return make_point(problem, solution, metric, weights, point.arclength)
+
+
+MOST_NODES = 16
+"""Of a ring of the half-space."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Beside(Valued):
+    """The half-space beside a state: P and H at its radii, (q,), and the half-space's own observables.
+
+    These are its approach, load, central gap and contact radius, (4,).
+    """
+
+    pressure: Array
+    gap: Array
+    observables: Array
+
+
+def half_space_beside(state: State) -> Beside:
+    """Solve for the half-space by the integral equation where a body of finite elements was solved for.
+
+    Its rings end where the elements do, except at the contact edge, but its compliance is that of the ring kernel.
+    The contact radius is prescribed, or the central gap if there is no contact; approach and load are its own.
+
+    Raises
+    ------
+    halfspace.errors.NotConverged
+        If the half-space has no such state.
+    """
+    source, tabor = state.problem.operator.at(1.0), state.scene.tabor
+    cells = _clear_of(source.cells, float(state.observables[CONTACT_RADIUS]))
+    operator = compliance.panels(cells, min(source.cell_nodes.shape[1], MOST_NODES))
+    problem = ContactProblem(operator, tabor, state.problem.law, state.problem.profile)
+    start = np.append(source.values_at(operator.radii, state.gap), state.point.x[-2:])
+    solution = newton.solve(problem, start, _same(state.observables))
+    P, H = problem.pressure(solution.x), solution.x[:-2]
+    return Beside(operator.values_at(state.radii, P), operator.values_at(state.radii, H), solution.observables)
+
+
+def _clear_of(cells: Array, radius: float) -> Array:
+    """Ends of rings none of which is at the contact edge: gaps jump there, by the error of their polynomials.
+
+    Newton's method would go to and fro between the two sides of such a jump for ever.
+    """
+    if np.isnan(radius):
+        return cells
+    nearest = int(np.clip(np.abs(cells - radius).argmin(), 1, cells.size - 2))
+    other = nearest - 1 if cells[nearest] <= radius else nearest + 1
+    moved = cells.copy()
+    moved[nearest] = (cells[nearest] + cells[other]) / 2
+    return moved
+
+
+def is_same_contact(scene: Scene) -> bool:
+    """Whether the half-space is the scene's body, so that the two solutions differ by their errors alone."""
+    return scene.body.endless
+
+
+def _same(observables: Array) -> newton.Control:
+    radius = float(observables[CONTACT_RADIUS])
+    return newton.central_gap(float(observables[CENTRAL_GAP])) if np.isnan(radius) else newton.contact_radius(radius)

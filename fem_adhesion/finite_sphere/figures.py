@@ -1,8 +1,11 @@
-"""The deviations of the finite sphere by cause: a figure, and what is seen in it, each sentence found by a test."""
+"""The deviations of the finite sphere by cause, by Poisson's ratio, and without the body's yield: figures and captions.
+
+Each sentence of a caption is found by a test of the numbers.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,12 +13,21 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fem_adhesion.common import style
+from fem_adhesion.common.numbers import at_points, counted, span
 from fem_adhesion.common.style import Picture
-from fem_adhesion.common.words import at_points, span
 from fem_adhesion.finite_sphere.chart_figure import no_sphere
 from fem_adhesion.finite_sphere.fit import RIGID_PULL_OFF, SOFT_PULL_OFF, fit, leading_terms
-from fem_adhesion.finite_sphere.points import Samples, panel_tabors, reference_poisson, samples
-from fem_adhesion.finite_sphere.table import DeviationRow, Results
+from fem_adhesion.finite_sphere.table import (
+    DeviationRow,
+    Results,
+    Samples,
+    by_poisson,
+    jumping_tabors,
+    panel_tabors,
+    points_by_poisson,
+    reference_poisson,
+    samples,
+)
 from halfspace.errors import InputError
 from halfspace.values import Array
 
@@ -64,10 +76,10 @@ def finish(figure: Figure, panels: Sequence[Any], columns: int = 3) -> None:
     style.legend_below(figure, panels, columns)
 
 
-def _plain(axis: Any) -> None:
+def _plain(axis: Any, write: Callable[[float], str] = "{:g}".format) -> None:
     """Plain numbers at 1, 2 and 5 of each decade of a logarithmic axis, and none between."""
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    axis.set_major_formatter(FuncFormatter(lambda x, _: write(x)))
     axis.set_minor_formatter(NullFormatter())
 
 
@@ -146,13 +158,11 @@ def _exponents(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[
     """Powers of beta/R in which profile and body go between the two largest spheres, of the middle panel."""
     for tabor in panel_tabors(rows)[1:2]:
         found = {cause: _of(rows, cause, tabor, poisson) for cause in ("profile", "body")}
-        powers = [f"the {cause}'s as (beta/R)^{_power(data):.2g}" for cause, data in found.items() if _two(data)]
+        powers = [
+            f"the {cause}'s as (beta/R)^{_power(data):.2g}" for cause, data in found.items() if data.stretch.size > 1
+        ]
         if powers:
             yield f"Between the two largest R/eps at mu = {tabor:g} the parts go: {', '.join(powers)}."
-
-
-def _two(data: Samples) -> bool:
-    return bool(data.stretch.size > 1)
 
 
 def _power(data: Samples) -> float:
@@ -195,12 +205,143 @@ def _given_back(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator
 
 def _ratios(part: Samples, whole: Samples) -> Array:
     """A deviation over another, where both exceed their errors."""
-    part, whole = part.significant, whole.significant
+    part = part.significant
+    return _over(part, part.deviation, whole.significant)
+
+
+def _over(points: Samples, values: Array, whole: Samples) -> Array:
+    """Values at points over the deviation there of a whole, where it has one."""
     sizes = dict(zip(zip(whole.tabor, whole.radius_ratio, strict=True), whole.deviation, strict=True))
-    points = zip(part.tabor, part.radius_ratio, part.deviation, strict=True)
-    return np.array([value / sizes[mu, rho] for mu, rho, value in points if (mu, rho) in sizes], float)
+    each = zip(points.tabor, points.radius_ratio, values, strict=True)
+    return np.array([value / sizes[mu, rho] for mu, rho, value in each if (mu, rho) in sizes], float)
 
 
-CAUSES_FIGURE = Picture(
-    "causes", "What makes the pull-off force deviate", _draw, lambda results: " ".join(_caption(results)), no_sphere
+CAUSES_FIGURE = Picture("causes", "What makes the pull-off force deviate", _draw, _caption, no_sphere)
+
+
+MOST_LINES = 4
+DASHES = ("-", style.DASHED, style.DOTTED)  # one after the other when colours and markers come again
+JUMPS = {"jump_on_approach": "jump-on", "jump_off_approach": "jump-off"}
+COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PINK, style.SKY)
+MARKERS = ("o", "s", "^", "D", "v", "P")
+APPROACHES = (
+    "Deviations of approaches, which have no natural zero, are parts of the spacing and the range of the approaches at "
+    "all events on the half-space."
+)
+
+
+def _figure_poisson(results: Results) -> Figure:
+    figure, panels = style.panels(2, height=6.4)
+    quantities = {"pull_off_load": "pull-off force", "jump_on_approach": "approach at jump-on"}
+    for axes, (quantity, title) in zip(panels, quantities.items(), strict=True):
+        for number, (tabor, ratio) in enumerate(points_by_poisson(results.rows)):
+            _by_poisson(axes, by_poisson(results.rows, quantity, tabor, ratio), tabor, ratio, number)
+        axes.set(title=title, yscale="log")
+        _plain(axes.yaxis, lambda y: f"{100 * y:g} %")
+        style.dress(axes, r"Poisson's ratio $\nu$", SIZE, legend=None)
+    style.legend_below(figure, panels, columns=3)
+    return figure
+
+
+def _by_poisson(axes: Any, points: tuple[Array, Array], tabor: float, ratio: float, number: int) -> None:
+    nu, y = points
+    if not nu.size:
+        return
+    look = {"color": COLOURS[number % 6], "marker": MARKERS[number % 6], "markersize": PART, "linewidth": 1.2}
+    look["linestyle"] = DASHES[number // 6 % len(DASHES)]
+    axes.plot(nu, np.abs(y), label=rf"$\mu = {tabor:g}$, $R/\epsilon = {ratio:g}$", **look)
+    axes.plot(nu[y > 0], np.abs(y[y > 0]), **look | {"linestyle": "none", "markerfacecolor": "white"})
+
+
+def _see_poisson(results: Results) -> Iterator[str]:
+    yield "Hollow markers: the force is strengthened, or the jump is from nearer."
+    yield from _trend(results.rows)
+    yield from _signs(results.rows)
+
+
+def _trend(rows: Sequence[DeviationRow]) -> Iterator[str]:
+    """Which way the size of the pull-off's deviation goes from the least to the largest Poisson's ratio."""
+    ends = []
+    for mu, rho in points_by_poisson(rows):
+        nu, deviation = by_poisson(rows, "pull_off_load", mu, rho)
+        ends.append((float(nu[0]), float(nu[-1]), *np.abs(deviation[[0, -1]])))
+    falling = sum(last < first for _, _, first, last in ends)
+    if ends:
+        least, most = min(end[0] for end in ends), max(end[1] for end in ends)
+        yield (
+            f"From Poisson's ratio {least:g} to {most:g} the size of the pull-off's deviation falls at {falling} of "
+            f"{counted(len(ends), 'point')}."
+        )
+
+
+def _signs(rows: Sequence[DeviationRow]) -> Iterator[str]:
+    """Where the deviation of the jump-on changes its sign with Poisson's ratio."""
+    found = [by_poisson(rows, "jump_on_approach", mu, rho)[1] for mu, rho in points_by_poisson(rows)]
+    known = [deviation for deviation in found if deviation.size > 1]
+    changing = sum(bool(deviation.min() < 0 < deviation.max()) for deviation in known)
+    if known:
+        yield f"That of the approach at jump-on changes its sign at {changing} of {counted(len(known), 'point')}."
+
+
+def _figure_bulk(results: Results) -> Figure:
+    rows = results.rows
+    figure, panels = style.panels(2, height=6.4)
+    for axes, (quantity, name) in zip(panels, JUMPS.items(), strict=True):
+        for number, tabor in enumerate(jumping_tabors(rows)[:MOST_LINES]):
+            for suffix, how, dashes in (("", "raw", "-"), ("_less_bulk", "bulk yield taken out", style.DASHED)):
+                data = samples(rows, "all", quantity + suffix, reference_poisson(rows))
+                label = rf"$\mu = {tabor:g}$, {how}"
+                _line(axes, data.where(data.tabor == tabor), number, dashes, label)
+        axes.set_title(f"approach at {name}")
+    finish(figure, panels, columns=4)
+    return figure
+
+
+def _line(axes: Any, data: Samples, number: int, dashes: Any, label: str) -> None:
+    """Deviations joined by a line, with markers where they exceed their errors."""
+    if not data.tabor.size:
+        return
+    colour, marker = COLOURS[number % 6], MARKERS[number % 6]
+    order = np.argsort(data.stretch)
+    axes.plot(data.stretch[order], np.abs(data.deviation[order]), color=colour, linestyle=dashes, linewidth=1.1)
+    signed(axes, data, color=colour, marker=marker)
+    axes.plot([], [], color=colour, marker=marker, linestyle=dashes, linewidth=1.1, label=label)
+
+
+def _see_bulk(results: Results) -> Iterator[str]:
+    rows, poisson = results.rows, reference_poisson(results.rows)
+    yield (
+        "The yield of the body as a whole is kappa W/(E* R), which can be taken out by hand. Filled markers: from "
+        "farther away than on the half-space; hollow: from nearer. Where a line has no marker, the deviation is within "
+        f"its error. {APPROACHES}"
+    )
+    shares = np.concatenate([_left(rows, f"jump_{way}_approach", poisson) for way in ("on", "off")])
+    if not jumping_tabors(rows) or not shares.size:
+        return
+    most = int(np.sum(shares < 0.5))
+    yield (
+        f"Without it {span(100 * shares)} % of the deviation is left{at_points(shares.size)}: the yield is most of it "
+        f"at {most if most < shares.size else 'all'} of them."
+    )
+
+
+def _left(rows: Sequence[DeviationRow], quantity: str, poisson: float | None) -> Array:
+    """Part of an approach's deviation, at most, that is left without the yield, where the whole exceeds its error."""
+    whole, rest = (samples(rows, "all", quantity + suffix, poisson) for suffix in ("", "_less_bulk"))
+    return np.abs(_over(rest, np.abs(rest.deviation) + rest.error, whole.significant))
+
+
+POISSON_FIGURE = Picture(
+    "poisson",
+    "How the deviations depend on Poisson's ratio",
+    _figure_poisson,
+    _see_poisson,
+    lambda results: "" if points_by_poisson(results.rows) else "no point was solved at two Poisson's ratios",
+)
+BULK_FIGURE = Picture(
+    "bulk",
+    "The approach at the jumps, raw and without the body's linear yield",
+    _figure_bulk,
+    _see_bulk,
+    lambda results: "" if jumping_tabors(results.rows) else "no Tabor parameter jumps on spheres of two sizes",
 )

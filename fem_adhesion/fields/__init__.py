@@ -1,1 +1,0 @@
-"""What goes on inside the bodies at a state of a curve: `discretise`, `state`, and `beside`, the half-space's own."""

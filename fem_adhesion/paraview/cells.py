@@ -1,0 +1,302 @@
+"""Sections and solids in cells of the second order: elements of high degree cut finely, and turned about the axis.
+
+A quadrilateral becomes a hexahedron of 27 nodes, one with a side on the axis a wedge of 18, a triangle a wedge of 18.
+A cell that touches the axis otherwise becomes one some of whose nodes coincide. Sides along the angle are parabolas:
+over `SEGMENT` they leave the circle by less than 2e-4 of its radius, so that nothing is gained by linear cells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+from skfem.refdom import RefTri
+
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.elasticity.stress import positions, sampled
+from halfspace.errors import InputError
+from halfspace.values import Array, Index, Valued
+
+QUAD9 = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1], [1, 1]])
+"""Steps to the nodes of a quadrilateral from its first, in VTK's order: corners, middles of sides, centre."""
+
+TRIANGLE6 = np.array([[0, 0], [2, 0], [0, 2], [1, 0], [1, 1], [0, 1]])
+"""The same of a triangle."""
+
+MOST_CUTS = 12
+"""Into which a side of an element is ever cut."""
+
+SAME = 1e-3
+"""Of the shortest distance between two nodes of a cell, within which points are one."""
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """A reference element, a triangle or square, cut into n by n cells of the second order."""
+
+    cuts: int
+    triangular: bool
+
+    @cached_property
+    def steps(self) -> Index:
+        """Nodes (k, 2) counted along the sides, in halves of cells."""
+        m = 2 * self.cuts
+        every = product(range(m + 1), repeat=2)
+        return np.array([(i, j) for i, j in every if not self.triangular or i + j <= m])
+
+    @cached_property
+    def places(self) -> Array:
+        """Nodes (2, k) in the reference element."""
+        return np.ascontiguousarray(self.steps.T / (2 * self.cuts))
+
+    @cached_property
+    def cells(self) -> Index:
+        """Nodes of each cell, (cells, 6 or 9), in VTK's order."""
+        m, shape = 2 * self.cuts, TRIANGLE6 if self.triangular else QUAD9
+        firsts = [np.array(first) for first in product(range(0, m, 2), repeat=2)]
+        cells = [first + shape for first in firsts if not self.triangular or first.sum() < m]
+        if self.triangular:
+            cells += [first + 2 - shape for first in firsts if first.sum() < m - 2]
+        number = {tuple(step): k for k, step in enumerate(self.steps.tolist())}
+        return np.array([[number[tuple(step)] for step in cell] for cell in np.array(cells).tolist()])
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A body's elements cut into cells of the second order, each by a lattice.
+
+    The error is the largest distance of what the cells show from the field it was cut for, relative to its maximum.
+    """
+
+    space: Space
+    lattice: Lattice
+    error: float
+
+    @cached_property
+    def numbers(self) -> Index:
+        """Number of each element's nodes among those of the whole body, (elements, k)."""
+        r, z = positions(self.space, self.lattice.places)
+        points = np.stack([r.ravel(), z.ravel()], axis=1)
+        pairs = KDTree(points).query_pairs(SAME * self._shortest(r, z), output_type="ndarray")
+        links = coo_array((np.ones(len(pairs)), pairs.T), shape=2 * (len(points),))
+        numbers: Index = connected_components(links, directed=False)[1].reshape(r.shape).astype(np.intp)
+        return numbers
+
+    @cached_property
+    def firsts(self) -> Index:
+        """Where each node of the body first stands among those of all elements, (nodes,)."""
+        return np.unique(self.numbers, return_index=True)[1]
+
+    @property
+    def cells(self) -> Index:
+        """Nodes of each cell, (cells, 6 or 9), in VTK's order."""
+        return np.concatenate(list(self.numbers[:, self.lattice.cells]))
+
+    @property
+    def points(self) -> Array:
+        """Radius and height of the nodes in beta, (2, nodes)."""
+        return self._merged(positions(self.space, self.lattice.places))
+
+    def values(self, coefficients: Array) -> Array:
+        """Values (m, nodes) of fields given by the coefficients (m, functions) of the space."""
+        return self._merged(sampled(self.space, coefficients, self.lattice.places))
+
+    def _merged(self, values: Array) -> Array:
+        return np.asarray(values.reshape(len(values), -1)[:, self.firsts])
+
+    def _shortest(self, r: Array, z: Array) -> float:
+        cells = self.lattice.cells
+        sides = [np.hypot(*(x[:, cells[:, 0]] - x[:, cells[:, k]] for x in (r, z))).min() for k in (1, 2)]
+        return float(min(sides)) / 2
+
+
+def cut_for(space: Space, fields: Array, tolerance: float) -> Cut:
+    """Cut elements as coarsely as fields and the shape of the body allow.
+
+    Coefficients (m, functions) of the fields are taken together, as components of a vector. The tolerance is the
+    largest error between the nodes, relative to the largest absolute value; for the shape, to the body's size.
+    """
+    triangular = space.element.refdom is RefTri
+    lattice = Lattice(1, triangular)
+    error = _shown_error(space, fields, lattice)
+    while error > tolerance and lattice.cuts < MOST_CUTS:
+        wanted = int(np.ceil(lattice.cuts * np.cbrt(error / tolerance)))  # the error falls as their third power
+        lattice = Lattice(min(max(wanted, lattice.cuts + 1), MOST_CUTS), triangular)
+        error = _shown_error(space, fields, lattice)
+    return Cut(space, lattice, error)
+
+
+def _shown_error(space: Space, fields: Array, lattice: Lattice) -> float:
+    """Error of the cells' polynomials at points half-way between their nodes."""
+    places, shapes = _between(lattice)
+    errors = []
+    for values, wanted in (
+        (sampled(space, fields, lattice.places), sampled(space, fields, places)),
+        (positions(space, lattice.places), positions(space, places)),
+    ):
+        shown = np.einsum("fesn,cn->fesc", values[:, :, lattice.cells], shapes).reshape(wanted.shape)
+        errors.append(np.abs(shown - wanted).max() / np.abs(wanted).max())
+    return float(max(errors))
+
+
+def _between(lattice: Lattice) -> tuple[Array, Array]:
+    """Points of the reference element half-way between nodes of the cells, cell by cell, and shapes (c, n) there."""
+    shape = TRIANGLE6 if lattice.triangular else QUAD9
+    steps = np.array([*product((0.5, 1.0, 1.5), repeat=2), (0.0, 0.5), (0.0, 1.5), (0.5, 0.0), (1.5, 0.0)])
+    kept = steps.sum(axis=1) <= 2 if lattice.triangular else slice(None)
+    shapes = _powers(steps[kept], lattice.triangular) @ np.linalg.inv(_powers(shape, lattice.triangular))
+    nodes = lattice.places[:, lattice.cells]
+    return (nodes @ shapes.T).reshape(2, -1), shapes
+
+
+def _powers(steps: Array | Index, triangular: bool) -> Array:
+    """Monomials of a cell's polynomials at points (points, 2), (points, 6 or 9)."""
+    x, y = steps.T
+    powers = [(i, j) for i, j in product(range(3), repeat=2) if not triangular or i + j <= 2]
+    return np.stack([x**i * y**j for i, j in powers], axis=1)
+
+
+SEGMENT = 15.0
+"""Largest angle of a cell in degrees."""
+
+HEXAHEDRON27, WEDGE18 = 29, 32
+"""VTK's numbers of cell types."""
+
+ON_AXIS = 1e-12
+"""Radius, in the largest, below which a node does not move with the angle."""
+
+
+def _on_layer(layer: int, nodes: range) -> list[tuple[int, int]]:
+    return [(layer, node) for node in nodes]
+
+
+def _wedge_on_axis() -> list[tuple[int, int]]:
+    """Wedge of a quadrilateral whose side from its first to its last corner is on the axis: its rows are triangles."""
+    bottom, top, middle = (3, 6, 2), (0, 4, 1), (7, 8, 5)  # rows, from the axis outwards; the axis points to the top
+    corners, sides = ((0, 0), (0, 2), (2, 2)), ((0, 1), (1, 2), (2, 1))  # layer, and place in the row
+    ends = [(layer, row[place]) for part in (corners, sides) for row in (bottom, top) for layer, place in part]
+    return ends + [(layer, middle[place]) for part in (corners, sides) for layer, place in part]
+
+
+_HEXAHEDRON_OF_QUAD9 = np.array(
+    [
+        *(*_on_layer(0, range(4)), *_on_layer(2, range(4))),
+        *(*_on_layer(0, range(4, 8)), *_on_layer(2, range(4, 8)), *_on_layer(1, range(4))),
+        *((1, 7), (1, 5), (1, 4), (1, 6), (0, 8), (2, 8), (1, 8)),
+    ]
+)
+"""Layer in the angle, and node of the section's cell, of each node of the solid's, in VTK's order."""
+
+_WEDGE_OF_TRIANGLE6 = np.array(
+    [
+        *(*_on_layer(0, range(3)), *_on_layer(2, range(3))),
+        *(*_on_layer(0, range(3, 6)), *_on_layer(2, range(3, 6)), *_on_layer(1, range(6))),
+    ]
+)
+
+_WEDGE_ON_AXIS = np.array(_wedge_on_axis())
+
+_MIRRORED = {6: [0, 2, 1, 5, 4, 3], 9: [0, 3, 2, 1, 7, 6, 5, 4, 8]}
+"""Nodes of a cell in the opposite sense."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Solid(Valued):
+    """A solid of revolution about z.
+
+    Attributes
+    ----------
+    angles, meridian : (nodes,) arrays
+        Of each node, in radians, and the node of the section that it came from.
+    points : (nodes, 3) array
+        In beta.
+    cells : mapping of int to (cells, n) int array
+        Nodes of the cells by VTK's type.
+    """
+
+    angles: Array
+    meridian: Index
+    points: Array
+    cells: dict[int, Index]
+
+    def scalars(self, values: Array) -> Array:
+        """Values (nodes, ...) of fields (section, ...) that do not turn with the angle."""
+        return np.asarray(values[self.meridian])
+
+    def vectors(self, values: Array) -> Array:
+        """Cartesian components (nodes, 3) of vectors (section, 3) given where the angle is zero."""
+        c, s = np.cos(self.angles), np.sin(self.angles)
+        r, _, z = values[self.meridian].T
+        return np.stack([c * r, s * r, z], axis=1)
+
+    def tensors(self, values: Array) -> Array:
+        """Components xx, yy, zz, xy, yz, xz (nodes, 6) of tensors rr, tt, zz, rt, tz, rz (section, 6)."""
+        c, s = np.cos(self.angles), np.sin(self.angles)
+        rr, tt, zz, _, _, rz = values[self.meridian].T
+        xx, yy, xy = c**2 * rr + s**2 * tt, s**2 * rr + c**2 * tt, c * s * (rr - tt)
+        return np.stack([xx, yy, zz, xy, s * rz, c * rz], axis=1)
+
+
+def revolved(points: Array, cells: Index, degrees: float) -> Solid:
+    """Turn a section about its axis: r and z of its nodes, (2, n) in beta, its cells, (m, 6 or 9).
+
+    Cells are triangles or quadrilaterals; the angle of the wedge is in degrees, and 360 closes the solid.
+
+    Raises
+    ------
+    InputError
+        Unless 0 < degrees <= 360.
+    """
+    require_angle(degrees)
+    layers = 2 * int(np.ceil(degrees / SEGMENT - 1e-9)) + 1
+    axial = points[0] <= ON_AXIS * points[0].max()
+    numbers, layer, meridian = _numbered(axial, layers, closed=degrees == 360)
+    angles = np.radians(degrees) * layer / (layers - 1)
+    r, z = points[:, meridian]
+    solid: dict[int, Index] = {}
+    for kind, table, sections in _kinds(axial, _clockwise(points, cells)):
+        turned = [numbers[first + table[:, 0], sections[:, table[:, 1]]] for first in range(0, layers - 1, 2)]
+        solid[kind] = np.concatenate(turned)
+    return Solid(angles, meridian, np.stack([r * np.cos(angles), r * np.sin(angles), z], axis=1), solid)
+
+
+def require_angle(degrees: float) -> None:
+    """Raise InputError unless 0 < degrees <= 360."""
+    if not 0 < degrees <= 360:
+        raise InputError(f"revolve = {degrees:g} is outside 0 < revolve <= 360; give degrees, 360 for the whole solid")
+
+
+def _numbered(axial: NDArray[np.bool_], layers: int, *, closed: bool) -> tuple[Index, Index, Index]:
+    """Numbers (layers, n) of the section's nodes in each layer; layer and section's node of each number."""
+    copies = np.tile(np.arange(axial.size), (layers, 1)) + axial.size * np.arange(layers)[:, None]
+    copies[:, axial] = copies[0, axial]
+    if closed:
+        copies[-1] = copies[0]
+    kept, numbers = np.unique(copies, return_inverse=True)
+    return numbers.reshape(copies.shape), kept // axial.size, kept % axial.size
+
+
+def _clockwise(points: Array, cells: Index) -> Index:
+    """Cells of a section all in the sense from z to r, seen from which the angle ascends away."""
+    r, z = points[:, cells[:, : cells.shape[1] // 2]]  # 3 corners of 6 nodes, 4 of 9
+    area = np.sum(r * np.roll(z, -1, axis=1) - z * np.roll(r, -1, axis=1), axis=1)
+    return np.where(area[:, None] > 0, cells[:, _MIRRORED[cells.shape[1]]], cells)
+
+
+def _kinds(axial: NDArray[np.bool_], cells: Index) -> list[tuple[int, Index, Index]]:
+    """VTK's type, table and cells of each kind of solid cell."""
+    if cells.shape[1] == len(_MIRRORED[6]):
+        return [(WEDGE18, _WEDGE_OF_TRIANGLE6, cells)]
+    first = np.arange(4)
+    on_axis = axial[cells[:, first]] & axial[cells[:, (first + 3) % 4]]
+    beside = on_axis.any(axis=1)
+    turns = (on_axis[beside].argmax(axis=1)[:, None] + first) % 4
+    nodes = np.concatenate([turns, 4 + turns, np.full((len(turns), 1), 8)], axis=1)
+    wedges = np.take_along_axis(cells[beside], nodes, axis=1)
+    return [(WEDGE18, _WEDGE_ON_AXIS, wedges), (HEXAHEDRON27, _HEXAHEDRON_OF_QUAD9, cells[~beside])]
