@@ -93,7 +93,7 @@ def test_hertz_stress_on_the_axis():
         assert (rr, zz, hoop, rz) == pytest.approx((radial, -1 / (1 + s**2), radial, 0), abs=2e-4)
 
 
-def test_invariants():
+def test_invariants_and_energy_of_a_stress_tensor_are_those_of_its_matrix():
     tensor = np.array([1.0, -2.0, 0.5, 0.7])
     full = np.array([[1.0, 0.0, 0.7], [0.0, 0.5, 0.0], [0.7, 0.0, -2.0]])
     deviator = full - np.trace(full) / 3 * np.eye(3)

@@ -433,14 +433,14 @@ def share(case, **of_models):
     return of_models.get(case.model, 1.0) * -0.5 / case.radius_ratio
 
 
-def test_a_grip_that_dominates_is_said_to():
+def test_the_caption_tells_how_much_the_grip_changes():
     hardly = caption("causes", study_of(lambda case: share(case, bonded=1.01)))
     assert "The grip changes the force by 1 % of the whole deviation (12 points)." in hardly
     mostly = caption("causes", study_of(lambda case: share(case, bonded=-7.0)))
     assert "The grip changes the force by 800 % of the whole deviation (12 points)." in mostly
 
 
-def test_the_larger_part_is_that_which_is():
+def test_the_caption_names_the_larger_part_of_the_deviation():
     by_body = caption("causes", study_of(lambda case: share(case, finite_body=3.0)))
     assert (
         "At mu = 1 the larger part is the body's at R/eps = 10 (15 %), and the body's at R/eps = 10000 (0.015 %)."

@@ -32,8 +32,8 @@ from fem_adhesion.finite_sphere.cases import (
     CRITICAL,
     MODELS,
     QUANTITIES,
-    Case,
     Record,
+    SphereCase,
     case_of,
     from_plain,
     quantities_of,
@@ -60,7 +60,7 @@ from halfspace.theories.closed_forms import JKR_PULL_OFF
 from halfspace.theories.exact_sphere import JKRSphere
 from halfspace.values import Estimate
 
-CASES = [Case("half_space", tabor, rtol=1e-2) for tabor in (0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0)]
+CASES = [SphereCase("half_space", tabor, rtol=1e-2) for tabor in (0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0)]
 
 
 def cheap(case):
@@ -142,7 +142,7 @@ def test_spheres_too_small_for_their_tabor_parameter_are_left_out_with_the_limit
     assert all("radius_ratio = 5 is outside 2.25 tabor = 22.5 or more" in r.reason for r in small)
     points = {(c.tabor, c.radius_ratio) for c in found.cases if c.model == "sphere"}
     assert points == {(1.0, 5.0), (1.0, 100.0), (10.0, 100.0)}
-    assert Case("half_space", 10.0) in found.cases
+    assert SphereCase("half_space", 10.0) in found.cases
     assert not plan(quick=True).left_out
 
 
@@ -221,7 +221,7 @@ def test_a_case_that_is_refused_is_recorded_with_its_kind_and_reason(tmp_path, m
         raise kind(f"tabor {case.tabor:g} is stuck; try another")
 
     monkeypatch.setitem(MODELS, "half_space", replace(MODELS["half_space"], solve=refused))
-    (record,) = run([Case("half_space", 1.0)], opened(tmp_path), jobs=1)
+    (record,) = run([SphereCase("half_space", 1.0)], opened(tmp_path), jobs=1)
     assert (record.status, record.kind, record.values) == ("refused", kind.__name__, {})
     assert record.reason == "tabor 1 is stuck; try another"
     assert run([record.case], opened(tmp_path, resume=True), jobs=1) == (record,)
@@ -231,7 +231,7 @@ def test_a_case_that_is_refused_is_recorded_with_its_kind_and_reason(tmp_path, m
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_a_defect_of_the_program_is_no_refusal(tmp_path, kind, jobs):
     with pytest.raises(kind, match="shapes do not fit"):
-        run([Case("half_space", 1.0)], opened(tmp_path), jobs=jobs, work=DEFECTS[kind])
+        run([SphereCase("half_space", 1.0)], opened(tmp_path), jobs=jobs, work=DEFECTS[kind])
     assert not stored_cases(tmp_path)
 
 
@@ -246,7 +246,7 @@ def test_a_defect_inside_a_solver_is_no_refusal(monkeypatch):
     for kind, solve in DEFECTS.items():
         monkeypatch.setitem(MODELS, "half_space", replace(MODELS["half_space"], solve=solve))
         with pytest.raises(kind, match="shapes do not fit"):
-            finite_sphere_cases.compute(Case("half_space", 1.0))
+            finite_sphere_cases.compute(SphereCase("half_space", 1.0))
 
 
 def test_progress_counts_to_the_end(tmp_path):
@@ -376,13 +376,13 @@ def test_a_refusal_of_other_code_is_tried_again(tmp_path):
 
 
 def test_two_tolerances_have_a_file_each(tmp_path):
-    loose, tight = Case("half_space", 1.0, rtol=1e-2), Case("half_space", 1.0, rtol=1e-5)
+    loose, tight = SphereCase("half_space", 1.0, rtol=1e-2), SphereCase("half_space", 1.0, rtol=1e-5)
     study = opened(tmp_path)
     for number, case in enumerate((loose, tight)):
         study.put(asdict(case), to_plain(solved(case, pull_off_load=(-5.0 - number, 0.1))))
     found = run((loose, tight), opened(tmp_path, resume=True), jobs=1, work=deadly)
     assert [record.values["pull_off_load"].value for record in found] == [-5.0, -6.0]
-    names = {study.path(asdict(replace(Case("sphere", 1.0, 30.0, 0.3), **{name: 7.0}))) for name in INPUTS}
+    names = {study.path(asdict(replace(SphereCase("sphere", 1.0, 30.0, 0.3), **{name: 7.0}))) for name in INPUTS}
     assert len(names) == len(INPUTS)
 
 
@@ -623,7 +623,7 @@ def test_every_model_solves_its_own_scene(solved_once):
     assert solved_once == wanted
 
 
-def test_no_two_models_are_one(solved_once):
+def test_every_model_has_a_pull_off_of_its_own(solved_once):
     loads = sorted(estimate.value for estimate in solved_once.values())
     assert min(np.diff(loads)) > 1e-5
 

@@ -270,7 +270,7 @@ def test_the_components_of_each_array_are_named(folder):
         assert labels == cartesian.get(name, COMPONENTS[name])
 
 
-def test_the_contact_line_balances(folder, states):
+def test_the_contact_line_satisfies_surface_law_and_geometry(folder, states):
     """Its columns satisfy the surface law, and gap, deflection, approach and the sphere's height add up."""
     for number, state in enumerate(states):
         line = read(folder / f"contact_{number:04d}.vtp")

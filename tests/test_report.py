@@ -59,7 +59,7 @@ def test_the_levels_hold_every_quantity_with_its_verdict(contents, html):
     assert float(summary["largest difference / error"]) == pytest.approx(largest, rel=0.05)
 
 
-def test_pictures_keep_to_themselves():
+def test_identifiers_of_a_picture_stay_its_own_on_a_page():
     svg = b"""<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" height="9pt">
     <metadata>by</metadata><defs><style>*{color:red}</style><path id="p" d="M0 0"/></defs><script>1</script>
     <use xlink:href="#p" clip-path="url(#c)"/></svg>"""
@@ -81,7 +81,7 @@ def test_numbers_of_the_machine_are_rounded_and_others_left(written, shown):
     assert symbols(cell(written)) == shown
 
 
-def test_lines_left_out_are_owned_to(tmp_path):
+def test_the_title_of_a_long_table_says_what_is_left_out(tmp_path):
     with (tmp_path / "long.csv").open("w", newline="") as stream:
         csv.writer(stream).writerows([["n"], *([k] for k in range(MOST_ROWS + 1))])
     table = read_table(tmp_path / "long.csv", "Long")

@@ -364,7 +364,7 @@ def test_a_rung_is_recorded_by_how_it_ended(monkeypatch, error, status):
     assert (found.status, found.reason) == (status, "on purpose")
 
 
-def test_a_defect_is_no_outcome(monkeypatch):
+def test_an_error_of_the_program_ends_the_study(monkeypatch):
     def end(_tabor):
         raise ValueError("operands could not be broadcast together")
 
@@ -389,7 +389,7 @@ def test_a_tabor_parameter_out_of_range_is_refused(tabor):
 # --- figures of merit ---
 
 
-def test_the_pareto_front():
+def test_the_pareto_front_has_what_nothing_beats_in_time_and_error():
     fast, mid, slow = rung(1, 1e-1), rung(2, 1e-2), rung(9, 1e-5)
     beaten = [rung(3, 1e-2), rung(2, 5e-2), rung(1, 2e-1), rung(10, 1e-5)]
     assert pareto_front([slow, *beaten, FAILED, fast, mid], "pull_off") == [fast, mid, slow]
@@ -408,7 +408,7 @@ def test_errors_are_relative_to_the_value_or_to_the_scale_of_approaches(quantity
     assert truth.relative(quantity, 2.0) == 2.0 / size
 
 
-def test_what_an_accuracy_costs():
+def test_the_cheapest_rung_within_a_tolerance_and_the_most_accurate():
     rungs = [rung(1, 1e-2), rung(5, 1e-4), rung(4, 5e-4), FAILED]
     assert cheapest(rungs, 1e-3).seconds == 4
     assert cheapest(rungs, 1e-6) is None
@@ -416,7 +416,7 @@ def test_what_an_accuracy_costs():
     assert best(rungs, "jump_on") is None
 
 
-def test_exponents():
+def test_the_slope_of_a_power_is_its_exponent():
     n = np.array([10, 20, 40, np.nan])
     assert slope(n, 3 * n**2.5) == pytest.approx(2.5)
     assert math.isnan(slope(n[:1], n[:1]))

@@ -145,7 +145,7 @@ def test_states_are_what_they_are_called():
         assert body.jump_off().approach == pytest.approx(body.approach(a).min(), abs=1e-5)
 
 
-def test_griffiths_balance():
+def test_the_elastic_energy_released_by_the_edge_is_the_work_of_adhesion():
     """The elastic energy at a fixed approach, loaded as a punch without adhesion and unloaded as a flat one."""
     body = JKRSphere(1.0, 16.0)
     X = body.radius
@@ -178,6 +178,6 @@ def test_griffiths_balance():
         (lambda: JKRSphere(-1.0, 2.0), "tabor = -1 is outside 0 < tabor < inf"),
     ],
 )
-def test_refusals(make, message):
+def test_parameters_out_of_range_are_refused_with_a_remedy(make, message):
     with pytest.raises(ValueError, match=message):
         make()

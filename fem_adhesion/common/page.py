@@ -113,7 +113,7 @@ def kind(cell: str) -> str:
     return "number" if NUMBER.fullmatch(cell) else "long" if len(cell) > LONG else ""
 
 
-def listed(items: Sequence[str]) -> Markup:
+def bullets(items: Sequence[str]) -> Markup:
     """Items as a list between paragraphs."""
     return Markup("<ul>{}</ul>").format(Markup("").join(Markup("<li>{}</li>").format(item) for item in items))
 

@@ -37,19 +37,9 @@ def is_drawn(scene: Scene) -> bool:
 
 
 def outlines(state: State, reach: float) -> tuple[Array, Array]:
-    """Points round the cells within a distance of the pole, and their displacements.
+    """Points round the cells within a distance of the pole in beta, and their displacements, both (cells, points, 2).
 
-    Parameters
-    ----------
-    state : State
-        Mesh and displacement.
-    reach : float
-        In beta.
-
-    Returns
-    -------
-    two (cells, points, 2) arrays
-        Positions (r, z) in beta and displacements in beta^2/R.
+    Positions (r, z) are in beta, displacements in beta^2/R.
     """
     mesh, space = state.space.mesh, state.space
     nearest = np.hypot(*mesh.p)[mesh.t].min(axis=0)

@@ -63,16 +63,7 @@ class Shot:
 
 
 def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = SIZE) -> None:
-    """Draw the body along the curve through its jumps and write it as gif.
-
-    Parameters
-    ----------
-    curves : Curves
-        Whose first path is of finite elements.
-    file : file
-        From `fem_adhesion.common.files.written_aside`.
-    size : (int, int)
-        Width and height in pixels.
+    """Draw the body along the curve through its jumps and write it as gif, as `write_picture` does a picture.
 
     Raises
     ------

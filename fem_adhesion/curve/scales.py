@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from fem_adhesion.common.numbers import PREFIXES, exponent_of
@@ -14,16 +14,9 @@ from halfspace.values import Array
 
 @dataclass(frozen=True)
 class Scale:
-    """Unit in which a quantity is shown.
+    """Unit in which a quantity is shown, and the size by which the dimensionless one is multiplied in it.
 
-    Attributes
-    ----------
-    label : str
-        Of an axis, with symbol and unit.
-    unit : str
-        In plain text.
-    size : float
-        By which the dimensionless quantity is multiplied.
+    The label is that of an axis, with symbol and unit.
     """
 
     label: str
@@ -47,18 +40,18 @@ PAPER: Mapping[str, Scale] = {
     "stiffness": Scale(r"stiffness $k\epsilon/R\Delta\gamma$", "R dgamma/eps"),
 }
 
-SYMBOLS: Mapping[str, tuple[str, str]] = {
-    "approach": (r"approach $\alpha$", "m"),
-    "load": (r"load $W$", "N"),
-    "central_gap": (r"central gap $h(0) - \epsilon$", "m"),
-    "gap": (r"gap $h - \epsilon$", "m"),
-    "contact_radius": (r"contact radius $a$", "m"),
-    "radius": (r"radius $r$", "m"),
-    "pressure": (r"pressure $p$", "Pa"),
-    "energy": (r"energy $E$", "J"),
-    "stiffness": (r"stiffness $k$", "N/m"),
+IN_SI: Mapping[str, tuple[str, str, Callable[[Units], float]]] = {
+    "approach": (r"approach $\alpha$", "m", lambda units: units.approach),
+    "load": (r"load $W$", "N", lambda units: units.load),
+    "central_gap": (r"central gap $h(0) - \epsilon$", "m", lambda units: units.approach),
+    "gap": (r"gap $h - \epsilon$", "m", lambda units: units.approach),
+    "contact_radius": (r"contact radius $a$", "m", lambda units: units.length),
+    "radius": (r"radius $r$", "m", lambda units: units.length),
+    "pressure": (r"pressure $p$", "Pa", lambda units: units.pressure),
+    "energy": (r"energy $E$", "J", lambda units: units.energy),
+    "stiffness": (r"stiffness $k$", "N/m", lambda units: units.stiffness),
 }
-
+"""Symbols, units, and the sizes in them of the paper's units."""
 
 EVENT_QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
 ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}
@@ -67,18 +60,7 @@ ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}
 
 def si_sizes(units: Units) -> Mapping[str, tuple[float, str]]:
     """Size in SI of the unit of each quantity, and its SI unit."""
-    sizes = {
-        "approach": units.approach,
-        "load": units.load,
-        "central_gap": units.approach,
-        "gap": units.approach,
-        "contact_radius": units.length,
-        "radius": units.length,
-        "pressure": units.pressure,
-        "energy": units.energy,
-        "stiffness": units.stiffness,
-    }
-    return {name: (size, SYMBOLS[name][1]) for name, size in sizes.items()}
+    return {name: (size(units), unit) for name, (_, unit, size) in IN_SI.items()}
 
 
 def scales(curves: Curves) -> Mapping[str, Scale]:
@@ -108,4 +90,4 @@ def _largest(curves: Curves) -> Mapping[str, float]:
 def _si_scale(name: str, size: float, unit: str, largest: float) -> Scale:
     exponent = exponent_of(size * largest)
     shown = PREFIXES[exponent] + unit
-    return Scale(f"{SYMBOLS[name][0]}, {shown}", shown, size * 10.0**-exponent)
+    return Scale(f"{IN_SI[name][0]}, {shown}", shown, size * 10.0**-exponent)

@@ -41,18 +41,9 @@ DIGITS = 6
 
 
 def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tuple[int, int] = SIZE) -> None:
-    """Draw the body at an event and write it as png.
+    """Draw the body at an event and write it as png of a size in pixels to a file of `written_aside`.
 
-    Parameters
-    ----------
-    curves : Curves
-        Whose first path is of finite elements.
-    file : file
-        From `fem_adhesion.common.files.written_aside`.
-    at : {"pull_off", "jump_on", "jump_off", "zero_load"}
-        The event.
-    size : (int, int)
-        Width and height in pixels.
+    The curves' first path is of finite elements.
 
     Raises
     ------

@@ -162,12 +162,7 @@ def _apparatus(curves: Curves) -> str:
 def plot(curves: Curves, width: int = WIDTH) -> Text:
     """Load against approach around the events, unstable stretches thinned, events and landings as letters.
 
-    Parameters
-    ----------
-    curves : Curves
-        The curve, of which the first path is drawn.
-    width : int
-        In characters, without the figures beside it.
+    The first path is drawn, in a width in characters without the figures beside it.
     """
     units, path = scales(curves), curves.path
     frame = lines.around_events(path)
@@ -203,15 +198,7 @@ def _ticks(span: Sequence[float], scale: Scale) -> tuple[str, str]:
 
 
 class Canvas:
-    """Characters with a frame of values.
-
-    Parameters
-    ----------
-    width, height : int
-        In characters.
-    x, y : pair of float
-        Values at the left and right, lower and upper edge.
-    """
+    """Characters, so many by so many, with a frame of values at left and right, lower and upper edge."""
 
     MARGIN = 10  # characters in front of it, for the values at its edges and the frame
 

@@ -52,7 +52,7 @@ STORED: Mapping[str, Status] = {"solved": "solved", "refused": "refused"}  # end
 
 
 @dataclass(frozen=True)
-class Case:
+class SphereCase:
     """One contact under one set of assumptions, a key of `MODELS`; an input on which they do not depend is None.
 
     Its inputs are the Tabor parameter, R/eps and Poisson's ratio; `rtol` is what is asked of the solver.
@@ -98,7 +98,7 @@ class Record:
         Wall time.
     """
 
-    case: Case
+    case: SphereCase
     status: Status
     values: Values = field(default_factory=dict)
     reason: str = ""
@@ -116,7 +116,7 @@ def to_plain(record: Record) -> dict[str, object]:
     return {key: value for key, value in asdict(record).items() if key != "case"}
 
 
-def from_plain(case: Case, plain: Mapping[str, object]) -> Record:
+def from_plain(case: SphereCase, plain: Mapping[str, object]) -> Record:
     """Record of a case from what `to_plain` made.
 
     Raises
@@ -160,10 +160,10 @@ class Model:
     has.
     """
 
-    solve: Callable[[Case], Values]
+    solve: Callable[[SphereCase], Values]
     inputs: tuple[InputName, ...]
     grip: GripName | None = None
-    check: Callable[[Case], None] = lambda _: None
+    check: Callable[[SphereCase], None] = lambda _: None
 
 
 @dataclass(frozen=True)
@@ -175,7 +175,7 @@ class Cause:
     meaning: str
 
 
-def compute(case: Case) -> Record:
+def compute(case: SphereCase) -> Record:
     """Solve a case; one that the solver refuses or does not solve is recorded with the kind of its error and reason.
 
     Any other error is a defect of the program and ends the study.
@@ -212,19 +212,19 @@ def _jumps(events: Mapping[str, Event]) -> dict[str, Estimate]:
     return values
 
 
-def _half_space(case: Case) -> Values:
+def _half_space(case: SphereCase) -> Values:
     """Reference: a paraboloid on a half-space."""
     return quantities_of(halfspace.trace(case.given("tabor"), rtol=case.rtol, to_load=TO_LOAD))
 
 
-def _true_profile(case: Case) -> Values:
+def _true_profile(case: SphereCase) -> Values:
     """A half-space under a sphere."""
     profile = Sphere(case.given("radius_ratio"))
     return quantities_of(halfspace.trace(case.given("tabor"), profile=profile, rtol=case.rtol, to_load=TO_LOAD))
 
 
 def hemisphere(
-    case: Case, *, profile: Profile | None = None, grip: GripName = "sliding", traction: AreaName = "projected"
+    case: SphereCase, *, profile: Profile | None = None, grip: GripName = "sliding", traction: AreaName = "projected"
 ) -> Scene:
     """Elastic hemisphere of a case, held at its mid-plane."""
     material = LinearElastic(case.given("poisson"), traction)
@@ -233,25 +233,25 @@ def hemisphere(
 
 
 def _elastic(
-    case: Case, *, profile: Profile | None = None, grip: GripName = "sliding", traction: AreaName = "projected"
+    case: SphereCase, *, profile: Profile | None = None, grip: GripName = "sliding", traction: AreaName = "projected"
 ) -> Values:
     """A linear hemisphere."""
     scene = hemisphere(case, profile=profile, grip=grip, traction=traction)
     return quantities_of(trace(scene, rtol=case.rtol, to_load=TO_LOAD))
 
 
-def _neo_hookean(case: Case, traction: TractionName) -> Scene:
+def _neo_hookean(case: SphereCase, traction: TractionName) -> Scene:
     return hemisphere(case).made_of(NeoHookean(case.given("poisson"), traction))
 
 
-def _finite_strain(case: Case, traction: TractionName) -> Values:
+def _finite_strain(case: SphereCase, traction: TractionName) -> Values:
     """A neo-Hookean hemisphere: pull-off and jumps only, to a tolerance of 1e-4 or more."""
     events = find_jumps(_neo_hookean(case, traction), max(case.rtol, FINITE_STRAIN_RTOL))
     pull_off = events["pull_off"]
     return {"pull_off_load": pull_off.estimate("load")} | _jumps(events)
 
 
-def _first_jump(case: Case) -> Values:
+def _first_jump(case: SphereCase) -> Values:
     """Tabor parameter from which on a hemisphere jumps under fixed grips; none if none that is large enough does."""
     ratio = case.given("radius_ratio")
     birth = Birth((FEWEST, min(MOST, LARGEST * ratio / SMALLEST_SPHERE)), FIRST.gaps, FIRST.falling)
@@ -266,12 +266,12 @@ def _first_jump(case: Case) -> Values:
     return {CRITICAL: Estimate(fine, abs(fine - coarse))}
 
 
-def _centred(case: Case, degree: int) -> Traceable:
+def _centred(case: SphereCase, degree: int) -> Traceable:
     """Problem of a hemisphere, its elements fine on the axis."""
     return sized_body(hemisphere(case), Discretisation(degree)).centred().problem
 
 
-def _first_jump_half_space(case: Case) -> Values:
+def _first_jump_half_space(case: SphereCase) -> Values:
     """The same of the half-space under a paraboloid."""
     coarse, fine = (tabor_of(FIRST, rtol=rtol) for rtol in (case.rtol, case.rtol / 100))
     return {CRITICAL: Estimate(fine, abs(fine - coarse))}
@@ -283,7 +283,7 @@ SPHERE: tuple[InputName, ...] = ("tabor", "radius_ratio", "poisson")
 def _model_of(traction: TractionName) -> Model:
     """Finite strain, its traction counted in one way; with a case of the default beside it."""
 
-    def check(case: Case) -> None:
+    def check(case: SphereCase) -> None:
         for name in (traction, NeoHookean().traction):
             require_well_posed(_neo_hookean(case, name))
 
@@ -316,8 +316,10 @@ CAUSES = {
 }
 
 
-def case_of(model: str, tabor: float | None, radius_ratio: float | None, poisson: float | None, rtol: float) -> Case:
-    """Case of a model at a point, without the inputs on which it does not depend."""
+def case_of(
+    model: str, tabor: float | None, radius_ratio: float | None, poisson: float | None, rtol: float
+) -> SphereCase:
+    """SphereCase of a model at a point, without the inputs on which it does not depend."""
     given: Mapping[InputName, float | None] = {"tabor": tabor, "radius_ratio": radius_ratio, "poisson": poisson}
     needed = MODELS[model].inputs
-    return Case(model, **{name: value for name, value in given.items() if name in needed}, rtol=rtol)
+    return SphereCase(model, **{name: value for name, value in given.items() if name in needed}, rtol=rtol)

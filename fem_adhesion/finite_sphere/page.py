@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.numbers import plus_minus
-from fem_adhesion.common.page import Section, Table, listed, page, write_csv
+from fem_adhesion.common.page import Section, Table, bullets, page, write_csv
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.finite_sphere.bulk import bulk_compliance, coefficients
 from fem_adhesion.finite_sphere.cases import CAUSES, Record
@@ -218,7 +218,7 @@ def _answer(table: Sequence[DeviationRow]) -> Iterator[str]:
     fields = {name: field_of(table, quantity, poisson) for quantity, name in SHOWN.items()}
     yield Markup("By the points solved at Poisson's ratio {:g} it errs by less than {:g} % in").format(
         poisson, 100 * LEVEL
-    ) + listed(
+    ) + bullets(
         [Markup("the <strong>{}</strong> {};").format(name, _condition(field)) for name, field in fields.items()]
     )
     yield (
@@ -251,14 +251,14 @@ def _from(field: Field) -> str:
 
 def _causes() -> list[str]:
     causes = [Markup("<strong>{}</strong>: {};").format(name, cause.meaning) for name, cause in CAUSES.items()]
-    return [Markup("Between the two lie several assumptions, switched one at a time:") + listed(causes)]
+    return [Markup("Between the two lie several assumptions, switched one at a time:") + bullets(causes)]
 
 
 def _settings(records: Sequence[Record]) -> Section:
     """How it was computed, and how to do so again."""
     names = ("tabor", "radius_ratio", "poisson", "rtol")
     inputs = {name: sorted({v for r in records if (v := getattr(r.case, name)) is not None}) for name in names}
-    asked = listed([f"{name}: {', '.join(f'{v:g}' for v in values)}" for name, values in inputs.items()])
+    asked = bullets([f"{name}: {', '.join(f'{v:g}' for v in values)}" for name, values in inputs.items()])
     again = Markup(
         'All numbers with their errors are in <a href="finite_sphere.csv">finite_sphere.csv</a>. To repeat, <code>'
         "fem-adhesion finite-sphere --out DIR</code>; with <code>--resume</code>, what the directory holds is not "

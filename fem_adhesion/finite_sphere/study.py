@@ -15,7 +15,7 @@ from itertools import product
 from fem_adhesion.common.facts import code_digest
 from fem_adhesion.common.numbers import counted
 from fem_adhesion.common.store import Kept, solve_all
-from fem_adhesion.finite_sphere.cases import MODELS, Case, Record, case_of, compute, from_plain, to_plain
+from fem_adhesion.finite_sphere.cases import MODELS, Record, SphereCase, case_of, compute, from_plain, to_plain
 from halfspace.errors import InputError
 from halfspace.limits import require_poisson, require_radius_ratio, require_tabor
 
@@ -62,7 +62,7 @@ class Study:
 
 
 @dataclass(frozen=True)
-class Sweep:
+class Combinations:
     """All combinations of these inputs, under these models."""
 
     tabors: Sequence[float]
@@ -75,7 +75,7 @@ class Sweep:
 class Plan:
     """Cases of the study, each once: those to compute, and those beyond the limits of the solvers, with reasons."""
 
-    cases: tuple[Case, ...]
+    cases: tuple[SphereCase, ...]
     left_out: tuple[Record, ...]
 
 
@@ -97,55 +97,55 @@ def plan(
         If an input is out of range, or a sphere is too small for every Tabor parameter.
     """
     asked = any(values is not None for values in (tabors, radius_ratios, poissons))
-    main = _main_sweep(tabors, radius_ratios, poissons, quick)
+    main = _main_grid(tabors, radius_ratios, poissons, quick)
     _require_inputs(main)
-    sweeps = [main] if asked else _usual_sweeps(main, quick)
+    grids = [main] if asked else _usual_grids(main, quick)
     rtol = QUICK_RTOL if quick else RTOL
-    cases = tuple(dict.fromkeys(case for sweep in sweeps for case in _cases(sweep, rtol)))
+    cases = tuple(dict.fromkeys(case for grid in grids for case in _cases(grid, rtol)))
     left_out = {case: record for case in cases if (record := _left_out(case))}
     return Plan(tuple(case for case in cases if case not in left_out), tuple(left_out.values()))
 
 
-def _main_sweep(
+def _main_grid(
     tabors: Sequence[float] | None,
     radius_ratios: Sequence[float] | None,
     poissons: Sequence[float] | None,
     quick: bool,
-) -> Sweep:
+) -> Combinations:
     usual = ((0.3, 1.0, 2.0), (30.0, 300.0, 3e3)) if quick else (TABORS, RADIUS_RATIOS)
-    return Sweep(tabors or usual[0], radius_ratios or usual[1], poissons or (POISSON,))
+    return Combinations(tabors or usual[0], radius_ratios or usual[1], poissons or (POISSON,))
 
 
-def _usual_sweeps(main: Sweep, quick: bool) -> list[Sweep]:
+def _usual_grids(main: Combinations, quick: bool) -> list[Combinations]:
     """All of a study that nothing particular is asked of: some 700 s of work on two cores, or 20 s if quick."""
     dense = tuple(name for name in MODELS if name not in SPARSE)
     if quick:
         few = tuple(name for name in dense if name not in QUICK_SPARSE)
-        return [replace(main, models=few), Sweep((1.0,), (30.0, 3e3), main.poissons, QUICK_SPARSE)]
+        return [replace(main, models=few), Combinations((1.0,), (30.0, 3e3), main.poissons, QUICK_SPARSE)]
     favoured = (0.3, 1.0, 3.0)
     return [
         replace(main, models=dense),
-        Sweep(favoured, RADIUS_RATIOS, (POISSON,), ("surface_traction",)),
-        Sweep(favoured, (30.0, 100.0, 1e3, 1e4), (POISSON,), FINITE_STRAIN),
-        Sweep(favoured, (30.0, 1e3), POISSONS, dense),
+        Combinations(favoured, RADIUS_RATIOS, (POISSON,), ("surface_traction",)),
+        Combinations(favoured, (30.0, 100.0, 1e3, 1e4), (POISSON,), FINITE_STRAIN),
+        Combinations(favoured, (30.0, 1e3), POISSONS, dense),
     ]
 
 
-def _require_inputs(sweep: Sweep) -> None:
-    for tabor in sweep.tabors:
+def _require_inputs(grid: Combinations) -> None:
+    for tabor in grid.tabors:
         require_tabor(tabor)
-    for poisson in sweep.poissons:
+    for poisson in grid.poissons:
         require_poisson(poisson)
-    for ratio in sweep.radius_ratios:
-        require_radius_ratio(ratio, min(sweep.tabors))
+    for ratio in grid.radius_ratios:
+        require_radius_ratio(ratio, min(grid.tabors))
 
 
-def _cases(sweep: Sweep, rtol: float) -> Iterator[Case]:
-    points = product(sweep.tabors, sweep.radius_ratios, sweep.poissons)
-    return (case_of(model, *point, rtol) for point in points for model in sweep.models)
+def _cases(grid: Combinations, rtol: float) -> Iterator[SphereCase]:
+    points = product(grid.tabors, grid.radius_ratios, grid.poissons)
+    return (case_of(model, *point, rtol) for point in points for model in grid.models)
 
 
-def _left_out(case: Case) -> Record | None:
+def _left_out(case: SphereCase) -> Record | None:
     """Record of a case whose sphere is too small for its Tabor parameter, or for its model besides."""
     if case.tabor is None or case.radius_ratio is None:
         return None
@@ -162,7 +162,7 @@ def code() -> str:
     return code_digest(compute.__module__)
 
 
-def _died(case: Case, reason: str) -> Record:
+def _died(case: SphereCase, reason: str) -> Record:
     return Record(case, "died", {}, reason)
 
 

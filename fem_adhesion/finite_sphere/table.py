@@ -22,8 +22,8 @@ from fem_adhesion.finite_sphere.cases import (
     CRITICAL,
     MODELS,
     QUANTITIES,
-    Case,
     Record,
+    SphereCase,
     Values,
     case_of,
 )
@@ -89,7 +89,11 @@ def rows(records: Sequence[Record], bulk: BulkCompliance | None = None) -> tuple
 
 
 def _rows_of(
-    record: Record, cause: str, found: Mapping[Case, Record], quantities: Sequence[str], bulk: BulkCompliance | None
+    record: Record,
+    cause: str,
+    found: Mapping[SphereCase, Record],
+    quantities: Sequence[str],
+    bulk: BulkCompliance | None,
 ) -> Iterator[DeviationRow]:
     case = record.case
     others = [_partner(case, model, found) for model in (CAUSES[cause].baseline, "half_space")]
@@ -103,7 +107,7 @@ def _rows_of(
         yield DeviationRow(*head, value, baseline, half_space, deviation, *ending)
 
 
-def _partner(case: Case, model: str, found: Mapping[Case, Record]) -> Record | None:
+def _partner(case: SphereCase, model: str, found: Mapping[SphereCase, Record]) -> Record | None:
     """Record of another model at the same point."""
     return found.get(case_of(model, case.tabor, case.radius_ratio, case.poisson, case.rtol))
 
@@ -123,7 +127,7 @@ def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
     }
 
 
-def _yielding(case: Case, bulk: BulkCompliance) -> Estimate:
+def _yielding(case: SphereCase, bulk: BulkCompliance) -> Estimate:
     """Approach per load, kappa mu/(R/beta), of a body that is held; none of the half-space."""
     grip = MODELS[case.model].grip
     if grip is None:

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.numbers import digits, joined, plus_minus, rises, told
-from fem_adhesion.common.page import Section, Table, listed, page, write_csv
+from fem_adhesion.common.page import Section, Table, bullets, page, write_csv
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.greenwood import load_figures, state_figures, trend_figures
 from fem_adhesion.greenwood.criteria import CriteriaStudy, closed_ratios
@@ -68,7 +68,7 @@ def lead(study: Greenwood1997) -> Iterator[str]:
     troubles = list(study.troubles())
     if troubles:
         failed = Markup("<strong>FAILED where it should not have, {} times:</strong>").format(len(troubles))
-        yield failed + listed(troubles)
+        yield failed + bullets(troubles)
     link = Markup('<a href="https://doi.org/{}">{}</a>').format(DOI, DOI)
     yield Markup("Figures and tables after {}, doi {}.").format(PAPER, link)
     yield (

@@ -50,8 +50,8 @@ class PullOff:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class States(Valued):
-    """Single states.
+class Landmarks(Valued):
+    """Single states: jumps, folds and profiles.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class Greenwood1997:
     ----------
     curves, elements : mapping of float to EquilibriumPath
         Curves on the half-space and by finite elements, by Tabor parameter.
-    states, pull_offs : States, tuple of PullOff
+    states, pull_offs : Landmarks, tuple of PullOff
         Jumps, folds and profiles; pull-off by rising Tabor parameter.
     ripples, rises : tuple of Ripple, mapping of float to Rise
         Curves at mu = 2 on grids that are too coarse; by spacing, the false rise of the pull-off force.
@@ -107,7 +107,7 @@ class Greenwood1997:
 
     curves: Mapping[float, EquilibriumPath]
     elements: Mapping[float, EquilibriumPath]
-    states: States
+    states: Landmarks
     pull_offs: tuple[PullOff, ...]
     ripples: tuple[Ripple, ...]
     rises: Mapping[float, Rise]
@@ -222,9 +222,9 @@ def _drawn(tabor: float) -> EquilibriumPath:
     return fine_path(tabor, to_load=DEEP.get(tabor, COMPRESSION), steps=steps)
 
 
-def _states(winding: EquilibriumPath) -> States:
+def _states(winding: EquilibriumPath) -> Landmarks:
     folds = np.array([fold.point.observables for fold in winding.states(FOLD)])
-    return States(curves.jumps(JUMPS_AT), folds, tuple(curves.profiles(winding)))
+    return Landmarks(curves.jumps(JUMPS_AT), folds, tuple(curves.profiles(winding)))
 
 
 def _rises(extent: Extent) -> dict[float, Rise]:

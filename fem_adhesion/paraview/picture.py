@@ -67,7 +67,7 @@ class View:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Section(Valued):
+class MeridianSection(Valued):
     """Meridian section of the body: radius and height as drawn, (2, n), and cells, (m, 3 or 4).
 
     The stress (n,) is the vertical one in E* beta/R, tension positive.
@@ -112,8 +112,8 @@ def view_of(states: Sequence[State]) -> View:
     return View(reach, depth, top, heights, min(STRONGEST, largest))
 
 
-def section(state: State, view: View) -> Section:
-    """Section of the whole body as a view draws it."""
+def section(state: State, view: View) -> MeridianSection:
+    """MeridianSection of the whole body as a view draws it."""
     cut = cut_for(state.space, state.stress, TOLERANCE)
     u_r, u_z = cut.values(state.components)
     r, z = cut.points
@@ -122,7 +122,9 @@ def section(state: State, view: View) -> Section:
     cells = cut.cells
     linear = cells[:, LINEAR[cells.shape[1]]]
     stress = cut.values(state.stress)[1]
-    return Section(np.stack([r + u_r / scene.sphere_radius, z + moved]), linear.reshape(-1, linear.shape[2]), stress)
+    return MeridianSection(
+        np.stack([r + u_r / scene.sphere_radius, z + moved]), linear.reshape(-1, linear.shape[2]), stress
+    )
 
 
 def surfaces(state: State, reach: float, heights: float) -> Surfaces:
@@ -245,7 +247,7 @@ def _add_body(pyvista: Any, plotter: Any, state: State, view: View) -> None:
     plotter.add_mesh(_turned(plane), **colours, **light)
 
 
-def _plane(pyvista: Any, shown: Section, view: View) -> Any:
+def _plane(pyvista: Any, shown: MeridianSection, view: View) -> Any:
     """The section in the plane y = 0, as far as it is in view."""
     r, z = shown.points
     cells = np.insert(shown.cells, 0, shown.cells.shape[1], axis=1)
