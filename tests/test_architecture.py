@@ -33,7 +33,7 @@ def test_every_room_has_its_floor(room):
 
 
 def test_the_floors_are_few():
-    assert len(FLOORS) <= 14
+    assert len(FLOORS) <= 12
 
 
 def _imports(module):
