@@ -35,6 +35,15 @@ class Estimate:
     value: float
     error: float
 
+    @classmethod
+    def refined(cls, coarse: float, fine: float) -> Estimate:
+        """Return the finer of two results, with the change from the coarser as its error."""
+        return cls(fine, abs(fine - coarse))
+
+    def agrees(self, other: Estimate) -> bool:
+        """Whether the two differ by no more than both errors; not so if one is not a number."""
+        return abs(self.value - other.value) <= self.error + other.error
+
 
 class Valued:
     """Base of a dataclass, declared with ``eq=False, repr=False``, whose fields may hold arrays."""

@@ -12,7 +12,6 @@ from fem_adhesion import Hemisphere
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve import lines as curve_lines
 from fem_adhesion.curve import load as load_panel
-from fem_adhesion.curve import mesh as mesh_panel
 from fem_adhesion.curve import profiles as profiles_panel
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields import state_at
@@ -171,12 +170,12 @@ def test_profiles_meet_the_surface_law_and_the_nodes_lie_on_them(curves):
 def test_the_mesh_is_drawn_with_the_deformation_of_its_surface(elements):
     """On the surface gap, deflection and the height of the sphere add up."""
     found = elements.path.stages[-1]["pull_off"]
-    state = state_at(Scene(2.0), found.problem, found.point, how=mesh_panel.MESH)
-    places, moved = (a.reshape(-1, 2) for a in mesh_panel.outlines(state, 3.0))
+    state = state_at(Scene(2.0), found.problem, found.point, how=curve_figure.MESH)
+    places, moved = (a.reshape(-1, 2) for a in curve_figure.outlines(state, 3.0))
     top = (places[:, 1] == 0) & (places[:, 0] < 3)
     r, u_z = places[top, 0], moved[top, 1]
     gap = state.problem.operator.at(1.0).values_at(r, state.gap)
-    np.testing.assert_allclose(mesh_panel._sphere(state, r) - u_z, (gap + 1) / 2, atol=2e-3)
+    np.testing.assert_allclose(curve_figure._sphere(state, r) - u_z, (gap + 1) / 2, atol=2e-3)
     assert gap.min() > -1
     assert np.abs(LENNARD_JONES.pressure(gap, 2.0)).max() > 1.9
     body = _panel(_drawn(elements), "body")

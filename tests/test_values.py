@@ -27,7 +27,7 @@ from fem_adhesion.finite_strain.scene import LITTLE
 from fem_adhesion.mesh.block import block_grid
 from halfspace.errors import InputError
 from halfspace.profiles import Sphere
-from halfspace.values import Valued, same, shown
+from halfspace.values import Estimate, Valued, same, shown
 
 ROOT = Path(__file__).parents[1]
 
@@ -281,3 +281,12 @@ def test_the_share_of_a_counter_body_is_its_part_of_the_compliance(E1, nu1, E2, 
 def test_moduli_that_cannot_be_are_refused(moduli, message):
     with pytest.raises(InputError, match=message):
         share_of(*moduli)
+
+
+def test_estimates_agree_within_both_errors_and_a_number_that_is_none_with_nothing():
+    near, far = Estimate(1.0, 0.25), Estimate(1.75, 0.5)
+    assert near.agrees(far)
+    assert far.agrees(near)
+    assert not near.agrees(Estimate(1.75, 0.25))
+    assert not near.agrees(Estimate(float("nan"), 1.0))
+    assert Estimate.refined(2.0, 1.5) == Estimate(1.5, 0.5)

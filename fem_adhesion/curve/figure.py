@@ -1,16 +1,25 @@
-"""One page about a curve: load against approach with its jumps, and the states at its events."""
+"""One page about a curve: load against approach with its jumps, the states at its events, and the body's mesh."""
 
 from __future__ import annotations
 
 from typing import Any, TextIO
 
+import numpy as np
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+from skfem import CellBasis, ElementVector, MeshTri
 
+from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common import style
 from fem_adhesion.curve.load import draw_central_gap, draw_load
-from fem_adhesion.curve.mesh import draw_mesh, is_drawn
-from fem_adhesion.curve.profiles import STATES, draw_gap, draw_pressure, draw_spike
+from fem_adhesion.curve.profiles import LEGEND, STATES, draw_gap, draw_pressure, draw_spike
+from fem_adhesion.curve.scales import scales
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves
+from fem_adhesion.fields import State, require_fields, state_at
+from fem_adhesion.scene import Scene
+from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS
+from halfspace.errors import InputError
+from halfspace.values import Array
 
 LOOK = {**style.LOOK, "font.size": 9.5}
 SIZE = (7.3, 10.0)  # inches
@@ -53,3 +62,92 @@ def draw(curves: Curves) -> Figure:
         words = paint(areas[name], curves)
         areas[name].set_title(f"({letter}) {words}", loc="left", fontsize=9.5)
     return figure
+
+
+EVENT = "pull_off"
+MESH = Discretisation(degree=4)
+SHOWN = 3.0  # radius of the picture, in contact radii
+DRAWN_AS = 0.45  # contact radii that the largest displacement is drawn as
+HIGHEST = 0.9  # height of the picture, in contact radii
+SIDE = 9  # points drawn on a side of a cell
+
+
+def is_drawn(scene: Scene) -> bool:
+    """Whether there is a picture of a scene's body."""
+    try:
+        require_fields(scene)
+    except InputError:
+        return False
+    return True
+
+
+def outlines(state: State, reach: float) -> tuple[Array, Array]:
+    """Points round the cells within a distance of the pole in beta, and their displacements, both (cells, points, 2).
+
+    Positions (r, z) are in beta, displacements in beta^2/R.
+    """
+    mesh, space = state.space.mesh, state.space
+    nearest = np.hypot(*mesh.p)[mesh.t].min(axis=0)
+    round_cell = _perimeter(triangle=isinstance(mesh, MeshTri))
+    basis = CellBasis(
+        mesh,
+        ElementVector(space.element),
+        elements=np.flatnonzero(nearest <= reach),
+        quadrature=(round_cell, np.ones(round_cell.shape[1])),
+        dofs=space.dofs,
+        disable_doflocs=True,
+    )
+    places, moved = basis.global_coordinates(), basis.interpolate(state.displacement)
+    return np.asarray(places).transpose(1, 2, 0), np.asarray(moved).transpose(1, 2, 0)
+
+
+def _perimeter(*, triangle: bool) -> Array:
+    """Points round the reference cell, (2, n)."""
+    corners = np.array([[0, 0], [1, 0], [0, 1]] if triangle else [[0, 0], [1, 0], [1, 1], [0, 1]], float)
+    t = np.linspace(0, 1, SIDE)[:-1, None]
+    sides = [a + t * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
+    return np.concatenate(sides).T
+
+
+def draw_mesh(axes: Any, curves: Curves) -> str:
+    """Mesh and deformation where the load is least, magnified; over a half-space the rigid sphere, unless too far.
+
+    Returns the title.
+    """
+    scene, found = curves.question.scene, curves.path.stages[-1][EVENT]
+    state = state_at(scene, found.problem, found.point, name=EVENT, how=MESH)
+    a, unit = _size(state), scales(curves)["radius"]
+    places, moved = outlines(state, 2 * SHOWN * a)
+    factor = DRAWN_AS * a / float(np.abs(moved).max())
+    look: dict[str, Any] = {"facecolors": "0.94", "edgecolors": style.BLUE, "linewidths": 0.35}
+    axes.add_collection(PolyCollection(list(unit.of(places + factor * moved)), **look))
+    r = np.linspace(0, SHOWN * a, 200)
+    sphere = factor * _sphere(state, r)
+    if np.isinf(scene.body.size) and sphere[0] < HIGHEST * a:
+        axes.plot(unit.of(r), unit.of(sphere), color="black", linewidth=1.3, label="rigid sphere")
+        axes.legend(loc="lower right", **LEGEND)
+    axes.set(xlim=(0, unit.size * SHOWN * a), ylim=(-unit.size * 1.6 * a, unit.size * HIGHEST * a), aspect="equal")
+    axes.set_anchor("W")  # under the beginning of its title, which is wider
+    axes.set_xlabel(unit.label)
+    axes.set_ylabel(unit.label.replace("radius $r$", "height $z$").replace("radius $u = r/", "height $z/"))
+    return _title(curves, factor)
+
+
+def _size(state: State) -> float:
+    """Contact radius, or the width of a rigid sphere's attraction where there is no contact."""
+    a = float(state.observables[CONTACT_RADIUS])
+    return a if np.isfinite(a) else state.scene.tabor**-0.5
+
+
+def _sphere(state: State, r: Array) -> Array:
+    """Height of the rigid sphere over the undeformed surface, r^2/2R + eps - alpha, in beta^2/R."""
+    return np.asarray(state.problem.profile.height(r) + (1 - state.observables[APPROACH]) / state.scene.tabor)
+
+
+def _title(curves: Curves, factor: float) -> str:
+    """Words for the magnification: of a half-space, which has no length of its own, what the unit is drawn as."""
+    question, words = curves.question, STATES[EVENT].words
+    R = question.units.radius / question.units.length if question.units else question.scene.sphere_radius
+    if np.isfinite(R):
+        return f"mesh at {words}, displacement $\\times {factor * R:.3g}$"
+    return f"mesh at {words}, $\\beta^2/R$ drawn as {factor:.2g} $\\beta$"

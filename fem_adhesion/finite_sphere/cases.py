@@ -263,7 +263,7 @@ def _first_jump(case: SphereCase) -> Values:
         coarse, fine = map(at, DEGREES)
     except NoBirth:
         return {}
-    return {CRITICAL: Estimate(fine, abs(fine - coarse))}
+    return {CRITICAL: Estimate.refined(coarse, fine)}
 
 
 def _centred(case: SphereCase, degree: int) -> Traceable:
@@ -274,7 +274,7 @@ def _centred(case: SphereCase, degree: int) -> Traceable:
 def _first_jump_half_space(case: SphereCase) -> Values:
     """The same of the half-space under a paraboloid."""
     coarse, fine = (tabor_of(FIRST, rtol=rtol) for rtol in (case.rtol, case.rtol / 100))
-    return {CRITICAL: Estimate(fine, abs(fine - coarse))}
+    return {CRITICAL: Estimate.refined(coarse, fine)}
 
 
 SPHERE: tuple[InputName, ...] = ("tabor", "radius_ratio", "poisson")

@@ -45,8 +45,7 @@ class PullOff:
     @property
     def agree(self) -> bool:
         """Whether both solvers agree within their errors; not so without finite elements."""
-        a, b = self.half_space, self.finite_element
-        return b is not None and abs(a.value - b.value) <= a.error + b.error
+        return self.finite_element is not None and self.half_space.agrees(self.finite_element)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -250,5 +249,4 @@ def _least_load(path: EquilibriumPath) -> Estimate:
 
 def _critical_tabor() -> Estimate:
     """Tabor parameter of the first fold, its error from a coarser grid."""
-    coarse, fine = (tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7))
-    return Estimate(fine, abs(fine - coarse))
+    return Estimate.refined(*(tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7)))

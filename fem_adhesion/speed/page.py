@@ -209,8 +209,9 @@ def _truths(study: SpeedStudy) -> Table:
     for quantity in study.quantities:
         a, b = (truth.values[quantity] for truth in study.truths.values())
         cells = [f"{estimate.value:.12g}, error {estimate.error:.0e}" for estimate in (a, b)]
-        agree = abs(a.value - b.value) <= a.error + b.error
-        rows.append([quantity, UNITS[quantity], *cells, f"{abs(a.value - b.value):.0e}", "yes" if agree else "NO"])
+        rows.append(
+            [quantity, UNITS[quantity], *cells, f"{abs(a.value - b.value):.0e}", "yes" if a.agrees(b) else "NO"]
+        )
     return Table("", title, "", ("quantity", "unit", *columns, "difference", "within both errors"), rows)
 
 

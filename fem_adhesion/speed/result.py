@@ -136,7 +136,7 @@ class SpeedStudy:
         """What failed that should not have, a sentence each."""
         for quantity in self.quantities:
             a, b = (truth.values[quantity] for truth in self.truths.values())
-            if not abs(a.value - b.value) <= a.error + b.error:
+            if not a.agrees(b):
                 yield f"the truths disagree in {quantity}: {a.value:.10g} and {b.value:.10g}"
         for method in self.methods:
             yield from _troubles(method, self.of(method.name))
