@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from rich import box
 from rich.cells import cell_len
@@ -26,26 +27,17 @@ UNIT = re.compile(r"(%|[yzafpnµmkMGT]?(m|N|Pa|J|N/m|J/m\^2)|s|R|dgamma(/eps)?|e
 
 @dataclass(frozen=True)
 class Layout:
-    """How a table is framed: what makes it, and how many columns the frame takes for each of n and in all."""
+    """How rich frames a table, and how many columns of the terminal the frame takes for each of its own and in all."""
 
-    make: Callable[[], Table]
+    frame: Mapping[str, Any]
     each: int
     once: int
 
-    def around(self, count: int) -> int:
-        """Columns that the frame takes."""
-        return self.each * count + self.once
 
-
-def _framed() -> Table:
-    return Table(box=box.HEAVY_HEAD)
-
-
-def _light() -> Table:
-    return Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 0))
-
-
-LAYOUTS = (Layout(_framed, 3, 1), Layout(_light, 1, -1))
+LAYOUTS = (
+    Layout({"box": box.HEAVY_HEAD}, 3, 1),
+    Layout({"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "padding": (0, 0)}, 1, -1),
+)
 
 
 def make_console(*, to_error: bool = False) -> Console:
@@ -186,7 +178,7 @@ class Fitted:
     def _fitting(self, width: int) -> tuple[Sequence[Column], Table | None]:
         """Columns that fit and their table, None if none does: all of them if it may be, in a lighter frame if not."""
         for kept, layout in self._choices():
-            spare = width - layout.around(len(kept)) - sum(column.least for column in kept)
+            spare = width - layout.each * len(kept) - layout.once - sum(column.least for column in kept)
             if spare >= 0:
                 return kept, self._table(kept, layout, _widths(kept, spare))
         return (), None
@@ -197,7 +189,7 @@ class Fitted:
             yield [column for column in self.columns if column.rank < rank], LAYOUTS[-1]
 
     def _table(self, columns: Sequence[Column], layout: Layout, widths: Sequence[int]) -> Table:
-        made = layout.make()
+        made = Table(**layout.frame)
         for column, width in zip(columns, widths, strict=True):
             justify: JustifyMethod = "left" if column.text else "right"
             made.add_column(column.header, justify=justify, no_wrap=not column.wraps, width=width)
