@@ -10,6 +10,8 @@ from halfspace.errors import InputError
 
 SMALLEST_SPHERE = 1.5**2
 """Least R/eps over the Tabor parameter, (R/beta)^2."""
+LAYER_THICKNESS = (0.01, 1000.0)
+"""Of a layer, in beta."""
 
 
 def require_number(value: object, name: str) -> float:
@@ -144,7 +146,8 @@ def require_thickness(thickness: float) -> float:
     """
     thickness = require_number(thickness, "thickness")
     remedy = "it is in beta = (R^2 dgamma/E*)^(1/3); a thicker one is a half-space"
-    return _require(thickness, "thickness", 0.01 <= thickness <= 1000, "0.01 <= thickness <= 1000", remedy)
+    least, most = LAYER_THICKNESS
+    return _require(thickness, "thickness", least <= thickness <= most, f"{least:g} <= thickness <= {most:g}", remedy)
 
 
 def require_stiffness(modulus: float) -> float:

@@ -3,6 +3,7 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import fields
 from importlib.metadata import version
 
 import pytest
@@ -215,6 +216,7 @@ def test_a_contact_has_the_same_options_in_every_command_that_takes_one(capsys):
     _, assess = _option_lines("assess", capsys)
     contact = {"--radius", "--modulus", "--poisson", "--work-of-adhesion", "--spacing", "--hamaker"}
     contact |= {"--counter-modulus", "--counter-poisson", "--counter-radius", "--grip", "--stiffness"}
+    contact |= {"--thickness", "--foundation"}
     assert contact <= set(curve)
     assert set(assess) == contact | {"--law", "--law-parameter", "--help", "--json", "--plot"}
 
@@ -267,7 +269,7 @@ def test_the_command_line_of_a_contact_is_heeded_to_the_last_option(monkeypatch)
     held = ["--grip", "bonded", "--stiffness", "0.2N/m"]
     with pytest.raises(AttributeError):
         cli.main(["assess", *MATERIAL, "--spacing", "1nm", *other, *held, "--law", "morse", "--law-parameter", "3.3"])
-    assert {name: value for name, value in vars(asked[0]).items() if name != "units"} == {
+    assert {field.name: getattr(asked[0], field.name) for field in fields(asked[0])} == {
         "radius": pytest.approx(1e-7),
         "modulus": pytest.approx(7e10),
         "poisson": 0.17,
@@ -279,6 +281,8 @@ def test_the_command_line_of_a_contact_is_heeded_to_the_last_option(monkeypatch)
         "stiffness": pytest.approx(0.2),
         "grip": "bonded",
         "law": Morse(3.3),
+        "thickness": None,
+        "foundation": "bonded",
     }
 
 

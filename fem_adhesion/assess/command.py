@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from fem_adhesion.common.options import AGREE, Command, Parser, console_beside, require_distinct, written
 from fem_adhesion.common.progress import progress_bar
-from fem_adhesion.common.scene_options import add_contact, add_law, material_of, refuse
+from fem_adhesion.common.scene_options import COUNTER, add_contact, add_law, add_layer, material_of, refuse
 
 if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact
@@ -20,6 +20,8 @@ def add_options(command: Parser) -> None:
     """Add the options."""
     add_contact(command, in_si_only=True)
     add_law(command.add_argument_group("law"))
+    sample = "thickness, as 500nm: the sphere is rigid then, and --modulus and --poisson are the sample's"
+    add_layer(command.add_argument_group("thin sample on a rigid base"), sample)
     results = command.add_argument_group("results")
     results.add_argument(
         "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
@@ -52,6 +54,10 @@ def _contact(options: argparse.Namespace) -> Contact:
     """The contact, with nothing given that would not be heeded."""
     from fem_adhesion.assess.study import FINITE_TABOR, require_known
 
+    if options.thickness is None:
+        refuse(options, ("foundation",), "with --thickness")
+    else:
+        refuse(options, ("grip", *COUNTER), "without --thickness, as a thin sample meets a rigid sphere")
     contact = material_of(options)
     require_known(contact)
     tabor = contact.units.tabor

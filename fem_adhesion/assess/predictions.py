@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from fem_adhesion.assess import theories
 from fem_adhesion.assess.theories import Curve, Loop, estimated, loop
 from fem_adhesion.common.numbers import Quantity
+from halfspace.elastic.layers import Layer
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Jump, cycle
 from halfspace.equilibrium.events import approach_scale
@@ -31,6 +33,9 @@ DISTANCE = {
     "energy_lost": 5e-4,
 }
 QUANTITIES = tuple(DISTANCE)
+IN_CONTACT = ("pull_off_force", "pull_off_radius", "zero_load_radius", "jump_off_separation", "jump_off_base")
+ON_LAYER = "thin sample"
+THIN = 0.12  # beta: on a layer so thick the distance at the Tabor parameter 300 is at most twice the half-space's
 RADII = ("pull_off_radius", "zero_load_radius")
 POSITIONS = (("jump_on_separation", "jump_off_separation"), ("jump_on_base", "jump_off_base"))  # along two axes
 WORDS = {
@@ -152,6 +157,21 @@ def large_tabor(tabor: float, stiffness: float, units: Units) -> Prediction:
             q.value, q.error + abs(q.value) * DISTANCE[name] * (part if "jump_on" not in name else 1), q.unit
         )
         for name, q in read.values.items()
+    }
+    return Prediction(read.model, values, read.curve)
+
+
+def large_tabor_on(layer: Layer, tabor: float, stiffness: float, units: Units) -> Prediction:
+    """JKR's theory on a thin sample, tabor >= 300: the contact's values and the jump off, as `large_tabor` else.
+
+    What is left of the attraction's reach grows where the spike at the edge is no longer narrow beside the thickness.
+    """
+    read = closed(ON_LAYER, partial(theories.jkr_on, layer), tabor, stiffness, units)
+    part = (REFERENCE_TABOR / tabor) ** DECAY * (1 + (THIN / layer.thickness) ** 3)
+    values = {
+        name: Quantity(q.value, q.error + abs(q.value) * DISTANCE[name] * part, q.unit)
+        for name, q in read.values.items()
+        if name in IN_CONTACT
     }
     return Prediction(read.model, values, read.curve)
 

@@ -6,19 +6,24 @@ import math
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
+from typing import TypeVar
 
 import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.assess.predictions import (
+    ON_LAYER,
     REFERENCE_TABOR,
     Prediction,
     closed,
     computed,
     large_tabor,
+    large_tabor_on,
     rigid_sphere,
     soft_sphere,
 )
 from fem_adhesion.assess.theories import bradley, dmt_maugis, jkr, maugis_dugdale
+from fem_adhesion.assess.thin_sample import ThinSample, enough, hertz_until, indentations
 from fem_adhesion.assess.verdict import (
     Deviation,
     Distance,
@@ -33,19 +38,22 @@ from fem_adhesion.bodies.hemisphere import Hemisphere
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.progress import Progress, in_turn, unheard
 from fem_adhesion.scene import Scene
+from halfspace.elastic.layers import Layer
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import tolerance_told
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
-from halfspace.profiles import Sphere
+from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
 
 HALF_SPACE, PROFILE, FINITE, PAIR = "half-space", "true profile", "finite sphere", "finite pair"
 RIGID_TABOR = 1e-12  # below it the rigid sphere is taken; above REFERENCE_TABOR, JKR
 RTOL, FINITE_RTOL = 1e-6, 1e-4  # of the half-space, and of the finite sphere beside it
+SEARCHED = 1e-3  # rtol of the samples among which that is sought which is thick enough
 FINITE_TABOR = 10.0  # up to which the finite sphere takes a few seconds
 TO_LOAD = 2.0  # R dgamma
 MAUGIS_RANGE = (1e-6, 1e6)
+Answer = TypeVar("Answer")
 THEORIES = {
     "JKR": jkr,
     "Maugis-Dugdale": maugis_dugdale,
@@ -73,11 +81,11 @@ class Assessment:
         The paraboloid on the half-space, computed, or a closed theory where that is as good.
     profile, finite : Prediction or None
         The true profile of sphere or spheres on the half-space, and the elastic hemisphere held at its mid-plane, with
-        its counter-body if that is more than a rigid wall.
+        its counter-body if that is more than a rigid wall; or the thin sample under the true profile.
     theories : tuple of Prediction
         Closed theories.
     deviations : tuple of Deviation
-        Of the finite sphere from the half-space, by cause.
+        Of the finite sphere, or the thin sample, from the half-space, by cause.
     distances : tuple of Distance
         Of every other model from the best one, the nearest first.
     regime : str
@@ -86,6 +94,8 @@ class Assessment:
         What is left out of account, and which model to trust.
     seconds : float
         Wall time.
+    sample : ThinSample or None
+        What there is to say of a thin sample beside that.
     """
 
     contact: Contact
@@ -99,6 +109,7 @@ class Assessment:
     cautions: tuple[str, ...]
     verdict: tuple[str, ...]
     seconds: float = field(compare=False)
+    sample: ThinSample | None = None
 
     @property
     def models(self) -> tuple[Prediction, ...]:
@@ -129,32 +140,37 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
         If the half-space's curve cannot be traced.
     """
     began = time.perf_counter()
-    begin = in_turn(progress, 4)
+    begin = in_turn(progress, 5 if contact.layer else 4)
     begin("half-space")
     half_space = _half_space(contact)
     begin("closed theories")
     theories = tuple(_theories(contact))
     begin("sphere's profile")
     profile, reason = _tried(PROFILE, _profile, contact)
-    begin("finite sphere")
-    finite, why_not = _tried(PAIR if contact.pair else FINITE, _finite, contact)
+    body = ON_LAYER if contact.layer else PAIR if contact.pair else FINITE
+    begin(body)
+    finite, why_not = _tried(body, _finite, contact)
+    if contact.layer:
+        begin("thickness that is enough")
+    sample, unknown = _tried("thickness that is enough", partial(_thin_sample, half_space=half_space), contact)
     return Assessment(
         contact,
         half_space,
         profile,
         finite,
         theories,
-        tuple(deviations(half_space, profile, finite, contact.spacing)),
+        tuple(deviations(half_space, None if contact.layer and _soft(contact) else profile, finite, contact.spacing)),
         distances := ranked((half_space, profile, finite, *theories), contact.spacing),
         regime(contact.units.tabor),
         (
             *cautions(contact, half_space),
             *yielding(contact),
-            *filter(None, (reason, why_not)),
+            *filter(None, (reason, why_not, unknown)),
             *_missed(half_space, profile, finite),
         ),
         tuple(verdict(finite or half_space, distances, computed=finite is not None)),
         time.perf_counter() - began,
+        sample,
     )
 
 
@@ -185,8 +201,8 @@ def _theories(contact: Contact) -> Iterator[Prediction]:
             yield closed(name, make, tabor, contact.reduced_stiffness, contact.units)
 
 
-def _tried(name: str, make: Callable[[Contact], Prediction], contact: Contact) -> tuple[Prediction | None, str | None]:
-    """Prediction, or why there is none: the sphere is outside what the solver serves, or the solver gave up."""
+def _tried(name: str, make: Callable[[Contact], Answer], contact: Contact) -> tuple[Answer | None, str | None]:
+    """Answer, or why there is none: the contact is outside what the solver serves, or the solver gave up."""
     try:
         return make(contact), None
     except (InputError, NotConverged) as error:
@@ -218,8 +234,10 @@ def _profile(contact: Contact) -> Prediction:
 
 
 def _finite(contact: Contact) -> Prediction:
-    """The elastic hemisphere held at its mid-plane, against a rigid wall or its counter-body."""
+    """The elastic hemisphere held at its mid-plane, against a rigid wall or its counter-body; or the thin sample."""
     units = contact.units
+    if contact.layer:
+        return _on_layer(contact, contact.layer, Sphere(units.radius_ratio))
     if units.tabor > FINITE_TABOR:
         raise InputError(
             f"tabor = {units.tabor:.4g} is outside tabor <= {FINITE_TABOR:g}, beyond which it takes long; "
@@ -234,3 +252,36 @@ def _finite(contact: Contact) -> Prediction:
     )
     path = convergence.trace(scene, rtol=FINITE_RTOL, to_load=TO_LOAD)
     return computed(PAIR if contact.pair else FINITE, path, contact.reduced_stiffness, units)
+
+
+def _soft(contact: Contact) -> bool:
+    """Whether JKR's theory stands for what is computed."""
+    return contact.units.tabor > REFERENCE_TABOR
+
+
+def _on_layer(contact: Contact, layer: Layer, profile: Profile, rtol: float = FINITE_RTOL) -> Prediction:
+    """A profile on a thin sample; of a large Tabor parameter the paraboloid."""
+    units, stiffness = contact.units, contact.reduced_stiffness
+    if _soft(contact):
+        return large_tabor_on(layer, units.tabor, stiffness, units)
+
+    def solved(rtol: float) -> Prediction:
+        path = halfspace.trace(units.tabor, law=contact.law, profile=profile, body=layer, rtol=rtol, to_load=TO_LOAD)
+        return computed(ON_LAYER, path, stiffness, units)
+
+    try:
+        return solved(rtol)
+    except NotConverged:  # where a jump lands may be lost between two points of one path and not of a finer one
+        return solved(rtol / 10)
+
+
+def _thin_sample(contact: Contact, half_space: Prediction) -> ThinSample | None:
+    """Where the half-space and the series serve in the place of the thin sample; None of a thick one."""
+    if contact.thickness is None:
+        return None
+    on_layer = partial(_on_layer, contact, profile=PARABOLOID, rtol=SEARCHED)
+    return ThinSample(
+        tuple(indentations(contact, contact.thickness)),
+        hertz_until(contact),
+        tuple(enough(contact, half_space, on_layer)),
+    )

@@ -11,14 +11,22 @@ from rich.text import Text
 
 from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction
 from fem_adhesion.assess.study import Assessment
+from fem_adhesion.assess.thin_sample import WRONG, ThinSample
+from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.facts import plain, versions
 from fem_adhesion.common.numbers import PREFIXES, Quantity, engineering, exponent_of, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.registry import record_of, told
 from halfspace.laws import LENNARD_JONES
 
+STANDS = {"bonded": "bonded to its base", "sliding": "sliding on its base"}
 DIGITS_OF_RATIO = 4  # significant, at most
-RANKS = {"both": 0, "true profile": 1, "finite body": 1}  # by which columns of the differences are left out
+RANKS = {
+    "both": 0,
+    "true profile": 1,
+    "finite body": 1,
+    "thickness": 1,
+}  # by which columns of the differences are left out
 
 
 def report(assessment: Assessment) -> RenderableType:
@@ -29,6 +37,7 @@ def report(assessment: Assessment) -> RenderableType:
         *map(prose, _legend(assessment)),
         Text(),
         *_deviations(assessment),
+        *_thin_sample(assessment.contact, assessment.sample),
         *(prose(f"caution: {line}") for line in assessment.cautions),
         *map(prose, assessment.verdict),
     )
@@ -48,6 +57,9 @@ def _head(assessment: Assessment) -> Iterator[RenderableType]:
     yield Flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in law), implied])
     fixed = math.isinf(contact.stiffness)
     yield Text("fixed grips" if fixed else f"cantilever: {engineering(contact.stiffness, 'N/m')}")
+    if contact.thickness and contact.layer:
+        h = f"{engineering(contact.thickness, 'm')} = {contact.layer.thickness:.4g} beta"
+        yield Flow([f"thin sample: h = {h}", STANDS[contact.foundation]], ", ")
     yield Text()
 
 
@@ -62,7 +74,9 @@ def _legend(assessment: Assessment) -> Iterator[str]:
         )
     if shown & set(RADII):
         yield contact_radius(assessment)
-    if assessment.finite:
+    if assessment.finite and assessment.contact.layer:
+        yield "Thin sample: under a rigid sphere; the half-space is as thick as can be."
+    elif assessment.finite:
         yield f"Of the {assessment.finite.model} what is round is held at its mid-plane, {assessment.contact.grip}."
     yield (
         "In brackets: error of the last digit, for closed theories that of the reading only. -: not in the model. "
@@ -119,7 +133,7 @@ def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
         return
     causes = {
         "true profile": [d.profile for d in known],
-        "finite body": [d.body for d in known],
+        "thickness" if assessment.contact.layer else "finite body": [d.body for d in known],
         "both": [d.total for d in known],
     }
     columns = [
@@ -132,11 +146,55 @@ def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
     yield Text()
 
 
+def _thin_sample(contact: Contact, sample: ThinSample | None) -> Iterator[RenderableType]:
+    """What of it the half-space and the series get wrong without adhesion, and which thickness is enough."""
+    if sample and contact.thickness:
+        yield indentations_table(sample)
+        until = with_error(sample.hertz_until, digits=DIGITS_OF_RATIO)
+        reach = (sample.hertz_until.value * contact.thickness) ** 2 / contact.units.radius
+        yield prose(
+            "Chi: sqrt(R delta)/h of the indentation delta. Series: Dimitriadis et al. (2002), for chi up to 1. "
+            f"Hertz's load is right to {100 * WRONG:g} % up to chi = {until}, here an indentation of "
+            f"{engineering(reach, 'm')}."
+        )
+        yield Text()
+        yield enough_table(sample)
+        yield Text()
+
+
+def indentations_table(sample: ThinSample) -> Fitted:
+    """Contacts without adhesion, a line each."""
+    rows = sample.indentations
+    length, force = exponent_of(rows[-1].indentation), exponent_of(rows[-1].force.value)
+    columns = [
+        Column(f"indentation\n{PREFIXES[length]}m", [f"{row.indentation / 10.0**length:.4g}" for row in rows]),
+        Column("chi", [f"{row.chi:.4g}" for row in rows], 1),
+        Column(f"force\n{PREFIXES[force]}N", [with_error(row.force, 10.0**-force) for row in rows]),
+        Column("Hertz off\n%", [with_error(row.half_space, 100, DIGITS_OF_RATIO) for row in rows]),
+        Column("series off\n%", [with_error(row.series, 100, DIGITS_OF_RATIO) for row in rows]),
+    ]
+    return Fitted(columns, ["without adhesion on the thin sample, and how far Hertz's theory and the series are off"])
+
+
+def enough_table(sample: ThinSample) -> Fitted:
+    """Thicknesses from which on the half-space is right, a line each."""
+    found = [row.thickness.value for row in sample.enough if row.thickness]
+    size = exponent_of(max(found, default=1e-6))
+    thicknesses = [with_error(row.thickness, 10.0**-size) if row.thickness else row.note for row in sample.enough]
+    columns = [
+        Column("in", [WORDS.get(row.quantity, row.quantity) for row in sample.enough], text=True, wraps=True),
+        Column(f"thickness\n{PREFIXES[size]}m", thicknesses),
+        Column("worst", [WORDS.get(row.worst, "-") for row in sample.enough], 1, text=True, wraps=True),
+    ]
+    return Fitted(columns, [f"from which thickness on the half-space is right to {100 * WRONG:g} %"])
+
+
 def record(assessment: Assessment) -> dict[str, object]:
     """Everything as plain data for JSON, without infinities: a quantity is a value, an error and a unit in SI."""
     contact = assessment.contact
     return {
         "input": plain({**asdict(contact), "law": record_of(contact.law)}),
+        "thickness_in_beta": contact.layer.thickness if contact.layer else None,
         "equivalent_radius": contact.units.radius,
         "contact_modulus": contact.units.modulus,
         "hamaker": contact.units.hamaker,
@@ -151,6 +209,7 @@ def record(assessment: Assessment) -> dict[str, object]:
             }
             for model in assessment.models
         ],
+        "thin_sample": asdict(assessment.sample) if assessment.sample else None,
         "deviations": [asdict(deviation) for deviation in assessment.deviations],
         "distances": [asdict(distance) for distance in assessment.distances],
         "definitions": {"contact_radius": contact_radius(assessment)},

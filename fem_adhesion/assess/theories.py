@@ -11,13 +11,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebfit, chebpts1, chebval
 
+from halfspace.elastic.layers import LayeredBody
+from halfspace.roots import root
 from halfspace.theories import closed_forms, dmt
 from halfspace.theories.closed_forms import ContactState
+from halfspace.theories.layered import OnLayers
 from halfspace.theories.maugis import MaugisDugdale
 from halfspace.values import Array, Estimate, Valued
 
 SAMPLES = 100_001  # of each stretch; odd, so that every second one has the same ends
+NODES = 48  # of the polynomial through JKR's theory on layers
 COMPRESSED = 2.0  # load to which the curves go
 PRESSED = 0.25  # approach to which a rigid sphere's goes; it bears no load at 0.206
 ROUNDED = 1e-3  # root of the contact radius below which Maugis's approach is the sum of rounding errors
@@ -131,6 +136,19 @@ def maugis_dugdale(tabor: float, stiffness: float) -> Curve:
     a = _widest() * np.linspace(ROUNDED, 1.0, SAMPLES) ** 2
     contact = Curve(theory.approach(a), theory.load(a), a)
     return _free(tabor, stiffness, float(disc.approach[0])).then(disc).then(contact)
+
+
+def jkr_on(body: LayeredBody, tabor: float, stiffness: float) -> Curve:
+    """JKR on a layered body; the contact is smooth in the root of its radius, by which it is interpolated."""
+    theory = OnLayers(body)
+    what = "the widest contact; take a half-space"
+    widest = root(lambda a: theory.jkr(a).load - COMPRESSED, SMALLEST, _widest(), what)
+    nodes = chebpts1(NODES)
+    states = [theory.jkr(widest * float(1 + x) ** 2 / 4) for x in nodes]
+    through = chebfit(nodes, np.array([[state.approach, state.load] for state in states]), NODES - 1)
+    s = np.linspace(0.0, 1.0, SAMPLES)
+    approach, load = chebval(2 * s - 1, through)
+    return _free(tabor, stiffness, 0.0).then(Curve(tabor * approach, load, widest * s**2))
 
 
 def _jkr_contact(tabor: float) -> Curve:

@@ -118,12 +118,18 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
     units = contact.units
     R = units.radius
     wide, far = (half_space.values.get(name) for name in ("zero_load_radius", "jump_on_separation"))
-    judged = (
+    judged = [
         ("contact radius over R", _over(wide, R), WIDEST_CONTACT, "linear elasticity no longer holds"),
         ("strain beta/R", units.length / R, LARGEST_STRAIN, "finite strain matters"),
         ("spacing over R", units.spacing / R, LARGEST_SPACING, "a law between continuous planes is doubtful"),
         ("jump-on distance over R", _over(far, R), FARTHEST_JUMP, "the law between planes is doubtful"),
-    )
+    ]
+    if contact.thickness:
+        pressed, h = _over(wide, R) ** 2 * R, contact.thickness
+        judged += [
+            ("indentation over thickness", pressed / h, LARGEST_STRAIN, "finite strain matters"),
+            ("spacing over thickness", units.spacing / h, LARGEST_SPACING, "its base attracts through the sample"),
+        ]
     for what, value, limit, meaning in judged:
         if value > limit:
             yield f"{what} is {value:.2g}, limit {limit:g}: {meaning}"
@@ -132,7 +138,7 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
 def yielding(contact: Contact) -> Iterator[str]:
     """What the yield of the attracted layer, which no surface law has, does to one sphere's adhesion by the 3-9 law."""
     units = contact.units
-    if contact.pair or contact.law != LENNARD_JONES:
+    if contact.pair or contact.layer or contact.law != LENNARD_JONES:
         return
     ratio = yielded_adhesion(units.tabor, units.radius_ratio, contact.poisson)
     yield (

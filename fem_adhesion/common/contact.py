@@ -13,6 +13,7 @@ from fem_adhesion.bodies.body import Body, GripName
 from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.bodies.hemisphere import Hemisphere
 from fem_adhesion.scene import facing_pair
+from halfspace.elastic.layers import Foundation, Layer
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.check import require_law
@@ -40,11 +41,15 @@ class Contact:
         How spheres are held at their mid-planes.
     law : Law
         Of the tension between the surfaces.
+    thickness : float, optional
+        In m: a rigid sphere on a thin sample, whose are `modulus` and `poisson` then.
+    foundation : {"bonded", "sliding"}
+        How the sample stands on its rigid base.
 
     Raises
     ------
     InputError
-        If a value is out of range or one of the other body's two is missing.
+        If a value is out of range, one of the other body's two is missing, or there is one beside a thin sample.
     """
 
     radius: float
@@ -58,6 +63,8 @@ class Contact:
     stiffness: float = math.inf
     grip: GripName = "sliding"
     law: Law = LENNARD_JONES
+    thickness: float | None = None
+    foundation: Foundation = "bonded"
 
     def __post_init__(self) -> None:
         require_poisson(self.poisson)
@@ -70,7 +77,12 @@ class Contact:
         missing = [name for name, value in given.items() if value is None]
         if len(missing) == 1:
             raise InputError(f"{missing[0]} = None, limit: with both or none of {' and '.join(given)}; give it too")
-        self.units  # noqa: B018  it refuses what is not positive
+        if self.thickness is not None and self.pair:
+            raise InputError(
+                f"thickness = {self.thickness:g} m with another elastic or round body, limit: a rigid sphere on a "
+                "thin sample; leave out the counter-body"
+            )
+        self.units, self.layer  # noqa: B018  they refuse what is not positive
 
     @cached_property
     def units(self) -> Units:
@@ -78,6 +90,13 @@ class Contact:
         other = () if self._other is None else self._other
         modulus = contact_modulus(self.modulus, self.poisson, *other)
         return Units(equivalent_radius(self.radius, self.counter_radius), modulus, self.work_of_adhesion, self.spacing)
+
+    @cached_property
+    def layer(self) -> Layer | None:
+        """The thin sample, or None."""
+        if self.thickness is None:
+            return None
+        return Layer(self.thickness / self.units.length, self.poisson, self.foundation)
 
     @property
     def reduced_stiffness(self) -> float:

@@ -29,6 +29,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "radius": LENGTH,
     "counter_radius": LENGTH,
     "spacing": ("m", "0.143nm"),
+    "thickness": ("m", "500nm"),
     "hamaker": ("J", "65zJ"),
     "modulus": MODULUS,
     "counter_modulus": MODULUS,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Mapping
 from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact
     from fem_adhesion.common.options import Parser
     from fem_adhesion.scene import Scene
+    from halfspace.elastic.layers import Layer
     from halfspace.laws import Law
 
     Group = argparse._ArgumentGroup
@@ -72,9 +74,7 @@ def add_body(body: Group) -> None:
     add_law(body)
     cap = "half-angle of the cap over which a sphere is held, degrees; 30 unless given"
     body.add_argument("--cap-angle", type=float, help=cap, metavar="ANGLE")
-    body.add_argument("--thickness", type=float, help="thickness of a layer on a rigid base in beta", metavar="T")
-    base = "whether the base holds a layer or carries it without friction; bonded unless given"
-    body.add_argument("--foundation", choices=("bonded", "sliding"), help=base)
+    add_layer(body, "thickness of a layer on a rigid base: with --tabor in beta, else as 500nm")
     body.add_argument("--block-radius", type=float, help="size of a block in beta", metavar="L")
     held = "what holds a block at its far side; point_load unless given"
     body.add_argument("--far-field", choices=("point_load", "clamped", "free"), help=held)
@@ -84,6 +84,13 @@ def add_body(body: Group) -> None:
     body.add_argument("--traction", choices=tractions, help=counted)
     ratio = "with --tabor: R/eps of a body with a size, or of a true profile"
     body.add_argument("--radius-ratio", type=float, help=ratio, metavar="RHO")
+
+
+def add_layer(group: Group, thickness: str) -> None:
+    """Add the options of a layer on a rigid base."""
+    group.add_argument("--thickness", help=thickness, metavar="T")
+    base = "whether the base holds a layer or carries it without friction; bonded unless given"
+    group.add_argument("--foundation", choices=("bonded", "sliding"), help=base)
 
 
 def add_law(group: Group) -> None:
@@ -120,13 +127,14 @@ def scene_of(
     radius_ratio: float | None,
     counter: Body | None,
     share: float | None,
+    layer: Layer | None = None,
 ) -> Scene:
-    """Scene of the body given; `radius_ratio` is that of the body itself, or of the profile."""
+    """Scene of the body given; `radius_ratio` is its own, or the profile's, `layer` a thin sample given in SI."""
     from fem_adhesion.scene import Scene
 
     traction = {} if options.traction is None else {"traction": options.traction}
     material = class_of("material", MATERIALS[options.strain or "small"])(poisson, **traction)
-    body = _body(options, radius_ratio, material)
+    body = _body(options, {"radius_ratio": radius_ratio, "thickness": _thickness(options, layer)}, material)
     profile, law = _profile(options, body, radius_ratio), law_of(options)
     return Scene(tabor, body, profile, law, counter=counter, share=share)
 
@@ -183,22 +191,27 @@ def _fields(name: str, kind: str = "body") -> dict[str, Any]:
     return {field.name: field for field in fields(class_of(kind, name))}
 
 
-def _body(options: argparse.Namespace, radius_ratio: float | None, material: object) -> Any:
-    """Body of the fields given, none of which it lacks."""
+def _thickness(options: argparse.Namespace, layer: Layer | None) -> float | None:
+    """Of a layer in beta."""
+    if layer or options.thickness is None:
+        return layer.thickness if layer else None
+    return _plain(options, "thickness", "beta")
+
+
+def _body(options: argparse.Namespace, lengths: Mapping[str, float | None], material: object) -> Any:
+    """Body of the fields given, none of which it lacks; its lengths are dimensionless."""
     name = _name(options)
     own = _fields(name)
     for field, option in FIELDS.items():
         if field not in own and option != "radius_ratio":
             refuse(options, (option,), "with " + " or ".join(f"--body {other}" for other in _having(field)))
-    values = {field: getattr(options, option) for field, option in FIELDS.items() if field in own}
-    if "radius_ratio" in own:
-        values["radius_ratio"] = radius_ratio
+    values = {field: lengths.get(field, getattr(options, option)) for field, option in FIELDS.items() if field in own}
     for field, value in values.items():
         if value is None and own[field].default is MISSING:
             what = {
                 "path": "a file; give --mesh FILE",
                 "radius": "a number; give --block-radius, in beta",
-                "thickness": "a number; give --thickness, in beta",
+                "thickness": "a number; give --thickness, in beta, or with a material as 500nm",
             }
             raise InputError(f'{field} = None for body = "{name}", limit: {what.get(field, "a number; give R/eps")}')
     given = {field: value for field, value in values.items() if value is not None}
@@ -292,6 +305,7 @@ def _contact(options: argparse.Namespace) -> Contact:
         counter_poisson=options.counter_poisson,
         grip=options.grip or "sliding",
         law=law_of(options),
+        foundation=options.foundation or "bonded",
     )
 
 

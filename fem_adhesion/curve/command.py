@@ -210,7 +210,7 @@ def _scene(options: argparse.Namespace, contact: Contact | None) -> Scene:
     units = contact.units
     refuse(options, ("radius_ratio",), f"with --tabor, as the material has its own {units.radius_ratio:.4g}")
     if not has_size(options) or not contact.pair:  # two half-spaces are one, of their contact modulus
-        return scene_of(options, units.tabor, contact.poisson, units.radius_ratio, None, None)
+        return scene_of(options, units.tabor, contact.poisson, units.radius_ratio, None, None, contact.layer)
     parts = contact.smaller_ratio, contact.counter, contact.share
     return scene_of(options, units.tabor, contact.smaller_poisson, *parts)
 

@@ -1,0 +1,210 @@
+"""A thin sample: what of it the half-space and the published series get wrong, and which thickness is enough for it.
+
+Without adhesion the truth is Hertz's theory on the layer, see `halfspace.theories.layered`; with it a computed curve.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache, partial
+
+from fem_adhesion.assess.predictions import QUANTITIES, Prediction, relative
+from fem_adhesion.common.contact import Contact
+from fem_adhesion.common.numbers import Quantity
+from halfspace.elastic.layers import Layer
+from halfspace.errors import NotConverged
+from halfspace.limits import LAYER_THICKNESS
+from halfspace.roots import root
+from halfspace.theories.closed_forms import hertz_load
+from halfspace.theories.layered import OnLayers, hertz_ratio, thin_sample_series
+from halfspace.values import Estimate
+
+WRONG = 0.01  # part of the value by which the half-space may be off to be right
+DEEPEST, WIDEST = 0.2, 0.05  # indentations go to this part of the thickness, or of the radius: small strain
+PARTS = (0.05, 0.1, 0.2, 0.5, 1.0)  # of the deepest
+THICK = 30.0  # beta: where the search for a thickness begins
+MOST_SECANTS, FLATTEST = 12, -0.2  # of the search; the slope of the flattest
+LEAST = 1e-12  # difference that is told from none
+NARROW = 1e-8  # thicknesses: to which a contact radius is solved for
+ROOT = 1e-3  # to which the logarithm of a thickness is solved for
+
+
+@dataclass(frozen=True)
+class Indentation:
+    """A contact without adhesion.
+
+    Attributes
+    ----------
+    indentation : float
+        Approach delta in m.
+    chi : float
+        (R delta)^(1/2)/h.
+    force : Quantity
+        On the sample, in N.
+    half_space, series : Quantity
+        How far Hertz's theory and the series of Dimitriadis et al. are from that, as a part of it.
+    """
+
+    indentation: float
+    chi: float
+    force: Quantity
+    half_space: Quantity
+    series: Quantity
+
+
+@dataclass(frozen=True)
+class Enough:
+    """From which thickness on the half-space is right to `WRONG`.
+
+    Attributes
+    ----------
+    quantity : str
+        One of `fem_adhesion.assess.predictions.QUANTITIES`, or "every quantity".
+    thickness : Quantity or None
+        In m; None if no thickness of a layer that is computed is.
+    worst : str
+        The quantity that is off by so much there.
+    note : str
+        Why there is no thickness.
+    """
+
+    quantity: str
+    thickness: Quantity | None = None
+    worst: str = ""
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class ThinSample:
+    """What assessing a thin sample adds.
+
+    Attributes
+    ----------
+    indentations : tuple of Indentation
+        Contacts without adhesion, ascending.
+    hertz_until : Quantity
+        Largest (R delta)^(1/2)/h at which Hertz's load on a half-space is right to `WRONG`.
+    enough : tuple of Enough
+        Thicknesses that are.
+    """
+
+    indentations: tuple[Indentation, ...]
+    hertz_until: Quantity
+    enough: tuple[Enough, ...]
+
+
+def indentations(contact: Contact, thickness: float) -> Iterator[Indentation]:
+    """Contacts without adhesion on a sample of a thickness in m."""
+    R, E = contact.units.radius, contact.units.modulus
+    for part in PARTS:
+        delta = part * min(DEEPEST * thickness, WIDEST * R)
+        chi = math.sqrt(R * delta) / thickness
+        ratio = hertz_ratio(_of_unit_thickness(contact), chi**2)
+        series = thin_sample_series(chi, contact.poisson, contact.foundation)
+        hertz = 4 / 3 * E * math.sqrt(R) * delta**1.5
+        yield Indentation(delta, chi, Quantity.of(ratio, hertz, "N"), _off(1.0, ratio), _off(series, ratio))
+
+
+def _off(value: float, true: Estimate) -> Quantity:
+    """Relative difference of a value from the true one."""
+    return Quantity(value / true.value - 1, value * true.error / true.value**2, "1")
+
+
+def hertz_until(contact: Contact) -> Quantity:
+    """Largest (R delta)^(1/2)/h at which Hertz's load on a half-space is right to `WRONG`."""
+    theory = OnLayers(_of_unit_thickness(contact))
+
+    def beyond(a: float) -> float:
+        state = theory.hertz(a)
+        return (1 - float(hertz_load(math.sqrt(state.approach))) / state.load) / WRONG - 1
+
+    a = root(beyond, 1e-4, 1.0, "where Hertz's load is off; take a thick sample", xtol=NARROW)
+    chi = math.sqrt(theory.hertz(a).approach)
+    return Quantity(chi, 2 * NARROW, "1")
+
+
+def _of_unit_thickness(contact: Contact) -> Layer:
+    return Layer(1.0, contact.poisson, contact.foundation)
+
+
+def enough(contact: Contact, half_space: Prediction, on_layer: Callable[[Layer], Prediction]) -> Iterator[Enough]:
+    """Thicknesses from which on the half-space is right, in the pull-off force and in all quantities.
+
+    Parameters
+    ----------
+    contact : Contact
+        On a thin sample.
+    half_space : Prediction
+        The paraboloid on a half-space.
+    on_layer : callable
+        The same on a layer.
+    """
+
+    @cache
+    def thin(thickness: float) -> Prediction:
+        return on_layer(Layer(thickness, contact.poisson, contact.foundation))
+
+    def parts(log_thickness: float, names: tuple[str, ...]) -> dict[str, Estimate]:
+        model = thin(math.exp(log_thickness))
+        return {name: _part(model, half_space, name, contact.spacing) for name in names}
+
+    def off(log_thickness: float, names: tuple[str, ...]) -> Estimate:
+        return max(parts(log_thickness, names).values(), key=lambda part: part.value)
+
+    # A layer bends as a whole by W/h to the first order, which moves approaches; the load follows from its curvature.
+    for name, names, power in (("pull_off_force", ("pull_off_force",), 3.0), ("every quantity", QUANTITIES, 1.0)):
+        try:
+            found = _outermost(partial(off, names=names), power)
+        except NotConverged:
+            found = "not solved"
+        if isinstance(found, str):
+            yield Enough(name, note=found)
+        else:
+            largest = parts(math.log(found.value), names)
+            worst = max(largest, key=lambda quantity: largest[quantity].value)
+            yield Enough(name, Quantity.of(found, contact.units.length, "m"), worst)
+
+
+def _part(model: Prediction, half_space: Prediction, name: str, spacing: float) -> Estimate:
+    """Difference of the half-space from a model as a part of the half-space's value; none of what one of them lacks."""
+    found = relative(model, half_space, name, spacing)
+    return Estimate(abs(found.value), found.error) if found else Estimate(0.0, 0.0)
+
+
+def _outermost(off: Callable[[float], Estimate], power: float) -> Estimate | str:
+    """Thickness in beta beyond which a difference is below `WRONG`, by secants in logarithms from the thick side.
+
+    Parameters
+    ----------
+    off : callable
+        Difference at the logarithm of a thickness.
+    power : float
+        Of the thickness, with which it dies out.
+
+    Returns
+    -------
+    Estimate or str
+        Or in words where it is below for all layers, or above.
+
+    Raises
+    ------
+    NotConverged
+        If no thickness is found.
+    """
+
+    def level(x: float) -> float:
+        return math.log(max(off(x).value, LEAST) / WRONG)
+
+    (least, most), at, slope = map(math.log, LAYER_THICKNESS), math.log(THICK), -power
+    for _ in range(MOST_SECANTS):
+        then = min(max(at - level(at) / slope, least), most)
+        if abs(then - at) <= ROOT and least < then < most:
+            size = math.exp(then)
+            return Estimate(size, size * (off(at).error / WRONG / abs(slope) + ROOT))
+        if then == at:
+            return f"{'below' if at == least else 'above'} {math.exp(at):g} beta"
+        slope = min((level(then) - level(at)) / (then - at), FLATTEST)
+        at = then
+    raise NotConverged(f"no thickness within {MOST_SECANTS} secants, limit: one; take a thick sample")
