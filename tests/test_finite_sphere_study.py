@@ -375,6 +375,14 @@ def test_a_refusal_of_other_code_is_tried_again(tmp_path):
     assert run(CASES[:1], open_store(tmp_path, "mended code", resume=True), jobs=1)[0].status == "solved"
 
 
+@pytest.mark.parametrize("fresh", [False, True])
+def test_only_a_fresh_study_computes_again_what_the_store_holds(tmp_path, fresh):
+    run(CASES[:2], opened(tmp_path), jobs=1, work=cheap)
+    seen, study = [], opened(tmp_path, resume=True)
+    run(CASES[:2], study, jobs=1, work=cheap, fresh=fresh, progress=lambda *at: seen.append(at))
+    assert seen[0] == ("starting", 0 if fresh else 2, 2)
+
+
 def test_two_tolerances_have_a_file_each(tmp_path):
     loose, tight = SphereCase("half_space", 1.0, rtol=1e-2), SphereCase("half_space", 1.0, rtol=1e-5)
     study = opened(tmp_path)

@@ -48,6 +48,10 @@ def test_the_page_holds_verdict_tables_and_figures_and_needs_no_network(html):
     assert len(html.encode()) < 5 * 2**20
 
 
+def test_the_same_contents_make_the_same_page(contents, html):
+    assert page(contents) == html
+
+
 def test_the_levels_hold_every_quantity_with_its_verdict(contents, html):
     (case,) = contents.cases
     levels = html[html.index('id="levels"') : html.index('id="speed"')]

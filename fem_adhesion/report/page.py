@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib import rc_context
 
 from fem_adhesion.common.facts import machine
 from fem_adhesion.common.page import Section, inlined, render, template_text
@@ -122,8 +123,10 @@ def walk_words(walk: Walk) -> list[str]:
 
 
 def _curves_section(curves: Curves) -> Section:
-    stream, drawn = BytesIO(), curve_figure.draw(curves)
-    drawn.savefig(stream, format="svg")
+    stream = BytesIO()
+    with rc_context(curve_figure.LOOK):
+        drawn = curve_figure.draw(curves)
+        drawn.savefig(stream, format="svg", metadata={"Date": None})
     solvers = " and by ".join(curves.paths)
     last = "the deformed mesh" if curve_figure.has_mesh(curves) else "the central gap"
     text = (

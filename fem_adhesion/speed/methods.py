@@ -26,7 +26,7 @@ from halfspace.equilibrium.relaxation import Relaxed
 from halfspace.errors import InputError
 from halfspace.scales import Scales
 from halfspace.theories.closed_forms import jkr_radius
-from halfspace.values import Array
+from halfspace.values import Array, Estimate
 
 QUANTITIES = ("pull_off", "jump_on", "hysteresis")
 
@@ -86,13 +86,17 @@ class Method:
         return self.steps[: self.quick] if quick else self.steps
 
 
+def estimates(path: EquilibriumPath) -> dict[str, Estimate]:
+    """Quantities of a path with their errors; jump and hysteresis only where it folds."""
+    found = {"pull_off": path.events["pull_off"].estimate("load")}
+    if grips := cycle(path):
+        found |= {"jump_on": grips.jump_on.take_off.estimate("approach"), "hysteresis": grips.energy_lost}
+    return found
+
+
 def from_path(path: EquilibriumPath) -> Solved:
     """Quantities of an adaptive solver's path."""
-    values = {"pull_off": path.events["pull_off"].load}
-    grips = cycle(path)
-    if grips is not None:
-        values |= {"jump_on": grips.jump_on.take_off.approach, "hysteresis": grips.energy_lost.value}
-    return Solved(path.unknowns, values)
+    return Solved(path.unknowns, {name: estimate.value for name, estimate in estimates(path).items()})
 
 
 def from_chart(problem: Traceable, unknowns: int) -> Solved:

@@ -22,12 +22,10 @@ from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed.element_methods import POISSON, element_methods
 from fem_adhesion.speed.growth import Question, grown, growth_questions
-from fem_adhesion.speed.methods import Family, Method, Solved, Step, halfspace_methods
+from fem_adhesion.speed.methods import Family, Method, Solved, Step, estimates, halfspace_methods
 from fem_adhesion.speed.result import SpeedStudy, Status, Timing, Truth
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
-from halfspace.values import Estimate
 
 TABOR_RANGE = (0.05, 2.0)  # beyond it fixed grids need too many nodes, or rigid surfaces leave nothing to compare
 TIGHTEST = 1e-9  # relative tolerance of the truths
@@ -85,16 +83,7 @@ def find_truths(tabor: float) -> dict[Family, Truth]:
 
 
 def _truth(family: Family, path: EquilibriumPath) -> Truth:
-    return Truth(family, TIGHTEST, _estimates(path), path.approach_scale)
-
-
-def _estimates(path: EquilibriumPath) -> dict[str, Estimate]:
-    """Quantities of a path with their uncertainties; jump and hysteresis only where it folds."""
-    pull_off, jump_on, grips = path.events["pull_off"], path.event("jump_on"), cycle(path)
-    found = {"pull_off": pull_off.estimate("load")}
-    if jump_on and grips:
-        found |= {"jump_on": jump_on.estimate("approach"), "hysteresis": grips.energy_lost}
-    return found
+    return Truth(family, TIGHTEST, estimates(path), path.approach_scale)
 
 
 def time_yardstick() -> float:
