@@ -572,6 +572,13 @@ def test_cells_of_the_printed_tables(report, study):
             assert_row(row, {"computed": entry.computed.value, "error": entry.computed.error})
 
 
+def test_only_the_figure_of_an_apparatus_is_beyond_the_paper():
+    titles = {plot.stem.removeprefix("fig_"): plot.title for plot in greenwood_page.FIGURES}
+    own = {number for number, title in titles.items() if not title.startswith(f"After Fig. {number}: ")}
+    assert own == {"8"}
+    assert titles["8"].startswith("Beyond the paper, Fig. 8: ")
+
+
 def test_the_caption_of_each_figure_is_that_of_the_page(report, study):
     captions = {row["figure"]: row["caption"] for row in rows(report, "captions")}
     page = html.unescape((report / "index.html").read_text(encoding="utf-8"))
