@@ -549,8 +549,8 @@ def turning_point(
 
     Under fixed grips, at the fold of a jump, the determinant of the tangent changes its sign; that is passed at given
     loads. Under a dead load, at an extremum of the load, that of the tangent bordered by the load does, det A times
-    dW/dalpha; it is passed at given approaches. The root is the secant's, the other coordinate that of the cubic
-    through both states; both err by powers of the steps, which may be that much finer.
+    dW/dalpha; it is passed at given approaches. Where they turn, the cubic through both states does; it errs by a
+    power of the steps, which may be that much finer.
     """
     place = approach if under_load else load
     # The extremum of the load is flat; along the load an edge moves by a spike's width soon.
@@ -566,7 +566,8 @@ def turning_point(
         part = float(values[0] / (values[0] - values[1]))
         if 0 <= part <= 1:
             ends = [(s.load, s.stiffness) if under_load else (s.approach, 1 / s.stiffness) for s in (a, b)]
-            turned, place = _cubic(part, step, *ends), place + part * step
+            part, turned = _extremum(step, *ends)
+            place += part * step
             return Turn(turned, place) if under_load else Turn(place, turned)
         if not abs(part) < FARTHEST:
             return None
@@ -579,7 +580,12 @@ def _at(contact: Contact, place: float, h: Array, approach: float, *, under_load
     return newton(contact, h, place) if under_load else newton(contact, h, approach, load=place)
 
 
-def _cubic(t: float, length: float, a: tuple[float, float], b: tuple[float, float]) -> float:
-    """Value at the part t of a length of the cubic with given values and slopes at its ends."""
-    ends = (1 + 2 * t) * (1 - t) ** 2 * a[0] + t**2 * (3 - 2 * t) * b[0]
-    return ends + length * t * (1 - t) * ((1 - t) * a[1] - t * b[1])
+def _extremum(length: float, a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
+    """Part of a length at which the cubic with given values and slopes of opposite signs at its ends turns; its value.
+
+    Of its derivative, A t^2 + 2 B t + C, the root between 0 and 1.
+    """
+    rise, first, second = b[0] - a[0], length * a[1], length * b[1]
+    A, B, C = 3 * (first + second - 2 * rise), 3 * rise - 2 * first - second, first
+    t = -C / (B + np.copysign(np.sqrt(B**2 - A * C), -C))
+    return float(t), float(a[0] + t * (C + t * (B + t * A / 3)))
