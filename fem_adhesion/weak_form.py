@@ -293,15 +293,17 @@ def on_spring(body: Body, stiffness: float) -> Body:
     return replace(body, stiffness=sparse.csc_array(K), reaction=body.reaction - stiffness * foot)
 
 
-def half_space(finest: float, size: float, degree: int, poisson: float, tip: float = np.inf) -> Body:
+def half_space(
+    finest: float, size: float, degree: int, poisson: float, tip: float = np.inf, reach: float = 1.0
+) -> Body:
     """Box of a half-space as wide and deep as its size, whose cells grow from `finest` at radius 1 of the surface on.
 
-    Under a sharp tip the cell on the axis is `tip` long, or less.
+    They are fine up to the radius `reach`; under a sharp tip the one on the axis is `tip` long, or less.
 
     It stands on a spring that yields as what is beyond would: Hertz's pressure sqrt(1 - r^2), of the load 2 pi/3, does
     the work 4 pi^2/15 on a half-space, and what it falls short of that on the box is done on the spring.
     """
-    body = discretise(half_space_mesh(finest, size, tip), degree, poisson, plate=True)
+    body = discretise(half_space_mesh(finest, size, tip, reach), degree, poisson, plate=True)
     return on_ground(body, np.sqrt(np.maximum(1 - body.radii**2, 0)), 2 * np.pi / 3, 4 * np.pi**2 / 15)
 
 
@@ -329,15 +331,23 @@ def last(size: int) -> Array:
     return np.asarray(np.eye(1, size, size - 1)[0])
 
 
-def half_space_mesh(finest: float, size: float, tip: float = np.inf) -> Any:
+def half_space_mesh(finest: float, size: float, tip: float = np.inf, reach: float = 1.0) -> Any:
     """Mesh of that box."""
     r_steps, z_steps = _graded(finest, size, EVEN), _graded(min(finest, tip), size, 1)
     inner = 1 - r_steps[r_steps < INNER][::-1]
     core = inner[0] * GROWTH ** -np.arange(1.0, np.ceil(np.log(max(inner[0] / tip, 1.0)) / np.log(GROWTH)) + 1)
-    r = np.concatenate([[0.0], core[::-1], inner, [1.0], 1 + r_steps])
+    r = fine_within(reach, np.concatenate([[0.0], core[::-1], inner, [1.0], 1 + r_steps]))
     mesh = MeshQuad.init_tensor(r, np.append(-z_steps[::-1], 0.0))
     far = {"far": lambda x: (x[0] == r[-1]) | (x[1] == -z_steps[-1])}
     return mesh.with_boundaries({"axis": lambda x: x[0] == 0, "contact": lambda x: x[1] == 0} | far)
+
+
+def fine_within(reach: float, lines: Array) -> Array:
+    """Ends of cells, cut into equal parts where they are longer than a part of a distance within it."""
+    counts = np.where(lines[:-1] < reach, np.ceil(np.diff(lines) / (WITHIN * reach)), 1).astype(int)
+    cells = zip(lines[:-1], lines[1:], counts, strict=True)
+    parts = [np.linspace(a, b, n, endpoint=False) for a, b, n in cells]
+    return np.concatenate([*parts, lines[-1:]])
 
 
 def _graded(finest: float, size: float, even: int) -> Array:
@@ -348,6 +358,7 @@ def _graded(finest: float, size: float, even: int) -> Array:
 
 # Found by trial, as FLAT and NEARBY below: see tests/constants.py for what each decides at half and at double.
 EVEN, GROWTH, INNER = 3, 3.0, 0.7  # cells next to the edge, ratio of the others, and how far they go inwards
+WITHIN = 0.3  # of the reach of the attraction, the longest cells in it
 
 
 # Newton's method
@@ -587,5 +598,5 @@ def _extremum(length: float, a: tuple[float, float], b: tuple[float, float]) -> 
     """
     rise, first, second = b[0] - a[0], length * a[1], length * b[1]
     A, B, C = 3 * (first + second - 2 * rise), 3 * rise - 2 * first - second, first
-    t = -C / (B + np.copysign(np.sqrt(B**2 - A * C), -C))
+    t = -C / (B + np.copysign(np.sqrt(B**2 - A * C), second - first))
     return float(t), float(a[0] + t * (C + t * (B + t * A / 3)))

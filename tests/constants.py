@@ -208,6 +208,7 @@ CONSTANTS = (
     Constant(weak_form, "EVEN", fourth_level(0.5, 2.0)),
     Constant(weak_form, "GROWTH", fourth_level(0.5, 2.0), to_the_power),
     Constant(weak_form, "INNER", fourth_level(0.5, 2.0), from_one),
+    Constant(weak_form, "WITHIN", fourth_level(0.5, 2.0)),
     Constant(weak_form, "FLAT", fourth_level(0.5, 2.0, 5.0)),
     Constant(weak_form, "NEARBY", fourth_level(0.5, 2.0, 5.0)),
 )

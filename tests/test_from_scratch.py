@@ -12,7 +12,7 @@ from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM
 from fem_adhesion.crosscheck.study import Failure
 from fem_adhesion.crosscheck.weak_bodies import law_of
-from fem_adhesion.weak_form import Contact, half_space, newton, turning_point
+from fem_adhesion.weak_form import Contact, half_space, half_space_mesh, newton, turning_point
 from halfspace.accuracy import trace
 from halfspace.equilibrium import events as halfspace_events
 from halfspace.equilibrium.contact import LOAD, ContactProblem
@@ -106,6 +106,22 @@ def test_where_nothing_turns_no_turning_point_is_found(in_contact):
     contact, found = in_contact
     assert turning_point(contact, found.gap, found.approach, found.load, under_load=False) is None
     assert turning_point(contact, found.gap, found.approach, found.load, under_load=True) is None
+
+
+@pytest.mark.parametrize("ends", [(0.5, 3.0), (1.0, 1.5), (0.99, 1.0), (1.3, -0.5)])
+def test_a_cubic_turns_where_its_slope_vanishes(ends):
+    """x^3 - 3 x does so at 1, where it is -2."""
+    a, b = ((x**3 - 3 * x, 3 * x**2 - 3) for x in ends)
+    part, value = weak_form._extremum(ends[1] - ends[0], a, b)
+    assert ends[0] + part * (ends[1] - ends[0]) == pytest.approx(1, rel=1e-12)
+    assert value == pytest.approx(-2, rel=1e-12)
+
+
+def test_an_edge_inside_the_attraction_has_cells_on_all_of_it():
+    lines = weak_form.fine_within(2.0, np.array([0.0, 0.1, 1.0, 3.0, 9.0]))
+    np.testing.assert_allclose(lines, [0.0, 0.1, 0.55, 1.0, 1.5, 2.0, 2.5, 3.0, 9.0])
+    radii = np.unique(half_space_mesh(0.04, 30.0, reach=2.0).p[0])
+    assert np.diff(radii)[radii[:-1] < 2].max() <= 0.6
 
 
 # --- the rows ---

@@ -3,7 +3,7 @@
 Law, profile, load, energy, Newton's method, the path and its events are the same code on either side. Three kinds of
 rows look for mistakes there. Closed forms: the work of adhesion, the rigid and the soft limit. Equations: residual,
 tangent, load and its slope at a state made up, so that nothing has to converge. Events: each state of the finite
-elements in `fem_adhesion.weak_form`, on two degrees, whose difference is the error. It looks for mistakes, not digits:
+elements in `fem_adhesion.weak_form`, on two bodies, whose difference is the error. It looks for mistakes, not digits:
 its budget is a part in a thousand, whatever the tolerance.
 """
 
@@ -18,7 +18,7 @@ from scipy.integrate import quad
 
 import halfspace
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
-from fem_adhesion.crosscheck.weak_bodies import SHARP, AtRadius, contacts, sharpness
+from fem_adhesion.crosscheck.weak_bodies import SHARP, FineAt, contacts, sharpness
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form import Contact, Turn, newton, turning_point
 from halfspace.equilibrium.contact import LOAD, ContactProblem
@@ -26,15 +26,11 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Located
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
-from halfspace.profiles import Paraboloid, Sphere
 from halfspace.values import Array, Estimate, Valued
 
 BUDGET = 1e-3  # of each quantity
 ROUND_OFF = 1e-10
 LEAST = BUDGET / 20  # of each number that the weak form knows none better than: both its bodies may err alike
-OTHERS = (
-    2.0  # of the largest change from the coarse body to the fine one: what hard laws leave, 1.8 times that at worst
-)
 WORK_LEFT = (0.5, 0.1, 0.01, 1e-4)  # of dgamma, beyond the gaps at which the law's integral is cut
 
 # Closed forms
@@ -85,7 +81,7 @@ def equations(scene: Scene, problems: Sequence[ContactProblem], radius: float) -
     The shared code is given the problem on elastic operators of two degrees, the finer one last. Residual and tangent
     are means over a contact of the radius given; what is off counts relative to what in them is elastic.
     """
-    apart = np.array([_apart(contact(radius), radius) for contact in contacts(scene)])
+    apart = np.array([_apart(contact(radius, radius), radius) for contact in contacts(scene)[:2]])
     shared = np.array([_shared(problem, radius) for problem in problems])
     sizes = np.abs(apart[1, 4:])
     # Of each the largest, lest both bodies agree by chance on one.
@@ -166,24 +162,31 @@ class Compared:
 def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
     """Balance, reaction, turning points and energy of every event of the finite elements, in the weak form.
 
-    The weak form errs by less than its coarse and its fine body differ; by other laws than the 3-9 one, and under other
-    profiles, by less than twice that. As they may agree by chance on one number, the largest of their differences
-    counts for all, relative to the sizes.
+    The weak form errs by less than a coarser and a finer body differ; they are ever finer until that is within its
+    budget. As two may agree by chance on one number, the largest of their differences counts for all, relative to the
+    sizes.
     """
-    both = contacts(scene)
-    found = [row for name in path.events for row in _of_event(name, scene, path, *both)]
-    coarse, fine = (_energy_released(contact, scene, path) for contact in both)
-    found.append(Compared("energy released", "R dgamma eps", (coarse, fine), path.energy, abs(path.energy.value)))
-    doubt = max(LEAST, (1.0 if _usual(scene) else OTHERS) * max(compared.change for compared in found))
-    return [compared.row(doubt) for compared in found]
+    rows: list[Row] = []
+    for both in pairwise(contacts(scene)):
+        found = list(_on_both(scene, path, *both))
+        doubt = max(LEAST, *(compared.change for compared in found))
+        rows = [compared.row(doubt) for compared in found]
+        if doubt <= BUDGET:
+            break
+    return rows
 
 
-def _of_event(
-    name: str, scene: Scene, path: EquilibriumPath, on_coarse: AtRadius, on_fine: AtRadius
-) -> Iterator[Compared]:
+def _on_both(scene: Scene, path: EquilibriumPath, on_coarse: FineAt, on_fine: FineAt) -> Iterator[Compared]:
+    for name in path.events:
+        yield from _of_event(name, scene, path, on_coarse, on_fine)
+    coarse, fine = (_energy_released(contact, path) for contact in (on_coarse, on_fine))
+    yield Compared("energy released", "R dgamma eps", (coarse, fine), path.energy, abs(path.energy.value))
+
+
+def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt, on_fine: FineAt) -> Iterator[Compared]:
     event, located = path.events[name], path.stages[-1][name]
-    radius = _size(scene, located)
-    coarse, fine = (_state(contact(radius), located) for contact in (on_coarse, on_fine))
+    radius, reach = _places(located)
+    coarse, fine = (_state(contact(radius, reach), located) for contact in (on_coarse, on_fine))
     approach, load = map(event.estimate, ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
     balances, reactions = (coarse.balance, fine.balance), (coarse.reaction, fine.reaction)
@@ -233,22 +236,12 @@ class State(Valued):
         return self.contact.far_reaction(self.u, self.gap) + self.contact.load_beyond(self.approach)
 
 
-def _usual(scene: Scene) -> bool:
-    """Whether law and profile are those that the weak form's bodies were tried for."""
-    return scene.law == LENNARD_JONES and isinstance(scene.shape, (Paraboloid, Sphere))
-
-
-def _size(scene: Scene, event: Located) -> float:
-    """Radius in beta at which cells are finest: of the contact or, where that is larger, of the attraction.
-
-    A half-space has fine cells inside as well; on a body with a length, by other laws and under other profiles the
-    contact comes first, unless it is small or none.
-    """
+def _places(event: Located) -> tuple[float, float]:
+    """Radii in beta: where cells are finest, at the edge of the contact unless it is small, and how far it attracts."""
     _, _, central_gap, radius = (float(value) for value in event.point.observables)
     scales = event.problem.interface.scales
     attraction = scales.radius_at(_opening(scales.law, central_gap))
-    by_contact = (scene.sized or not _usual(scene)) and radius > SMALL * attraction
-    return radius if by_contact else float(np.fmax(radius, attraction))
+    return (radius, max(radius, attraction)) if radius > SMALL * attraction else (attraction, attraction)
 
 
 SMALL = 0.25  # contact, in the radius of the attraction
@@ -321,8 +314,8 @@ def _beside(name: str, state: State) -> Turn | None:
     return Turn(found.load, found.approach)
 
 
-def _energy_released(on: AtRadius, scene: Scene, path: EquilibriumPath) -> float:
+def _energy_released(on: FineAt, path: EquilibriumPath) -> float:
     """Potential energy between the two states of `EquilibriumPath.energy`; its error is of second order in theirs."""
     ends = (path.stages[-1][name] for name in ("separated", "zero_approach"))
-    before, after = (_state(on(_size(scene, event)), event) for event in ends)
+    before, after = (_state(on(*_places(event)), event) for event in ends)
     return before.contact.energy(before.u, before.approach) - after.contact.energy(after.u, after.approach)

@@ -1,4 +1,4 @@
-"""The contacts of scenes in the weak form of `fem_adhesion.weak_form`, each on a coarse and on a fine body.
+"""The contacts of scenes in the weak form of `fem_adhesion.weak_form`, each on bodies that are ever finer.
 
 Of a body with a length they share with the finite elements what draws the mesh, and nothing else: elements, forms,
 quadrature, radii, profiles and areas are the weak form's own. A user's mesh is taken as it is.
@@ -18,11 +18,13 @@ from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import finest_length, layout_of, mesh_of, pair_meshes
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form import (
+    TRIANGLES,
     Body,
     Contact,
     Heights,
     Law,
     discretise,
+    fine_within,
     half_space,
     lennard_jones,
     on_ground,
@@ -35,15 +37,16 @@ from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Paraboloid, Sphere
 from halfspace.values import Array
 
-AtRadius = Callable[[float], Contact]
-"""The contact on cells that are finest at a radius in beta."""
+FineAt = Callable[[float, float], Contact]
+"""The contact on cells that are finest at one radius in beta, and fine up to another."""
 
-FINENESS = ((3, 10.0), (4, 30.0))  # degree of the elements, size of the box in contact radii: coarse, fine
+FINENESS = ((3, 10.0), (4, 30.0), (5, 90.0))  # degree of the elements, size of the box in contact radii
 WIDE = 2.5  # beta: wider contacts have narrower spikes of tension in contact radii than soft ones on paraboloids
 TIP = 1e-4  # what the cell under a sharp tip may leave
 FARTHER = 10.0  # times as large for an attraction that falls slowly
-DEGREES = (3, 4)  # of the elements of a body with a length; one more of layers, of bodies that nothing else checks, or
-NEARLY = 0.45  # if they are nearly incompressible: Poisson's ratio beyond
+# Of the elements of a body with a length; one more of layers, of bodies that nothing else checks, or nearly
+# incompressible ones, with a Poisson's ratio beyond:
+DEGREES, NEARLY = (3, 4, 5), 0.45
 LOCKING = 0.499  # Poisson's ratio beyond which elements of a half-space have a degree more, as by other laws
 SHARP = 6.0
 """Sharpness of an edge beyond which its spike of tension is too narrow for the weak form to show where it turns."""
@@ -66,26 +69,27 @@ def law_of(scene: Scene) -> Law:
     return Law(lambda h: law.energy(h - 1, 1.0), law.stiffness**-0.5, room)
 
 
-def contacts(scene: Scene) -> tuple[AtRadius, AtRadius]:
-    """Contact of a scene on a coarse and on a fine body."""
+def contacts(scene: Scene) -> list[FineAt]:
+    """Contact of a scene on bodies each of which is finer than the one before."""
     if not scene.sized:
-        return partial(_on_half_space, scene, FINENESS[0]), partial(_on_half_space, scene, FINENESS[1])
+        return [partial(_on_half_space, scene, fineness) for fineness in FINENESS]
     if scene.body.file:
-        return partial(_on_given_mesh, scene, DEGREES[0]), partial(_on_given_mesh, scene, DEGREES[1])
+        return [partial(_on_given_mesh, scene, degree) for degree in DEGREES if degree in TRIANGLES]
     more = int(scene.body.checked_by is None or scene.poisson > NEARLY or scene.body.layered is not None)
-    return partial(_sized, scene, DEGREES[0] + more), partial(_sized, scene, DEGREES[1] + more)
+    return [partial(_sized, scene, degree + more) for degree in DEGREES]
 
 
 # Half-spaces
 
 
-def _on_half_space(scene: Scene, fineness: tuple[int, float], radius: float) -> Contact:
+def _on_half_space(scene: Scene, fineness: tuple[int, float], radius: float, reach: float) -> Contact:
     """Contact on a box with cells at a radius that are finer than the spike of tension there."""
     degree, size = fineness
     size *= _wider(scene, radius)
     sharp = sharpness(scene, radius)
     more = int(sharp > SHARP) + int(sharp > 3 * SHARP) + int(scene.law != LENNARD_JONES or scene.poisson > LOCKING)
-    body = _half_space(_finest(scene, radius), size, degree + more, scene.poisson, _tip(scene, radius))
+    reach = float(2.0 ** np.ceil(np.log2(reach / radius)))
+    body = _half_space(_finest(scene, radius), size, degree + more, scene.poisson, _tip(scene, radius), reach)
     return Contact(body.scaled(radius), scene.tabor, _heights(scene), law=law_of(scene))
 
 
@@ -109,8 +113,8 @@ def _tip(scene: Scene, radius: float) -> float:
 
 
 @lru_cache(maxsize=8)
-def _half_space(finest: float, size: float, degree: int, poisson: float, tip: float) -> Body:
-    return half_space(finest, size, degree, poisson, tip)
+def _half_space(finest: float, size: float, degree: int, poisson: float, tip: float, reach: float) -> Body:
+    return half_space(finest, size, degree, poisson, tip, reach)
 
 
 # Bodies with a length
@@ -119,7 +123,7 @@ GROWTH, WIDEST = 2.5, 0.95  # ratio of neighbouring cells; the place in R beyond
 RINGS = 4  # of cells around a corner where the stress is singular
 
 
-def _on_given_mesh(scene: Scene, degree: int, _: float) -> Contact:
+def _on_given_mesh(scene: Scene, degree: int, *_: float) -> Contact:
     """Contact of a user's mesh."""
     body = discretise(_given_mesh(scene), degree, scene.poisson, slides=scene.body.held == "sliding")
     return Contact(body, scene.tabor, lambda _: scene.sphere_radius * body.depths, False, law=law_of(scene))
@@ -132,13 +136,14 @@ def _given_mesh(scene: Scene) -> Any:
     return type(mesh)(mesh.doflocs, np.sort(mesh.t, axis=0), mesh.boundaries) if isinstance(mesh, MeshTri) else mesh
 
 
-def _sized(scene: Scene, degree: int, radius: float) -> Contact:
+def _sized(scene: Scene, degree: int, radius: float, reach: float) -> Contact:
     """Contact of one body or two, whose cells are finest at a radius."""
     R = scene.radii[0]
-    radius = min(radius, WIDEST * R)  # what attracts from afar may be wider
+    radius, reach = (min(r, WIDEST * R) for r in (radius, reach))  # what attracts from afar may be wider
     how = Discretisation(degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, GROWTH, RINGS)
     outer, coordinate = layout_of(scene, how)
-    core = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=GROWTH)
+    lines = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=GROWTH)
+    core = fine_within(coordinate.of(reach), lines)
     if scene.counter is None:
         body = _standing(scene.body, mesh_of(scene, core, how), degree)
         return Contact(body, scene.tabor, _heights(scene), False, law=law_of(scene))
