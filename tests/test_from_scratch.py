@@ -139,6 +139,19 @@ def test_the_fourth_level_agrees(tabor, poisson):
     assert len(rows) == folds
 
 
+def test_a_finer_body_is_taken_where_two_differ_by_more_than_the_budget(monkeypatch):
+    scene = Scene(0.5)
+    path = fem_adhesion.trace(scene, rtol=1e-3)
+
+    def doubt():
+        rows = from_scratch.events(scene, path)
+        return max(row.first.error / row.budget for row in rows) * from_scratch.BUDGET
+
+    assert doubt() > 1e-4
+    monkeypatch.setattr(from_scratch, "BUDGET", 1e-4)
+    assert doubt() < 1e-4
+
+
 def test_closed_forms_agree():
     rows = from_scratch.closed_forms()
     assert [row.verdict for row in rows] == ["agree"] * 3
