@@ -22,7 +22,7 @@ from fem_adhesion.assess import theories as assess_theories
 from fem_adhesion.assess.predictions import QUANTITIES, WORDS, Prediction, computed, large_tabor
 from fem_adhesion.assess.study import Assessment, assess
 from fem_adhesion.assess.terminal import contact_radius, record, report
-from fem_adhesion.assess.verdict import Distance, cautions, deviations, ranked, regime, verdict
+from fem_adhesion.assess.verdict import Distance, cautions, deviations, ranked, regime, verdict, yielding
 from fem_adhesion.common import style
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.files import written_aside
@@ -30,6 +30,7 @@ from fem_adhesion.common.numbers import KINDS, PREFIXES, Quantity, engineering, 
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
+from halfspace.laws import Morse
 from halfspace.profiles import Sphere
 from halfspace.scaling import Units, spacing_of
 from halfspace.theories import closed_forms as theories
@@ -665,7 +666,15 @@ def test_the_yield_of_the_attracted_layer_corrects_the_work_of_adhesion_of_one_s
     units = silica.contact.units
     more = 0.273797 * units.tabor * np.sqrt(units.tabor / units.radius_ratio) * (1 - 2 * 0.17) / (1 - 0.17) ** 2
     (line,) = (line for line in silica.cautions if "attracted layer" in line)
-    assert f"by {100 * more:.3g} %, to {units.work_of_adhesion * (1 + more):.4g} J/m^2" in line
+    assert f"by {100 * more:.3g} %, to {units.work_of_adhesion * (1 + more):.4g} J/m^2; give" in line
+
+
+def test_the_yield_by_another_law_is_told_with_its_premise(silica):
+    (line,) = yielding(replace(silica.contact, law=Morse(3)))
+    (usual,) = yielding(silica.contact)
+    parts = [float(re.search(r"adhesion by (\S+) %", said)[1]) for said in (line, usual)]
+    assert parts[0] / parts[1] == pytest.approx(1.0 / (2 * 0.273797), rel=5e-3)
+    assert "J/m^2, if the law attracts matter and not charges on the surfaces; give that to include it" in line
 
 
 def test_the_contact_radius_says_what_it_is_beside_others(silica, bead):

@@ -20,6 +20,7 @@ from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quar
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem
 from halfspace.equilibrium.curve import Chart, find_events, moved, trace_charts, transfer
+from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Morse, PowerLaw
 from halfspace.profiles.sphere import SphereSurface
 
 LAM, G = 0.7, 0.4
@@ -411,7 +412,7 @@ def test_the_blend_is_the_mean_of_both_energies_by_their_parts():
     assert blended.energy(x) == pytest.approx(4 / 7 * energies[0] + 3 / 7 * energies[1], rel=1e-12)
 
 
-def deepening(M):
+def deepening(law, M):
     """M times what the yield of a column adds to its work of adhesion, in eps and dgamma/eps, by minimisation.
 
     The wall's potential acts on every cell of a column 200 eps deep, of modulus M, that hangs on it alone.
@@ -422,24 +423,31 @@ def deepening(M):
     stretch, mean = (upper - lower) / cell[:, None], (upper + lower) / 2
 
     def energy(w):
-        h = 1 + mean @ t - mean @ w
-        return np.sum(cell * (M / 2 * (stretch @ w) ** 2 - 8 / 3 * (h**-3 - h**-9)))
+        return np.sum(cell * (M / 2 * (stretch @ w) ** 2 + law.pressure(mean @ (t - w), 1.0)))
 
     for _ in range(10):
-        h = 1 + mean @ t - mean @ w
-        slope, curvature = 8 / 3 * (9 * h**-10 - 3 * h**-4), 8 / 3 * (90 * h**-11 - 12 * h**-5)
+        H = mean @ (t - w)
+        slope, curvature = -law.slope(H, 1.0), (law.slope(H + 1e-5, 1.0) - law.slope(H - 1e-5, 1.0)) / 2e-5
         force = stretch.T @ (cell * M * (stretch @ w)) + mean.T @ (cell * slope)
         stiffness = stretch.T @ ((cell * M)[:, None] * stretch) + mean.T @ ((cell * curvature)[:, None] * mean)
         w = w - np.linalg.solve(stiffness, force)
     return M * (energy(np.zeros(t.size)) - energy(w))
 
 
-def test_yield_of_the_attracted_layer_deepens_the_well_of_its_columns():
+@pytest.mark.parametrize("law", [LENNARD_JONES, PowerLaw(4, 10), Exponential(3), Morse(3), Dlvo(0.3, 1)], ids=repr)
+def test_yield_of_the_attracted_layer_deepens_the_well_of_its_columns(law):
     nu, tabor, ratio = 0.3, 1.0, 100.0
-    first_order = 2 * deepening(1600.0) - deepening(800.0)
+    first_order = 2 * deepening(law, 1600.0) - deepening(law, 800.0)
     expected = 1 + first_order * tabor * 0.1 * (1 - 2 * nu) / (1 - nu) ** 2
-    assert yielded_adhesion(tabor, ratio, nu) - 1 == pytest.approx(expected - 1, rel=2e-3)
-    assert yielded_adhesion(tabor, ratio, 0.499999) == pytest.approx(1, abs=1e-6)
+    assert yielded_adhesion(tabor, ratio, nu, law) - 1 == pytest.approx(expected - 1, rel=2e-3)
+    assert yielded_adhesion(tabor, ratio, 0.499999, law) == pytest.approx(1, abs=1e-6)
+
+
+def test_yield_by_morses_law_and_the_3_9_law_in_closed_form():
+    """The integrals of the squared tension are k/3 and (8/3)^2 (1/5 - 2/11 + 1/17), dgamma^2/eps."""
+    squared = (8 / 3) ** 2 * (1 / 5 - 2 / 11 + 1 / 17)
+    for law, integral in ((Morse(3), 1.0), (LENNARD_JONES, squared)):
+        assert yielded_adhesion(1.0, 100.0, 0.0, law) == pytest.approx(1 + integral / 2 * 0.1, rel=1e-12)
 
 
 # Near-incompressible

@@ -136,14 +136,15 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
 
 
 def yielding(contact: Contact) -> Iterator[str]:
-    """What the yield of the attracted layer, which no surface law has, does to one sphere's adhesion by the 3-9 law."""
+    """What the yield of the attracted layer, which no surface law has, does to one sphere's adhesion."""
     units = contact.units
-    if contact.pair or contact.layer or contact.law != LENNARD_JONES:
+    if contact.pair or contact.layer:
         return
-    ratio = yielded_adhesion(units.tabor, units.radius_ratio, contact.poisson)
+    ratio = yielded_adhesion(units.tabor, units.radius_ratio, contact.poisson, contact.law)
+    premise = "" if contact.law == LENNARD_JONES else ", if the law attracts matter and not charges on the surfaces"
     yield (
         "yield of the attracted layer is left out: to the first order it deepens the work of adhesion by "
-        f"{_percent(ratio - 1)}, to {units.work_of_adhesion * ratio:.4g} J/m^2; give that to include it"
+        f"{_percent(ratio - 1)}, to {units.work_of_adhesion * ratio:.4g} J/m^2{premise}; give that to include it"
     )
 
 

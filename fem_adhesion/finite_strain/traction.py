@@ -40,11 +40,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+from scipy.integrate import quad
 
 from fem_adhesion.finite_strain.surface import ContactSurface
-from halfspace.laws import LENNARD_JONES, PowerLaw
+from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Valued
 
 
@@ -81,15 +83,19 @@ def convention_of(traction: str, poisson: float) -> Convention:
     return conventions[traction]
 
 
-def yielded_adhesion(tabor: float, radius_ratio: float, poisson: float, law: PowerLaw = LENNARD_JONES) -> float:
+def yielded_adhesion(tabor: float, radius_ratio: float, poisson: float, law: Law = LENNARD_JONES) -> float:
     """Work of adhesion over dgamma once the attracted layer has yielded, 1 + 0.274 tabor (beta/R) E*/M for the 3-9 law.
 
-    That is -Phi(eps) - Delta Phi(eps), to the first order in beta/R: the integral of sigma^2 in closed form.
+    That is -Phi(eps) - Delta Phi(eps), to the first order in beta/R, of any law that is the sum of what attracts the
+    matter at every depth; forces between charges on the surfaces stretch no layer.
     """
-    n, m = law.attraction, law.repulsion
-    squared = law.amplitude**2 * (1 / (2 * n - 1) - 2 / (n + m - 1) + 1 / (2 * m - 1))  # in dgamma^2/eps
+
+    def squared(gap: float) -> float:
+        return float(law.pressure(np.array(gap), 1.0)) ** 2
+
+    integral = sum(quad(squared, *ends)[0] for ends in pairwise((0.0, law.edge_gap, np.inf)))
     compliance = (1 - 2 * poisson) / (1 - poisson) ** 2
-    return 1 + squared / 2 * tabor * math.sqrt(tabor / radius_ratio) * compliance
+    return 1 + integral / 2 * tabor * math.sqrt(tabor / radius_ratio) * compliance
 
 
 @dataclass(frozen=True, eq=False, repr=False)
