@@ -42,8 +42,10 @@ class Region(Valued):
         Numbers of the unknowns that are left, and how many of the cells have each of them.
     entries : (...) int array
         Places of the entries of the cells', or the parts', matrices in its own.
-    size, complete : int
-        Of that matrix, and how many of its first unknowns are eliminated.
+    size : int
+        Of that matrix.
+    complete : (c,) int array
+        Numbers of the unknowns that are eliminated, its first.
     """
 
     parts: tuple[Region, ...]
@@ -52,15 +54,52 @@ class Region(Valued):
     shares: Index
     entries: Index
     size: int
-    complete: int
+    complete: Index
 
     def stiffness(self, K: Array) -> Array:
-        """Stiffness (k, k) of the unknowns that are left, from that of all cells."""
-        matrices = [part.stiffness(K).ravel() for part in self.parts] if self.parts else [K[self.cells].ravel()]
-        joined = np.bincount(self.entries, np.concatenate(matrices), self.size**2)
-        used = self.complete + self.unknowns.size
-        square = np.asarray(joined, dtype=np.float64).reshape(self.size, self.size)
-        return eliminated(square[:used, :used], self.complete)
+        """Stiffness (k, k) of the unknowns that are left, from that of all cells, positive definite."""
+        return eliminated(
+            self._joined([part.stiffness(K) for part in self.parts] or [K[self.cells]]), self.complete.size
+        )
+
+    def factorised(self, K: Array) -> tuple[list[Front], Array]:
+        """What the unknowns of all its regions are recovered by, the smallest first, and the stiffness left, (k, k)."""
+        parts = [part.factorised(K) for part in self.parts]
+        joined = self._joined([left for _, left in parts] or [K[self.cells]])
+        own, left = eliminated_by(joined, self.complete, self.unknowns)
+        return [*(front for fronts, _ in parts for front in fronts), own], left
+
+    def _joined(self, matrices: list[Array]) -> Array:
+        """Stiffness of the complete unknowns and those left, from those of the parts or the cells."""
+        joined = np.bincount(self.entries, np.concatenate([matrix.ravel() for matrix in matrices]), self.size**2)
+        used = self.complete.size + self.unknowns.size
+        return np.asarray(joined, dtype=np.float64).reshape(self.size, self.size)[:used, :used]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Front(Valued):
+    """Unknowns that are eliminated together, by their stiffness K_cc, and K_ck with those left.
+
+    Attributes
+    ----------
+    done, left : (c,) and (k,) int array
+        Numbers of both.
+    inverse, recovery : (c, c) and (c, k) array
+        K_cc^-1 and K_cc^-1 K_ck.
+    """
+
+    done: Index
+    left: Index
+    inverse: Array
+    recovery: Array
+
+    def carry(self, forces: Array) -> None:
+        """Carry the forces on its unknowns over to those left, in place."""
+        forces[self.left] -= forces[self.done] @ self.recovery
+
+    def recover(self, u: Array) -> None:
+        """Turn the forces on its unknowns into their displacements, in place, where those left are known."""
+        u[self.done] = self.inverse @ u[self.done] - self.recovery @ u[self.left]
 
 
 def condensed_to(mesh: Any, K: Array, unknowns: Index, kept: Mask) -> tuple[Index, Array]:
@@ -87,11 +126,32 @@ def condensed_to(mesh: Any, K: Array, unknowns: Index, kept: Mask) -> tuple[Inde
     NotConverged
         If the stiffness is singular.
     """
+    whole = dissected(mesh, unknowns, kept)
+    return whole.unknowns, whole.stiffness(K)
+
+
+def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
+    """All cells of a mesh as a tree of regions, see `condensed_to`."""
     steps = np.array([_steps(mesh, mesh.f2t[0, mesh.boundaries[name]]) for name in ("axis", "contact")])
     shares = np.bincount(unknowns[unknowns >= 0], minlength=kept.size).astype(np.intp)
     shares[kept] = 0  # in no region is it complete
-    whole = _dissected(unknowns.tobytes(), steps.tobytes(), shares.tobytes(), len(K))
-    return whole.unknowns, whole.stiffness(K)
+    return _dissected(unknowns.tobytes(), steps.tobytes(), shares.tobytes(), steps.shape[1])
+
+
+def eliminated_by(K: Array, done: Index, left: Index) -> tuple[Front, Array]:
+    """What the first unknowns are recovered by, and the stiffness without them; it need not be positive definite."""
+    count = done.size
+    inverse = inverses(K[:count, :count])
+    recovery = inverse @ K[:count, count:]
+    return Front(done, left, inverse, recovery), K[count:, count:] - K[count:, :count] @ recovery
+
+
+def inverses(blocks: Array) -> Array:
+    """Inverses of symmetric matrices, (..., n, n), definite or not; raise NotConverged if one is singular."""
+    try:
+        return np.asarray(np.linalg.inv(blocks), dtype=np.float64)
+    except np.linalg.LinAlgError as error:
+        raise NotConverged("the tangent of a cell is singular; try another control or a nearer start") from error
 
 
 def eliminated(K: Array, count: int) -> Array:
@@ -170,7 +230,7 @@ def _region(
     rows = np.split(places, np.cumsum([own.size for own in unknowns])[:-1])
     entries = np.concatenate([(row[:, None] * numbers.size + row).ravel() for row in rows])
     left = order[done.sum() : numbers.size - np.count_nonzero(held)]
-    return Region(parts, cells, numbers[left], shared[left], entries, numbers.size, int(done.sum()))
+    return Region(parts, cells, numbers[left], shared[left], entries, numbers.size, numbers[order[: done.sum()]])
 
 
 def _half(steps: Index) -> Mask:

@@ -3,12 +3,12 @@
 Only the surface law is far from linear. A change of the body's state by a part d of its size changes its tangent K by
 some delta d only, so that the factors of one state serve many: what they leave of a solution is solved for by them
 again, a part of the order of delta d each time. What a step changes at once is the law's tangent on the m unknowns of
-the contact surface, m a twentieth of all; so the body is condensed to these, C = E' K^-1 E, and with the law's tangent
-S, its derivative b by the approach and the row (r, r_a) of a control
+the contact surface, m a twentieth of all; so the body is condensed to these, to the stiffness C and the forces g, and
+with the law's tangent S, its derivative b by the approach and the row (r, r_a) of a control
 
-    [[I + C S, C b], [r, r_a]] (s, alpha) = (E' K^-1 f, g),        y = K^-1 (f - E (S s + b alpha)).
+    [[C + S, b], [r, r_a]] (s, alpha) = (g, g_a),
 
-The unknowns interior to a cell are eliminated before, as in `fem_adhesion.elasticity.condensation`.
+whence all others are recovered: see `fem_adhesion.elasticity.elimination`. Those interior to a cell go before.
 """
 
 from __future__ import annotations
@@ -17,17 +17,16 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Any
 
 import numpy as np
 from scipy import sparse
 from scipy.linalg.lapack import dgetrf, dgetrs
-from scipy.sparse.linalg import LinearOperator, gmres, splu
+from scipy.sparse.linalg import LinearOperator, gmres
 
+from fem_adhesion.elasticity.elimination import Front, Region, dissected, eliminated_by, inverses
 from fem_adhesion.elasticity.far_field import Exterior
-from fem_adhesion.elasticity.space import scatter
 from fem_adhesion.finite_strain.body import Body
-from halfspace.equilibrium.contact import Solver
+from halfspace.equilibrium.contact import Solver, count_negative
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Valued
 
@@ -45,27 +44,23 @@ class Layout(Valued):
         Positions of the interior and of the shared unknowns among those of a cell.
     inner : (cells, i) int array
         The reduced unknowns that are interior to a cell.
-    first : int
-        Their number: the reduced unknowns from there on are shared.
     columns : (cells, o) int array
-        The shared reduced unknown, counted from `first`, on which a cell's shared unknown depends; the one past the
-        last stands for none.
+        The reduced unknown on which a cell's shared unknown depends, n for none.
     weights : (cells, o) array
         And the factor with which it does.
-    size : int
-        Number of shared unknowns.
-    surface : (m,) int array
-        Those of the contact surface among them.
+    regions : Region
+        In which the shared ones are eliminated, but for those of the contact surface and those that the exterior holds.
+    beside : int array
+        The latter without the former.
     """
 
     inside: Index
     outside: Index
     inner: Index
-    first: int
     columns: Index
     weights: Array
-    size: int
-    surface: Index
+    regions: Region
+    beside: Index
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -78,33 +73,32 @@ class Tangent(Valued):
         Numbering.
     y : (n,) array
         The state.
+    surface : (m,) int array
+        Reduced unknowns of the contact surface.
     inverse, recovery : (cells, i, i) and (cells, i, o) array
         K_ii^-1 and K_ii^-1 K_io of every cell, the latter from the reduced unknowns.
-    factors : scipy.sparse.linalg.SuperLU
-        Of the shared unknowns.
+    fronts : list of Front
+        By which the shared unknowns are eliminated.
+    stiffness : (m, m) array
+        C.
     """
 
     layout: Layout
     y: Array
+    surface: Index
     inverse: Array
     recovery: Array
-    factors: Any
+    fronts: list[Front]
+    stiffness: Array
 
     @cached_property
-    def influence(self) -> Array:
-        """Displacements of the shared unknowns under unit forces on those of the surface, (shared, m)."""
-        forces = np.zeros((self.layout.size, self.layout.surface.size))
-        forces[self.layout.surface, np.arange(self.layout.surface.size)] = 1.0
-        return np.asarray(self.factors.solve(forces))
-
-    @property
     def flexibility(self) -> Array:
-        """C, (m, m)."""
-        return self.influence[self.layout.surface]
+        """C^-1."""
+        return inverses(self.stiffness)
 
     def surface_change(self, forces: Array) -> Array:
         """Change of the surface's unknowns, (m,), under forces on all, (n,)."""
-        return np.asarray(self.influence.T @ self._shared(forces))
+        return np.asarray(self.flexibility @ self._carried(forces)[self.surface])
 
     def bordered(self, change: Array, row: Array) -> Callable[[Array], Array]:
         """Solver of the equations with the law's tangent, for right-hand sides (n + 1,).
@@ -116,39 +110,38 @@ class Tangent(Valued):
         row : (m + 1,) array
             Of the control.
         """
-        surface = self.layout.surface
-        matrix = np.vstack([np.eye(*change.shape) + self.flexibility @ change, row])
+        matrix = np.vstack([change, row])
+        matrix[:-1, :-1] += self.stiffness
         lu, pivots, info = dgetrf(matrix, overwrite_a=True)
         if info > 0:
             raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start")
 
         def solve(rhs: Array) -> Array:
-            shared = self._shared(rhs[:-1])
-            ends = dgetrs(lu, pivots, np.append(self.influence.T @ shared, rhs[-1]))[0]
-            shared[surface] -= change @ ends
-            return np.append(self._all(shared, rhs), ends[-1])
+            x, e = self._carried(rhs[:-1]), self.layout
+            ends = dgetrs(lu, pivots, np.append(x[self.surface], rhs[-1]))[0]
+            x[self.surface], x[-1] = ends[:-1], 0.0  # the last stands for what is held, till here
+            for front in reversed(self.fronts):
+                front.recover(x)
+            x[e.inner] = (self.inverse @ rhs[e.inner][..., None] - self.recovery @ x[e.columns][..., None])[..., 0]
+            x[-1] = ends[-1]
+            return x
 
         return solve
 
-    def negative_pivots(self) -> int:
-        """Count the negative pivots, those of the interior unknowns included."""
-        interior = np.linalg.eigvalsh(self.inverse) < 0
-        return int(np.sum(interior) + np.sum(self.factors.U.diagonal() < 0))
+    def negative_directions(self) -> int:
+        """Count the negative ones among those of all unknowns but the surface's."""
+        shared = sum(count_negative(front.inverse) for front in self.fronts if front.done.size)
+        return int(np.sum(np.linalg.eigvalsh(self.inverse) < 0)) + shared
 
-    def _shared(self, forces: Array) -> Array:
-        """Forces on the shared unknowns with those on the interior ones carried over."""
+    def _carried(self, forces: Array) -> Array:
+        """Forces, and one for what is held, (n + 1,), with those on eliminated unknowns carried over to the others."""
         e = self.layout
-        carried = (self.recovery.transpose(0, 2, 1) @ forces[e.inner][..., None])[..., 0]
-        sums = np.bincount(e.columns.ravel(), weights=carried.ravel(), minlength=e.size + 1)
-        return np.asarray(forces[e.first :] - sums[:-1])
-
-    def _all(self, shared: Array, forces: Array) -> Array:
-        """All reduced unknowns, (n,), from the forces on the shared ones and on the interior ones."""
-        e, y = self.layout, np.empty(self.y.size)
-        y[e.first :] = self.factors.solve(shared)
-        outer = np.append(y[e.first :], 0.0)[e.columns][..., None]
-        y[e.inner] = (self.inverse @ forces[e.inner][..., None] - self.recovery @ outer)[..., 0]
-        return y
+        carried = (forces[e.inner][:, None] @ self.recovery).ravel()
+        x = np.append(forces, 0.0)
+        x -= np.bincount(e.columns.ravel(), carried, forces.size + 1)
+        for front in self.fronts:
+            front.carry(x)
+        return x
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -244,16 +237,20 @@ class HeldBody(Valued):
         return not self.body.stretch or np.array_equal(tangent.y, y)
 
     def _factorised(self, y: Array) -> Tangent:
-        """Eliminate the interior unknowns and factorise the rest."""
+        """Eliminate the interior unknowns of every cell, then all others but those of the surface."""
         e, cells = self._layout, self.body.cell_tangents(self.unknowns(y))
         inside, outside = e.inside, e.outside
         K_io = cells[:, inside[:, None], outside] * e.weights[:, None]
-        inverse = _inverse(cells[:, inside[:, None], inside])
+        inverse = inverses(cells[:, inside[:, None], inside])
         recovery: Array = inverse @ K_io
         K_oo = cells[:, outside[:, None], outside] * (e.weights[:, :, None] * e.weights[:, None, :])
-        K_oo -= K_io.transpose(0, 2, 1) @ recovery
-        shared = scatter(K_oo, e.columns.T, e.size + 1)[:-1, :-1]
-        return Tangent(e, y.copy(), inverse, recovery, _factors(shared + self.exterior.stiffness[e.first :, e.first :]))
+        fronts, K = e.regions.factorised(K_oo - K_io.transpose(0, 2, 1) @ recovery)
+        kept = np.concatenate([e.beside, self.surface])
+        places = np.searchsorted(e.regions.unknowns, kept)
+        last, stiffness = eliminated_by(
+            K[places][:, places] + self.exterior.stiffness[kept][:, kept].toarray(), e.beside, self.surface
+        )
+        return Tangent(e, y.copy(), self.surface, inverse, recovery, [*fronts, last], stiffness)
 
     @cached_property
     def _transposed(self) -> sparse.csr_array:
@@ -262,23 +259,12 @@ class HeldBody(Valued):
     @cached_property
     def _layout(self) -> Layout:
         dofs, inside, T = self.body.cell_dofs, self.body.inside, self.exterior.reduction.tocsr()
-        outside, first = np.setdiff1d(np.arange(dofs.shape[1]), inside), self.body.space.interior_dofs.size
+        outside, n = np.setdiff1d(np.arange(dofs.shape[1]), inside), self.size
         rows, reduced = T.nonzero()
-        column, weight = np.full(T.shape[0], self.size, dtype=np.intp), np.zeros(T.shape[0])
+        column, weight = np.full(T.shape[0], n, dtype=np.intp), np.zeros(T.shape[0])
         column[rows], weight[rows] = reduced, T.data[T.data != 0]
-        shared = (column[dofs[:, outside]] - first, weight[dofs[:, outside]], self.size - first)
-        return Layout(inside, outside, column[dofs[:, inside]], first, *shared, self.surface - first)
-
-
-def _inverse(blocks: Array) -> Array:
-    try:
-        return np.asarray(np.linalg.inv(blocks), dtype=np.float64)
-    except np.linalg.LinAlgError as error:
-        raise NotConverged("the tangent of a cell is singular; try another control or a nearer start") from error
-
-
-def _factors(matrix: sparse.csc_array) -> Any:
-    try:  # symmetric: ordered as such, without exchanges, so that the pivots tell the inertia
-        return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    except RuntimeError as error:  # SuperLU's way of saying so
-        raise NotConverged("the body's tangent is singular; try another control or a nearer start") from error
+        columns, kept = column[dofs[:, outside]], np.diff(self.exterior.stiffness.indptr) > 0
+        beside = np.setdiff1d(np.flatnonzero(kept), self.surface)
+        kept[self.surface] = True
+        regions = dissected(self.body.space.mesh, np.where(columns < n, columns, -1).T, kept)
+        return Layout(inside, outside, column[dofs[:, inside]], columns, weight[dofs[:, outside]], regions, beside)

@@ -31,7 +31,6 @@ from halfspace.equilibrium.contact import (
     LOAD,
     ContactProblem,
     Solver,
-    count_negative,
 )
 from halfspace.values import Array, Valued
 
@@ -163,18 +162,16 @@ class FiniteStrainProblem(Valued):
     def negative_directions(self, x: Array) -> int:
         """Number of directions in which the body moves on by itself at fixed approach; 0 means stable.
 
-        Counted as the negative pivots of the body's tangent, but for one of each pressure unknown, and what the law
-        adds to those of the surface, (C^-1 + S). Where there is an energy that is the number of directions in which it
-        falls (Haynsworth: inertia is additive in Schur complements). The tangent of the vertical traction per deformed
-        area is not symmetric, but is so up to terms of the order of delta; then the number changes where the
-        determinant does its sign, that is at the folds.
+        Counted in the body's tangent as it is condensed to the surface, but for one of each pressure unknown, and what
+        the law makes of the surface's own. Where there is an energy that is the number of directions in which it falls
+        (Haynsworth: inertia is additive in Schur complements). The tangent of the vertical traction per deformed area
+        is not symmetric, but is so up to terms of the order of delta; then the number changes where the determinant
+        does its sign, that is at the folds.
         """
         tangent = self.held.tangent(x[:-1])
-        own = np.linalg.inv(tangent.flexibility)
-        own = (own + own.T) / 2
-        whole = own + self._surface_tangent(x)[:, :-1]
-        added = np.sum(np.linalg.eigvals(whole).real < 0) - count_negative(own)
-        return int(tangent.negative_pivots() + added) - (self.body.unknowns - self.body.space.unknowns)
+        whole = tangent.stiffness + self._surface_tangent(x)[:, :-1]
+        negative = tangent.negative_directions() + int(np.sum(np.linalg.eigvals(whole).real < 0))
+        return negative - (self.body.unknowns - self.body.space.unknowns)
 
     def surface_state(self, x: Array) -> Array:
         """State as the interface knows it: H, alpha*, and the radii's fixed scale 1."""
