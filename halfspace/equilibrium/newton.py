@@ -193,7 +193,13 @@ class Solution(Valued):
 
 
 def solve(
-    problem: Equilibrium, start: Array, control: Control, *, tolerance: float = 1e-8, max_iterations: int = 40
+    problem: Equilibrium,
+    start: Array,
+    control: Control,
+    *,
+    tolerance: float = 1e-8,
+    max_iterations: int = 40,
+    contraction: float = math.inf,
 ) -> Solution:
     """Solve the equilibrium under a control, from a start whose gaps are positive.
 
@@ -211,17 +217,19 @@ def solve(
         Relative size of the last step at which the state is accepted; convergence is quadratic.
     max_iterations : int
         Newton steps after which to give up.
+    contraction : float
+        Part of the step two before that a step may have; more of it is given up at once.
 
     Raises
     ------
     NotConverged
-        If the steps or the damping run out; no unconverged state is ever returned.
+        If the steps or the damping run out, or the steps do not shrink; no unconverged state is ever returned.
     """
     x = start.copy()
     F = _equations(problem, x, control)
     if np.isnan(F[-1]):
         raise NotConverged("the start has no contact radius to be prescribed; start from a state in contact")
-    before, solver = np.inf, None
+    before, last, solver = np.inf, np.inf, None
     for iteration in range(1, max_iterations + 1):
         fresh = solver is None
         solver = solver or problem.bordered_solver(x, problem.gradient(x, control.weights))
@@ -233,9 +241,11 @@ def solve(
             return Solution(x, problem.observables(x), iteration, update, control, solver)
         if damping < 1 or update > problem.reuse or (not fresh and update > SLOW * before):
             solver = None
-        before = update
+        if update > contraction * last:
+            break
+        last, before = before, update
     raise NotConverged(
-        f"no convergence in {max_iterations} Newton steps (last relative step {update:.1e}, limit {tolerance:.0e}, "
+        f"no convergence in {iteration} Newton steps (last relative step {update:.1e}, limit {tolerance:.0e}, "
         f"relative residual {_misfit(problem, x, F):.1e}); try a nearer start, a smaller change or another control"
     )
 

@@ -6,7 +6,7 @@ numbers that every discretisation has, so its value does not depend on the grid,
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,6 +100,8 @@ class Steps:
         Largest angle between the tangents at a step's two ends, in radians.
     iterations, usual : int
         Newton steps allowed for one continuation step, and those that one of the right length takes.
+    contraction : float
+        Part of the Newton step two before that one may have.
     """
 
     first: float = 0.05
@@ -108,9 +110,10 @@ class Steps:
     turn: float = 0.35
     iterations: int = 8
     usual: int = 4
+    contraction: float = np.inf
 
 
-WHOLE_BODY = Steps(iterations=10, usual=6)  # where a Newton step is worth many of the surface's alone
+WHOLE_BODY = Steps(iterations=10, usual=6, contraction=0.5)  # where a Newton step is worth many of the surface's alone
 
 
 def make_point(
@@ -140,7 +143,13 @@ EACH = np.eye(4)  # weights of each observable alone
 
 
 def correct(
-    problem: Equilibrium, point: Point, step: float, guess: Array, metric: Metric, iterations: int = 8
+    problem: Equilibrium,
+    point: Point,
+    step: float,
+    guess: Array,
+    metric: Metric,
+    iterations: int = 8,
+    contraction: float = np.inf,
 ) -> Point:
     """Solve for the point of the path at the arclength `step` past `point`, measured along its tangent.
 
@@ -152,19 +161,12 @@ def correct(
     weights = metric.weights * point.rates
     used = weights != 0
     control = Control(weights, float(weights[used] @ point.observables[used]) + step)
-    solution = newton.solve(problem, guess, control, max_iterations=iterations)
+    solution = newton.solve(problem, guess, control, max_iterations=iterations, contraction=contraction)
     return make_point(problem, solution, metric, weights, point.arclength + step)
 
 
 def predict(problem: Traceable, point: Point, step: float, before: Point | None = None) -> Array:
-    """Extrapolate along the tangent, to second order where the point before is known (Adams and Bashforth).
-
-    Where a body's grid stands still the spike of tension at the contact edge moves over it: then see `with_edge`.
-    """
-    if before is not None and problem.interface is not problem and step > NUDGE:
-        moved = with_edge(problem, before, point, step)
-        if moved is not None:
-            return moved
+    """Extrapolate along the tangent, to second order where the point before is known (Adams and Bashforth)."""
     slope = point.tangent
     if before is not None:
         slope = slope + (point.tangent - before.tangent) * (step / (2 * (point.arclength - before.arclength)))
@@ -172,6 +174,19 @@ def predict(problem: Traceable, point: Point, step: float, before: Point | None 
 
 
 NUDGE = 1e-3  # of arclength: a step too short for the contact edge to leave its place
+
+
+def _starts(problem: Traceable, point: Point, step: float, before: Point | None) -> Iterator[Array]:
+    """Predictions in the order in which they are tried.
+
+    Where a body's grid stands still the spike of tension at the contact edge moves over it: then see `with_edge`, which
+    is worse, however, where the surface is steep.
+    """
+    if before is not None and problem.interface is not problem and step > NUDGE:
+        moved = with_edge(problem, before, point, step)
+        if moved is not None:
+            yield moved
+    yield predict(problem, point, step, before)
 
 
 def with_edge(problem: Traceable, before: Point, point: Point, step: float) -> Array | None:
@@ -267,12 +282,25 @@ def _carried(problem: Equilibrium, point: Point) -> bool:
 def _advance(problem: Traceable, points: list[Point], step: float, metric: Metric, steps: Steps) -> Point:
     """One step, refused if the path turns too far in it for its folds to be seen."""
     point, before = points[-1], points[-2] if len(points) > 1 else None
-    new = correct(problem, point, step, predict(problem, point, step, before), metric, steps.iterations)
+    new = _corrected(problem, point, step, _starts(problem, point, step, before), metric, steps)
     if _turn(point, new, metric) > 2 * steps.turn:
         raise NotConverged("the path turns too sharply")
     if any(_hides_turning_points(point, new, k, metric) for k in (APPROACH, LOAD)):
         raise NotConverged("the step may leap over a pair of folds")
     return new
+
+
+def _corrected(
+    problem: Traceable, point: Point, step: float, starts: Iterable[Array], metric: Metric, steps: Steps
+) -> Point:
+    """Point a step further, from the first of the starts from which it is found."""
+    failures: list[NotConverged] = []
+    for start in starts:
+        try:
+            return correct(problem, point, step, start, metric, steps.iterations, steps.contraction)
+        except NotConverged as error:
+            failures.append(error)
+    raise failures[-1]
 
 
 def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
