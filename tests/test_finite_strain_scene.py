@@ -359,6 +359,19 @@ def test_what_is_lost_close_to_the_limit_of_ill_posedness_says_so(radius_ratio, 
         trace(scene(3.0, radius_ratio), 1e-3)
 
 
+@pytest.mark.parametrize(("radius_ratio", "traction", "told"), [(2.25, "projected", True), (2.25, "reference", False)])
+def test_a_sphere_smaller_than_its_contact_is_said_to_be_drawn_flat(radius_ratio, traction, told, monkeypatch):
+    """By a surface stress only; one of 4 eps is traced to its load. What the first one ends with took 25 s to find."""
+
+    def lost(*_, **__):
+        raise NotConverged("the path ends")
+
+    monkeypatch.setattr(finite_strain_scene, "climb", lost)
+    why = r"^radius_ratio = 2.25 is below 4 .* of radius 1.5 beta, is drawn flat .* \(the path ends\); take traction"
+    with pytest.raises(NotConverged, match=why if told else "^the path ends$"):
+        trace(scene(1.0, radius_ratio, traction=traction), 1e-3)
+
+
 @pytest.mark.parametrize("name", ["pull_off", "jump_on", "jump_off", "zero_load"])
 def test_an_event_is_moved_from_mesh_to_mesh(path, name):
     """From elements of the lowest degree to those of the highest, as on the half-space."""

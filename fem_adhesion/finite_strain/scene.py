@@ -31,6 +31,7 @@ TIGHTEST = 1e-6  # relative tolerance
 MOST_RUNGS = 2  # above the lowest
 LITTLE = 0.5  # R dgamma: a load past every event
 SOFT = 0.9  # part of the surface's stiffness to short waves, gone, from which solutions get lost
+FLATTENED = 2.0  # radius in beta of a sphere smaller than its own contact, over which a surface stress may spread it
 SMALLEST_PART = 0.005  # of delta, in which it is raised where the linear body's events are too far away
 JUMPS = ("pull_off", "jump_on", "jump_off")
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
@@ -161,11 +162,17 @@ def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
 
 @contextmanager
 def _cause_told(scene: Scene) -> Iterator[None]:
-    """Say, where no solution is found close to the limit of ill-posedness, that this is why."""
+    """Say, where no solution is found close to the limit of ill-posedness or of a tiny sphere, that this is why."""
     try:
         yield
     except NotConverged as error:
         part, ratio = softening(scene), scene.tabor * scene.sphere_radius**2
+        if part < SOFT and part and scene.sphere_radius < FLATTENED:
+            raise NotConverged(
+                f"radius_ratio = {ratio:g} is below {scene.tabor * FLATTENED**2:.3g} for tabor {scene.tabor:g} and "
+                f"traction = {scene.material.traction!r}: the sphere, of radius {scene.sphere_radius:.3g} beta, is "
+                f"drawn flat before it bears a load ({error}); take traction = 'reference', or a radius_ratio above it"
+            ) from error
         if part < SOFT:
             raise
         raise NotConverged(
