@@ -117,3 +117,10 @@ def test_finite_sphere_trace(benchmark, tabor, radius_ratio):
     scene = Scene(tabor, Hemisphere(radius_ratio=radius_ratio))
     path = benchmark.pedantic(fem_adhesion.trace, (scene,), {"rtol": 1e-5}, rounds=1)
     assert path.event("pull_off").load_error < 1e-5 * abs(path.event("pull_off").load)
+
+
+def test_finite_strain_trace(benchmark):
+    """The same of a neo-Hookean one at R/eps 100."""
+    scene = Scene(1.0, Hemisphere(radius_ratio=100, material=fem_adhesion.NeoHookean()))
+    path = benchmark.pedantic(fem_adhesion.trace, (scene,), {"rtol": 1e-3}, rounds=1)
+    assert path.met
