@@ -250,6 +250,16 @@ def test_what_does_not_go_with_a_thin_sample_is_refused_in_one_line(more, words,
     assert len(error.strip().splitlines()[-1:]) == 1
 
 
+def test_thickness_and_foundation_are_heeded(monkeypatch):
+    asked = []
+    monkeypatch.setattr(study, "assess", lambda contact, _: asked.append(contact))
+    with pytest.raises(AttributeError):
+        cli.main([*ARGUMENTS, "--foundation", "sliding"])
+    layer = asked[0].layer
+    assert (layer.poisson, layer.foundation) == (0.3, "sliding")
+    assert layer.thickness == pytest.approx(30e-9 / asked[0].units.length, rel=1e-12)
+
+
 def test_a_thin_sample_and_another_body_are_no_contact():
     with pytest.raises(InputError, match="limit: a rigid sphere on a thin sample"):
         Contact(**SAMPLE, thickness=1e-6, counter_radius=1e-6)
