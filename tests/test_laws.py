@@ -147,7 +147,6 @@ class Blunt(Endless):
         (Yukawa(work=-1), "the largest tension is 1e-09 dgamma/eps, limit: above 0; let the surfaces attract"),
         (Yukawa(slip=0.01), "the slope is off by 0.0099 from the pressure's, limit: 0.0001; mend either"),
         (Yukawa(drift=-0.01), "the pressure at H = 0 is -0.01 dgamma/eps, limit: 0; move its gaps"),
-        (Dlvo(0.2, 0.6), "a barrier of 0.0934 of the largest tension stands beyond it, limit: 0.05"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )

@@ -23,7 +23,7 @@ from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form import Contact, Turn, newton, turning_point
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import Located
+from halfspace.equilibrium.events import Located, usual
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Estimate, Valued
@@ -177,7 +177,7 @@ def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
 
 
 def _on_both(scene: Scene, path: EquilibriumPath, on_coarse: FineAt, on_fine: FineAt) -> Iterator[Compared]:
-    for name in path.events:
+    for name in usual(path.events):
         yield from _of_event(name, scene, path, on_coarse, on_fine)
     coarse, fine = (_energy_released(contact, path) for contact in (on_coarse, on_fine))
     yield Compared("energy released", "R dgamma eps", (coarse, fine), path.energy, abs(path.energy.value))

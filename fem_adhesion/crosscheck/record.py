@@ -9,7 +9,7 @@ from fem_adhesion.common.facts import finite, versions
 from fem_adhesion.crosscheck.comparison import Row
 from fem_adhesion.crosscheck.study import Case, Failure
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import Event
+from halfspace.equilibrium.events import Event, is_fold
 from halfspace.values import Estimate
 
 VERDICTS = ("failed", "disagree", "inconclusive", "agree")  # worst first
@@ -50,7 +50,7 @@ KEYS = {"half-space": "halfspace", "harmonics": "harmonics", "finite elements": 
 
 def _solution(path: EquilibriumPath) -> dict[str, Any]:
     return {
-        "events": {name: _event(event) for name, event in path.events.items() if name in EVENT_NAMES},
+        "events": {name: _event(event) for name, event in path.events.items() if name in EVENT_NAMES or is_fold(name)},
         "jumps": path.jumps,
         "rtol": path.rtol,
         "missed": {name: list(numbers) for name, numbers in path.missed.items()},

@@ -35,7 +35,7 @@ from halfspace.accuracy.refinement import FOLDS
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath, transfer
-from halfspace.equilibrium.events import ROUND_OFF, Located
+from halfspace.equilibrium.events import EVENTS, ROUND_OFF, Located
 from halfspace.errors import NotConverged
 from halfspace.limits import require_rtol
 from halfspace.values import Array, Estimate
@@ -214,7 +214,7 @@ def _carried(event: Located, target: ContactProblem) -> Array:
 
 
 def _compare_events(other: EquilibriumPath, fe: EquilibriumPath, rtol: float, between: Pair = SOLVERS) -> Iterator[Row]:
-    for event, quantity, unit, pointwise in EVENT_QUANTITIES:
+    for event, quantity, unit, pointwise in (*EVENT_QUANTITIES, *_of_further_folds(other, fe)):
         a, b = (_number(path, event, quantity) for path in (other, fe))
         if not (a and np.isfinite(a.value)) and not (b and np.isfinite(b.value)):
             continue
@@ -222,6 +222,13 @@ def _compare_events(other: EquilibriumPath, fe: EquilibriumPath, rtol: float, be
         yield Row(f"{event} {quantity}", unit, a, b, difference(a, b), budget, between)
     off, budget = difference(other.energy, fe.energy), rtol * abs(other.energy.value)
     yield Row("energy released", "R dgamma eps", other.energy, fe.energy, off, budget, between)
+
+
+def _of_further_folds(other: EquilibriumPath, fe: EquilibriumPath) -> list[tuple[str, str, str, bool]]:
+    """What is compared of the folds between the jumps, which either solver finds: the same as of these."""
+    names = sorted({*other.events, *fe.events} - set(EVENTS), key=lambda name: (len(name), name))
+    asked = [quantity for quantity in EVENT_QUANTITIES if quantity[0] == "jump_on"]
+    return [(name, quantity, unit, pointwise) for name in names for _, quantity, unit, pointwise in asked]
 
 
 def _size(quantity: str, value: float, path: EquilibriumPath) -> float:

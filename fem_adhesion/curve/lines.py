@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import FOLD
+from halfspace.equilibrium.events import is_fold
 from halfspace.equilibrium.path import Segment
 from halfspace.values import Array, Valued
 
@@ -96,8 +96,10 @@ def _stable_between(stable: NDArray[np.bool_], rate: Array) -> NDArray[np.bool_]
 
 
 def folds(path: EquilibriumPath) -> Array:
-    """Approach, load, central gap and contact radius at every fold under fixed grips, in order, (n, 4)."""
-    return np.array([fold.point.observables for fold in path.states(FOLD)]).reshape(-1, 4)
+    """Approach and load at every fold under fixed grips, in order, (n, 2)."""
+    return np.array([(event.approach, event.load) for name, event in path.events.items() if is_fold(name)]).reshape(
+        -1, 2
+    )
 
 
 def around_events(path: EquilibriumPath) -> Frame:

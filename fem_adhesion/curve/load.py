@@ -126,8 +126,8 @@ def _draw_jumps(axes: Any, curves: Curves, frame: Frame) -> None:
     """Arrows of the jumps, under fixed grips and along the load lines of an apparatus."""
     units = scales(curves)
     for cycle, look in ((curves.grips, GRIPS), (curves.apparatus, APPARATUS)):
-        jumps = (cycle.jump_on, cycle.jump_off) if cycle else ()
-        ends = [[(state.approach, state.load) for state in (jump.take_off, jump.landing)] for jump in jumps]
+        jumps = cycle.jumps if cycle else {}
+        ends = [[(state.approach, state.load) for state in (jump.take_off, jump.landing)] for jump in jumps.values()]
         seen = list(filter(None, (_clipped(tail, head, frame) for tail, head in ends)))
         for tail, head in seen:
             _arrow(axes, _scaled(tail, units), _scaled(head, units), look)
@@ -146,7 +146,7 @@ def _arrow(axes: Any, tail: Ends, head: Ends, look: dict[str, Any]) -> None:
 def _load_lines(axes: Any, cycle: Cycle, units: Any) -> None:
     """Lines of slope -k, the loads that an apparatus exerts with its base held where it jumps."""
     slope = -cycle.stiffness * units["load"].size / units["approach"].size
-    for jump in (cycle.jump_on, cycle.jump_off):
+    for jump in cycle.jumps.values():
         at = _scaled((jump.take_off.approach, jump.take_off.load), units)
         axes.axline(at, slope=slope, color=style.GREEN, linewidth=0.8, linestyle=style.DASHED, zorder=1.2)
 

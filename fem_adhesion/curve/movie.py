@@ -19,7 +19,9 @@ from fem_adhesion.fields import state_at
 from fem_adhesion.paraview.picture import Pixels, solid_image, view_of
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import Condition, Located
+from halfspace.errors import InputError
 from halfspace.values import Array
 
 SIZE = (800, 500)
@@ -86,7 +88,9 @@ def experiment(path: EquilibriumPath) -> list[Shot]:
 
     They end at the loads `FADED` and `PRESSED`, or where the path does.
     """
-    found = path.stages[-1]
+    found, loop = path.stages[-1], cycle(path)
+    if loop and len(loop.jumps) > 2:
+        raise InputError(f"movie of {len(loop.jumps)} jumps, limit: one on and one off; take --render")
     frames = _jumping(path, found["jump_on"], found["jump_off"]) if "jump_on" in found else _smooth(path)
     back = max(number for number, frame in enumerate(frames) if frame.state is found["pull_off"])
     frames[back] = replace(frames[back], words="pull-off", seconds=RESTING)

@@ -90,8 +90,7 @@ def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
     return {
         "stiffness": finite(cycle.stiffness),
         "met": cycle.met,
-        "jump_on": _jump(cycle.jump_on, cycle.tolerance),
-        "jump_off": _jump(cycle.jump_off, cycle.tolerance),
+        **{name: _jump(jump, cycle.tolerance) for name, jump in cycle.jumps.items()},
         "energy_lost": _estimate(cycle.energy_lost),
     }
 

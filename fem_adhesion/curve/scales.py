@@ -79,7 +79,7 @@ def _largest(curves: Curves) -> Mapping[str, float]:
     """Largest size of what a table of events shows, in dimensionless units; what is not known is left out."""
     states = [event for path in curves.paths.values() for event in path.events.values()]
     cycles = [cycle for cycle in (curves.grips, curves.apparatus) if cycle]
-    jumps = [jump for cycle in cycles for jump in (cycle.jump_on, cycle.jump_off)]
+    jumps = [jump for cycle in cycles for jump in cycle.jumps.values()]
     states += [state for jump in jumps for state in (jump.take_off, jump.landing)]
     sizes = {name: [abs(getattr(state, name)) for state in states] for name in EVENT_QUANTITIES}
     sizes["energy"] = [abs(cycle.energy_lost.value) for cycle in cycles]

@@ -64,9 +64,8 @@ def table(curves: Curves) -> Fitted:
 def _rows(curves: Curves) -> Iterator[tuple[str, str, Event]]:
     """What each row is, by which solver, and its numbers."""
     for solver, path in curves.paths.items():
-        for name, words in EVENTS.items():
-            if event := path.event(name):
-                yield words, solver, event
+        for name, event in path.events.items():
+            yield EVENTS.get(name, name.replace("_", " ")), solver, event
     for device, cycle in (("fixed grips", curves.grips), ("apparatus", curves.apparatus)):
         for words, state in _landings(cycle, with_take_off=device == "apparatus"):
             yield f"{words}, {device}", curves.solver, state
@@ -74,7 +73,8 @@ def _rows(curves: Curves) -> Iterator[tuple[str, str, Event]]:
 
 def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str, Event]]:
     """Where jumps land; where they take off too, unless that is an event of the curve."""
-    for words, jump in (("jump on", cycle.jump_on), ("jump off", cycle.jump_off)) if cycle else ():
+    for name, jump in cycle.jumps.items() if cycle else ():
+        words = name.replace("_", " ")
         if with_take_off:
             yield words, jump.take_off
         yield f"{words} lands", jump.landing
@@ -170,11 +170,10 @@ def plot(curves: Curves, width: int = WIDTH) -> Text:
     line = lines.smooth(reaching(path, curves.question.stiffness))
     for kind, load in line.parts(line.load):
         canvas.line(line.approach, load, COLOURS[kind], thinned=kind == lines.UNSTABLE)
-    for name, letter in LETTERS.items():
-        if event := path.event(name):
-            canvas.letter(letter, event.approach, event.load)
-    for letter, jump in (("B", curves.grips.jump_on), ("D", curves.grips.jump_off)) if curves.grips else ():
-        canvas.letter(letter, jump.landing.approach, jump.landing.load)
+    for name, event in path.events.items():
+        canvas.letter(LETTERS.get(name, name[-1]), event.approach, event.load)
+    for name, jump in curves.grips.jumps.items() if curves.grips else ():
+        canvas.letter("B" if name.startswith("jump_on") else "D", jump.landing.approach, jump.landing.load)
     x, y = units["approach"], units["load"]
     text = Text(f"load, {y.unit}\n")
     text.append_text(canvas.text(_ticks(frame.load, y)))
@@ -185,7 +184,10 @@ def plot(curves: Curves, width: int = WIDTH) -> Text:
 def _key(curves: Curves) -> list[str]:
     """What the letters and dots of the plot mean."""
     words = [f"{LETTERS[name]} {words}" for name, words in EVENTS.items() if curves.path.event(name)]
-    landings = ["B, D where the jumps from A and C land"] if curves.grips else []
+    between = [name for name in curves.path.events if name not in EVENTS]
+    words += [f"2 to {len(between) + 1} folds between them"] if between else []
+    more = curves.grips and len(curves.grips.jumps) > 2
+    landings = [f"B, D where the jumps {'on and off' if more else 'from A and C'} land"] if curves.grips else []
     thinned = ["dots thinned: unstable"] if not curves.path.stable.all() else []
     return [*words, *landings, *thinned]
 

@@ -24,7 +24,7 @@ from fem_adhesion.scene import Scene
 from halfspace.accuracy.fold_birth import FIRST, Birth, NoBirth, born, tabor_of
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import Event
+from halfspace.equilibrium.events import Event, usual
 from halfspace.equilibrium.newton import Traceable
 from halfspace.errors import InputError, NotConverged
 from halfspace.limits import SMALLEST_SPHERE
@@ -194,7 +194,7 @@ def quantities_of(path: EquilibriumPath) -> dict[str, Estimate]:
     values = {
         "pull_off_load": pull_off.estimate("load"),
         "zero_load_radius": zero_load.estimate("contact_radius"),
-        APPROACH_SCALE: Estimate(path.approach_scale, 2 * max(e.approach_error for e in path.events.values())),
+        APPROACH_SCALE: Estimate(path.approach_scale, 2 * max(e.approach_error for e in usual(path.events).values())),
     }
     values |= _jumps(path.events)
     if grips := cycle(path):

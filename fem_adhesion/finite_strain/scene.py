@@ -20,7 +20,7 @@ from fem_adhesion.scene import Scene
 from halfspace.accuracy.refinement import Rung, climb
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, find_events, metric_for, moved, trace_charts
-from halfspace.equilibrium.events import EVENTS, Event, Located, Tolerance, estimate_event, relocate
+from halfspace.equilibrium.events import EVENTS, Event, Located, Tolerance, estimate_event, relocate, usual
 from halfspace.equilibrium.path import Segment
 from halfspace.errors import InputError, NotConverged
 from halfspace.limits import require_load, require_rtol
@@ -74,7 +74,7 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
     began = time.perf_counter()
     with _cause_told(scene):
         path = climb(rtol, partial(Stages(scene).rung, _lowest_degree(rtol)), to_load=to_load, most_rungs=MOST_RUNGS)
-    spread = {name: _spread(path.stages[-2][name], scene) for name in path.events}
+    spread = {name: _spread(path.stages[-2][name], scene) for name in usual(path.events)}
     settings = {**path.settings, "traction": scene.material.traction}
     return replace(path, spread=spread, settings=settings, seconds=time.perf_counter() - began)
 

@@ -18,6 +18,7 @@ from fem_adhesion.elasticity.stress import positions, sampled
 from fem_adhesion.fields import State, half_space_beside, states_along
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import usual
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued
 
@@ -84,7 +85,7 @@ def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progres
     path = convergence.trace(scene, rtol=rtol)
     outer = REACH * float(np.nanmax(path.contact_radius))
     radii, places = np.linspace(0, outer, RADII), np.linspace(0, outer, ON_LINE)
-    total = (path.count if states is None else states) + len(path.events)
+    total = (path.count if states is None else states) + len(usual(path.events))
     stations = []
     for number, state in enumerate(states_along(scene, path, points=states, how=SEEN)):
         progress("states along the curve", number, total)

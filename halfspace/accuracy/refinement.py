@@ -8,10 +8,10 @@ half of it where the higher rung leaves a third of that error at most, more wher
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Protocol
+from functools import cached_property, partial
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from halfspace.equilibrium.curve import (
     Finest,
     energy_released,
     find_events,
+    further_folds,
     metric_for,
     moved,
     placed,
@@ -38,6 +39,7 @@ from halfspace.equilibrium.events import (
     Tolerance,
     estimate_event,
     hermite,
+    is_event,
     steepest,
     steepest_from,
 )
@@ -54,6 +56,7 @@ FOLDS = ("jump_on", "jump_off")
 IN_DOUBT = 0.02
 FLAT = 1e-9  # eps/(R dgamma), of it: what the last of the parabolas and rounding leave
 
+T = TypeVar("T")
 Charts = Sequence[Chart]
 State = Mapping[str, Located]
 
@@ -201,12 +204,14 @@ def _climb_from(
     margin = _margin(chains, higher.remaining)
     if folds and margin and margin.value + margin.error < 0 and "jump_on" not in events:
         raise FoldsLost("the curve folds on a finer grid, but not on its own; take a smaller rtol")
+    before = (*lowest.stages, *(() if below is lowest else below.stages[-1:]))
+    further = FurtherFolds(segments if folds else (), before, higher)
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,
-        events,
+        Completed(events, further.events),
         _energy(chains, higher.remaining),
-        tuple(chains[0]),
+        tuple(Completed(state, partial(further.stage, number)) for number, state in enumerate(chains[0])),
         higher.stages[-1],
         time.perf_counter() - began,
         {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
@@ -216,6 +221,78 @@ def _climb_from(
         _ways(below.stages[-1] if below.stages else Charted(tuple(charts)), higher),
         margin,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class Completed(Mapping[str, T]):
+    """What is known by name, and what is of the folds between the jumps when one of these is first asked for."""
+
+    known: Mapping[str, T]
+    more: Callable[[], Mapping[str, T]]
+
+    @cached_property
+    def every(self) -> dict[str, T]:
+        """All of it, folds in order along the curve."""
+        after = ("jump_off", "zero_load")
+        first = {name: value for name, value in self.known.items() if name not in after}
+        return {**first, **self.more(), **self.known}
+
+    def __getitem__(self, name: str) -> T:
+        return self.known[name] if name in self.known or name in EVENTS else self.every[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.known or (name not in EVENTS and name in self.every)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.every)
+
+    def __len__(self) -> int:
+        return len(self.every)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FurtherFolds(Valued):
+    """Folds between the jumps, solved for as the other events and known as well.
+
+    Attributes
+    ----------
+    segments : tuple of Segment
+        The curve as it was traced.
+    before : tuple of Stage
+        On each of which an event is solved for on the way to the last rung.
+    higher : Rung
+        The last rung.
+    """
+
+    segments: tuple[Segment, ...]
+    before: tuple[Stage, ...]
+    higher: Rung
+
+    @cached_property
+    def chains(self) -> list[list[State]]:
+        """Chains of states as of the events; a fold that a finer grid does not have is left out."""
+        found = [chains for fold in further_folds(self.segments) if (chains := self._chains(fold))]
+        return [[_numbered(states) for states in zip(*chain, strict=True)] for chain in zip(*found, strict=True)]
+
+    def _chains(self, fold: Located) -> list[list[Located]]:
+        try:
+            for stage in self.before:
+                fold = _moved_to(fold, stage)
+            return [[state[""] for state in chain] for chain in _step_up({"": fold}, self.higher)]
+        except NotConverged:
+            return []
+
+    def events(self) -> Mapping[str, Event]:
+        """The folds with their errors."""
+        return _estimate(self.chains, self.higher.remaining, along=self.higher.along) if self.chains else {}
+
+    def stage(self, number: int) -> State:
+        """The folds on one of the discretisations from the rung below the last to the finest."""
+        return self.chains[0][number] if self.chains else {}
+
+
+def _numbered(folds: Sequence[Located]) -> State:
+    return {f"fold_{number}": fold for number, fold in enumerate(folds, 2)}
 
 
 def _ways(below: Stage, higher: Rung) -> Ways:
@@ -279,7 +356,7 @@ def _moved_to(event: Located, stage: Stage) -> Located:
 
 def _estimate(chains: Sequence[Sequence[State]], remaining: float, *, along: bool) -> dict[str, Event]:
     """Events of the last state, with their changes along the chains as errors."""
-    names = [name for name in EVENTS if name in chains[0][-1]]
+    names = [name for name in chains[0][-1] if is_event(name)]
     by_name = {name: [[state[name] for state in chain] for chain in chains] for name in names}
     return {name: estimate_event(name, own, remaining, along=along) for name, own in by_name.items()}
 

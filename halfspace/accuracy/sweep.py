@@ -14,7 +14,7 @@ from halfspace.accuracy.trace import trace
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import EVENTS, Event
+from halfspace.equilibrium.events import EVENTS, Event, usual
 from halfspace.equilibrium.states import States
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
@@ -58,7 +58,7 @@ class Summary:
     @classmethod
     def of(cls, path: EquilibriumPath) -> Summary:
         """Keep the numbers of a curve."""
-        return cls(path.tabor, dict(path.events), path.energy, _lost(path), path.missed)
+        return cls(path.tabor, usual(path.events), path.energy, _lost(path), path.missed)
 
 
 UNKNOWN = Estimate(math.nan, math.nan)

@@ -21,6 +21,7 @@ from halfspace.elastic.operators import FlatCoordinate, Homogeneous
 from halfspace.equilibrium.contact import contact_of
 from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
 from halfspace.equilibrium.events import REMAINING
+from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.check import require_law
 from halfspace.limits import require_load, require_rtol, require_tabor
@@ -34,6 +35,7 @@ FAR = 100.0  # of the last cell on a layered body, in extents: the energy left o
 LEAVE = 0.8  # of the first cell: the contact radius at which the chart centred on the axis is left
 # Found by trial; what each decides at half and at double is in tests/constants.py.
 ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
+MOST_CELLS = 100  # of one length
 TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same
 IMAGES = (1.14, 1.17)  # ratios of the depths of a layered body's images, and of its twin's
 
@@ -98,9 +100,26 @@ def rings(
     widest, first = scales.widest_radius(to_load), scales.profile.first_cell(10.0**-nodes)
     growth = 1 + (growth - 1) * scales.gradual
     centred = grid.graded(0.0, length, outer, growth=growth)
+    if scales.law.outermost:
+        return Rings(_fine_throughout(scales, finest, growth, outer, to_load), centred, math.inf)
     edge = grid.graded(1.0, 2 * length / widest, outer / length, growth=growth)
     until = LEAVE * float(centred[1])  # the cells beyond the first may be too coarse
     return Rings(grid.towards_axis(centred, first), grid.towards_axis(edge, first / widest), until)
+
+
+def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float, to_load: float) -> Array:
+    """Breakpoints as fine as at a contact edge wherever one may stand, by a law whose tension has several largest."""
+    reach = float(np.hypot(scales.widest_radius(to_load), scales.radius_at(scales.law.outermost)))
+    spacing = finest * scales.spike_width
+    cells = reach / spacing
+    if cells > MOST_CELLS:
+        raise InputError(
+            f"{scales.law}: the tension rises again at H = {scales.law.outermost:.3g}, so that {cells:.0f} cells of "
+            f"{spacing:.2g} beta are needed up to {reach:.3g} beta, limit: {MOST_CELLS}; take a smaller tabor than "
+            f"{scales.tabor:g}, or a smaller to_load"
+        )
+    inside = grid.uniform(reach, spacing)
+    return np.append(inside, (reach + grid.geometric(max(outer - reach, spacing), spacing, growth))[1:])
 
 
 def half_space_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:

@@ -8,6 +8,7 @@ a single chart.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cached_property
@@ -31,9 +32,12 @@ from halfspace.equilibrium.events import (
     approach_scale,
     between,
     brackets,
+    is_event,
+    locate,
     relocate,
     same_place,
     tolerance_told,
+    usual,
 )
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import WHOLE_BODY, Metric, Point, Segment, Steps, follow, loaded_to, make_point
@@ -78,7 +82,8 @@ class EquilibriumPath(Valued):
     segments : tuple of Segment
         Points in order on the coarsest discretisation, from which all else starts.
     events : mapping of str to Event
-        ``pull_off``, ``zero_load`` and, where the curve folds, ``jump_on`` and ``jump_off``.
+        ``pull_off``, ``zero_load`` and, where the curve folds, ``jump_on`` and ``jump_off``; where it has more folds,
+        ``fold_2``, ``fold_3`` ... between these, solved for when one is first asked for.
     energy : Estimate
         Potential energy released from `Scales.separated_approach` on the separated branch to zero approach in contact,
         in R dgamma eps.
@@ -134,18 +139,21 @@ class EquilibriumPath(Valued):
 
     @property
     def met(self) -> bool:
-        """Whether every event has its load and approach to the accuracy asked for; `missed` says which has not."""
+        """Whether the events have their loads and approaches to the accuracy asked for; `missed` says which have not.
+
+        The folds between the jumps, as they are, do not count.
+        """
         return not self.missed
 
     @property
     def missed(self) -> dict[str, tuple[str, ...]]:
         """By event, the numbers whose estimated errors exceed `tolerance`."""
-        return self.tolerance.missed(self.events)
+        return self.tolerance.missed(usual(self.events))
 
     @property
     def tolerance(self) -> Tolerance:
         """What `rtol` means for loads and approaches."""
-        return Tolerance.on(self.events, self.rtol)
+        return Tolerance.on(usual(self.events), self.rtol)
 
     def event(self, name: str) -> Event | None:
         """Event by name, or None if the curve does not have it.
@@ -155,10 +163,10 @@ class EquilibriumPath(Valued):
         InputError
             If no curve has an event of that name.
         """
-        if name not in EVENTS:
+        if not is_event(name):
             near = get_close_matches(name, EVENTS, n=1)
             remedy = f'did you mean "{near[0]}"?' if near else "take one of these"
-            raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}; {remedy}')
+            raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}, fold_2, fold_3 ...; {remedy}')
         return self.events.get(name)
 
     @property
@@ -172,11 +180,11 @@ class EquilibriumPath(Valued):
     @property
     def approach_scale(self) -> float:
         """Size in eps that approaches are measured by, see `halfspace.equilibrium.events.approach_scale`."""
-        return approach_scale(event.approach for event in self.events.values())
+        return approach_scale(event.approach for event in usual(self.events).values())
 
     def __repr__(self) -> str:
         """What was asked and found: events with their errors, energy, effort."""
-        events = "; ".join(map(_told, self.events.values()))
+        events = "; ".join(map(_told, usual(self.events).values()))
         first, last = (self.segments[i].points[i].observables[APPROACH] for i in (0, -1))
         return (
             f"<EquilibriumPath of tabor {self.tabor:g}: {self.count} points on {len(self.segments)} charts, "
@@ -451,7 +459,7 @@ Bracket = tuple[Traceable, Point, Point]
 
 def states(segments: Sequence[Segment], condition: Condition) -> list[Located]:
     """Every state of a traced curve that meets a condition, in order."""
-    return [_state(bracket, condition) for bracket in _brackets(segments, condition)]
+    return [state for bracket in _brackets(segments, condition) for state in _with_care(bracket, condition)]
 
 
 def _brackets(segments: Sequence[Segment], condition: Condition) -> list[Bracket]:
@@ -498,6 +506,7 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     NotConverged
         If the curve ends before one of those that it must have: for want of body, it is a ContactTooWide.
     """
+    _require_touching(segments)
     separated = segments[0].problem.interface.scales.separated_approach
 
     def required(name: str, condition: Condition) -> list[Bracket]:
@@ -512,6 +521,44 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     for name, condition in (("zero_load", ZERO_LOAD), ("zero_approach", Condition(APPROACH))):
         found[name] = _state(required(name, condition)[-1], condition)
     return found
+
+
+def _require_touching(segments: Sequence[Segment]) -> None:
+    """Raise NotConverged if a barrier, or a second minimum farther out, holds the surfaces apart to the curve's end."""
+    law, last = segments[0].problem.interface.law, segments[-1].points[-1].observables
+    if law.outermost and last[CENTRAL_GAP] > law.innermost:
+        raise NotConverged(
+            f"the law holds the surfaces {last[CENTRAL_GAP]:.3g} eps apart at the curve's end, load {last[LOAD]:.3g} "
+            f"R dgamma, limit: {law.innermost:.3g} eps in contact; take a larger to_load"
+        )
+
+
+def further_folds(segments: Sequence[Segment]) -> list[Located]:
+    """Solve for the folds between the jumps, in order along a traced curve; one that is not pinned down is left out."""
+    found: list[Located] = []
+    for bracket in _brackets(segments, FOLD)[1:-1] if segments else ():
+        with suppress(NotConverged):
+            found += _with_care(bracket, FOLD)
+    return found
+
+
+def _with_care(bracket: Bracket, condition: Condition) -> list[Located]:
+    """State between two points, or those that shorter steps between them find where its own search does not end."""
+    problem, a, b = bracket
+    metric = metric_for(problem)
+    step, past = (b.arclength - a.arclength) / SHORTER, metric.weights * b.rates
+
+    def beyond(point: Point) -> bool:
+        return bool(past[:3] @ (point.observables - b.observables)[:3] >= 0)
+
+    try:
+        return [between(problem, a, b, condition, metric)]
+    except NotConverged:
+        points = follow(problem, a, metric, beyond, steps=Steps(first=step, longest=step))
+        return locate(problem, points, metric, condition)
+
+
+SHORTER = 4  # steps in the place of one where the curve winds too much for it
 
 
 def _missing(segment: Segment, event: str) -> NoReturn:

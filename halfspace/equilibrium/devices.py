@@ -2,17 +2,19 @@
 
 The contact hangs on a spring whose other end, the base, is moved: b = alpha* + W/k. Fixed grips are the spring of
 infinite stiffness. The contact jumps at the folds of the base along the path, where it is tangent to a load line of
-slope -k, and lands on the other stable state at the same base. With E the energy of the contact, a jump sets free
+slope -k, and lands on the next stable state along the path at the same base: that is where the motion by which the
+energy falls ends. With E the energy of the contact, a jump sets free
 
     E + W^2/(2k) at take-off  -  E + W^2/(2k) at landing,
 
-and a cycle loses what its two jumps set free: it equals the work of the base round the loop, as d(E + W^2/2k) = W db.
+and a cycle loses what its jumps set free, one on and one off unless the curve has stable states between its folds: it
+equals the work of the base round the loop, as d(E + W^2/2k) = W db.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,8 +56,9 @@ class Cycle:
     ----------
     stiffness : float
         Of the apparatus, in R dgamma/eps; infinite for fixed grips.
-    jump_on, jump_off : Jump
-        From separation into contact, A to B in [G97] Fig. 2a, and back, C to D.
+    on, off : tuple of Jump
+        From separation into contact, A to B in [G97] Fig. 2a, and back, C to D, each in its order: more than one where
+        the curve has stable states between two of its folds.
     energy_lost : Estimate
         In the whole cycle, in R dgamma eps.
     tolerance : Tolerance
@@ -63,31 +66,50 @@ class Cycle:
     """
 
     stiffness: float
-    jump_on: Jump
-    jump_off: Jump
+    on: tuple[Jump, ...]
+    off: tuple[Jump, ...]
     energy_lost: Estimate
     tolerance: Tolerance
 
     @property
+    def jump_on(self) -> Jump:
+        """The first from separation."""
+        return self.on[0]
+
+    @property
+    def jump_off(self) -> Jump:
+        """The first from contact."""
+        return self.off[0]
+
+    @property
+    def jumps(self) -> dict[str, Jump]:
+        """All by name, ``jump_on``, ``jump_on_2`` ... ``jump_off``, ``jump_off_2`` ..."""
+        return {
+            name if number == 1 else f"{name}_{number}": jump
+            for name, jumps in (("jump_on", self.on), ("jump_off", self.off))
+            for number, jump in enumerate(jumps, 1)
+        }
+
+    @property
     def met(self) -> bool:
-        """Whether all four states have their loads and approaches to the accuracy asked for."""
+        """Whether all states have their loads and approaches to the accuracy asked for."""
         return not self.missed
 
     @property
     def missed(self) -> dict[str, tuple[str, ...]]:
         """By state, as ``jump_on landing``, the numbers that have not."""
-        jumps = {"jump_on": self.jump_on, "jump_off": self.jump_off}
         return self.tolerance.missed(
-            {f"{name} {s.name}": s for name, jump in jumps.items() for s in (jump.take_off, jump.landing)}
+            {f"{name} {s.name}": s for name, jump in self.jumps.items() for s in (jump.take_off, jump.landing)}
         )
 
 
 @dataclass(frozen=True)
 class _States:
-    """Take-off and landing of one jump on one discretisation."""
+    """Take-off and landing of one jump, on or off, on one discretisation."""
 
     take_off: Located
     landing: Located
+    on: bool
 
     def energy(self, compliance: float) -> float:
         """Energy set free, that of the spring included."""
@@ -95,7 +117,7 @@ class _States:
 
 
 def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
-    """Both jumps of a cycle with an apparatus of given stiffness, or None where the contact follows it smoothly.
+    """All jumps of a cycle with an apparatus of given stiffness, or None where the contact follows it smoothly.
 
     With fixed grips also where that cannot be told: see `halfspace.equilibrium.curve.EquilibriumPath.jumps`.
 
@@ -121,8 +143,11 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     rough = jumps(reaching(path, stiffness).segments, 1 / stiffness)
     if rough is None:
         return None
-    on, off = (_jump(states, path, 1 / stiffness) for states in rough)
-    lost = Estimate(on.energy.value + off.energy.value, on.energy.error + off.energy.error)
+    on, off = (
+        tuple(_jump(states, path, 1 / stiffness) for states in rough if states.on is way) for way in (True, False)
+    )
+    energies = [jump.energy for jump in (*on, *off)]
+    lost = Estimate(sum(energy.value for energy in energies), sum(energy.error for energy in energies))
     return Cycle(stiffness, on, off, lost, path.tolerance)
 
 
@@ -142,23 +167,79 @@ def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> fl
     return None if states is None else sum(jump.energy(0.0) for jump in states)
 
 
-def jumps(segments: Sequence[Segment], compliance: float) -> tuple[_States, _States] | None:
-    """Jump on and jump off with an apparatus of compliance 1/k, on the discretisation of the curve itself."""
-    folds = states(segments, Condition(APPROACH, stationary=True, compliance=compliance))
+def jumps(segments: Sequence[Segment], compliance: float) -> tuple[_States, ...] | None:
+    """Jumps on in their order, then jumps off, with compliance 1/k, on the discretisation of the curve itself."""
+    folds = _in_order(segments, Condition(APPROACH, stationary=True, compliance=compliance))
     if not folds:
         return None
-    on, off = folds[0], folds[-1]
-    landings = states(segments, Condition(APPROACH, value=_base(on, compliance), compliance=compliance))
-    if not landings:
-        load = segments[-1].points[-1].observables[LOAD]
-        raise NotConverged(
-            f"the landing of the jump on lies beyond the end of the curve at load {load:.3g} R dgamma; trace it to a "
-            "larger to_load"
-        )
-    contact, base = landings[-1], _base(off, compliance)
+    return *_on(segments, folds, compliance), *_off(segments, folds, compliance)
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """A state and its place along a curve: the number of its segment, and the arclength there."""
+
+    place: tuple[int, float]
+    state: Located
+
+    @property
+    def stable(self) -> bool:
+        """Whether it is stable with the base held."""
+        point, base = self.state.point, self.state.condition
+        return base.rate(point) * point.rates[APPROACH] > 0 and not self.state.problem.negative_directions(point.x)
+
+
+def _in_order(segments: Sequence[Segment], condition: Condition) -> list[_Placed]:
+    """States of a curve that meet a condition, in order along it."""
+    return [
+        _Placed((number, state.point.arclength), state)
+        for number, segment in enumerate(segments)
+        for state in states([segment], condition)
+    ]
+
+
+def _at_base_of(fold: _Placed, segments: Sequence[Segment], compliance: float) -> list[_Placed]:
+    """States of a curve at the base of a take-off."""
+    return _in_order(segments, Condition(APPROACH, value=_base(fold.state, compliance), compliance=compliance))
+
+
+def _on(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: float) -> Iterator[_States]:
+    """Jumps on: from the first fold, and from that at the end of each stable stretch that is landed on."""
+    passed = 0
+    while passed < len(folds):
+        fold, following = folds[passed], folds[passed + 1 :]
+        beyond = [s for s in _at_base_of(fold, segments, compliance) if following and s.place > following[0].place]
+        if not beyond:
+            load = segments[-1].points[-1].observables[LOAD]
+            raise NotConverged(
+                f"the landing of the jump on lies beyond the end of the curve at load {load:.3g} R dgamma; trace it to "
+                "a larger to_load"
+            )
+        landing = next((state for state in beyond[:-1] if state.stable), beyond[-1])
+        yield _States(fold.state, landing.state, on=True)
+        passed = sum(fold.place < landing.place for fold in folds)
+
+
+def _off(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: float) -> Iterator[_States]:
+    """Jumps off: from the last fold, and from that at the other end of each stable stretch that is landed on."""
+    left = len(folds)
+    while left:
+        fold, before = folds[left - 1], folds[: left - 1]
+        between = [
+            s
+            for s in _at_base_of(fold, segments, compliance)
+            if before and before[0].place < s.place < before[-1].place
+        ]
+        landing = next((state for state in reversed(between) if state.stable), None)
+        yield _States(fold.state, landing.state if landing else _apart(segments, fold.state, compliance), on=False)
+        left = sum(fold.place < landing.place for fold in folds) if landing else 0
+
+
+def _apart(segments: Sequence[Segment], off: Located, compliance: float) -> Located:
+    """State of the separated branch at the base of a jump off, which may be beyond the beginning of the curve."""
+    base = _base(off, compliance)
     separated = widened(segments[0].problem, base)
-    start = separated.undeformed(base)
-    return _States(on, contact), _States(off, _landing(separated, start, off, compliance))
+    return _landing(separated, separated.undeformed(base), off, compliance)
 
 
 def _base(state: Located, compliance: float) -> float:
@@ -181,7 +262,7 @@ def _refined(states: _States, stage: Finest, compliance: float) -> _States:
     def land(state: Located, problem: Traceable) -> Located:
         return _landing(problem, transfer(state.problem, state.point.x, problem), fold, compliance)
 
-    return _States(fold, _settled(states.landing, stage, land))
+    return _States(fold, _settled(states.landing, stage, land), states.on)
 
 
 def _settled(state: Located, stage: Finest, solve: Callable[[Located, Traceable], Located]) -> Located:

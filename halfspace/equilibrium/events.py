@@ -7,9 +7,11 @@ corrector runs at every trial of the root finder; nothing is interpolated betwee
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 
@@ -21,7 +23,9 @@ from halfspace.errors import NotConverged
 from halfspace.roots import root
 from halfspace.values import Array, Estimate, Valued
 
+T = TypeVar("T")
 EVENTS = ("pull_off", "jump_on", "jump_off", "zero_load")
+FURTHER = re.compile(r"fold_([2-9]|[1-9]\d+)")  # the folds between the jumps, by their numbers along the curve
 ARCLENGTH_TOLERANCE = 1e-12
 REMAINING = 0.5  # of a change between two discretisations: what is left if each errs at most a third of the one before
 ROUND_OFF = 1e-11  # what Newton's method, the root finder and the matrices leave, relative to 1 + the value
@@ -34,8 +38,9 @@ class Event:
     Attributes
     ----------
     name : str
-        ``pull_off`` (global minimum of the load), ``jump_on``, ``jump_off`` (the folds that a fixed-grips experiment
-        meets coming from separation and from contact), ``zero_load`` (the contact branch where W = 0).
+        ``pull_off`` (global minimum of the load), ``jump_on``, ``jump_off`` (the first and the last fold, that a
+        fixed-grips experiment meets coming from separation and from contact), ``fold_2``, ``fold_3`` ... (those
+        between them, in order along the curve), ``zero_load`` (the contact branch where W = 0).
     approach, approach_error : float
         In eps.
     load, load_error : float
@@ -59,6 +64,21 @@ class Event:
     def estimate(self, quantity: str) -> Estimate:
         """One of its numbers with its error: approach, load, central_gap or contact_radius."""
         return Estimate(getattr(self, quantity), getattr(self, f"{quantity}_error"))
+
+
+def is_event(name: str) -> bool:
+    """Whether curves have events of this name."""
+    return name in EVENTS or is_fold(name)
+
+
+def is_fold(name: str) -> bool:
+    """Whether events of this name are folds in the approach."""
+    return name in ("jump_on", "jump_off") or bool(FURTHER.fullmatch(name))
+
+
+def usual(events: Mapping[str, T]) -> dict[str, T]:
+    """Events but for the folds between the jumps, which are solved for when they are first asked for."""
+    return {name: events[name] for name in EVENTS if name in events}
 
 
 def approach_scale(approaches: Iterable[float], spacing: float = 1.0) -> float:

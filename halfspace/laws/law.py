@@ -16,6 +16,7 @@ from halfspace.values import Array
 
 FAR = 1e5  # gap at which a law's exponent is read off
 NEAR = 10.0 ** np.arange(-4, 8, 0.01)  # gaps among which a law's largest tension is looked for
+AGAIN = 0.05  # of the largest tension: what it may rise by once more, or fall by before, without being another edge
 
 
 class Law:
@@ -64,6 +65,25 @@ class Law:
         H = np.array(FAR)
         tension = -float(self.pressure(H, 1.0))
         return float((H + 1) * self.slope(H, 1.0)) / tension if tension > 0 else np.inf
+
+    @cached_property
+    def innermost(self) -> float:
+        """H up to which the tension rises from the core outwards."""
+        return float(NEAR[int(np.argmin(np.diff(self.pressure(NEAR, 1.0)) < 0))])
+
+    @cached_property
+    def outermost(self) -> float:
+        """H of the outermost tension that makes an edge of its own: that of a second minimum, or beyond a barrier.
+
+        0 for a tension that rises to its largest and falls from there on, as most do.
+        """
+        tension = -self.pressure(NEAR, 1.0)
+        i = int(np.argmax(tension))
+        before, beyond = tension[: i + 1], tension[i:]
+        before, beyond = np.maximum.accumulate(before) - before, beyond - np.minimum.accumulate(beyond)
+        if beyond.max() > AGAIN * tension[i]:
+            return float(NEAR[i + int(np.argmax(beyond))])
+        return self.edge_gap if before.max() > AGAIN * tension[i] else 0.0
 
     def range(self, part: float) -> float:
         """H beyond which a part of the work of adhesion is left."""

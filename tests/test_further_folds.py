@@ -1,0 +1,261 @@
+"""Curves with more folds than two: their events, jumps and cycle, against closed forms, brute force and relaxation."""
+
+import io
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from rich.console import Console
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import halfspace
+from fem_adhesion import Scene, convergence
+from fem_adhesion.crosscheck.study import _compare_events
+from fem_adhesion.curve import lines, record, terminal
+from fem_adhesion.curve.movie import experiment
+from fem_adhesion.curve.solve import Curves, Question
+from halfspace.accuracy.fold_birth import count_folds
+from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.equilibrium.curve import trace_charts
+from halfspace.equilibrium.devices import cycle
+from halfspace.equilibrium.events import usual
+from halfspace.equilibrium.path import Steps
+from halfspace.errors import InputError, NotConverged
+from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, Morse
+from halfspace.scales import Scales
+from halfspace.values import Estimate
+
+
+@dataclass(frozen=True)
+class TwoMinima(Law):
+    """The 3-9 law with a well in the energy farther out."""
+
+    depth: float = 0.3
+    place: float = 4.0
+    width: float = 0.5
+
+    def _well(self, gap):
+        return self.depth * np.exp(-(((gap - self.place) / self.width) ** 2) / 2)
+
+    def pressure(self, gap, tabor):
+        """P."""
+        return LENNARD_JONES.pressure(gap, tabor) - tabor * self._well(gap) * (gap - self.place) / self.width**2
+
+    def slope(self, gap, tabor):
+        """dP/dH."""
+        bend = (1 - ((gap - self.place) / self.width) ** 2) / self.width**2
+        return LENNARD_JONES.slope(gap, tabor) - tabor * self._well(gap) * bend
+
+    def energy(self, gap, tabor):
+        """Phi."""
+        return LENNARD_JONES.energy(gap, tabor) - tabor * self._well(gap)
+
+
+LAW = TwoMinima()
+
+
+@pytest.fixture(scope="module")
+def winding():
+    return halfspace.trace(2.0, law=LAW, rtol=1e-5)
+
+
+@pytest.fixture(scope="module")
+def ordinary():
+    """Four folds, no stable state between the jumps."""
+    return halfspace.trace(5.0, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "names"),
+    [(1.0, ["jump_on", "jump_on_2", "jump_off"]), (1.5, ["jump_on", "jump_on_2", "jump_off", "jump_off_2"])],
+)
+def test_a_rigid_contact_jumps_as_the_closed_form_does(stiffness, names):
+    """W = 2 pi Phi(-alpha) on a rigid paraboloid; the base b = alpha + W/k turns where the tension is k/(2 pi)."""
+    found = cycle(halfspace.trace(1e-6, law=LAW, rtol=1e-6), stiffness)
+
+    def load(approach):
+        return 2 * np.pi * LAW.energy(-approach, 1.0)
+
+    def base(approach):
+        return approach + load(approach) / stiffness
+
+    def turns(approach):
+        return 1 + 2 * np.pi * LAW.pressure(-approach, 1.0) / stiffness
+
+    at = np.linspace(-9, 0.3, 20001)
+    folds = [brentq(turns, a, b) for a, b in pairwise(at) if turns(a) * turns(b) < 0]
+    ends = [-500.0, *folds, 0.3]
+    stable = list(zip(ends[::2], ends[1::2], strict=True))
+    assert len(stable) == 3
+
+    def jumps(number, way):
+        """Take-off and landing of each jump from one stable stretch to the next that has its base."""
+        while 0 <= number + way < len(stable):
+            off = stable[number][way > 0]
+            b = base(off)
+            number = next(n for n in range(number + way, 3 * way, way) if base(stable[n][0]) < b < base(stable[n][1]))
+            yield off, brentq(lambda x, b=b: base(x) - b, *stable[number])
+
+    assert list(found.jumps) == names
+    for jump, (off, landing) in zip(found.jumps.values(), (*jumps(0, 1), *jumps(2, -1)), strict=True):
+        assert jump.take_off.approach == pytest.approx(off, abs=1e-5)
+        assert jump.landing.approach == pytest.approx(landing, abs=1e-5)
+        assert jump.take_off.load == pytest.approx(load(off), abs=1e-5)
+        contact, _ = quad(load, landing, off, epsabs=1e-10)
+        spring = (load(off) ** 2 - load(landing) ** 2) / (2 * stiffness)
+        assert jump.energy.value == pytest.approx(contact + spring, rel=1e-4)
+
+
+def test_all_folds_are_events_in_order_along_the_curve_and_the_truth_is_within_their_errors(winding):
+    truth = halfspace.trace(2.0, law=LAW, rtol=1e-8)
+    names = ["pull_off", "jump_on", "fold_2", "fold_3", "jump_off", "zero_load"]
+    assert list(winding.events) == list(truth.events) == names
+    assert winding.event("fold_4") is None
+    for name in names[2:4]:
+        for quantity in ("approach", "load", "central_gap"):
+            ours, exact = (path.event(name).estimate(quantity) for path in (winding, truth))
+            assert abs(ours.value - exact.value) <= ours.error + exact.error <= 1e-5, (name, quantity)
+    arclengths = [winding.stages[-1][name].point.arclength for name in names[1:5]]
+    assert arclengths == sorted(arclengths)
+
+
+def test_elements_find_the_same_folds_and_jumps(winding):
+    elements = convergence.trace(Scene(2.0, law=LAW), rtol=1e-3)
+    rows = [row for row in _compare_events(winding, elements, 1e-3) if row.quantity.startswith("fold")]
+    assert [row.quantity for row in rows] == [
+        f"fold_{n} {name}" for n in (2, 3) for name in ("approach", "load", "central_gap")
+    ]
+    assert {row.verdict for row in rows} == {"agree"}
+    ours, theirs = cycle(winding), cycle(elements)
+    assert list(ours.jumps) == list(theirs.jumps)
+    for name, jump in ours.jumps.items():
+        other = theirs.jumps[name]
+        assert abs(jump.energy.value - other.energy.value) <= jump.energy.error + other.energy.error, name
+
+
+def test_a_solver_that_misses_folds_disagrees(ordinary):
+    blind = replace(ordinary, events=usual(ordinary.events))
+    rows = [row for row in _compare_events(ordinary, blind, 1e-3) if row.quantity.startswith("fold")]
+    assert len(rows) == 6
+    assert {row.verdict for row in rows} == {"disagree"}
+
+
+@pytest.mark.parametrize("name", ["jump_on", "jump_on_2", "jump_off", "jump_off_2"])
+def test_relaxation_from_past_a_fold_ends_where_the_jump_lands(winding, name):
+    """The motion H' = -(residual), by which the energy falls, with the approach held a little past the fold."""
+    jump = cycle(winding).jumps[name]
+    segment = winding.segments[0]
+    point = min(segment.points, key=lambda p: abs(p.observables[:3] - _numbers(jump.take_off)).max())
+    problem, x = segment.problem, point.x.copy()
+    x[-2] = jump.take_off.approach + (PAST if name.startswith("jump_on") else -PAST)
+    for _ in range(MOST):
+        step = problem.residual(x)[:-1]
+        x[:-2] -= PACE * step
+        if np.abs(step).max() < 1e-4:
+            break
+    assert problem.load(x) == pytest.approx(jump.landing.load, abs=0.1)
+    assert problem.observables(x)[2] == pytest.approx(jump.landing.central_gap, abs=0.1)
+
+
+PAST, PACE, MOST = 0.05, 0.005, 20000  # eps beyond the fold; of a residual in a step; steps
+
+
+def _numbers(event):
+    return np.array([event.approach, event.load, event.central_gap])
+
+
+def test_without_stable_states_between_the_folds_there_are_two_jumps(ordinary):
+    assert list(ordinary.events) == ["pull_off", "jump_on", "fold_2", "fold_3", "jump_off", "zero_load"]
+    assert list(cycle(ordinary).jumps) == ["jump_on", "jump_off"]
+
+
+@pytest.mark.parametrize("tabor", [20.0, 100.0])
+def test_a_curve_that_winds_more_has_all_its_folds(tabor):
+    """At tabor 100 one is between two points so far apart that only shorter steps find it."""
+    path = halfspace.trace(tabor)
+    fine = trace_charts(
+        half_space_charts(Scales(tabor), resolution_for(Scales(tabor), 1e-6)), steps=Steps(longest=0.05)
+    )
+    turned = sum(
+        a.rates[0] * b.rates[0] < 0 and abs(a.arclength - b.arclength) > 0
+        for segment in fine
+        for a, b in pairwise(segment.points)
+    )
+    between = list(path.events)[2:-2]
+    assert turned == count_folds(path) == len(between) + 2
+    assert between == [f"fold_{number}" for number in range(2, turned)]
+    assert all(path.event(name).approach_error < 1e-6 * path.approach_scale for name in between)
+    assert list(cycle(path).jumps) == ["jump_on", "jump_off"]
+
+
+def test_folds_are_in_tables_records_and_on_the_plot(winding):
+    curves = Curves(Question(Scene(2.0, law=LAW)), {"half-space": winding}, cycle(winding), cycle(winding, 3.0))
+    console = Console(width=120, record=True, file=io.StringIO())
+    console.print(terminal.table(curves))
+    told = console.export_text()
+    for words in ("fold 2", "fold 3", "jump on 2 lands, fixed grips", "jump off 2 lands, fixed grips"):
+        assert words in told
+    data = record.record(curves)
+    assert list(data["solutions"]["half-space"]["events"])[1:5] == ["jump_on", "fold_2", "fold_3", "jump_off"]
+    assert {"jump_on", "jump_on_2", "jump_off", "jump_off_2"} <= set(data["jumps"]["fixed_grips"])
+    table = io.StringIO()
+    record.write_csv(curves, table)
+    names = [line.split(",")[1] for line in table.getvalue().splitlines()[1:]]
+    assert [name for name in names if name.startswith(("jump", "fold"))] == ["jump_on", "fold_2", "fold_3", "jump_off"]
+    marks = lines.folds(winding)
+    assert marks[:, 0] == pytest.approx(
+        [winding.events[n].approach for n in ("jump_on", "fold_2", "fold_3", "jump_off")]
+    )
+    plot = terminal.plot(curves).plain
+    assert plot.count("B") == plot.count("D") == 2
+    assert "2 to 3 folds between them" in terminal._key(curves)
+    with pytest.raises(InputError, match="movie of 4 jumps, limit: one on and one off"):
+        experiment(winding)
+
+
+@pytest.mark.parametrize("law", [LENNARD_JONES, Morse(3.0), Exponential(3.0), Dlvo(0.3, 1.0)], ids=str)
+def test_a_tension_that_rises_and_falls_once_has_one_edge(law):
+    assert law.outermost == 0
+
+
+def test_a_law_tells_its_edges():
+    assert LAW.innermost == pytest.approx(LENNARD_JONES.edge_gap, rel=0.03)
+    assert LAW.outermost == pytest.approx(4.5, abs=0.1)
+    deep = TwoMinima(depth=1.0)
+    assert deep.outermost == deep.edge_gap
+    assert deep.edge_gap == pytest.approx(4.5, abs=0.1)
+
+
+def test_surfaces_that_a_second_minimum_holds_apart_at_the_curves_end_are_told():
+    with pytest.raises(NotConverged, match=r"apart at the curve's end, load .*, limit: .*; take a larger to_load"):
+        halfspace.trace(1.0, law=TwoMinima(depth=1.0, place=3.9))
+
+
+def test_a_barrier_holds_the_surfaces_apart_up_to_a_load():
+    """Of the rigid contact: 2 pi times the height of the barrier in the energy."""
+    law = Dlvo(0.4, 1.0)
+    barrier = 2 * np.pi * law.energy(np.linspace(0, 3, 30001), 1.0).max()
+    assert barrier > 5
+    path = halfspace.trace(0.1, law=law, to_load=2 * barrier, rtol=1e-4)
+    assert path.load[path.central_gap > law.innermost].max() == pytest.approx(barrier, rel=0.05)
+    assert path.event("pull_off").load < 0
+
+
+def test_a_law_with_two_edges_on_a_soft_body_is_refused_by_the_cells_it_needs():
+    with pytest.raises(
+        InputError, match=r"the tension rises again at H = .* cells .*, limit: 100; take a smaller tabor"
+    ):
+        halfspace.trace(30.0, law=LAW)
+
+
+def test_errors_of_the_loss_add_up(winding):
+    found = cycle(winding)
+    assert found.energy_lost == Estimate(
+        sum(jump.energy.value for jump in found.jumps.values()), sum(jump.energy.error for jump in found.jumps.values())
+    )
+    assert found.met
+    assert math.isinf(found.stiffness)
+    assert found.jump_on.take_off.load == pytest.approx(winding.event("jump_on").load, abs=1e-8)
