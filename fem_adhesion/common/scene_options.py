@@ -150,6 +150,16 @@ def law_of(options: argparse.Namespace) -> Law:
     return law
 
 
+def law_named(text: str) -> Law:
+    """Law by its name and parameters in one word, as ``power-law:4,10``."""
+    name, _, numbers = text.partition(":")
+    if name not in PARTS["law"]:
+        raise InputError(
+            f"law = {name}, limit: one of {', '.join(PARTS['law'])}; write NAME or NAME:PARAMETER,PARAMETER"
+        )
+    return law_of(argparse.Namespace(law=name, law_parameter=numbers.split(",") if numbers else None))
+
+
 def _values(options: argparse.Namespace, kind: str) -> list[float | Path]:
     """Parameters of a law or a profile."""
     name, given = getattr(options, kind), getattr(options, f"{kind}_parameter") or []

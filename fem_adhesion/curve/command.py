@@ -7,7 +7,7 @@ import json
 import math
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from fem_adhesion.common.options import AGREE, Command, Parser, console_beside, require_distinct, written
 from fem_adhesion.common.progress import progress_bar
@@ -17,6 +17,7 @@ from fem_adhesion.common.scene_options import (
     add_contact,
     counter_of,
     has_size,
+    law_named,
     material_unless_tabor,
     refuse,
     scene_of,
@@ -25,9 +26,13 @@ from fem_adhesion.common.scene_options import (
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fem_adhesion.common.contact import Contact
+    from fem_adhesion.curve.beside import Beside
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
+    from halfspace.laws import Law
 
 POINTS = 20  # of a curve for ParaView
 
@@ -44,6 +49,8 @@ def _add_body(curve: Parser) -> None:
     solvers = ("half-space", "fem", "both")
     body.add_argument("--solver", choices=solvers, help="half-space unless the body is another, fem then")
     add_body(body)
+    beside = "draw curves by other laws, as strong, in the same units beside it: morse:3 power-law:4,10, say"
+    body.add_argument("--beside", nargs="+", help=beside, metavar="LAW")
     body.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy, 1e-9 to 1e-1")
     body.add_argument("--to-load", type=float, default=5.0, help="load in R dgamma at which it ends", metavar="W")
 
@@ -69,10 +76,16 @@ def _add_results(curve: Parser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Trace the curve, write what is asked for and print the events."""
     from fem_adhesion.common.files import directory_written_aside, written_aside
+    from fem_adhesion.common.terminal import prose
     from fem_adhesion.curve import record, terminal
     from fem_adhesion.curve.solve import solve
 
     question = _question(options)
+    laws = [law_named(text) for text in options.beside or ()]
+    if laws:
+        from fem_adhesion.curve import beside
+
+        beside.require(question.scene, laws)
     form = _form_of(options.plot)
     require_distinct(options.json, options.csv, options.plot, options.render, options.movie, options.vtk)
     with ExitStack() as stack:
@@ -84,11 +97,12 @@ def run(options: argparse.Namespace) -> int:
         )
         with progress_bar() as step:
             curves = solve(question, step)
+        collapsed = _beside(curves, laws, plot, form)
         if data:
-            json.dump(record.record(curves), data, indent=1, allow_nan=False)
+            json.dump(record.record(curves) | _record(collapsed), data, indent=1, allow_nan=False)
         if points:
             record.write_csv(curves, points)
-        if plot:
+        if plot and not collapsed:
             from fem_adhesion.curve import figure
 
             figure.write(curves, plot, form)
@@ -97,8 +111,33 @@ def run(options: argparse.Namespace) -> int:
         _draw_body(curves, picture, options.at or "pull_off", movie)
         for file in filter(None, (data, points, plot, picture, movie)):
             file.flush()  # all on disk before the first takes its place
-    terminal.show(curves, console_beside(options.json, options.csv))
+    console = console_beside(options.json, options.csv)
+    terminal.show(curves, console)
+    if collapsed:
+        console.print(prose(collapsed.told), highlight=False)
     return AGREE
+
+
+def _record(collapsed: Beside | None) -> dict[str, Any]:
+    """What is told of several laws, if there are."""
+    if not collapsed:
+        return {}
+    from fem_adhesion.curve import beside
+
+    return {"beside": beside.record(collapsed)}
+
+
+def _beside(curves: Curves, laws: Sequence[Law], plot: TextIO | None, form: str) -> Beside | None:
+    """Curves by other laws, drawn in the place of the page about one."""
+    if not laws:
+        return None
+    from fem_adhesion.curve import beside
+
+    with progress_bar() as step:
+        found = beside.solve(curves, laws, step)
+    if plot:
+        beside.write(found, plot, form)
+    return found
 
 
 def _write_vtk(options: argparse.Namespace, curves: Curves, aside: Path) -> None:

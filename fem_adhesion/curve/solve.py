@@ -141,7 +141,7 @@ def solve(question: Question, progress: Progress = unheard) -> Curves:
     paths = {}
     for done, name in enumerate(names):
         progress(name, done, len(names) + 1)
-        path = _trace(question, name)
+        path = trace(question, name)
         paths[name] = path.resampled(points) if points and points > path.count else path
     progress("jumps", len(names), len(names) + 1)
     path = paths[names[0]]
@@ -149,7 +149,8 @@ def solve(question: Question, progress: Progress = unheard) -> Curves:
     return Curves(question, paths, cycle(path), apparatus)
 
 
-def _trace(question: Question, solver: str) -> EquilibriumPath:
+def trace(question: Question, solver: str) -> EquilibriumPath:
+    """Trace the curve by one solver."""
     scene, rtol, to_load = question.scene, question.rtol, question.to_load
     if solver == FINITE_ELEMENTS:
         return convergence.trace(scene, rtol=rtol, to_load=to_load)

@@ -1,0 +1,186 @@
+"""Curves by several laws of equal work of adhesion and equal largest tension beside each other: how far they collapse.
+
+With R, E*, dgamma and the largest tension s dgamma/eps held, s the strength of a law, eps is as s and Tabor's parameter
+as 1/s. What all of them share are R dgamma for loads and beta^2/R = mu eps for approaches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, TextIO
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from fem_adhesion import registry
+from fem_adhesion.common import style
+from fem_adhesion.common.facts import plain
+from fem_adhesion.common.progress import Progress, unheard
+from fem_adhesion.curve import lines
+from fem_adhesion.curve.solve import Curves, trace
+from fem_adhesion.scene import Scene
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.errors import InputError
+from halfspace.laws import Law
+from halfspace.values import Array, Estimate
+
+LOOKS = (
+    (style.BLUE, "-"),
+    (style.RED, style.DASHED),
+    (style.GREEN, style.CHAIN),
+    (style.ORANGE, style.LONG),
+    (style.PINK, "-"),
+    (style.SKY, style.DASHED),
+)
+MARKERS = {"pull_off": "o", "jump_on": "^", "jump_off": "v"}
+COMPARED = {"pull-off": [("pull_off", "load")], "jumps": []}
+COMPARED["jumps"] += [(name, quantity) for name in ("jump_on", "jump_off") for quantity in ("approach", "load")]
+GAPS = np.linspace(-0.4, 6.0, 1200)  # shown of the laws, in dgamma/(largest tension)
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Curves by several laws, all as strong as the first.
+
+    Attributes
+    ----------
+    curves : sequence of (Law, EquilibriumPath)
+        The first is what was asked.
+    """
+
+    curves: Sequence[tuple[Law, EquilibriumPath]]
+
+    def apart(self, subject: str) -> Estimate | None:
+        """Largest relative difference from the first curve in the pull-off force or in the jumps, and its error.
+
+        Of a load in the pull-off force, of an approach in the spacing and range of those of the first curve. None where
+        one law's curve folds and another's does not, or none does.
+        """
+        (_, first), *others = self.curves
+        found = [_difference(first, path, *what) for _, path in others for what in COMPARED[subject]]
+        known = [one for one in found if one is not None]
+        return max(known, key=lambda one: one.value) if known and len(known) == len(found) else None
+
+    @property
+    def told(self) -> str:
+        """Which laws, and how far their curves collapse."""
+        named = "; ".join(_name(law, path) for law, path in self.curves)
+        parts = (f"{_told(self.apart(subject))} in {subject}" for subject in COMPARED)
+        return f"equally strong laws, {named}: curves differ by {', '.join(parts)} at most"
+
+
+def _difference(first: EquilibriumPath, other: EquilibriumPath, name: str, quantity: str) -> Estimate | None:
+    a, b = first.event(name), other.event(name)
+    if a is None or b is None:
+        return None
+    ours, theirs = (_shared(path, event.estimate(quantity), quantity) for path, event in ((first, a), (other, b)))
+    size = first.approach_scale / first.tabor if quantity == "approach" else abs(first.events["pull_off"].load)
+    return Estimate(abs(theirs.value - ours.value) / size, (theirs.error + ours.error) / size)
+
+
+def _shared(path: EquilibriumPath, number: Estimate, quantity: str) -> Estimate:
+    """A number in the unit that all curves share."""
+    unit = path.tabor if quantity == "approach" else 1.0
+    return Estimate(number.value / unit, number.error / unit)
+
+
+def _told(part: Estimate | None) -> str:
+    return (
+        "what cannot be told, as not all fold,"
+        if part is None
+        else f"{100 * part.value:.3g} +- {100 * part.error:.1g} %"
+    )
+
+
+def _name(law: Law, path: EquilibriumPath) -> str:
+    return f"{registry.told(law)} at tabor {path.tabor:.4g}"
+
+
+def as_strong(scene: Scene, law: Law) -> Scene:
+    """Contact of the same bodies and work of adhesion by another law with the same largest tension."""
+    return replace(scene, law=law, tabor=scene.tabor * scene.law.strength / law.strength)
+
+
+def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> Beside:
+    """Trace the curves by other laws with the solver of the first.
+
+    Raises
+    ------
+    InputError
+        If a body has a length of its own, which is in beta.
+    halfspace.errors.NotConverged
+        If a curve cannot be traced.
+    """
+    question, found = curves.question, [(curves.question.scene.law, curves.path)]
+    require(question.scene, laws)
+    for number, law in enumerate(laws):
+        progress(registry.told(law), number, len(laws))
+        found.append((law, trace(replace(question, scene=as_strong(question.scene, law)), curves.solver)))
+    return Beside(found)
+
+
+def require(scene: Scene, laws: Sequence[Law]) -> None:
+    """Refuse what cannot be laid beside each other, before any work."""
+    if scene.sized or scene.radius_ratio:
+        raise InputError(f"beside with body = {scene.body.name}, limit: a body and profile without R/eps; leave it out")
+    if len(laws) >= len(LOOKS):
+        raise InputError(f"beside = {len(laws)} laws, limit: {len(LOOKS) - 1}; give fewer")
+
+
+def write(beside: Beside, file: TextIO, form: str) -> None:
+    """Write the figure to a file, in a format of `fem_adhesion.common.style.require_suffix`."""
+    style.write(lambda: draw(beside), file, form)
+
+
+def draw(beside: Beside) -> Figure:
+    """Loads against approaches in units that all share, and the laws, each with its largest tension as 1."""
+    figure, (left, right) = style.panels(2, 5.6)
+    frames = []
+    for (color, dashes), (law, path) in zip(LOOKS, beside.curves, strict=False):
+        line, frame = lines.smooth(path), lines.around_events(path)
+        x, unstable = line.approach / path.tabor, line.kind == lines.UNSTABLE
+        look = {"color": color, "linewidth": 1.9}
+        left.plot(x, np.where(unstable, np.nan, line.load), linestyle=dashes, label=_name(law, path), **look)
+        left.plot(x, np.where(unstable, line.load, np.nan), color=color, linewidth=1.1, linestyle=style.DOTTED)
+        for event, approach, load in _marks(path):
+            left.plot(approach, load, linestyle="none", marker=MARKERS[event], color=color, zorder=4)
+        right.plot(*_law(law), linestyle=dashes, **look)
+        frames.append((*(value / path.tabor for value in frame.approach), *frame.load))
+    low, high = np.min(frames, axis=0), np.max(frames, axis=0)
+    approaches, loads = (low[0], high[1]), (low[2], high[3])
+    style.dress(left, r"approach $\delta R/\beta^2$", style.LOAD, legend=None, xlim=approaches, ylim=loads)
+    left.plot([], [], color="0.3", linewidth=1.1, linestyle=style.DOTTED, label="unstable")
+    style.dress(
+        right, r"gap less its equilibrium, $\Delta\gamma/\sigma_\mathrm{max}$", "tension over the largest", legend=None
+    )
+    right.set_ylim(-1.0, 1.1)
+    parts = [f"{_told(beside.apart(subject))} in {subject}" for subject in COMPARED if beside.apart(subject)]
+    left.set_title(f"differ from the first by {', '.join(parts)} at most", loc="left", fontsize=9.5)
+    right.set_title("laws of equal work and largest tension", loc="left", fontsize=9.5)
+    style.legend_below(figure, [left], 2)
+    return figure
+
+
+def _marks(path: EquilibriumPath) -> Iterator[tuple[str, float, float]]:
+    for name in MARKERS:
+        if event := path.event(name):
+            yield name, event.approach / path.tabor, event.load
+
+
+def _law(law: Law) -> tuple[Array, Array]:
+    """Gap less that at equilibrium in dgamma/(largest tension), and the tension in that."""
+    gaps = GAPS / law.strength
+    gaps = gaps[gaps > CORE]
+    return gaps * law.strength, -law.pressure(gaps, 1.0) / law.strength
+
+
+CORE = -0.5  # eps: nearer by are no gaps of a law with a core
+
+
+def record(beside: Beside) -> dict[str, Any]:
+    """What was compared, as plain data: the laws with their Tabor parameters, and how far the curves are apart."""
+    found = {subject: beside.apart(subject) for subject in COMPARED}
+    apart = {name: {"value": one.value, "error": one.error} if one else None for name, one in found.items()}
+    laws = [{"law": plain(registry.record_of(law)), "tabor": path.tabor} for law, path in beside.curves]
+    return {"laws": laws, "largest_relative_difference": apart}

@@ -1,0 +1,133 @@
+"""Curves by several laws on one plot: as strong, in units that all share, and how far they collapse."""
+
+import json
+from dataclasses import replace
+
+import matplotlib.colors
+import numpy as np
+import pytest
+
+import halfspace
+from fem_adhesion import Hemisphere, Scene
+from fem_adhesion.common.scene_options import law_named
+from fem_adhesion.curve import beside
+from fem_adhesion.curve.solve import Curves, Question
+from halfspace.errors import InputError
+from halfspace.laws import LENNARD_JONES, Morse, PowerLaw
+
+LAWS = (Morse(3.0), PowerLaw(4, 10))
+
+
+@pytest.fixture(scope="module")
+def collapsed():
+    question = Question(Scene(2.0), rtol=1e-4)
+    return beside.solve(Curves(question, {"half-space": halfspace.trace(2.0, rtol=1e-4)}, None, None), LAWS)
+
+
+@pytest.fixture(scope="module")
+def drawn(collapsed):
+    return beside.draw(collapsed)
+
+
+def test_laws_are_as_strong_in_one_unit(collapsed):
+    """The largest tension s dgamma/eps over E*, at equal R and dgamma: s^3 mu^3 R/(dgamma ...) is the same."""
+    for law, path in collapsed.curves:
+        assert law.strength * path.tabor == pytest.approx(2 * LENNARD_JONES.strength, rel=1e-12)
+    assert [law for law, _ in collapsed.curves] == [LENNARD_JONES, *LAWS]
+
+
+def test_the_numbers_are_those_of_the_curves(collapsed):
+    first, *others = (path for _, path in collapsed.curves)
+    size = abs(first.events["pull_off"].load)
+    pull_off = max(abs(path.events["pull_off"].load - first.events["pull_off"].load) for path in others) / size
+    assert collapsed.apart("pull-off").value == pytest.approx(pull_off, rel=1e-12)
+    approach = max(
+        abs(path.events[name].approach / path.tabor - first.events[name].approach / 2) / (first.approach_scale / 2)
+        for path in others
+        for name in ("jump_on", "jump_off")
+    )
+    load = max(
+        abs(path.events[n].load - first.events[n].load) / size for path in others for n in ("jump_on", "jump_off")
+    )
+    assert collapsed.apart("jumps").value == pytest.approx(max(approach, load), rel=1e-12)
+    assert 0 < collapsed.apart("jumps").error < 1e-3
+    assert f"{100 * pull_off:.3g} +- " in collapsed.told
+    assert "morse k 3 at tabor" in collapsed.told
+
+
+def test_the_stronger_the_adhesion_the_better_curves_collapse():
+    """Towards JKR's, whose curve knows the work of adhesion alone."""
+    apart = []
+    for tabor in (1.0, 10.0):
+        question = Question(Scene(tabor), rtol=1e-4)
+        curves = Curves(question, {"half-space": halfspace.trace(tabor, rtol=1e-4)}, None, None)
+        apart.append(beside.solve(curves, [PowerLaw(4, 10)]).apart("pull-off").value)
+    assert apart[1] < apart[0] / 3
+
+
+def test_labels_tell_the_lines_that_are_drawn(collapsed, drawn):
+    left, right = drawn.axes
+    lines = {line.get_label(): line for line in left.get_lines()}
+    for (law, path), line in zip(
+        collapsed.curves, (lines[beside._name(*one)] for one in collapsed.curves), strict=True
+    ):
+        x, y = line.get_data()
+        seen = np.isfinite(y)
+        rates = path.load[path.stable], path.approach[path.stable] / path.tabor
+        for load, approach in zip(*rates, strict=True):
+            if x[seen].min() < approach < x[seen].max():
+                assert np.min(np.hypot(x[seen] - approach, y[seen] - load)) < 1e-6
+        color = matplotlib.colors.to_hex(line.get_color())
+        marks = [one for one in left.get_lines() if one.get_marker() != "None" and one.get_color() == line.get_color()]
+        events = [path.events[name] for name in ("pull_off", "jump_on", "jump_off")]
+        assert [one.get_ydata()[0] for one in marks] == [event.load for event in events]
+        assert [one.get_xdata()[0] for one in marks] == [event.approach / path.tabor for event in events]
+        (tension,) = (one for one in right.get_lines() if matplotlib.colors.to_hex(one.get_color()) == color)
+        gap, height = tension.get_data()
+        assert height.max() == pytest.approx(1, abs=1e-3)
+        beyond = -float(law.energy(gap[-1] / law.strength, 1.0))
+        assert np.trapezoid(height[gap >= 0], gap[gap >= 0]) == pytest.approx(1 - beyond, abs=2e-3)
+    assert f"{100 * collapsed.apart('pull-off').value:.3g} +- " in left.get_title(loc="left")
+
+
+def test_where_one_law_folds_and_another_does_not_jumps_are_not_compared(collapsed):
+    first, (law, path), _ = collapsed.curves
+    smooth = replace(path, events={name: path.events[name] for name in ("pull_off", "zero_load")})
+    found = beside.Beside([first, (law, smooth)])
+    assert found.apart("jumps") is None
+    assert found.apart("pull-off").value > 0
+    assert "not all fold" in found.told
+
+
+@pytest.mark.parametrize(
+    ("text", "law"), [("morse:3", Morse(3.0)), ("power-law:4,10", PowerLaw(4, 10)), ("power-law", LENNARD_JONES)]
+)
+def test_a_law_is_one_word(text, law):
+    assert law_named(text) == law
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("foo:3", "law = foo, limit: one of power-law, morse"),
+        ("morse", "limit: k; give them in this order"),
+        ("morse:x", "law_parameter = x, limit: a plain number"),
+    ],
+)
+def test_what_is_no_law_is_refused(text, message):
+    with pytest.raises(InputError) as refused:
+        law_named(text)
+    assert message in str(refused.value)
+
+
+def test_a_body_with_a_length_is_refused_before_any_work():
+    with pytest.raises(InputError, match="beside with body = hemisphere, limit: a body and profile without R/eps"):
+        beside.require(Scene(1.0, body=Hemisphere(radius_ratio=100.0)), [Morse(3.0)])
+    with pytest.raises(InputError, match="beside = 6 laws, limit: 5; give fewer"):
+        beside.require(Scene(1.0), [Morse(3.0)] * 6)
+
+
+def test_the_record_is_json(collapsed):
+    data = json.loads(json.dumps(beside.record(collapsed), allow_nan=False))
+    assert [one["tabor"] for one in data["laws"]] == [path.tabor for _, path in collapsed.curves]
+    assert data["largest_relative_difference"]["jumps"]["value"] == collapsed.apart("jumps").value
