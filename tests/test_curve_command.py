@@ -514,7 +514,7 @@ def test_fields_inside_are_written_for_every_event(tmp_path):
 def test_bad_input_is_refused_in_one_line_before_any_work(arguments, message, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "precious").write_text("kept")
-    monkeypatch.setattr(study, "_trace", lambda *_: pytest.fail("work was begun"))
+    monkeypatch.setattr(study, "trace", lambda *_: pytest.fail("work was begun"))
     with pytest.raises(ValueError, match=re.escape(message)) as refusal:
         _run(*arguments)
     assert "\n" not in str(refusal.value)
@@ -551,7 +551,7 @@ def test_what_ends_early_leaves_no_file(error, seen, monkeypatch, tmp_path):
     def fail(*_):
         raise error
 
-    monkeypatch.setattr(study, "_trace", fail)
+    monkeypatch.setattr(study, "trace", fail)
     with pytest.raises(seen):
         _run("--tabor", 2, "--json", tmp_path / "a.json", "--csv", tmp_path / "a.csv", "--plot", tmp_path / "a.svg")
     assert list(tmp_path.iterdir()) == []

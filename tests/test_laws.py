@@ -180,6 +180,20 @@ def test_other_laws_and_profiles_hit_the_references(law, profile):
         assert off[1] <= min(1e-6 * abs(event.load), event.load_error + known[1])
 
 
+def test_slow_tails_under_cones_are_followed_as_far_as_their_load_asks():
+    """On a rigid hyperboloid by a 2.5-9.5 law a thousandth of the load lies beyond eight extents of the finite cells."""
+    tabor, law, profile = 1e-9, PowerLaw(2.5, 9.5), Hyperboloid(0.3)
+    pull_off = halfspace.trace(tabor, law=law, profile=profile, rtol=1e-6).event("pull_off")
+
+    def ring(t):
+        u = np.exp(t)
+        gap = -pull_off.approach + tabor * profile.height(u)
+        return 2 * np.pi * u**2 * float(law.pressure(gap, tabor))
+
+    parts = (quad(ring, a, a + 5, epsrel=1e-11, limit=400)[0] for a in range(-30, 200, 5))
+    assert pull_off.load == pytest.approx(sum(parts), rel=1e-6)
+
+
 def assert_same(ours, theirs, approaches=1.0, loads=1.0):
     """Compare the events of two curves within their errors, one's times factors."""
     assert ours.events.keys() == theirs.events.keys()
