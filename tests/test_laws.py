@@ -181,7 +181,7 @@ def test_other_laws_and_profiles_hit_the_references(law, profile):
 
 
 def test_slow_tails_under_cones_are_followed_as_far_as_their_load_asks():
-    """On a rigid hyperboloid by a 2.5-9.5 law a thousandth of the load lies beyond eight extents of the finite cells."""
+    """On a rigid hyperboloid by a 2.5-9.5 law a thousandth of the load lies beyond eight extents of the cells."""
     tabor, law, profile = 1e-9, PowerLaw(2.5, 9.5), Hyperboloid(0.3)
     pull_off = halfspace.trace(tabor, law=law, profile=profile, rtol=1e-6).event("pull_off")
 

@@ -196,7 +196,7 @@ def _climb_from(
     higher = lowest
     for level in range(start + 1, start + most_rungs + 1):
         below, higher = higher, rung(level)
-        chains = _step_up(state, higher)
+        chains = _step_up(state, higher.stages, higher.twin)
         state = chains[0][-1]
         events = _estimate(chains, higher.remaining, along=higher.along)
         if not Tolerance.on(events, rtol).missed(events):
@@ -205,7 +205,8 @@ def _climb_from(
     if folds and margin and margin.value + margin.error < 0 and "jump_on" not in events:
         raise FoldsLost("the curve folds on a finer grid, but not on its own; take a smaller rtol")
     before = (*lowest.stages, *(() if below is lowest else below.stages[-1:]))
-    further = FurtherFolds(segments if folds else (), before, higher)
+    traced = segments if folds else ()
+    further = FurtherFolds(traced, before, higher.stages, higher.twin, higher.remaining, higher.along)
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,
@@ -260,13 +261,16 @@ class FurtherFolds(Valued):
         The curve as it was traced.
     before : tuple of Stage
         On each of which an event is solved for on the way to the last rung.
-    higher : Rung
-        The last rung.
+    stages, twin, remaining, along
+        Of the last rung.
     """
 
     segments: tuple[Segment, ...]
     before: tuple[Stage, ...]
-    higher: Rung
+    stages: tuple[Stage, ...]
+    twin: Stage | None
+    remaining: float
+    along: bool
 
     @cached_property
     def chains(self) -> list[list[State]]:
@@ -278,13 +282,13 @@ class FurtherFolds(Valued):
         try:
             for stage in self.before:
                 fold = _moved_to(fold, stage)
-            return [[state[""] for state in chain] for chain in _step_up({"": fold}, self.higher)]
+            return [[state[""] for state in chain] for chain in _step_up({"": fold}, self.stages, self.twin)]
         except NotConverged:
             return []
 
     def events(self) -> Mapping[str, Event]:
         """The folds with their errors."""
-        return _estimate(self.chains, self.higher.remaining, along=self.higher.along) if self.chains else {}
+        return _estimate(self.chains, self.remaining, along=self.along) if self.chains else {}
 
     def stage(self, number: int) -> State:
         """The folds on one of the discretisations from the rung below the last to the finest."""
@@ -327,12 +331,12 @@ def _change(values: Sequence[Sequence[float]]) -> float:
     return max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
 
 
-def _step_up(state: State, higher: Rung) -> list[list[State]]:
+def _step_up(state: State, stages: Sequence[Stage], twin: Stage | None) -> list[list[State]]:
     """Chains of states from the rung below, and from its twin, to the last stage of a rung."""
     chain = [state]
-    for stage in higher.stages:
+    for stage in stages:
         chain.append(_on_all(chain[-1], stage))
-    return [chain, [_on_all(chain[-1], higher.twin), chain[-1]]] if higher.twin else [chain]
+    return [chain, [_on_all(chain[-1], twin), chain[-1]]] if twin else [chain]
 
 
 def _on_all(state: State, stage: Stage) -> State:

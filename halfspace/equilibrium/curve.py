@@ -165,8 +165,10 @@ class EquilibriumPath(Valued):
         """
         if not is_event(name):
             near = get_close_matches(name, EVENTS, n=1)
-            remedy = f'did you mean "{near[0]}"?' if near else "take one of these"
-            raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}, fold_2, fold_3 ...; {remedy}')
+            remedy = (
+                f'did you mean "{near[0]}"?' if near else "take one of these, or fold_2, fold_3 ... between the jumps"
+            )
+            raise InputError(f'event = "{name}" is none of {", ".join(EVENTS)}; {remedy}')
         return self.events.get(name)
 
     @property
