@@ -634,12 +634,12 @@ def test_the_other_solver_of_a_true_sphere_has_its_profile(monkeypatch):
     asked = {}
     monkeypatch.setattr(study.halfspace, "trace", lambda _, **options: asked.update(options))
     scene = Scene(2.0, Hemisphere(radius_ratio=100))
-    study._trace(study.Question(scene, solver="both"), study.HALF_SPACE)
+    study.trace(study.Question(scene, solver="both"), study.HALF_SPACE)
     assert asked["profile"] == Sphere(100)
-    study._trace(study.Question(pair(2.0, 100.0, 0.5, 0.3, 2.0), solver="both"), study.HALF_SPACE)
+    study.trace(study.Question(pair(2.0, 100.0, 0.5, 0.3, 2.0), solver="both"), study.HALF_SPACE)
     assert asked["profile"].counter_radius == 2.0
     assert asked["profile"].radius_ratio == pytest.approx(100, rel=1e-14)
-    study._trace(study.Question(replace(scene, profile=Paraboloid()), solver="both"), study.HALF_SPACE)
+    study.trace(study.Question(replace(scene, profile=Paraboloid()), solver="both"), study.HALF_SPACE)
     assert asked["profile"] == Paraboloid()
 
 
