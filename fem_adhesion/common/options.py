@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TextIO
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol, TextIO
 
 from halfspace.errors import InputError
 
@@ -97,6 +97,14 @@ class Parser(argparse.ArgumentParser):
         self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
 
 
+class Commands(Protocol):
+    """What a command adds itself to; argparse's own type of it takes no parameters at run time, where pages read it."""
+
+    def add_parser(self, name: str, **settings: Any) -> Parser:
+        """Parser of a command of that name."""
+        ...
+
+
 @dataclass(frozen=True)
 class Command:
     """A command of the program: one line on what it does, more than that, and arguments to begin with.
@@ -111,7 +119,7 @@ class Command:
     add_options: Callable[[Parser], None]
     run: Callable[[argparse.Namespace], int]
 
-    def add_to(self, commands: argparse._SubParsersAction[Parser]) -> None:
+    def add_to(self, commands: Commands) -> None:
         """Add it to the commands of a parser."""
         epilog = f"example: fem-adhesion {self.name} {self.example}"
         parser = commands.add_parser(self.name, help=self.help, description=self.description, epilog=epilog)
