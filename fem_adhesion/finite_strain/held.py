@@ -30,7 +30,7 @@ from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Valued
 
 SLOW = 0.1  # part of the error that an iteration may leave; a state that leaves more gets a tangent of its own
-SOLVED = 1e-9  # relative accuracy of the linear equations where all digits are asked for
+SOLVED = 1e-11  # relative accuracy of the linear equations where all digits are asked for
 
 
 @dataclass(frozen=True, eq=False, repr=False)
