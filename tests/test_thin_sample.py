@@ -226,6 +226,17 @@ def test_a_soft_sample_has_jkrs_contact_on_the_layer():
     assert abs(found.value + least * contact.units.load) < found.error < 1e-3 * found.value
 
 
+def test_a_position_on_a_soft_sample_is_judged_by_the_distance_between_jumps():
+    """JKR's theory on the layer has no jump on, so that the distance is the half-space's."""
+    contact = Contact(**SAMPLE | {"modulus": 1e5, "radius": 5e-6}, thickness=10e-6, stiffness=0.05)
+    thin, half_space = study._finite(contact), study._half_space(contact)
+    assert "jump_on_separation" not in thin.values
+    one, other = (
+        relative(*pair, "jump_off_separation", contact.spacing) for pair in ((half_space, thin), (thin, half_space))
+    )
+    assert one.value == pytest.approx(-other.value, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("more", "words"),
     [

@@ -241,7 +241,8 @@ def relative(ours: Prediction, reference: Prediction, name: str, spacing: float)
     if a is None or b is None:
         return None
     axis = {n for names in POSITIONS if name in names for n in names}
-    alike = [q.value for n, q in reference.values.items() if n in axis]
+    whole = reference if axis <= reference.values.keys() else ours  # JKR's theory on layers jumps off only
+    alike = [q.value for n, q in whole.values.items() if n in axis]
     size = approach_scale(alike, spacing) if alike else abs(b.value)
     if not size:
         return None
