@@ -32,7 +32,7 @@ from fem_adhesion.common.progress import progress_bar
 from halfspace import Coated, Layer, Layers, Stratum
 from halfspace.equilibrium.curve import energy_released, placed
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import EVENTS, Condition, Located
+from halfspace.equilibrium.events import Condition, Located, is_event
 from halfspace.equilibrium.states import COORDINATES
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Power
@@ -119,7 +119,7 @@ def of_path(path):
 
 def of_state(state):
     """The same of located events."""
-    found = {name: state[name].point.observables for name in EVENTS if name in state}
+    found = {name: state[name].point.observables for name in state if is_event(name)}
     told = {f"{name} {q}": float(v) for name, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}
     return told | {"energy": energy_released(state)}
 

@@ -21,7 +21,7 @@ from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.elastic import compliance
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.elastic.operators import FlatCoordinate
-from halfspace.equilibrium.curve import find_events, moved, trace_charts
+from halfspace.equilibrium.curve import find_events, further_folds, moved, trace_charts
 from halfspace.profiles import PARABOLOID
 from halfspace.profiles.sphere import between_spheres
 from halfspace.scales import Scales
@@ -47,7 +47,9 @@ def _half_spaces(scales):
 
 def traced(stages):
     """Events of the curve itself, traced on the first stage and solved for again on the second."""
-    found = find_events(trace_charts(stages[0].charts))
+    segments = trace_charts(stages[0].charts)
+    folds = {f"fold_{number}": fold for number, fold in enumerate(further_folds(segments), 2)}
+    found = find_events(segments) | folds
     return [found, on(stages[1], found)]
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import signal
 import socket
 import threading
 import time
@@ -149,7 +150,11 @@ def _numbered(work: Callable[[Item], Result], number: int, item: Item, study: in
 
 @cache
 def _watch(study: int) -> None:
-    """Start to look for the process of the study, once in each worker: an orphan would wait for work for minutes."""
+    """Start to look for the process of the study, once in each worker: an orphan would wait for work for minutes.
+
+    What interrupts the study is its own to heed, though a terminal sends it to the workers too: it ends them.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch() -> None:
         while os.getppid() == study:

@@ -15,7 +15,7 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 
-from halfspace.equilibrium.contact import ContactProblem
+from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.curve import (
     COMPRESSION,
     Chart,
@@ -206,7 +206,8 @@ def _climb_from(
         raise FoldsLost("the curve folds on a finer grid, but not on its own; take a smaller rtol")
     before = (*lowest.stages, *(() if below is lowest else below.stages[-1:]))
     traced = segments if folds else ()
-    further = FurtherFolds(traced, before, higher.stages, higher.twin, higher.remaining, higher.along)
+    jumps = tuple(state[name] for name in FOLDS if name in state)
+    further = FurtherFolds(traced, jumps, before, higher.stages, higher.twin, higher.remaining, higher.along)
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,
@@ -259,6 +260,8 @@ class FurtherFolds(Valued):
     ----------
     segments : tuple of Segment
         The curve as it was traced.
+    jumps : tuple of Located
+        The outermost folds, on the finest discretisation.
     before : tuple of Stage
         On each of which an event is solved for on the way to the last rung.
     stages, twin, remaining, along
@@ -266,6 +269,7 @@ class FurtherFolds(Valued):
     """
 
     segments: tuple[Segment, ...]
+    jumps: tuple[Located, ...]
     before: tuple[Stage, ...]
     stages: tuple[Stage, ...]
     twin: Stage | None
@@ -274,9 +278,17 @@ class FurtherFolds(Valued):
 
     @cached_property
     def chains(self) -> list[list[State]]:
-        """Chains of states as of the events; a fold that a finer grid does not have is left out."""
-        found = [chains for fold in further_folds(self.segments) if (chains := self._chains(fold))]
-        return [[_numbered(states) for states in zip(*chain, strict=True)] for chain in zip(*found, strict=True)]
+        """Chains of states as of the events; a fold that a finer grid does not have is left out.
+
+        That of a ripple on a coarse grid may become another fold, or be lost alone: folds come in pairs.
+        """
+        found: list[list[list[Located]]] = []
+        for fold in further_folds(self.segments):
+            chains, known = self._chains(fold), (*self.jumps, *(others[0][-1] for others in found))
+            if chains and not any(_same(chains[0][-1], other) for other in known):
+                found.append(chains)
+        pairs = found[: len(found) // 2 * 2]
+        return [[_numbered(states) for states in zip(*chain, strict=True)] for chain in zip(*pairs, strict=True)]
 
     def _chains(self, fold: Located) -> list[list[Located]]:
         try:
@@ -293,6 +305,15 @@ class FurtherFolds(Valued):
     def stage(self, number: int) -> State:
         """The folds on one of the discretisations from the rung below the last to the finest."""
         return self.chains[0][number] if self.chains else {}
+
+
+def _same(a: Located, b: Located) -> bool:
+    """Whether two folds are one and the same."""
+    first, second = a.point.observables[:CONTACT_RADIUS], b.point.observables[:CONTACT_RADIUS]
+    return bool(np.all(np.abs(first - second) < SAME * (1 + np.abs(second))))
+
+
+SAME = 1e-6  # of approach, load and central gap, what two folds differ by where they are two
 
 
 def _numbered(folds: Sequence[Located]) -> State:
