@@ -680,7 +680,9 @@ def test_the_yield_by_another_law_is_told_with_its_premise(silica):
 def test_the_contact_radius_says_what_it_is_beside_others(silica, bead):
     """Of a computed curve the state at the largest tension, of a theory its own; only of those that stand there."""
     assert contact_radius(bead).startswith("Contact radius: of JKR with reach, JKR on the sphere, JKR")
-    assert "3^(1/6)" not in contact_radius(bead)
+    assert "1.20094" not in contact_radius(bead)
+    by_morse = replace(silica, contact=replace(silica.contact, law=Morse(3)))
+    assert f"where the gap is {1 + np.log(2) / 3:.6g} eps" in contact_radius(by_morse)  # 2 e^(-k H) = 1 there
     assert record(silica)["definitions"]["contact_radius"] == contact_radius(silica)
 
 
@@ -688,7 +690,7 @@ def test_the_legend_explains_only_what_is_shown(silica, made_up):
     text = " ".join(_shown(silica).split())
     assert "Separation: of the undeformed surfaces" in text
     assert "Of the finite sphere what is round is held at its mid-plane, sliding." in text
-    assert "of half-space, true profile, finite sphere, where the gap is 3^(1/6) eps, the place of the largest" in text
+    assert "of half-space, true profile, finite sphere, where the gap is 1.20094 eps, the place of the largest" in text
     assert "of JKR, Maugis-Dugdale, DMT-M, the edge of the theory's own contact" in text
     force = {"pull_off_force": made_up.half_space.values["pull_off_force"]}
     bare = replace(
@@ -701,7 +703,7 @@ def test_the_legend_explains_only_what_is_shown(silica, made_up):
         distances=(),
     )
     text = _shown(bare)
-    assert not any(word in text for word in ("Separation", "held at", "3^(1/6)", "difference from"))
+    assert not any(word in text for word in ("Separation", "held at", "1.20094", "difference from"))
     bonded = replace(made_up, contact=replace(made_up.contact, grip="bonded"))
     assert "mid-plane, bonded" in " ".join(_shown(bonded).split())
 

@@ -12,7 +12,7 @@ from rich.text import Text
 from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.assess.thin_sample import WRONG, ThinSample
-from fem_adhesion.common.contact import Contact
+from fem_adhesion.common.contact import Contact, edge_told
 from fem_adhesion.common.facts import plain, versions
 from fem_adhesion.common.numbers import PREFIXES, Quantity, engineering, exponent_of, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
@@ -87,7 +87,7 @@ def _legend(assessment: Assessment) -> Iterator[str]:
 def contact_radius(assessment: Assessment) -> str:
     """What each model means by it."""
     named = [model for model in assessment.models if set(model.values) & set(RADII)]
-    edge = "where the gap is 3^(1/6) eps, the place of the largest tension"
+    edge = edge_told(assessment.contact.law)
     meanings = {edge: True, "the edge of the theory's own contact, without the ring of attraction around it": False}
     said = {
         meaning: [model.model for model in named if model.is_computed == computed]

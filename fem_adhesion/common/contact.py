@@ -150,3 +150,8 @@ class Contact:
         if self.counter_modulus is None or self.counter_poisson is None:
             return None
         return self.counter_modulus, require_poisson(self.counter_poisson)
+
+
+def edge_told(law: Law) -> str:
+    """Where a contact by a law ends."""
+    return f"where the gap is {1 + law.edge_gap:.6g} eps, the place of the largest tension"

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.text import Text
 
+from fem_adhesion.common.contact import edge_told
 from fem_adhesion.common.numbers import Quantity, engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.curve import lines
@@ -126,8 +127,8 @@ def notes(curves: Curves) -> Iterator[str]:
         size = "of eps and the range of all events' approaches"
         yield f"{MISSED}: the error is above rtol = {curves.question.rtol:g} of the load, of an approach {size}."
     yield (
-        "In brackets: error of the last digit. Compression and approach are positive. Contact radius: where the gap is "
-        "3^(1/6) eps, the place of the largest tension; -: no contact."
+        "In brackets: error of the last digit. Compression and approach are positive. Contact radius: "
+        f"{edge_told(curves.question.scene.law)}; -: no contact."
     )
 
 

@@ -104,7 +104,7 @@ MEANINGS: Mapping[str, str] = {
     "H": "h/eps - 1",
     "deflection": "-u_z",
     "central_gap": "H(0) = h(0)/eps - 1, in SI h(0) - eps",
-    "contact_radius": "where h = 3^(1/6) eps; nan without contact",
+    "contact_radius": "where h is that of the law's largest tension; nan without contact",
     "arclength": "of the load-approach curve in units of its metric; the time of the .pvd",
 }
 
