@@ -677,6 +677,16 @@ def test_the_yield_by_another_law_is_told_with_its_premise(silica):
     assert "J/m^2, if the law attracts matter and not charges on the surfaces; give that to include it" in line
 
 
+def test_by_another_law_nothing_is_said_that_holds_for_the_3_9_law_alone(silica):
+    other = replace(silica, contact=replace(silica.contact, law=Morse(3)))
+    premise = "Maugis lambda and the theories with a range of attraction, Maugis-Dugdale and DMT-M, are the 3-9 law's."
+    for assessment, usual in ((silica, True), (other, False)):
+        text = " ".join(_shown(assessment).split())
+        assert ("Hamaker constant 16 pi" in text) == usual
+        assert (premise in text) != usual
+        assert (record(assessment)["hamaker"] is not None) == usual
+
+
 def test_the_contact_radius_says_what_it_is_beside_others(silica, bead):
     """Of a computed curve the state at the largest tension, of a theory its own; only of those that stand there."""
     assert contact_radius(bead).startswith("Contact radius: of JKR with reach, JKR on the sphere, JKR")

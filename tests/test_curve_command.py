@@ -451,6 +451,14 @@ def test_a_material_has_its_law(monkeypatch):
     assert asked.scene.told[-1].startswith("law morse k 3, as strong as the 3-9 law at tabor ")
 
 
+@pytest.mark.parametrize("law", [(), MORSE])
+def test_a_hamaker_constant_and_the_edge_are_told_by_the_law_that_has_them(law, capsys):
+    assert cli.main(["curve", *map(str, MATERIAL), *law, "--rtol", "1e-2"]) == 0
+    told = capsys.readouterr().out
+    assert ("Hamaker constant" in told) == (not law)
+    assert f"where the gap is {1 + np.log(2) / 3 if law else 3 ** (1 / 6):.6g} eps" in " ".join(told.split())
+
+
 def test_fields_inside_are_written_for_every_event(tmp_path):
     pytest.importorskip("pyvista")
     assert _run("--tabor", 0.3, "--rtol", 1e-2, "--vtk", tmp_path / "fields", "--points", 0) == 0

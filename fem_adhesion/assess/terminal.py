@@ -72,6 +72,8 @@ def _legend(assessment: Assessment) -> Iterator[str]:
             "of the cantilever's far end there, zero where the undeformed surfaces would be one spacing apart, "
             "negative away from the wall."
         )
+    if assessment.contact.law != LENNARD_JONES:
+        yield "Maugis lambda and the theories with a range of attraction, Maugis-Dugdale and DMT-M, are the 3-9 law's."
     if shown & set(RADII):
         yield contact_radius(assessment)
     if assessment.finite and assessment.contact.layer:
@@ -197,7 +199,7 @@ def record(assessment: Assessment) -> dict[str, object]:
         "thickness_in_beta": contact.layer.thickness if contact.layer else None,
         "equivalent_radius": contact.units.radius,
         "contact_modulus": contact.units.modulus,
-        "hamaker": contact.units.hamaker,
+        "hamaker": contact.units.hamaker if contact.law == LENNARD_JONES else None,
         "radius_ratio": contact.units.radius_ratio,
         "parameters": dict(assessment.parameters),
         "regime": assessment.regime,

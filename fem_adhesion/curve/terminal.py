@@ -18,6 +18,7 @@ from fem_adhesion.curve.solve import Curves
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
 from halfspace.equilibrium.reach import reaching
+from halfspace.laws import LENNARD_JONES
 from halfspace.values import Array, Estimate, Index
 
 DIGITS = 8  # significant, at most
@@ -100,6 +101,7 @@ def _title(curves: Curves) -> Iterator[str]:
     if units:
         sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
         yield from (f"{name} = {engineering(value, unit)}" for name, value, unit in sizes)
+    if units and scene.law == LENNARD_JONES:
         yield f"Hamaker constant {engineering(units.hamaker, 'J')}"
 
 
