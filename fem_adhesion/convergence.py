@@ -156,18 +156,20 @@ def _to_infinity(scene: Scene, lines: Array, how: Discretisation) -> Discretised
 def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: the events on elements of a degree that suits the tolerance, one more on each level.
 
-    Where a body is held the stress may be singular, which a degree more does not tell: other cells are a twin there.
+    Where a body is held the stress may be singular, and on layers cells that suit the edge of the contact may be long
+    for the rest, which a degree more does not tell: other cells are a twin there; twice a layer's change may be left.
     """
     degree = degree_for(rtol) + level
     how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
     other = AroundEvents(sized_body(scene, twin), *surroundings(rtol, level - 1), to_load)
+    layered = scene.body.layered is not None
     return Rung(
         partial(sized_body(scene, curve).curve, to_load),
         (AroundEvents(sized_body(scene, how), *surroundings(rtol, level), to_load),),
         asdict(how) | {"curve_degree": curve.degree},
-        other if level and scene.body.singular else None,
-        remaining=REMAINING,
+        other if level and (scene.body.singular or layered) else None,
+        remaining=(2 if layered else 1) * REMAINING,
         along=True,
     )
 

@@ -25,6 +25,7 @@ from halfspace.equilibrium.events import usual
 from halfspace.equilibrium.path import Steps
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, Morse
+from halfspace.profiles import Sphere
 from halfspace.scales import Scales
 from halfspace.values import Estimate
 
@@ -259,3 +260,12 @@ def test_errors_of_the_loss_add_up(winding):
     assert found.met
     assert math.isinf(found.stiffness)
     assert found.jump_on.take_off.load == pytest.approx(winding.event("jump_on").load, abs=1e-8)
+
+
+def test_folds_are_found_at_every_tolerance_also_where_contact_is_about_to_be_made():
+    """Some of the grids on the way do not have the state from which the next is sought."""
+    paths = [halfspace.trace(5.0, profile=Sphere(30.0), rtol=rtol) for rtol in (1e-1, 1e-4, 1e-5)]
+    for name in ("fold_2", "fold_3"):
+        rough, usual, fine = (path.event(name).estimate("approach") for path in paths)
+        assert abs(rough.value - fine.value) <= rough.error + fine.error
+        assert abs(usual.value - fine.value) <= usual.error + fine.error

@@ -6,7 +6,7 @@ import pytest
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Layer, Scene
+from fem_adhesion import HalfSpace, Layer, Scene
 from fem_adhesion.cli import main
 from fem_adhesion.crosscheck.comparison import difference
 from halfspace.errors import InputError
@@ -86,3 +86,10 @@ def test_compare_rejects_another_layer(wrong):
 def test_a_layer_without_a_thickness_is_asked_for_it(capsys):
     assert main(["curve", "--tabor", "1", "--body", "layer"]) == 2
     assert "give --thickness, in beta" in capsys.readouterr().err
+
+
+def test_the_integral_equation_takes_the_layer_of_the_elements_and_refuses_other_bodies():
+    ours, theirs = (halfspace.trace(1.0, body=body(2.0, poisson=0.3), rtol=1e-3) for body in (Layer, halfspace.Layer))
+    assert ours.events == theirs.events
+    with pytest.raises(InputError, match=r"body = HalfSpace\(.*\), limit: layers on a base; give Layer, Coated or"):
+        halfspace.trace(1.0, body=HalfSpace())

@@ -59,6 +59,16 @@ class Layer(Body):
         return layers.Layer(self.thickness, self.material.poisson, self.foundation)
 
     @property
+    def strata(self) -> tuple[layers.Stratum, ...]:
+        """As the integral equation asks for them, so that it takes this layer as well."""
+        return self.layered.strata
+
+    @property
+    def base(self) -> layers.Foundation | layers.Substrate:
+        """The same."""
+        return self.layered.base
+
+    @property
     def told(self) -> list[str]:
         """Its thickness and foundation."""
         return [*super().told, f"thickness {self.thickness:g} beta", self.foundation]

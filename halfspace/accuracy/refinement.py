@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Protocol, TypeVar
@@ -291,9 +292,10 @@ class FurtherFolds(Valued):
         return [[_numbered(states) for states in zip(*chain, strict=True)] for chain in zip(*pairs, strict=True)]
 
     def _chains(self, fold: Located) -> list[list[Located]]:
-        try:
-            for stage in self.before:
+        for stage in self.before:  # where one does not have it, a later one may: its change is then from farther back
+            with suppress(NotConverged):
                 fold = _moved_to(fold, stage)
+        try:
             return [[state[""] for state in chain] for chain in _step_up({"": fold}, self.stages, self.twin)]
         except NotConverged:
             return []

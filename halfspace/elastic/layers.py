@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol, get_args
+from typing import Literal, Protocol, get_args, runtime_checkable
 
 import numpy as np
 
@@ -90,6 +90,7 @@ class Stratum:
         )
 
 
+@runtime_checkable
 class LayeredBody(Protocol):
     """What the surface of a layered body follows from; E* is that of its first stratum."""
 
@@ -102,6 +103,13 @@ class LayeredBody(Protocol):
     def base(self) -> Foundation | Substrate:
         """What carries the last: rigid and bonded to it, rigid and without friction, or elastic and bonded."""
         ...
+
+
+def require_layered(body: LayeredBody) -> LayeredBody:
+    """Return the body, or raise InputError unless it is made of layers."""
+    if not isinstance(body, LayeredBody):
+        raise InputError(f"body = {body!r}, limit: layers on a base; give Layer, Coated or Layers, or leave it out")
+    return body
 
 
 @dataclass(frozen=True)
