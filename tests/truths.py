@@ -22,6 +22,7 @@ from halfspace.elastic import compliance
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.curve import find_events, further_folds, moved, trace_charts
+from halfspace.equilibrium.events import numbered
 from halfspace.profiles import PARABOLOID
 from halfspace.profiles.sphere import between_spheres
 from halfspace.scales import Scales
@@ -48,8 +49,7 @@ def _half_spaces(scales):
 def traced(stages):
     """Events of the curve itself, traced on the first stage and solved for again on the second."""
     segments = trace_charts(stages[0].charts)
-    folds = {f"fold_{number}": fold for number, fold in enumerate(further_folds(segments), 2)}
-    found = find_events(segments) | folds
+    found = find_events(segments) | numbered(further_folds(segments))
     return [found, on(stages[1], found)]
 
 

@@ -41,6 +41,7 @@ from halfspace.equilibrium.events import (
     estimate_event,
     hermite,
     is_event,
+    numbered,
     steepest,
     steepest_from,
 )
@@ -289,7 +290,7 @@ class FurtherFolds(Valued):
             if chains and not any(_same(chains[0][-1], other) for other in known):
                 found.append(chains)
         pairs = found[: len(found) // 2 * 2]
-        return [[_numbered(states) for states in zip(*chain, strict=True)] for chain in zip(*pairs, strict=True)]
+        return [[numbered(states) for states in zip(*chain, strict=True)] for chain in zip(*pairs, strict=True)]
 
     def _chains(self, fold: Located) -> list[list[Located]]:
         for stage in self.before:  # where one does not have it, a later one may: its change is then from farther back
@@ -316,10 +317,6 @@ def _same(a: Located, b: Located) -> bool:
 
 
 SAME = 1e-6  # of approach, load and central gap, what two folds differ by where they are two
-
-
-def _numbered(folds: Sequence[Located]) -> State:
-    return {f"fold_{number}": fold for number, fold in enumerate(folds, 2)}
 
 
 def _ways(below: Stage, higher: Rung) -> Ways:

@@ -76,6 +76,11 @@ def is_fold(name: str) -> bool:
     return name in ("jump_on", "jump_off") or bool(FURTHER.fullmatch(name))
 
 
+def numbered(folds: Iterable[T]) -> dict[str, T]:
+    """Folds between the jumps by name, given in order along the curve."""
+    return {f"fold_{number}": fold for number, fold in enumerate(folds, 2)}
+
+
 def usual(events: Mapping[str, T]) -> dict[str, T]:
     """Events but for the folds between the jumps, which are solved for when they are first asked for."""
     return {name: events[name] for name in EVENTS if name in events}
