@@ -237,8 +237,7 @@ def _same_place(source: Traceable, point: Point, problem: ContactProblem, metric
     return make_point(problem, solution, metric, weights, point.arclength)
 
 
-MOST_NODES = 16
-"""Of a ring of the half-space."""
+MOST_NODES = 16  # of a ring of the half-space
 
 
 @dataclass(frozen=True, eq=False, repr=False)

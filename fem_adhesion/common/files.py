@@ -34,8 +34,7 @@ REMEDIES: Mapping[int, str] = {
 }
 
 ELSEWHERE = "choose another place"
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
-"""What is no fault of the name that was given."""
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # what is no fault of the name that was given
 
 
 class NotWritten(RuntimeError):

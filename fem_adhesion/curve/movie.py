@@ -24,35 +24,16 @@ from halfspace.equilibrium.events import Condition, Located
 from halfspace.errors import InputError
 from halfspace.values import Array
 
-SIZE = (800, 500)
-"""Of a frame in pixels."""
-
-FRAMES = 48
-"""Of a movie, about."""
-
-FADED = 0.04
-"""Load at which the movie begins, in that of pull-off."""
-
-PRESSED = -0.25
-"""Load at which the wall turns back, in that of pull-off."""
-
-MOVING, RESTING = 0.1, 0.9
-"""Seconds for which a frame is shown while the wall moves, and at turns and jumps."""
-
-COLOURS, SAMPLED = 256, 8
-"""Colours of the movie's palette, and frames it is made for."""
-
-WHITE = np.array([255, 255, 255], np.uint8)
-"""The background."""
-
-PACKED = np.array([1, 256, 65536])
-"""By which the parts of a colour make one number."""
-
-REPEATED = 3
-"""Times that colours of the palette are moved to the middle of those that they stand for."""
-
-NEAR = 1e-6
-"""Difference of approaches in eps that is none."""
+SIZE = (800, 500)  # of a frame in pixels
+FRAMES = 48  # of a movie, about
+FADED = 0.04  # load at which the movie begins, in that of pull-off
+PRESSED = -0.25  # load at which the wall turns back, in that of pull-off
+MOVING, RESTING = 0.1, 0.9  # seconds for which a frame is shown while the wall moves, and at turns and jumps
+COLOURS, SAMPLED = 256, 8  # colours of the movie's palette, and frames it is made for
+WHITE = np.array([255, 255, 255], np.uint8)  # the background
+PACKED = np.array([1, 256, 65536])  # by which the parts of a colour make one number
+REPEATED = 3  # times that colours of the palette are moved to the middle of those that they stand for
+NEAR = 1e-6  # difference of approaches in eps that is none
 
 
 @dataclass(frozen=True)

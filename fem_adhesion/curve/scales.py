@@ -54,8 +54,7 @@ IN_SI: Mapping[str, tuple[str, str, Callable[[Units], float]]] = {
 """Symbols, units, and the sizes in them of the paper's units."""
 
 EVENT_QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
-ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}
-"""Quantities with the prefix of another."""
+ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}  # quantities with the prefix of another
 
 
 def si_sizes(units: Units) -> Mapping[str, tuple[float, str]]:

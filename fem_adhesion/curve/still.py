@@ -27,17 +27,10 @@ from fem_adhesion.scene import Scene
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.errors import InputError
 
-SIZE = (1600, 1000)
-"""Of a picture in pixels."""
-
-WIDTH = 8.0
-"""Of a picture in inches."""
-
-MINUS = "\N{MINUS SIGN}"
-"""For the hyphen of Python's numbers."""
-
-DIGITS = 6
-"""Significant ones of a number, at most."""
+SIZE = (1600, 1000)  # of a picture in pixels
+WIDTH = 8.0  # of a picture in inches
+MINUS = "\N{MINUS SIGN}"  # for the hyphen of Python's numbers
+DIGITS = 6  # significant ones of a number, at most
 
 
 def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tuple[int, int] = SIZE) -> None:

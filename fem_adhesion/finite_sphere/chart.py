@@ -24,9 +24,7 @@ from halfspace.errors import InputError
 from halfspace.scaling import Units, contact_modulus, spacing_of
 from halfspace.values import Array, Valued
 
-LEVELS = (0.1, 0.01, 0.001)
-"""Relative deviations of the contours."""
-
+LEVELS = (0.1, 0.01, 0.001)  # relative deviations of the contours
 MISFIT = 0.25  # largest relative difference of a rule from its contour
 
 

@@ -35,9 +35,7 @@ STRETCH = r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
 SIZE = "|relative deviation from the half-space|"
 SMALLEST = 1e-7  # deviation that is shown
 WHOLE, PART = 8.0, 5.5  # sizes of markers: that of the whole shows round that of its largest part
-PARTS = ("profile", "body")
-"""Causes of which the whole deviation is made; the others change what is held fixed in it."""
-
+PARTS = ("profile", "body")  # causes of which the whole deviation is made; the others change what is held fixed in it
 CAUSES: Mapping[str, tuple[str, str, str]] = {
     "all": ("black", "o", "all: elastic sphere, sliding mid-plane"),
     "profile": (style.BLUE, "s", "profile: sphere for paraboloid"),

@@ -21,18 +21,12 @@ from halfspace.values import Array
 Named = dict[str, Array]
 Numbers = TypeVar("Numbers", float, Array)
 
-LARGEST_STRAIN = 0.5
-"""Drawn at most: the cells stay far from turning inside out."""
-
+LARGEST_STRAIN = 0.5  # drawn at most: the cells stay far from turning inside out
 STRAIN_PLACES = np.stack(np.meshgrid(np.linspace(0, 0.5, 3), np.linspace(0, 0.5, 3))).reshape(2, -1)
 """Points of the reference element, triangle or square, at which the largest strain is looked for."""
 
-TO_SCALE = 5.0
-"""Magnification of the true displacement below which it is not worth its distortion."""
-
-SAME_TABOR = 1e-6
-"""Relative difference of two Tabor parameters that are one."""
-
+TO_SCALE = 5.0  # magnification of the true displacement below which it is not worth its distortion
+SAME_TABOR = 1e-6  # relative difference of two Tabor parameters that are one
 COMPONENTS = {
     "displacement": ("r", "theta", "z"),
     "displacement_in_beta": ("r", "theta", "z"),
@@ -45,8 +39,7 @@ COMPONENTS = {
 
 VECTORS = ("displacement", "displacement_in_beta", "displacement_magnified")
 
-COMPONENTS_OF_SOLID = COMPONENTS | dict.fromkeys(VECTORS, ("x", "y", "z"))
-"""The same in the solid of revolution."""
+COMPONENTS_OF_SOLID = COMPONENTS | dict.fromkeys(VECTORS, ("x", "y", "z"))  # the same in the solid of revolution
 
 
 @dataclass(frozen=True)

@@ -26,14 +26,9 @@ from halfspace.values import Array, Index, Valued
 QUAD9 = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1], [1, 1]])
 """Steps to the nodes of a quadrilateral from its first, in VTK's order: corners, middles of sides, centre."""
 
-TRIANGLE6 = np.array([[0, 0], [2, 0], [0, 2], [1, 0], [1, 1], [0, 1]])
-"""The same of a triangle."""
-
-MOST_CUTS = 12
-"""Into which a side of an element is ever cut."""
-
-SAME = 1e-3
-"""Of the shortest distance between two nodes of a cell, within which points are one."""
+TRIANGLE6 = np.array([[0, 0], [2, 0], [0, 2], [1, 0], [1, 1], [0, 1]])  # the same of a triangle
+MOST_CUTS = 12  # into which a side of an element is ever cut
+SAME = 1e-3  # of the shortest distance between two nodes of a cell, within which points are one
 
 
 @dataclass(frozen=True)
@@ -162,14 +157,9 @@ def _powers(steps: Array | Index, triangular: bool) -> Array:
     return np.stack([x**i * y**j for i, j in powers], axis=1)
 
 
-SEGMENT = 15.0
-"""Largest angle of a cell in degrees."""
-
-HEXAHEDRON27, WEDGE18 = 29, 32
-"""VTK's numbers of cell types."""
-
-ON_AXIS = 1e-12
-"""Radius, in the largest, below which a node does not move with the angle."""
+SEGMENT = 15.0  # largest angle of a cell in degrees
+HEXAHEDRON27, WEDGE18 = 29, 32  # VTK's numbers of cell types
+ON_AXIS = 1e-12  # radius, in the largest, below which a node does not move with the angle
 
 
 def _on_layer(layer: int, nodes: range) -> list[tuple[int, int]]:
@@ -202,8 +192,7 @@ _WEDGE_OF_TRIANGLE6 = np.array(
 
 _WEDGE_ON_AXIS = np.array(_wedge_on_axis())
 
-_MIRRORED = {6: [0, 2, 1, 5, 4, 3], 9: [0, 3, 2, 1, 7, 6, 5, 4, 8]}
-"""Nodes of a cell in the opposite sense."""
+_MIRRORED = {6: [0, 2, 1, 5, 4, 3], 9: [0, 3, 2, 1, 7, 6, 5, 4, 8]}  # nodes of a cell in the opposite sense
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -24,31 +24,16 @@ from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
-TOLERANCE = 1e-2
-"""Largest error of the stress as drawn, of its maximum."""
-
-WIDER = 1.7
-"""Radius of what is shown, in that of the widest contact."""
-
-STEEPEST = 0.5
-"""Height of the undeformed sphere at the rim of what is shown, of that radius, as drawn."""
-
-TO_SCALE = 2.0
-"""Magnification of true heights below which they are not magnified at all."""
-
-WHOLE = 0.8
-"""Part of a body's radius from which on the whole of it is shown, if to scale."""
-
-DEEP = 0.6
-"""Depth of what is shown under the rim of the surface, of the radius shown."""
-
-STRONGEST = 1.0
-"""Stress in E* beta/R at the ends of the colours at most: under a stiff spike the rest would be pale."""
-
+TOLERANCE = 1e-2  # largest error of the stress as drawn, of its maximum
+WIDER = 1.7  # radius of what is shown, in that of the widest contact
+STEEPEST = 0.5  # height of the undeformed sphere at the rim of what is shown, of that radius, as drawn
+TO_SCALE = 2.0  # magnification of true heights below which they are not magnified at all
+WHOLE = 0.8  # part of a body's radius from which on the whole of it is shown, if to scale
+DEEP = 0.6  # depth of what is shown under the rim of the surface, of the radius shown
+STRONGEST = 1.0  # stress in E* beta/R at the ends of the colours at most: under a stiff spike the rest would be pale
 _QUARTERS = np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]])
 _HALVES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
-LINEAR = {9: _QUARTERS, 6: _HALVES}
-"""Linear cells into which those of a section are cut, by their nodes."""
+LINEAR = {9: _QUARTERS, 6: _HALVES}  # linear cells into which those of a section are cut, by their nodes
 
 
 @dataclass(frozen=True)
@@ -152,18 +137,10 @@ Pixels = NDArray[np.uint8]
 COLOURS = "RdBu_r"
 """Blue in compression, red in tension: told apart by every kind of colour-blind eye, and white where there is none."""
 
-OPEN = 270.0
-"""Degrees of the solid that are left: a quarter is cut away."""
-
-SIDES = 120
-"""Plane pieces that the solid is round with."""
-
-UPWARDS, AWAY = 16.0, 10.0
-"""Where the camera is: degrees over the wall, and its distance in radii of what is shown."""
-
-LIGHT = (0.0, 1.0, 1.0)
-"""Where the light is, seen from the camera: above it."""
-
+OPEN = 270.0  # degrees of the solid that are left: a quarter is cut away
+SIDES = 120  # plane pieces that the solid is round with
+UPWARDS, AWAY = 16.0, 10.0  # where the camera is: degrees over the wall, and its distance in radii of what is shown
+LIGHT = (0.0, 1.0, 1.0)  # where the light is, seen from the camera: above it
 ROOM, OFF_CENTRE = (0.55, 0.78), (-0.14, 0.04)
 """Part of the picture's width and height that the solid may take, and where: centre, in halves of the picture."""
 

@@ -38,12 +38,8 @@ from halfspace.values import Array, Index
 
 Labels = Mapping[str, Sequence[str]]
 
-TOLERANCE = 1e-4
-"""Largest error of the displacement as drawn, of its maximum, in the section."""
-
-SOLID_TOLERANCE = 1e-2
-"""The same in the solid of revolution, which has fifty times as many points."""
-
+TOLERANCE = 1e-4  # largest error of the displacement as drawn, of its maximum, in the section
+SOLID_TOLERANCE = 1e-2  # the same in the solid of revolution, which has fifty times as many points
 QUADRATIC = {6: 22, 9: 28}
 """VTK's types of cells of the section by their nodes: quadratic triangle, biquadratic quadrilateral."""
 

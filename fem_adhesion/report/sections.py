@@ -117,9 +117,7 @@ def _settings(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-WELL = ("converged", "refused")
-"""How a hard case may end."""
-
+WELL = ("converged", "refused")  # how a hard case may end
 MOST_ROWS = 400  # of a table that is shown
 MOST_DIGITS = 12  # of a number that was written to be read; more are those of the machine
 DIGITS = 4  # that are shown of such
