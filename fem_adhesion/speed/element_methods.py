@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
@@ -15,7 +16,7 @@ from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.assembly import assemble
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 from fem_adhesion.scene import Scene
-from fem_adhesion.speed.methods import Method, Solved, Step, Variant, from_chart, from_path, unit, widest
+from fem_adhesion.speed.methods import Method, Solved, from_chart, from_path, ladder, unit, widest
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.scales import Scales
 
@@ -23,42 +24,29 @@ POISSON = 0.3
 
 
 def element_methods() -> list[Method]:
-    """Every finite-element method."""
-    return [*_fixed_degrees(), *_high_orders()]
+    """Every finite-element method: triangles and quadrilaterals on graded meshes, and degrees that rise.
 
-
-def _fixed_degrees() -> list[Method]:
-    """Triangles and quadrilaterals of a fixed degree on graded meshes."""
+    Degrees rise with the resolution, adaptively, and on fixed meshes for the other far field and solver.
+    """
+    method = partial(Method, "finite elements")
+    P1, P2, P3 = (partial(_on_disc, element) for element in (ElementTriP1(), ElementTriP2(), ElementTriP3()))
     tri = [(0.6, 16.0), (0.4, 24.0), (0.28, 34.0), (0.2, 48.0), (0.14, 68.0), (0.1, 96.0)]
     quad = [(0.6, 16.0, 2.0), (0.4, 24.0, 1.7), (0.28, 34.0, 1.45), (0.2, 48.0, 1.3), (0.14, 68.0, 1.2)]
-    P1, P2, P3 = ("P1", ElementTriP1()), ("P2", ElementTriP2()), ("P3", ElementTriP3())
-    triangles = ((P1, 4), (P2, 3), (P3, 3))
-    methods = [_method(basis, [_disc_step(element, *s) for s in tri], n) for (basis, element), n in triangles]
-    methods += [_method("Q2", [_block_step(2, *s) for s in quad], 4)]
-    for (basis, element), n in triangles[:2]:
-        methods += [_method(basis, [_disc_step(element, *s, far_field=clamped) for s in tri], n, "clamped")]
-    methods += [_method("P2", [_disc_step(P2[1], *s, solve=_monolithic) for s in tri[:3]], 1, "monolithic")]
-    return methods
-
-
-def _high_orders() -> list[Method]:
-    """Degrees that rise with the resolution: adaptive, and on fixed meshes for the other far field and solver."""
-    adaptive = [_fe_step(10.0**-k) for k in range(3, 9)]  # looser tolerances choose the same degree
-    far = [(4, 1e2), (5, 1e3), (6, 1e4), (7, 1e5), (8, 1e6)]
-    boxes = [_block_step(p, 0.8, L, 2.5, far_field=clamped) for p, L in far]
-    whole = [_block_step(p, 0.8, L, 2.5, solve=_monolithic) for p, L in ((2, 20.0), (3, 40.0), (4, 80.0))]
-    return [_method("hp", adaptive, 4), _method("hp", boxes, 3, "clamped"), _method("hp", whole, 2, "monolithic")]
-
-
-def _method(basis: str, steps: Sequence[Step], quick: int, variant: Variant = "") -> Method:
-    return Method("finite elements", basis, steps, quick, variant)
-
-
-def _fe_step(rtol: float) -> Step:
-    return Step(
-        f"rtol={rtol:.0e}",
-        lambda tabor: from_path(convergence.trace(Scene(tabor, HalfSpace(poisson=POISSON)), rtol=rtol)),
-    )
+    boxes = [(4, 0.8, 1e2, 2.5), (5, 0.8, 1e3, 2.5), (6, 0.8, 1e4, 2.5), (7, 0.8, 1e5, 2.5), (8, 0.8, 1e6, 2.5)]
+    small = [(2, 0.8, 20.0, 2.5), (3, 0.8, 40.0, 2.5), (4, 0.8, 80.0, 2.5)]
+    tolerances = [(10.0**-k,) for k in range(3, 9)]  # looser ones choose the same degree
+    return [
+        method("P1", ladder(P1, "f L", tri), 4),
+        method("P2", ladder(P2, "f L", tri), 3),
+        method("P3", ladder(P3, "f L", tri), 3),
+        method("Q2", ladder(_on_block, "p f L", [(2, *s) for s in quad]), 4),
+        method("P1", ladder(partial(P1, far_field=clamped), "f L", tri), 4, "clamped"),
+        method("P2", ladder(partial(P2, far_field=clamped), "f L", tri), 3, "clamped"),
+        method("P2", ladder(partial(P2, solve=_monolithic), "f L", tri[:3]), 1, "monolithic"),
+        method("hp", ladder(_adaptive, "rtol", tolerances), 4),
+        method("hp", ladder(partial(_on_block, far_field=clamped), "p f L", boxes), 3, "clamped"),
+        method("hp", ladder(partial(_on_block, solve=_monolithic), "p f L", small), 2, "monolithic"),
+    ]
 
 
 Solver = Callable[[Space, float, FarField], Solved]
@@ -74,27 +62,30 @@ def _monolithic(space: Space, tabor: float, far_field: FarField) -> Solved:
     return from_chart(problem, space.unknowns)
 
 
-def _disc_step(element: Any, f: float, L: float, far_field: FarField = point_load, solve: Solver = _condensed) -> Step:
+def _adaptive(tabor: float, rtol: float) -> Solved:
+    return from_path(convergence.trace(Scene(tabor, HalfSpace(poisson=POISSON)), rtol=rtol))
+
+
+def _on_disc(
+    element: Any, tabor: float, f: float, L: float, far_field: FarField = point_load, solve: Solver = _condensed
+) -> Solved:
     """Quarter disc of triangles whose edges grow by the fraction f of the distance."""
-
-    def run(tabor: float) -> Solved:
-        size = graded_size(f * Scales(tabor).spike_width, widest(tabor), f)
-        return solve(Space(quarter_disc(_box(L, tabor), size), element), tabor, far_field)
-
-    return Step(f"f={f:g} L={L:g}", run)
+    size = graded_size(f * Scales(tabor).spike_width, widest(tabor), f)
+    return solve(Space(quarter_disc(_box(L, tabor), size), element), tabor, far_field)
 
 
-def _block_step(
-    p: int, f: float, L: float, growth: float, far_field: FarField = point_load, solve: Solver = _condensed
-) -> Step:
+def _on_block(
+    tabor: float,
+    p: int,
+    f: float,
+    L: float,
+    growth: float,
+    far_field: FarField = point_load,
+    solve: Solver = _condensed,
+) -> Solved:
     """Box of quadrilaterals of degree p between graded lines."""
-    element = ElementQuad2() if p == 2 else ElementQuadP(p)
-
-    def run(tabor: float) -> Solved:
-        mesh = block_grid(f * Scales(tabor).spike_width, widest(tabor), _box(L, tabor), growth=growth)
-        return solve(Space(mesh, element), tabor, far_field)
-
-    return Step(f"p={p} f={f:g} L={L:g}", run)
+    mesh = block_grid(f * Scales(tabor).spike_width, widest(tabor), _box(L, tabor), growth=growth)
+    return solve(Space(mesh, ElementQuad2() if p == 2 else ElementQuadP(p)), tabor, far_field)
 
 
 def _box(L: float, tabor: float) -> float:

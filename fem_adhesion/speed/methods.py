@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from functools import partial
+from typing import Any, Literal
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -124,8 +125,42 @@ MOST_NODES = 3000  # of a dense operator: 70 MB, and as much again for each fact
 
 
 def halfspace_methods() -> list[Method]:
-    """Every half-space method."""
-    return [*_relaxations(), *_fixed_grids(), Method("half-space", "adaptive", _adaptive_steps(), 5)]
+    """Every half-space method: iterations of 1997, grids that do not follow the contact, the adaptive solver.
+
+    The iterations run on graded triangles, which need the fewest nodes, and give the pull-off load only.
+    """
+    method = partial(Method, "half-space")
+    relaxed = [(0.2, 5.0, 1.4), (0.1, 7.0, 1.3), (0.07, 9.0, 1.2), (0.05, 12.0, 1.15), (0.025, 24.0, 1.08)]
+    uniform = [(0.2, 6.0), (0.1, 8.0), (0.07, 9.5), (0.05, 11.0), (0.035, 13.0), (0.025, 16.0)]
+    graded = [(0.2, 8.0, 1.4), (0.1, 10.0, 1.2), (0.05, 20.0, 1.1), (0.025, 40.0, 1.05), (0.0125, 80.0, 1.025)]
+    panels = [(4, 8.0), (5, 12.0), (6, 20.0), (8, 50.0), (10, 120.0), (12, 300.0), (14, 800.0)]
+    simple, local = (ladder(partial(_relaxed, relax), "f U growth", relaxed) for relax in (_simple, _greenwood))
+    bands, triangles = (partial(_on_uniform, make) for make in (compliance.bands, compliance.triangles))
+    return [
+        method("simple relaxation", simple, 4, may_diverge=True),
+        method("Greenwood's iteration", local[:-1], 2, may_diverge=True),  # on the finest the sweeps run out
+        method("uniform bands", ladder(bands, "f U", uniform), 4),
+        method("uniform triangles", ladder(triangles, "f U", uniform), 4),
+        method("graded triangles", ladder(_on_graded, "f U growth", graded), 4),
+        method("panels, fixed grid", ladder(_on_panels, "nodes U", panels), 4),
+        method("adaptive", ladder(_adaptive, "rtol", [(10.0**-k,) for k in range(2, 10)]), 5),
+    ]
+
+
+def ladder(solve: Callable[..., Solved], names: str, rungs: Sequence[tuple[Any, ...]]) -> list[Step]:
+    """Rungs of settings, each solved by `solve(tabor, *settings)`; as many of the settings are told as have names."""
+
+    def step(settings: tuple[Any, ...]) -> Step:
+        named = zip(names.split(), settings, strict=False)
+        told = (f"{name}={value:.0e}" if name == "rtol" else f"{name}={value:g}" for name, value in named)
+        return Step(" ".join(told), lambda tabor: solve(tabor, *settings))
+
+    return list(map(step, rungs))
+
+
+def _graded(tabor: float, f: float, U: float, growth: float, fine_radius: float | None = None) -> Array:
+    fine = widest(tabor) if fine_radius is None else fine_radius
+    return _affordable(graded_breaks(f * Scales(tabor).spike_width, fine, fine + U * unit(tabor), growth=growth))
 
 
 def _affordable(nodes: Array) -> Array:
@@ -135,74 +170,34 @@ def _affordable(nodes: Array) -> Array:
     return nodes
 
 
-def _uniform(tabor: float, f: float, U: float) -> Array:
-    return _affordable(grid.uniform(max(U * unit(tabor), 1.5 * widest(tabor)), f * Scales(tabor).spike_width))
+def _on_uniform(make: Callable[[Array], ElasticOperator], tabor: float, f: float, U: float) -> Solved:
+    nodes = grid.uniform(max(U * unit(tabor), 1.5 * widest(tabor)), f * Scales(tabor).spike_width)
+    return _fixed(make(_affordable(nodes)), tabor)
 
 
-def _graded(tabor: float, f: float, U: float, growth: float, fine_radius: float | None = None) -> Array:
-    fine = widest(tabor) if fine_radius is None else fine_radius
-    return _affordable(graded_breaks(f * Scales(tabor).spike_width, fine, fine + U * unit(tabor), growth=growth))
+def _on_graded(tabor: float, f: float, U: float, growth: float) -> Solved:
+    return _fixed(compliance.triangles(_graded(tabor, f, U, growth)), tabor)
+
+
+def _on_panels(tabor: float, nodes: int, U: float) -> Solved:
+    return _fixed(compliance.panels(_graded(tabor, 0.8, U, 2.0), nodes), tabor)
 
 
 def _fixed(operator: ElasticOperator, tabor: float) -> Solved:
     return from_chart(ContactProblem(operator, tabor), operator.radii.size)
 
 
-def _fixed_grids() -> list[Method]:
-    """Methods on one grid that does not follow the contact."""
-    uniform = [(0.2, 6.0), (0.1, 8.0), (0.07, 9.5), (0.05, 11.0), (0.035, 13.0), (0.025, 16.0)]
-    graded = [(0.2, 8.0, 1.4), (0.1, 10.0, 1.2), (0.05, 20.0, 1.1), (0.025, 40.0, 1.05), (0.0125, 80.0, 1.025)]
-    panels = [(4, 8.0), (5, 12.0), (6, 20.0), (8, 50.0), (10, 120.0), (12, 300.0), (14, 800.0)]
-    return [
-        Method("half-space", "uniform bands", [_uniform_step(compliance.bands, *s) for s in uniform], 4),
-        Method("half-space", "uniform triangles", [_uniform_step(compliance.triangles, *s) for s in uniform], 4),
-        Method("half-space", "graded triangles", [_graded_step(*s) for s in graded], 4),
-        Method("half-space", "panels, fixed grid", [_panel_step(*s) for s in panels], 4),
-    ]
-
-
-def _uniform_step(make: Callable[[Array], ElasticOperator], f: float, U: float) -> Step:
-    return Step(f"f={f:g} U={U:g}", lambda tabor: _fixed(make(_uniform(tabor, f, U)), tabor))
-
-
-def _graded_step(f: float, U: float, growth: float) -> Step:
-    def run(tabor: float) -> Solved:
-        return _fixed(compliance.triangles(_graded(tabor, f, U, growth)), tabor)
-
-    return Step(f"f={f:g} U={U:g} growth={growth:g}", run)
-
-
-def _panel_step(nodes: int, U: float) -> Step:
-    def run(tabor: float) -> Solved:
-        return _fixed(compliance.panels(_graded(tabor, 0.8, U, 2.0), nodes), tabor)
-
-    return Step(f"nodes={nodes} U={U:g}", run)
-
-
-def _adaptive_steps() -> list[Step]:
-    """Tolerances of the adaptive half-space."""
-    return [_adaptive_step(10.0**-k) for k in range(2, 10)]
-
-
-def _adaptive_step(rtol: float) -> Step:
-    return Step(f"rtol={rtol:.0e}", lambda tabor: from_path(halfspace.trace(tabor, rtol=rtol)))
-
-
-# The iterations of 1997
-
-
-def _relaxations() -> list[Method]:
-    """Simple relaxation and Greenwood's on graded triangles, which need the fewest nodes; pull-off load only."""
-    grids = [(0.2, 5.0, 1.4), (0.1, 7.0, 1.3), (0.07, 9.0, 1.2), (0.05, 12.0, 1.15), (0.025, 24.0, 1.08)]
-    simple = [_relaxation_step(_simple, *s) for s in grids]
-    local = [_relaxation_step(_greenwood, *s) for s in grids[:-1]]  # on the finest the sweeps run out
-    return [
-        Method("half-space", "simple relaxation", simple, 4, may_diverge=True),
-        Method("half-space", "Greenwood's iteration", local, 2, may_diverge=True),
-    ]
+def _adaptive(tabor: float, rtol: float) -> Solved:
+    return from_path(halfspace.trace(tabor, rtol=rtol))
 
 
 Relaxation = Callable[[ContactProblem, Array, Control], Relaxed]
+
+
+def _relaxed(relax: Relaxation, tabor: float, f: float, U: float, growth: float) -> Solved:
+    nodes = _graded(tabor, f, U, growth, fine_radius=2.2)
+    problem = ContactProblem(compliance.triangles(nodes), tabor)
+    return Solved(nodes.size, {"pull_off": pull_off_by_sweep(problem, relax)})
 
 
 def _simple(problem: ContactProblem, start: Array, control: Control) -> Relaxed:
@@ -212,15 +207,6 @@ def _simple(problem: ContactProblem, start: Array, control: Control) -> Relaxed:
 
 def _greenwood(problem: ContactProblem, start: Array, control: Control) -> Relaxed:
     return relaxation.greenwood(problem, start, control, tolerance=1e-5)
-
-
-def _relaxation_step(relax: Relaxation, f: float, U: float, growth: float) -> Step:
-    def run(tabor: float) -> Solved:
-        nodes = _graded(tabor, f, U, growth, fine_radius=2.2)
-        problem = ContactProblem(compliance.triangles(nodes), tabor)
-        return Solved(nodes.size, {"pull_off": pull_off_by_sweep(problem, relax)})
-
-    return Step(f"f={f:g} U={U:g} growth={growth:g}", run)
 
 
 def pull_off_by_sweep(problem: ContactProblem, relax: Relaxation) -> float:
