@@ -194,9 +194,21 @@ def draw(
             begin(f"figure {picture.stem}")
             if picture.lacks(results):
                 continue
-            figure = picture.draw(results)
+            figure = laid_out(picture.draw(results))
             figure.savefig(directory / f"{picture.stem}.svg", metadata={"Date": None, "Title": picture.title})
             figure.savefig(directory / f"{picture.stem}.png", dpi=DOTS_PER_INCH)
+
+
+def laid_out(figure: Figure) -> Figure:
+    """Figure whose axes have their places: left to each format, they would be sought anew, and all be drawn once more.
+
+    What is written in several formats has them in the same places, too.
+    """
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine(None)
+    return figure
 
 
 def captions(pictures: Sequence[Picture[Results]], results: Results) -> page.Table:
@@ -229,5 +241,5 @@ def write(
     """Draw and write, in a format of `require_suffix`, to a file from `fem_adhesion.common.files.written_aside`."""
     picture = BytesIO()
     with rc_context(dict(look)):
-        figure().savefig(picture, format=form, dpi=dpi, metadata={"Date": None} if form == "svg" else None)
+        laid_out(figure()).savefig(picture, format=form, dpi=dpi, metadata={"Date": None} if form == "svg" else None)
     file.buffer.write(picture.getbuffer())

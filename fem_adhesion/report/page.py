@@ -15,6 +15,7 @@ from matplotlib import rc_context
 
 from fem_adhesion.common.facts import machine
 from fem_adhesion.common.page import Section, inlined, render, template_text
+from fem_adhesion.common.style import laid_out
 from fem_adhesion.crosscheck.record import overall_verdict, verdict_of
 from fem_adhesion.crosscheck.study import Case, Failure
 from fem_adhesion.curve import figure as curve_figure
@@ -125,7 +126,7 @@ def walk_words(walk: Walk) -> list[str]:
 def _curves_section(curves: Curves) -> Section:
     stream = BytesIO()
     with rc_context(curve_figure.LOOK):
-        drawn = curve_figure.draw(curves)
+        drawn = laid_out(curve_figure.draw(curves))
         drawn.savefig(stream, format="svg", metadata={"Date": None})
     solvers = " and by ".join(curves.paths)
     last = "the deformed mesh" if curve_figure.has_mesh(curves) else "the central gap"
