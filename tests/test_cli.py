@@ -7,6 +7,7 @@ from dataclasses import fields
 from importlib.metadata import version
 
 import pytest
+from whole_runs import COMPARE
 
 from fem_adhesion import cli
 from fem_adhesion.common.files import written_aside
@@ -21,24 +22,22 @@ def run(*arguments):
 
 
 @pytest.fixture(scope="module")
-def compared(tmp_path_factory):
-    file = tmp_path_factory.mktemp("record") / "record.json"
-    done = run("compare", "--tabor", "0.5", "1", "--poisson", "0.2", "--rtol", "1e-3", "--json", str(file))
-    return done, json.loads(file.read_text()), file
+def compared(whole):
+    """At 0.5 the curve has no fold, at 2 it has two."""
+    return whole(COMPARE)
 
 
 def test_agreement_exits_with_0_and_prints_a_table_for_each_value(compared):
-    done, _, _ = compared
-    assert done.returncode == 0, done.stderr
-    assert "…" not in done.stdout
-    assert done.stdout.count("; poisson 0.2: agree") == 2
-    assert "verdict: agree" in done.stdout
-    assert "pull_off load" in done.stdout
-    assert "unknowns" in done.stdout
+    assert compared.code == 0, compared.err
+    assert "…" not in compared.out
+    assert compared.out.count("; poisson 0.45: agree") == 2
+    assert "verdict: agree" in compared.out
+    assert "pull_off load" in compared.out
+    assert "unknowns" in compared.out
 
 
 def test_the_record_has_all_it_promises(compared):
-    _, record, _ = compared
+    record = json.loads((compared / "result.json").read_text())
     assert record["verdict"] == "agree"
     assert set(record["versions"]) == {"python", "fem-adhesion", "numpy", "scipy", "scikit-fem"}
     flat, folded = record["cases"]
@@ -58,8 +57,7 @@ def test_the_record_has_all_it_promises(compared):
 
 
 def test_nothing_else_is_left_beside_the_record(compared):
-    _, _, file = compared
-    assert list(file.parent.iterdir()) == [file]
+    assert list((compared / "").iterdir()) == [compared / "result.json"]
 
 
 @pytest.mark.parametrize(

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from whole_runs import tables_in
+from whole_runs import COMPARE, tables_in
 
 import fem_adhesion
 import halfspace
 from fem_adhesion import Block, HalfSpace, Scene, cli, convergence, discretise
-from fem_adhesion.crosscheck import comparison, references
+from fem_adhesion.crosscheck import comparison, from_scratch, references
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Row
 from fem_adhesion.crosscheck.study import Case, Failure
@@ -124,6 +124,14 @@ DEFECTS = {
 }
 
 
+@pytest.fixture
+def _two_solvers(monkeypatch):
+    """No fourth level: what it shows of a defect is asked of it in `test_from_scratch` and `test_compare_bodies`."""
+    for rows in ("closed_forms", "equations", "events"):
+        monkeypatch.setattr(from_scratch, rows, lambda *_: ())
+
+
+@pytest.mark.usefixtures("_two_solvers")
 @pytest.mark.parametrize("defect", DEFECTS)
 def test_a_defect_in_the_finite_elements_is_shown(defect, monkeypatch):
     inject, body, shown_by = DEFECTS[defect]
@@ -138,8 +146,6 @@ def test_the_same_scene_without_a_defect_agrees_at_that_tolerance():
 
 
 # --- budgets ---
-
-COMPARE = "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json"
 
 # What two solvers may err by together for a comparison to 1e-4 to mean something, at a Tabor parameter of 2: so much
 # of a load or an energy; of an approach in eps and their range; ten times that of gaps, radii and deflections,
@@ -234,6 +240,7 @@ def test_the_tables_of_the_command_show_what_the_record_holds(command, record):
             ]
 
 
+@pytest.mark.usefixtures("_two_solvers")
 def test_a_solver_less_accurate_than_the_comparison_is_inconclusive_whatever_it_hits():
     """A hundred times less: of all rows that it has a part in, none stays within its budget."""
     case = crosscheck.compare(
@@ -339,6 +346,7 @@ def test_the_worst_verdict_counts():
     assert comparison.worst(["agree"]) == "agree"
 
 
+@pytest.mark.usefixtures("_two_solvers")
 def test_a_failing_case_does_not_lose_the_others(monkeypatch):
     original = convergence.trace
 

@@ -1,10 +1,8 @@
 """The study after Greenwood (1997) through the command line, quick: files read back, printed numbers met."""
 
-import contextlib
 import csv
 import dataclasses
 import html
-import io
 import math
 import re
 import types
@@ -14,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib import rc_context
+from whole_runs import GREENWOOD
 
 import halfspace
 from fem_adhesion import cli
@@ -51,51 +50,30 @@ TABLES = (
 )
 
 
-@dataclasses.dataclass(frozen=True)
-class Run:
-    """What one quick run left."""
-
-    code: int
-    printed: str
-    out: Path
-    study: greenwood.Greenwood1997
-    told: list
-
-
 @pytest.fixture(scope="module")
-def ran(tmp_path_factory):
+def ran(whole):
     """The whole study as a user runs it."""
-    kept, told, out, printed = [], [], tmp_path_factory.mktemp("greenwood") / "out", io.StringIO()
-    compute = greenwood.compute
-
-    def keeping(*, quick, begin):
-        kept.append(compute(quick=quick, begin=lambda part: (told.append(part), begin(part))))
-        return kept[-1]
-
-    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(printed):
-        patch.setattr(greenwood, "compute", keeping)
-        code = cli.main(["greenwood", "--out", str(out), "--quick"])
-    return Run(code, printed.getvalue(), out, kept[0], told)
+    return whole(GREENWOOD)
 
 
 @pytest.fixture(scope="module")
 def study(ran):
-    return ran.study
+    return ran.kept[0]
 
 
 @pytest.fixture(scope="module")
 def report(ran):
-    return ran.out
+    return ran / "greenwood"
 
 
 def rows(report, stem):
     return list(csv.DictReader((report / f"{stem}.csv").read_text().splitlines()))
 
 
-def test_the_quick_run_ends_well(ran):
+def test_the_quick_run_ends_well(ran, study):
     assert ran.code == 0
-    assert ran.printed == f"written: {ran.out / 'index.html'}\n"
-    assert list(ran.study.troubles()) == []
+    assert ran.out == "written: greenwood/index.html\n"
+    assert list(study.troubles()) == []
 
 
 # --- printed numbers ---
@@ -296,7 +274,7 @@ def test_the_page_shows_everything(report):
 
 
 def test_progress_names_every_subject_once(study, ran):
-    assert ran.told == list(greenwood.SUBJECTS)
+    assert ran.kept[1] == list(greenwood.SUBJECTS)
     assert math.isfinite(study.seconds)
 
 
@@ -688,7 +666,8 @@ def test_without_numbers_nothing_is_concluded(study):
     assert len(list(without_numbers(study).troubles())) == 57
 
 
-def test_without_results_nothing_is_concluded_and_the_page_is_made(study, tmp_path):
+def test_without_results_nothing_is_concluded_and_the_page_is_made(study, tmp_path, monkeypatch):
+    monkeypatch.setattr(style, "DOTS_PER_INCH", 30)  # few pixels are drawn faster
     bare = without_results(study)
     for text, plot in zip(sentences(bare), greenwood_page.FIGURES, strict=False):
         assert "Finite elements agree" not in text

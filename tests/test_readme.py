@@ -15,7 +15,7 @@ import pytest
 import test_make
 from PIL import Image
 from pyarrow import parquet
-from whole_runs import ROOT, tables_in
+from whole_runs import COMPARE, GREENWOOD, ROOT, tables_in
 
 from fem_adhesion import cli
 
@@ -36,9 +36,7 @@ LINES = {
     "make check": MAKE,
     "make bench": MAKE,
     "make honesty": MAKE,
-    "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json": (
-        "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json"
-    ),
+    "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json": COMPARE,
     "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve": (
         "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve"
     ),
@@ -47,7 +45,7 @@ LINES = {
     "pip install '.[studies]'": INSTALL,
     "fem-adhesion report --out report.html": "fem-adhesion report --out report.html",
     "fem-adhesion speed --out speed --quick": "fem-adhesion speed --out speed --quick",
-    "fem-adhesion greenwood --out greenwood": "fem-adhesion greenwood --out greenwood --quick",
+    "fem-adhesion greenwood --out greenwood": GREENWOOD,
     f"{ASSESS} --plot silica.png": f"{ASSESS} --plot silica.png",
     "fem-adhesion finite-sphere --out sphere --quick": "fem-adhesion finite-sphere --out sphere --quick",
     "make hard": MAKE,

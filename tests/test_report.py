@@ -16,6 +16,7 @@ from fem_adhesion.common.page import inlined, symbols
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields import Beside, state_at
+from fem_adhesion.report import page as report_page
 from fem_adhesion.report.page import WORDS, Contents, page, walk_data
 from fem_adhesion.report.sections import MOST_ROWS, cell, read_table
 from fem_adhesion.report.walk import SEEN, _station, walk
@@ -33,6 +34,18 @@ def contents():
 @pytest.fixture(scope="module")
 def html(contents):
     return page(contents)
+
+
+@pytest.fixture(scope="module")
+def picture(contents):
+    return report_page._curves_section(contents.curves)
+
+
+@pytest.fixture
+def _drawn_before(contents, picture, monkeypatch):
+    """Pages of the same curves have the picture of them that was drawn before."""
+    draw = report_page._curves_section
+    monkeypatch.setattr(report_page, "_curves_section", lambda one: picture if one is contents.curves else draw(one))
 
 
 def data_of(html):
@@ -134,19 +147,37 @@ def test_a_directory_of_another_kind_is_refused_before_any_work(tmp_path, capsys
     assert not list(tmp_path.iterdir())
 
 
-def test_the_command_writes_the_page_with_what_other_commands_left(tmp_path, capsys):
+@pytest.mark.usefixtures("_drawn_before")
+def test_the_command_writes_the_page_with_what_other_commands_left(contents, tmp_path, monkeypatch, capsys):
+    """Solved before; `test_readme` has it solve for itself, with all that the other commands left."""
     hard = tmp_path / "hard"
     hard.mkdir()
     (hard / "hard.csv").write_text("name,outcome\ntabor <50>,converged\n")
     (hard / "locking.csv").write_text("poisson,error\n0.3,1e-5\n")
     file = tmp_path / "report.html"
-    arguments = ["report", "--out", str(file), "--tabor", "1", "--rtol", "1e-2", "--walk", "1", "--hard", str(hard)]
-    assert cli.main(arguments) == 0
+    asked = solved_before(monkeypatch, contents, contents.cases)
+    options = ["--tabor", "1", "3", "--rtol", "1e-2", "--walk", "2", "--hard", str(hard)]
+    assert cli.main(["report", "--out", str(file), *options]) == 0
+    assert asked == [([Scene(1.0), Scene(3.0)], 1e-2), Question(Scene(2.0), "both", 1e-2), (2.0, 1e-2)]
     assert "verdict: agree" in capsys.readouterr().out
     html = file.read_text()
     assert "<td>tabor &lt;50&gt;</td>" in html
     assert "Of 1 cases: 1 converged." in html
     assert "make hard" not in html
+
+
+def solved_before(monkeypatch, contents, cases):
+    """Let the command find what was solved before, and keep what it asks for."""
+    asked = []
+
+    def told(question, found):
+        asked.append(question)
+        return found
+
+    monkeypatch.setattr(crosscheck, "run", lambda scenes, rtol: told((scenes, rtol), iter(cases)))
+    monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda question, _: told(question, contents.curves))
+    monkeypatch.setattr("fem_adhesion.report.walk.walk", lambda tabor, rtol, **_: told((tabor, rtol), contents.walk))
+    return asked
 
 
 # --- what is said, and its negation ---
@@ -158,6 +189,7 @@ def words_of(html):
     return re.sub(r"\s+", " ", unescape(re.sub(r"<[^>]*>", " ", shown)))
 
 
+@pytest.mark.usefixtures("_drawn_before")
 @pytest.mark.parametrize("verdict", ENDINGS)
 def test_the_page_tells_the_verdict_of_its_cases_and_no_other(contents, verdict):
     html = page(replace(contents, cases=ENDINGS[verdict]))
@@ -173,11 +205,10 @@ def test_the_page_tells_the_verdict_of_its_cases_and_no_other(contents, verdict)
         assert "no convergence in 40 steps; try a nearer start" in html
 
 
+@pytest.mark.usefixtures("_drawn_before")
 @pytest.mark.parametrize("verdict", ENDINGS)
 def test_the_command_tells_the_verdict_of_its_page_in_its_exit_code(contents, verdict, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(crosscheck, "run", lambda scenes, rtol: iter(ENDINGS[verdict]))  # noqa: ARG005
-    monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda *_: contents.curves)
-    monkeypatch.setattr("fem_adhesion.report.walk.walk", lambda *_, **__: contents.walk)
+    solved_before(monkeypatch, contents, ENDINGS[verdict])
     code = cli.main(["report", "--out", str(tmp_path / "a.html"), "--tabor", "2"])
     assert code == (0 if verdict == "agree" else 1)
     assert capsys.readouterr().out == f"verdict: {verdict}; written: {tmp_path / 'a.html'}\n"
@@ -200,6 +231,7 @@ def test_a_curve_that_cannot_be_solved_is_said_to_be_missing(tmp_path, monkeypat
     assert 'id="walk-data"' not in html
 
 
+@pytest.mark.usefixtures("_drawn_before")
 def test_what_is_said_of_the_states_is_counted(contents):
     walked = contents.walk
     unstable = sum(not station.stable for station in walked.stations)
@@ -243,6 +275,7 @@ def test_the_caption_names_what_the_figure_shows(html):
     assert "Pressure and gap at jump on, jump off, pull-off, zero load;" in caption
 
 
+@pytest.mark.usefixtures("_drawn_before")
 @pytest.mark.parametrize(("outcomes", "warning"), [("converged refused", ""), ("converged wrong wrong", "2 wrong.")])
 def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, contents, tmp_path):
     lines = [f"case {k},{outcome}" for k, outcome in enumerate(outcomes.split())]
@@ -257,18 +290,18 @@ def test_hard_cases_that_ended_wrong_are_said_to_have(outcomes, warning, content
 # --- the walk ---
 
 
-def test_states_of_the_walk_are_stable_where_the_curve_is(contents):
+def test_states_of_the_walk_are_stable_where_the_curve_is(contents, html):
     path, walked = contents.walk.path, contents.walk
     stable = dict(zip(path.arclength.tolist(), path.stable.tolist(), strict=True))
     between = [station for station in walked.stations if not station.name]
     assert [station.stable for station in between] == [stable[station.arclength] for station in between]
-    data = data_of(page(contents))["stations"]
+    data = data_of(html)["stations"]
     assert [one["stable"] for one in data] == [station.stable for station in walked.stations]
 
 
-def test_each_number_of_a_station_stands_under_its_name(contents):
+def test_each_number_of_a_station_stands_under_its_name(contents, html):
     walked = contents.walk
-    shown = data_of(page(contents))["stations"]
+    shown = data_of(html)["stations"]
     for one, station in zip(shown, walked.stations, strict=True):
         for name in ("arclength", "approach", "load", "central_gap"):
             assert one[name] == pytest.approx(getattr(station, name), rel=1e-4)

@@ -4,6 +4,7 @@ import fcntl
 import hashlib
 import json
 import os
+import pickle
 import re
 import shlex
 import subprocess
@@ -13,6 +14,23 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
+
+COMPARE = "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json"
+GREENWOOD = "fem-adhesion greenwood --out greenwood --quick"
+KEEPING = """
+import pickle, sys
+from fem_adhesion import cli
+from fem_adhesion.greenwood import study
+compute, told = study.compute, []
+def keeping(*, quick, begin):
+    found = compute(quick=quick, begin=lambda part: (told.append(part), begin(part)))
+    with open({file!r}, "wb") as file:
+        pickle.dump((found, told), file)
+    return found
+study.compute = keeping
+sys.exit(cli.main())
+"""
+"""The program in whose place its result is kept beside its files: a study of a minute that tests look into."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +45,16 @@ class Run:
 
     def __truediv__(self, name):
         return Path(self.directory) / name
+
+    @property
+    def kept(self):
+        """What `KEEPING` kept."""
+        return pickle.loads(kept_beside(self / "").read_bytes())
+
+
+def kept_beside(directory):
+    """File of what is kept, outside the directory where a command leaves its own."""
+    return directory.parent / "kept.pkl"
 
 
 def whole_run(session, line):
@@ -54,7 +82,9 @@ def _run(line, directory):
     if program == "make":
         command, place = _target(arguments, directory), ROOT
     else:
-        command, place = [str(BIN / program), *arguments], directory
+        kept = KEEPING.format(file=str(kept_beside(directory)))
+        program = [sys.executable, "-c", kept] if line == GREENWOOD else [str(BIN / program)]
+        command, place = [*program, *arguments], directory
     done = subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True)
     return Run(line, done.returncode, done.stdout, done.stderr, str(directory))
 
