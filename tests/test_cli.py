@@ -11,6 +11,7 @@ from whole_runs import COMPARE
 
 from fem_adhesion import cli
 from fem_adhesion.common.files import written_aside
+from fem_adhesion.crosscheck import study as crosscheck
 from halfspace.errors import NotConverged
 from halfspace.laws import Morse
 
@@ -76,22 +77,42 @@ def test_nothing_else_is_left_beside_the_record(compared):
         (["--json", "."], "is a directory; give the name of a file"),
     ],
 )
-def test_bad_input_is_refused_in_one_line_before_any_work(arguments, message):
-    done = run("compare", *arguments)
-    assert done.returncode == 2
-    assert message in done.stderr
+def test_bad_input_is_refused_in_one_line_before_any_work(arguments, message, monkeypatch, capsys):
+    monkeypatch.setattr(crosscheck, "run", lambda *_, **__: pytest.fail("work was begun"))
+    assert ended(["compare", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert message in err
+    assert err.count("\n") == 1
+    assert out == ""
+
+
+def ended(arguments):
+    """Exit code of a command line, be it the parser that refuses it."""
+    try:
+        return cli.main(arguments)
+    except SystemExit as refused:
+        return refused.code
+
+
+def test_bad_input_ends_the_program_itself():
+    done = run("compare", "--tabor", "0")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "tabor = 0 is outside 0 < tabor" in done.stderr
     assert done.stderr.count("\n") == 1
-    assert done.stdout == ""
 
 
 @pytest.mark.parametrize("command", ["speed", "greenwood"])
-def test_an_output_that_is_in_use_or_cannot_be_written_is_refused_before_any_work(command, tmp_path):
+def test_an_output_that_is_in_use_or_cannot_be_written_is_refused_before_any_work(
+    command, tmp_path, monkeypatch, capsys
+):
+    for work in ("speed.study.measure", "greenwood.study.compute"):
+        monkeypatch.setattr(f"fem_adhesion.{work}", lambda *_, **__: pytest.fail("work was begun"))
     (tmp_path / "precious").write_text("kept")
     for out, message in ((tmp_path, "use --force"), ("/no/such/place", "cannot be written")):
-        done = run(command, "--out", str(out))
-        assert done.returncode == 2
-        assert message in done.stderr
-        assert done.stderr.count("\n") == 1
+        assert cli.main([command, "--out", str(out)]) == 2
+        err = capsys.readouterr().err
+        assert message in err
+        assert err.count("\n") == 1
     assert [file.name for file in tmp_path.iterdir()] == ["precious"]
 
 
@@ -112,9 +133,6 @@ def test_disagreement_exits_with_1(monkeypatch, capsys):
 
 
 def test_a_failure_is_reported_with_its_reason_and_exits_with_1(monkeypatch, capsys, tmp_path):
-    from fem_adhesion.crosscheck import study as crosscheck
-    from halfspace.errors import NotConverged
-
     def fail(*_args, **_kwargs):
         raise NotConverged("on purpose; try another day")
 
@@ -137,8 +155,6 @@ def test_a_failure_is_reported_with_its_reason_and_exits_with_1(monkeypatch, cap
 
 
 def test_an_interrupt_leaves_no_file(monkeypatch, tmp_path, capsys):
-    from fem_adhesion.crosscheck import study as crosscheck
-
     def interrupt(*_args, **_kwargs):
         raise KeyboardInterrupt
 
@@ -248,10 +264,7 @@ MATERIAL = ["--radius", "100nm", "--modulus", "70GPa", "--poisson", "0.17", "--w
 def test_assess_refuses_in_one_line_before_any_work(arguments, message, monkeypatch, capsys, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("fem_adhesion.assess.study.assess", lambda *_: pytest.fail("work was begun"))
-    try:
-        code = cli.main(["assess", *arguments])
-    except SystemExit as ended:  # refused by the parser itself
-        code = ended.code
+    code = ended(["assess", *arguments])
     out, err = capsys.readouterr()
     assert (code, out) == (2, "")
     assert message in err
