@@ -231,6 +231,7 @@ class Standing(Valued):
     body: SizedBody
     to_load: float = COMPRESSION
     charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
+    farther = None
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event, made unless one made before will do."""

@@ -18,8 +18,8 @@ from fem_adhesion.curve import lines, record, terminal
 from fem_adhesion.curve.movie import experiment
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace.accuracy.fold_birth import count_folds
-from halfspace.accuracy.trace import half_space_charts, resolution_for
-from halfspace.equilibrium.curve import trace_charts
+from halfspace.accuracy.trace import _sized_body, half_space_charts, resolution_for
+from halfspace.equilibrium.curve import moved, trace_charts
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import usual
 from halfspace.equilibrium.path import Steps
@@ -263,9 +263,16 @@ def test_errors_of_the_loss_add_up(winding):
 
 
 def test_folds_are_found_at_every_tolerance_also_where_contact_is_about_to_be_made():
-    """Some of the grids on the way do not have the state from which the next is sought."""
-    paths = [halfspace.trace(5.0, profile=Sphere(30.0), rtol=rtol) for rtol in (1e-1, 1e-4, 1e-5)]
+    """The curve's grid has the last at 0.0092 beta from the axis; on one that stands still the truth is at 0.0077."""
+    tolerances = (1e-1, 1e-4, 1e-5, 1e-7)
+    paths = {rtol: halfspace.trace(5.0, profile=Sphere(30.0), rtol=rtol) for rtol in tolerances}
+    scales = Scales(5.0, profile=Sphere(30.0).surface(5.0))
+    body = replace(_sized_body(scales, None, resolution_for(scales, 1e-9)), finest=0.3)
+    standing = body.centred().problem
     for name in ("fold_2", "fold_3"):
-        rough, usual, fine = (path.event(name).estimate("approach") for path in paths)
-        assert abs(rough.value - fine.value) <= rough.error + fine.error
-        assert abs(usual.value - fine.value) <= usual.error + fine.error
+        approach, load, gap = moved(paths[1e-4].stages[-1][name], standing).point.observables[:3]
+        for rtol, path in paths.items():
+            fold = path.event(name)
+            assert abs(fold.approach - approach) <= fold.approach_error <= rtol * path.approach_scale
+            assert abs(fold.central_gap - gap) <= fold.central_gap_error
+            assert max(abs(fold.load - load), fold.load_error) <= rtol

@@ -83,6 +83,7 @@ class Windows(Valued):
 
     body: ScenesBody
     made: dict[int, Chart] = field(default_factory=dict, compare=False, repr=False)
+    farther = None
 
     def __iter__(self) -> Iterator[Chart]:
         """All of them in order."""
@@ -141,6 +142,7 @@ class AroundEvents(Valued):
     everywhere: Windows
     below: AroundEvents | None = None
     made: list[tuple[float, FiniteStrainProblem]] = field(default_factory=list, compare=False, repr=False)
+    farther = None
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event."""

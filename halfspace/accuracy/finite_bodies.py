@@ -27,6 +27,7 @@ from halfspace.values import Array, Valued
 LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the least that the other one knows
 LEAVE = 0.5  # of the first cell: the radius at which the chart centred on the axis is left
 WINDOW, AROUND = 2e-3, 3  # half the logarithmic width of the radii around an event on the lowest rung, operators in it
+WIDE, WIDELY = 0.4, 7  # the same farther around: an event that lies off by a fifth is then told to 1e-6 of its radius
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
@@ -183,6 +184,13 @@ class AroundEvents(Valued):
         chart = self.body.around(radius, self.window, self.count) if follows else self.body.centred()
         self.charts.append((radius, chart))
         return chart
+
+    def farther(self, event: Located) -> Chart:
+        """Chart for an event that may lie farther from where it was found than the window is wide."""
+        chart = self(event)
+        if not chart.problem.interface.follows_contact:
+            return chart
+        return self.body.around(float(event.point.observables[CONTACT_RADIUS]), WIDE, WIDELY)
 
     @property
     def everywhere(self) -> AlongCurve:

@@ -45,6 +45,7 @@ from halfspace.equilibrium.events import (
     steepest,
     steepest_from,
 )
+from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Segment, correct
 from halfspace.equilibrium.states import Ways
 from halfspace.errors import InputError, NotConverged
@@ -71,6 +72,11 @@ class Stage(Protocol):
         ...
 
     @property
+    def farther(self) -> Callable[[Located], Chart] | None:
+        """Chart for an event that lies farther from where it was found than charts serve; None if these serve all."""
+        ...
+
+    @property
     def everywhere(self) -> Finest:
         """The same for every point of a curve, if charts for events do not serve these."""
         ...
@@ -92,6 +98,7 @@ class Charted(Valued):
     """
 
     charts: Charts
+    farther = None
 
     def __call__(self, event: Located) -> Chart:
         """Chart of the event's kind."""
@@ -371,11 +378,31 @@ def _found_again(name: str, event: Located, stage: Stage) -> Located:
 
 
 def _moved_to(event: Located, stage: Stage) -> Located:
-    """Solve for an event again, and once more where it comes to lie in the reach of another chart."""
-    problem = stage(event).problem
-    found = event if event.problem is problem else moved(event, problem)
-    better = stage(found).problem
-    return found if better is found.problem else moved(found, better)
+    """Solve for an event again, and once more wherever it comes to lie in the reach of another chart."""
+    found, tried = event, {id(event.problem)}
+    for _ in range(MOVES):
+        problem = stage(found).problem
+        if id(problem) in tried:
+            return found
+        tried.add(id(problem))
+        found = _moved_near(found, problem, stage)
+    raise NotConverged("an event lies elsewhere on every grid that is made around it; take a smaller rtol")
+
+
+def _moved_near(event: Located, problem: Traceable, stage: Stage) -> Located:
+    """Solve for an event on a chart made for where it was found, or where that leads astray on one for farther off."""
+    if stage.farther is None:
+        return moved(event, problem)
+    with suppress(NotConverged):
+        found = moved(event, problem)
+        before, after = (e.point.observables[CONTACT_RADIUS] for e in (event, found))
+        if not abs(after - before) > ASTRAY * before:  # nor nan
+            return found
+    return moved(event, stage.farther(event).problem)
+
+
+MOVES = 5  # of an event from chart to chart, after which the last must be one made for where it lies
+ASTRAY = 0.05  # of a contact radius: a leap in which a chart made for the first tells nothing about the second
 
 
 def _estimate(chains: Sequence[Sequence[State]], remaining: float, *, along: bool) -> dict[str, Event]:

@@ -59,8 +59,10 @@ class SphereSurface(Dimensionless):
         return np.asarray(radii / self._cosine(radii))
 
     def _cosine(self, radii: Array) -> Array:
+        """Return cos theta, nan beyond the equator: a trial of Newton's method may end there, and is refused for it."""
         sine = radii / self.end
-        return np.asarray(np.sqrt((1 - sine) * (1 + sine)))
+        with np.errstate(invalid="ignore"):
+            return np.asarray(np.sqrt((1 - sine) * (1 + sine)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
