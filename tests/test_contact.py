@@ -11,6 +11,7 @@ from halfspace.equilibrium.contact import ContactProblem, count_negative
 from halfspace.equilibrium.curve import transfer
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, PowerLaw
+from halfspace.profiles.sphere import SphereSurface
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 
@@ -263,6 +264,16 @@ def test_no_step_of_newtons_method_takes_a_gap_below_a_quarter_of_its_value(prob
     dx[3] = -0.75 * (x[3] + 1)
     assert problem.longest_step(x, dx) == pytest.approx(1.0)
     assert problem.longest_step(x, -1e3 * dx) == 1.0
+
+
+def test_a_step_keeps_the_contact_on_its_sphere():
+    """A trial beyond the sphere's end has no profile there: the square root of a negative number."""
+    problem = ContactProblem(Homogeneous(EDGE), 1.0, profile=SphereSurface(1000.0))
+    x = problem.undeformed(-5.0, scale=2.0)
+    step = np.eye(1, x.size, x.size - 1)[0]
+    room = 1000.0 - 2.0
+    assert problem.longest_step(x, room / 2 * step) == 1.0
+    assert problem.longest_step(x, 3 * room * step) == pytest.approx(0.25)
 
 
 def test_a_gap_is_known_no_better_than_to_the_largest_of_its_last_three_coefficients():

@@ -176,6 +176,10 @@ class ContactProblem(Valued):
         """Nodal radii in beta, shape (q,)."""
         return self.operator_at(x).radii
 
+    def deflection(self, x: Array) -> Array:
+        """Of the nodes in eps, mu w = H + alpha* - mu z(u), shape (q,)."""
+        return np.asarray(x[:-2] + x[-2] - self.tabor * self.profile.height(self.radii(x)))
+
     def contact_radius(self, x: Array) -> float:
         """Largest radius in beta at which the gap is 3^(1/6) eps, or nan where the surfaces are further apart.
 
@@ -269,9 +273,9 @@ class ContactProblem(Valued):
             )
 
     def longest_step(self, x: Array, dx: Array) -> float:
-        """Fraction of the step dx that takes no gap h, nor the scale, below a quarter of its value."""
-        shrink = max(float(np.max(-dx[:-2] / self.law.room(x[:-2]))), float(-dx[-1] / x[-1]))
-        return min(1.0, LARGEST / max(shrink, LARGEST))
+        """Fraction of the step dx that leaves a quarter of each gap h, of the scale and of its room on the profile."""
+        shrinks = np.append(-dx[:-2] / self.law.room(x[:-2]), [-dx[-1] / x[-1], dx[-1] / (self.profile.end - x[-1])])
+        return min(1.0, LARGEST / max(float(shrinks.max()), LARGEST))
 
     def size(self, x: Array, dx: Array) -> float:
         """Relative size of the change dx of the state x."""
@@ -288,9 +292,8 @@ class ContactProblem(Valued):
 
         That of the undeformed surfaces in touch is taken off where it may be infinite, as of the 3-9 law on a cone.
         """
-        H, alpha, mu, body = x[:-2], x[-2], self.tabor, self.operator_at(x)
-        deflection = H + alpha - mu * self.profile.height(body.radii)
-        density = self.law.energy(H, mu) + self.pressure(x) * deflection / 2
+        H, mu, body = x[:-2], self.tabor, self.operator_at(x)
+        density = self.law.energy(H, mu) + self.pressure(x) * self.deflection(x) / 2
         if self.scales.far_energy:
             density -= self.law.energy(mu * self.profile.height(body.radii), mu)
         return float(body.weights @ density)

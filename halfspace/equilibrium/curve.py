@@ -421,23 +421,22 @@ def transfer(source: Traceable, x: Array, target: Traceable) -> Array:
 
 
 def _transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array:
-    """Interpolate the gaps, and beyond the grid the deflection."""
-    H, alpha = x[:-2], x[-2]
+    """Interpolate the deflection: gaps are as steep as the profile, and in the cells' polynomials may turn negative."""
+    alpha, body = x[-2], source.operator_at(x)
     scale = source.contact_radius(x) if target.follows_contact else 1.0
-    body, radii = source.operator_at(x), target.operator.at(scale).radii
+    radii = target.operator.at(scale).radii
     inside = radii < body.extent
-    gap = np.empty(radii.size)
-    gap[inside] = body.values_at(radii[inside], H)
-    outside = radii[~inside]
-    gap[~inside] = -alpha + source.tabor * source.profile.height(outside) + _deflection_beyond(source, x, outside)
-    return np.concatenate([gap, [alpha, scale]])
+    deflection = np.empty(radii.size)
+    deflection[inside] = body.values_at(radii[inside], source.deflection(x))
+    deflection[~inside] = _deflection_beyond(source, x, radii[~inside])
+    return np.concatenate([source.tabor * source.profile.height(radii) - alpha + deflection, [alpha, scale]])
 
 
 def _deflection_beyond(source: ContactProblem, x: Array, radii: Array) -> Array:
     """Deflection in eps past the extent of the source's grid, by its infinite cell or else as under a point load."""
     body = source.operator_at(x)
     if body.beyond.size:
-        return body.values_beyond(radii, x[:-2] + x[-2] - source.tabor * source.profile.height(body.radii))
+        return body.values_beyond(radii, source.deflection(x))
     return np.asarray(source.tabor * source.load(x) / (np.pi * radii))
 
 
