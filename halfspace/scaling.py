@@ -6,6 +6,7 @@ This is the one place where SI units enter and leave: divide by a unit on the wa
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -95,6 +96,37 @@ class Units:
     def energy(self) -> float:
         """Unit R dgamma eps of energies in J."""
         return self.load * self.approach
+
+    @property
+    def displacement(self) -> float:
+        """Unit beta^2/R = mu eps of displacements in m."""
+        return self.tabor * self.approach
+
+    @property
+    def energy_density(self) -> float:
+        """Unit E* (beta/R)^2 of energies per volume in J/m^3."""
+        return self.pressure**2 / self.modulus
+
+    def si(self, quantity: str) -> tuple[float, str]:
+        """Size in SI of the unit of one of the quantities `IN_SI`, and its unit there."""
+        name, unit = IN_SI[quantity]
+        return float(getattr(self, name)), unit
+
+
+IN_SI: Mapping[str, tuple[str, str]] = {
+    "approach": ("approach", "m"),
+    "central_gap": ("approach", "m"),
+    "gap": ("approach", "m"),
+    "contact_radius": ("length", "m"),
+    "radius": ("length", "m"),
+    "displacement": ("displacement", "m"),
+    "load": ("load", "N"),
+    "pressure": ("pressure", "Pa"),
+    "energy": ("energy", "J"),
+    "energy_density": ("energy_density", "J/m^3"),
+    "stiffness": ("stiffness", "N/m"),
+}
+"""Quantities, the property of `Units` that is their unit's size, and their unit in SI."""
 
 
 def spacing_of(hamaker: float, work_of_adhesion: float) -> float:

@@ -25,7 +25,6 @@ LINES: tuple[dict[str, Any], ...] = (
     {"color": style.ORANGE, "linewidth": 1.8, "linestyle": style.DASHED},
 )
 BEHIND: dict[str, Any] = {"color": "0.6", "linewidth": 1.3, "linestyle": style.CHAIN, "zorder": 1}
-ARROW: dict[str, Any] = {"arrowstyle": "-|>", "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0}
 WIDER, HIGHER = 1.3, 0.35  # frame: beyond the jump on, and above zero in pull-off forces
 THINNED = 50  # of so many samples of a closed theory one is drawn
 BETWEEN = 8  # points drawn from one computed point to the next
@@ -122,7 +121,7 @@ def _arrow(axes: Any, frame: _Frame, tail: Ends, head: Ends) -> None:
     (x, x_end), (y, y_end) = frame.scaled(*np.transpose([tail, head]))
     part = min(1.0, (frame.x[1] - x) / (x_end - x)) if x_end > x else 1.0
     end = (x + part * (x_end - x), y + part * (y_end - y))
-    axes.annotate("", end, (x, y), arrowprops=ARROW | {"color": style.RED}, annotation_clip=False)
+    style.arrow(axes, (x, y), end, clipped=False, linewidth=1.5, color=style.RED)
 
 
 def _title(assessment: Assessment) -> str:

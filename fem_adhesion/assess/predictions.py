@@ -100,16 +100,16 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
     """
     tension, free = path.events["pull_off"], path.events["zero_load"]
     values = {
-        "pull_off_force": Quantity.of(Estimate(-tension.load, tension.load_error), units.load, "N"),
-        "pull_off_radius": Quantity.of(tension.estimate("contact_radius"), units.length, "m"),
-        "zero_load_radius": Quantity.of(free.estimate("contact_radius"), units.length, "m"),
+        "pull_off_force": Quantity.of(Estimate(-tension.load, tension.load_error), *units.si("load")),
+        "pull_off_radius": Quantity.of(tension.estimate("contact_radius"), *units.si("radius")),
+        "zero_load_radius": Quantity.of(free.estimate("contact_radius"), *units.si("radius")),
     }
     round_trip = cycle(path, stiffness)
     if round_trip:
         values |= _jump("jump_on", round_trip.jump_on, stiffness, units) | _jump(
             "jump_off", round_trip.jump_off, stiffness, units
         )
-        values["energy_lost"] = Quantity.of(round_trip.energy_lost, units.energy, "J")
+        values["energy_lost"] = Quantity.of(round_trip.energy_lost, *units.si("energy"))
     return Prediction(model, _known(values), path, path.missed | (round_trip.missed if round_trip else {}))
 
 
@@ -122,8 +122,8 @@ def _jump(name: str, jump: Jump, stiffness: float, units: Units) -> dict[str, Qu
 def _positions(name: str, separation: Estimate, base: Estimate, units: Units) -> dict[str, Quantity]:
     """Where a jump takes off, along both axes."""
     return {
-        f"{name}_separation": Quantity.of(separation, units.approach, "m"),
-        f"{name}_base": Quantity.of(base, units.approach, "m"),
+        f"{name}_separation": Quantity.of(separation, *units.si("approach")),
+        f"{name}_base": Quantity.of(base, *units.si("approach")),
     }
 
 
@@ -136,15 +136,15 @@ def closed(
     """
     curve = make(tabor, stiffness)
     values = {
-        "pull_off_force": _read(curve, lambda c: -theories.pull_off(c).load, units.load, "N"),
-        "pull_off_radius": _read(curve, lambda c: theories.pull_off(c).contact_radius, units.length, "m"),
-        "zero_load_radius": _read(curve, lambda c: theories.zero_load(c).contact_radius, units.length, "m"),
+        "pull_off_force": _read(curve, lambda c: -theories.pull_off(c).load, *units.si("load")),
+        "pull_off_radius": _read(curve, lambda c: theories.pull_off(c).contact_radius, *units.si("radius")),
+        "zero_load_radius": _read(curve, lambda c: theories.zero_load(c).contact_radius, *units.si("radius")),
     }
     found = loop(curve, stiffness)
     if found:
         values |= _closed_jump("jump_on", found, found.jump_on[0], stiffness, units)
         values |= _closed_jump("jump_off", found, found.jump_off[0], stiffness, units)
-        values["energy_lost"] = _read(curve, lambda c: _lost(c, stiffness), units.energy, "J")
+        values["energy_lost"] = _read(curve, lambda c: _lost(c, stiffness), *units.si("energy"))
     return Prediction(model, _known(values), curve)
 
 
@@ -187,9 +187,9 @@ def soft_sphere(units: Units) -> Prediction:
     theory = JKRSphere(units.tabor, units.radius_ratio)
     tension, free = theory.pull_off(), theory.zero_load()
     values = {
-        "pull_off_force": _exact(-tension.load, units.load, "N"),
-        "pull_off_radius": _exact(tension.contact_radius, units.length, "m"),
-        "zero_load_radius": _exact(free.contact_radius, units.length, "m"),
+        "pull_off_force": _exact(-tension.load, *units.si("load")),
+        "pull_off_radius": _exact(tension.contact_radius, *units.si("radius")),
+        "zero_load_radius": _exact(free.contact_radius, *units.si("radius")),
     }
     return Prediction("JKR on the sphere", values)
 
@@ -203,7 +203,7 @@ def rigid_sphere(units: Units) -> Prediction:
         If the sphere is far smaller than the spacing.
     """
     tension = RigidSphere(units.radius_ratio).pull_off()
-    return Prediction("rigid sphere", {"pull_off_force": _exact(-tension.load, units.load, "N")})
+    return Prediction("rigid sphere", {"pull_off_force": _exact(-tension.load, *units.si("load"))})
 
 
 def _exact(value: float, size: float, unit: str) -> Quantity:

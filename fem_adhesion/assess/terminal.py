@@ -194,29 +194,24 @@ def enough_table(sample: ThinSample) -> Fitted:
 def record(assessment: Assessment) -> dict[str, object]:
     """Everything as plain data for JSON, without infinities: a quantity is a value, an error and a unit in SI."""
     contact = assessment.contact
-    return {
-        "input": plain({**asdict(contact), "law": record_of(contact.law)}),
+    models = [{"model": m.model, "values": m.values, "missed": m.missed} for m in assessment.models]
+    found = {
+        "input": {**asdict(contact), "law": record_of(contact.law)},
         "thickness_in_beta": contact.layer.thickness if contact.layer else None,
         "equivalent_radius": contact.units.radius,
         "contact_modulus": contact.units.modulus,
         "hamaker": contact.units.hamaker if contact.law == LENNARD_JONES else None,
         "radius_ratio": contact.units.radius_ratio,
-        "parameters": dict(assessment.parameters),
+        "parameters": assessment.parameters,
         "regime": assessment.regime,
-        "models": [
-            {
-                "model": model.model,
-                "values": {name: asdict(q) for name, q in model.values.items()},
-                "missed": {state: list(numbers) for state, numbers in model.missed.items()},
-            }
-            for model in assessment.models
-        ],
-        "thin_sample": asdict(assessment.sample) if assessment.sample else None,
-        "deviations": [asdict(deviation) for deviation in assessment.deviations],
-        "distances": [asdict(distance) for distance in assessment.distances],
+        "models": models,
+        "thin_sample": assessment.sample,
+        "deviations": assessment.deviations,
+        "distances": assessment.distances,
         "definitions": {"contact_radius": contact_radius(assessment)},
-        "cautions": list(assessment.cautions),
-        "verdict": list(assessment.verdict),
+        "cautions": assessment.cautions,
+        "verdict": assessment.verdict,
         "seconds": assessment.seconds,
         "versions": versions(),
     }
+    return {name: plain(part) for name, part in found.items()}

@@ -164,7 +164,7 @@ def enough(contact: Contact, half_space: Prediction, on_layer: Callable[[Layer],
         else:
             largest = parts(math.log(found.value), names)
             worst = max(largest, key=lambda quantity: largest[quantity].value)
-            yield Enough(name, Quantity.of(found, contact.units.length, "m"), worst)
+            yield Enough(name, Quantity.of(found, *contact.units.si("radius")), worst)
 
 
 def _part(model: Prediction, half_space: Prediction, name: str, spacing: float) -> Estimate:

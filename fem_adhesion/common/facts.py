@@ -8,14 +8,16 @@ import hashlib
 import math
 import os
 import platform
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, is_dataclass
 from functools import cache
 from importlib.metadata import version
 from importlib.util import find_spec
 from itertools import accumulate
 from pathlib import Path
+
+import numpy as np
 
 PROC = Path("/proc")
 
@@ -27,9 +29,15 @@ def versions() -> dict[str, str]:
 
 
 def plain(value: object) -> object:
-    """What JSON has: None for what is infinite or not a number, a name for a file."""
-    if isinstance(value, dict):
+    """What JSON has: None for what is infinite or not a number, a name for a file, fields and arrays as such."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return plain(asdict(value))
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, Mapping):
         return {name: plain(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(part) for part in value]
     if isinstance(value, float):
         return finite(value)
     return value if value is None or isinstance(value, (str, int)) else str(value)

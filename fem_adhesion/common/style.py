@@ -59,6 +59,8 @@ DOTS_PER_INCH = 160
 
 LEGEND: Mapping[str, Any] = {"fontsize": 9.5, "handlelength": 3.2}
 
+Point = tuple[float, float]
+
 LOAD = r"load $W/R\Delta\gamma$"
 APPROACH = r"approach $\alpha^*$"
 SCALED_APPROACH = r"scaled approach $\alpha^*/\mu$"
@@ -141,9 +143,10 @@ def theory(axes: Any, name: str, x: Array, y: Array, label: str | None = None, *
     axes.plot(x, y, label=label or name, **{**THEORIES[name], **style})
 
 
-def arrow(axes: Any, tail: tuple[float, float], head: tuple[float, float], *, zorder: float = 3, **look: Any) -> None:
-    """Arrow of a jump, from point to point."""
-    axes.annotate("", head, tail, arrowprops={"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, **look}, zorder=zorder)
+def arrow(axes: Any, tail: Point, head: Point, *, zorder: float = 3, clipped: bool | None = None, **look: Any) -> None:
+    """Arrow of a jump, from point to point; drawn whatever is outside the axes unless clipped."""
+    props = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, **look}
+    axes.annotate("", head, tail, arrowprops=props, zorder=zorder, annotation_clip=clipped)
 
 
 def note(axes: Any, text: str, at: tuple[float, float], offset: tuple[float, float] = (6, 4), **style: Any) -> None:

@@ -180,7 +180,6 @@ CORE = -0.5  # eps: nearer by are no gaps of a law with a core
 
 def record(beside: Beside) -> dict[str, Any]:
     """What was compared, as plain data: the laws with their Tabor parameters, and how far the curves are apart."""
-    found = {subject: beside.apart(subject) for subject in COMPARED}
-    apart = {name: {"value": one.value, "error": one.error} if one else None for name, one in found.items()}
+    apart = {subject: plain(beside.apart(subject)) for subject in COMPARED}
     laws = [{"law": plain(registry.record_of(law)), "tabor": path.tabor} for law, path in beside.curves]
     return {"laws": laws, "largest_relative_difference": apart}

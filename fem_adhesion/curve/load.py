@@ -130,17 +130,12 @@ def _draw_jumps(axes: Any, curves: Curves, frame: Frame) -> None:
         ends = [[(state.approach, state.load) for state in (jump.take_off, jump.landing)] for jump in jumps.values()]
         seen = list(filter(None, (_clipped(tail, head, frame) for tail, head in ends)))
         for tail, head in seen:
-            _arrow(axes, _scaled(tail, units), _scaled(head, units), look)
+            style.arrow(axes, _scaled(tail, units), _scaled(head, units), linewidth=1.4, mutation_scale=11, **look)
         if cycle and seen:
             words = "jumps under fixed grips" if math.isinf(cycle.stiffness) else f"jumps, {_stiffness(curves)}"
             axes.plot([], [], label=words, linewidth=1.4, **look)
     if curves.apparatus:
         _load_lines(axes, curves.apparatus, units)
-
-
-def _arrow(axes: Any, tail: Ends, head: Ends, look: dict[str, Any]) -> None:
-    arrow = {"arrowstyle": "-|>", "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11, **look}
-    axes.annotate("", head, tail, arrowprops=arrow, zorder=3)
 
 
 def _load_lines(axes: Any, cycle: Cycle, units: Any) -> None:
@@ -192,11 +187,17 @@ def _maugis(tabor: float, radius: Array) -> tuple[Array, Array]:
 
 
 def _title(curves: Curves) -> str:
+    body = curves.question.scene.body
+    named = "" if body.endless else f", {body.file.name if body.file else body.name}"
+    return f"{contact_words(curves)}{named}; {curves.solver}"
+
+
+def contact_words(curves: Curves) -> str:
+    """Tabor parameter, and the radius of the sphere where it has one."""
     scene, units = curves.question.scene, curves.question.units
-    body = "" if scene.body.endless else f", {scene.body.file.name if scene.body.file else scene.body.name}"
-    rho = f", $R/\\epsilon$ = {scene.radius_ratio:.4g}" if scene.radius_ratio else ""
     size = f"$R$ = {engineering(units.radius, 'm')}, " if units else ""
-    return f"{size}$\\mu$ = {scene.tabor:.4g}{rho}{body}; {curves.solver}"
+    ratio = f", $R/\\epsilon$ = {scene.radius_ratio:.4g}" if scene.radius_ratio else ""
+    return f"{size}$\\mu$ = {scene.tabor:.4g}{ratio}"
 
 
 def _stiffness(curves: Curves) -> str:

@@ -13,8 +13,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 from scipy.spatial import KDTree
 
+from fem_adhesion.curve.load import contact_words
 from fem_adhesion.curve.solve import Curves
-from fem_adhesion.curve.still import composed, contact_words, state_words
+from fem_adhesion.curve.still import composed, state_words
 from fem_adhesion.fields import state_at
 from fem_adhesion.paraview.picture import Pixels, solid_image, view_of
 from halfspace.equilibrium.contact import APPROACH, LOAD

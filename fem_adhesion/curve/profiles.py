@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -83,9 +83,7 @@ def draw_pressure(axes: Any, curves: Curves) -> str:
     """Pressure against radius at the events; returns the title."""
     units = scales(curves)
     x, y = units["radius"], units["pressure"]
-    for look, state in _states(curves):
-        line = {"color": look.color, "linestyle": look.linestyle, "linewidth": 1.6, "label": look.words}
-        axes.plot(x.of(state.radii), y.of(state.pressure), **line)
+    _draw(axes, curves, "pressure")
     axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
     style.dress(axes, x.label, y.label, legend=None, xlim=(0, x.size * WIDER * widest(curves.path)))
     return "pressure, lines as in (c)"
@@ -95,9 +93,7 @@ def draw_gap(axes: Any, curves: Curves) -> str:
     """Gap against radius at the events; the edge of contact is where the tension is largest. Returns the title."""
     units, path = scales(curves), curves.path
     x, y = units["radius"], units["gap"]
-    for look, state in _states(curves):
-        line = {"color": look.color, "linestyle": look.linestyle, "linewidth": 1.6, "label": look.words}
-        axes.plot(x.of(state.radii), y.of(state.gap), **line)
+    _draw(axes, curves, "gap")
     edge = state_of(path, "zero_load")[0].law.edge_gap
     axes.axhline(y.size * edge, color="0.5", linewidth=0.8, linestyle=style.DOTTED, label="edge of contact")
     right = WIDER * widest(path)
@@ -107,11 +103,14 @@ def draw_gap(axes: Any, curves: Curves) -> str:
     return "gap"
 
 
-def _states(curves: Curves) -> Iterator[tuple[Look, SurfaceState]]:
-    radii = np.linspace(0, WIDER * widest(curves.path), POINTS)
+def _draw(axes: Any, curves: Curves, quantity: str) -> None:
+    """A quantity along the surface at each event."""
+    units, radii = scales(curves), np.linspace(0, WIDER * widest(curves.path), POINTS)
     for name, look in STATES.items():
         if curves.path.event(name):
-            yield look, profile(curves.path, name, radii)
+            state = profile(curves.path, name, radii)
+            line = {"color": look.color, "linestyle": look.linestyle, "linewidth": 1.6, "label": look.words}
+            axes.plot(units["radius"].of(state.radii), units[quantity].of(getattr(state, quantity)), **line)
 
 
 def draw_spike(axes: Any, curves: Curves) -> str:

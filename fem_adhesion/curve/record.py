@@ -5,18 +5,17 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
 from typing import IO, Any
 
-from fem_adhesion.common.facts import finite, plain, versions
+from fem_adhesion.common.facts import plain, versions
 from fem_adhesion.curve.scales import EVENT_QUANTITIES as OBSERVABLES
-from fem_adhesion.curve.scales import PAPER, si_sizes
+from fem_adhesion.curve.scales import PAPER
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.registry import record_of
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.devices import Cycle, Jump
+from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event, Tolerance
-from halfspace.values import Estimate
+from halfspace.scaling import IN_SI, Units
 
 UNITS = {"arclength": "1", **{name: PAPER[name].unit for name in (*OBSERVABLES, "energy", "stiffness")}}
 ERRORS = tuple(f"{name}_error" for name in OBSERVABLES)
@@ -35,73 +34,60 @@ def record(curves: Curves) -> dict[str, Any]:
         the factor that takes each into SI, and the SI unit.
     """
     question = curves.question
-    return {
-        "scene": plain(record_of(question.scene)),
+    found = {
+        "scene": record_of(question.scene),
         "rtol": question.rtol,
         "to_load": question.to_load,
-        "units": dict(UNITS),
-        "si": _si(curves),
+        "units": UNITS,
+        "si": _si(question.units) if question.units else None,
         "solutions": {name: _solution(path) for name, path in curves.sampled.items()},
         "jumps": {"fixed_grips": _cycle(curves.grips), "apparatus": _cycle(curves.apparatus)},
         "versions": versions(),
     }
+    return {name: plain(part) for name, part in found.items()}
 
 
-def _si(curves: Curves) -> dict[str, Any] | None:
-    units = curves.question.units
-    if units is None:
-        return None
-    sizes = {name: {"factor": size, "unit": unit} for name, (size, unit) in si_sizes(units).items() if name in UNITS}
-    return {"material": asdict(units), "units": sizes}
+def _si(units: Units) -> dict[str, Any]:
+    sizes = {name: dict(zip(("factor", "unit"), units.si(name), strict=True)) for name in UNITS if name in IN_SI}
+    return {"material": units, "units": sizes}
 
 
 def _solution(path: EquilibriumPath) -> dict[str, Any]:
-    points = {name: [finite(value) for value in getattr(path, name)] for name in COLUMNS}
     stability = {
-        "stable_under_fixed_grips": path.stable.tolist(),
-        "stable_under_dead_load": path.stable_under_dead_load.tolist(),
+        "stable_under_fixed_grips": path.stable,
+        "stable_under_dead_load": path.stable_under_dead_load,
     }
     return {
-        "events": {name: event_record(event, path.tolerance) for name, event in path.events.items()},
-        "curve": points | stability,
+        "events": {name: _event(event, path.tolerance) for name, event in path.events.items()},
+        "curve": {name: getattr(path, name) for name in COLUMNS} | stability,
         "met": path.met,
         "jumps": path.jumps,
-        "margin": _estimate(path.margin) if path.margin else None,
-        "model_uncertainty": {name: _finite(spread) for name, spread in path.spread.items()},
-        "energy_released": _estimate(path.energy),
+        "margin": path.margin,
+        "model_uncertainty": path.spread,
+        "energy_released": path.energy,
         "unknowns": path.unknowns,
         "seconds": path.seconds,
-        "settings": dict(path.settings),
+        "settings": path.settings,
     }
 
 
-def _finite(numbers: Mapping[str, float]) -> dict[str, float | None]:
-    return {name: finite(value) for name, value in numbers.items()}
-
-
-def event_record(event: Event, tolerance: Tolerance) -> dict[str, Any]:
+def _event(event: Event, tolerance: Tolerance) -> dict[str, Any]:
     """Numbers of an event with their errors, and which of them miss a tolerance."""
-    return {key: finite(getattr(event, key)) for key in NUMBERS} | {"missed": list(tolerance.missed_by(event))}
+    return {key: getattr(event, key) for key in NUMBERS} | {"missed": tolerance.missed_by(event)}
 
 
 def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
     if cycle is None:
         return None
-    return {
-        "stiffness": finite(cycle.stiffness),
-        "met": cycle.met,
-        **{name: _jump(jump, cycle.tolerance) for name, jump in cycle.jumps.items()},
-        "energy_lost": _estimate(cycle.energy_lost),
+    ends = {
+        name: {
+            "take_off": _event(jump.take_off, cycle.tolerance),
+            "landing": _event(jump.landing, cycle.tolerance),
+            "energy": jump.energy,
+        }
+        for name, jump in cycle.jumps.items()
     }
-
-
-def _jump(jump: Jump, tolerance: Tolerance) -> dict[str, Any]:
-    states = {"take_off": event_record(jump.take_off, tolerance), "landing": event_record(jump.landing, tolerance)}
-    return {**states, "energy": _estimate(jump.energy)}
-
-
-def _estimate(estimate: Estimate) -> dict[str, float | None]:
-    return {"value": finite(estimate.value), "error": finite(estimate.error)}
+    return {"stiffness": cycle.stiffness, "met": cycle.met, **ends, "energy_lost": cycle.energy_lost}
 
 
 def write_csv(curves: Curves, file: IO[str]) -> None:
@@ -145,7 +131,7 @@ def _named(curves: Curves, quantity: str) -> dict[str, float]:
     name = _observable(quantity)
     columns = {f"{quantity}_{UNITS[name].replace(' ', '_')}": 1.0}
     if units := curves.question.units:
-        size, unit = si_sizes(units)[name]
+        size, unit = units.si(name)
         columns[f"{quantity}_{unit}"] = size
     return columns
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from fem_adhesion.common.numbers import PREFIXES, exponent_of
 from fem_adhesion.curve.solve import Curves
-from halfspace.scaling import Units
 from halfspace.values import Array
 
 
@@ -40,26 +39,20 @@ PAPER: Mapping[str, Scale] = {
     "stiffness": Scale(r"stiffness $k\epsilon/R\Delta\gamma$", "R dgamma/eps"),
 }
 
-IN_SI: Mapping[str, tuple[str, str, Callable[[Units], float]]] = {
-    "approach": (r"approach $\alpha$", "m", lambda units: units.approach),
-    "load": (r"load $W$", "N", lambda units: units.load),
-    "central_gap": (r"central gap $h(0) - \epsilon$", "m", lambda units: units.approach),
-    "gap": (r"gap $h - \epsilon$", "m", lambda units: units.approach),
-    "contact_radius": (r"contact radius $a$", "m", lambda units: units.length),
-    "radius": (r"radius $r$", "m", lambda units: units.length),
-    "pressure": (r"pressure $p$", "Pa", lambda units: units.pressure),
-    "energy": (r"energy $E$", "J", lambda units: units.energy),
-    "stiffness": (r"stiffness $k$", "N/m", lambda units: units.stiffness),
+SYMBOLS_IN_SI: Mapping[str, str] = {
+    "approach": r"approach $\alpha$",
+    "load": "load $W$",
+    "central_gap": r"central gap $h(0) - \epsilon$",
+    "gap": r"gap $h - \epsilon$",
+    "contact_radius": "contact radius $a$",
+    "radius": "radius $r$",
+    "pressure": "pressure $p$",
+    "energy": "energy $E$",
+    "stiffness": "stiffness $k$",
 }
-"""Symbols, units, and the sizes in them of the paper's units."""
 
 EVENT_QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
 ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}  # quantities with the prefix of another
-
-
-def si_sizes(units: Units) -> Mapping[str, tuple[float, str]]:
-    """Size in SI of the unit of each quantity, and its SI unit."""
-    return {name: (size(units), unit) for name, (_, unit, size) in IN_SI.items()}
 
 
 def scales(curves: Curves) -> Mapping[str, Scale]:
@@ -68,10 +61,7 @@ def scales(curves: Curves) -> Mapping[str, Scale]:
     if units is None:
         return PAPER
     largest = _largest(curves)
-    return {
-        name: _si_scale(name, size, unit, largest.get(ALIKE.get(name, name), 1.0))
-        for name, (size, unit) in si_sizes(units).items()
-    }
+    return {name: _si_scale(name, *units.si(name), largest.get(ALIKE.get(name, name), 1.0)) for name in PAPER}
 
 
 def _largest(curves: Curves) -> Mapping[str, float]:
@@ -89,4 +79,4 @@ def _largest(curves: Curves) -> Mapping[str, float]:
 def _si_scale(name: str, size: float, unit: str, largest: float) -> Scale:
     exponent = exponent_of(size * largest)
     shown = PREFIXES[exponent] + unit
-    return Scale(f"{IN_SI[name][0]}, {shown}", shown, size * 10.0**-exponent)
+    return Scale(f"{SYMBOLS_IN_SI[name]}, {shown}", shown, size * 10.0**-exponent)

@@ -13,10 +13,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from fem_adhesion.common.numbers import Quantity, engineering, with_error
+from fem_adhesion.common.numbers import Quantity, with_error
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.figure import LOOK
-from fem_adhesion.curve.load import KINDS
+from fem_adhesion.curve.load import KINDS, contact_words
 from fem_adhesion.curve.profiles import STATES
 from fem_adhesion.curve.scales import scales
 from fem_adhesion.curve.solve import Curves
@@ -121,14 +121,6 @@ SYMBOLS: Mapping[str, tuple[str, str]] = {
     "contact_radius": ("$a$", r"$\beta$"),
 }
 """Of the quantities in the caption, and their units in the paper."""
-
-
-def contact_words(curves: Curves) -> str:
-    """Tabor parameter, and the radius of the sphere where it has one."""
-    scene, units = curves.question.scene, curves.question.units
-    size = f"$R$ = {engineering(units.radius, 'm')}, " if units else ""
-    ratio = f", $R/\\epsilon$ = {scene.radius_ratio:.4g}" if scene.radius_ratio else ""
-    return f"{size}$\\mu$ = {scene.tabor:.4g}{ratio}"
 
 
 def _key(curves: Curves, view: View) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TypeVar
 
@@ -44,22 +44,25 @@ COMPONENTS_OF_SOLID = COMPONENTS | dict.fromkeys(VECTORS, ("x", "y", "z"))  # th
 
 @dataclass(frozen=True)
 class Unit:
-    """Unit of an array: the paper's in words, and that of SI as part of a name, none of a number without a dimension.
-
-    `size` is the paper's unit of a material in that of SI.
-    """
+    """Unit of an array: the paper's in words, and its name in `halfspace.scaling.IN_SI`, none without a dimension."""
 
     words: str
-    suffix: str = ""
-    size: Callable[[Units], float] = lambda _: 1.0
+    quantity: str = ""
+
+    def in_si(self, units: Units) -> tuple[float, str]:
+        """Size in SI, and what its unit puts behind a name."""
+        if not self.quantity:
+            return 1.0, ""
+        size, unit = units.si(self.quantity)
+        return size, "_" + unit.replace("/", "_per_").replace("^", "")
 
 
-_LENGTH = Unit("beta = (R^2 dgamma/E*)^(1/3)", "m", lambda units: units.length)
-_DISPLACEMENT = Unit("beta^2/R = mu eps", "m", lambda units: units.tabor * units.approach)
-_GAP = Unit("eps", "m", lambda units: units.approach)
-_STRESS = Unit("E* beta/R = dgamma/(mu eps)", "Pa", lambda units: units.pressure)
-_DENSITY = Unit("E* (beta/R)^2", "J_per_m3", lambda units: units.pressure**2 / units.modulus)
-_LOAD = Unit("R dgamma", "N", lambda units: units.load)
+_LENGTH = Unit("beta = (R^2 dgamma/E*)^(1/3)", "radius")
+_DISPLACEMENT = Unit("beta^2/R = mu eps", "displacement")
+_GAP = Unit("eps", "gap")
+_STRESS = Unit("E* beta/R = dgamma/(mu eps)", "pressure")
+_DENSITY = Unit("E* (beta/R)^2", "energy_density")
+_LOAD = Unit("R dgamma", "load")
 
 UNITS: Mapping[str, Unit] = {
     "points": _LENGTH,
@@ -119,11 +122,8 @@ def unit_of(name: str) -> Unit:
 
 def in_si(arrays: Mapping[str, Numbers], units: Units) -> dict[str, Numbers]:
     """Numbers or arrays in SI, the unit at the end of their names; those without a dimension as they are."""
-    found = {name: unit_of(name) for name in arrays}
-    return {
-        f"{name}_{unit.suffix}" if unit.suffix else name: arrays[name] * unit.size(units)
-        for name, unit in found.items()
-    }
+    found = {name: unit_of(name).in_si(units) for name in arrays}
+    return {f"{name}{suffix}": arrays[name] * size for name, (size, suffix) in found.items()}
 
 
 def inside(state: State, cut: Cut, scale: float) -> Named:
