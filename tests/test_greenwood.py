@@ -129,7 +129,7 @@ def test_pressures_printed_with_figure_4(study):
     assert [p.note for p in study.tables.profile_checks] == [ROUNDED] * 2
     for p in study.tables.profile_checks:
         assert abs(p.computed.value - float(p.printed)) <= p.computed.error
-    gaps = [profile.central_gap for profile in study.states.profiles]
+    gaps = [profile.central_gap for profile in study.profiles]
     assert len(gaps) == 7
     assert gaps == pytest.approx([2.554, 1, 0.3, 0.02, 0, -0.0036, -0.01], abs=1e-9)
 
@@ -143,14 +143,14 @@ def test_the_central_gap_falls_all_along_the_winding_curve(study):
 
 
 def test_jumps_land_on_the_other_branch(study):
-    on, off = study.states.jumps
-    assert on.landing_load.value < on.load.value < 0
-    assert off.load.value < off.landing_load.value < 0
-    assert max(on.landing_load.error, off.landing_load.error) < 1e-3
+    on, off = study.jumps["AB"], study.jumps["CD"]
+    assert on.landing.load < on.take_off.load < 0
+    assert off.take_off.load < off.landing.load < 0
+    assert max(on.landing.load_error, off.landing.load_error) < 1e-3
 
 
 def test_the_winding_curve_has_four_folds(study):
-    assert study.states.folds[:, 0] == pytest.approx([-4.26358, -4.52082, -4.50476, -8.18977], abs=1e-4)
+    assert study.folds[:, 0] == pytest.approx([-4.26358, -4.52082, -4.50476, -8.18977], abs=1e-4)
 
 
 def test_finite_elements_agree_with_the_half_space(study):
@@ -322,7 +322,7 @@ def test_axes_are_labelled_with_what_is_drawn_along_them(study, number, count):
 def test_profiles_are_drawn_under_their_labels(study, number, label, quantity):
     (axes,) = figure(study, number).axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == (r"radius $u = r/\beta$", label)
-    for line, profile in zip(axes.lines, study.states.profiles, strict=True):
+    for line, profile in zip(axes.lines, study.profiles, strict=True):
         assert same(line.get_xdata(), profile.radii)
         assert same(line.get_ydata(), getattr(profile, quantity))
         assert float(re.search(r"= (.*)\$", line.get_label())[1]) == pytest.approx(profile.central_gap, abs=1e-9)
@@ -391,13 +391,12 @@ def test_stable_stretches_are_drawn_full_and_unstable_ones_dotted(study):
 
 
 def test_jumps_are_drawn_where_they_are(study):
-    jumps = {jump.landing: jump for jump in study.states.jumps}
     arrows = [note for note in figure(study, "2a").axes[0].texts if getattr(note, "arrow_patch", None)]
     assert len(arrows) == 2
-    for arrow, letter in zip(arrows, "BD", strict=True):
-        jump = jumps[letter]
-        assert arrow.xyann == (jump.approach.value, jump.load.value)
-        assert arrow.xy == (jump.approach.value, jump.landing_load.value)
+    for arrow, letters in zip(arrows, ("AB", "CD"), strict=True):
+        jump = study.jumps[letters]
+        assert arrow.xyann == (jump.take_off.approach, jump.take_off.load)
+        assert arrow.xy == (jump.take_off.approach, jump.landing.load)
 
 
 def test_trends_are_drawn_under_their_labels(study):
@@ -485,12 +484,12 @@ def assert_row(row, expected):
 
 
 def test_cells_of_jumps_and_cycles(report, study):
-    for row, jump in zip(rows(report, "jumps"), study.states.jumps, strict=True):
-        assert row["jump"] == f"{jump.take_off} to {jump.landing}"
-        assert_row(row, {"alpha*, eps": jump.approach.value, "error of alpha*, eps": jump.approach.error})
-        assert_row(row, {"W before, R dgamma": jump.load.value, "error of W before, R dgamma": jump.load.error})
-        after = jump.landing_load
-        assert_row(row, {"W after, R dgamma": after.value, "error of W after, R dgamma": after.error})
+    for row, (letters, jump) in zip(rows(report, "jumps"), study.jumps.items(), strict=True):
+        before, after = jump.take_off, jump.landing
+        assert row["jump"] == f"{letters[0]} to {letters[1]}"
+        assert_row(row, {"alpha*, eps": before.approach, "error of alpha*, eps": before.approach_error})
+        assert_row(row, {"W before, R dgamma": before.load, "error of W before, R dgamma": before.load_error})
+        assert_row(row, {"W after, R dgamma": after.load, "error of W after, R dgamma": after.load_error})
     for row, cycle in zip(rows(report, "devices"), study.devices.cycles, strict=True):
         stiffness = row["stiffness, R dgamma/eps"]
         assert stiffness == "fixed grips" if math.isinf(cycle.stiffness) else float(stiffness) == cycle.stiffness
@@ -609,13 +608,17 @@ def without_numbers(study):
         study,
         curves=curves,
         elements={},
-        states=dataclasses.replace(
-            study.states,
-            jumps=tuple(dataclasses.replace(j, approach=NAN, load=NAN, landing_load=NAN) for j in study.states.jumps),
-            profiles=tuple(
-                dataclasses.replace(p, gap=p.gap * np.nan, pressure=p.pressure * np.nan, central_gap=math.nan)
-                for p in study.states.profiles
-            ),
+        jumps={
+            letters: dataclasses.replace(
+                jump,
+                take_off=dataclasses.replace(jump.take_off, **lost),
+                landing=dataclasses.replace(jump.landing, **lost),
+            )
+            for letters, jump in study.jumps.items()
+        },
+        profiles=tuple(
+            dataclasses.replace(p, gap=p.gap * np.nan, pressure=p.pressure * np.nan, central_gap=math.nan)
+            for p in study.profiles
         ),
         pull_offs=tuple(dataclasses.replace(p, half_space=NAN, finite_element=None) for p in study.pull_offs),
         rises={s: dataclasses.replace(r, ripples=()) for s, r in study.rises.items()},
@@ -632,7 +635,9 @@ def without_results(study):
     return dataclasses.replace(
         study,
         elements={},
-        states=dataclasses.replace(study.states, jumps=(), folds=np.empty((0, 4)), profiles=()),
+        jumps={},
+        folds=np.empty((0, 4)),
+        profiles=(),
         pull_offs=(),
         ripples=(),
         rises={},
@@ -723,7 +728,7 @@ def upside_down(study):
         for i, j in enumerate(study.criteria.jumps)
     )
     made = fit(wide)
-    last = study.states.profiles
+    last = study.profiles
     profiles = tuple(
         dataclasses.replace(p, pressure=q.pressure / 2, radii=q.radii) for p, q in zip(last, last[::-1], strict=True)
     )
@@ -735,7 +740,7 @@ def upside_down(study):
     }
     turned = dataclasses.replace(
         study, pull_offs=pull_offs, devices=devices, criteria=made, rises=rises,
-        states=dataclasses.replace(study.states, profiles=profiles, folds=study.states.folds[:2]),
+        profiles=profiles, folds=study.folds[:2],
     )  # fmt: skip
     changes = {(mu, "pull_off"): {"load": -3 - mu, "central_gap": 1.0} for mu in (0.1, 0.3, 0.5, 1.0)}
     changes |= {

@@ -163,6 +163,14 @@ def test_what_is_kept_is_not_traced_again(tmp_path):
     assert len(counted.calls) == 5
 
 
+def test_what_missed_its_tolerance_comes_back_from_the_disk_as_it_was(tmp_path):
+    store = open_store(tmp_path / "kept", "code", resume=True)
+    missed = Summary(1.0, {}, UNKNOWN, UNKNOWN, {"jump_on": ("approach", "load")}, "")
+    (kept,) = study.run([1.0], QUESTION, store, jobs=1, work=lambda *_, **__: missed)
+    (again,) = study.run([1.0], QUESTION, store, jobs=1, work=counted)
+    assert again.missed == kept.missed == {"jump_on": ("approach", "load")}
+
+
 def test_a_curve_whose_worker_died_is_tried_again(monkeypatch, tmp_path):
     store = open_store(tmp_path / "kept", "code", resume=True)
     monkeypatch.setattr(

@@ -18,7 +18,7 @@ from halfspace.equilibrium.devices import Cycle, Jump, cycle
 from halfspace.equilibrium.events import Condition, Located
 from halfspace.equilibrium.path import Steps
 from halfspace.scales import Scales
-from halfspace.values import Array, Estimate, Valued
+from halfspace.values import Array, Valued
 
 FINE = Steps(first=0.02, longest=0.08, turn=0.06)  # a polygon through the points looks smooth
 FINEST = Steps(first=0.02, longest=0.03, turn=0.02)  # even enlarged
@@ -29,17 +29,6 @@ PROFILES = ((2.554, 0), (1.0, 0), (0.3, 0), (0.02, 0), (0.0, -1), (-0.0036, -1),
 PROFILE_RADII = np.concatenate([[0.0], np.geomspace(1e-3, 0.05, 30), np.linspace(0.052, 4.0, 1200)])
 
 STIFFNESSES = (math.inf, 100.0, 10.0, 3.0, 1.0, 0.3, 0.1)  # R dgamma/eps, of an apparatus
-
-
-@dataclass(frozen=True)
-class LetteredJump:
-    """A jump under fixed grips, between two letters of [G97] Fig. 2a, and the loads before and after."""
-
-    take_off: str
-    landing: str
-    approach: Estimate
-    load: Estimate
-    landing_load: Estimate
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -59,27 +48,18 @@ class DrawnState(Valued):
     pressure: Array
 
 
-def fine_path(
-    tabor: float, *, rtol: float = SEEN, to_load: float = COMPRESSION, steps: Steps = FINE
-) -> EquilibriumPath:
+def fine_path(tabor: float, *, to_load: float = COMPRESSION, steps: Steps = FINE) -> EquilibriumPath:
     """Trace a curve and put points on it that are close enough to be drawn; its events are the trace's."""
     scales = Scales(tabor)
-    charts = half_space_charts(scales, resolution_for(scales, rtol), to_load)
-    path = halfspace.trace(tabor, rtol=rtol, to_load=to_load)
+    charts = half_space_charts(scales, resolution_for(scales, SEEN), to_load)
+    path = halfspace.trace(tabor, rtol=SEEN, to_load=to_load)
     return replace(path, segments=trace_charts(charts, to_load, steps))
 
 
-def jumps(tabor: float, *, rtol: float = 1e-6) -> tuple[LetteredJump, ...]:
-    """Jumps A to B, into contact, and C to D, out of it; empty where the curve does not fold."""
-    grips = cycle(halfspace.trace(tabor, rtol=rtol))
-    return (_lettered("AB", grips.jump_on), _lettered("CD", grips.jump_off)) if grips else ()
-
-
-def _lettered(letters: str, jump: Jump) -> LetteredJump:
-    before, after = jump.take_off, jump.landing
-    return LetteredJump(
-        letters[0], letters[1], before.estimate("approach"), before.estimate("load"), after.estimate("load")
-    )
+def jumps(tabor: float) -> dict[str, Jump]:
+    """Jumps under fixed grips by the letters of their ends in [G97] Fig. 2a; none where the curve does not fold."""
+    grips = cycle(halfspace.trace(tabor, rtol=1e-6))
+    return {"AB": grips.jump_on, "CD": grips.jump_off} if grips else {}
 
 
 def profiles(path: EquilibriumPath) -> Iterator[DrawnState]:

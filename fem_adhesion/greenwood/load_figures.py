@@ -136,14 +136,11 @@ def _figure_2a(study: Greenwood1997) -> Figure:
     style.stability_key(axes)
     if fe := study.elements.get(JUMPS_AT):
         style.elements(axes, fe, fe.approach, fe.load)
-    for jump in study.states.jumps:
-        at = jump.approach.value
-        style.arrow(
-            axes, (at, jump.load.value), (at, jump.landing_load.value), color=style.RED, linewidth=1.6, zorder=1
-        )
-        left = jump.take_off == "C"
-        for letter, load in ((jump.take_off, jump.load), (jump.landing, jump.landing_load)):
-            note(axes, letter, (jump.approach.value, load.value), (-14, -4) if left else (7, 2), weight="bold")
+    for letters, jump in study.jumps.items():
+        ends = [(jump.take_off.approach, state.load) for state in (jump.take_off, jump.landing)]
+        style.arrow(axes, *ends, color=style.RED, linewidth=1.6, zorder=1)
+        for letter, end in zip(letters, ends, strict=True):
+            note(axes, letter, end, (-14, -4) if letters == "CD" else (7, 2), weight="bold")
     dress(axes, style.APPROACH, style.LOAD, legend="upper left", xlim=(-7, 4), ylim=(-5.6, 1.5))
     axes.set_title(rf"$\mu = {JUMPS_AT:g}$")
     return figure
@@ -153,9 +150,9 @@ def _see_2a(study: Greenwood1997) -> Iterator[str]:
     """Jumps, and the finite elements on the curve."""
     path, fe = study.curves[JUMPS_AT], study.elements.get(JUMPS_AT)
     jumps = [
-        f"from {j.take_off} to {j.landing} at alpha* = {j.approach.value:.4f}"
-        for j in study.states.jumps
-        if np.isfinite([j.approach.value, j.load.value, j.landing_load.value]).all()
+        f"from {' to '.join(letters)} at alpha* = {jump.take_off.approach:.4f}"
+        for letters, jump in study.jumps.items()
+        if np.isfinite([jump.take_off.approach, jump.take_off.load, jump.landing.load]).all()
     ]
     yield f"The surfaces jump {listed(jumps)}." if jumps else "No jump was found."
     yield "Between the folds the branch is unstable." if np.any(~path.stable) else "No branch is unstable."

@@ -161,8 +161,12 @@ def _jumps(study: Greenwood1997) -> Table:
     loads = (f"{what} {when}, R dgamma" for when in ("before", "after") for what in ("W", "error of W"))
     columns = ("jump", "alpha*, eps", "error of alpha*, eps", *loads)
     rows = tuple(
-        (f"{j.take_off} to {j.landing}", *_cells(j.approach), *_cells(j.load), *_cells(j.landing_load))
-        for j in study.states.jumps
+        (
+            " to ".join(letters),
+            *_cells(jump.take_off.estimate("approach")),
+            *(cell for state in (jump.take_off, jump.landing) for cell in _cells(state.estimate("load"))),
+        )
+        for letters, jump in study.jumps.items()
     )
     see = "Where each jump takes off and lands." if rows else "No jump was found."
     return Table("jumps", f"Jumps of Fig. 2a, mu = {JUMPS_AT:g}, fixed grips", see, columns, rows)

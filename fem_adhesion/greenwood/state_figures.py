@@ -89,7 +89,7 @@ def _see_3b(study: Greenwood1997) -> Iterator[str]:
 
 
 def _figure_3c(study: Greenwood1997) -> Figure:
-    path, folds = study.curves[WINDING_AT], study.states.folds
+    path, folds = study.curves[WINDING_AT], study.folds
     figure, (whole, close) = panels(2)
     for axes in (whole, close):
         branches(axes, path, path.approach, path.central_gap)
@@ -107,7 +107,7 @@ def _figure_3c(study: Greenwood1997) -> Figure:
 
 def _see_3c(study: Greenwood1997) -> Iterator[str]:
     """How many folds there are, and what falls."""
-    path, count = study.curves[WINDING_AT], len(study.states.folds)
+    path, count = study.curves[WINDING_AT], len(study.folds)
     between = f", {count - 2} of them between jump-on and jump-off" if count > 2 else ""
     falls = "falls" if gap_falls(path) else "does not fall"
     yield f"The approach has {count} folds{between}."
@@ -116,7 +116,7 @@ def _see_3c(study: Greenwood1997) -> Iterator[str]:
 
 def _figure_4(study: Greenwood1997, quantity: str, label: str, ylim: tuple[float, float]) -> Figure:
     figure, (axes,) = panels(height=5.8)
-    for profile, (colour, dashes) in zip(study.states.profiles, PROFILE_STYLES, strict=False):
+    for profile, (colour, dashes) in zip(study.profiles, PROFILE_STYLES, strict=False):
         values = getattr(profile, quantity)
         text = f"$H(0) = {profile.central_gap:.4g}$" if abs(profile.central_gap) > 1e-9 else "$H(0) = 0$"
         axes.plot(profile.radii, values, color=colour, linestyle=dashes, linewidth=1.8, label=text)
@@ -127,7 +127,7 @@ def _figure_4(study: Greenwood1997, quantity: str, label: str, ylim: tuple[float
 
 def _see_4a(study: Greenwood1997) -> Iterator[str]:
     """How flat the gap is inside the last contact."""
-    shown = study.states.profiles
+    shown = study.profiles
     if not shown:
         return
     last = shown[-1]
@@ -143,7 +143,7 @@ def _see_4a(study: Greenwood1997) -> Iterator[str]:
 
 def _see_4b(study: Greenwood1997) -> Iterator[str]:
     """Height and place of the largest tension."""
-    touching = [p for p in study.states.profiles if np.isfinite(p.contact_radius)]
+    touching = [p for p in study.profiles if np.isfinite(p.contact_radius)]
     if not touching:
         return
     heights = np.array([-p.pressure.min() for p in touching]) / WINDING_AT

@@ -15,12 +15,13 @@ import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.greenwood import curves, tables
 from fem_adhesion.greenwood.criteria import CriteriaStudy, fit, jump_on
-from fem_adhesion.greenwood.curves import DeviceStudy, DrawnState, LetteredJump, devices, fine_path
+from fem_adhesion.greenwood.curves import DeviceStudy, DrawnState, devices, fine_path
 from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple, Rise, attempts, false_rise, ripple
 from fem_adhesion.greenwood.tables import Printed
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.fold_birth import FIRST, tabor_of
 from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath
+from halfspace.equilibrium.devices import Jump
 from halfspace.equilibrium.events import FOLD
 from halfspace.values import Array, Estimate, Valued
 
@@ -48,25 +49,6 @@ class PullOff:
         return self.finite_element is not None and self.half_space.agrees(self.finite_element)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Landmarks(Valued):
-    """Single states: jumps, folds and profiles.
-
-    Attributes
-    ----------
-    jumps : tuple of LetteredJump
-        Under fixed grips at mu = 2.
-    folds : (n, 4) array
-        Approach, load, central gap and contact radius at every fold at mu = 5, in order.
-    profiles : tuple of DrawnState
-        Of Fig. 4, at mu = 5.
-    """
-
-    jumps: tuple[LetteredJump, ...]
-    folds: Array
-    profiles: tuple[DrawnState, ...]
-
-
 @dataclass(frozen=True)
 class Tables:
     """Printed beside computed: both tables, and the pressures printed with Fig. 4.
@@ -80,16 +62,22 @@ class Tables:
     asymptote: tuple[Estimate, Estimate]
 
 
-@dataclass(frozen=True)
-class Greenwood1997:
+@dataclass(frozen=True, eq=False, repr=False)
+class Greenwood1997(Valued):
     """What the figures and tables show.
 
     Attributes
     ----------
     curves, elements : mapping of float to EquilibriumPath
         Curves on the half-space and by finite elements, by Tabor parameter.
-    states, pull_offs : Landmarks, tuple of PullOff
-        Jumps, folds and profiles; pull-off by rising Tabor parameter.
+    jumps : mapping of str to Jump
+        Under fixed grips at mu = 2, by the letters of their ends.
+    folds : (n, 4) array
+        Approach, load, central gap and contact radius at every fold at mu = 5, in order.
+    profiles : tuple of DrawnState
+        Of Fig. 4, at mu = 5.
+    pull_offs : tuple of PullOff
+        By rising Tabor parameter.
     ripples, rises : tuple of Ripple, mapping of float to Rise
         Curves at mu = 2 on grids that are too coarse; by spacing, the false rise of the pull-off force.
     criteria, tables : CriteriaStudy, Tables
@@ -106,7 +94,9 @@ class Greenwood1997:
 
     curves: Mapping[float, EquilibriumPath]
     elements: Mapping[float, EquilibriumPath]
-    states: Landmarks
+    jumps: Mapping[str, Jump]
+    folds: Array
+    profiles: tuple[DrawnState, ...]
     pull_offs: tuple[PullOff, ...]
     ripples: tuple[Ripple, ...]
     rises: Mapping[float, Rise]
@@ -127,7 +117,7 @@ class Greenwood1997:
         for p in self.pull_offs:
             if p.finite_element and not p.agree:
                 yield f"the solvers disagree in the pull-off load at mu = {p.tabor:g}"
-        for subject, found in (("jumps", self.states.jumps), ("cycles", self.devices.cycles)):
+        for subject, found in (("jumps", self.jumps), ("cycles", self.devices.cycles)):
             if not found:
                 yield f"no {subject} were found"
 
@@ -210,20 +200,17 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     apparatus = devices(halfspace.trace(JUMPS_AT, rtol=extent.rtol))
     begin("critical Tabor parameter")
     critical_tabor = _critical_tabor()
-    states = _states(drawn[WINDING_AT])
+    winding = drawn[WINDING_AT]
+    folds = np.array([fold.point.observables for fold in winding.states(FOLD)])
+    jumps, profiles = curves.jumps(JUMPS_AT), tuple(curves.profiles(winding))
     seconds = time.perf_counter() - began
-    parts = drawn, elements, states, pull_offs, ripples, rises, criteria, printed, relaxations, apparatus
-    return Greenwood1997(*parts, critical_tabor, seconds, quick)
+    parts = drawn, elements, jumps, folds, profiles, pull_offs, ripples, rises, criteria, printed, relaxations
+    return Greenwood1997(*parts, apparatus, critical_tabor, seconds, quick)
 
 
 def _drawn(tabor: float) -> EquilibriumPath:
     steps = curves.FINEST if tabor == WINDING_AT else curves.FINE
     return fine_path(tabor, to_load=DEEP.get(tabor, COMPRESSION), steps=steps)
-
-
-def _states(winding: EquilibriumPath) -> Landmarks:
-    folds = np.array([fold.point.observables for fold in winding.states(FOLD)])
-    return Landmarks(curves.jumps(JUMPS_AT), folds, tuple(curves.profiles(winding)))
 
 
 def _rises(extent: Extent) -> dict[float, Rise]:
