@@ -168,18 +168,8 @@ def _lagrange(places: Array, x: Array) -> Array:
 def sphere_compliance(R: float, poisson: float, cells: Cells, harmonics: int, radii: Array | None = None) -> Array:
     """Compliance of a sphere, E* = 1: deflections at some radii by pressures on the projected area at the nodes.
 
-    Parameters
-    ----------
-    R : float
-        Radius in beta.
-    poisson : float
-        Poisson's ratio.
-    cells : Cells
-        Of the surface of this sphere, or of another one under which it lies.
-    harmonics : int
-        How many even n.
-    radii : (k,) array, optional
-        In beta; those of the nodes unless given.
+    The sphere has a radius R in beta and so many even n; the cells are of its surface, or of another sphere's under
+    which it lies. Radii (k,) are those of the nodes unless given.
     """
     at = cells.places.ravel() if radii is None else radii
     return _deflections(R, poisson, at, cells.coefficients(R, harmonics))

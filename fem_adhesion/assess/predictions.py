@@ -93,10 +93,7 @@ class Prediction:
 def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) -> Prediction:
     """Read a computed curve, of the half-space or of finite elements, on a cantilever of stiffness in R dgamma/eps.
 
-    Raises
-    ------
-    halfspace.errors.NotConverged
-        If a jump or a landing cannot be solved for.
+    NotConverged if a jump or a landing cannot be solved for.
     """
     tension, free = path.events["pull_off"], path.events["zero_load"]
     values = {
@@ -177,13 +174,7 @@ def large_tabor_on(layer: Layer, tabor: float, stiffness: float, units: Units) -
 
 
 def soft_sphere(units: Units) -> Prediction:
-    """Read JKR's theory on the exact profile of the sphere: the contact's values only.
-
-    Raises
-    ------
-    InputError
-        If the contact would span the sphere.
-    """
+    """Read JKR's theory on the exact profile of the sphere, the contact's values only; InputError where it spans R."""
     theory = JKRSphere(units.tabor, units.radius_ratio)
     tension, free = theory.pull_off(), theory.zero_load()
     values = {
@@ -195,13 +186,7 @@ def soft_sphere(units: Units) -> Prediction:
 
 
 def rigid_sphere(units: Units) -> Prediction:
-    """Read the rigid hemisphere's pull-off force.
-
-    Raises
-    ------
-    InputError
-        If the sphere is far smaller than the spacing.
-    """
+    """Read the rigid hemisphere's pull-off force; InputError if it is far smaller than the spacing."""
     tension = RigidSphere(units.radius_ratio).pull_off()
     return Prediction("rigid sphere", {"pull_off_force": _exact(-tension.load, *units.si("load"))})
 

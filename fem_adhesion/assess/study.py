@@ -125,20 +125,7 @@ class Assessment:
 
 
 def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
-    """Assess a contact.
-
-    Parameters
-    ----------
-    contact : Contact
-        In SI.
-    progress : callable
-        Told what begins, how much is done and of how much.
-
-    Raises
-    ------
-    halfspace.errors.NotConverged
-        If the half-space's curve cannot be traced.
-    """
+    """Assess a contact, or raise NotConverged if the half-space's curve cannot be traced."""
     began = time.perf_counter()
     begin = in_turn(progress, 5 if contact.layer else 4)
     begin("half-space")

@@ -132,14 +132,7 @@ def _of_unit_thickness(contact: Contact) -> Layer:
 def enough(contact: Contact, half_space: Prediction, on_layer: Callable[[Layer], Prediction]) -> Iterator[Enough]:
     """Thicknesses from which on the half-space is right, in the pull-off force and in all quantities.
 
-    Parameters
-    ----------
-    contact : Contact
-        On a thin sample.
-    half_space : Prediction
-        The paraboloid on a half-space.
-    on_layer : callable
-        The same on a layer.
+    Given are what a paraboloid does on a half-space, and what tells the same of it on a layer.
     """
 
     @cache
@@ -176,22 +169,8 @@ def _part(model: Prediction, half_space: Prediction, name: str, spacing: float) 
 def _outermost(off: Callable[[float], Estimate], power: float) -> Estimate | str:
     """Thickness in beta beyond which a difference is below `WRONG`, by secants in logarithms from the thick side.
 
-    Parameters
-    ----------
-    off : callable
-        Difference at the logarithm of a thickness.
-    power : float
-        Of the thickness, with which it dies out.
-
-    Returns
-    -------
-    Estimate or str
-        Or in words where it is below for all layers, or above.
-
-    Raises
-    ------
-    NotConverged
-        If no thickness is found.
+    The difference, of the logarithm of a thickness, dies out with a power of it. Where it is below for all layers, or
+    above, the answer is in words; NotConverged if no thickness is found.
     """
 
     def level(x: float) -> float:

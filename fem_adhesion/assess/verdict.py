@@ -78,15 +78,10 @@ def _rest(total: Quantity | None, part: Quantity | None) -> Quantity | None:
 
 
 def ranked(models: Sequence[Prediction | None], spacing: float) -> tuple[Distance, ...]:
-    """Distances from the best model, the nearest first, those that lack quantities last.
+    """Distances from the best model, the nearest first, those that lack quantities last; the spacing is in m.
 
-    Parameters
-    ----------
-    models : sequence of Prediction or None
-        Half-space, true profile and finite bodies, then the closed theories. The finite bodies are the best model, or
-        if they were not solved the half-space.
-    spacing : float
-        In m.
+    The models are half-space, true profile and finite bodies, then the closed theories. The finite bodies are the best,
+    or if they were not solved the half-space.
     """
     best = models[2] or models[0]
     found = [_distance(model, best, spacing) for model in models if best and model and model is not best]
@@ -155,14 +150,7 @@ def _over(quantity: Quantity | None, R: float) -> float:
 def verdict(best: Prediction, distances: Sequence[Distance], *, computed: bool) -> Iterator[str]:
     """Sentences on which model to trust.
 
-    Parameters
-    ----------
-    best : Prediction
-        The one from which the others' distances are.
-    distances : sequence of Distance
-        As from `ranked`.
-    computed : bool
-        Whether the best model is that of the finite bodies.
+    The distances, from `ranked`, are from the best one; `computed` says whether that is of the finite bodies.
     """
     yield from (f"beside the {best.model}: {_judged(distance)}" for distance in distances)
     if not computed:

@@ -17,8 +17,6 @@ from importlib.util import find_spec
 from itertools import accumulate
 from pathlib import Path
 
-import numpy as np
-
 PROC = Path("/proc")
 
 
@@ -32,7 +30,7 @@ def plain(value: object) -> object:
     """What JSON has: None for what is infinite or not a number, a name for a file, fields and arrays as such."""
     if is_dataclass(value) and not isinstance(value, type):
         return plain(asdict(value))
-    if isinstance(value, np.ndarray):
+    if hasattr(value, "tolist"):  # an array; to load NumPy here is too much
         return plain(value.tolist())
     if isinstance(value, Mapping):
         return {name: plain(part) for name, part in value.items()}

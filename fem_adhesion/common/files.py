@@ -43,13 +43,7 @@ class NotWritten(RuntimeError):
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Run a block that does nothing but write `path`, so that what the system refuses is no defect.
-
-    Raises
-    ------
-    NotWritten
-        In the place of the block's OSError.
-    """
+    """Run a block that does nothing but write `path`: what the system refuses is NotWritten in place of its OSError."""
     try:
         yield
     except OSError as error:

@@ -103,15 +103,7 @@ def as_strong(scene: Scene, law: Law) -> Scene:
 
 
 def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> Beside:
-    """Trace the curves by other laws with the solver of the first.
-
-    Raises
-    ------
-    InputError
-        If a body has a length of its own, which is in beta.
-    halfspace.errors.NotConverged
-        If a curve cannot be traced.
-    """
+    """Trace the curves by other laws with the solver of the first, or raise as `require` does, or NotConverged."""
     question, found = curves.question, [(curves.question.scene.law, curves.path)]
     require(question.scene, laws)
     for number, law in enumerate(laws):

@@ -160,42 +160,41 @@ def _draw_body(curves: Curves, picture: TextIO | None, at: str, movie: TextIO | 
         write_movie(curves, movie)
 
 
-def _require_drawing(options: argparse.Namespace, scene: Scene, solver: SolverName) -> None:
+def _require_drawing(options: argparse.Namespace) -> None:
     """Refuse what cannot be drawn of the body before any work."""
     for path, suffix in ((options.render, ".png"), (options.movie, ".gif")):
         if path and path.suffix != suffix:
             raise InputError(f"{path} ends in {path.suffix!r}, limit: {suffix}; rename it")
     if options.at and not options.render:
         raise InputError(f"at = {options.at} without a picture, limit: with --render; give --render FILE.png too")
-    if not (options.render or options.movie):
-        return
-    if solver == "half-space":
-        raise InputError(
-            "picture with solver = half-space, which has no fields inside, limit: fem or both; take --solver fem"
-        )
-    from fem_adhesion.fields import require_fields
-    from fem_adhesion.paraview.picture import require_drawing
+    if options.render or options.movie:
+        from fem_adhesion.paraview.picture import require_drawing
 
-    require_fields(scene)
-    require_drawing()
+        require_drawing()
 
 
-def _require_vtk(options: argparse.Namespace, scene: Scene, solver: SolverName) -> None:
+def _require_vtk(options: argparse.Namespace) -> None:
     """Refuse what cannot be written for ParaView before any work."""
-    from fem_adhesion.fields import require_fields
     from fem_adhesion.paraview.cells import require_angle
     from fem_adhesion.paraview.write import require_pyvista
 
-    if solver == "half-space":
-        raise InputError(
-            "vtk with solver = half-space, which has no fields inside, limit: fem or both; take --solver fem"
-        )
     if _points(options) < 0:
         raise InputError(f"points = {options.points} is outside 0 <= points; 0 writes the events only")
     if options.revolve is not None:
         require_angle(options.revolve)
-    require_fields(scene)
     require_pyvista()
+
+
+def _require_inside(options: argparse.Namespace, scene: Scene, solver: SolverName) -> None:
+    """Refuse to show what there is not inside the body."""
+    from fem_adhesion.fields import require_fields
+
+    if solver == "half-space":
+        raise InputError(
+            f"{'vtk' if options.vtk else 'picture'} with solver = half-space, which has no fields inside, limit: fem "
+            "or both; take --solver fem"
+        )
+    require_fields(scene)
 
 
 def _form_of(plot: Path | None) -> str:
@@ -220,9 +219,11 @@ def _question(options: argparse.Namespace) -> Question:
     inside = options.vtk or options.render or options.movie
     solver: SolverName = options.solver or ("half-space" if scene.body.endless and not inside else "fem")
     _require_heeded(options, scene, solver, contact)
+    if inside:
+        _require_inside(options, scene, solver)
     if options.vtk:
-        _require_vtk(options, scene, solver)
-    _require_drawing(options, scene, solver)
+        _require_vtk(options)
+    _require_drawing(options)
     units = contact.units if contact else None
     points = options.points if options.json or options.csv or options.plot else None
     if options.vtk and points in (0, 1):

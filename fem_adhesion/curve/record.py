@@ -27,11 +27,8 @@ NUMBERS = tuple(key for name in OBSERVABLES for key in (name, f"{name}_error")) 
 def record(curves: Curves) -> dict[str, Any]:
     """Everything, ready for JSON: no NaN, and None for the contact radius without contact.
 
-    Returns
-    -------
-    dict
-        ``units`` names the units of all numbers in ``solutions`` and ``jumps``; where the material is known ``si`` has
-        the factor that takes each into SI, and the SI unit.
+    ``units`` names the units of all numbers in ``solutions`` and ``jumps``; where the material is known ``si`` has the
+    factor that takes each into SI, and the SI unit.
     """
     question = curves.question
     found = {

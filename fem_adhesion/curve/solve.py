@@ -122,20 +122,7 @@ class Curves:
 
 
 def solve(question: Question, progress: Progress = unheard) -> Curves:
-    """Trace the curve by each solver asked for, and find its jumps.
-
-    Parameters
-    ----------
-    question : Question
-        The contact.
-    progress : callable
-        Told what is under way, how much is done and of how much.
-
-    Raises
-    ------
-    halfspace.errors.NotConverged
-        If a curve cannot be traced.
-    """
+    """Trace the curve by each solver asked for, and find its jumps, or raise NotConverged."""
     solvers = {"fem": (FINITE_ELEMENTS,), "half-space": (HALF_SPACE,), "both": (FINITE_ELEMENTS, HALF_SPACE)}
     names, points = solvers[question.solver], question.points
     paths = {}

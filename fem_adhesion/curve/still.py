@@ -36,12 +36,7 @@ DIGITS = 6  # significant ones of a number, at most
 def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tuple[int, int] = SIZE) -> None:
     """Draw the body at an event and write it as png of a size in pixels to a file of `written_aside`.
 
-    The curves' first path is of finite elements.
-
-    Raises
-    ------
-    InputError
-        If the curve has no such event, pyvista is missing, or there is nothing to draw with off-screen.
+    The curves' first path is of finite elements. InputError if it has no such event, or as `require_drawing`.
     """
     require_event(curves, at)
     states = event_states(curves)

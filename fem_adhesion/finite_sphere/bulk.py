@@ -50,12 +50,7 @@ def bulk_compliance(grip: GripName, poisson: float, sphere_radius: float) -> Est
     """What a hemisphere of R/beta yields more than the half-space, per load: kappa in 1/(E* R).
 
     It is positive if the body is the softer one, and without its part that vanishes with beta/R, which is in the error.
-    As an approach in eps it is kappa mu W/(R/beta).
-
-    Raises
-    ------
-    InputError
-        If grip or poisson is out of range.
+    As an approach in eps it is kappa mu W/(R/beta). InputError if grip or poisson is out of range.
     """
     terms = coefficients(grip, poisson)
     value = terms.constant.value - terms.logarithm * log(sphere_radius)

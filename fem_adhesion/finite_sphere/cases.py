@@ -119,10 +119,7 @@ def to_plain(record: Record) -> dict[str, object]:
 def from_plain(case: SphereCase, plain: Mapping[str, object]) -> Record:
     """Record of a case from what `to_plain` made.
 
-    Raises
-    ------
-    InputError
-        If that is not what it is: a key is missing, a number is none or not finite, a status or quantity is unknown.
+    Else InputError: a key is missing, a number is none or not finite, a status or quantity is unknown.
     """
     match plain:
         case {

@@ -117,10 +117,7 @@ def safe_from(field: Field, level: float) -> float:
 def rule(field: Field, level: float) -> Rule:
     """Rule in words for a contour, R/eps = a + b mu, by least squares of its relative differences from the contour.
 
-    Raises
-    ------
-    InputError
-        If the contour passes fewer than three Tabor parameters, or is no line.
+    InputError if the contour passes fewer than three Tabor parameters, or is no line.
     """
     ratio = contour(field, level)
     known = np.isfinite(ratio)

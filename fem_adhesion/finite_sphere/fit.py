@@ -139,13 +139,7 @@ def _finding(cause: str, quantity: str, tabor: float | None, data: Samples, term
 
 
 def compare(rows: Sequence[DeviationRow]) -> tuple[TheoryCheck, ...]:
-    """Compare the profile's part in the pull-off with the rigid sphere's and with Maugis'.
-
-    Raises
-    ------
-    InputError
-        If there are too few points to fit.
-    """
+    """Compare the profile's part in the pull-off with the rigid sphere's and Maugis'; InputError of too few points."""
     data = samples(rows, "profile", "pull_off_load", None)
     if not data.tabor.size:
         raise InputError(
@@ -167,12 +161,8 @@ def _compared(theory: str, expected: float, data: Samples, tabor: float, leading
 def fit(data: Samples, terms: Mapping[str, Term] = TERMS, *, tolerance: float = TOLERANCE) -> Fit:
     """Fit terms, functions of the Tabor parameter and R/eps, on all points up to the largest beta/R that allows it.
 
-    A point may be off by its own error and the tolerance, a part of the sum of the terms' sizes.
-
-    Raises
-    ------
-    InputError
-        If no fit is within the tolerance on at least twice as many points as there are terms.
+    A point may be off by its own error and the tolerance, a part of the sum of the terms' sizes. InputError if no fit
+    does so on at least twice as many points as there are terms.
     """
     functions = list(terms.values())
     for limit in np.unique(data.stretch)[::-1]:

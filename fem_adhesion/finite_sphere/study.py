@@ -89,12 +89,8 @@ def plan(
     """Plan of the study: all combinations of the inputs but for spheres too small for their Tabor parameter.
 
     Poisson's ratio is 0.3 unless given. If none of the three inputs is given, it is varied besides, at some points. A
-    quick study has three by three points unless given, and a lower accuracy.
-
-    Raises
-    ------
-    InputError
-        If an input is out of range, or a sphere is too small for every Tabor parameter.
+    quick study has three by three points unless given, and a lower accuracy. InputError if an input is out of range, or
+    a sphere is too small for every Tabor parameter.
     """
     asked = any(values is not None for values in (tabors, radius_ratios, poissons))
     main = _main_grid(tabors, radius_ratios, poissons, quick)

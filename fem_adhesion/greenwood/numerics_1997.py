@@ -64,12 +64,8 @@ def ripple(path: EquilibriumPath, spacing: float, window: float, steps: int = ST
     """Separate the surfaces through pull-off on uniform triangles, from a resolved path's state in contact.
 
     The contact radius is prescribed, which goes on falling where approach and load ripple: from a window in beta above
-    that at pull-off to as far below, in a number of steps to a spacing.
-
-    Raises
-    ------
-    halfspace.errors.NotConverged
-        If the coarse grid has no state near the resolved one.
+    that at pull-off to as far below, in a number of steps to a spacing. NotConverged if the coarse grid has no state
+    near the resolved one.
     """
     problem = Unguarded(compliance.triangles(grid.uniform(EXTENT, spacing)), path.tabor)
     centre = path.events["pull_off"].contact_radius

@@ -235,12 +235,8 @@ class Solid(Valued):
 def revolved(points: Array, cells: Index, degrees: float) -> Solid:
     """Turn a section about its axis: r and z of its nodes, (2, n) in beta, its cells, (m, 6 or 9).
 
-    Cells are triangles or quadrilaterals; the angle of the wedge is in degrees, and 360 closes the solid.
-
-    Raises
-    ------
-    InputError
-        Unless 0 < degrees <= 360.
+    Cells are triangles or quadrilaterals; the angle of the wedge is in degrees, and 360 closes the solid, or InputError
+    as by `require_angle`.
     """
     require_angle(degrees)
     layers = 2 * int(np.ceil(degrees / SEGMENT - 1e-9)) + 1

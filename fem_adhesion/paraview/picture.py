@@ -152,13 +152,7 @@ BODY, WALL, UNDEFORMED, OUTLINE = "black", "#505050", "#009E73", "#606060"
 
 
 def solid_image(state: State, view: View, size: tuple[int, int]) -> Pixels:
-    """Picture (height, width, 3) of the solid and the wall, without words.
-
-    Raises
-    ------
-    InputError
-        As `require_drawing`.
-    """
+    """Picture (height, width, 3) of the solid and the wall, without words; InputError as by `require_drawing`."""
     pyvista = require_drawing()
     with _quiet():
         plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")

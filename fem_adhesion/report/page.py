@@ -62,13 +62,7 @@ class Contents:
 
 
 def page(contents: Contents) -> str:
-    """The page as HTML.
-
-    Raises
-    ------
-    InputError
-        If a directory does not hold what its command writes.
-    """
+    """The page as HTML, or InputError if a directory does not hold what its command writes."""
     cases = contents.cases
     others = [section_of(source, contents.directories.get(source.name)) for source in SOURCES]
     return render(

@@ -201,13 +201,7 @@ SOURCES = (
 
 
 def section_of(source: Source, directory: Path | None) -> Section:
-    """Section from a command's directory, or one that says that it was not computed.
-
-    Raises
-    ------
-    InputError
-        If the directory does not hold what the command writes.
-    """
+    """Section from a command's directory, InputError if it lacks what that writes, or one that it was not computed."""
     if directory is None:
         return Section(source.name, source.title, missing=source.made_by)
     captions = dict(source.figures) | _captions(source, directory)
@@ -242,13 +236,7 @@ def _outcomes(table: Table) -> Counter[str]:
 
 
 def read_table(file: Path, title: str) -> Table:
-    """Contents of a CSV file; the title says so where rows are left out.
-
-    Raises
-    ------
-    InputError
-        If the file is empty.
-    """
+    """Contents of a CSV file, InputError if it is empty; the title says so where rows are left out."""
     with file.open(newline="", encoding="utf-8") as stream:
         columns, *rows = list(csv.reader(stream)) or [[]]
     if not columns:

@@ -42,15 +42,8 @@ def measure(
     """Time every method, all unless given, on its ladder of resolutions.
 
     A quick study climbs the lower rungs only, which `Method.quick` counts, and each once. `progress` is called before
-    each method with its name, and how many of how many are done. All questions of
-    `fem_adhesion.speed.growth`, how time grows, are asked unless some are given.
-
-    Raises
-    ------
-    InputError
-        If tabor is out of range.
-    NotConverged
-        If a truth cannot be solved for.
+    each method with its name, and how many of how many are done. All questions of `fem_adhesion.speed.growth`, how time
+    grows, are asked unless some are given. InputError if tabor is out of range, NotConverged if a truth is not found.
     """
     require_tabor(tabor)
     chosen = tuple([*halfspace_methods(), *element_methods()] if methods is None else methods)
