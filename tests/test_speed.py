@@ -24,7 +24,7 @@ from fem_adhesion.speed import methods as halfspace_methods_module
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
 from fem_adhesion.speed.element_methods import element_methods
-from fem_adhesion.speed.growth import QUESTIONS, Question, grown, growth_questions, slope
+from fem_adhesion.speed.growth import GROWTHS, Growth, growths_for, slope, timed
 from fem_adhesion.speed.methods import MOST_NODES, QUANTITIES, Method, Solved, Step, _affordable, halfspace_methods
 from fem_adhesion.speed.result import SpeedStudy, Timing, Truth, best, cheapest, pareto_front
 from fem_adhesion.speed.study import measure
@@ -250,7 +250,7 @@ def test_a_wrong_half_space_is_not_its_own_judge(monkeypatch):
     monkeypatch.setattr(halfspace, "trace", off)
     monkeypatch.setattr(speed, "TIGHTEST", 1e-5)
     adaptive = next(m for m in METHODS if m.name == "adaptive")
-    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)], questions=[])
+    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)], growths=[])
     assert found.rungs[0].error("pull_off") == pytest.approx(0.01, rel=1e-2)
     assert any("the truths disagree in pull_off" in trouble for trouble in found.troubles())
 
@@ -325,7 +325,7 @@ def test_each_method_is_solved_by_what_its_name_says(called, name):
 
 def test_no_jumps_below_the_critical_tabor_parameter():
     adaptive = next(m for m in METHODS if m.name == "adaptive")
-    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)], questions=[])
+    found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)], growths=[])
     assert found.quantities == ("pull_off",)
     assert set(found.rungs[0].errors) == {"pull_off"}
     assert list(found.troubles()) == []
@@ -346,7 +346,7 @@ def test_what_is_run_depends_on_the_ladder_alone(monkeypatch, quick, expected):
     truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
     monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
     runs = []
-    measure(1.0, quick=quick, methods=[counted_method(runs, 2)], questions=[])
+    measure(1.0, quick=quick, methods=[counted_method(runs, 2)], growths=[])
     assert runs == expected
 
 
@@ -360,7 +360,7 @@ def test_a_rung_is_recorded_by_how_it_ended(monkeypatch, error, status):
 
     truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
     monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
-    found = measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)], questions=[]).rungs[0]
+    found = measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)], growths=[]).rungs[0]
     assert (found.status, found.reason) == (status, "on purpose")
 
 
@@ -371,7 +371,7 @@ def test_an_error_of_the_program_ends_the_study(monkeypatch):
     truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
     monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
     with pytest.raises(ValueError, match="broadcast"):
-        measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)], questions=[])
+        measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)], growths=[])
 
 
 def test_too_many_nodes_are_refused_before_any_work():
@@ -648,27 +648,27 @@ def test_every_number_in_the_pages_own_words_is_computed():
 
 
 def test_the_time_of_each_solver_is_told_for_all_that_grows(run, page):
-    """The quick run's table has each question's exponent, of the times in the file."""
+    """The quick run's table has each growth's exponent, of the times in the file."""
     told = {(row["solver"], row["x"]): row for row in section(page, "How the time of the solvers")}
     rows = list(csv.DictReader((run / "speed" / "growth.csv").read_text().splitlines()))
-    assert set(told) == {(q.solver, q.grows) for q in QUESTIONS}
-    for question in growth_questions(quick=True):
-        mine = [row for row in rows if (row["solver"], row["grows"]) == (question.solver, question.grows)]
-        assert [float(row["at"]) for row in mine] == list(question.at)
-        (x, y), (s, t) = question.at, (float(row["seconds"]) for row in mine)
-        found = float(told[question.solver, question.grows]["b"])
+    assert set(told) == {(growth.solver, growth.grows) for growth in GROWTHS}
+    for growth in growths_for(quick=True):
+        mine = [row for row in rows if (row["solver"], row["grows"]) == (growth.solver, growth.grows)]
+        assert [float(row["at"]) for row in mine] == list(growth.at)
+        (x, y), (s, t) = growth.at, (float(row["seconds"]) for row in mine)
+        found = float(told[growth.solver, growth.grows]["b"])
         assert found == pytest.approx(math.log(t / s) / math.log(y / x), abs=0.02)
 
 
 def test_growth_is_measured_where_it_is_asked_and_its_exponent_is_that_of_the_times():
     seen = []
-    question = Question("some", "digits", 3.0, (1.0, 2.0, 4.0), seen.append)
+    some = Growth("some", "digits", 3.0, (1.0, 2.0, 4.0), seen.append)
 
     def seconds_of(work):
         work()
         return 0.5 * seen[-1] ** 3
 
-    growth = grown(question, seconds_of)
+    growth = timed(some, seconds_of)
     assert seen == [1.0, 2.0, 4.0]
     assert growth.seconds == (0.5, 4.0, 32.0)
     assert growth.exponent == pytest.approx(3)
@@ -678,13 +678,13 @@ def test_growth_is_measured_where_it_is_asked_and_its_exponent_is_that_of_the_ti
     assert list(row.values()) == cells
 
 
-def test_each_question_solves_what_it_says(monkeypatch):
+def test_each_growth_solves_what_it_says(monkeypatch):
     """Digits are -log10 rtol; mu and R/eps go where they should."""
     seen = []
     monkeypatch.setattr(halfspace, "trace", lambda tabor, *, rtol: seen.append((tabor, rtol)))
     monkeypatch.setattr(convergence, "trace", lambda scene, *, rtol: seen.append((scene.tabor, scene.body, rtol)))
-    for question in QUESTIONS:
-        question.solve(4.0)
+    for growth in GROWTHS:
+        growth.solve(4.0)
     block, sphere = HalfSpace(poisson=0.3), Hemisphere(radius_ratio=4.0, poisson=0.3)
     assert seen == [(1.0, 1e-4), (1.0, block, 1e-4), (4.0, 1e-5), (4.0, block, 1e-5), (1.0, sphere, 1e-5)]
 

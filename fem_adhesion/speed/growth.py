@@ -28,8 +28,8 @@ LOGARITHMIC = 0.0
 
 
 @dataclass(frozen=True)
-class Question:
-    """What grows for which solver.
+class Growth:
+    """What grows for which solver, and how long that then takes.
 
     Attributes
     ----------
@@ -41,6 +41,8 @@ class Question:
         Values of what grows, from small to large.
     solve : callable
         Solves at one of them.
+    seconds : tuple of float
+        For each of them, once it is timed.
     """
 
     solver: str
@@ -48,19 +50,12 @@ class Question:
     expected: float
     at: tuple[float, ...]
     solve: Callable[[float], object]
-
-
-@dataclass(frozen=True)
-class Growth:
-    """A question and its answer: seconds, one for each value."""
-
-    question: Question
-    seconds: tuple[float, ...]
+    seconds: tuple[float, ...] = ()
 
     @property
     def exponent(self) -> float:
         """Exponent b of seconds ~ x^b; nan of fewer than two values."""
-        return slope(np.array(self.question.at), np.array(self.seconds))
+        return slope(np.array(self.at), np.array(self.seconds))
 
 
 def _block(tabor: float, rtol: float) -> object:
@@ -76,23 +71,23 @@ def _rtol(digits: float) -> float:
 
 
 DIGITS = tuple(map(float, range(3, 9)))
-QUESTIONS = (
-    Question("half-space", "digits", 3.0, DIGITS, lambda x: halfspace.trace(TABOR, rtol=_rtol(x))),
-    Question("finite elements", "digits", 6.0, DIGITS, lambda x: _block(TABOR, _rtol(x))),
-    Question("half-space", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0, 100.0), lambda x: halfspace.trace(x, rtol=RTOL)),
-    Question("finite elements", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0), lambda x: _block(x, RTOL)),
-    Question("hemisphere", "R/eps", LOGARITHMIC, (10.0, 100.0, 1e3, 1e4), _hemisphere),
+GROWTHS = (
+    Growth("half-space", "digits", 3.0, DIGITS, lambda x: halfspace.trace(TABOR, rtol=_rtol(x))),
+    Growth("finite elements", "digits", 6.0, DIGITS, lambda x: _block(TABOR, _rtol(x))),
+    Growth("half-space", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0, 100.0), lambda x: halfspace.trace(x, rtol=RTOL)),
+    Growth("finite elements", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0), lambda x: _block(x, RTOL)),
+    Growth("hemisphere", "R/eps", LOGARITHMIC, (10.0, 100.0, 1e3, 1e4), _hemisphere),
 )
 
 
-def growth_questions(*, quick: bool) -> tuple[Question, ...]:
-    """All questions; each of the two smallest values only if it is to be quick."""
-    return tuple(replace(q, at=q.at[:2]) for q in QUESTIONS) if quick else QUESTIONS
+def growths_for(*, quick: bool) -> tuple[Growth, ...]:
+    """All growths, yet to be timed; each of the two smallest values only if it is to be quick."""
+    return tuple(replace(growth, at=growth.at[:2]) for growth in GROWTHS) if quick else GROWTHS
 
 
-def grown(question: Question, seconds_of: Callable[[Callable[[], object]], float]) -> Growth:
-    """Time a question at each of its values."""
-    return Growth(question, tuple(seconds_of(partial(question.solve, x)) for x in question.at))
+def timed(growth: Growth, seconds_of: Callable[[Callable[[], object]], float]) -> Growth:
+    """Time a growth at each of its values."""
+    return replace(growth, seconds=tuple(seconds_of(partial(growth.solve, x)) for x in growth.at))
 
 
 def slope(x: Array, y: Array) -> float:

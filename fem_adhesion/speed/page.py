@@ -258,13 +258,11 @@ def _growths(study: SpeedStudy) -> Table:
     )
     rows = [
         [
-            growth.question.solver,
-            growth.question.grows,
-            ", ".join(
-                f"{seconds:.2f} s at {x:g}" for x, seconds in zip(growth.question.at, growth.seconds, strict=True)
-            ),
+            growth.solver,
+            growth.grows,
+            ", ".join(f"{seconds:.2f} s at {x:g}" for x, seconds in zip(growth.at, growth.seconds, strict=True)),
             _number(growth.exponent, "{:.2f}") or "-",
-            f"{growth.question.expected:g}",
+            f"{growth.expected:g}",
         ]
         for growth in study.growths
     ]
@@ -273,6 +271,5 @@ def _growths(study: SpeedStudy) -> Table:
 
 def _growth_cells(study: SpeedStudy) -> Iterator[list[str]]:
     for growth in study.growths:
-        for x, seconds in zip(growth.question.at, growth.seconds, strict=True):
-            asked = growth.question
-            yield [asked.solver, asked.grows, f"{x:g}", f"{seconds:.4f}", f"{seconds / study.yardstick:.0f}"]
+        for x, seconds in zip(growth.at, growth.seconds, strict=True):
+            yield [growth.solver, growth.grows, f"{x:g}", f"{seconds:.4f}", f"{seconds / study.yardstick:.0f}"]

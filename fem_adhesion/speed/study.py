@@ -21,7 +21,7 @@ from fem_adhesion.common.facts import peak_memory
 from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed.element_methods import POISSON, element_methods
-from fem_adhesion.speed.growth import Question, grown, growth_questions
+from fem_adhesion.speed.growth import Growth, growths_for, timed
 from fem_adhesion.speed.methods import Family, Method, Solved, Step, estimates, halfspace_methods
 from fem_adhesion.speed.result import SpeedStudy, Status, Timing, Truth
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -37,13 +37,13 @@ def measure(
     quick: bool = False,
     progress: Progress = unheard,
     methods: Sequence[Method] | None = None,
-    questions: Sequence[Question] | None = None,
+    growths: Sequence[Growth] | None = None,
 ) -> SpeedStudy:
     """Time every method, all unless given, on its ladder of resolutions.
 
     A quick study climbs the lower rungs only, which `Method.quick` counts, and each once. `progress` is called before
-    each method with its name, and how many of how many are done. All questions of `fem_adhesion.speed.growth`, how time
-    grows, are asked unless some are given. InputError if tabor is out of range, NotConverged if a truth is not found.
+    each method with its name, and how many of how many are done. All growths of the time are
+    measured unless some are given. InputError if tabor is out of range, NotConverged if a truth is not found.
     """
     require_tabor(tabor)
     chosen = tuple([*halfspace_methods(), *element_methods()] if methods is None else methods)
@@ -54,10 +54,8 @@ def measure(
         progress(method.name, number, len(chosen))
         rungs += _climb(method, tabor, truths[method.family], quick=quick)
     progress("how time grows", len(chosen), len(chosen))
-    growths = tuple(
-        grown(question, _seconds) for question in (growth_questions(quick=quick) if questions is None else questions)
-    )
-    return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs), growths)
+    found = tuple(timed(growth, _seconds) for growth in (growths_for(quick=quick) if growths is None else growths))
+    return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs), found)
 
 
 def require_tabor(tabor: float) -> float:
