@@ -97,15 +97,7 @@ def _deflections(R: float, poisson: float, radii: Array, p: Array) -> Array:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Cells(Valued):
-    """Cells of a surface with Gauss's points as nodes, in which a pressure is a polynomial of the radius.
-
-    Parameters
-    ----------
-    lines : (m + 1,) array
-        Radii of their ends in beta, from 0.
-    nodes : int
-        Of each.
-    """
+    """Cells of a surface between lines (m + 1,) in beta from 0; a pressure in each is a polynomial by Gauss's nodes."""
 
     lines: Array
     nodes: int
@@ -185,17 +177,11 @@ TWIN = (0.75, 0.87)  # both of a twin, in those of its sibling
 
 
 @dataclass(frozen=True)
-class Resolution:
+class Fineness:
     """How finely the sphere is discretised.
 
-    Attributes
-    ----------
-    nodes : int
-        Of each cell.
-    harmonics : float
-        How many, in R over the width of the spike of tension at the contact edge.
-    finest, growth : float
-        Of the cells: length at the contact edge in widths of the spike, and ratio of neighbours.
+    So many nodes in each cell; harmonics in R over the width of the spike of tension at the contact edge; the length of
+    the cells there in widths of the spike, and the ratio of neighbours.
     """
 
     nodes: int
@@ -208,14 +194,7 @@ class Resolution:
 class Standing(Valued):
     """Stage of a ladder on which every event has cells of its own that stand still, finest where its contact ends.
 
-    Parameters
-    ----------
-    body : SizedBody
-        The body.
-    to_load : float
-        Compressive load at which the curve ends, in R dgamma.
-    charts : list
-        Those made so far, with the contact radii that they were made for.
+    The curve ends at a compressive load in R dgamma; charts made so far stand with the contact radii they are for.
     """
 
     body: SizedBody
@@ -272,8 +251,8 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
 
     def rung(level: int) -> Rung:
         above, below = (resolution_for(rtol, max(n, 0)) for n in (level, level - 1))
-        twin = Resolution(below.nodes, below.harmonics, FINEST * TWIN[0], GROWTH * TWIN[1])
-        curve = sized_body(scene, Resolution(above.nodes, OF_CURVE))
+        twin = Fineness(below.nodes, below.harmonics, FINEST * TWIN[0], GROWTH * TWIN[1])
+        curve = sized_body(scene, Fineness(above.nodes, OF_CURVE))
         stage, other = (Standing(sized_body(scene, how), to_load) for how in (above, twin))
         settings = {"nodes": above.nodes, "harmonics": counts(scene, above)}
         return Rung(partial(curve.curve, to_load), (stage,), settings, other if level else None)
@@ -281,14 +260,14 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
     return climb(rtol, rung, to_load=to_load, most_rungs=2)
 
 
-def resolution_for(rtol: float, level: int) -> Resolution:
-    """Resolution of a level, whose events are right to about `rtol` at level 0 and a decade better at each above it."""
+def resolution_for(rtol: float, level: int) -> Fineness:
+    """Fineness of a level, whose events are right to about `rtol` at level 0 and a decade better at each above it."""
     digits = -math.log10(rtol)
     nodes = min(math.ceil(3 + digits - 1e-9) + 2 * level, 16)
-    return Resolution(nodes, PER_DIGIT * digits + PER_RUNG * level)
+    return Fineness(nodes, PER_DIGIT * digits + PER_RUNG * level)
 
 
-def counts(scene: Scene, how: Resolution) -> list[int]:
+def counts(scene: Scene, how: Fineness) -> list[int]:
     """Harmonics of each sphere."""
     return [math.ceil(how.harmonics * R / scene.scales.spike_width) for R in scene.radii if math.isfinite(R)]
 
@@ -309,7 +288,7 @@ CROWDED = 0.3 ** np.arange(5)
 """Cells crowd to the equator, where the profile of a sphere has a vertical tangent, in parts of the last six."""
 
 
-def sized_body(scene: Scene, how: Resolution) -> SizedBody:
+def sized_body(scene: Scene, how: Fineness) -> SizedBody:
     """Body of a scene, to be discretised on any cells of its surface."""
     outer = scene.radii[0] * np.append(1 - (1 - (RIM if scene.counter else 0.98)) * CROWDED, 1.0)
     make = partial(_made, scene, how.nodes, counts(scene, how))

@@ -12,7 +12,7 @@ from fem_adhesion import discretise
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.finite_strain import meshes as finite_strain_meshes
 from fem_adhesion.finite_strain.scene import softening
-from fem_adhesion.harmonics import Resolution as Series
+from fem_adhesion.harmonics import Fineness as Series
 from fem_adhesion.harmonics import Standing
 from fem_adhesion.harmonics import sized_body as series
 from halfspace.accuracy.finite_bodies import SizedBody

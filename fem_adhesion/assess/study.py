@@ -73,29 +73,12 @@ PARAMETERS = {
 class Assessment:
     """What is known of a contact.
 
-    Attributes
-    ----------
-    contact : Contact
-        As asked for.
-    half_space : Prediction
-        The paraboloid on the half-space, computed, or a closed theory where that is as good.
-    profile, finite : Prediction or None
-        The true profile of sphere or spheres on the half-space, and the elastic hemisphere held at its mid-plane, with
-        its counter-body if that is more than a rigid wall; or the thin sample under the true profile.
-    theories : tuple of Prediction
-        Closed theories.
-    deviations : tuple of Deviation
-        Of the finite sphere, or the thin sample, from the half-space, by cause.
-    distances : tuple of Distance
-        Of every other model from the best one, the nearest first.
-    regime : str
-        In words.
-    cautions, verdict : tuple of str
-        What is left out of account, and which model to trust.
-    seconds : float
-        Wall time.
-    sample : ThinSample or None
-        What there is to say of a thin sample beside that.
+    `half_space` is the paraboloid on the half-space, computed, or a closed theory where that is as good; `profile` the
+    true profile of sphere or spheres on it; `finite` the elastic hemisphere held at its mid-plane, with its counter-
+    body if that is more than a rigid wall, or the thin sample under the true profile. The deviations are those of the
+    last from the first, by cause; distances are those of every other model from the best one, the nearest first;
+    cautions say what is left out of account, the verdict which model to trust, and `sample` what there is to say of a
+    thin one beside that.
     """
 
     contact: Contact

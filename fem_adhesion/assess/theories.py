@@ -34,12 +34,7 @@ REACH = 3 * math.pi**2 / (2.5 * 1.4**3.5)  # in the bulge of `jkr_with_reach`, s
 class Curve(Valued):
     """Samples along the curve of a theory, each array of shape (n,).
 
-    Attributes
-    ----------
-    approach, load : array
-        In eps and R dgamma.
-    radius : array
-        Contact radius in beta, nan where there is none.
+    Approach in eps, load in R dgamma, and contact radius in beta, nan where there is none.
     """
 
     approach: Array
@@ -77,16 +72,9 @@ class Curve(Valued):
 
 @dataclass(frozen=True)
 class Loop:
-    """A cycle on a curve.
+    """A cycle on a curve: take-off and landing of both jumps, and the energy lost in R dgamma eps.
 
-    Attributes
-    ----------
-    jump_on, jump_off : pair of ContactState
-        Take-off and landing.
-    energy_lost : float
-        In R dgamma eps.
-    spacing : float
-        Of the samples at the take-offs, in eps: they may lie that far beside the true ones.
+    The spacing is that of the samples at the take-offs, in eps: they may lie that far beside the true ones.
     """
 
     jump_on: tuple[ContactState, ContactState]

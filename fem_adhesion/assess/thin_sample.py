@@ -33,18 +33,9 @@ ROOT = 1e-3  # to which the logarithm of a thickness is solved for
 
 @dataclass(frozen=True)
 class Indentation:
-    """A contact without adhesion.
+    """A contact without adhesion: approach delta in m, chi = (R delta)^(1/2)/h, and the force on the sample.
 
-    Attributes
-    ----------
-    indentation : float
-        Approach delta in m.
-    chi : float
-        (R delta)^(1/2)/h.
-    force : Quantity
-        On the sample, in N.
-    half_space, series : Quantity
-        How far Hertz's theory and the series of Dimitriadis et al. are from that, as a part of it.
+    `half_space` and `series` say how far Hertz's theory and the series of Dimitriadis et al. are from that, as a part.
     """
 
     indentation: float
@@ -56,18 +47,9 @@ class Indentation:
 
 @dataclass(frozen=True)
 class Enough:
-    """From which thickness on the half-space is right to `WRONG`.
+    """From which thickness on the half-space is right to `WRONG`, in one of `QUANTITIES` or in "every quantity".
 
-    Attributes
-    ----------
-    quantity : str
-        One of `fem_adhesion.assess.predictions.QUANTITIES`, or "every quantity".
-    thickness : Quantity or None
-        In m; None if no thickness of a layer that is computed is.
-    worst : str
-        The quantity that is off by so much there.
-    note : str
-        Why there is no thickness.
+    The worst is the quantity that is off by so much there; a note says why there is no thickness.
     """
 
     quantity: str
@@ -78,16 +60,9 @@ class Enough:
 
 @dataclass(frozen=True)
 class ThinSample:
-    """What assessing a thin sample adds.
+    """What assessing a thin sample adds: contacts without adhesion, ascending, and thicknesses that are enough.
 
-    Attributes
-    ----------
-    indentations : tuple of Indentation
-        Contacts without adhesion, ascending.
-    hertz_until : Quantity
-        Largest (R delta)^(1/2)/h at which Hertz's load on a half-space is right to `WRONG`.
-    enough : tuple of Enough
-        Thicknesses that are.
+    `hertz_until` is the largest (R delta)^(1/2)/h at which Hertz's load on a half-space is right to `WRONG`.
     """
 
     indentations: tuple[Indentation, ...]

@@ -23,15 +23,10 @@ FARTHEST_JUMP = 0.3  # of the radius: the law between planes is meant for gaps s
 
 @dataclass(frozen=True)
 class Deviation:
-    """Relative difference of a quantity from the half-space's, by cause.
+    """Relative difference of one of `QUANTITIES` from the half-space's, by cause.
 
-    Attributes
-    ----------
-    quantity : str
-        One of `fem_adhesion.assess.predictions.QUANTITIES`.
-    profile, body, total : Quantity or None
-        By the true shape on the half-space, by the finite bodies under it, and by both; as a part of the half-space's
-        value, with errors, see `fem_adhesion.assess.predictions.relative`. None where not known.
+    By the true shape on the half-space, by the finite bodies under it, and by both; as a part of the half-space's
+    value, with errors, see `fem_adhesion.assess.predictions.relative`. None where not known.
     """
 
     quantity: str
@@ -42,18 +37,9 @@ class Deviation:
 
 @dataclass(frozen=True)
 class Distance:
-    """How far a model is from the best one at most.
+    """How far a model is from the best one at most, relatively, both errors included, and in which quantity.
 
-    Attributes
-    ----------
-    model : str
-        Its name.
-    worst : str or None
-        The quantity in which it is farthest; None if it has none of the best one's.
-    size : float
-        Relative difference there, both errors included.
-    missing : tuple of str
-        Those quantities of the best model that it lacks.
+    The worst is None if it has none of the best one's; missing are those that it lacks.
     """
 
     model: str

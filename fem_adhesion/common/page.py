@@ -137,14 +137,10 @@ def markdown(parts: Sequence[str | Table]) -> Iterator[str]:
 
 
 def inlined(svg: bytes, name: str, caption: str, title: str = "", stem: str = "") -> Figure:
-    """A picture, as the bytes of an SVG file, made ready for a page: no identifier, style or script leaks out of it.
+    """A picture, as the bytes of an SVG file, made ready for a page: no identifier, style or script leaks.
 
     The name, different for each picture of a page, keeps their identifiers apart; the rest is as of `Figure`.
-
-    Raises
-    ------
-    InputError
-        If the file is not SVG.
+    InputError if the file is not SVG.
     """
     root = _parsed(svg, name)
     _strip(root)

@@ -144,14 +144,9 @@ def open_store(directory: Path, code: str, *, resume: bool = False, force: bool 
 class Kept(Generic[Item, Result]):
     """How the results of a study are kept.
 
-    Attributes
-    ----------
-    inputs, name : callable
-        Of an item: what its result depends on, and what it is called for the eye.
-    write, read : callable
-        From a result to plain data and, with the item, back; InputError if they are none of a result.
-    died : callable
-        Result of an item whose worker died, for a reason.
+    Of an item, `inputs` are what its result depends on, and `name` what it is called for the eye. `write` goes from a
+    result to plain data and `read`, with the item, back, or to InputError if they are none of a result; `died` is the
+    result of an item whose worker died, for a reason.
     """
 
     inputs: Callable[[Item], Plain]

@@ -162,16 +162,10 @@ Results = TypeVar("Results")
 
 @dataclass(frozen=True)
 class Picture(Generic[Results]):
-    """A figure of a study.
+    """A figure of a study: its file's name without the suffix, and what is drawn.
 
-    Attributes
-    ----------
-    stem, title : str
-        File name without its suffix, and what is drawn.
-    draw, sentences : callable
-        What draws it from the results, and what says in words what is to be seen in it; empty ones are left out.
-    lacks : callable
-        What the results lack to be drawn, or empty.
+    `draw` draws it from the results, and `sentences` say what is to be seen in it; empty ones are left out. `lacks`
+    says what the results lack to be drawn, or nothing.
     """
 
     stem: str

@@ -138,7 +138,7 @@ HARMONIC = ((9, 2000), (11, 2600))  # nodes of the cells and harmonics, which re
 
 def _spheres(scene: Scene, _: float) -> Operators:
     R = 6 * radius_of(scene)
-    hows = [harmonics.Resolution(nodes, count * scene.scales.spike_width / R) for nodes, count in HARMONIC]
+    hows = [harmonics.Fineness(nodes, count * scene.scales.spike_width / R) for nodes, count in HARMONIC]
     return [_made(harmonics.sized_body(scene, how), scene) for how in hows]
 
 

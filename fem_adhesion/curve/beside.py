@@ -41,13 +41,7 @@ GAPS = np.linspace(-0.4, 6.0, 1200)  # shown of the laws, in dgamma/(largest ten
 
 @dataclass(frozen=True)
 class Beside:
-    """Curves by several laws, all as strong as the first.
-
-    Attributes
-    ----------
-    curves : sequence of (Law, EquilibriumPath)
-        The first is what was asked.
-    """
+    """Curves by several laws, all as strong as the first, which is what was asked."""
 
     curves: Sequence[tuple[Law, EquilibriumPath]]
 

@@ -33,12 +33,7 @@ Range = tuple[float, float]
 class Line(Valued):
     """A curve, dimensionless, all arrays (n,).
 
-    Attributes
-    ----------
-    approach, load, central_gap : array
-        In eps, R dgamma and eps.
-    kind : int array
-        `STABLE`, `GRIPS_ONLY` or `UNSTABLE`.
+    Approach, load and central gap are in eps, R dgamma and eps; the kind is `STABLE`, `GRIPS_ONLY` or `UNSTABLE`.
     """
 
     approach: Array

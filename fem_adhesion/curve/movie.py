@@ -47,15 +47,7 @@ class Shot:
 
 
 def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = SIZE) -> None:
-    """Draw the body along the curve through its jumps and write it as gif, as `write_picture` does a picture.
-
-    Raises
-    ------
-    InputError
-        If pyvista is missing, or there is nothing to draw with off-screen.
-    halfspace.errors.NotConverged
-        If a state cannot be solved for.
-    """
+    """Draw the body along the curve through its jumps and write it as gif; raise as `write_picture` or NotConverged."""
     frames = experiment(curves.path)
     images = list(_images(curves, frames, size))
     first, *rest = _with_one_palette(images)

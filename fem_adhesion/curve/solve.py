@@ -79,17 +79,10 @@ class Question:
 
 @dataclass(frozen=True)
 class Curves:
-    """Curves of a contact.
+    """Curves of what was asked of a contact.
 
-    Attributes
-    ----------
-    question : Question
-        What was asked.
-    paths : mapping of str to EquilibriumPath
-        By solver, `FINITE_ELEMENTS` first if it was asked.
-    grips, apparatus : Cycle or None
-        Jumps on the first path under fixed grips and with the apparatus, if the contact jumps; with fixed grips there
-        is no apparatus.
+    The paths are by solver, `FINITE_ELEMENTS` first if it was asked; `grips` and `apparatus` are the jumps on the first
+    path under fixed grips and with the apparatus, if the contact jumps; with fixed grips there is no apparatus.
     """
 
     question: Question

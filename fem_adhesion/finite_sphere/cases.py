@@ -83,19 +83,10 @@ class SphereCase:
 class Record:
     """How a case ended.
 
-    Attributes
-    ----------
-    status : str
-        ``solved``; ``refused`` by the solver; ``died`` with the process that worked on it; ``left out`` beforehand, as
-        beyond the limits of the solver.
-    values : mapping of str to Estimate
-        Quantities in the units of `QUANTITIES`; those that the contact does not have, as the jumps of a hard one, are
-        absent.
-    reason, kind : str
-        Why it is not solved, and which error says so, as ``ContactTooWide``; empty if it is solved, the kind if it
-        died.
-    seconds : float
-        Wall time.
+    The status is ``solved``; ``refused`` by the solver; ``died`` with the process that worked on it; ``left out``
+    beforehand, as beyond the limits of the solver. Values are in the units of `QUANTITIES`; those that the contact does
+    not have, as the jumps of a hard one, are absent. Reason and kind say why it is not solved, and which error says so,
+    as ``ContactTooWide``; empty if it is solved, the kind if it died. Seconds are wall time.
     """
 
     case: SphereCase

@@ -30,17 +30,11 @@ MISFIT = 0.25  # largest relative difference of a rule from its contour
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Field(Valued):
-    """A deviation over the plane.
+    """A deviation over the plane of Tabor parameter and R/eps, (m,) and (n,), both ascending.
 
-    Attributes
-    ----------
-    tabor, radius_ratio : (m,) and (n,) array
-        Ascending.
-    deviation, error : (m, n) array
-        Of the sphere from the half-space, relative to it, and its bound; nan where there is none.
-    ending : (m, n) array of str
-        How each contact on the sphere ended: ``solved``, ``absent`` if it does not have the quantity, ``died``, the
-        kind of error that refused it, ``left out``, or empty where none was asked for.
+    Deviation and error (m, n) are those of the sphere from the half-space, relative to it, and its bound; nan where
+    there is none. The ending (m, n) says how each contact on the sphere ended: ``solved``, ``absent`` if it does not
+    have the quantity, ``died``, the kind of error that refused it, ``left out``, or empty where none was asked for.
     """
 
     tabor: Array

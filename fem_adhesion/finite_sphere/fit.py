@@ -74,17 +74,10 @@ def leading_terms(cause: str, quantity: str, *, one_tabor: bool = False) -> Mapp
 class Fit:
     """Leading terms of a deviation.
 
-    Attributes
-    ----------
-    coefficients : mapping of str to Estimate
-        By the names of the terms. The error is two standard deviations and the change when the points of more than half
-        the largest beta/R are left out.
-    holds_to, points : float and int
-        Largest beta/R of the points fitted, up to which the fit is within the tolerance, and how many they are.
-    tolerance : float
-        Part of the sum of the terms' sizes by which a point may be off, beyond its own error.
-    worst : float
-        Largest residual, in relative deviation.
+    Coefficients are by the names of the terms, their errors two standard deviations and the change when the points of
+    more than half the largest beta/R are left out. So far, `holds_to`, the fit is within the tolerance, the part of the
+    sum of the terms' sizes by which a point may be off beyond its own error; `worst` is the largest residual in so many
+    points, in relative deviation.
     """
 
     coefficients: Mapping[str, Estimate]

@@ -36,16 +36,9 @@ class JumpOn:
 class Criterion(Valued):
     """A criterion with its constants as printed and refitted to the true jumps.
 
-    Attributes
-    ----------
-    name, formula : str
-        What it is; the constants are k, c, n.
-    predict : callable
-        Central gap, or if `of_approach` the approach, at a Tabor parameter by the printed constants.
-    constants : tuple of (str, float or None, Estimate)
-        Name, printed and refitted value, the latter with the standard error of the fit.
-    scatter : float
-        Standard deviation of the logarithm of the formula's left-hand side around the refitted formula.
+    It predicts the central gap, or if `of_approach` the approach, at a Tabor parameter by the printed constants. Each
+    of these, k, c or n, has its name, the printed value, and the refitted one with the standard error of the fit. The
+    scatter is the standard deviation of the logarithm of the formula's left-hand side around the refitted formula.
     """
 
     name: str

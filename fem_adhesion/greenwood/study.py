@@ -66,30 +66,12 @@ class Tables:
 class Greenwood1997(Valued):
     """What the figures and tables show.
 
-    Attributes
-    ----------
-    curves, elements : mapping of float to EquilibriumPath
-        Curves on the half-space and by finite elements, by Tabor parameter.
-    jumps : mapping of str to Jump
-        Under fixed grips at mu = 2, by the letters of their ends.
-    folds : (n, 4) array
-        Approach, load, central gap and contact radius at every fold at mu = 5, in order.
-    profiles : tuple of DrawnState
-        Of Fig. 4, at mu = 5.
-    pull_offs : tuple of PullOff
-        By rising Tabor parameter.
-    ripples, rises : tuple of Ripple, mapping of float to Rise
-        Curves at mu = 2 on grids that are too coarse; by spacing, the false rise of the pull-off force.
-    criteria, tables : CriteriaStudy, Tables
-        Of jumping on; printed beside computed.
-    relaxations : tuple of Attempt
-        The iterations of 1997 on 200 nodes.
-    devices : DeviceStudy
-        Apparatus of finite stiffness, at mu = 2.
-    critical_tabor : Estimate
-        Where the curve first has a vertical tangent.
-    seconds, quick : float, bool
-        Wall time of the computation; whether fewer points were computed.
+    Curves on the half-space and by finite elements are by Tabor parameter; `jumps` are those under fixed grips at mu =
+    2, by the letters of their ends; `folds` (n, 4) approach, load, central gap and contact radius at every fold at mu =
+    5, in order, where the profiles are of Fig. 4. Pull-offs are by rising Tabor parameter, ripples curves at mu = 2 on
+    grids that are too coarse, and rises, by spacing, the false ones of the pull-off force. Relaxations are the
+    iterations of 1997 on 200 nodes, devices apparatus of finite stiffness at mu = 2; the critical Tabor parameter is
+    where the curve first has a vertical tangent. Seconds are those of the computation; a quick one has fewer points.
     """
 
     curves: Mapping[float, EquilibriumPath]

@@ -33,18 +33,9 @@ BESIDE = 1e-3  # distance in the approach from a fold, relative, up to which a s
 class Printed:
     """A printed number and the computed one.
 
-    Attributes
-    ----------
-    row, column : str, float
-        Of the table: alpha* of Table 1, the Tabor parameter of Table 2, the gap of Fig. 4.
-    unit, printed : str
-        Of both values; as printed.
-    computed : Estimate
-        Converged value with its error.
-    note : str
-        What explains the difference.
-    scale : float, optional
-        What the difference is relative to, in the same unit: the printed value unless given.
+    The column is alpha* in Table 1, the Tabor parameter in Table 2, the gap in Fig. 4; the unit is that of both values,
+    the note what explains their difference, and the scale, in the same unit, what that is relative to: the printed
+    value unless given.
     """
 
     row: str

@@ -197,16 +197,9 @@ _MIRRORED = {6: [0, 2, 1, 5, 4, 3], 9: [0, 3, 2, 1, 7, 6, 5, 4, 8]}  # nodes of 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Solid(Valued):
-    """A solid of revolution about z.
+    """A solid of revolution about z, its points (nodes, 3) in beta, its cells by VTK's type.
 
-    Attributes
-    ----------
-    angles, meridian : (nodes,) arrays
-        Of each node, in radians, and the node of the section that it came from.
-    points : (nodes, 3) array
-        In beta.
-    cells : mapping of int to (cells, n) int array
-        Nodes of the cells by VTK's type.
+    Each node has its angle in radians, and the node of the section, on the meridian, that it came from.
     """
 
     angles: Array

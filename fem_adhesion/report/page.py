@@ -40,18 +40,9 @@ DIGITS = 5  # of the numbers in the moving figure
 
 @dataclass(frozen=True)
 class Contents:
-    """What goes into a report.
+    """What goes into a report: the cross-check, one curve, by both solvers and state by state, and other results.
 
-    Attributes
-    ----------
-    cases : sequence of Case or Failure
-        The cross-check.
-    curves, walk : Curves and Walk, or None
-        One curve by both solvers, if it could be solved, and state by state.
-    directories : mapping of str to Path
-        Results of other commands, by the commands' names.
-    lost : str
-        Why there is no curve, or "".
+    Those are in directories by their commands' names; `lost` says why there is no curve, or is empty.
     """
 
     cases: Sequence[Case | Failure]

@@ -127,17 +127,11 @@ DIGITS = 4  # that are shown of such
 class Source:
     """What a command line leaves in a directory that goes into the report.
 
-    Attributes
-    ----------
-    name, title, introduction : str
-        Of the section and of the option that takes the directory; its title, and what to know before looking.
-    figures : sequence of (stem, caption)
-        SVG files; the caption is the text alternative too. What the command measured itself stands in `captions`, a CSV
-        file with columns ``figure`` and ``caption``, or "".
-    tables : sequence of (stem, title)
-        CSV files; of one, `counted` or "", the column ``outcome`` is counted.
-    line : str
-        The command line, if it is not that of the same name.
+    The line is the command of the same name unless given. The name is that of the section and of the option that takes
+    the directory; the introduction is what to know before looking. Figures are SVG files by stem and caption, which is
+    the text alternative too; what the command measured itself stands in `captions`, a CSV file with columns ``figure``
+    and ``caption``, or "". Tables are CSV files by stem and title; of one, `counted` or "", the column ``outcome`` is
+    counted.
     """
 
     name: str

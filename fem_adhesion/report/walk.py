@@ -32,21 +32,12 @@ FINE = np.stack(np.meshgrid(*2 * [np.linspace(0, 1, 7)], indexing="ij")).reshape
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Station(Valued):
-    """One state of the walk.
+    """One state of the walk, by the name of the event that it is, or "", and whether it is stable under fixed grips.
 
-    Attributes
-    ----------
-    name : str
-        Of the event that it is, or "".
-    arclength, approach, load, central_gap, contact_radius : float
-        In the path's unit, eps, R dgamma, eps and beta (nan without contact).
-    stable : bool
-        Under fixed grips.
-    pressure, gap : (2, n) array
-        P and H at the radii of the walk: by finite elements, and by the half-space at the same contact radius or
-        central gap; nan where the half-space has no such state.
-    lines : (depths, m) array
-        Upward displacement in eps of the lines inside the body, at the walk's places.
+    Its numbers are in the path's unit, eps, R dgamma, eps and beta (nan without contact). Pressure and gap (2, n) are P
+    and H at the radii of the walk: by finite elements, and by the half-space at the same contact radius or central gap;
+    nan where the half-space has no such state. Lines (depths, m) are the upward displacement in eps of those inside the
+    body, at the walk's places.
     """
 
     name: str

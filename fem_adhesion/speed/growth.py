@@ -31,18 +31,8 @@ LOGARITHMIC = 0.0
 class Growth:
     """What grows for which solver, and how long that then takes.
 
-    Attributes
-    ----------
-    solver, grows : str
-        Who solves, and what of the scene grows.
-    expected : float
-        Highest exponent expected of the time, 0 if only logarithms are.
-    at : tuple of float
-        Values of what grows, from small to large.
-    solve : callable
-        Solves at one of them.
-    seconds : tuple of float
-        For each of them, once it is timed.
+    The time is expected to go as a power, `expected`, at most, 0 if only logarithms are. Values of what grows go from
+    small to large; each is solved for, and has its seconds once it is timed.
     """
 
     solver: str

@@ -53,20 +53,12 @@ class Step:
 
 @dataclass(frozen=True)
 class Method:
-    """A ladder of resolutions.
+    """A ladder of resolutions, from coarse to fine, of a family of elasticity.
 
-    Attributes
-    ----------
-    family, basis : str
-        Whose elasticity it is; how the pressure or the displacement is represented, or solved for.
-    steps : sequence of Step
-        From coarse to fine.
-    quick : int
-        How many of them, the coarsest, make up the quick ladder: a budget of work, the same on every machine.
-    variant : str
-        What differs from the family's usual: for finite elements, condensed with a point load's far field.
-    may_diverge : bool
-        Whether its iteration is known to run away from stiff attraction: that it does is then a finding, not a failure.
+    The basis is how the pressure or the displacement is represented, or solved for, the variant what differs from the
+    family's usual: for finite elements, condensed with a point load's far field. So many of the steps, the coarsest,
+    make up the quick ladder: a budget of work, the same on every machine. An iteration that is known to run away from
+    stiff attraction `may_diverge`: that it does is then a finding, not a failure.
     """
 
     family: Family

@@ -37,23 +37,13 @@ class Truth:
 
 @dataclass(frozen=True)
 class Timing:
-    """One resolution of one method.
+    """One resolution of one method: its setting, and how it ended, and why.
 
-    Attributes
-    ----------
-    method, setting : str
-        Whose rung, and how fine.
-    status, reason : str
-        How it ended, and why: ``converged``; ``too coarse``, as its grid cannot carry the spike of tension; ``refused``
-        before any work; ``failed``.
-    seconds : float
-        Wall time from the set-up to the events, or to the failure.
-    unknowns : int or None
-        Elastic ones included; None without result.
-    memory : float
-        Growth of the peak memory of the process in MiB; nan where the system does not tell.
-    errors, floors : mapping of str to float
-        For each quantity found, as by `Truth.relative`; not below the uncertainty of the truth on the same scale.
+    The status is ``converged``; ``too coarse``, as its grid cannot carry the spike of tension; ``refused`` before any
+    work; ``failed``. Seconds are wall time from the set-up to the events, or to the failure; unknowns include elastic
+    ones; memory is the growth of the peak memory of the process in MiB, nan where the system does not tell. Errors and
+    floors are for each quantity found, as by `Truth.relative`; not below the uncertainty of the truth on the same
+    scale.
     """
 
     method: str

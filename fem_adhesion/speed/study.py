@@ -39,11 +39,11 @@ def measure(
     methods: Sequence[Method] | None = None,
     growths: Sequence[Growth] | None = None,
 ) -> SpeedStudy:
-    """Time every method, all unless given, on its ladder of resolutions.
+    """Time every method, all unless given, on its ladder of resolutions, and how the time of others grows.
 
     A quick study climbs the lower rungs only, which `Method.quick` counts, and each once. `progress` is called before
-    each method with its name, and how many of how many are done. All growths of the time are
-    measured unless some are given. InputError if tabor is out of range, NotConverged if a truth is not found.
+    each method with its name, and how many of how many are done. All growths are measured unless some are given.
+    InputError if tabor is out of range, NotConverged if a truth is not found.
     """
     require_tabor(tabor)
     chosen = tuple([*halfspace_methods(), *element_methods()] if methods is None else methods)
