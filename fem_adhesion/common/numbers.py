@@ -100,7 +100,7 @@ def _registry() -> Any:
     return pint.UnitRegistry()
 
 
-def with_error(quantity: Quantity, scale: float = 1.0, digits: int = DIGITS) -> str:
+def with_error(quantity: Quantity | Estimate, scale: float = 1.0, digits: int = DIGITS) -> str:
     """Number, times a scale, with the error of its last digit in brackets, rounded up: 60.4440(1).
 
     It has so many significant digits at most.

@@ -13,7 +13,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from fem_adhesion.common.numbers import Quantity, with_error
+from fem_adhesion.common.numbers import with_error
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.figure import LOOK
 from fem_adhesion.curve.load import KINDS, contact_words
@@ -85,11 +85,10 @@ def _caption(curves: Curves, at: str) -> tuple[str, str]:
     """Which contact and event, and its numbers with their errors."""
     event, units, numbers = curves.path.events[at], scales(curves), {}
     for name in SYMBOLS:
-        value, error = getattr(event, name), getattr(event, f"{name}_error")
         if (at, name) == ("zero_load", "load"):
             numbers[name] = "0"
-        elif np.isfinite(value):
-            numbers[name] = with_error(Quantity(value, error, ""), units[name].size, DIGITS)
+        elif np.isfinite((found := event.estimate(name)).value):
+            numbers[name] = with_error(found, units[name].size, DIGITS)
     return f"{contact_words(curves)}: {STATES[at].words}", _listed(curves, numbers)
 
 

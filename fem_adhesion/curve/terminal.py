@@ -10,7 +10,7 @@ from rich.markup import escape
 from rich.text import Text
 
 from fem_adhesion.common.contact import edge_told
-from fem_adhesion.common.numbers import Quantity, engineering, with_error
+from fem_adhesion.common.numbers import engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.scales import EVENT_QUANTITIES, Scale, scales
@@ -86,13 +86,13 @@ def cells(event: Event, units: Mapping[str, Scale], tolerance: Tolerance) -> Ite
     """Numbers of an event, each with the error of its last digit in brackets, and a mark if that misses a tolerance."""
     missed = tolerance.missed_by(event)
     for name in EVENT_QUANTITIES:
-        value, error = getattr(event, name), getattr(event, f"{name}_error")
-        if np.isnan(value):
+        found = event.estimate(name)
+        if np.isnan(found.value):
             yield "-"
-        elif abs(value) <= error:
+        elif abs(found.value) <= found.error:
             yield "0"
         else:
-            yield with_error(Quantity(value, error, ""), units[name].size, DIGITS) + (MISSED if name in missed else "")
+            yield with_error(found, units[name].size, DIGITS) + (MISSED if name in missed else "")
 
 
 def _title(curves: Curves) -> Iterator[str]:
@@ -113,7 +113,7 @@ def notes(curves: Curves) -> Iterator[str]:
         devices.append((_apparatus(curves), curves.apparatus))
     for device, cycle in devices:
         if cycle:
-            lost = with_error(Quantity(cycle.energy_lost.value, cycle.energy_lost.error, ""), energy.size, DIGITS)
+            lost = with_error(cycle.energy_lost, energy.size, DIGITS)
             yield f"energy lost in a cycle, {device}: {lost} {energy.unit}"
         elif device == "fixed grips" and curves.path.jumps is None:
             yield "jumps, fixed grips: cannot be told from a contact that follows smoothly"

@@ -93,23 +93,14 @@ def plan(
     a sphere is too small for every Tabor parameter.
     """
     asked = any(values is not None for values in (tabors, radius_ratios, poissons))
-    main = _main_grid(tabors, radius_ratios, poissons, quick)
+    usual = ((0.3, 1.0, 2.0), (30.0, 300.0, 3e3)) if quick else (TABORS, RADIUS_RATIOS)
+    main = Combinations(tabors or usual[0], radius_ratios or usual[1], poissons or (POISSON,))
     _require_inputs(main)
     grids = [main] if asked else _usual_grids(main, quick)
     rtol = QUICK_RTOL if quick else RTOL
     cases = tuple(dict.fromkeys(case for grid in grids for case in _cases(grid, rtol)))
     left_out = {case: record for case in cases if (record := _left_out(case))}
     return Plan(tuple(case for case in cases if case not in left_out), tuple(left_out.values()))
-
-
-def _main_grid(
-    tabors: Sequence[float] | None,
-    radius_ratios: Sequence[float] | None,
-    poissons: Sequence[float] | None,
-    quick: bool,
-) -> Combinations:
-    usual = ((0.3, 1.0, 2.0), (30.0, 300.0, 3e3)) if quick else (TABORS, RADIUS_RATIOS)
-    return Combinations(tabors or usual[0], radius_ratios or usual[1], poissons or (POISSON,))
 
 
 def _usual_grids(main: Combinations, quick: bool) -> list[Combinations]:
