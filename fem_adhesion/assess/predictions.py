@@ -8,14 +8,13 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from fem_adhesion.assess import theories
-from fem_adhesion.assess.theories import Curve, Loop, estimated, loop
+from fem_adhesion.assess.theories import Curve, estimated, loop
 from fem_adhesion.common.numbers import Quantity
 from halfspace.elastic.layers import Layer
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.devices import Jump, cycle
+from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import approach_scale
 from halfspace.scaling import Units
-from halfspace.theories.closed_forms import ContactState
 from halfspace.theories.exact_sphere import JKRSphere, RigidSphere
 from halfspace.values import Estimate
 
@@ -96,32 +95,18 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
     NotConverged if a jump or a landing cannot be solved for.
     """
     tension, free = path.events["pull_off"], path.events["zero_load"]
-    values = {
-        "pull_off_force": Quantity.of(Estimate(-tension.load, tension.load_error), *units.si("load")),
-        "pull_off_radius": Quantity.of(tension.estimate("contact_radius"), *units.si("radius")),
-        "zero_load_radius": Quantity.of(free.estimate("contact_radius"), *units.si("radius")),
+    found = {
+        "pull_off_force": Estimate(-tension.load, tension.load_error),
+        "pull_off_radius": tension.estimate("contact_radius"),
+        "zero_load_radius": free.estimate("contact_radius"),
     }
     round_trip = cycle(path, stiffness)
     if round_trip:
-        values |= _jump("jump_on", round_trip.jump_on, stiffness, units) | _jump(
-            "jump_off", round_trip.jump_off, stiffness, units
-        )
-        values["energy_lost"] = Quantity.of(round_trip.energy_lost, *units.si("energy"))
-    return Prediction(model, _known(values), path, path.missed | (round_trip.missed if round_trip else {}))
-
-
-def _jump(name: str, jump: Jump, stiffness: float, units: Units) -> dict[str, Quantity]:
-    at = jump.take_off
-    base = Estimate(at.approach + at.load / stiffness, at.approach_error + at.load_error / stiffness)
-    return _positions(name, Estimate(1 - at.approach, at.approach_error), base, units)
-
-
-def _positions(name: str, separation: Estimate, base: Estimate, units: Units) -> dict[str, Quantity]:
-    """Where a jump takes off, along both axes."""
-    return {
-        f"{name}_separation": Quantity.of(separation, *units.si("approach")),
-        f"{name}_base": Quantity.of(base, *units.si("approach")),
-    }
+        for name, at in (("jump_on", round_trip.jump_on.take_off), ("jump_off", round_trip.jump_off.take_off)):
+            found |= _take_off(name, at.estimate("approach"), at.estimate("load"), stiffness)
+        found["energy_lost"] = round_trip.energy_lost
+    missed = path.missed | (round_trip.missed if round_trip else {})
+    return Prediction(model, _in_si(found, units), path, missed)
 
 
 def closed(
@@ -129,33 +114,47 @@ def closed(
 ) -> Prediction:
     """Read a closed theory, made from the Tabor parameter and the stiffness in R dgamma/eps.
 
-    The errors are those of the reading, not the theory's distance from the truth.
+    The errors are those of the reading, not the theory's distance from the truth. At a turning point of the base a
+    displaced sample errs in the approach alone.
     """
     curve = make(tabor, stiffness)
-    values = {
-        "pull_off_force": _read(curve, lambda c: -theories.pull_off(c).load, *units.si("load")),
-        "pull_off_radius": _read(curve, lambda c: theories.pull_off(c).contact_radius, *units.si("radius")),
-        "zero_load_radius": _read(curve, lambda c: theories.zero_load(c).contact_radius, *units.si("radius")),
+    found = {
+        "pull_off_force": estimated(curve, lambda c: -theories.pull_off(c).load),
+        "pull_off_radius": estimated(curve, lambda c: theories.pull_off(c).contact_radius),
+        "zero_load_radius": estimated(curve, lambda c: theories.zero_load(c).contact_radius),
     }
+    jumps = loop(curve, stiffness)
+    if jumps:
+        for name, (at, _) in (("jump_on", jumps.jump_on), ("jump_off", jumps.jump_off)):
+            found |= _take_off(name, Estimate(at.approach, jumps.spacing), Estimate(at.load, 0.0), stiffness)
+        found["energy_lost"] = estimated(curve, lambda c: _lost(c, stiffness))
+    return Prediction(model, _in_si(found, units), curve)
+
+
+def _lost(curve: Curve, stiffness: float) -> float:
     found = loop(curve, stiffness)
-    if found:
-        values |= _closed_jump("jump_on", found, found.jump_on[0], stiffness, units)
-        values |= _closed_jump("jump_off", found, found.jump_off[0], stiffness, units)
-        values["energy_lost"] = _read(curve, lambda c: _lost(c, stiffness), *units.si("energy"))
-    return Prediction(model, _known(values), curve)
+    return found.energy_lost if found else math.nan
+
+
+def _take_off(name: str, approach: Estimate, load: Estimate, stiffness: float) -> dict[str, Estimate]:
+    """Where a jump takes off, along both axes, in eps."""
+    base = Estimate(approach.value + load.value / stiffness, approach.error + load.error / stiffness)
+    return {f"{name}_separation": Estimate(1 - approach.value, approach.error), f"{name}_base": base}
+
+
+def _in_si(found: Mapping[str, Estimate], units: Units) -> dict[str, Quantity]:
+    """Numbers in SI, without what the model does not have."""
+    known = {name: number for name, number in found.items() if math.isfinite(number.value)}
+    return {name: Quantity.of(number, *units.si(MEASURED[name.split("_")[-1]])) for name, number in known.items()}
+
+
+MEASURED = {"force": "load", "radius": "radius", "separation": "approach", "base": "approach", "lost": "energy"}
 
 
 def large_tabor(tabor: float, stiffness: float, units: Units) -> Prediction:
     """JKR's theory with the reach of the attraction, its errors being the distance from the truth: tabor >= 300."""
-    read = closed("JKR with reach", theories.jkr_with_reach, tabor, stiffness, units)
-    part = (REFERENCE_TABOR / tabor) ** DECAY
-    values = {
-        name: Quantity(
-            q.value, q.error + abs(q.value) * DISTANCE[name] * (part if "jump_on" not in name else 1), q.unit
-        )
-        for name, q in read.values.items()
-    }
-    return Prediction(read.model, values, read.curve)
+    read, part = closed("JKR with reach", theories.jkr_with_reach, tabor, stiffness, units), _part(tabor)
+    return _widened(read, {name: 1.0 if "jump_on" in name else part for name in QUANTITIES})
 
 
 def large_tabor_on(layer: Layer, tabor: float, stiffness: float, units: Units) -> Prediction:
@@ -164,11 +163,20 @@ def large_tabor_on(layer: Layer, tabor: float, stiffness: float, units: Units) -
     What is left of the attraction's reach grows where the spike at the edge is no longer narrow beside the thickness.
     """
     read = closed(ON_LAYER, partial(theories.jkr_on, layer), tabor, stiffness, units)
-    part = (REFERENCE_TABOR / tabor) ** DECAY * (1 + (THIN / layer.thickness) ** 3)
+    return _widened(read, dict.fromkeys(IN_CONTACT, _part(tabor) * (1 + (THIN / layer.thickness) ** 3)))
+
+
+def _part(tabor: float) -> float:
+    """What is left, at a Tabor parameter, of the distance at the last that is computed."""
+    return float((REFERENCE_TABOR / tabor) ** DECAY)
+
+
+def _widened(read: Prediction, parts: Mapping[str, float]) -> Prediction:
+    """Prediction of some quantities, its errors raised by parts of `DISTANCE`."""
     values = {
-        name: Quantity(q.value, q.error + abs(q.value) * DISTANCE[name] * part, q.unit)
+        name: Quantity(q.value, q.error + abs(q.value) * DISTANCE[name] * parts[name], q.unit)
         for name, q in read.values.items()
-        if name in IN_CONTACT
+        if name in parts
     }
     return Prediction(read.model, values, read.curve)
 
@@ -177,43 +185,18 @@ def soft_sphere(units: Units) -> Prediction:
     """Read JKR's theory on the exact profile of the sphere, the contact's values only; InputError where it spans R."""
     theory = JKRSphere(units.tabor, units.radius_ratio)
     tension, free = theory.pull_off(), theory.zero_load()
-    values = {
-        "pull_off_force": _exact(-tension.load, *units.si("load")),
-        "pull_off_radius": _exact(tension.contact_radius, *units.si("radius")),
-        "zero_load_radius": _exact(free.contact_radius, *units.si("radius")),
-    }
-    return Prediction("JKR on the sphere", values)
+    radii = {"pull_off_radius": tension.contact_radius, "zero_load_radius": free.contact_radius}
+    return _exact("JKR on the sphere", {"pull_off_force": -tension.load, **radii}, units)
 
 
 def rigid_sphere(units: Units) -> Prediction:
     """Read the rigid hemisphere's pull-off force; InputError if it is far smaller than the spacing."""
-    tension = RigidSphere(units.radius_ratio).pull_off()
-    return Prediction("rigid sphere", {"pull_off_force": _exact(-tension.load, *units.si("load"))})
+    return _exact("rigid sphere", {"pull_off_force": -RigidSphere(units.radius_ratio).pull_off().load}, units)
 
 
-def _exact(value: float, size: float, unit: str) -> Quantity:
-    return Quantity.of(Estimate(value, 1e-12 * abs(value)), size, unit)
-
-
-def _read(curve: Curve, quantity: Callable[[Curve], float], size: float, unit: str) -> Quantity:
-    return Quantity.of(estimated(curve, quantity), size, unit)
-
-
-def _lost(curve: Curve, stiffness: float) -> float:
-    found = loop(curve, stiffness)
-    return found.energy_lost if found else math.nan
-
-
-def _closed_jump(name: str, found: Loop, at: ContactState, stiffness: float, units: Units) -> dict[str, Quantity]:
-    """Take-off of a jump; at a turning point of the base a displaced sample errs in the approach alone."""
-    separation = Estimate(1 - at.approach, found.spacing)
-    base = Estimate(at.approach + at.load / stiffness, found.spacing)
-    return _positions(name, separation, base, units)
-
-
-def _known(values: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Leave out what the model does not have."""
-    return {name: q for name, q in values.items() if math.isfinite(q.value)}
+def _exact(model: str, numbers: Mapping[str, float], units: Units) -> Prediction:
+    found = {name: Estimate(value, 1e-12 * abs(value)) for name, value in numbers.items()}
+    return Prediction(model, _in_si(found, units))
 
 
 def relative(ours: Prediction, reference: Prediction, name: str, spacing: float) -> Quantity | None:
