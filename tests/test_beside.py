@@ -93,7 +93,7 @@ def test_labels_tell_the_lines_that_are_drawn(collapsed, drawn):
 def test_where_one_law_folds_and_another_does_not_jumps_are_not_compared(collapsed):
     first, (law, path), _ = collapsed.curves
     smooth = replace(path, events={name: path.events[name] for name in ("pull_off", "zero_load")})
-    found = beside.Beside([first, (law, smooth)])
+    found = beside.EquallyStrong([first, (law, smooth)])
     assert found.apart("jumps") is None
     assert found.apart("pull-off").value > 0
     assert "not all fold" in found.told

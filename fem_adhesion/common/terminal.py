@@ -26,7 +26,7 @@ UNIT = re.compile(r"(%|[yzafpnµmkMGT]?(m|N|Pa|J|N/m|J/m\^2)|s|R|dgamma(/eps)?|e
 
 
 @dataclass(frozen=True)
-class Layout:
+class TableFrame:
     """How rich frames a table, and how many columns of the terminal the frame takes for each of its own and in all."""
 
     frame: Mapping[str, Any]
@@ -34,9 +34,9 @@ class Layout:
     once: int
 
 
-LAYOUTS = (
-    Layout({"box": box.HEAVY_HEAD}, 3, 1),
-    Layout({"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "padding": (0, 0)}, 1, -1),
+FRAMES = (
+    TableFrame({"box": box.HEAVY_HEAD}, 3, 1),
+    TableFrame({"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "padding": (0, 0)}, 1, -1),
 )
 
 
@@ -183,12 +183,12 @@ class Fitted:
                 return kept, self._table(kept, layout, _widths(kept, spare))
         return (), None
 
-    def _choices(self) -> Iterator[tuple[Sequence[Column], Layout]]:
-        yield from ((self.columns, layout) for layout in LAYOUTS)
+    def _choices(self) -> Iterator[tuple[Sequence[Column], TableFrame]]:
+        yield from ((self.columns, layout) for layout in FRAMES)
         for rank in sorted({column.rank for column in self.columns} - {0}, reverse=True):
-            yield [column for column in self.columns if column.rank < rank], LAYOUTS[-1]
+            yield [column for column in self.columns if column.rank < rank], FRAMES[-1]
 
-    def _table(self, columns: Sequence[Column], layout: Layout, widths: Sequence[int]) -> Table:
+    def _table(self, columns: Sequence[Column], layout: TableFrame, widths: Sequence[int]) -> Table:
         made = Table(**layout.frame)
         for column, width in zip(columns, widths, strict=True):
             justify: JustifyMethod = "left" if column.text else "right"

@@ -40,7 +40,7 @@ GAPS = np.linspace(-0.4, 6.0, 1200)  # shown of the laws, in dgamma/(largest ten
 
 
 @dataclass(frozen=True)
-class Beside:
+class EquallyStrong:
     """Curves by several laws, all as strong as the first, which is what was asked."""
 
     curves: Sequence[tuple[Law, EquilibriumPath]]
@@ -96,14 +96,14 @@ def as_strong(scene: Scene, law: Law) -> Scene:
     return replace(scene, law=law, tabor=scene.tabor * scene.law.strength / law.strength)
 
 
-def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> Beside:
+def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> EquallyStrong:
     """Trace the curves by other laws with the solver of the first, or raise as `require` does, or NotConverged."""
     question, found = curves.question, [(curves.question.scene.law, curves.path)]
     require(question.scene, laws)
     for number, law in enumerate(laws):
         progress(registry.told(law), number, len(laws))
         found.append((law, trace(replace(question, scene=as_strong(question.scene, law)), curves.solver)))
-    return Beside(found)
+    return EquallyStrong(found)
 
 
 def require(scene: Scene, laws: Sequence[Law]) -> None:
@@ -114,12 +114,12 @@ def require(scene: Scene, laws: Sequence[Law]) -> None:
         raise InputError(f"beside = {len(laws)} laws, limit: {len(LOOKS) - 1}; give fewer")
 
 
-def write(beside: Beside, file: TextIO, form: str) -> None:
+def write(beside: EquallyStrong, file: TextIO, form: str) -> None:
     """Write the figure to a file, in a format of `fem_adhesion.common.style.require_suffix`."""
     style.write(lambda: draw(beside), file, form)
 
 
-def draw(beside: Beside) -> Figure:
+def draw(beside: EquallyStrong) -> Figure:
     """Loads against approaches in units that all share, and the laws, each with its largest tension as 1."""
     figure, (left, right) = style.panels(2, 5.6)
     frames = []
@@ -164,7 +164,7 @@ def _law(law: Law) -> tuple[Array, Array]:
 CORE = -0.5  # eps: nearer by are no gaps of a law with a core
 
 
-def record(beside: Beside) -> dict[str, Any]:
+def record(beside: EquallyStrong) -> dict[str, Any]:
     """What was compared, as plain data: the laws with their Tabor parameters, and how far the curves are apart."""
     apart = {subject: plain(beside.apart(subject)) for subject in COMPARED}
     laws = [{"law": plain(registry.record_of(law)), "tabor": path.tabor} for law, path in beside.curves]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fem_adhesion.common.contact import Contact
-    from fem_adhesion.curve.beside import Beside
+    from fem_adhesion.curve.beside import EquallyStrong
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
     from halfspace.laws import Law
@@ -118,7 +118,7 @@ def run(options: argparse.Namespace) -> int:
     return AGREE
 
 
-def _record(collapsed: Beside | None) -> dict[str, Any]:
+def _record(collapsed: EquallyStrong | None) -> dict[str, Any]:
     """What is told of several laws, if there are."""
     if not collapsed:
         return {}
@@ -127,7 +127,7 @@ def _record(collapsed: Beside | None) -> dict[str, Any]:
     return {"beside": beside.record(collapsed)}
 
 
-def _beside(curves: Curves, laws: Sequence[Law], plot: TextIO | None, form: str) -> Beside | None:
+def _beside(curves: Curves, laws: Sequence[Law], plot: TextIO | None, form: str) -> EquallyStrong | None:
     """Curves by other laws, drawn in the place of the page about one."""
     if not laws:
         return None
