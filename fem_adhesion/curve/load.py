@@ -15,6 +15,7 @@ from fem_adhesion.curve.lines import Frame
 from fem_adhesion.curve.profiles import LEGEND, STATES
 from fem_adhesion.curve.scales import Scale, scales
 from fem_adhesion.curve.solve import Curves
+from fem_adhesion.fields import is_same_contact
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.reach import reaching
@@ -88,7 +89,7 @@ def _draw_other(axes: Any, curves: Curves, frame: Frame) -> None:
     if curves.other is None:
         return
     x, y = scales(curves)["approach"], scales(curves)["load"]
-    if curves.question.same_contact:
+    if is_same_contact(curves.question.scene):
         points = {"linestyle": "none", "marker": "o", "markersize": 4, "markerfacecolor": "white", "zorder": 4}
         points |= {"color": "black", "markeredgewidth": 0.8, "label": "half-space"}
         approach, load = _spread(curves.other.approach, curves.other.load, frame)

@@ -71,11 +71,6 @@ class Question:
                 f"solver = half-space does not serve body = {self.scene.body.name}, limit: half-space; take fem or both"
             )
 
-    @property
-    def same_contact(self) -> bool:
-        """Whether the half-space is the body that is asked for, and not only one to compare with."""
-        return self.scene.body.endless
-
 
 @dataclass(frozen=True)
 class Curves:

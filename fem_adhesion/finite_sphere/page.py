@@ -186,7 +186,9 @@ def _page(found: Results, tables: Sequence[Table], directory: Path) -> str:
     records = found.study.records
     rules, *others = tables
     chart = _section("where", CHART.title, (CHART,), found, directory, tables=[rules])
-    causes = _section("why", "Causes", PICTURES[1:], found, directory, _causes())
+    switched = [Markup("<strong>{}</strong>: {};").format(name, cause.meaning) for name, cause in CAUSES.items()]
+    assumptions = Markup("Between the two lie several assumptions, switched one at a time:") + bullets(switched)
+    causes = _section("why", "Causes", PICTURES[1:], found, directory, [assumptions])
     lead = [Markup("<strong>{}.</strong>").format(found.study.headline), *_answer(found.rows)]
     sections = [chart, causes, Section("tables", "Tables", tables=others), _settings(records)]
     spent = f"{sum(r.seconds for r in records):.0f} s of work on {len(records)} cases"
@@ -247,11 +249,6 @@ def _from(field: Field) -> str:
     if np.isnan(least):
         return f"at no R/eps up to {field.radius_ratio[-1]:g} for all mu from {known[0]:g} to {known[-1]:g}"
     return f"if R/eps is {least:g} or more (points solved, mu from {known[0]:g} to {known[-1]:g})"
-
-
-def _causes() -> list[str]:
-    causes = [Markup("<strong>{}</strong>: {};").format(name, cause.meaning) for name, cause in CAUSES.items()]
-    return [Markup("Between the two lie several assumptions, switched one at a time:") + bullets(causes)]
 
 
 def _settings(records: Sequence[Record]) -> Section:

@@ -112,11 +112,10 @@ def _printed_tables(study: Greenwood1997) -> Iterator[Table]:
 
 def _printed(stem: str, title: str, see: str, column: str, entries: Sequence[Printed]) -> Table:
     columns = ("row", column, "unit", "printed", "computed", "error", "relative deviation", "note")
-    return Table(stem, title, see, columns, tuple(_entry(p) for p in entries))
-
-
-def _entry(p: Printed) -> tuple[str, ...]:
-    return (p.row, f"{p.column:g}", p.unit, p.printed, *_cells(p.computed), f"{p.deviation:+.1e}", p.note)
+    rows = tuple(
+        (p.row, f"{p.column:g}", p.unit, p.printed, *_cells(p.computed), f"{p.deviation:+.1e}", p.note) for p in entries
+    )
+    return Table(stem, title, see, columns, rows)
 
 
 def _agreement(entries: Sequence[Printed]) -> str:

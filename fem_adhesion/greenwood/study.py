@@ -181,7 +181,7 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     begin("devices")
     apparatus = devices(halfspace.trace(JUMPS_AT, rtol=extent.rtol))
     begin("critical Tabor parameter")
-    critical_tabor = _critical_tabor()
+    critical_tabor = Estimate.refined(*(tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7)))
     winding = drawn[WINDING_AT]
     folds = np.array([fold.point.observables for fold in winding.states(FOLD)])
     jumps, profiles = curves.jumps(JUMPS_AT), tuple(curves.profiles(winding))
@@ -214,8 +214,3 @@ def _pull_off(tabor: float, extent: Extent) -> PullOff:
 
 def _least_load(path: EquilibriumPath) -> Estimate:
     return path.events["pull_off"].estimate("load")
-
-
-def _critical_tabor() -> Estimate:
-    """Tabor parameter of the first fold, its error from a coarser grid."""
-    return Estimate.refined(*(tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7)))

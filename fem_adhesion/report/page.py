@@ -23,7 +23,6 @@ from fem_adhesion.curve.lines import UNSTABLE, Line, smooth
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.report.sections import SOURCES, crosscheck_section, section_of, settings_section
 from fem_adhesion.report.walk import LINES, Station, Walk
-from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.values import Array
 
 WORDS = {
@@ -55,6 +54,7 @@ class Contents:
 def page(contents: Contents) -> str:
     """The page as HTML, or InputError if a directory does not hold what its command writes."""
     cases = contents.cases
+    paths = contents.curves.paths.values() if contents.curves else ()
     others = [section_of(source, contents.directories.get(source.name)) for source in SOURCES]
     return render(
         "report/report.html.j2",
@@ -67,7 +67,7 @@ def page(contents: Contents) -> str:
         curves=_curves_section(contents.curves) if contents.curves else None,
         walk=walk_data(contents.walk, contents.curves) if contents.walk and contents.curves else None,
         walk_words=walk_words(contents.walk) if contents.walk else (),
-        has_unstable=contents.curves is not None and any(map(_has_unstable, contents.curves.paths.values())),
+        has_unstable=any((smooth(path).kind == UNSTABLE).any() for path in paths),
         levels=crosscheck_section(cases),
         others=others,
         settings=settings_section(cases, machine()),
@@ -88,10 +88,6 @@ def _counts(cases: Sequence[Case | Failure]) -> dict[str, int]:
     """How many quantities ended how, those of failed cases too."""
     verdicts = [row.verdict for case in cases for row in case.rows]
     return {verdict: verdicts.count(verdict) for verdict in WORDS if verdict in verdicts}
-
-
-def _has_unstable(path: EquilibriumPath) -> bool:
-    return bool((smooth(path).kind == UNSTABLE).any())
 
 
 def walk_words(walk: Walk) -> list[str]:
