@@ -61,14 +61,8 @@ def refusal(path: Path, error: OSError) -> str:
 def written_aside(path: Path) -> Iterator[TextIO]:
     """Open a file beside `path` that takes its place when the block ends well, and vanishes if it does not.
 
-    The file is of text; its attribute ``buffer`` takes bytes.
-
-    Raises
-    ------
-    InputError
-        At once, before any work, if `path` cannot be written.
-    NotWritten
-        Where what is written to the file does not go to the disk.
+    The file is of text; its attribute ``buffer`` takes bytes. InputError at once, before any work, if `path` cannot be
+    written; NotWritten where what is written to the file does not go to the disk.
     """
     with _first(path):
         if path.is_dir():
@@ -109,21 +103,10 @@ def _opened(descriptor: int, path: Path) -> TextIO:
 def directory_written_aside(path: Path, *, force: bool = False) -> Iterator[Path]:
     """Make an empty directory whose files move into `path` when the block ends well, and vanish if it does not.
 
-    In the block, what writes the files stands under `writing`.
-
-    Parameters
-    ----------
-    path : Path
-        Directory to be, in a folder that exists.
-    force : bool
-        Accept a directory that is not empty: files of the same names are replaced, others stay.
-
-    Raises
-    ------
-    InputError
-        At once, before any work, if `path` is a file, cannot be written, or is not empty and `force` not set.
-    NotWritten
-        If the files cannot take their places.
+    In the block, what writes the files stands under `writing`. The path is in a folder that exists; by force it may be
+    a directory that is not empty: files of the same names are replaced, others stay. InputError at once, before any
+    work, if it is a file, cannot be written, or is not empty without force; NotWritten if the files cannot take their
+    places.
     """
     with _first(path):
         if path.exists() and not path.is_dir():

@@ -47,27 +47,12 @@ def stream(
 ) -> Generator[tuple[Item, Result | WorkerDied], None, None]:
     """Do the work on all items and give each with its result, in the order in which they end.
 
-    Parameters
-    ----------
-    work : callable
-        A function of a module: it is sent to other processes by name. What it raises ends the stream.
-    items : sequence
-        What it is done on; picklable.
-    jobs : int, optional
-        Local processes, as many as there are cores unless given. One works without any process but this, in which a
-        crash is not survived.
-    dask : str, optional
-        Address of the scheduler of a Dask cluster, whose workers must have this package; then `jobs` is unused.
+    The work is a function of a module: it is sent to other processes by name; what it raises ends the stream. Items are
+    picklable. `jobs` are local processes, as many as there are cores unless given; one works without any process but
+    this, in which a crash is not survived. `dask` is the address of the scheduler of a Dask cluster, whose workers must
+    have this package; then `jobs` is unused. Close the generator to stop the workers before their time.
 
-    Returns
-    -------
-    generator
-        Close it to stop the workers before their time.
-
-    Raises
-    ------
-    InputError
-        At once, if jobs is not positive, distributed is not installed, or the scheduler does not answer.
+    InputError at once, if jobs is not positive, distributed is not installed, or the scheduler does not answer.
     """
     if dask is not None:
         return _on_cluster(work, items, *_connected(dask))

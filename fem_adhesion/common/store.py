@@ -38,14 +38,9 @@ Result = TypeVar("Result")
 class Store:
     """A directory of results, whose files are in its folder ``cases``, made when the first result comes.
 
-    Attributes
-    ----------
-    code : str
-        Digest of the code that computes the results, see `fem_adhesion.common.facts.code_digest`.
-    outdated : Counter of str
-        How many results were found that something else computed, by what: they are to be computed again.
-    damaged : dict of str to str
-        Files whose contents cannot be trusted, and why: their cases are to be computed again.
+    The code is the digest of what computes the results, see `fem_adhesion.common.facts.code_digest`. Outdated results,
+    counted by what computed them, and damaged files, with the reason why their contents cannot be trusted, are to be
+    computed again.
     """
 
     directory: Path
@@ -113,19 +108,9 @@ def _digest(content: object) -> str:
 def open_store(directory: Path, code: str, *, resume: bool = False, force: bool | None = False) -> Store:
     """Store in a directory, an existing one or new in a folder that exists, which is checked but not yet touched.
 
-    Parameters
-    ----------
-    directory, code
-        As of `Store`: results of other code are not used.
-    resume : bool
-        Go on with the cases that it holds.
-    force : bool or None
-        Accept one that is not empty; None where that cannot be asked for.
-
-    Raises
-    ------
-    InputError
-        If the directory is a file, cannot be written, or is not empty and neither asked to be resumed nor forced.
+    To resume is to go on with the cases that it holds, but for the results of other code; by force one is accepted that
+    is not empty, None where that cannot be asked for. InputError if the directory is a file, cannot be written, or is
+    not empty and neither asked to be resumed nor forced.
     """
     if directory.exists() and not directory.is_dir():
         raise InputError(f"{directory} is a file; give the name of a directory")
@@ -167,31 +152,13 @@ def solve_all(
     dask: str | None = None,
     progress: Progress = unheard,
 ) -> tuple[Result, ...]:
-    """Results of all items in their order: those that the store holds, and the others computed and stored at once.
+    """Results of all items in their order: what the store holds, and the others, computed and stored at once.
 
-    What a worker died of is not stored: it is tried again when the study is resumed.
-
-    Parameters
-    ----------
-    items : sequence
-        Each once.
-    store : Store or None
-        From `open_store`, if results are kept.
-    work : callable
-        Computes the result of an item; a function of a module.
-    kept : Kept
-        How results are kept.
-    fresh : bool
-        Compute all, whatever the store holds.
-    jobs, dask : int and str, optional
-        Local processes, or the address of a cluster: see `fem_adhesion.common.jobs.stream`.
-    progress : callable
-        Called with the last item's name, how many are done, and of how many.
-
-    Raises
-    ------
-    InputError
-        Before any work, if jobs is not positive or the cluster does not answer.
+    The work, a function of a module, computes the result of an item, each of which is given once, and `kept` says how
+    results are kept; if `fresh`, all are computed, whatever the store holds. What a worker died of is not stored: it is
+    tried again when the study is resumed. `jobs` and `dask` are those of `fem_adhesion.common.jobs.stream`; `progress`
+    is called with the last item's name, how many are done, and of how many. InputError before any work, if jobs is not
+    positive or the cluster does not answer.
     """
     found = dict(_stored(items, store, kept)) if store and not fresh else {}
     todo = [item for item in items if item not in found]

@@ -107,18 +107,11 @@ def _wrapped(cell: str, width: int) -> Text:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table, its cells in rich's markup.
+    """A column of a table, its header, with the unit below, and its cells in rich's markup.
 
-    Attributes
-    ----------
-    header : str
-        Its name, with its unit below.
-    rank : int
-        0 if it stays; the higher, the sooner it is left out. Columns of one rank go together.
-    text, wraps : bool
-        Whether it is words, to the left, rather than numbers; whether they may go on in the next line.
-    wrapped : int
-        Columns of the terminal that it has even so.
+    One of rank 0 stays; the higher, the sooner it is left out, columns of one rank together. Words (`text`) are set to
+    the left, numbers to the right; what `wraps` may go on in the next line, and has so many columns of the terminal
+    even so.
     """
 
     header: str

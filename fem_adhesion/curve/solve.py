@@ -25,28 +25,13 @@ SolverName = Literal["half-space", "fem", "both"]
 class Question:
     """What is asked of a contact.
 
-    Parameters
-    ----------
-    scene : Scene
-        The contact.
-    solver : {"half-space", "fem", "both"}
-        Which solver. Of a body that is no half-space the integral equation solves the half-space under the same
-        profile, so that it serves for comparison only.
-    rtol : float
-        Relative accuracy asked of loads and approaches, 1e-9 to 1e-1.
-    to_load : float
-        Compressive load at which the curve ends, in R dgamma.
-    units : Units, optional
-        Of the contact in SI, if its material is known.
-    stiffness : float
-        Of the apparatus in R dgamma/eps; infinite for fixed grips.
-    points : int, optional
-        Of each curve in files, evenly spaced in arclength; as many as its tracing takes unless given, or drawn.
+    Of a body that is no half-space the integral equation solves the half-space under the same profile, so that it
+    serves for comparison only. `rtol` is the relative accuracy asked of loads and approaches, 1e-9 to 1e-1; the curve
+    ends at a compressive load in R dgamma; units are of the contact in SI, if its material is known; the stiffness is
+    that of the apparatus in R dgamma/eps, infinite for fixed grips. Each curve has so many points in files, evenly
+    spaced in arclength; as many as its tracing takes unless given, or drawn.
 
-    Raises
-    ------
-    InputError
-        If a value is out of range, or the solver does not serve the scene.
+    InputError if a value is out of range, or the solver does not serve the scene.
     """
 
     scene: Scene

@@ -43,20 +43,14 @@ UNITS = QUANTITIES | dict.fromkeys(LESS_BULK, "eps")
 class DeviationRow:
     """One quantity of one case beside the case without its cause.
 
-    Attributes
-    ----------
-    tabor, radius_ratio, poisson : float or None
-        Inputs; None for one on which the case does not depend, as it always does on the first.
-    cause, quantity, unit : str
-        Keys of `fem_adhesion.finite_sphere.cases.CAUSES` and of `UNITS`, and the unit of values and errors.
-    value, baseline, half_space : Estimate or None
-        With the cause, without it, and on the half-space under a paraboloid.
-    deviation : Estimate or None
-        (value - baseline)/half_space, of an approach over the scale of those of the half-space's curve in the place of
-        its value, see `halfspace.equilibrium.events.approach_scale`; its error bounded by those of all three.
-    status : str
-        ``solved``; ``absent`` where one of the three contacts does not have the quantity; else what ended the case, as
-        in `Record`, like its reason, seconds and kind.
+    Inputs are None where the case does not depend on them, as it always does on the first. Cause and quantity are keys
+    of `fem_adhesion.finite_sphere.cases.CAUSES` and of `UNITS`, the unit that of values and errors. `value` is with the
+    cause, `baseline` without it, `half_space` on the half-space under a paraboloid; the deviation is (value -
+    baseline)/half_space, of an approach over the scale of those of the half-space's curve in the place of its value,
+    see `halfspace.equilibrium.events.approach_scale`; its error is bounded by those of all three.
+
+    The status is ``solved``; ``absent`` where one of the three contacts does not have the quantity; else what ended the
+    case, as in `Record`, like its reason, seconds and kind.
     """
 
     tabor: float

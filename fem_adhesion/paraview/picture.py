@@ -73,13 +73,7 @@ class Surfaces(Valued):
 
 
 def view_of(states: Sequence[State]) -> View:
-    """View in which all states can be seen, of one scene.
-
-    Parameters
-    ----------
-    states : sequence of State
-        The states, or those that bound them: the widest contact with them.
-    """
+    """View in which all states of one scene are seen: given all, or those that bound them with the widest contact."""
     first = states[0]
     widest = np.nanmax([first.scene.tabor**-0.5, *(state.observables[CONTACT_RADIUS] for state in states)])
     end, R = float(first.radii[-1]), first.scene.sphere_radius

@@ -31,8 +31,8 @@ LOGARITHMIC = 0.0
 class Growth:
     """What grows for which solver, and how long that then takes.
 
-    The time is expected to go as a power, `expected`, at most, 0 if only logarithms are. Values of what grows go from
-    small to large; each is solved for, and has its seconds once it is timed.
+    The time is expected to go as a power of what grows, `expected` at most, 0 if only logarithms are. Its values go
+    from small to large; each is solved for, and has its seconds once it is timed.
     """
 
     solver: str
