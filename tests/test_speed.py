@@ -426,7 +426,7 @@ def test_errors_that_the_truth_cannot_tell_do_not_bend_the_exponents():
     made = [Timing("some", "", "converged", 10.0**n, "", 10**n, 1.0, {"pull_off": 10.0**-n}) for n in (1, 2, 3)]
     floor = {"pull_off": 1e-3}
     made = [dataclasses.replace(r, floors=floor) for r in (*made, dataclasses.replace(made[-1], seconds=1e9))]
-    assert made_study(rungs=made).exponents("some").time_by_accuracy == pytest.approx(1)
+    assert made_study(rungs=made).exponents("some")["time, x = 1/error"] == pytest.approx(1)
 
 
 # --- a made-up result is read back from every table and picture ---

@@ -20,7 +20,7 @@ from fem_adhesion.common.page import Table, markdown, write_csv
 from fem_adhesion.common.style import Picture, draw
 from fem_adhesion.speed.growth import RTOL, TABOR
 from fem_adhesion.speed.methods import QUANTITIES, Family, Method
-from fem_adhesion.speed.result import SpeedStudy, Timing, best, cheapest, pareto_front
+from fem_adhesion.speed.result import EXPONENTS, SpeedStudy, Timing, best, cheapest, pareto_front
 
 CAPTION = "Error against wall time: half-space left, finite elements right."
 FAMILIES: tuple[Family, ...] = ("half-space", "finite elements")
@@ -242,13 +242,16 @@ def _best(rung: Timing | None, quantity: str | None) -> str:
 
 def _exponents(study: SpeedStudy) -> Table:
     title = "How the cost grows: exponents b fitted to cost ~ x^b; the error is that of pull_off"
-    costs = [f"{cost}, x = {x}" for x in ("unknowns", "1/error") for cost in ("time", "peak memory")]
-    rows = []
-    for method in study.methods:
-        b = study.exponents(method.name)
-        fitted = (b.time, b.memory, b.time_by_accuracy, b.memory_by_accuracy)
-        rows.append([method.name, str(b.rungs), *(_number(value, "{:.2f}") or "-" for value in fitted)])
-    return Table("", title, "", ("method", "rungs", *costs), rows)
+    fitted = {method.name: study.exponents(method.name) for method in study.methods}
+    rows = [
+        [
+            name,
+            str(sum(rung.converged for rung in study.of(name))),
+            *(_number(b, "{:.2f}") or "-" for b in found.values()),
+        ]
+        for name, found in fitted.items()
+    ]
+    return Table("", title, "", ("method", "rungs", *EXPONENTS), rows)
 
 
 def _growths(study: SpeedStudy) -> Table:

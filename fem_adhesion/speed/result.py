@@ -13,6 +13,7 @@ from fem_adhesion.speed.methods import QUANTITIES, Family, Method
 from halfspace.values import Estimate
 
 Status = Literal["converged", "too coarse", "refused", "failed"]
+EXPONENTS = tuple(f"{cost}, x = {x}" for x in ("unknowns", "1/error") for cost in ("time", "peak memory"))
 VISIBLE = 4.0  # MiB of memory below which a growth says nothing
 
 
@@ -78,21 +79,6 @@ class Timing:
 
 
 @dataclass(frozen=True)
-class Exponents:
-    """Slopes of a method's cost in log-log scale, nan where fewer than two rungs converged.
-
-    Time and memory are taken against unknowns, and against 1/error, that of the pull-off load where it exceeds the
-    truth's uncertainty.
-    """
-
-    rungs: int
-    time: float
-    memory: float
-    time_by_accuracy: float
-    memory_by_accuracy: float
-
-
-@dataclass(frozen=True)
 class SpeedStudy:
     """All rungs of all methods, in the order of the methods, at one Tabor parameter.
 
@@ -131,13 +117,16 @@ class SpeedStudy:
         for method in self.methods:
             yield from _troubles(method, self.of(method.name))
 
-    def exponents(self, method: str) -> Exponents:
-        """Fitted exponents of a method's cost."""
+    def exponents(self, method: str) -> dict[str, float]:
+        """`EXPONENTS` b of a method's cost ~ x^b, nan where fewer than two rungs converged.
+
+        The error is that of the pull-off load where it exceeds the truth's uncertainty.
+        """
         rungs = [rung for rung in self.of(method) if rung.converged]
         n, t, m = (np.array([getattr(r, key) for r in rungs], float) for key in ("unknowns", "seconds", "memory"))
         m[m < VISIBLE] = np.nan
         accuracy = 1 / np.array([np.nan if rung.hidden("pull_off") else rung.error("pull_off") for rung in rungs])
-        return Exponents(len(rungs), slope(n, t), slope(n, m), slope(accuracy, t), slope(accuracy, m))
+        return dict(zip(EXPONENTS, (slope(x, y) for x in (n, accuracy) for y in (t, m)), strict=True))
 
 
 def _troubles(method: Method, rungs: Sequence[Timing]) -> Iterator[str]:
