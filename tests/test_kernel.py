@@ -1,3 +1,5 @@
+from functools import cache
+
 import mpmath
 import numpy as np
 import pytest
@@ -54,16 +56,22 @@ def _by_mpmath(left, right, radius, nodes, j):
     """Integrate G(r, s) s l_j(s) by mpmath, on intervals that shrink towards the singularity."""
     with mpmath.workdps(30):
         a, b, r = (mpmath.mpf(v) for v in (left, right, radius))
+        own, others = mpmath.mpf(float(nodes[j])), [mpmath.mpf(float(n)) for i, n in enumerate(nodes) if i != j]
+        scale = mpmath.fprod(own - n for n in others)
 
         def integrand(s):
-            k = min(min(r, s) / max(r, s), 1 - mpmath.mpf(10) ** -28)
             x = (2 * s - a - b) / (b - a)
-            others = [mpmath.mpf(float(n)) for i, n in enumerate(nodes) if i != j]
-            lagrange = mpmath.fprod((x - n) / (mpmath.mpf(float(nodes[j])) - n) for n in others)
-            return 4 / (mpmath.pi * max(r, s)) * mpmath.ellipk(k**2) * s * lagrange
+            return _weighted_kernel(r, s) * mpmath.fprod(x - n for n in others) / scale
 
         graded = {r + sign * (b - a) * mpmath.mpf(8) ** -i for i in range(1, 16) for sign in (1, -1)} | {r}
         return float(mpmath.quad(integrand, sorted({a, b} | {p for p in graded if a < p < b})))
+
+
+@cache
+def _weighted_kernel(r, s):
+    """G(r, s) s, the same for all nodes: of a panel every polynomial is integrated by the same quadrature."""
+    k = min(min(r, s) / max(r, s), 1 - mpmath.mpf(10) ** -28)
+    return 4 / (mpmath.pi * max(r, s)) * mpmath.ellipk(k**2) * s
 
 
 def test_integrals_over_a_panel_cut_in_two_add_up():
