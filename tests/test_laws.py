@@ -17,7 +17,9 @@ import halfspace
 from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck.references import elements_of
 from fem_adhesion.scene import Scene
+from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.curve import transfer
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
 from halfspace.laws.check import require_law
@@ -214,6 +216,15 @@ def test_morse_knows_k_and_tabor_by_their_product_alone(k, tabor):
 def test_surfaces_too_far_apart_for_an_exponential_law_are_passed_in_long_steps():
     """Where it is all but nothing no load has a turning point to look for; else it takes 357 points, or 1204."""
     assert halfspace.trace(50.0, law=Morse(3), rtol=1e-3).count < 250
+
+
+def test_cells_grow_from_a_rounded_tip_no_faster_than_they_carry_the_deflection_there():
+    """At zero load the contact is ten thousand times as wide as the tip: gaps in the equations of a much finer grid."""
+    path, scales = halfspace.trace(1.0, profile=Hyperboloid(0.1), rtol=1e-4), Scales(1.0, profile=Hyperboloid(0.1))
+    finer, state = half_space_charts(scales, resolution_for(scales, 1e-9))[1].problem, path.stages[-1]["zero_load"]
+    x = transfer(state.problem, state.point.x, finer)
+    weight = finer.operator_at(x).weights * np.abs(finer.pressure(x))
+    assert weight @ np.abs(finer.residual(x)[:-1]) / weight.sum() < 1e-4
 
 
 def test_a_quadratic_power_and_a_wide_hyperboloid_are_paraboloids():

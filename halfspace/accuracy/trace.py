@@ -104,7 +104,7 @@ def rings(
         return Rings(_fine_throughout(scales, finest, growth, outer, to_load), centred, math.inf)
     edge = grid.graded(1.0, 2 * length / widest, outer / length, growth=growth)
     until = LEAVE * float(centred[1])  # the cells beyond the first may be too coarse
-    return Rings(grid.towards_axis(centred, first), grid.towards_axis(edge, first / widest), until)
+    return Rings(grid.towards_axis(centred, first, growth), grid.towards_axis(edge, first / widest, growth), until)
 
 
 def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float, to_load: float) -> Array:

@@ -43,7 +43,7 @@ def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0, 
     return np.concatenate([inner, (radius + geometric(extent - radius, finest, growth, last))[1:]])
 
 
-def towards_axis(lines: Array, first: float, growth: float = 10.0) -> Array:
+def towards_axis(lines: Array, first: float, growth: float) -> Array:
     """Cut the cell on the axis so that the first is `first` long, or less, and they grow geometrically from there."""
     end = float(lines[1])
     return lines if first >= end else np.append(geometric(end, first, growth), lines[2:])
