@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate
     from halfspace.equilibrium.curve import EquilibriumPath
     from halfspace.equilibrium.events import Event
-    from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
+    from halfspace.errors import ContactTooWide, GridTooCoarse, IllPosed, InputError, NotConverged
     from halfspace.values import Estimate
 
 __all__ = [
@@ -49,6 +49,7 @@ __all__ = [
     "Estimate",
     "Event",
     "GridTooCoarse",
+    "IllPosed",
     "InputError",
     "Layer",
     "Layers",
@@ -73,7 +74,7 @@ _HOMES = {
     "Estimate": "equilibrium.curve",
     "Event": "equilibrium.events",
     **dict.fromkeys(("Coated", "Layer", "Layers", "Stratum", "Substrate"), "elastic.layers"),
-    **dict.fromkeys(("ContactTooWide", "GridTooCoarse", "InputError", "NotConverged"), "errors"),
+    **dict.fromkeys(("ContactTooWide", "GridTooCoarse", "IllPosed", "InputError", "NotConverged"), "errors"),
 }
 
 

@@ -18,6 +18,10 @@ class ContactTooWide(NotConverged):
     """The contact spreads over so much of the body that its elasticity is no longer that of small slopes."""
 
 
+class IllPosed(NotConverged):
+    """Nothing holds waves as short as the cells: what is computed belongs to them, on finer ones too."""
+
+
 class GridTooCoarse(NotConverged):
     """The grid cannot carry the spike of tension at the contact edge; the message says where and by how much.
 

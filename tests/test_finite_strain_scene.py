@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -21,7 +22,7 @@ from fem_adhesion.finite_strain.traction import Convention
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import energy_released, moved, placed, transfer, undeformed_radius
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 
 
 def scene(tabor=1.0, radius_ratio=100.0, poisson=0.3, traction="projected", **of_body):
@@ -353,23 +354,44 @@ def test_what_is_lost_close_to_the_limit_of_ill_posedness_says_so(radius_ratio, 
 
     monkeypatch.setattr(finite_strain_scene, "climb", lost)
     why = (
-        r"= 38 is close to its limit 34.5 .* leaves 4\.\d% of .* \(the path ends\); take .* radius_ratio above 42\.\d$"
+        r"= 38 is close to its limit 34.5 .* leaves 4\.\d% of .* \(the path ends\); take .* radius_ratio above 47\.\d$"
     )
     with pytest.raises(NotConverged, match=why if told else "^the path ends$"):
         trace(scene(3.0, radius_ratio), 1e-3)
 
 
-@pytest.mark.parametrize(("radius_ratio", "traction", "told"), [(2.25, "projected", True), (2.25, "reference", False)])
-def test_a_sphere_smaller_than_its_contact_is_said_to_be_drawn_flat(radius_ratio, traction, told, monkeypatch):
-    """By a surface stress only; one of 4 eps is traced to its load. What the first one ends with took 25 s to find."""
+@pytest.fixture
+def rungs(monkeypatch):
+    """Rungs on which a curve is traced, in order."""
+    found, made = [], Stages.windows
+    monkeypatch.setattr(Stages, "windows", lambda stages, degree: found.append(degree) or made(stages, degree))
+    return found
 
-    def lost(*_, **__):
-        raise NotConverged("the path ends")
 
-    monkeypatch.setattr(finite_strain_scene, "climb", lost)
-    why = r"^radius_ratio = 2.25 is below 4 .* of radius 1.5 beta, is drawn flat .* \(the path ends\); take traction"
-    with pytest.raises(NotConverged, match=why if told else "^the path ends$"):
-        trace(scene(1.0, radius_ratio, traction=traction), 1e-3)
+def test_a_sphere_that_its_surface_stress_draws_flat_is_given_up_on_the_first_rung(rungs):
+    """Its contact is wider than itself and its load falls again before it has come to zero."""
+    with pytest.raises(ContactTooWide) as told:
+        trace(scene(1.0, 2.25), 1e-3, LITTLE)
+    assert rungs == [4]
+    assert re.match(
+        r"radius_ratio = 2.25 is below 3.06 for tabor 1 and traction = 'projected': the sphere, of radius 1.5 beta, is "
+        r"drawn flat .* \(contact radius 1\.[67]\d? beta exceeds .* before zero_load .*\); take traction = 'reference'",
+        str(told.value),
+    )
+
+
+@pytest.mark.parametrize(
+    ("tabor", "radius_ratio", "traction", "left"), [(1, 8, "normal", 6.7), (2, 13, "projected", 11.3)]
+)
+def test_a_surface_drawn_out_to_a_needle_is_given_up_on_the_first_rung(tabor, radius_ratio, traction, left, rungs):
+    with pytest.raises(IllPosed) as told:
+        trace(scene(tabor, radius_ratio, traction=traction), 1e-3, LITTLE)
+    assert rungs == [4]
+    assert re.match(
+        rf"radius_ratio = {radius_ratio} is close to its limit .* leaves {left}% of the surface's stiffness .* "
+        r"\(the surface is drawn out [234]\.\d+ times at .*\); take traction = 'reference', or radius_ratio above",
+        str(told.value),
+    )
 
 
 @pytest.mark.parametrize("name", ["pull_off", "jump_on", "jump_off", "zero_load"])

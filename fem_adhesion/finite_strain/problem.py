@@ -32,10 +32,12 @@ from halfspace.equilibrium.contact import (
     ContactProblem,
     Solver,
 )
+from halfspace.errors import IllPosed
 from halfspace.values import Array, Valued
 
 MOST_STEPS, ENOUGH = 12, 1e-4  # to a start under a given pressure, and its relative accuracy
 SLOW = 0.5  # ratio of two such steps from which the stiffness is computed again
+MOST_DRAWN = 2.0  # r_d/r: up to 1.4 in spheres that are about to be drawn flat, 2.3 to 140 in needles of few cells
 LEAST_VOLUME = 0.1
 """J below which no step may take a cell in one go, unless it was there already: before it is turned inside out."""
 
@@ -276,8 +278,20 @@ class FiniteStrainProblem(Valued):
         return self.interface.misfit(self.surface_state(x), np.append(dH, 0.0))
 
     def require_resolution(self, x: Array) -> None:
-        """Refuse a state whose contact edge stands on facets too long for the spike of tension; raise GridTooCoarse."""
+        """Refuse a state whose contact edge stands on facets too long for the spike of tension, or that is a needle.
+
+        Raises
+        ------
+        GridTooCoarse, IllPosed
+            With what there is, and the limit.
+        """
         self.interface.require_resolution(self.surface_state(x))
+        drawn = np.max(self.surface.deformed_radii(self.surface_unknowns(x), self.stretch) / self.surface.radii)
+        if drawn > MOST_DRAWN:
+            raise IllPosed(
+                f"the surface is drawn out {drawn:.3g} times at approach {x[-1]:.6g} eps, load {self.load(x):.6g} "
+                f"R dgamma, limit {MOST_DRAWN:g}; take a larger radius_ratio"
+            )
 
     def elastic_energy(self, x: Array) -> float:
         """Elastic energy of body and exterior in R dgamma eps."""

@@ -22,7 +22,7 @@ from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, find_events, metric_for, moved, trace_charts
 from halfspace.equilibrium.events import EVENTS, Event, Located, Tolerance, estimate_event, relocate, usual
 from halfspace.equilibrium.path import Segment
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array, Valued
 
@@ -30,8 +30,8 @@ WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a min
 TIGHTEST = 1e-6  # relative tolerance
 MOST_RUNGS = 2  # above the lowest
 LITTLE = 0.5  # R dgamma: a load past every event
-SOFT = 0.9  # part of the surface's stiffness to short waves, gone, from which solutions get lost
-FLATTENED = 2.0  # radius in beta of a sphere smaller than its own contact, over which a surface stress may spread it
+SOFT = 0.85  # part of the surface's stiffness to short waves, gone, from which solutions get lost
+FLATTENED = 0.08  # c dgamma/(E* R): up to 0.082 all spheres of tabor 0.5 to 1 bear a load, from 0.097 on none does
 SMALLEST_PART = 0.005  # of delta, in which it is raised where the linear body's events are too far away
 JUMPS = ("pull_off", "jump_on", "jump_off")
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
@@ -162,24 +162,27 @@ def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
 
 @contextmanager
 def _cause_told(scene: Scene) -> Iterator[None]:
-    """Say, where no solution is found close to the limit of ill-posedness or of a tiny sphere, that this is why."""
+    """Say, where a surface stress draws a tiny sphere flat or leaves no stiffness to short waves, that this is why."""
+    part, ratio, R = softening(scene), scene.tabor * scene.sphere_radius**2, scene.sphere_radius
+    round_from = scene.tabor * (_surface_stress(scene) / FLATTENED) ** (2 / 3)
     try:
         yield
-    except NotConverged as error:
-        part, ratio = softening(scene), scene.tabor * scene.sphere_radius**2
-        if part < SOFT and part and scene.sphere_radius < FLATTENED:
-            raise NotConverged(
-                f"radius_ratio = {ratio:g} is below {scene.tabor * FLATTENED**2:.3g} for tabor {scene.tabor:g} and "
-                f"traction = {scene.material.traction!r}: the sphere, of radius {scene.sphere_radius:.3g} beta, is "
-                f"drawn flat before it bears a load ({error}); take traction = 'reference', or a radius_ratio above it"
-            ) from error
-        if part < SOFT:
+    except ContactTooWide as error:
+        if ratio >= round_from:
             raise
-        raise NotConverged(
+        raise ContactTooWide(
+            f"radius_ratio = {ratio:g} is below {round_from:.3g} for tabor {scene.tabor:g} and traction = "
+            f"{scene.material.traction!r}: the sphere, of radius {R:.3g} beta, is drawn flat before it bears a load "
+            f"({error}); take traction = 'reference', or a radius_ratio above it"
+        ) from error
+    except NotConverged as error:
+        if part < SOFT and not isinstance(error, IllPosed):
+            raise
+        raise IllPosed(
             f"radius_ratio = {ratio:g} is close to its limit {ratio * part**2:.3g} for traction = "
             f"{scene.material.traction!r}: the edge tension leaves {1 - part:.1%} of the surface's stiffness "
             f"to short waves ({error}); take traction = 'reference', or radius_ratio above "
-            f"{ratio * (part / SOFT) ** 2:.3g}"
+            f"{max(ratio * (part / SOFT) ** 2, round_from):.3g}"
         ) from error
 
 
@@ -224,8 +227,12 @@ def softening(scene: Scene) -> float:
 
     That is c sigma, at the law's largest tension, over 2 G/(3 - 4 nu): see `fem_adhesion.finite_strain.traction`.
     """
-    c, nu = convention_of(scene.material.traction, scene.poisson).surface_stress, scene.poisson
-    return c * _edge_tension(scene) * (3 - 4 * nu) / (1 - nu)
+    return _surface_stress(scene) * _edge_tension(scene) * (3 - 4 * scene.poisson) / (1 - scene.poisson)
+
+
+def _surface_stress(scene: Scene) -> float:
+    """c, over the law's energy; c dgamma/(E* R) is c (beta/R)^3."""
+    return convention_of(scene.material.traction, scene.poisson).surface_stress
 
 
 def _edge_tension(scene: Scene) -> float:

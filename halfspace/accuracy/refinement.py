@@ -48,7 +48,7 @@ from halfspace.equilibrium.events import (
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Segment, correct
 from halfspace.equilibrium.states import Ways
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 from halfspace.scales import BRADLEY
 from halfspace.values import Estimate, Valued
 
@@ -180,6 +180,8 @@ def climb(
         except FoldsLost:  # two folds about to merge exist on one grid but not on the next
             if start == most_rungs - 1:
                 return _climb_from(0, rtol, rung, to_load, most_rungs, folds=False)
+        except (ContactTooWide, IllPosed):  # for any grid
+            raise
         except NotConverged:
             if start == most_rungs - 1:
                 raise

@@ -369,19 +369,24 @@ def trace_charts(
     for chart in charts:
         problem, metric = chart.problem, metric_for(chart.problem)
         point = _hand_over(segments[-1], problem, metric) if segments else _far_separation(problem, metric)
-        radius = WIDEST * problem.interface.profile.end if np.isinf(chart.until) else chart.until
-        stop = _ended(problem, to_load, radius)
-        pace = steps or _pace(problem, segments)
+        body = problem.interface.profile.end
+        radius, ended = WIDEST * body if np.isinf(chart.until) else chart.until, _ended(to_load, body)
+        stop, pace = _left(problem, radius, ended), steps or _pace(problem, segments)
         segments.append(Segment(problem, tuple(follow(problem, point, metric, stop, steps=pace))))
-        if loaded_to(to_load)(segments[-1].points[-1]):
+        if ended(segments[-1].points[-1]):
             break
     return tuple(segments)
 
 
-def _ended(problem: Traceable, to_load: float, radius: float) -> Callable[[Point], bool]:
-    """Stop under a compressive load, or where the contact leaves what a chart serves or fills the body as allowed."""
+def _ended(to_load: float, body: float) -> Callable[[Point], bool]:
+    """Stop under a compressive load, or where the body is drawn flat: its contact is wider, and the load falls."""
     loaded = loaded_to(to_load)
-    return lambda point: loaded(point) or undeformed_radius(problem, point) > radius
+    return lambda p: loaded(p) or bool(p.observables[CONTACT_RADIUS] > body and p.rates[LOAD] < 0)
+
+
+def _left(problem: Traceable, radius: float, ended: Callable[[Point], bool]) -> Callable[[Point], bool]:
+    """Stop there, or where the contact leaves what a chart serves or fills the body as allowed."""
+    return lambda point: ended(point) or undeformed_radius(problem, point) > radius
 
 
 def _pace(problem: Traceable, before: Sequence[Segment]) -> Steps | None:
