@@ -51,8 +51,10 @@ import fem_adhesion.convergence
 import halfspace.accuracy.finite_bodies
 import halfspace.accuracy.trace
 import halfspace.equilibrium.contact
-from fem_adhesion import Scene, weak_form
+from fem_adhesion import Scene
 from fem_adhesion.crosscheck import from_scratch, weak_bodies
+from fem_adhesion.weak_form import body as weak_body
+from fem_adhesion.weak_form import newton
 from halfspace.elastic import compliance, grid
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import moved
@@ -205,12 +207,12 @@ CONSTANTS = (
     Constant(weak_bodies, "FINENESS", fourth_level(0.5, 2.0), higher_degrees),
     Constant(weak_bodies, "SHARP", fourth_level(5.0, 8.0)),
     Constant(from_scratch, "SHARP", fourth_level(5.0, 8.0)),
-    Constant(weak_form, "EVEN", fourth_level(0.5, 2.0)),
-    Constant(weak_form, "GROWTH", fourth_level(0.5, 2.0), to_the_power),
-    Constant(weak_form, "INNER", fourth_level(0.5, 2.0), from_one),
-    Constant(weak_form, "WITHIN", fourth_level(0.5, 2.0)),
-    Constant(weak_form, "FLAT", fourth_level(0.5, 2.0, 5.0)),
-    Constant(weak_form, "NEARBY", fourth_level(0.5, 2.0, 5.0)),
+    Constant(weak_body, "EVEN", fourth_level(0.5, 2.0)),
+    Constant(weak_body, "GROWTH", fourth_level(0.5, 2.0), to_the_power),
+    Constant(weak_body, "INNER", fourth_level(0.5, 2.0), from_one),
+    Constant(weak_body, "WITHIN", fourth_level(0.5, 2.0)),
+    Constant(newton, "FLAT", fourth_level(0.5, 2.0, 5.0)),
+    Constant(newton, "NEARBY", fourth_level(0.5, 2.0, 5.0)),
 )
 
 

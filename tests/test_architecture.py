@@ -1,6 +1,7 @@
 """Every import goes down the floors of the house, as pyproject.toml has them, and every module has its floor."""
 
 import ast
+import itertools
 import re
 import tomllib
 from pathlib import Path
@@ -37,8 +38,9 @@ def test_the_floors_are_few():
 
 
 def _imports(module):
-    tree = ast.parse((ROOT / Path(*module.split("."))).with_suffix(".py").read_text())
-    for node in ast.walk(tree):
+    path = ROOT / Path(*module.split("."))
+    files = [path.with_suffix(".py")] if not path.is_dir() else path.rglob("*.py")
+    for node in itertools.chain.from_iterable(ast.walk(ast.parse(file.read_text())) for file in files):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -47,6 +49,7 @@ def _imports(module):
 
 def test_the_fourth_level_imports_nothing_of_the_solvers_it_checks():
     own = {name for name in _imports("fem_adhesion.weak_form") if name.split(".")[0] in ("halfspace", "fem_adhesion")}
+    own = {name for name in own if not name.startswith("fem_adhesion.weak_form.")}
     assert own == {"halfspace.errors.NotConverged", "halfspace.values.Valued"}  # no physics, no numbers
 
 

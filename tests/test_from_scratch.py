@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 import fem_adhesion
-from fem_adhesion import HalfSpace, Scene, cli, scene, weak_form
+from fem_adhesion import HalfSpace, Scene, cli, scene
 from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM
 from fem_adhesion.crosscheck.study import Failure
 from fem_adhesion.crosscheck.weak_bodies import law_of
-from fem_adhesion.weak_form import Contact, half_space, half_space_mesh, newton, turning_point
+from fem_adhesion.weak_form.body import factorise, fine_within, half_space, half_space_mesh
+from fem_adhesion.weak_form.contact import Contact, lennard_jones
+from fem_adhesion.weak_form.newton import _extremum, determinant, newton, turning_point
 from halfspace.accuracy import trace
 from halfspace.equilibrium import events as halfspace_events
 from halfspace.equilibrium.contact import LOAD, ContactProblem
@@ -36,14 +38,14 @@ def test_tension_and_slope_are_those_of_the_potential_alone(law):
     np.testing.assert_allclose(found.potential(1 + H), law.energy(H, 1.0), rtol=1e-12)
     np.testing.assert_allclose(found.tension(1 + H), -law.pressure(H, 1.0), rtol=1e-7, atol=1e-7 * law.strength)
     np.testing.assert_allclose(found.slope(1 + H), -law.slope(H, 1.0), rtol=1e-5, atol=1e-5 * law.stiffness)
-    assert (found.potential is weak_form.lennard_jones) == (law == PowerLaw())
+    assert (found.potential is lennard_jones) == (law == PowerLaw())
 
 
 def test_points_beyond_the_box_bear_what_a_profile_attracts_there(box):
     """On a paraboloid dh = mu r dr, so that the load left out is 2 pi w at the rim."""
     contact = Contact(box, 0.7)
     rim = 1 + 0.5 + 0.7 * box.rim**2 / 2
-    assert contact.load_beyond(-0.5) == pytest.approx(2 * np.pi * weak_form.lennard_jones(rim), rel=1e-10, abs=0)
+    assert contact.load_beyond(-0.5) == pytest.approx(2 * np.pi * lennard_jones(rim), rel=1e-10, abs=0)
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.499])
@@ -98,7 +100,7 @@ def test_the_determinant_is_that_of_a_dense_matrix(size):
     for _ in range(5):
         matrix = rng.normal(size=(size, size))
         matrix += matrix.T
-        found = weak_form.determinant(weak_form.factorise(matrix))
+        found = determinant(factorise(matrix))
         np.testing.assert_allclose(found, np.linalg.slogdet(matrix), rtol=1e-9, atol=1e-9)
 
 
@@ -112,13 +114,13 @@ def test_where_nothing_turns_no_turning_point_is_found(in_contact):
 def test_a_cubic_turns_where_its_slope_vanishes(ends):
     """x^3 - 3 x does so at 1, where it is -2."""
     a, b = ((x**3 - 3 * x, 3 * x**2 - 3) for x in ends)
-    part, value = weak_form._extremum(ends[1] - ends[0], a, b)
+    part, value = _extremum(ends[1] - ends[0], a, b)
     assert ends[0] + part * (ends[1] - ends[0]) == pytest.approx(1, rel=1e-12)
     assert value == pytest.approx(-2, rel=1e-12)
 
 
 def test_an_edge_inside_the_attraction_has_cells_on_all_of_it():
-    lines = weak_form.fine_within(2.0, np.array([0.0, 0.1, 1.0, 3.0, 9.0]))
+    lines = fine_within(2.0, np.array([0.0, 0.1, 1.0, 3.0, 9.0]))
     np.testing.assert_allclose(lines, [0.0, 0.1, 0.55, 1.0, 1.5, 2.0, 2.5, 3.0, 9.0])
     radii = np.unique(half_space_mesh(0.04, 30.0, reach=2.0).p[0])
     assert np.diff(radii)[radii[:-1] < 2].max() <= 0.6

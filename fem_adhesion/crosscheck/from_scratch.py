@@ -20,7 +20,8 @@ import halfspace
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
 from fem_adhesion.crosscheck.weak_bodies import SHARP, FineAt, contacts, sharpness
 from fem_adhesion.scene import Scene
-from fem_adhesion.weak_form import Contact, Turn, newton, turning_point
+from fem_adhesion.weak_form.contact import Contact
+from fem_adhesion.weak_form.newton import Turn, newton, turning_point
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Located, usual

@@ -17,21 +17,8 @@ from fem_adhesion.bodies.body import Body as ElasticBody
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import finest_length, layout_of, mesh_of, pair_meshes
 from fem_adhesion.scene import Scene
-from fem_adhesion.weak_form import (
-    TRIANGLES,
-    Body,
-    Contact,
-    Heights,
-    Law,
-    discretise,
-    fine_within,
-    half_space,
-    lennard_jones,
-    on_ground,
-    opposed,
-    paraboloid,
-    sphere,
-)
+from fem_adhesion.weak_form.body import TRIANGLES, Body, discretise, fine_within, half_space, on_ground, opposed
+from fem_adhesion.weak_form.contact import Contact, Heights, Law, lennard_jones, paraboloid, sphere
 from halfspace.elastic import grid
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Paraboloid, Sphere

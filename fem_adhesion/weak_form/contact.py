@@ -1,0 +1,177 @@
+"""The law, the profile, and what they make of a body: gaps, load, energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fem_adhesion.weak_form.body import Array, Body
+from halfspace.values import Valued
+
+Heights = Callable[[Array], Array]
+
+# The law
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law of the tension between two surfaces, by its potential alone; what else it is are differences of that.
+
+    Attributes
+    ----------
+    potential : callable
+        w = -int_h^inf sigma in dgamma at gaps h in eps; the attraction of two bodies does the work -w(1) = 1.
+    grain : float
+        Part of a gap over which the tension varies: (sigma'(1))^(-1/2).
+    room : float
+        Gap in eps that counts as one at least: surfaces without a core may come closer than none.
+    """
+
+    potential: Callable[[Array], Array]
+    grain: float = 0.25
+    room: float = 0.0
+
+    def size(self, h: Array) -> Array:
+        """Size by which changes of a gap are measured; a start may have surfaces that overlap."""
+        return np.maximum(np.abs(h), max(self.room, CLOSEST))
+
+    def tension(self, h: Array) -> Array:
+        """Return sigma = dw/dh in dgamma/eps."""
+        return self._difference(h, FIRST, 1)
+
+    def slope(self, h: Array) -> Array:
+        """Return sigma' in dgamma/eps^2."""
+        return self._difference(h, SECOND, 2)
+
+    def _difference(self, h: Array, weights: Array, order: int) -> Array:
+        """Difference of eighth order at steps that are small beside both the gap and what the tension varies over."""
+        d = STEP * self.grain * self.size(h)
+        places = np.arange(-(weights.size // 2), weights.size // 2 + 1)
+        return np.asarray(sum(w * self.potential(h + n * d) for n, w in zip(places, weights, strict=True)) / d**order)
+
+
+STEP, CLOSEST = 4e-3, 1e-6  # of a gap and its grain; the least gap in eps that counts as one
+FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
+SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
+
+
+def lennard_jones(h: Array) -> Array:
+    """Potential of the 3-9 law."""
+    return 8 / 3 * (h**-8 / 8 - h**-2 / 2)
+
+
+LENNARD_JONES = Law(lennard_jones)
+
+
+# The profile
+
+
+def paraboloid(r: Array) -> Array:
+    """Height z of the undeformed surface over its pole in beta^2/R, at radii in beta."""
+    return r**2 / 2
+
+
+def sphere(r: Array, R: float) -> Array:
+    """The same of a sphere of radius R (beta): R (R - sqrt(R^2 - r^2))."""
+    return np.asarray(r**2 / (1 + np.sqrt((1 - r / R) * (1 + r / R))))
+
+
+# The contact
+
+POINTS, FAR = 40, 4  # of the rule from the rim to infinity, and the power by which they crowd there
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Contact(Valued):
+    """A body under a rigid surface that attracts it.
+
+    Attributes
+    ----------
+    body : Body
+        In beta.
+    tabor : float
+        Tabor parameter mu.
+    heights : callable
+        z of the undeformed surface at radii in beta.
+    endless : bool
+        Whether the surfaces go on for ever beyond the mesh, as over a half-space.
+    rim : pair of (k,) arrays
+        Radii and parts of dA of points beyond the mesh of a body with an end that attract and do not yield.
+    law : Law
+        Of the tension between the surfaces.
+    """
+
+    body: Body
+    tabor: float
+    heights: Heights = paraboloid
+    endless: bool = True
+    rim: tuple[Array, Array] = (np.empty(0), np.empty(0))
+    law: Law = LENNARD_JONES
+
+    @property
+    def sharpness(self) -> float:
+        """Tabor parameter of a contact by the 3-9 law whose edge is as sharp."""
+        return self.tabor * LENNARD_JONES.grain / self.law.grain
+
+    @cached_property
+    def height(self) -> Array:
+        """Height z at the points."""
+        return self.heights(self.body.radii)
+
+    @cached_property
+    def rigid(self) -> tuple[Array, Array]:
+        """Radii and parts of dA of the points beyond the mesh; those on to infinity crowd there, where little is."""
+        if not self.endless:
+            return self.rim
+        s, ds = np.polynomial.legendre.leggauss(POINTS)
+        s, ds = (1 + s) / 2, ds / 2
+        r = self.body.rim / s**FAR
+        return r, 2 * np.pi * r**2 * FAR * ds / s
+
+    def gap(self, u: Array | None, approach: float) -> Array:
+        """Gap h at the points under displacements u, or of the undeformed surfaces."""
+        return np.asarray(1 - approach + self.tabor * (self.height - (0.0 if u is None else self.body.rise(u))))
+
+    @cached_property
+    def _far_height(self) -> Array:
+        """Height z at the rigid points."""
+        r = self.rigid[0]
+        return self.heights(r) if r.size else r
+
+    def _beyond(self, approach: float) -> Array:
+        """Gaps at the rigid points."""
+        return np.asarray(1 - approach + self.tabor * self._far_height)
+
+    def load(self, tension: Array, approach: float) -> float:
+        """W in R dgamma, positive in compression, of the tension at the points."""
+        return -self.tabor * self.body.integral(tension) + self.load_beyond(approach)
+
+    def load_beyond(self, approach: float) -> float:
+        """Part of the load that is beyond the mesh."""
+        return -self.tabor * float(self.rigid[1] @ self.law.tension(self._beyond(approach)))
+
+    def load_slope(self, rate: Array, approach: float) -> float:
+        """dW/dalpha in R dgamma/eps of the rate -dsigma/dalpha."""
+        rigid = self.rigid[1] @ self.law.slope(self._beyond(approach))
+        return self.tabor * (self.body.integral(rate) + float(rigid))
+
+    def displacement(self, h: Array) -> Array:
+        """What the tensions of given gaps make of the body, whether or not it leaves those gaps."""
+        return np.asarray(self.body.yielding(self.tabor * self.body.forces(self.law.tension(h))))
+
+    def energy(self, u: Array, approach: float) -> float:
+        """Potential energy in R dgamma eps, less that of the undeformed surfaces in touch, which may be infinite."""
+        inside = float(u @ (self.body.stiffness @ u)) / 2
+        inside += self.body.integral(self._released(self.gap(u, approach), self.height))
+        return self.tabor * (inside + float(self.rigid[1] @ self._released(self._beyond(approach), self._far_height)))
+
+    def _released(self, h: Array, height: Array) -> Array:
+        """Potential per dA at gaps h less that of the undeformed surfaces in touch."""
+        return np.asarray(self.law.potential(h) - self.law.potential(1 + self.tabor * height))
+
+    def far_reaction(self, u: Array, h: Array) -> float:
+        """Upward force of what holds the body, displaced by the tensions of given gaps: their load, in equilibrium."""
+        return float(self.body.reaction @ u) - self.tabor * self.body.integral(self.body.borne * self.law.tension(h))
