@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -39,33 +40,37 @@ class Equilibrium(Valued):
     log: float
 
 
-MOST_STEPS, NEAR = 20, 1e-5  # relative change of the gaps by the last step; the next would be its square
+MOST_STEPS, NEAR = 20, 1e-5  # relative change of the gaps by the last step; the next would be far less
+KEPT = 1e-4  # and that by a step after which the next may keep the tangent
 
 
 def newton(contact: Contact, h: Array, approach: float, *, load: float | None = None) -> Equilibrium:
     """Solve for the equilibrium at an approach, or at a load if one is given, from gaps nearby.
 
-    Each step solves the problem with the law's straight line, sigma(h) + sigma' (h_new - h), in the place of the law.
+    Each step solves the problem with the law's straight line, sigma(h) + sigma' (h_new - h), in the place of the law;
+    the last ones, close to the solution, keep its slope and with it the factors of the tangent.
 
     Raises
     ------
     NotConverged
         If the steps run out.
     """
-    body, mu, law = contact.body, contact.tabor, contact.law
+    body, mu, law, moved = contact.body, contact.tabor, contact.law, np.inf
     for _ in range(MOST_STEPS):
-        slope, size = law.slope(h), law.size(h)
-        factors = factorise(body.softened(mu**2 * slope))
-        straight = law.tension(h) + slope * (contact.gap(None, approach) - h)
-        u, rate = (factors.solve(mu * body.forces(line)) for line in (straight, -slope))  # rate is du/dalpha
-        change, gap_rate = contact.gap(u, approach) - h, -1 - mu * body.rise(rate)
-        stiffness = contact.load_slope(slope * -gap_rate, approach)
-        missing = 0.0 if load is None else load - contact.load(law.tension(h) + slope * change, approach)
+        if moved > KEPT:
+            slope = law.slope(h)
+            factors = factorise(body.softened(mu**2 * slope))
+            gap_rate = -1 + mu**2 * body.rise(factors.solve(body.forces(slope)))
+            stiffness = contact.load_slope(slope * -gap_rate, approach)
+        tension, size = law.tension(h), law.size(h)
+        u = factors.solve(mu * body.forces(tension + slope * (contact.gap(None, approach) - h)))
+        change = contact.gap(u, approach) - h
+        missing = 0.0 if load is None else load - contact.load(tension + slope * change, approach)
         d = missing / stiffness
         change += d * gap_rate
         part = min(1.0, 0.75 / max(float((-change / size).max()), 0.75))  # lest the surfaces pass through each other
-        h, approach = h + part * change, approach + part * d
-        if part == 1 and np.abs(change / size).max() < NEAR:
+        h, approach, moved = h + part * change, approach + part * d, float(np.abs(change / size).max())
+        if moved < NEAR:
             found = contact.load(law.tension(h), approach)
             return Equilibrium(h, approach, found, gap_rate, stiffness, *determinant(factors))
     raise NotConverged(f"no equilibrium in {MOST_STEPS} Newton steps of the weak form; try a nearer start")
@@ -111,19 +116,18 @@ def turning_point(
 
     Under fixed grips, at the fold of a jump, the determinant of the tangent changes its sign; that is passed at given
     loads. Under a dead load, at an extremum of the load, that of the tangent bordered by the load does, det A times
-    dW/dalpha; it is passed at given approaches. Where they turn, the cubic through both states does; it errs by a
-    power of the steps, which may be that much finer.
+    dW/dalpha; it is passed at given approaches. Where they turn, the cubic through the states on either side does; it
+    errs by a power of the steps, which may be that much finer.
     """
+    at = partial(_at, contact, under_load=under_load)
     place = approach if under_load else load
     # The extremum of the load is flat; along the load an edge moves by a spike's width soon.
-    flat = FLAT * (1 + abs(place)) * min(1.0, contact.law.grain / LENNARD_JONES.grain)
-    step = flat if under_load else NEARBY * (1 + abs(place)) * min(1.0, 9 / contact.sharpness**2)
-    step /= finer
-    a = _at(contact, place - step, h, approach, under_load=under_load)
+    step = FLAT * min(1.0, contact.law.grain / LENNARD_JONES.grain) if under_load else NEARBY
+    step *= (1 + abs(place)) * min(1.0, 9 / contact.sharpness**2) / finer
+    middle = at(place, h, approach)
+    a, b = (at(place + d, *_predicted(middle, d, under_load=under_load)) for d in (-step, step))
     place, step = place - step, 2 * step
     for _ in range(TRIES):
-        change = step if under_load else step / a.stiffness
-        b = _at(contact, place + step, a.gap + change * a.gap_rate, a.approach + change, under_load=under_load)
         values = [state.sign * np.exp(state.log - a.log) * (state.stiffness if under_load else 1) for state in (a, b)]
         part = float(values[0] / (values[0] - values[1]))
         if 0 <= part <= 1:
@@ -134,12 +138,19 @@ def turning_point(
         if not abs(part) < FARTHEST:
             return None
         step *= 1.3 * part  # past the root
+        b = at(place + step, *_predicted(a, step, under_load=under_load))
     return None
 
 
 def _at(contact: Contact, place: float, h: Array, approach: float, *, under_load: bool) -> Equilibrium:
     """Equilibrium at an approach or a load, from gaps and an approach nearby."""
     return newton(contact, h, place) if under_load else newton(contact, h, approach, load=place)
+
+
+def _predicted(state: Equilibrium, step: float, *, under_load: bool) -> tuple[Array, float]:
+    """Gaps and approach a step in approach or load from a state, along the tangent."""
+    change = step if under_load else step / state.stiffness
+    return state.gap + change * state.gap_rate, state.approach + change
 
 
 def _extremum(length: float, a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
