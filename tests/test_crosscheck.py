@@ -10,10 +10,11 @@ from whole_runs import COMPARE, tables_in
 import fem_adhesion
 import halfspace
 from fem_adhesion import Block, HalfSpace, Scene, cli, convergence, discretise
+from fem_adhesion.common.jobs import WorkerDied
 from fem_adhesion.crosscheck import comparison, from_scratch, references
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Row
-from fem_adhesion.crosscheck.study import Case, Failure
+from fem_adhesion.crosscheck.study import Case, Failure, Part
 from fem_adhesion.crosscheck.table import crosscheck_tables
 from fem_adhesion.elasticity import space
 from halfspace import limits
@@ -357,7 +358,7 @@ def test_a_failing_case_does_not_lose_the_others(monkeypatch):
 
     compare = crosscheck.compare
     monkeypatch.setattr(crosscheck, "compare", lambda *args, **kwargs: compare(*args, **kwargs, solve=solve))
-    results = list(crosscheck.run([Scene(tabor=1.0), Scene(tabor=0.5)], rtol=1e-2))
+    results = list(crosscheck.run([Scene(tabor=1.0), Scene(tabor=0.5)], rtol=1e-2, jobs=1))
     assert isinstance(results[0], Failure)
     assert results[0].reason == "on purpose; try another day"
     assert [row.quantity for row in results[0].rows[:4]] == [f"operator: {name}" for name in references.PRESSURES]
@@ -393,3 +394,24 @@ def test_limits_are_checked_before_any_work():
     with pytest.raises(ValueError, match="rtol = 1 is outside"):
         crosscheck.compare(Scene(tabor=1.0), rtol=1.0)
     assert limits.require_poisson(0.0) == 0.0
+
+
+def test_scenes_come_in_their_order_whatever_ends_first(monkeypatch):
+    """What needs no solution is computed once for both, and a worker that dies takes its own scene alone with it."""
+    scenes = [Scene(tabor) for tabor in (2.0, 0.5, 1.0)]
+    asked = []
+
+    def backwards(_work, parts, **_how):
+        asked.extend(parts)
+        for part in reversed(parts):
+            told = _made_up("agree") if part.solved else _made_up("inconclusive")
+            yield part, WorkerDied("on purpose") if part == Part(scenes[1], True) else Case(part.scene, {}, (told,))
+
+    monkeypatch.setattr(crosscheck, "stream", backwards)
+    first, died, last = crosscheck.run(scenes)
+    assert [part.solved for part in asked] == [False, True, True, True]
+    assert [one.scene for one in (first, died, last)] == scenes
+    assert [row.verdict for row in first.rows] == ["inconclusive", "agree"]
+    assert isinstance(died, Failure)
+    assert died.reason == "on purpose"
+    assert [row.verdict for row in died.rows] == ["inconclusive"]

@@ -46,7 +46,7 @@ import contextlib, io, json, os, sys
 from fem_adhesion import cli
 from fem_adhesion.crosscheck import study
 run, compared = study.run, {}
-def once(scenes, rtol):
+def once(scenes, rtol, **_):
     key = (*scenes, rtol)
     if key not in compared:
         compared[key] = list(run(scenes, rtol=rtol))

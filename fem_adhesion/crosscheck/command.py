@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, console_beside, written
+from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_workers, console_beside, written
 from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.scene_options import POISSON, add_body, add_other_body, counter_of, scene_of
 
@@ -32,6 +32,7 @@ def add_options(command: Parser) -> None:
     add_other_body(body, f"{POISSON:g} unless given", " in radii of the first")
     file = "also write the result to this file, - for standard output"
     results.add_argument("--json", type=Path, help=file, metavar="FILE")
+    add_workers(command)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -45,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
         require_comparable(scene, options.rtol)
     console = console_beside(options.json)
     with written(options.json) as file:
-        cases = _compare_with_progress(scenes, options.rtol, console)
+        cases = _compare_with_progress(scenes, options, console)
         from fem_adhesion.crosscheck.record import crosscheck_record
 
         record = crosscheck_record(cases)
@@ -61,12 +62,14 @@ def _scenes(options: argparse.Namespace) -> list[Scene]:
     return [scene_of(options, mu, options.poisson, *parts) for mu in options.tabor]
 
 
-def _compare_with_progress(scenes: Sequence[Scene], rtol: float, console: Console) -> list[Case | Failure]:
+def _compare_with_progress(
+    scenes: Sequence[Scene], options: argparse.Namespace, console: Console
+) -> list[Case | Failure]:
     """Run the cases with a bar on standard error and tables on the console."""
     from fem_adhesion.crosscheck import study
 
     cases: list[Case | Failure] = []
-    solved = study.run(scenes, rtol=rtol)
+    solved = study.run(scenes, rtol=options.rtol, jobs=options.jobs, dask=options.dask)
     for done, scene in enumerate(scenes):
         with progress_bar() as step:  # it is gone when a table is printed, which would break it
             step(f"tabor {scene.tabor:g}", done, len(scenes))

@@ -13,12 +13,15 @@ refinement and from the size of the block, never from a choice.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from functools import partial
+from itertools import chain, pairwise
 
 import numpy as np
 
 from fem_adhesion import convergence
+from fem_adhesion.common.jobs import WorkerDied, stream
 from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck.comparison import SOLVERS, Pair, Row, Verdict, difference, worst
 from fem_adhesion.crosscheck.from_scratch import gaps_at
@@ -119,17 +122,59 @@ def compare(
     return Case(scene, solutions, (*rows, *from_scratch.events(scene, fe)))
 
 
-def run(scenes: Sequence[Scene], *, rtol: float = 1e-5) -> Iterator[Case | Failure]:
-    """Compare scenes one after the other; what needs no solution is the same for all blocks of a material."""
-    before: dict[Scene, Sequence[Row]] = {}
-    for scene in scenes:
-        body = scene if scene.sized else replace(scene, tabor=1.0)
-        try:
-            if body not in before:
-                before[body] = unsolved(body, rtol=rtol)
-            yield compare(scene, rtol=rtol, before=before[body])
-        except NotConverged as error:
-            yield Failure(scene, str(error), tuple(before.get(body, ())))
+@dataclass(frozen=True)
+class Part:
+    """A scene's comparison, or what needs no solution: that is the same for all blocks of a material, of tabor 1."""
+
+    scene: Scene
+    solved: bool
+
+
+def run(
+    scenes: Sequence[Scene], *, rtol: float = 1e-5, jobs: int | None = None, dask: str | None = None
+) -> Iterator[Case | Failure]:
+    """Compare scenes beside each other and give them in their order, each as soon as it and those before it are there.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+        What is compared.
+    rtol : float
+        Accuracy of the comparison.
+    jobs, dask : int and str, optional
+        Local processes, or the address of a cluster: see `fem_adhesion.common.jobs.stream`. One scene needs no other
+        process.
+    """
+    of_scenes = [
+        (Part(scene if scene.sized else replace(scene, tabor=1.0), False), Part(scene, True)) for scene in scenes
+    ]
+    parts = list(dict.fromkeys(chain.from_iterable(of_scenes)))
+    found: dict[Part, Case | Failure | WorkerDied] = {}
+    jobs = 1 if jobs is None and len(scenes) == 1 else jobs
+    with closing(stream(partial(_compared, rtol=rtol), parts, jobs=jobs, dask=dask)) as results:
+        for before, solved in of_scenes:
+            while not {before, solved} <= found.keys():
+                part, found[part] = next(results)
+            yield _whole(solved.scene, found[before], found[solved])
+
+
+def _compared(part: Part, *, rtol: float) -> Case | Failure:
+    """A part of a comparison, or why it failed."""
+    try:
+        if part.solved:
+            return compare(part.scene, rtol=rtol, before=())
+        return Case(part.scene, {}, tuple(unsolved(part.scene, rtol=rtol)))
+    except NotConverged as error:
+        return Failure(part.scene, str(error))
+
+
+def _whole(scene: Scene, before: Case | Failure | WorkerDied, solved: Case | Failure | WorkerDied) -> Case | Failure:
+    """Comparison of a scene by its parts."""
+    if not isinstance(before, Case):
+        return Failure(scene, before.reason)
+    if not isinstance(solved, Case):
+        return Failure(scene, solved.reason, before.rows)
+    return replace(solved, rows=(*before.rows, *solved.rows))
 
 
 def unsolved(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
