@@ -8,16 +8,17 @@ import hashlib
 import math
 import os
 import platform
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass, is_dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, is_dataclass
 from functools import cache
 from importlib.metadata import version
 from importlib.util import find_spec
 from itertools import accumulate
 from pathlib import Path
+from typing import TypeVar
 
 PROC = Path("/proc")
+Result = TypeVar("Result")
 
 
 def versions() -> dict[str, str]:
@@ -57,24 +58,16 @@ def machine() -> dict[str, str]:
     }
 
 
-@dataclass
-class Memory:
-    """Growth of the peak memory inside a `peak_memory` block, in MiB; nan where the system does not tell."""
-
-    mebibytes: float = float("nan")
-
-
-@contextmanager
-def peak_memory() -> Iterator[Memory]:
-    """Measure by how much the process grows, at its peak, over what it holds at the start.
+def with_peak_memory(work: Callable[[], Result]) -> tuple[Result, float]:
+    """Result of some work, and by how many MiB the process grew over what it held at the start, at its peak.
 
     What earlier work has given back to the allocator but not to the system is reused unseen: small needs may show as 0.
+    It is nan where the system does not tell.
     """
-    memory = Memory()
     gc.collect()
     start = _restart_peak()
-    yield memory
-    memory.mebibytes = (_resident("VmHWM") - start) / 1024
+    result = work()
+    return result, (_resident("VmHWM") - start) / 1024
 
 
 def _restart_peak() -> float:

@@ -17,7 +17,7 @@ from scipy.linalg.lapack import dgesv
 import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.bodies.half_space import HalfSpace
-from fem_adhesion.common.facts import peak_memory
+from fem_adhesion.common.facts import with_peak_memory
 from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed.element_methods import POISSON, element_methods
@@ -100,15 +100,14 @@ def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) ->
     """One rung: run it, time it again if asked, and compare with the truth."""
     began = time.perf_counter()
     try:
-        with peak_memory() as memory:
-            solved = step.run(tabor)
+        solved, memory = with_peak_memory(lambda: step.run(tabor))
     except (InputError, NotConverged) as error:
         return Timing(method, step.setting, _status(error), time.perf_counter() - began, str(error))
     seconds = time.perf_counter() - began
     if again:
         seconds = min(seconds, _seconds(lambda: step.run(tabor)))
     errors, floors = _errors(solved, truth), {name: truth.relative(name, e.error) for name, e in truth.values.items()}
-    return Timing(method, step.setting, "converged", seconds, "", solved.unknowns, memory.mebibytes, errors, floors)
+    return Timing(method, step.setting, "converged", seconds, "", solved.unknowns, memory, errors, floors)
 
 
 def _status(error: InputError | NotConverged) -> Status:
