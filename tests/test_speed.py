@@ -24,10 +24,9 @@ from fem_adhesion.speed import methods as halfspace_methods_module
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
 from fem_adhesion.speed.element_methods import element_methods
-from fem_adhesion.speed.growth import GROWTHS, Growth, growths_for, slope, timed
 from fem_adhesion.speed.methods import MOST_NODES, QUANTITIES, Method, Solved, Step, _affordable, halfspace_methods
-from fem_adhesion.speed.result import SpeedStudy, Timing, Truth, best, cheapest, pareto_front
-from fem_adhesion.speed.study import measure
+from fem_adhesion.speed.result import Growth, SpeedStudy, Timing, Truth, best, cheapest, pareto_front, slope
+from fem_adhesion.speed.study import GROWTHS, growths_for, measure, timed
 from halfspace.elastic import compliance
 from halfspace.equilibrium import newton, relaxation
 from halfspace.equilibrium.curve import transfer

@@ -1,5 +1,5 @@
 """What a digit costs. The command ``speed``.
 
-`methods`, on the half-space, and `element_methods`; `growth` of the time of those with error control; `study`,
-`result`; `page` with its figures, `command`.
+`methods`, on the half-space, and `element_methods`; `study`, which times them, and those with error control as they are
+asked for more; `result`; `page` with its figures, `command`.
 """

@@ -18,9 +18,9 @@ from fem_adhesion.common import style
 from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.page import Table, markdown, write_csv
 from fem_adhesion.common.style import Picture, draw
-from fem_adhesion.speed.growth import RTOL, TABOR
 from fem_adhesion.speed.methods import QUANTITIES, Family, Method
 from fem_adhesion.speed.result import EXPONENTS, SpeedStudy, Timing, best, cheapest, pareto_front
+from fem_adhesion.speed.study import RTOL, TABOR
 
 CAPTION = "Error against wall time: half-space left, finite elements right."
 FAMILIES: tuple[Family, ...] = ("half-space", "finite elements")

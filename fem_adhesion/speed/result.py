@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 
-from fem_adhesion.speed.growth import Growth, slope
 from fem_adhesion.speed.methods import QUANTITIES, Family, Method
-from halfspace.values import Estimate
+from halfspace.values import Array, Estimate
 
 Status = Literal["converged", "too coarse", "refused", "failed"]
 EXPONENTS = tuple(f"{cost}, x = {x}" for x in ("unknowns", "1/error") for cost in ("time", "peak memory"))
@@ -76,6 +75,27 @@ class Timing:
         if not self.errors or not np.all(np.isfinite(list(self.errors.values()))):
             return None
         return max(self.errors, key=self.error)
+
+
+@dataclass(frozen=True)
+class Growth:
+    """What grows for which solver, and how long that then takes.
+
+    The time is expected to go as a power of what grows, `expected` at most, 0 if only logarithms are. Its values go
+    from small to large; each is solved for, and has its seconds once it is timed.
+    """
+
+    solver: str
+    grows: str
+    expected: float
+    at: tuple[float, ...]
+    solve: Callable[[float], object]
+    seconds: tuple[float, ...] = ()
+
+    @property
+    def exponent(self) -> float:
+        """Exponent b of seconds ~ x^b; nan of fewer than two values."""
+        return slope(np.array(self.at), np.array(self.seconds))
 
 
 @dataclass(frozen=True)
@@ -170,3 +190,11 @@ def pareto_front(rungs: Sequence[Timing], quantity: str) -> list[Timing]:
         if not front or (rung.error(quantity) < front[-1].error(quantity) and not front[-1].hidden(quantity)):
             front.append(rung)
     return front
+
+
+def slope(x: Array, y: Array) -> float:
+    """Exponent b of y ~ x^b by least squares of the logarithms; nan from fewer than two different points."""
+    use = np.isfinite(x) & np.isfinite(y) & (x > 0) & (y > 0)
+    if np.unique(x[use]).size < 2:
+        return float("nan")
+    return float(np.polyfit(np.log(x[use]), np.log(y[use]), 1)[0])

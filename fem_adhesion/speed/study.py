@@ -4,12 +4,19 @@ Each method climbs a ladder of resolutions; a rung is timed from the set-up to t
 quantities against the tightest solution of the other family: no elasticity is judged by itself. Which rungs are climbed
 is a matter of the ladders alone, so it is the same on every machine; time is only reported. How the time of the solvers
 with error control grows with what is asked of them is measured beside it.
+
+Cells are graded towards the contact edge, whose spike is as wide as 1/mu^2: their number grows as ln(mu), where that of
+a uniform grid grows as mu^2 and more. So no power of mu or R/eps is expected, but those of logarithms. Each digit asks
+for a degree more: the half-space has then so many more unknowns, whose dense factors cost their third power, and a cell
+of finite elements of degree p has p^2 inside, whose elimination costs p^6.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.linalg.lapack import dgesv
@@ -17,18 +24,21 @@ from scipy.linalg.lapack import dgesv
 import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.bodies.half_space import HalfSpace
+from fem_adhesion.bodies.hemisphere import Hemisphere
 from fem_adhesion.common.facts import with_peak_memory
 from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed.element_methods import POISSON, element_methods
-from fem_adhesion.speed.growth import Growth, growths_for, timed
 from fem_adhesion.speed.methods import Family, Method, Solved, Step, estimates, halfspace_methods
-from fem_adhesion.speed.result import SpeedStudy, Status, Timing, Truth
+from fem_adhesion.speed.result import Growth, SpeedStudy, Status, Timing, Truth
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 
 TABOR_RANGE = (0.05, 2.0)  # beyond it fixed grids need too many nodes, or rigid surfaces leave nothing to compare
 TIGHTEST = 1e-9  # relative tolerance of the truths
+TABOR = 1.0  # where digits and R/eps grow
+RTOL = 1e-5  # where the Tabor parameter and R/eps grow
+LOGARITHMIC = 0.0
 
 
 def measure(
@@ -124,3 +134,38 @@ def _errors(solved: Solved, truth: Truth) -> dict[str, float]:
         for name, value in solved.values.items()
         if name in truth.values
     }
+
+
+# How the time grows
+
+
+def _block(tabor: float, rtol: float) -> object:
+    return convergence.trace(Scene(tabor, HalfSpace(poisson=POISSON)), rtol=rtol)
+
+
+def _hemisphere(radius_ratio: float) -> object:
+    return convergence.trace(Scene(TABOR, Hemisphere(radius_ratio=radius_ratio, poisson=POISSON)), rtol=RTOL)
+
+
+def _rtol(digits: float) -> float:
+    return float(10**-digits)
+
+
+DIGITS = tuple(map(float, range(3, 9)))
+GROWTHS = (
+    Growth("half-space", "digits", 3.0, DIGITS, lambda x: halfspace.trace(TABOR, rtol=_rtol(x))),
+    Growth("finite elements", "digits", 6.0, DIGITS, lambda x: _block(TABOR, _rtol(x))),
+    Growth("half-space", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0, 100.0), lambda x: halfspace.trace(x, rtol=RTOL)),
+    Growth("finite elements", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0), lambda x: _block(x, RTOL)),
+    Growth("hemisphere", "R/eps", LOGARITHMIC, (10.0, 100.0, 1e3, 1e4), _hemisphere),
+)
+
+
+def growths_for(*, quick: bool) -> tuple[Growth, ...]:
+    """All growths, yet to be timed; each of the two smallest values only if it is to be quick."""
+    return tuple(replace(growth, at=growth.at[:2]) for growth in GROWTHS) if quick else GROWTHS
+
+
+def timed(growth: Growth, seconds_of: Callable[[Callable[[], object]], float]) -> Growth:
+    """Time a growth at each of its values."""
+    return replace(growth, seconds=tuple(seconds_of(partial(growth.solve, x)) for x in growth.at))
