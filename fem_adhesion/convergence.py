@@ -24,12 +24,14 @@ from fem_adhesion.mesh.block import graded_breaks
 from fem_adhesion.mesh.file import read_scaled
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import AroundEvents, surroundings
-from halfspace.accuracy.refinement import MOST_RUNGS, Charted, Charts, Rung, climb
+from halfspace.accuracy.refinement import MOST_RUNGS, Rung, climb
+from halfspace.accuracy.stages import Charted, Charts
 from halfspace.accuracy.trace import TWIN, rings
 from halfspace.elastic.compliance import to_infinity
 from halfspace.elastic.operators import Homogeneous
+from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import ContactProblem
-from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import GridTooCoarse
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array

@@ -26,8 +26,9 @@ from fem_adhesion.elasticity.stress import recovered_stresses
 from fem_adhesion.scene import Scene
 from halfspace.elastic import compliance
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import metric_for, transfer
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.equilibrium.curve import EquilibriumPath, metric_for, transfer
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import EVENTS
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Metric, Point, make_point

@@ -29,9 +29,10 @@ from halfspace.accuracy.refinement import Rung, climb
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import FlatCoordinate
+from halfspace.equilibrium.charts import COMPRESSION, Chart
+from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
-from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
-from halfspace.equilibrium.events import Located
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array, Valued

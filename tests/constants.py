@@ -56,8 +56,8 @@ from fem_adhesion.crosscheck import from_scratch, weak_bodies
 from fem_adhesion.weak_form import body as weak_body
 from fem_adhesion.weak_form import newton
 from halfspace.elastic import compliance, grid
+from halfspace.equilibrium.charts import moved
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.equilibrium.curve import moved
 from halfspace.errors import NotConverged
 from halfspace.scales import Scales
 

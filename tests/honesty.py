@@ -30,9 +30,11 @@ from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.jobs import stream
 from fem_adhesion.common.progress import progress_bar
 from halfspace import Coated, Layer, Layers, Stratum
-from halfspace.equilibrium.curve import energy_released, placed
+from halfspace.equilibrium.charts import placed
+from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import Condition, Located, is_event
+from halfspace.equilibrium.events import is_event
+from halfspace.equilibrium.search import energy_released
 from halfspace.equilibrium.states import COORDINATES
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Power

@@ -18,8 +18,8 @@ from fem_adhesion.elasticity.incompressible import stiffness_for
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
 from halfspace.elastic import grid
-from halfspace.equilibrium.curve import energy_released
 from halfspace.equilibrium.events import approach_scale
+from halfspace.equilibrium.search import energy_released
 
 R = 10.0
 

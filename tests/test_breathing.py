@@ -11,8 +11,9 @@ from fem_adhesion.mesh import spheres
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import FlatCoordinate, Homogeneous, Interpolated, MovingGrid, chebyshev_radii
+from halfspace.equilibrium.charts import Chart, trace_charts
 from halfspace.equilibrium.contact import ContactProblem
-from halfspace.equilibrium.curve import Chart, find_events, trace_charts
+from halfspace.equilibrium.search import find_events
 from halfspace.profiles.sphere import SphereSurface
 from halfspace.scales import Scales
 

@@ -7,8 +7,8 @@ from halfspace.accuracy.trace import half_space_charts, resolution_for, rings
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import ContactProblem, count_negative
-from halfspace.equilibrium.curve import transfer
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, PowerLaw
 from halfspace.profiles.sphere import SphereSurface

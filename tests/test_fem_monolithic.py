@@ -11,11 +11,12 @@ from fem_adhesion.finite_strain.assembly import assemble
 from fem_adhesion.finite_strain.body import displacement_body
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import Chart, metric_for, trace_charts
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD, locate, relocate
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.equilibrium.curve import Chart, energy_released, find_events, metric_for, trace_charts
 from halfspace.equilibrium.devices import energy_lost
-from halfspace.equilibrium.events import EXTREMUM, FOLD, locate, relocate
 from halfspace.equilibrium.path import follow, make_point
+from halfspace.equilibrium.search import energy_released, find_events
 from halfspace.errors import NotConverged
 
 NU = 0.3

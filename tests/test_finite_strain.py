@@ -18,8 +18,9 @@ from fem_adhesion.finite_strain.body import displacement_body, mixed_body
 from fem_adhesion.finite_strain.traction import Convention, convention_of, yielded_adhesion
 from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import Chart, moved, trace_charts, transfer
 from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem
-from halfspace.equilibrium.curve import Chart, find_events, moved, trace_charts, transfer
+from halfspace.equilibrium.search import find_events
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Morse, PowerLaw
 from halfspace.profiles.sphere import SphereSurface
 

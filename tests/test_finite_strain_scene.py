@@ -20,8 +20,9 @@ from fem_adhesion.finite_strain.meshes import FARTHEST, AroundEvents, ScenesBody
 from fem_adhesion.finite_strain.scene import LITTLE, Stages, find_jumps, raised, trace
 from fem_adhesion.finite_strain.traction import Convention
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import moved, placed, transfer, undeformed_radius
 from halfspace.equilibrium.contact import APPROACH, LOAD
-from halfspace.equilibrium.curve import energy_released, moved, placed, transfer, undeformed_radius
+from halfspace.equilibrium.search import energy_released
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 
 

@@ -18,8 +18,9 @@ from fem_adhesion.finite_strain.meshes import fine_between
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.mesh import spheres
 from halfspace.elastic import grid
+from halfspace.equilibrium.charts import Chart, moved, trace_charts
 from halfspace.equilibrium.contact import LOAD, ContactProblem
-from halfspace.equilibrium.curve import Chart, find_events, moved, trace_charts
+from halfspace.equilibrium.search import find_events
 from halfspace.profiles.sphere import SphereSurface
 
 TABOR, POISSON = 1.0, 0.3

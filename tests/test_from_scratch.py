@@ -16,9 +16,9 @@ from fem_adhesion.weak_form.body import factorise, fine_within, half_space, half
 from fem_adhesion.weak_form.contact import Contact, lennard_jones
 from fem_adhesion.weak_form.newton import _extremum, determinant, newton, turning_point
 from halfspace.accuracy import trace
-from halfspace.equilibrium import events as halfspace_events
+from halfspace.equilibrium import conditions, search
+from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.contact import LOAD, ContactProblem
-from halfspace.equilibrium.events import FOLD
 from halfspace.errors import NotConverged
 from halfspace.laws import Dlvo, Exponential, Morse, PowerLaw
 from halfspace.profiles import Paraboloid
@@ -188,10 +188,8 @@ def _load(monkeypatch):
 
 
 def _jumps_on_a_spring(monkeypatch):
-    from halfspace.equilibrium import curve
-
     soft = replace(FOLD, compliance=0.1)
-    for module in (curve, halfspace_events):
+    for module in (search, conditions):
         monkeypatch.setattr(module, "FOLD", soft)
 
 

@@ -19,7 +19,7 @@ from fem_adhesion.curve.movie import experiment
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace.accuracy.fold_birth import count_folds
 from halfspace.accuracy.trace import _sized_body, half_space_charts, resolution_for
-from halfspace.equilibrium.curve import moved, trace_charts
+from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import usual
 from halfspace.equilibrium.path import Steps

@@ -13,11 +13,12 @@ import halfspace
 from halfspace.accuracy.fold_birth import critical_stiffness
 from halfspace.accuracy.refinement import MOST_RUNGS, charted_rung, climb
 from halfspace.accuracy.trace import Resolution, half_space_charts, resolution_for
+from halfspace.equilibrium.charts import metric_for, trace_charts
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets, locate
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
-from halfspace.equilibrium.curve import find_events, metric_for, trace_charts
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import EXTREMUM, FOLD, between, bracketed, brackets, locate
 from halfspace.equilibrium.path import Steps, correct
+from halfspace.equilibrium.search import find_events
 from halfspace.errors import InputError, NotConverged
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms

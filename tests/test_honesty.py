@@ -19,7 +19,8 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
 from halfspace.accuracy.trace import Resolution, half_space_charts
-from halfspace.equilibrium.curve import energy_released, find_events, trace_charts
+from halfspace.equilibrium.charts import trace_charts
+from halfspace.equilibrium.search import energy_released, find_events
 from halfspace.scales import Scales
 from halfspace.values import Estimate
 

@@ -19,7 +19,7 @@ from fem_adhesion.crosscheck.references import elements_of
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.curve import transfer
+from halfspace.equilibrium.charts import transfer
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
 from halfspace.laws.check import require_law

@@ -15,11 +15,12 @@ from fem_adhesion.elasticity.condensation import Factorised
 from fem_adhesion.elasticity.elimination import factor, inverses
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import trace_charts
+from halfspace.equilibrium.conditions import ZERO_LOAD, locate
 from halfspace.equilibrium.contact import LOAD
-from halfspace.equilibrium.curve import find_events, trace_charts
 from halfspace.equilibrium.devices import cycle, jumps
-from halfspace.equilibrium.events import ZERO_LOAD, locate
 from halfspace.equilibrium.path import Metric
+from halfspace.equilibrium.search import find_events
 from halfspace.errors import ContactTooWide, NotConverged
 from halfspace.profiles import Paraboloid
 from halfspace.roots import root

@@ -9,8 +9,8 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Block, Scene
 from halfspace import Coated
-from halfspace.equilibrium import events
-from halfspace.equilibrium.events import Condition
+from halfspace.equilibrium import conditions, events
+from halfspace.equilibrium.conditions import Condition
 from halfspace.errors import NotConverged
 from halfspace.laws import Dlvo, PowerLaw
 from halfspace.profiles import Power
@@ -50,18 +50,18 @@ def test_a_sign_that_changes_where_states_leap_is_no_event(monkeypatch, leap, fo
         at = a.arclength + step - 0.3
         return point(a.arclength + step, at + leap * np.sign(at))
 
-    monkeypatch.setattr(events, "correct", state)
-    monkeypatch.setattr(events, "hermite", lambda *_: None)
+    monkeypatch.setattr(conditions, "correct", state)
+    monkeypatch.setattr(conditions, "hermite", lambda *_: None)
     a, b = (state(None, point(0.0, 0.0), s) for s in (0.0, 1.0))
     if found:
-        root = events.bracketed(None, a, b, Condition(0), None).point
+        root = conditions.bracketed(None, a, b, Condition(0), None).point
         assert root.observables[0] == pytest.approx(0.0, abs=1e-9)
     else:
         with pytest.raises(NotConverged, match="different branches; take a smaller rtol"):
-            events.bracketed(None, a, b, Condition(0), None)
+            conditions.bracketed(None, a, b, Condition(0), None)
 
 
-@pytest.mark.parametrize(("own", "other"), [(events.FOLD, 1), (events.EXTREMUM, 0)])
+@pytest.mark.parametrize(("own", "other"), [(conditions.FOLD, 1), (conditions.EXTREMUM, 0)])
 def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, other):
     """A radius that stands still by accident, while the approach or the load that is not stationary says otherwise."""
     rates = np.array([2.0, 2.0, 1.0, 0.5])

@@ -17,12 +17,12 @@ from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
 from halfspace.accuracy.finite_bodies import AroundEvents, surroundings
-from halfspace.accuracy.refinement import _on_all
+from halfspace.accuracy.stages import on_all
 from halfspace.accuracy.trace import _sized_body, resolution_for
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
+from halfspace.equilibrium.charts import Chart, moved
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
-from halfspace.equilibrium.curve import Chart, moved
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 from halfspace.profiles import PARABOLOID, Paraboloid, Sphere
@@ -227,7 +227,7 @@ def test_events_share_an_operator_within_its_window_alone(part, shared):
 def test_an_event_that_moves_out_of_a_window_is_solved_for_on_an_operator_of_its_own():
     path = halfspace.trace(1.0, profile=Sphere(30.0), rtol=1e-2)
     coarse, stage = path.stages[0]["pull_off"], replace(path.finest, window=1e-7, charts=[])
-    (found,) = _on_all({"pull_off": coarse}, stage).values()
+    (found,) = on_all({"pull_off": coarse}, stage).values()
     before, after = (float(event.point.observables[CONTACT_RADIUS]) for event in (coarse, found))
     assert abs(found.problem.operator.scales.mean() - after) < 0.01 * abs(after - before)
 

@@ -29,7 +29,7 @@ from fem_adhesion.speed.result import Growth, SpeedStudy, Timing, Truth, best, c
 from fem_adhesion.speed.study import GROWTHS, growths_for, measure, timed
 from halfspace.elastic import compliance
 from halfspace.equilibrium import newton, relaxation
-from halfspace.equilibrium.curve import transfer
+from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.values import Estimate

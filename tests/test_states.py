@@ -10,7 +10,7 @@ import pytest
 import fem_adhesion
 import halfspace
 from fem_adhesion import Hemisphere, Scene, cli
-from halfspace.equilibrium.curve import placed
+from halfspace.equilibrium.charts import placed
 from halfspace.equilibrium.states import COORDINATES, shift
 from halfspace.errors import InputError
 

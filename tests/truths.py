@@ -16,13 +16,14 @@ from fem_adhesion.harmonics import Fineness as Series
 from fem_adhesion.harmonics import Standing
 from fem_adhesion.harmonics import sized_body as series
 from halfspace.accuracy.finite_bodies import SizedBody
-from halfspace.accuracy.refinement import Charted
+from halfspace.accuracy.stages import Charted
 from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.elastic import compliance
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.elastic.operators import FlatCoordinate
-from halfspace.equilibrium.curve import find_events, further_folds, moved, trace_charts
+from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.events import numbered
+from halfspace.equilibrium.search import find_events, further_folds
 from halfspace.profiles import PARABOLOID
 from halfspace.profiles.sphere import between_spheres
 from halfspace.scales import Scales

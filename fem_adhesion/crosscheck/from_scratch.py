@@ -22,9 +22,10 @@ from fem_adhesion.crosscheck.weak_bodies import SHARP, FineAt, contacts, sharpne
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.contact import Contact
 from fem_adhesion.weak_form.newton import Turn, newton, turning_point
+from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import Located, usual
+from halfspace.equilibrium.events import usual
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Estimate, Valued

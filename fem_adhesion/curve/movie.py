@@ -18,10 +18,10 @@ from fem_adhesion.curve.solve import Curves
 from fem_adhesion.curve.still import composed, state_words
 from fem_adhesion.fields import state_at
 from fem_adhesion.paraview.picture import Pixels, solid_image, view_of
+from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import Condition, Located
 from halfspace.errors import InputError
 from halfspace.values import Array
 

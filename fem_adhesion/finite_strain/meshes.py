@@ -18,8 +18,8 @@ from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.scene import Scene
 from halfspace.elastic import grid
-from halfspace.equilibrium.curve import Chart, undeformed_radius
-from halfspace.equilibrium.events import Located
+from halfspace.equilibrium.charts import Chart, undeformed_radius
+from halfspace.equilibrium.conditions import Located
 from halfspace.values import Array, Valued
 
 FARTHEST = 0.98

@@ -18,10 +18,13 @@ from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.refinement import Rung, climb
+from halfspace.equilibrium.charts import COMPRESSION, metric_for, moved, trace_charts
+from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, LOAD
-from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, find_events, metric_for, moved, trace_charts
-from halfspace.equilibrium.events import EVENTS, Event, Located, Tolerance, estimate_event, relocate, usual
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import EVENTS, Event, Tolerance, estimate_event, usual
 from halfspace.equilibrium.path import Segment
+from halfspace.equilibrium.search import find_events
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array, Valued

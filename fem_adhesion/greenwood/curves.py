@@ -12,10 +12,11 @@ import halfspace
 from fem_adhesion.common.numbers import told
 from halfspace.accuracy.fold_birth import FIRST, critical_stiffness, tabor_of
 from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.equilibrium.charts import COMPRESSION, trace_charts
+from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS
-from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath, trace_charts
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, Jump, cycle
-from halfspace.equilibrium.events import Condition, Located
 from halfspace.equilibrium.path import Steps
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued

@@ -18,8 +18,9 @@ import numpy as np
 
 from halfspace.elastic import compliance, grid
 from halfspace.equilibrium import newton, relaxation
+from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.equilibrium.curve import EquilibriumPath, transfer
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued
 

@@ -20,9 +20,10 @@ from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple, Rise, attempts
 from fem_adhesion.greenwood.tables import Printed
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.fold_birth import FIRST, tabor_of
-from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath
+from halfspace.equilibrium.charts import COMPRESSION
+from halfspace.equilibrium.conditions import FOLD
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Jump
-from halfspace.equilibrium.events import FOLD
 from halfspace.values import Array, Estimate, Valued
 
 DRAWN = (0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0)  # Tabor parameters of the figures' curves

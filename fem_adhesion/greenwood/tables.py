@@ -11,9 +11,10 @@ from importlib import resources
 import numpy as np
 from scipy.optimize import curve_fit
 
+from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import Condition, Event
+from halfspace.equilibrium.events import Event
 from halfspace.laws import LENNARD_JONES
 from halfspace.theories import criteria, dmt
 from halfspace.values import Estimate

@@ -19,11 +19,13 @@ from fem_adhesion.mesh.block import graded_breaks
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium import newton, relaxation
+from halfspace.equilibrium.charts import COMPRESSION, Chart, trace_charts
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
-from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath, find_events, trace_charts
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle, energy_lost
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.relaxation import Relaxed
+from halfspace.equilibrium.search import find_events
 from halfspace.errors import InputError
 from halfspace.scales import Scales
 from halfspace.theories.closed_forms import jkr_radius

@@ -16,9 +16,9 @@ import numpy as np
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import Interpolated, MovingGrid, SurfaceCoordinate, chebyshev_radii
+from halfspace.equilibrium.charts import COMPRESSION, Chart
+from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, ContactProblem, contact_of
-from halfspace.equilibrium.curve import COMPRESSION, Chart
-from halfspace.equilibrium.events import Located
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import Surface
 from halfspace.scales import Scales

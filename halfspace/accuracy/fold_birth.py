@@ -15,8 +15,9 @@ from scipy.optimize import minimize_scalar
 
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
-from halfspace.equilibrium.curve import EquilibriumPath, metric_for
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Point, make_point
 from halfspace.errors import NotConverged

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from halfspace.accuracy.trace import trace
 from halfspace.elastic.layers import LayeredBody
-from halfspace.equilibrium.curve import COMPRESSION, EquilibriumPath
+from halfspace.equilibrium.charts import COMPRESSION
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import EVENTS, Event, usual
 from halfspace.equilibrium.states import States

@@ -13,13 +13,15 @@ from functools import partial
 import numpy as np
 
 from halfspace.accuracy.finite_bodies import TIGHT, AroundEvents, Made, SizedBody, at_equator, surroundings
-from halfspace.accuracy.refinement import Charted, Rung, climb
+from halfspace.accuracy.refinement import Rung, climb
+from halfspace.accuracy.stages import Charted
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.layered import Images, images_of, layered_panels
 from halfspace.elastic.layers import LayeredBody, require_layered
 from halfspace.elastic.operators import FlatCoordinate, Homogeneous
+from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
-from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import REMAINING
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law

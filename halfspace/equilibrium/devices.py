@@ -20,12 +20,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import Finest, metric_for, moved, transfer
+from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD
-from halfspace.equilibrium.curve import EquilibriumPath, Finest, metric_for, moved, states, transfer
-from halfspace.equilibrium.events import ROUND_OFF, Condition, Event, Located, Tolerance, estimate_event
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import Event, Tolerance, estimate_event
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Segment, make_point
 from halfspace.equilibrium.reach import reaching, widened
+from halfspace.equilibrium.search import states
 from halfspace.errors import InputError, NotConverged
 from halfspace.limits import require_number
 from halfspace.values import Array, Estimate
@@ -159,7 +162,7 @@ def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> fl
     segments : sequence of Segment
         The traced curve.
     found : mapping of str to Located
-        Its events, from `halfspace.equilibrium.curve.find_events`.
+        Its events, from `halfspace.equilibrium.search.find_events`.
     """
     if "jump_on" not in found:
         return None

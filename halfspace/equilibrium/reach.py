@@ -8,8 +8,9 @@ import numpy as np
 
 from halfspace.elastic.compliance import ElasticOperator, to_infinity
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.contact import APPROACH, ContactProblem
-from halfspace.equilibrium.curve import EquilibriumPath, metric_for
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, make_point
 

@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.conditions import ROUND_OFF, Condition, between, hermite, locate
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
-from halfspace.equilibrium.events import AT_A_POINT, ROUND_OFF, Condition, between, hermite, locate
+from halfspace.equilibrium.events import AT_A_POINT
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
 from halfspace.errors import InputError

@@ -25,10 +25,12 @@ from fem_adhesion.mesh.block import (
     with_named_boundaries,
 )
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.refinement import Charts, Rung, charted_rung, climb
+from halfspace.accuracy.refinement import Rung, charted_rung, climb
+from halfspace.accuracy.stages import Charts
 from halfspace.elastic.compliance import ElasticOperator
+from halfspace.equilibrium.charts import COMPRESSION, Chart, trace_charts
 from halfspace.equilibrium.contact import ContactProblem
-from halfspace.equilibrium.curve import COMPRESSION, Chart, EquilibriumPath, trace_charts
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
 from halfspace.values import Array
 from hard.measured import Measured, compare_events

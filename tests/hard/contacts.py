@@ -12,10 +12,11 @@ from halfspace.accuracy.fold_birth import Birth, approached, at_gap, count_folds
 from halfspace.accuracy.refinement import Rung, charted_rung, climb
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import COMPRESSION, metric_for, trace_charts, transfer
+from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located, locate
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
-from halfspace.equilibrium.curve import COMPRESSION, find_events, metric_for, trace_charts, transfer
-from halfspace.equilibrium.events import ROUND_OFF, Condition, Located, locate
 from halfspace.equilibrium.path import Metric, Point, Segment, Steps
+from halfspace.equilibrium.search import find_events
 from halfspace.scales import Scales
 from halfspace.values import Array
 from hard.measured import Measured, compare_events, newton_steps, worst

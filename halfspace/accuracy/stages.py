@@ -1,0 +1,129 @@
+"""Stages of a ladder: discretisations on each of which every event is solved for again, from one to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from halfspace.equilibrium.charts import Chart, Finest, moved
+from halfspace.equilibrium.conditions import Located
+from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
+from halfspace.equilibrium.events import Event, estimate_event, is_event
+from halfspace.equilibrium.newton import Traceable
+from halfspace.errors import NotConverged
+from halfspace.values import Valued
+
+FOLDS = ("jump_on", "jump_off")
+Charts = Sequence[Chart]
+State = Mapping[str, Located]
+
+
+class Stage(Finest, Protocol):
+    """One discretisation on which events, found on another, are solved for again."""
+
+    @property
+    def farther(self) -> Callable[[Located], Chart] | None:
+        """Chart for an event that lies farther from where it was found than charts serve; None if these serve all."""
+        ...
+
+    @property
+    def everywhere(self) -> Finest:
+        """The same for every point of a curve, if charts for events do not serve these."""
+        ...
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Charted(Valued):
+    """The same charts for every event, one for those on a grid that stands still, one for those on one that follows.
+
+    Attributes
+    ----------
+    charts : sequence of Chart
+        That for the grid that follows the contact is the last.
+    """
+
+    charts: Charts
+    farther = None
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart of the event's kind."""
+        source = event.problem
+        return self.charts[-1 if isinstance(source, ContactProblem) and source.follows_contact else 0]
+
+    @property
+    def everywhere(self) -> Finest:
+        """The same charts."""
+        return self
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the largest chart."""
+        return max(chart.unknowns for chart in self.charts)
+
+
+class FoldsLost(NotConverged):
+    """Folds about to merge are found on one rung but not on another."""
+
+
+def change_along(values: Sequence[Sequence[float]]) -> float:
+    """Sum of the changes along a chain, the largest of all chains."""
+    return max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
+
+
+def step_up(state: State, stages: Sequence[Stage], twin: Stage | None) -> list[list[State]]:
+    """Chains of states from the rung below, and from its twin, to the last stage of a rung."""
+    chain = [state]
+    for stage in stages:
+        chain.append(on_all(chain[-1], stage))
+    return [chain, [on_all(chain[-1], twin), chain[-1]]] if twin else [chain]
+
+
+def on_all(state: State, stage: Stage) -> State:
+    """Solve for all events again on a stage."""
+    return {name: _found_again(name, event, stage) for name, event in state.items()}
+
+
+def _found_again(name: str, event: Located, stage: Stage) -> Located:
+    try:
+        return moved_to(event, stage)
+    except NotConverged as error:
+        raise FoldsLost(str(error)) if name in FOLDS else error from error
+
+
+def moved_to(event: Located, stage: Stage) -> Located:
+    """Solve for an event again, and once more wherever it comes to lie in the reach of another chart."""
+    found, tried = event, {id(event.problem)}
+    for _ in range(MOVES):
+        problem = stage(found).problem
+        if id(problem) in tried:
+            return found
+        tried.add(id(problem))
+        found = _moved_near(found, problem, stage)
+    raise NotConverged("an event lies elsewhere on every grid that is made around it; take a smaller rtol")
+
+
+def _moved_near(event: Located, problem: Traceable, stage: Stage) -> Located:
+    """Solve for an event on a chart made for where it was found, or where that leads astray on one for farther off."""
+    if stage.farther is None:
+        return moved(event, problem)
+    with suppress(NotConverged):
+        found = moved(event, problem)
+        before, after = (e.point.observables[CONTACT_RADIUS] for e in (event, found))
+        if not abs(after - before) > ASTRAY * before:  # nor nan
+            return found
+    return moved(event, stage.farther(event).problem)
+
+
+MOVES = 5  # of an event from chart to chart, after which the last must be one made for where it lies
+ASTRAY = 0.05  # of a contact radius: a leap in which a chart made for the first tells nothing about the second
+
+
+def estimate_all(chains: Sequence[Sequence[State]], remaining: float, *, along: bool) -> dict[str, Event]:
+    """Events of the last state, with their changes along the chains as errors."""
+    names = [name for name in chains[0][-1] if is_event(name)]
+    by_name = {name: [[state[name] for state in chain] for chain in chains] for name in names}
+    return {name: estimate_event(name, own, remaining, along=along) for name, own in by_name.items()}

@@ -1,0 +1,158 @@
+"""Charts: the discretisations of one contact over which its curve is traced, and the way from one to another.
+
+A chart is a discretisation fit for one stretch of the path. The half-space needs two: a grid centred on the axis while
+the surfaces are apart or just touch, and one that follows the edge of the contact. A mesh fine enough everywhere is
+a single chart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.conditions import FOLD, Located, relocate, same_place
+from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
+from halfspace.equilibrium.newton import Traceable
+from halfspace.equilibrium.path import WHOLE_BODY, Metric, Point, Segment, Steps, follow, loaded_to, make_point
+from halfspace.values import Array, Valued
+
+COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwise
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Chart(Valued):
+    """A discretisation, its unknowns, and the undeformed contact radius (beta) up to which it serves, or infinity."""
+
+    problem: Traceable
+    unknowns: int
+    until: float = np.inf
+
+
+class Finest(Protocol):
+    """The finest discretisation that a path was computed on."""
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event."""
+        ...
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of its largest chart."""
+        ...
+
+
+def metric_for(problem: Traceable) -> Metric:
+    """Units by which a curve's long branches take about as many steps at every Tabor parameter, law and profile."""
+    scales = problem.interface.scales
+    return Metric(approach=2 * (1 + scales.tabor), load=scales.largest_load)
+
+
+def trace_charts(
+    charts: Iterable[Chart],
+    to_load: float = COMPRESSION,
+    steps: Steps | None = None,
+) -> tuple[Segment, ...]:
+    """Trace the curve from far separation to a compressive load over the charts in order, as many as it takes.
+
+    Raises
+    ------
+    NotConverged
+        If the continuation gets stuck.
+    """
+    segments: list[Segment] = []
+    for chart in charts:
+        problem, metric = chart.problem, metric_for(chart.problem)
+        point = _hand_over(segments[-1], problem, metric) if segments else _far_separation(problem, metric)
+        body = problem.interface.profile.end
+        radius, ended = WIDEST * body if np.isinf(chart.until) else chart.until, _ended(to_load, body)
+        stop, pace = _left(problem, radius, ended), steps or _pace(problem, segments)
+        segments.append(Segment(problem, tuple(follow(problem, point, metric, stop, steps=pace))))
+        if ended(segments[-1].points[-1]):
+            break
+    return tuple(segments)
+
+
+def _ended(to_load: float, body: float) -> Callable[[Point], bool]:
+    """Stop under a compressive load, or where the body is drawn flat: its contact is wider, and the load falls."""
+    loaded = loaded_to(to_load)
+    return lambda p: loaded(p) or bool(p.observables[CONTACT_RADIUS] > body and p.rates[LOAD] < 0)
+
+
+def _left(problem: Traceable, radius: float, ended: Callable[[Point], bool]) -> Callable[[Point], bool]:
+    """Stop there, or where the contact leaves what a chart serves or fills the body as allowed."""
+    return lambda point: ended(point) or undeformed_radius(problem, point) > radius
+
+
+def _pace(problem: Traceable, before: Sequence[Segment]) -> Steps | None:
+    """Steps to begin with on a body of whose unknowns the surface is but a part: half as long as the last."""
+    if problem.interface is problem or not before:
+        return None
+    last = [point.arclength for point in before[-1].points[-2:]]
+    return replace(WHOLE_BODY, first=(last[-1] - last[0]) / 2 or WHOLE_BODY.first)
+
+
+def undeformed_radius(problem: Traceable, point: Point) -> float:
+    """Radius in beta that the point at the contact edge has on the undeformed body; nan without contact."""
+    if problem.interface is problem:
+        return float(point.observables[CONTACT_RADIUS])
+    return problem.interface.contact_radius(problem.surface_state(point.x))
+
+
+def _far_separation(problem: Traceable, metric: Metric) -> Point:
+    """First point of the path, heading towards contact."""
+    control = newton.approach(problem.interface.scales.separated_approach - 10)
+    solution = newton.solve(problem, problem.undeformed(control.target), control)
+    return make_point(problem, solution, metric, control.weights, 0.0)
+
+
+def _hand_over(segment: Segment, problem: Traceable, metric: Metric) -> Point:
+    """Solve the last state of a segment again on the next chart, at the same contact radius."""
+    last = segment.points[-1]
+    radius = float(last.observables[CONTACT_RADIUS])
+    start = transfer(segment.problem, last.x, problem)
+    solution = newton.solve(problem, start, newton.contact_radius(radius))
+    return make_point(problem, solution, metric, metric.weights * last.rates, last.arclength)
+
+
+def transfer(source: Traceable, x: Array, target: Traceable) -> Array:
+    """Interpolate a state of one problem as a start for another."""
+    return target.state_from_surface(_transfer(source.interface, source.surface_state(x), target.interface))
+
+
+def _transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array:
+    """Interpolate the deflection: gaps are as steep as the profile, and in the cells' polynomials may turn negative."""
+    alpha, body = x[-2], source.operator_at(x)
+    scale = source.contact_radius(x) if target.follows_contact else 1.0
+    radii = target.operator.at(scale).radii
+    inside = radii < body.extent
+    deflection = np.empty(radii.size)
+    deflection[inside] = body.values_at(radii[inside], source.deflection(x))
+    deflection[~inside] = _deflection_beyond(source, x, radii[~inside])
+    return np.concatenate([source.tabor * source.profile.height(radii) - alpha + deflection, [alpha, scale]])
+
+
+def _deflection_beyond(source: ContactProblem, x: Array, radii: Array) -> Array:
+    """Deflection in eps past the extent of the source's grid, by its infinite cell or else as under a point load."""
+    body = source.operator_at(x)
+    if body.beyond.size:
+        return body.values_beyond(radii, source.deflection(x))
+    return np.asarray(source.tabor * source.load(x) / (np.pi * radii))
+
+
+def placed(finest: Finest, problem: Traceable, point: Point) -> tuple[Traceable, Point]:
+    """Solve for a point of the path again on another discretisation, in the plane across the path at that point."""
+    target = finest(Located(FOLD, problem, point, 1.0)).problem
+    if target is problem:
+        return problem, point
+    start = transfer(problem, point.x, target)
+    return target, same_place(point, target, start, metric_for(target))
+
+
+def moved(event: Located, problem: Traceable) -> Located:
+    """Solve for an event again on another discretisation."""
+    start = transfer(event.problem, event.point.x, problem)
+    return relocate(event, problem, start, metric_for(problem))

@@ -1,0 +1,321 @@
+"""Conditions on a state of the path, and the states that meet them, each found by solving for it on the path.
+
+A fold in the approach is where d(alpha*)/ds vanishes along the path, an extremum of the load where dW/ds does. The
+corrector runs at every trial of the root finder; nothing is interpolated between samples of the curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.newton import Control, Traceable
+from halfspace.equilibrium.path import NEARLY, UNFELT, Metric, Point, correct, least_slope, make_point, predict
+from halfspace.errors import NotConverged
+from halfspace.roots import root
+from halfspace.values import Array, Valued
+
+ARCLENGTH_TOLERANCE = 1e-12
+ROUND_OFF = 1e-11  # what Newton's method, the root finder and the matrices leave, relative to 1 + the value
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What vanishes at an event: an observable less a value, or the observable's rate along the path.
+
+    With a compliance the observable is taken at the far end of a spring that bears the load: the approach and a
+    compliance 1/k make the base of an apparatus of stiffness k.
+
+    Attributes
+    ----------
+    observable : int
+        One of APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS.
+    stationary : bool
+        If true the rate d(observable)/ds vanishes, else the observable less `value`.
+    value : float
+        Value sought.
+    compliance : float
+        Of the spring, in eps/(R dgamma) for the approach.
+    """
+
+    observable: int
+    stationary: bool = False
+    value: float = 0.0
+    compliance: float = 0.0
+
+    @property
+    def weights(self) -> Array:
+        """Weights (4,) of the observables in the one at the far end of the spring."""
+        weights = np.zeros(4)
+        weights[LOAD] = self.compliance
+        weights[self.observable] += 1.0
+        return weights
+
+    def of(self, point: Point) -> float:
+        """Quantity whose root is sought."""
+        return self.rate(point) if self.stationary else self.level(point) - self.value
+
+    def rate(self, point: Point) -> float:
+        """Rate of the observable at the far end of the spring."""
+        return float(point.rates[self.observable] + self.compliance * point.rates[LOAD])
+
+    def level(self, point: Point) -> float:
+        """Observable at the far end of the spring."""
+        return float(point.observables[self.observable] + self.compliance * point.observables[LOAD])
+
+
+@dataclass(frozen=True)
+class Steepest(Condition):
+    """Where the curve falls most steeply: the first place to jump with a softer apparatus, or under a fold's birth."""
+
+    observable: int = APPROACH
+
+    def of(self, point: Point) -> float:
+        """Compliance -d(alpha*)/dW in eps/(R dgamma) of the apparatus that would jump here; infinite where W rises."""
+        return float(compliance(point.rates[APPROACH], point.rates[LOAD]))
+
+
+def compliance(approach: Array, load: Array) -> Array:
+    """-d(alpha*)/dW from the rates of approach and load along the path; infinite where the load rises."""
+    return np.where(np.less(load, 0), approach / -np.minimum(load, -TINY), np.inf)
+
+
+TINY = 1e-300
+FOLD = Condition(APPROACH, stationary=True)
+STEEPEST = Steepest()
+EXTREMUM = Condition(LOAD, stationary=True)
+ZERO_LOAD = Condition(LOAD)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Located(Valued):
+    """A root of a condition on one discretisation's path.
+
+    Attributes
+    ----------
+    condition : Condition
+        What vanishes.
+    problem : Traceable
+        The discretisation.
+    point : Point
+        The converged point.
+    slope : float
+        Derivative along the path of what vanishes, to start a root finder from.
+    """
+
+    condition: Condition
+    problem: Traceable
+    point: Point
+    slope: float
+
+
+def locate(problem: Traceable, points: Sequence[Point], metric: Metric, condition: Condition) -> list[Located]:
+    """Find every root of a condition between successive points of one discretisation's path."""
+    return [between(problem, a, b, condition, metric) for a, b in brackets(problem, points, metric, condition)]
+
+
+def brackets(
+    problem: Traceable, points: Sequence[Point], metric: Metric, condition: Condition
+) -> list[tuple[Point, Point]]:
+    """Find every pair of points, the second reached from the first, between which a condition has a root."""
+    return [
+        (c, d)
+        for a, b in pairwise(points)
+        for c, d in _watched(problem, a, b, condition, metric)
+        if (condition.of(c) < 0) != (condition.of(d) < 0)  # their product is zero at a root, and where it underflows
+        and not _unfelt(c, d, condition)
+    ]
+
+
+def _watched(
+    problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric, depth: int = 8
+) -> list[tuple[Point, Point]]:
+    """Halve the interval between two points as long as a pair of roots may hide in it, unseen at its ends."""
+    if not depth or not _may_hide(a, b, condition):
+        return [(a, b)]
+    length = b.arclength - a.arclength
+    middle = correct(problem, a, length / 2, hermite(problem, a, b, 0.5, metric), metric, iterations=20)
+    rest = float((metric.weights * middle.rates)[:3] @ (b.observables - middle.observables)[:3])
+    onward = replace(b, arclength=middle.arclength + rest)  # as `correct` measures it, along the first point's tangent
+    halves = ((a, middle), (middle, onward))
+    return [pair for c, d in halves for pair in _watched(problem, c, d, condition, metric, depth - 1)]
+
+
+def _may_hide(a: Point, b: Point, condition: Condition) -> bool:
+    """Whether a rate nearly vanishes at an end of a long interval, or inside it by the cubic through both points."""
+    first, last, length = condition.of(a), condition.of(b), b.arclength - a.arclength
+    if not condition.stationary or first * last <= 0 or _unfelt(a, b, condition):
+        return False
+    little = NEARLY * max(abs(first), abs(last))
+    inside = least_slope(first, last, (condition.level(b) - condition.level(a)) / length)
+    return inside < little or (length > LONG and min(abs(first), abs(last)) < little)
+
+
+def _unfelt(a: Point, b: Point, condition: Condition) -> bool:
+    """Whether what should be stationary between two points is nothing at all at both."""
+    return condition.stationary and max(abs(condition.of(a)), abs(condition.of(b))) < UNFELT
+
+
+LEAP = 1e-3  # of what should vanish at a root in its largest value around: more is left where states leap
+LONG = 0.05  # arclength
+
+
+def between(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
+    """Find the root between two points of which the second was reached from the first.
+
+    Newton's method on the equilibrium together with the condition finds it from where the cubics through both points
+    have it; where that does not end between them, so does halving the interval, with the corrector at every trial.
+    """
+    length = b.arclength - a.arclength
+    part = _by_cubic(a, b, condition, metric)
+    if part is not None:
+        try:
+            found = _solved(problem, condition, hermite(problem, a, b, part, metric), metric, a, length)
+        except NotConverged:
+            return bracketed(problem, a, b, condition, metric)
+        if found and all(metric.distance(found.point, end) <= length for end in (a, b)):
+            return found
+    return bracketed(problem, a, b, condition, metric)
+
+
+def _by_cubic(a: Point, b: Point, condition: Condition, metric: Metric) -> float | None:
+    """Part of the way between two points at which a condition vanishes on the cubic through both; None on neither."""
+    length, level, slope = b.arclength - a.arclength, condition.level, condition.rate
+    first, last = length * slope(a), length * slope(b) / metric.along(a, b)
+    rise = level(b) - level(a)
+    cubic = [first + last - 2 * rise, 3 * rise - 2 * first - last, first, level(a) - condition.value]
+    found = np.roots(np.polyder(cubic) if condition.stationary else cubic)
+    inside = [float(t.real) for t in found if abs(t.imag) < 1e-9 and 0 <= t.real <= 1]
+    return inside[0] if inside else None
+
+
+def _solved(
+    problem: Traceable, condition: Condition, start: Array, metric: Metric, near: Point, reach: float
+) -> Located | None:
+    """Solve for a state that meets a condition from a start near a point; None if it is farther from it than that."""
+    direction = metric.weights * near.rates
+    if condition.stationary:
+        turn = newton.turning_point(problem, start, condition.weights, direction, reach)
+        solution, slope = turn.solution, turn.slope
+    else:
+        solution, slope = newton.solve(problem, start, Control(condition.weights, condition.value)), None
+    used = direction != 0
+    step = float(direction[used] @ (solution.observables - near.observables)[used])
+    point = make_point(problem, solution, metric, direction, near.arclength + step)
+    far = metric.distance(point, near) > reach or metric.along(near, point) <= 0
+    return None if far else Located(condition, problem, point, condition.rate(point) if slope is None else slope)
+
+
+def bracketed(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:
+    """Find the root between two points by halving the interval at worst, with the corrector at every trial."""
+    length = b.arclength - a.arclength
+    trials = {0.0: a, length: b}
+
+    def quantity(step: float) -> float:
+        if step not in trials:
+            trials[step] = correct(
+                problem, a, step, hermite(problem, a, b, step / length, metric), metric, iterations=20
+            )
+        return condition.of(trials[step])
+
+    step = root(quantity, 0.0, length, "an event; take a smaller rtol", xtol=ARCLENGTH_TOLERANCE, rtol=1e-14)
+    part = max(LEAP, 2 * ARCLENGTH_TOLERANCE / abs(length))  # what the root finder leaves of a short interval
+    if abs(quantity(step)) > part * max(abs(condition.of(a)), abs(condition.of(b))) + ROUND_OFF:
+        raise NotConverged(
+            f"an event near approach {a.observables[0]:.6g} eps, load {a.observables[1]:.6g} R dgamma is lost: states "
+            "next to each other lie on different branches; take a smaller rtol"
+        )
+    return Located(condition, problem, trials[step], (condition.of(b) - condition.of(a)) / length)
+
+
+def hermite(problem: Traceable, a: Point, b: Point, t: float, metric: Metric) -> Array:
+    """State between two points, from the cubic through both with their tangents; gaps stay positive.
+
+    It is a cubic in the arclength as it is measured between them, along the tangent of the first.
+    """
+    h = b.arclength - a.arclength
+    x = (
+        (1 + 2 * t) * (1 - t) ** 2 * a.x
+        + t**2 * (3 - 2 * t) * b.x
+        + h * t * (1 - t) * ((1 - t) * a.tangent - t * b.tangent / metric.along(a, b))
+    )
+    return np.asarray(a.x + problem.longest_step(a.x, x - a.x) * (x - a.x))
+
+
+def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located:
+    """Solve for an event again on another discretisation, from a state transferred to it.
+
+    Raises
+    ------
+    NotConverged
+        If the event does not exist near `start` on that discretisation.
+    """
+    condition = event.condition
+    if isinstance(condition, Steepest):
+        return steepest_from(problem, same_place(event.point, problem, start, metric), metric)
+    try:
+        found = _solved(problem, condition, start, metric, event.point, NEARBY)
+    except NotConverged:
+        found = None
+    return found if found and found.slope * event.slope > 0 else _searched(event, problem, start, metric)
+
+
+NEARBY = 0.3  # arclength within which an event is looked for on another discretisation at once
+
+
+def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located:
+    """Solve for an event farther off: in the plane across the path first, then along it to beyond the event."""
+    condition, nearby = event.condition, same_place(event.point, problem, start, metric)
+    step = -PAST * condition.of(nearby) / event.slope
+    if abs(step) < ARCLENGTH_TOLERANCE:
+        return Located(condition, problem, nearby, event.slope)
+    for _ in range(TRIALS):
+        beyond = correct(problem, nearby, step, predict(problem, nearby, step), metric, iterations=20)
+        left = condition.of(beyond) / condition.of(nearby)
+        if left <= 0:
+            return bracketed(problem, nearby, beyond, condition, metric)
+        step *= min(1 + PAST * left / (1 - left), LONGER) if left < 1 else LONGER  # as far past the secant's root
+    at = event.point.observables
+    raise NotConverged(
+        f"the event at approach {at[0]:.6g} eps, load {at[1]:.6g} R dgamma is not found again on another grid; "
+        "take a smaller rtol"
+    )
+
+
+TRIALS, PAST, LONGER = 4, 1.5, 3.0  # steps to beyond an event: how many, how far past it, how many times the last
+
+
+def steepest_from(problem: Traceable, point: Point, metric: Metric) -> Located:
+    """Where the curve falls most steeply near a point: the least compliance, by parabolas ever narrower.
+
+    Raises
+    ------
+    NotConverged
+        If there is no such place near.
+    """
+    for width in WIDTHS:
+        sides = [correct(problem, point, h, predict(problem, point, h), metric, iterations=20) for h in (-width, width)]
+        before, here, after = (STEEPEST.of(p) for p in (sides[0], point, sides[1]))
+        bend = before - 2 * here + after
+        if not (np.isfinite(bend) and bend > 0):
+            raise NotConverged("the curve has no steepest fall here; take a smaller rtol")
+        step = float(np.clip((before - after) / (2 * bend), -3, 3)) * width
+        point = correct(problem, point, step, predict(problem, point, step), metric, iterations=20)
+    return Located(STEEPEST, problem, point, 1.0)
+
+
+WIDTHS = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
+
+
+def same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:
+    """Solve on another discretisation in the plane across the path at a given point."""
+    weights = metric.weights * point.rates
+    used = weights != 0
+    control = Control(weights, float(weights[used] @ point.observables[used]))
+    solution = newton.solve(problem, start, control)
+    return make_point(problem, solution, metric, weights, point.arclength)

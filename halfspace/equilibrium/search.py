@@ -1,0 +1,192 @@
+"""Which events a traced curve has: its deepest load, its folds, its zero load, each solved for where it was met."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from itertools import pairwise
+from typing import NoReturn
+
+import numpy as np
+
+from halfspace.equilibrium.charts import metric_for
+from halfspace.equilibrium.conditions import (
+    EXTREMUM,
+    FOLD,
+    ZERO_LOAD,
+    Condition,
+    Located,
+    between,
+    brackets,
+    compliance,
+    hermite,
+    locate,
+    steepest_from,
+)
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST
+from halfspace.equilibrium.newton import Traceable
+from halfspace.equilibrium.path import Point, Segment, Steps, correct, follow
+from halfspace.errors import ContactTooWide, NotConverged
+from halfspace.scales import BRADLEY
+
+Bracket = tuple[Traceable, Point, Point]
+
+
+def states(segments: Sequence[Segment], condition: Condition) -> list[Located]:
+    """Every state of a traced curve that meets a condition, in order."""
+    return [state for bracket in _brackets(segments, condition) for state in _with_care(bracket, condition)]
+
+
+def _brackets(segments: Sequence[Segment], condition: Condition) -> list[Bracket]:
+    """Discretisation and pair of points for every state that meets a condition, in order."""
+    metric = metric_for(segments[0].problem)
+    return [(s.problem, a, b) for s in segments for a, b in brackets(s.problem, s.points, metric, condition)]
+
+
+def _state(bracket: Bracket, condition: Condition) -> Located:
+    problem, a, b = bracket
+    return between(problem, a, b, condition, metric_for(problem))
+
+
+def _deepest(brackets: Sequence[Bracket]) -> Located:
+    """Of the extrema of the load the deepest, where the cubics through the points beside it do not leave it open."""
+    expected = sorted((_least_load(a, b), i) for i, (_, a, b) in enumerate(brackets))
+    found = [_state(brackets[i], EXTREMUM) for low, i in expected if low <= expected[0][0] + DEEP * abs(expected[0][0])]
+    return min(found, key=lambda e: float(e.point.observables[LOAD]))
+
+
+def _least_load(a: Point, b: Point) -> float:
+    """Least load between two points, about, by the cubic through them."""
+    t, h = np.linspace(0, 1, 9), b.arclength - a.arclength
+    (f, df), (g, dg) = ((float(p.observables[LOAD]), h * float(p.rates[LOAD])) for p in (a, b))
+    cubic = f + t**2 * (3 - 2 * t) * (g - f) + t * (1 - t) * ((1 - t) * df - t * dg)
+    return float(np.min(cubic))
+
+
+DEEP = 0.1  # of the deepest load by the cubics: others as deep are solved for as well
+
+
+def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
+    """Solve for the events of a traced curve and name them.
+
+    Returns
+    -------
+    dict of Located
+        ``pull_off`` (the deepest minimum of the load), ``jump_on`` (the first fold from separation), ``jump_off`` (the
+        first from compression), ``zero_load``, and the two states between which the energy is taken, ``separated``
+        and ``zero_approach``.
+
+    Raises
+    ------
+    NotConverged
+        If the curve ends before one of those that it must have: for want of body, it is a ContactTooWide.
+    """
+    _require_touching(segments)
+    separated = segments[0].problem.interface.scales.separated_approach
+
+    def required(name: str, condition: Condition) -> list[Bracket]:
+        return _brackets(segments, condition) or _missing(segments[-1], name)
+
+    folds = _brackets(segments, FOLD)
+    found = {"pull_off": _deepest(required("pull_off", EXTREMUM))}
+    if folds:
+        found |= {"jump_on": _state(folds[0], FOLD), "jump_off": _state(folds[-1], FOLD)}
+    far = Condition(APPROACH, value=separated)
+    found["separated"] = _state(required("separation", far)[0], far)
+    for name, condition in (("zero_load", ZERO_LOAD), ("zero_approach", Condition(APPROACH))):
+        found[name] = _state(required(name, condition)[-1], condition)
+    return found
+
+
+def _require_touching(segments: Sequence[Segment]) -> None:
+    """Raise NotConverged if a barrier, or a second minimum farther out, holds the surfaces apart to the curve's end."""
+    law, last = segments[0].problem.interface.law, segments[-1].points[-1].observables
+    if law.outermost and last[CENTRAL_GAP] > law.innermost:
+        raise NotConverged(
+            f"the law holds the surfaces {last[CENTRAL_GAP]:.3g} eps apart at the curve's end, load {last[LOAD]:.3g} "
+            f"R dgamma, limit: {law.innermost:.3g} eps in contact; take a larger to_load"
+        )
+
+
+def further_folds(segments: Sequence[Segment]) -> list[Located]:
+    """Solve for the folds between the jumps, in order along a traced curve; one that is not pinned down is left out."""
+    found: list[Located] = []
+    for bracket in _brackets(segments, FOLD)[1:-1] if segments else ():
+        with suppress(NotConverged):
+            found += _with_care(bracket, FOLD)
+    return found
+
+
+def _with_care(bracket: Bracket, condition: Condition) -> list[Located]:
+    """State between two points, or those that shorter steps between them find where its own search does not end."""
+    problem, a, b = bracket
+    metric = metric_for(problem)
+    step, past = (b.arclength - a.arclength) / SHORTER, metric.weights * b.rates
+
+    def beyond(point: Point) -> bool:
+        return bool(past[:3] @ (point.observables - b.observables)[:3] >= 0)
+
+    try:
+        return [between(problem, a, b, condition, metric)]
+    except NotConverged:
+        points = follow(problem, a, metric, beyond, steps=Steps(first=step, longest=step))
+        return locate(problem, points, metric, condition)
+
+
+SHORTER = 4  # steps in the place of one where the curve winds too much for it
+
+
+def _missing(segment: Segment, event: str) -> NoReturn:
+    """Say why a curve ends before an event."""
+    last, body = segment.points[-1].observables, segment.problem.interface.profile.end
+    radius = last[CONTACT_RADIUS]
+    if not radius >= WIDEST * body:
+        raise NotConverged(
+            f"the curve has no {event} before it ends at approach {last[APPROACH]:.6g} eps, load {last[LOAD]:.6g} "
+            "R dgamma; take a larger to_load or a smaller rtol"
+        )
+    raise ContactTooWide(
+        f"contact radius {radius:.3g} beta exceeds {WIDEST:g} of the body's radius, {body:.3g} beta, before {event} is "
+        "reached; take a larger radius_ratio or a smaller tabor"
+    )
+
+
+def energy_released(located: Mapping[str, Located]) -> float:
+    """Energy between the states ``separated`` and ``zero_approach`` of `find_events`, in R dgamma eps."""
+    before, after = located["separated"], located["zero_approach"]
+    return before.problem.energy(before.point.x) - after.problem.energy(after.point.x)
+
+
+def steepest(points: Sequence[Point]) -> tuple[float, float, Point, Point]:
+    """Least compliance between the points of a curve by the cubics: its value, the part of the way, both points."""
+    return min(((*_least_compliance(a, b), a, b) for a, b in pairwise(points)), key=lambda one: one[0])
+
+
+def _least_compliance(a: Point, b: Point) -> tuple[float, float]:
+    """Least compliance between two points, by the cubics of approach and load, and the part of the way to it."""
+    t, h = np.linspace(0, 1, 17), b.arclength - a.arclength
+    slopes = (
+        np.outer(1 - 4 * t + 3 * t**2, a.rates)
+        + np.outer(3 * t**2 - 2 * t, b.rates)
+        + np.outer(6 * t * (1 - t), (b.observables - a.observables) / h)
+    )
+    compliances = compliance(slopes[:, APPROACH], slopes[:, LOAD])
+    least = int(np.argmin(compliances))
+    return float(compliances[least]), float(t[least])
+
+
+# eps/(R dgamma), of the least -d(alpha*)/dW between points: the Tabor parameter of a paraboloid is then 0.65 to 0.74;
+# of another profile as much less as its tensions are larger
+IN_DOUBT = 0.02
+
+
+def folds_in_doubt(segments: Sequence[Segment]) -> dict[str, Located]:
+    """Where the curve falls most steeply, if two folds there are about to merge or to be born; nothing otherwise."""
+    metric = metric_for(segments[0].problem)
+    parts = [(*steepest(s.points), s.problem) for s in segments if len(s.points) > 1]
+    least, part, a, b, problem = min(parts, key=lambda one: one[0])
+    if abs(least) >= IN_DOUBT * BRADLEY / metric.load:
+        return {}
+    step = part * (b.arclength - a.arclength)
+    point = correct(problem, a, step, hermite(problem, a, b, part, metric), metric, iterations=20) if step else a
+    return {"steepest": steepest_from(problem, point, metric)}
