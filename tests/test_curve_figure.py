@@ -1,5 +1,6 @@
 """The page about a curve shows what was computed, told apart by more than colour."""
 
+import io
 import itertools
 
 import numpy as np
@@ -9,6 +10,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from fem_adhesion import Hemisphere
+from fem_adhesion.common import style
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve import lines as curve_lines
 from fem_adhesion.curve import load as load_panel
@@ -376,3 +378,29 @@ def test_a_line_outside_the_frame_is_not_named():
     axes.plot([], [], label="arrows")
     axes.set(xlim=(0, 2), ylim=(0, 2))
     assert [line.get_label() for line in load_panel._seen(axes)] == ["inside", "arrows"]
+
+
+def test_axes_have_the_same_places_in_every_format_and_nothing_is_cut_off():
+    figure, panels = style.panels(2)
+    for axes in panels:
+        axes.plot([0.0, 1.0], [0.0, 1e-3], label="a line")
+        style.dress(axes, style.APPROACH, style.LOAD, legend="below")
+    before = [axes.get_position().bounds for axes in panels]
+    assert style.laid_out(figure) is figure
+    places = [axes.get_position().bounds for axes in panels]
+    assert all(np.ptp([one, other], axis=0).max() > 0.01 for one, other in zip(before, places, strict=True))
+    for form, dpi in (("svg", 72), ("pdf", 72), ("png", 160), ("png", 30)):
+        figure.savefig(io.BytesIO(), format=form, dpi=dpi)
+        assert [axes.get_position().bounds for axes in panels] == places
+        figure.set_dpi(dpi)
+        for axes in panels:
+            box = axes.get_tightbbox()
+            assert -2 <= box.x0 <= box.x1 <= figure.bbox.x1 + 2
+            assert -2 <= box.y0 <= box.y1 <= figure.bbox.y1 + 2
+
+
+def test_a_figure_whose_axes_were_placed_by_hand_keeps_them():
+    figure = Figure()
+    axes = figure.add_axes((0.1, 0.2, 0.3, 0.4))
+    assert style.laid_out(figure).axes == [axes]
+    assert axes.get_position().bounds == pytest.approx((0.1, 0.2, 0.3, 0.4))
