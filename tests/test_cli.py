@@ -128,7 +128,7 @@ def test_disagreement_exits_with_1(monkeypatch, capsys):
 
     original = space.elastic_matrix
     monkeypatch.setattr(space, "elastic_matrix", lambda nu: 2 * original(nu))
-    assert cli.main(["compare", "--tabor", "0.5", "--rtol", "1e-2"]) == 1
+    assert cli.main(["compare", "--tabor", "0.05", "--rtol", "1e-2"]) == 1
     assert "verdict: disagree" in capsys.readouterr().out
 
 
