@@ -513,6 +513,10 @@ def test_the_half_space_in_si(silica):
     assert values["jump_on_base"].value == pytest.approx(on.approach * 0.3e-9 + on.load * 1e-8 / 0.2, rel=1e-6)
     lost = cycle(path, 0.2 * 0.3e-9 / 1e-8).energy_lost.value
     assert values["energy_lost"].value == pytest.approx(lost * 1e-8 * 0.3e-9, rel=1e-6)
+    own = cycle(silica.half_space.curve, 0.2 * 0.3e-9 / 1e-8).jump_on.take_off
+    errors = own.approach_error * 0.3e-9, own.load_error * 1e-8 / 0.2
+    assert values["jump_on_separation"].error == pytest.approx(errors[0], rel=1e-6, abs=0)
+    assert values["jump_on_base"].error == pytest.approx(sum(errors), rel=1e-6, abs=0)
 
 
 def test_every_quantity_has_its_error_and_unit(silica):

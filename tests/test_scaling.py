@@ -8,7 +8,7 @@ import pytest
 from halfspace import scaling
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
-from halfspace.scaling import Units
+from halfspace.scaling import IN_SI, Units
 from halfspace.theories import closed_forms
 from halfspace.theories.maugis import MaugisDugdale
 
@@ -156,3 +156,25 @@ def test_from_one_parameter_to_another_and_back():
 
 def test_lambda_is_that_of_the_theory_matched_to_the_largest_tension():
     assert MaugisDugdale.matched(3.0).maugis == pytest.approx(float(scaling.MAUGIS.of(3.0)), rel=1e-14)
+
+
+def test_each_quantity_has_the_size_of_its_unit():
+    R, E, dgamma, eps = 1e-7, 7e10, 0.1, 3e-10
+    units, beta = Units(R, E, dgamma, eps), (R**2 * dgamma / E) ** (1 / 3)
+    expected = {
+        "approach": (eps, "m"),
+        "central_gap": (eps, "m"),
+        "gap": (eps, "m"),
+        "contact_radius": (beta, "m"),
+        "radius": (beta, "m"),
+        "displacement": (beta**2 / R, "m"),
+        "load": (R * dgamma, "N"),
+        "pressure": (E * beta / R, "Pa"),
+        "energy": (R * dgamma * eps, "J"),
+        "energy_density": (E * (beta / R) ** 2, "J/m^3"),
+        "stiffness": (R * dgamma / eps, "N/m"),
+    }
+    found = {name: units.si(name) for name in IN_SI}
+    assert {name: unit for name, (_, unit) in found.items()} == {name: unit for name, (_, unit) in expected.items()}
+    for name, (size, _) in expected.items():
+        assert found[name][0] == si(size), name

@@ -330,6 +330,21 @@ def test_no_jumps_below_the_critical_tabor_parameter():
     assert list(found.troubles()) == []
 
 
+def test_a_rung_is_told_by_its_settings():
+    settings = {method.name: [step.setting for step in method.steps] for method in METHODS}
+    assert settings["simple relaxation"][0] == "f=0.2 U=5 growth=1.4"
+    assert settings["panels, fixed grid"][-1] == "nodes=14 U=800"
+    assert settings["adaptive"][0] == "rtol=1e-02"
+    assert settings["FE Q2"] == [
+        "p=2 f=0.6 L=16",
+        "p=2 f=0.4 L=24",
+        "p=2 f=0.28 L=34",
+        "p=2 f=0.2 L=48",
+        "p=2 f=0.14 L=68",
+    ]
+    assert settings["FE hp, clamped"][-1] == "p=8 f=0.8 L=1e+06"
+
+
 def test_names_are_unique_and_ladders_long_enough_for_exponents():
     assert len({m.name for m in METHODS}) == len(METHODS)
     assert all(len(m.steps) >= 3 and 1 <= m.quick <= len(m.steps) for m in METHODS)
