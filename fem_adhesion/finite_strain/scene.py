@@ -17,12 +17,12 @@ from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.refinement import Rung, climb
+from halfspace.accuracy.refinement import Rung, ascend, climb
 from halfspace.equilibrium.charts import COMPRESSION, metric_for, moved, trace_charts
 from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import EVENTS, Event, Tolerance, estimate_event, usual
+from halfspace.equilibrium.events import Event, usual
 from halfspace.equilibrium.path import Segment
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
@@ -150,17 +150,11 @@ def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
     """
     _require(scene, rtol, COMPRESSION)
     stages, lowest = Stages(scene), _lowest_degree(rtol)
-    stage = stages.around(lowest, lowest)
+    start, rung = stages.around(lowest, lowest), partial(stages.rung, lowest)
     found = {name: event for name, event in find_events(_linear_curve(scene, LITTLE)).items() if name in JUMPS}
     with _cause_told(scene):
-        state = {name: raised(event, stage.mesh(event)[1]) for name, event in found.items()}
-        for degree in range(lowest + 1, lowest + 1 + MOST_RUNGS):
-            below, stage = state, stages.around(degree, lowest)
-            state = {name: moved(event, stage(event).problem) for name, event in below.items()}
-            events = {name: estimate_event(name, [[below[name], state[name]]]) for name in EVENTS if name in found}
-            if not Tolerance.on(events, rtol).missed(events):
-                break
-    return events
+        state = {name: raised(event, start.mesh(event)[1]) for name, event in found.items()}
+        return ascend(state, rung(0), rtol, rung, range(1, 1 + MOST_RUNGS)).events
 
 
 @contextmanager

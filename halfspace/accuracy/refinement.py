@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 from halfspace.accuracy.further_folds import Completed, FurtherFolds
 from halfspace.accuracy.stages import (
@@ -28,7 +29,7 @@ from halfspace.accuracy.stages import (
 from halfspace.equilibrium.charts import COMPRESSION, Chart, placed, trace_charts
 from halfspace.equilibrium.conditions import ROUND_OFF, STEEPEST
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import REMAINING, Tolerance
+from halfspace.equilibrium.events import REMAINING, Event, Tolerance
 from halfspace.equilibrium.search import energy_released, find_events, folds_in_doubt
 from halfspace.equilibrium.states import Ways
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
@@ -122,14 +123,8 @@ def _climb_from(
     state: State = {name: event for name, event in found.items() if folds or name not in FOLDS}
     for stage in lowest.stages:
         state = on_all(state, stage)
-    higher = lowest
-    for level in range(start + 1, start + most_rungs + 1):
-        below, higher = higher, rung(level)
-        chains = step_up(state, higher.stages, higher.twin)
-        state = chains[0][-1]
-        events = estimate_all(chains, higher.remaining, along=higher.along)
-        if not Tolerance.on(events, rtol).missed(events):
-            break
+    below, higher, chains, events = ascend(state, lowest, rtol, rung, range(start + 1, start + most_rungs + 1))
+    state = chains[0][-1]
     margin = _margin(chains, higher.remaining)
     if folds and margin and margin.value + margin.error < 0 and "jump_on" not in events:
         raise FoldsLost("the curve folds on a finer grid, but not on its own; take a smaller rtol")
@@ -152,6 +147,26 @@ def _climb_from(
         _ways(below.stages[-1] if below.stages else Charted(tuple(charts)), higher),
         margin,
     )
+
+
+class Ascent(NamedTuple):
+    """How far a ladder was climbed: the last two rungs, the chains of states between them, and the events there."""
+
+    below: Rung
+    higher: Rung
+    chains: list[list[State]]
+    events: dict[str, Event]
+
+
+def ascend(state: State, higher: Rung, rtol: float, rung: Callable[[int], Rung], levels: Sequence[int]) -> Ascent:
+    """Solve for the events of a rung on those of the levels above it, one after the other, until `rtol` is met."""
+    for level in levels:
+        below, higher = higher, rung(level)
+        chains = step_up(state, higher.stages, higher.twin)
+        state, events = chains[0][-1], estimate_all(chains, higher.remaining, along=higher.along)
+        if not Tolerance.on(events, rtol).missed(events):
+            break
+    return Ascent(below, higher, chains, events)
 
 
 def _ways(below: Stage, higher: Rung) -> Ways:
