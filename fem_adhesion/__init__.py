@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from fem_adhesion.bodies.half_space import HalfSpace
     from fem_adhesion.bodies.held_sphere import HeldSphere
     from fem_adhesion.bodies.hemisphere import Hemisphere
-    from fem_adhesion.bodies.layer import Layer
+    from fem_adhesion.bodies.layers import Coated, Layer, Layers
     from fem_adhesion.bodies.meshed import Meshed
     from fem_adhesion.convergence import trace
     from fem_adhesion.crosscheck.study import compare
@@ -42,10 +42,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Block",
+    "Coated",
     "HalfSpace",
     "HeldSphere",
     "Hemisphere",
     "Layer",
+    "Layers",
     "LinearElastic",
     "Meshed",
     "NeoHookean",
@@ -58,7 +60,8 @@ __all__ = [
 _HOMES = {
     **{name: f"bodies.{home}" for name, home in (("Block", "block"), ("HalfSpace", "half_space"))},
     **{name: f"bodies.{home}" for name, home in (("Hemisphere", "hemisphere"), ("HeldSphere", "held_sphere"))},
-    **{name: f"bodies.{home}" for name, home in (("Layer", "layer"), ("Meshed", "meshed"))},
+    "Meshed": "bodies.meshed",
+    **dict.fromkeys(("Coated", "Layer", "Layers"), "bodies.layers"),
     **dict.fromkeys(("LinearElastic", "NeoHookean"), "materials"),
     **dict.fromkeys(("Scene", "share_of"), "scene"),
     "trace": "convergence",

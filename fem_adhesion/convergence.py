@@ -63,9 +63,9 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     EquilibriumPath
         The curve and its events. Of a half-space, their error estimates add the change by a higher degree and by a
         larger block, that is, they are distances from the half-space, not from the block; of another body they are the
-        change by a higher degree, beside that from other cells if it is bonded or held over a cap, of a user's mesh
-        that by a finer one. Points of the curve, and the states between them, are solved for anew when they are asked
-        for, see `EquilibriumPath.at`.
+        change by a higher degree, beside that from other cells if it is bonded, held over a cap or layered, of a user's
+        mesh that by a finer one. Points of the curve, and the states between them, are solved for anew when they are
+        asked for, see `EquilibriumPath.at`.
 
     Raises
     ------
@@ -158,20 +158,19 @@ def _to_infinity(scene: Scene, lines: Array, how: Discretisation) -> Discretised
 def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: the events on elements of a degree that suits the tolerance, one more on each level.
 
-    Where a body is held the stress may be singular, and on layers cells that suit the edge of the contact may be long
-    for the rest, which a degree more does not tell: other cells are a twin there; twice a layer's change may be left.
+    What a degree more does not tell other cells do, a twin; see `fem_adhesion.bodies.body.Doubt`.
     """
     degree = degree_for(rtol) + level
     how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
     other = AroundEvents(sized_body(scene, twin), *surroundings(rtol, level - 1), to_load)
-    layered = scene.body.layered is not None
+    doubt = scene.body.doubt
     return Rung(
         partial(sized_body(scene, curve).curve, to_load),
         (AroundEvents(sized_body(scene, how), *surroundings(rtol, level), to_load),),
         asdict(how) | {"curve_degree": curve.degree},
-        other if level and (scene.body.singular or layered) else None,
-        remaining=(2 if layered else 1) * REMAINING,
+        other if level and doubt.other_cells else None,
+        remaining=doubt.times * REMAINING,
         along=True,
     )
 

@@ -18,8 +18,8 @@ from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout
 from fem_adhesion.elasticity import far_field
 from fem_adhesion.elasticity.condensation import CondensedBody, condense
 from fem_adhesion.elasticity.far_field import FarField
-from fem_adhesion.elasticity.incompressible import stiffness_for
-from fem_adhesion.elasticity.space import Space
+from fem_adhesion.elasticity.incompressible import stiffness_of
+from fem_adhesion.elasticity.space import Space, cell_stiffness
 from fem_adhesion.mesh.spheres import with_contact_to
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator
@@ -34,6 +34,7 @@ from halfspace.values import Array, Valued
 
 FAR_FIELDS: Mapping[FarFieldName, FarField] = {
     "point_load": far_field.point_load,
+    "substrate": far_field.point_load,
     "clamped": far_field.clamped,
     "free": far_field.free,
     "sliding": far_field.sliding,
@@ -117,7 +118,9 @@ def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
     flat = isinstance(coordinate, FlatCoordinate)
     last = at_equator(scene.tabor, scene.surface, how.degree + 2) if flat else np.inf
     make = partial(_made, scene, how)
-    return SizedBody(scene.tabor, scene.surface, make, how.finest, how.growth, outer, coordinate, last, scene.law)
+    scales = scene.scales
+    grading = how.finest, how.growth, outer, coordinate, last
+    return SizedBody(scales.tabor, scales.profile, make, *grading, scales.law, scales.softest)
 
 
 def discretised_about(scene: Scene, contact_radius: float, how: Discretisation, source: ContactProblem) -> Discretised:
@@ -168,11 +171,11 @@ def _made(scene: Scene, how: Discretisation, lines: Array) -> Made:
 
 def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:
     """Condense a body; quadratic triangles, which have no projected dilatation, lose accuracy from poisson 0.45 on."""
-    triangles, poisson = isinstance(mesh, MeshTri), body.material.poisson
+    triangles, material = isinstance(mesh, MeshTri), body.material
     space = Space(mesh, TRIANGLE if triangles else quadrilateral(how.degree))
-    stiffness = stiffness_for(0.0 if triangles else poisson)
-    held = FAR_FIELDS[body.held]
-    return condense(space, poisson, far_field=held, stiffness=stiffness, traction=body.material.area)
+    stiffness = cell_stiffness if triangles else stiffness_of(body.regions)
+    held = far_field.made_of(FAR_FIELDS[body.held], body.beyond)
+    return condense(space, material.poisson, far_field=held, stiffness=stiffness, traction=material.area)
 
 
 def _own_surface(body: CondensedBody, R: float) -> Surface:

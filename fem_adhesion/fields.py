@@ -20,7 +20,6 @@ import numpy as np
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import Discretised, discretised_about
 from fem_adhesion.elasticity.condensation import Surface
-from fem_adhesion.elasticity.incompressible import projected_stiffness
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.elasticity.stress import recovered_stresses
 from fem_adhesion.scene import Scene
@@ -50,7 +49,7 @@ class State(Valued):
     name : str
         Of the event that the state is, or "".
     space : Space
-        Mesh, in beta, and element.
+        Mesh, in beta, and element; regions of different materials do not share nodes.
     displacement : (N,) array
         All displacement unknowns, in beta^2/R.
     stress : (4, functions) array
@@ -223,10 +222,9 @@ def _solved(made: Discretised, source: Traceable, point: Point, name: str) -> St
     scene, problem, body = made.scene, made.problem, made.first
     new = _same_place(source, point, problem, metric_for(problem))
     problem.require_resolution(new.x)
-    projected = body.stiffness is projected_stiffness
     u = body.displacement(problem.pressure(new.x)[: body.surface.radii.size])
-    stress = recovered_stresses(body.space, body.poisson, u, projected_dilatation=projected)
-    return State(scene, name, body.space, scene.shares[0] * u, stress, body.surface, problem, new)
+    space, u, stress = recovered_stresses(body.space, scene.body.regions, u)
+    return State(scene, name, space, scene.shares[0] * u, stress, body.surface, problem, new)
 
 
 def _same_place(source: Traceable, point: Point, problem: ContactProblem, metric: Metric) -> Point:

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, get_args
+from typing import ClassVar, Literal, NamedTuple, get_args
 
 from halfspace.limits import require_one_of, require_poisson
 from halfspace.values import keep
 
 AreaName = Literal["projected", "surface"]
 TractionName = Literal["projected", "reference", "normal", "vertical"]
+
+
+class Elastic(NamedTuple):
+    """What a region of a body is made of: Poisson's ratio, and E/(1 - nu^2) in units of the body's E*."""
+
+    poisson: float
+    modulus: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,13 @@ PARTS: dict[str, dict[str, Any]] = {
         "block": "fem_adhesion.bodies.block:Block",
         "hemisphere": "fem_adhesion.bodies.hemisphere:Hemisphere",
         "held-sphere": "fem_adhesion.bodies.held_sphere:HeldSphere",
-        "layer": "fem_adhesion.bodies.layer:Layer",
+        "layer": "fem_adhesion.bodies.layers:Layer",
+        "coated": "fem_adhesion.bodies.layers:Coated",
+        "layers": "fem_adhesion.bodies.layers:Layers",
         "meshed": "fem_adhesion.bodies.meshed:Meshed",
     },
+    "strata": {"stratum": "halfspace.elastic.layers:Stratum"},
+    "base": {"substrate": "halfspace.elastic.layers:Substrate"},
     "material": {
         "linear-elastic": "fem_adhesion.materials:LinearElastic",
         "neo-hookean": "fem_adhesion.materials:NeoHookean",
@@ -84,6 +88,8 @@ def record_of(part: Any) -> Any:
     """A scene or a part as plain data: its fields, and its name unless it is the whole."""
     if isinstance(part, Path):
         return str(part)
+    if isinstance(part, tuple):
+        return [record_of(each) for each in part]
     if not is_dataclass(part):
         return part
     named = {field.name: record_of(getattr(part, field.name)) for field in fields(part)}
@@ -93,5 +99,10 @@ def record_of(part: Any) -> Any:
 def part_from(kind: str, record: Mapping[str, Any]) -> Any:
     """Part of a kind from plain data: `record_of` the other way."""
     given = {name: value for name, value in record.items() if name != "name"}
-    parts = {name: part_from(name, value) for name, value in given.items() if isinstance(value, Mapping)}
+    parts: dict[str, Any] = {
+        name: part_from(name, value) for name, value in given.items() if isinstance(value, Mapping)
+    }
+    parts |= {
+        name: tuple(part_from(name, each) for each in value) for name, value in given.items() if isinstance(value, list)
+    }
     return class_of(kind, record["name"])(**(given | parts))

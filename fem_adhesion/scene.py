@@ -8,7 +8,7 @@ from functools import cached_property
 
 from fem_adhesion.bodies.body import Body
 from fem_adhesion.bodies.half_space import HalfSpace
-from fem_adhesion.bodies.layer import as_body
+from fem_adhesion.bodies.layers import as_body
 from fem_adhesion.materials import Material
 from fem_adhesion.registry import told
 from halfspace.errors import InputError
@@ -130,13 +130,13 @@ class Scene:
     def surface(self) -> Surface:
         """Its heights in beta^2/R, up to where the smaller body ends."""
         surface, (end, *_) = self.shape.surface(self.tabor), self._own_radii
-        end = min(end, self.body.extent(Scales(self.tabor, self.law, surface)))
+        end = min(end, self.body.extent(Scales(self.tabor, self.law, surface, self.body.softest)))
         return surface if surface.end <= end else UpTo(surface, end)
 
     @property
     def scales(self) -> Scales:
         """Its lengths."""
-        return Scales(self.tabor, self.law, self.surface)
+        return Scales(self.tabor, self.law, self.surface, self.body.softest)
 
     @property
     def sized(self) -> bool:

@@ -1,19 +1,42 @@
-"""A layer of finite elements, held against the integral equation, which shares no operator with it."""
+"""Layers and coatings of finite elements, held against the integral equation, which shares no operator with them."""
 
+import dataclasses
 import json
+from functools import cache
 
+import numpy as np
 import pytest
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import HalfSpace, Layer, Scene
+from fem_adhesion import Coated, HalfSpace, Layer, Layers, Scene, fields
+from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.cli import main
 from fem_adhesion.crosscheck.comparison import difference
+from fem_adhesion.discretise import discretise, quadrilateral
+from fem_adhesion.elasticity import stress
+from fem_adhesion.elasticity.incompressible import stiffness_of
+from fem_adhesion.elasticity.space import Space, cell_stiffness
+from fem_adhesion.materials import Elastic
+from fem_adhesion.mesh.block import tensor_grid
+from fem_adhesion.paraview.cells import Cut, Lattice
+from halfspace import Stratum, Substrate
+from halfspace.elastic import grid
+from halfspace.elastic.compliance import panels
+from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.errors import InputError
 from halfspace.laws import PowerLaw
-from halfspace.profiles import Power
+from halfspace.profiles import Power, Sphere
 
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
+STIFF = Coated(2.0, 10.0, poisson=0.3)
+PLIES = Stratum(0.3, 0.3), Stratum(1.0, 0.45, 0.02), Stratum(0.5, 0.3, 3.0)
+STACK = Layers([Stratum(0.4, 0.3), Stratum(0.5, 0.45, 0.2), Stratum(3, 0.2, 2.0)], Substrate(5.0, 0.1))
+
+
+@cache
+def traced(scene, rtol):
+    return fem_adhesion.trace(scene, rtol=rtol)
 
 
 @pytest.mark.parametrize(
@@ -29,11 +52,16 @@ QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
         (Scene(1.0, Layer(0.5, "sliding", poisson=0.4999), profile=Power(10)), 1e-4),
         (Scene(1.0, Layer(1.0, poisson=0.4999), profile=Power(10)), 1e-4),
         (Scene(5.0, Layer(1000.0, "sliding")), 1e-3),
+        (Scene(1.0, Layer(2.0, poisson=0.3), profile=Sphere(30.0)), 1e-4),
+        (Scene(1.0, STIFF), 1e-4),
+        (Scene(2.0, Coated(0.5, 0.01, 0.0, poisson=0.499)), 1e-3),
+        (Scene(1.0, STACK), 1e-3),
+        (Scene(1.0, Layers(PLIES, "sliding")), 1e-3),
     ],
     ids=str,
 )
 def test_both_solvers_have_the_same_events_on_a_layer(scene, rtol):
-    elements = fem_adhesion.trace(scene, rtol=rtol)
+    elements = traced(scene, rtol)
     integral = halfspace.trace(scene.tabor, body=scene.body.layered, law=scene.law, profile=scene.shape, rtol=rtol / 10)
     assert elements.met
     assert difference(elements.energy, integral.energy) <= elements.energy.error + integral.energy.error
@@ -51,41 +79,160 @@ def test_the_pull_off_is_that_of_the_reference():
     assert event.load_error <= 1e-5 * 5.7
 
 
-def test_a_layer_is_the_same_body_in_both_packages():
-    assert Scene(1.0, body=halfspace.Layer(2.0, 0.4, "sliding")).body == Layer(2.0, "sliding", poisson=0.4)
+@pytest.mark.parametrize(
+    ("theirs", "ours"),
+    [
+        (halfspace.Layer(2.0, 0.4, "sliding"), Layer(2.0, "sliding", poisson=0.4)),
+        (halfspace.Coated(1.0, 10.0, 0.4, 0.2), Coated(1.0, 10.0, 0.2, poisson=0.4)),
+        (halfspace.Layers(PLIES, "sliding"), Layers(PLIES, "sliding")),
+        (halfspace.Layers(STACK.strata, STACK.base), STACK),
+    ],
+    ids=str,
+)
+def test_layers_are_the_same_bodies_in_both_packages(theirs, ours):
+    assert Scene(1.0, body=theirs).body == ours
+    assert ours.layered == theirs
+    assert (ours.strata, ours.base) == (theirs.strata, theirs.base)
 
 
-@pytest.mark.parametrize("body", [halfspace.Coated(1.0, 10.0), halfspace.Layers([halfspace.Stratum(1.0)])], ids=str)
-def test_what_is_not_meshed_says_what_serves(body):
-    with pytest.raises(InputError, match=r"is not meshed, limit: one layer on a rigid base; take halfspace\.trace"):
-        Scene(1.0, body=body)
+# --- operators ---
 
 
-def test_compare_on_the_command_line_agrees_with_all_that_it_has(tmp_path):
+BODIES = [
+    Coated(2.0, 1.0, 0.3, poisson=0.3),
+    Coated(0.5, 100.0, 0.499, poisson=0.0),
+    Coated(50.0, 100.0, poisson=0.3),
+    Coated(0.05, 0.01, 0.0, poisson=0.4999),
+    STACK,
+    Layers(PLIES),
+    Layers(PLIES, "sliding"),
+]
+
+
+def far_from(known, found):
+    """Difference near the axis, of the largest deflection, under a pressure that ends smoothly at 1."""
+    one, other = (each.compliance @ np.maximum(1 - each.radii**2, 0) ** 2.5 for each in (found, known))
+    off = (one - known.values_at(found.radii, other))[found.radii < 3]
+    return np.abs(off).max() / other.max()
+
+
+@pytest.mark.parametrize("body", BODIES, ids=str)
+def test_strata_deflect_as_their_waves_say(body):
+    lines = grid.graded(1.0, 0.2, Scene(1.0, body).surface.end, growth=2.5)
+    found = discretise(Scene(1.0, body), lines, Discretisation(5)).operator
+    known = layered_panels(images_of(body), lines, 9)
+    assert far_from(known, found) < 2e-4
+
+
+def test_a_coating_like_what_is_below_is_the_half_space():
+    lines = grid.graded(1.0, 0.2, Scene(1.0, BODIES[0]).surface.end, growth=2.5)
+    found, known = discretise(Scene(1.0, BODIES[0]), lines, Discretisation(5)).operator, panels(lines, 9)
+    assert far_from(known, found) < 2e-4
+
+
+def test_a_block_cut_into_regions_of_one_material_is_the_block():
+    lines = np.array([0.0, 0.5, 1.3])
+    space = Space(tensor_grid(lines, lines, [0.5]), quadrilateral(4))
+    halves = stiffness_of([Elastic(0.3), Elastic(0.3)])(space, 0.3)
+    assert halves == pytest.approx(cell_stiffness(space, 0.3), rel=1e-12, abs=1e-14)
+    softer = stiffness_of([Elastic(0.3), Elastic(0.3, 0.5)])(space, 0.3)
+    below = space.mesh.p[1, space.mesh.t].mean(axis=0) < -0.5
+    assert softer[below] == pytest.approx(halves[below] / 2, rel=1e-12, abs=1e-14)
+    assert np.array_equal(softer[~below], halves[~below])
+
+
+# --- fields ---
+
+
+def test_stresses_jump_at_an_interface_where_they_must():
+    """What pulls across is continuous; what does not differs by the moduli of the strains that both sides have."""
+    scene, event = Scene(1.0, STIFF), traced(Scene(1.0, STIFF), 1e-4).stages[-1]["zero_load"]
+    state = fields.state_at(scene, event.problem, event.point)
+    cut = Cut(state.space, Lattice(1, triangular=False), 0.0)
+    (r, z), region = cut.points, cut.node_regions
+    sides = [np.flatnonzero((np.abs(z + 2) < 1e-9) & (r < 3) & (region == n)) for n in (0, 1)]
+    above, below = (side[np.argsort(r[side])] for side in sides)
+    assert above.size > 5
+    assert r[above] == pytest.approx(r[below], abs=1e-9)
+    rr, zz, hoop, rz = cut.values(state.stress)
+    largest = np.abs(zz).max()
+    for across in (zz, rz):
+        assert across[above] == pytest.approx(across[below], abs=2e-3 * largest)
+    strains = [
+        ((s_rr - nu * (s_zz + s_hoop)) / E)
+        for (s_rr, s_zz, s_hoop), (nu, E) in (
+            ((rr[above], zz[above], hoop[above]), (0.3, 1.0)),
+            ((rr[below], zz[below], hoop[below]), (0.3, 0.1)),
+        )
+    ]
+    assert strains[0] == pytest.approx(strains[1], abs=5e-3 * np.abs(strains[0]).max())
+    assert np.abs(rr[above] - rr[below]).max() > 0.1 * np.abs(rr[above]).max()
+    assert stress.energy_density(np.ones(4), 0.3, 0.5) == pytest.approx(2 * stress.energy_density(np.ones(4), 0.3))
+
+
+# --- compare and the command line ---
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        ["layer", "--thickness", "2"],
+        ["coated", "--thickness", "2", "--modulus-ratio", "10"],
+        ["layers", "--strata", "0.4:0.3", "0.5:0.45:0.2", "--foundation", "sliding"],
+    ],
+    ids=lambda body: body[0],
+)
+def test_compare_on_the_command_line_agrees_with_all_that_it_has(body, tmp_path):
     record = tmp_path / "record.json"
-    contact = ["--tabor", "1", "--body", "layer", "--thickness", "2", "--poisson", "0.3"]
-    assert main(["compare", *contact, "--rtol", "1e-4", "--json", str(record)]) == 0
+    assert main(["compare", "--tabor", "1", "--body", *body, "--rtol", "1e-4", "--json", str(record)]) == 0
     rows = json.loads(record.read_text())["cases"][0]["comparison"]
     between = {tuple(row["between"]) for row in rows}
     assert {("half-space", "finite elements"), ("weak form", "finite elements")} <= between
     assert all(row["verdict"] == "agree" for row in rows)
 
 
-@pytest.mark.parametrize("wrong", [{"thickness": 2.1}, {"poisson": 0.33}], ids=str)
-def test_compare_rejects_another_layer(wrong):
-    """The integral equation is asked for another layer than the elements."""
-    asked = {"thickness": 2.0, "foundation": "bonded", "poisson": 0.3}
+@pytest.mark.parametrize(
+    ("asked", "wrong"),
+    [
+        (Layer(2.0, poisson=0.3), {"thickness": 2.1}),
+        (Layer(2.0, poisson=0.3), {"poisson": 0.33}),
+        (STIFF, {"modulus_ratio": 11.0}),
+        (STIFF, {"substrate_poisson": 0.35}),
+    ],
+    ids=str,
+)
+def test_compare_rejects_another_body(asked, wrong):
+    """The integral equation is asked for other layers than the elements."""
+    own = {field.name: getattr(asked, field.name) for field in dataclasses.fields(asked) if field.name != "material"}
+    other = type(asked)(**{"poisson": 0.3} | own | wrong)
 
-    def other(*_, **options):
-        return fem_adhesion.trace(Scene(1.0, body=Layer(**asked | wrong)), **options)
+    def elements(*_, **options):
+        return fem_adhesion.trace(Scene(1.0, body=other), **options)
 
-    case = fem_adhesion.compare(Scene(1.0, body=Layer(**asked)), rtol=1e-4, solve=other)
+    case = fem_adhesion.compare(Scene(1.0, body=asked), rtol=1e-3, solve=elements)
     assert case.verdict == "disagree"
 
 
-def test_a_layer_without_a_thickness_is_asked_for_it(capsys):
-    assert main(["curve", "--tabor", "1", "--body", "layer"]) == 2
-    assert "give --thickness, in beta" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        (["layer"], "give --thickness, in beta"),
+        (["coated", "--thickness", "2"], "give --modulus-ratio"),
+        (["coated", "--thickness", "2", "--modulus-ratio", "1e3"], "modulus_ratio = 1000 is outside 0.001 <="),
+        (["layers"], "give --strata T:NU:E"),
+        (["layers", "--strata", "1:0.3:1:2"], "strata = 1:0.3:1:2, limit: 3 numbers between colons"),
+        (["layers", "--strata", "1:0.3:2"], "modulus = 2 of the first stratum does not serve"),
+        (["layers", "--strata", "1:0.4", "--poisson", "0.3"], "poisson = 0.3 with strata, limit: that of the"),
+        (["layers", "--strata", "1", "--substrate", "2:0.3", "--foundation", "bonded"], "--foundation would not be"),
+        (["layer", "--thickness", "2", "--strata", "1"], "--strata would not be heeded, limit: with --body layers"),
+    ],
+    ids=str,
+)
+def test_what_a_body_lacks_or_does_not_heed_is_one_line(body, words, capsys):
+    assert main(["curve", "--tabor", "1", "--body", *body]) == 2
+    err = capsys.readouterr().err
+    assert words in err
+    assert err.count("\n") == 1
 
 
 def test_the_integral_equation_takes_the_layer_of_the_elements_and_refuses_other_bodies():

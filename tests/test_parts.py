@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 import fem_adhesion
-from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene, cli, registry
+from fem_adhesion import Coated, Hemisphere, Layers, LinearElastic, NeoHookean, Scene, cli, registry
 from fem_adhesion.bodies.body import Held
 from fem_adhesion.common.scene_options import _parameters
 from fem_adhesion.mesh.block import tensor_grid
 from fem_adhesion.registry import name_of, part_from, record_of
+from halfspace import Stratum, Substrate
 from halfspace.elastic import grid
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.profiles import Paraboloid, Sphere
@@ -64,6 +65,9 @@ def test_a_toy_body_is_known_to_the_command_line_and_to_its_files(tmp_path):
 def test_a_part_and_its_name_are_translated_both_ways():
     parts = [
         ("body", Hemisphere(radius_ratio=30.0, grip="bonded", material=NeoHookean(0.4, "normal"))),
+        ("body", Coated(2.0, 10.0, poisson=0.45)),
+        ("body", Layers([Stratum(0.4, 0.45), Stratum(3, 0.2, 2.0)], Substrate(5.0, 0.1))),
+        ("body", Layers([Stratum(0.4, 0.3)], "sliding")),
         ("material", LinearElastic(0.45, "surface")),
         ("profile", Sphere(100.0)),
         ("profile", Paraboloid()),

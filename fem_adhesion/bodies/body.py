@@ -5,9 +5,9 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import InitVar, dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Literal, get_args
+from typing import Any, ClassVar, Literal, NamedTuple, get_args
 
-from fem_adhesion.materials import LinearElastic, Material
+from fem_adhesion.materials import Elastic, LinearElastic, Material
 from fem_adhesion.registry import name_of
 from halfspace.elastic.layers import LayeredBody
 from halfspace.elastic.operators import SurfaceCoordinate
@@ -17,7 +17,7 @@ from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.scales import Scales
 from halfspace.values import Array, keep
 
-FarFieldName = Literal["point_load", "clamped", "free", "sliding", "sheet"]
+FarFieldName = Literal["point_load", "substrate", "clamped", "free", "sliding", "sheet"]
 GripName = Literal["sliding", "bonded"]
 SolverName = Literal["half-space", "harmonics"]
 
@@ -27,6 +27,21 @@ USUAL = LinearElastic()
 
 Layout = tuple[Array, SurfaceCoordinate]
 """Ends of the last cells of a surface, which do not move with the contact, ascending; and the coordinate along it."""
+
+
+class Doubt(NamedTuple):
+    """How far the cells of a body are to be trusted, beyond what a degree more tells.
+
+    Attributes
+    ----------
+    other_cells : bool
+        Whether what they leave is seen by other cells only.
+    times : float
+        What may be left of a change, in what usually is.
+    """
+
+    other_cells: bool
+    times: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -45,7 +60,7 @@ class Discretisation:
         Of cells around the corner where a mid-plane meets the free surface, if it is bonded.
     beyond : float
         Size of what is meshed of a half-space under a surface that ends, in the radius where that does: nothing acts
-        beyond that, and the far field errs by O(L^-5).
+        beyond that, and the far field errs by O(L^-5). Under strata in the length over which they spread a load.
     """
 
     degree: int
@@ -149,6 +164,26 @@ class Body(ABC):
     def singular(self) -> bool:
         """Whether the stress is singular where it is held: a degree more does not tell the error there."""
         return False
+
+    @property
+    def doubt(self) -> Doubt:
+        """How far its cells are to be trusted."""
+        return Doubt(self.singular)
+
+    @property
+    def regions(self) -> tuple[Elastic, ...]:
+        """What its regions are made of, from the surface down as in its mesh; most have one."""
+        return (Elastic(self.material.poisson),)
+
+    @property
+    def beyond(self) -> Elastic:
+        """What it goes on as beyond its mesh, if it does."""
+        return self.regions[-1]
+
+    @property
+    def softest(self) -> float:
+        """How many times as much as a half-space of E* it yields to waves of pressure of any length, at most."""
+        return 1.0
 
     @property
     def size(self) -> float:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact
     from fem_adhesion.common.options import Parser
     from fem_adhesion.scene import Scene
-    from halfspace.elastic.layers import Layer
+    from halfspace.elastic.layers import Foundation, Layer, Stratum, Substrate
     from halfspace.laws import Law
 
     Group = argparse._ArgumentGroup
@@ -74,7 +74,15 @@ def add_body(body: Group) -> None:
     add_law(body)
     cap = "half-angle of the cap over which a sphere is held, degrees; 30 unless given"
     body.add_argument("--cap-angle", type=float, help=cap, metavar="ANGLE")
-    add_layer(body, "thickness of a layer on a rigid base: with --tabor in beta, else as 500nm")
+    add_layer(body, "thickness of a layer on a rigid base or of a coating: with --tabor in beta, else as 500nm")
+    ratio = "Young's modulus of a coating over that of the half-space below"
+    body.add_argument("--modulus-ratio", type=float, help=ratio, metavar="RATIO")
+    below = "Poisson's ratio of the half-space below a coating; 0.3 unless given"
+    body.add_argument("--substrate-poisson", type=float, help=below, metavar="NU")
+    strata = "layers from the surface down: thickness in beta, Poisson's ratio (the body's), modulus in the first's (1)"
+    body.add_argument("--strata", nargs="+", help=strata, metavar="T:NU:E")
+    half_space = "half-space below these, by its modulus and Poisson's ratio; a rigid base unless given"
+    body.add_argument("--substrate", help=half_space, metavar="E:NU")
     body.add_argument("--block-radius", type=float, help="size of a block in beta", metavar="L")
     held = "what holds a block at its far side; point_load unless given"
     body.add_argument("--far-field", choices=("point_load", "clamped", "free"), help=held)
@@ -115,6 +123,10 @@ FIELDS = {
     "far_field": "far_field",
     "thickness": "thickness",
     "foundation": "foundation",
+    "modulus_ratio": "modulus_ratio",
+    "substrate_poisson": "substrate_poisson",
+    "strata": "strata",
+    "base": "substrate",
 }
 """Options that say what the fields of a body are."""
 GIVEN_OTHERWISE = ("radius_ratio", "counter_radius", "end")  # of a profile: by options of a body, or by the body
@@ -132,9 +144,11 @@ def scene_of(
     """Scene of the body given; `radius_ratio` is its own, or the profile's, `layer` a thin sample given in SI."""
     from fem_adhesion.scene import Scene
 
-    traction = {} if options.traction is None else {"traction": options.traction}
+    strata, traction = _strata(options, poisson), {} if options.traction is None else {"traction": options.traction}
+    poisson = strata[0].poisson if strata and options.poisson is None else poisson
     material = class_of("material", MATERIALS[options.strain or "small"])(poisson, **traction)
-    body = _body(options, {"radius_ratio": radius_ratio, "thickness": _thickness(options, layer)}, material)
+    own = {"radius_ratio": radius_ratio, "thickness": _thickness(options, layer)}
+    body = _body(options, own | {"strata": strata or None, "base": _base(options)}, material)
     profile, law = _profile(options, body, radius_ratio), law_of(options)
     return Scene(tabor, body, profile, law, counter=counter, share=share)
 
@@ -208,20 +222,49 @@ def _thickness(options: argparse.Namespace, layer: Layer | None) -> float | None
     return _plain(options, "thickness", "beta")
 
 
-def _body(options: argparse.Namespace, lengths: Mapping[str, float | None], material: object) -> Any:
+def _strata(options: argparse.Namespace, poisson: float) -> tuple[Stratum, ...]:
+    """Strata given, from the surface down."""
+    from halfspace.elastic.layers import Stratum
+
+    default = (math.nan, poisson, 1.0)
+    given = [_numbers("strata", word, len(default)) for word in options.strata or ()]
+    return tuple(Stratum(*numbers, *default[len(numbers) :]) for numbers in given)
+
+
+def _base(options: argparse.Namespace) -> Foundation | Substrate | None:
+    """What carries them: the half-space that is given, or a rigid base."""
+    from halfspace.elastic.layers import Substrate
+
+    if options.substrate is None:
+        rigid: Foundation | None = options.foundation
+        return rigid
+    refuse(options, ("foundation",), "without --substrate, which is bonded")
+    return Substrate(*_numbers("substrate", options.substrate, 2))
+
+
+def _numbers(name: str, word: str, most: int) -> list[float]:
+    numbers = [_number(name, text) for text in word.split(":")]
+    if len(numbers) > most:
+        raise InputError(f"{name} = {word}, limit: {most} numbers between colons; leave out the rest")
+    return numbers
+
+
+def _body(options: argparse.Namespace, values: Mapping[str, Any], material: object) -> Any:
     """Body of the fields given, none of which it lacks; its lengths are dimensionless."""
     name = _name(options)
     own = _fields(name)
     for field, option in FIELDS.items():
-        if field not in own and option != "radius_ratio":
+        if field not in own and option != "radius_ratio" and not (field == "foundation" and "base" in own):
             refuse(options, (option,), "with " + " or ".join(f"--body {other}" for other in _having(field)))
-    values = {field: lengths.get(field, getattr(options, option)) for field, option in FIELDS.items() if field in own}
+    values = {field: values.get(field, getattr(options, option)) for field, option in FIELDS.items() if field in own}
     for field, value in values.items():
         if value is None and own[field].default is MISSING:
             what = {
                 "path": "a file; give --mesh FILE",
                 "radius": "a number; give --block-radius, in beta",
                 "thickness": "a number; give --thickness, in beta, or with a material as 500nm",
+                "modulus_ratio": "a number; give --modulus-ratio",
+                "strata": "one or more; give --strata T:NU:E, the thickness in beta",
             }
             raise InputError(f'{field} = None for body = "{name}", limit: {what.get(field, "a number; give R/eps")}')
     given = {field: value for field, value in values.items() if value is not None}

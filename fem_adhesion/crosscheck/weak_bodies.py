@@ -7,6 +7,7 @@ quadrature, radii, profiles and areas are the weak form's own. A user's mesh is 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache, partial
 from typing import Any
 
@@ -107,12 +108,13 @@ def _half_space(finest: float, size: float, degree: int, poisson: float, tip: fl
 # Bodies with a length
 
 GROWTH, WIDEST = 2.5, 0.95  # ratio of neighbouring cells; the place in R beyond which they are finest nowhere
+CLAMPED = 1e6  # of a half-space under strata in `Discretisation.beyond`: what a clamp there leaves out is 1e-4 eps
 RINGS = 4  # of cells around a corner where the stress is singular
 
 
 def _on_given_mesh(scene: Scene, degree: int, *_: float) -> Contact:
     """Contact of a user's mesh."""
-    body = discretise(_given_mesh(scene), degree, scene.poisson, slides=scene.body.held == "sliding")
+    body = discretise(_given_mesh(scene), degree, scene.body.regions, slides=scene.body.held == "sliding")
     return Contact(body, scene.tabor, lambda _: scene.sphere_radius * body.depths, False, law=law_of(scene))
 
 
@@ -128,6 +130,7 @@ def _sized(scene: Scene, degree: int, radius: float, reach: float) -> Contact:
     R = scene.radii[0]
     radius, reach = (min(r, WIDEST * R) for r in (radius, reach))  # what attracts from afar may be wider
     how = Discretisation(degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, GROWTH, RINGS)
+    how = replace(how, beyond=CLAMPED) if scene.body.held == "substrate" else how
     outer, coordinate = layout_of(scene, how)
     lines = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=GROWTH)
     core = fine_within(coordinate.of(reach), lines)
@@ -146,7 +149,7 @@ def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:
     body = discretise(
         mesh,
         degree,
-        material.poisson,
+        elastic.regions,
         slides=slides,
         plate=elastic.endless,
         on_surface=material.area == "surface",

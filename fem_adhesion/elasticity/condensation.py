@@ -181,7 +181,7 @@ class CondensedBody(Valued):
         """Return the elastic energy of block and exterior, in E* beta^3, summed over the cells."""
         x, u = self.reduced_displacement(pressure), self.displacement(pressure)
         cells = u[self.space.cell_dofs].T
-        inside = np.einsum("ci,cij,cj->", cells, self.stiffness(self.space, self.poisson), cells, optimize=True)
+        inside = np.einsum("ci,cij,cj->", cells, self.skeleton.whole, cells, optimize=True)
         outside = x @ (self.exterior.stiffness @ x)
         spring = self.exterior.rigid_compliance * (self.operator.weights @ pressure) ** 2
         return 0.5 * float(inside + outside - spring)

@@ -8,7 +8,7 @@ interior to a cell, which are eliminated before.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -17,6 +17,7 @@ from scipy.sparse.linalg import splu
 
 from fem_adhesion.elasticity.boundaries import Trace, trace_on
 from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure
+from fem_adhesion.materials import Elastic
 from halfspace.values import Array, Index, Valued
 
 TRACE_POINTS = 6
@@ -47,6 +48,16 @@ class FarField(Protocol):
 
     def __call__(self, space: Space, poisson: float) -> Exterior:
         """Return the condition for the far boundary of this space's mesh."""
+
+
+def made_of(far_field: FarField, material: Elastic) -> FarField:
+    """The same where what goes on beyond is of another material than the body's surface."""
+
+    def condition(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (it has its own)
+        exterior = far_field(space, material.poisson)
+        return replace(exterior, stiffness=material.modulus * exterior.stiffness)
+
+    return condition
 
 
 def with_interiors(exterior: Exterior, space: Space) -> Exterior:

@@ -8,6 +8,8 @@ lambda Pi div u, eliminated cell by cell; a continuous pressure remains an unkno
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,6 +33,7 @@ from fem_adhesion.elasticity.space import (
     shear_matrix,
     strain_products,
 )
+from fem_adhesion.materials import Elastic
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
 from halfspace.values import Array
@@ -43,6 +46,25 @@ pull-off load at tabor 1 it leaves half at 0.4, a third at 0.45 and a tenth or l
 def stiffness_for(poisson: float) -> CellStiffness:
     """Stiffness of quadrilaterals that fits the material."""
     return projected_stiffness if poisson >= REMEDY_FROM else cell_stiffness
+
+
+def projects(space: Space, poisson: float) -> bool:
+    """Whether `stiffness_for` a material is that of projected dilatations, where the cells are quadrilaterals."""
+    return space.element.refdom.nnodes == 4 and stiffness_for(poisson) is projected_stiffness
+
+
+def stiffness_of(materials: Sequence[Elastic]) -> CellStiffness:
+    """Stiffness of quadrilaterals each of which is of the material of its region."""
+    return stiffness_for(materials[0].poisson) if len(materials) == 1 else partial(_by_region, tuple(materials))
+
+
+def _by_region(materials: Sequence[Elastic], space: Space, _: float) -> Array:
+    """Stiffness of every cell, from meshes of the regions apart."""
+    K = np.empty((space.mesh.nelements, *2 * [len(space.cell_dofs)]))
+    for cells, (poisson, modulus) in zip(space.regions(materials), materials, strict=True):
+        part = Space(space.mesh.restrict(cells), space.element)
+        K[cells] = modulus * stiffness_for(poisson)(part, poisson)
+    return K
 
 
 def projected_stiffness(space: Space, poisson: float) -> Array:

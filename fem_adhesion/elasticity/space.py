@@ -6,7 +6,7 @@ Lengths in beta and E* = 1, so Young's modulus is E = 1 - nu^2. Strains and stre
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -18,6 +18,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fem_adhesion.elasticity.tensor import integrated, products
+from fem_adhesion.materials import Elastic
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
@@ -82,6 +83,12 @@ class Space(Valued):
         coefficients = np.empty(self.scalar_dofs.N)
         coefficients[self.scalar_dofs.element_dofs] = np.linalg.lstsq(values.T, np.ones(X.shape[1]))[0][:, None]
         return coefficients
+
+    def regions(self, materials: Sequence[Elastic]) -> list[Index]:
+        """Cells of each material: all of one, or the subdomains of the mesh, in their order."""
+        if len(materials) == 1:
+            return [np.arange(self.mesh.nelements)]
+        return [np.asarray(self.mesh.subdomains[str(n)], dtype=np.intp) for n in range(len(materials))]
 
     @property
     def unknowns(self) -> int:

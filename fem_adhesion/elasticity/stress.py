@@ -6,6 +6,7 @@ beta/R and stresses in E* beta/R = dgamma/(mu eps), the unit of the pressure P.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.polynomial.legendre import legvander2d
 from scipy.sparse.linalg import splu
 from skfem import CellBasis
 
-from fem_adhesion.elasticity.incompressible import pressure_modes
+from fem_adhesion.elasticity.incompressible import pressure_modes, projects
 from fem_adhesion.elasticity.space import (
     Space,
     cell_quadrature,
@@ -23,7 +24,8 @@ from fem_adhesion.elasticity.space import (
     scatter,
     shear_matrix,
 )
-from halfspace.values import Array
+from fem_adhesion.materials import Elastic
+from halfspace.values import Array, Index
 
 ON_AXIS = 1e-12
 """Radius, in the largest of the points given, below which the hoop strain is its limit du_r/dr."""
@@ -108,31 +110,56 @@ def stresses(
     return np.asarray(stress)
 
 
-def recovered_stresses(
-    space: Space, poisson: float, displacement: Array, *, projected_dilatation: bool = False
-) -> Array:
-    """Return the continuous stresses nearest to those of the elements.
+def recovered_stresses(space: Space, materials: Sequence[Elastic], displacement: Array) -> tuple[Space, Array, Array]:
+    """Return the stresses nearest to those of the elements that are continuous in each region of a body.
 
-    Parameters and units as of `stresses`.
+    Parameters
+    ----------
+    space, displacement
+        As of `stresses`.
+    materials : sequence of Elastic
+        Of the regions.
 
     Returns
     -------
-    (4, functions) array
-        Coefficients of the scalar functions, for `sampled`.
+    Space, (N,) array, (4, functions) array
+        The body cut at the interfaces between its regions, its displacement, and the coefficients of the stress, in
+        E* beta/R, for `sampled`.
+    """
+    parts = space.regions(materials)
+    cut = space if len(materials) == 1 else Space(torn(space.mesh, parts), space.element)
+    u = np.empty(cut.unknowns)
+    u[cut.cell_dofs] = displacement[space.cell_dofs]
+    places = cell_quadrature(cut)[0]
+    stress = np.empty((4, cut.mesh.nelements, places.shape[1]))
+    for cells, (poisson, modulus) in zip(parts, materials, strict=True):
+        found = stresses(cut, poisson, u, places, projected_dilatation=projects(cut, poisson))
+        stress[:, cells] = modulus * found[:, cells]
+    return cut, u, projection(cut, stress)
 
-    Notes
-    -----
+
+def torn(mesh: Any, parts: Sequence[Index]) -> Any:
+    """A mesh of straight cells whose parts have vertices of their own, with the same boundaries and subdomains."""
+    t, vertices, count = np.empty_like(mesh.t), [], 0
+    for cells in parts:
+        own, numbers = np.unique(mesh.t[:, cells], return_inverse=True)
+        t[:, cells] = count + numbers.reshape(len(t), -1)
+        vertices.append(own)
+        count += own.size
+    cut = type(mesh)(mesh.p[:, np.concatenate(vertices)], t)
+    facets = np.empty(mesh.nfacets, dtype=np.intp)
+    facets[mesh.t2f] = cut.t2f  # of those between two parts the last; no boundary has them
+    boundaries = {name: facets[own] for name, own in mesh.boundaries.items()}
+    return cut.with_boundaries(boundaries).with_subdomains(mesh.subdomains)
+
+
+def projection(space: Space, values: Array) -> Array:
+    """Return the coefficients (m, functions) of the fields nearest to values (m, cells, k) at `cell_quadrature`.
+
     The least-squares projection on the functions of the displacement itself, each cell weighted by the inverse of its
     area, so that a large cell does not outvote a small, more accurate neighbour. O. C. Zienkiewicz and J. Z. Zhu,
     Int. J. Numer. Methods Eng. 24 (1987) 337-357.
     """
-    points, _ = cell_quadrature(space)
-    stress = stresses(space, poisson, displacement, points, projected_dilatation=projected_dilatation)
-    return projection(space, stress)
-
-
-def projection(space: Space, values: Array) -> Array:
-    """Return the coefficients (m, functions) of the fields nearest to values (m, cells, k) at `cell_quadrature`."""
     points, weights = cell_quadrature(space)
     N, dA = reference_functions(space.element, points)[0], _basis(space, points, weights).dx
     dA = dA / dA.sum(axis=1, keepdims=True)
@@ -176,12 +203,12 @@ def principal(stress: Array) -> Array:
     return np.asarray(np.sort([middle - radius, middle + radius, hoop], axis=0)[::-1])
 
 
-def energy_density(stress: Array, poisson: float) -> Array:
+def energy_density(stress: Array, poisson: float, modulus: float = 1.0) -> Array:
     """Return the strain energy per volume of (4, ...), half stress times the strain that goes with it.
 
-    In E* (beta/R)^2 for stresses in E* beta/R.
+    In E* (beta/R)^2 for stresses in E* beta/R, of a material as `fem_adhesion.materials.Elastic` says it.
     """
-    compliance = np.linalg.inv(elastic_matrix(poisson))
+    compliance = np.linalg.inv(modulus * elastic_matrix(poisson))
     return np.asarray(np.einsum("i...,ij,j...->...", stress, compliance, stress) / 2)
 
 

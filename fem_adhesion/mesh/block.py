@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -68,7 +68,7 @@ def quarter_disc(radius: float, size: SizeFunction) -> Any:
     return with_named_boundaries(mesh)
 
 
-def tensor_grid(r_breaks: Array, z_breaks: Array) -> Any:
+def tensor_grid(r_breaks: Array, z_breaks: Array, interfaces: Sequence[float] = ()) -> Any:
     """Mesh the square box with quadrilaterals between lines of constant radius and depth.
 
     Parameters
@@ -77,11 +77,13 @@ def tensor_grid(r_breaks: Array, z_breaks: Array) -> Any:
         Radii of the vertical lines, ascending from 0, in beta.
     z_breaks : (n + 1,) array
         Depths of the horizontal lines, ascending from 0 and positive into the body, in beta.
+    interfaces : sequence of float
+        Those of them at which another material begins, ascending.
 
     Returns
     -------
     skfem.MeshQuad
-        m times n cells with the boundaries "axis", "contact" and "far".
+        m times n cells with the boundaries "axis", "contact" and "far", and one subdomain for each material.
 
     Raises
     ------
@@ -91,7 +93,9 @@ def tensor_grid(r_breaks: Array, z_breaks: Array) -> Any:
     for name, lines in (("r_breaks", r_breaks), ("z_breaks", z_breaks)):
         if len(lines) < 2 or lines[0] != 0.0 or np.any(np.diff(lines) <= 0.0):
             raise InputError(f"{name} = {lines} must ascend strictly from 0; sort them and remove duplicates")
-    return with_named_boundaries(MeshQuad.init_tensor(r_breaks, -z_breaks[::-1]))
+    mesh = with_named_boundaries(MeshQuad.init_tensor(r_breaks, -z_breaks[::-1]))
+    region = np.searchsorted(interfaces, -mesh.p[1, mesh.t].mean(axis=0))
+    return mesh.with_subdomains({str(n): np.flatnonzero(region == n) for n in range(len(interfaces) + 1)})
 
 
 def graded_breaks(fine: float, fine_radius: float, length: float, *, growth: float = 2.0) -> Array:

@@ -138,8 +138,14 @@ def inside(state: State, cut: Cut, scale: float) -> Named:
         "von_mises": stresses.von_mises(stress),
         "hydrostatic": stresses.hydrostatic(stress),
         "principal_stresses": np.ascontiguousarray(stresses.principal(stress).T),
-        "strain_energy_density": state.share * stresses.energy_density(stress, state.scene.poisson),
+        "strain_energy_density": state.share * _energy_density(state, cut, stress),
     }
+
+
+def _energy_density(state: State, cut: Cut, stress: Array) -> Array:
+    """Strain energy per volume at the nodes, each of the material of its region."""
+    by_region = np.array([stresses.energy_density(stress, *material) for material in state.scene.body.regions])
+    return np.asarray(by_region[cut.node_regions, np.arange(stress.shape[1])])
 
 
 def turned(arrays: Named, solid: Solid) -> Named:

@@ -77,11 +77,27 @@ class Cut:
     def numbers(self) -> Index:
         """Number of each element's nodes among those of the whole body, (elements, k)."""
         r, z = positions(self.space, self.lattice.places)
-        points = np.stack([r.ravel(), z.ravel()], axis=1)
+        region = np.broadcast_to(np.abs(z).max() * self.regions[:, None], r.shape)  # they do not share nodes
+        points = np.stack([r.ravel(), z.ravel(), region.ravel()], axis=1)
         pairs = KDTree(points).query_pairs(SAME * self._shortest(r, z), output_type="ndarray")
         links = coo_array((np.ones(len(pairs)), pairs.T), shape=2 * (len(points),))
         numbers: Index = connected_components(links, directed=False)[1].reshape(r.shape).astype(np.intp)
         return numbers
+
+    @cached_property
+    def regions(self) -> Index:
+        """Number of the region of each element, (elements,): of those that do not share vertices."""
+        mesh = self.space.mesh
+        firsts = np.broadcast_to(mesh.t[0], mesh.t.shape)
+        links = coo_array((np.ones(mesh.t.size), (mesh.t.ravel(), firsts.ravel())), shape=2 * (mesh.t.max() + 1,))
+        part = connected_components(links, directed=False)[1][mesh.t[0]]
+        return np.unique(part, return_inverse=True)[1]
+
+    @property
+    def node_regions(self) -> Index:
+        """The same of each node."""
+        repeated = np.broadcast_to(self.regions[:, None], self.numbers.shape)
+        return np.asarray(repeated.ravel()[self.firsts])
 
     @cached_property
     def firsts(self) -> Index:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
@@ -25,6 +26,8 @@ from skfem import (
 from halfspace.values import Valued
 
 Array = NDArray[np.float64]
+Materials = Sequence[tuple[float, float]]
+"""Poisson's ratio and E/(1 - nu^2), in E*, of each region of a body; its cells are a subdomain of the mesh."""
 
 # The weak form
 
@@ -35,15 +38,18 @@ def strains(u: Any, r: Array) -> Array:
     return np.stack([u_rr, u_zz, u[0] / r, u_rz + u_zr])
 
 
-def moduli(poisson: float) -> Array:
-    """Matrix D (4, 4) from strains to stresses."""
-    G = shear_modulus(poisson)
-    D = np.diag([2 * G, 2 * G, 2 * G, G])
-    D[:3, :3] += 2 * G * poisson / (1 - 2 * poisson)
+def moduli(mesh: Any, materials: Materials) -> Array:
+    """Matrices D (cells, 4, 4) from strains to stresses."""
+    D = np.zeros((mesh.nelements, 4, 4))
+    for n, (poisson, modulus) in enumerate(materials):
+        G = modulus * (1 - poisson) / 2  # E/(2 (1 + nu))
+        own = np.diag([2 * G, 2 * G, 2 * G, G])
+        own[:3, :3] += 2 * G * poisson / (1 - 2 * poisson)
+        D[mesh.subdomains[str(n)] if len(materials) > 1 else slice(None)] = own
     return D
 
 
-def elasticity(basis: Any, poisson: float) -> sparse.csr_array:
+def elasticity(basis: Any, D: Array) -> sparse.csr_array:
     """Matrix of a(u, v) = int strains(v) D strains(u) 2 pi r dr dz: a body of revolution without twist.
 
     The strains of each function are formed once, and each cell's matrix is a product B^T D B of them: a form in u and v
@@ -51,7 +57,7 @@ def elasticity(basis: Any, poisson: float) -> sparse.csr_array:
     """
     r, _ = basis.global_coordinates()
     B = np.array([strains(function[0], r) for function in basis.basis]).transpose(2, 0, 1, 3)  # by cells, functions
-    stresses = np.einsum("ab,cfbq,cq->cfaq", moduli(poisson), B, 2 * np.pi * r * basis.dx)
+    stresses = D[:, None] @ B * (2 * np.pi * r * basis.dx)[:, None, None]
     cells, functions = B.shape[:2]
     K = stresses.reshape(cells, functions, -1) @ B.reshape(cells, functions, -1).transpose(0, 2, 1)
     dofs = basis.element_dofs.T
@@ -59,17 +65,12 @@ def elasticity(basis: Any, poisson: float) -> sparse.csr_array:
     return sparse.coo_array((K.ravel(), (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)).tocsr()
 
 
-def going_on(poisson: float) -> Any:
+def going_on(G: Array) -> Any:
     """What a layer on a plane without friction is held by at its edge r = L, where it goes on as a sheet.
 
     It moves as c/r there, which takes the tension 2 G u_r/L.
     """
-    return BilinearForm(lambda u, v, _: 2 * shear_modulus(poisson) * u[0] * v[0] * 2 * np.pi)
-
-
-def shear_modulus(poisson: float) -> float:
-    """G = E/(2 (1 + nu)), where E* = E/(1 - nu^2) = 1."""
-    return (1 - poisson) / 2
+    return BilinearForm(lambda u, v, _: 2 * G * u[0] * v[0] * 2 * np.pi)
 
 
 # The body
@@ -142,7 +143,7 @@ class Body(Valued):
 
 
 def discretise(
-    mesh: Any, degree: int, poisson: float, *, slides: bool = False, plate: bool = False, on_surface: bool = False
+    mesh: Any, degree: int, materials: Materials, *, slides: bool = False, plate: bool = False, on_surface: bool = False
 ) -> Body:
     """Assemble a body on a mesh that names its boundaries axis, contact and far, and is held at the far one.
 
@@ -153,8 +154,8 @@ def discretise(
         the boundary edge, if there is one.
     degree : int
         Of the elements, 3 or more; 4 at most of triangles.
-    poisson : float
-        Poisson's ratio.
+    materials : sequence of pairs
+        Of its regions, see `Materials`.
     slides : bool
         Whether the far boundary may move along r.
     plate : bool
@@ -174,10 +175,11 @@ def discretise(
     upwards = far.all(["u^2"]) if triangles else far.nodal["u^2"]
     moved = sparse.csc_array(np.isin(np.arange(basis.N), upwards).astype(float)[:, None])
     T = sparse.csc_array(sparse.hstack([T, moved])) if plate else T
-    K = elasticity(basis, poisson)
+    D = moduli(mesh, materials)
+    K = elasticity(basis, D)
     if slides and "edge" in mesh.boundaries:
         edge = FacetBasis(mesh, element, mapping=_mapping(mesh), facets="edge", intorder=2 * degree)
-        K += going_on(poisson).assemble(edge)
+        K += going_on(D[mesh.f2t[0, edge.find], 3, 3][:, None]).assemble(edge)
     reaction = 0 * last(T.shape[1]) if plate else (moved.T @ K @ T).toarray()[0]
     (radii, heights), rim = surface.global_coordinates(), float(mesh.p[0, mesh.facets[:, surface.find]].max())
     area = 2 * np.pi * radii * surface.dx * (1.0 if on_surface else surface.normals[1])
@@ -227,7 +229,7 @@ def half_space(
     It stands on a spring that yields as what is beyond would: Hertz's pressure sqrt(1 - r^2), of the load 2 pi/3, does
     the work 4 pi^2/15 on a half-space, and what it falls short of that on the box is done on the spring.
     """
-    body = discretise(half_space_mesh(finest, size, tip, reach), degree, poisson, plate=True)
+    body = discretise(half_space_mesh(finest, size, tip, reach), degree, [(poisson, 1.0)], plate=True)
     return on_ground(body, np.sqrt(np.maximum(1 - body.radii**2, 0)), 2 * np.pi / 3, 4 * np.pi**2 / 15)
 
 

@@ -17,7 +17,7 @@ from halfspace.accuracy.refinement import Rung, climb
 from halfspace.accuracy.stages import Charted
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.layered import Images, images_of, layered_panels
-from halfspace.elastic.layers import LayeredBody, require_layered
+from halfspace.elastic.layers import LayeredBody
 from halfspace.elastic.operators import FlatCoordinate, Homogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
@@ -181,7 +181,7 @@ def trace(
     tabor, rtol, to_load = require_tabor(tabor), require_rtol(rtol), require_load(to_load)
     scales = Scales(tabor, require_law(law), profile.surface(tabor))
     if body is not None or math.isfinite(scales.profile.end):
-        images = [images_of(require_layered(body), spacing) if body is not None else None for spacing in IMAGES]
+        images = [images_of(body, spacing) if body is not None else None for spacing in IMAGES]
         scales = replace(scales, softest=images[0].softest if images[0] else 1.0)
         return climb(rtol, partial(_sized_rung, scales, images, rtol, to_load), to_load=to_load)
 

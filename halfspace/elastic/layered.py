@@ -24,7 +24,7 @@ from scipy.special import ellipkm1
 from halfspace.elastic.compliance import ElasticOperator, panels
 from halfspace.elastic.grid import gauss_legendre
 from halfspace.elastic.kernel import graded_rule
-from halfspace.elastic.layers import LayeredBody, surface_compliance, total_thickness
+from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued
 
@@ -82,9 +82,12 @@ def images_of(body: LayeredBody, spacing: float = SPACING) -> Images:
 
     Raises
     ------
+    InputError
+        If the body is not made of layers.
     NotConverged
         If the strata differ so much in stiffness or thickness that no images fit.
     """
+    body = require_layered(body)
     thin, all_of_it = body.strata[0].thickness, total_thickness(body)
     k = np.geomspace(1e-4 / all_of_it / DEEPER[-1], 30 / thin, SAMPLES)
     wanted = surface_compliance(body, k) - 1

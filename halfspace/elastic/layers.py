@@ -32,6 +32,7 @@ from halfspace.values import Array, keep
 Foundation = Literal["bonded", "sliding"]
 
 DEEP = 30.0  # wave numbers times depth: what is below moves the surface by e^-60
+WAVES = 300  # lengths of waves among which the one that a body yields to most is looked for
 
 
 @dataclass(frozen=True)
@@ -246,6 +247,12 @@ def surface_compliance(body: LayeredBody, wave_numbers: Array) -> Array:
             above = held @ across[..., :2, :] + free @ across[..., 2:, :]
             held, free = np.eye(2), np.asarray(np.linalg.solve(above[..., :2], above[..., 2:]), float)
     return np.asarray(free[..., 1, 1] * first.modulus / (1 - first.poisson**2) / 2)
+
+
+def softest(body: LayeredBody) -> float:
+    """Largest yield to waves of any length, in that of a half-space of the first stratum's E*: 1 or more."""
+    waves = np.geomspace(1e-7 / total_thickness(body), DEEP / body.strata[0].thickness, WAVES)
+    return max(1.0, float(surface_compliance(body, waves).max()))
 
 
 def _at_base(base: Foundation | Substrate) -> tuple[Array, Array]:
