@@ -37,8 +37,8 @@ class Scene:
     tabor : float
         Tabor parameter, positive; of two bodies with the R and E* of the pair, 1/R = 1/R1 + 1/R2.
     body : Body
-        What is elastic, see `fem_adhesion.bodies`: `HalfSpace` (the default), `Block`, `Layer`, `Hemisphere`,
-        `HeldSphere` or `Meshed`. Each has the R/eps of its own.
+        What is elastic, see `fem_adhesion.bodies`: `HalfSpace` (the default), `Block`, `Layer`, `Coated`,
+        `Layers`, `Hemisphere`, `HeldSphere` or `Meshed`. Each has the R/eps of its own.
     profile : Profile, optional
         Undeformed gap, see `halfspace.profiles`; that of the bodies themselves unless given, and of a half-space a
         paraboloid.

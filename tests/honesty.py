@@ -371,6 +371,10 @@ def _stages_on_layers(scene):
     return truths.layered(*scene)
 
 
+def _layers_of(scene):
+    return truths.layered(scene.tabor, scene.body)
+
+
 def _half_space_under(scene):
     return truths.under_sphere(scene.tabor, scene.radius_ratio)
 
@@ -409,6 +413,13 @@ LAYERED = (
     (2.0, Coated(0.2, 0.05, 0.3, 0.2)),
     (2.0, Layers([Stratum(0.3, 0.3), Stratum(1.0, 0.45, 0.2), Stratum(0.5, 0.3, 3.0)])),
     (20.0, Layer(3.0, 0.45)),
+)
+COATED = (
+    Scene(1.0, fem_adhesion.Coated(2.0, 10.0)),
+    Scene(1.0, fem_adhesion.Coated(0.5, 100.0)),
+    Scene(2.0, fem_adhesion.Coated(0.5, 0.01, 0.0, poisson=0.499)),
+    Scene(1.0, fem_adhesion.Layers(LAYERED[5][1].strata)),
+    Scene(0.5, fem_adhesion.Layers(LAYERED[5][1].strata, "sliding")),
 )
 LAWS_AND_PROFILES = (
     Scene(1.0, law=Morse(3)),
@@ -462,6 +473,13 @@ FAMILIES = {
         _on_layers,
         of_path,
         partial(relocated, _stages_on_layers),
+    ),
+    "layers by elements": Family(
+        Net(COATED, _decades(2, 3, 4, 5)),
+        Net(COATED[:1], _decades(3)),
+        _by(fem_adhesion.trace),
+        of_path,
+        partial(relocated, _layers_of),
     ),
     "hemisphere, sliding": _sized(
         (0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (2, 30), truth=truths.harmonics, few=3

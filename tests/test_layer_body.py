@@ -30,7 +30,7 @@ from halfspace.profiles import Power, Sphere
 
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
 STIFF = Coated(2.0, 10.0, poisson=0.3)
-PLIES = Stratum(0.3, 0.3), Stratum(1.0, 0.45, 0.02), Stratum(0.5, 0.3, 3.0)
+PLIES = Stratum(0.3, 0.3), Stratum(1.0, 0.45, 0.2), Stratum(0.5, 0.3, 3.0)
 STACK = Layers([Stratum(0.4, 0.3), Stratum(0.5, 0.45, 0.2), Stratum(3, 0.2, 2.0)], Substrate(5.0, 0.1))
 
 
@@ -102,7 +102,7 @@ BODIES = [
     Coated(2.0, 1.0, 0.3, poisson=0.3),
     Coated(0.5, 100.0, 0.499, poisson=0.0),
     Coated(50.0, 100.0, poisson=0.3),
-    Coated(0.05, 0.01, 0.0, poisson=0.4999),
+    Coated(0.5, 0.01, 0.0, poisson=0.4999),
     STACK,
     Layers(PLIES),
     Layers(PLIES, "sliding"),
