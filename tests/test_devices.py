@@ -9,6 +9,7 @@ from numpy.polynomial.legendre import leggauss
 from scipy.optimize import brentq
 
 import halfspace
+from halfspace import Layer
 from halfspace.accuracy.fold_birth import critical_stiffness
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import moved
@@ -243,3 +244,16 @@ def test_an_extended_curve_has_the_same_cycle(stiff_path):
 def test_a_curve_that_reaches_far_enough_is_left_alone(stiff_path):
     assert reaching(stiff_path, 1.0) is stiff_path
     assert reaching(stiff_path, math.inf) is stiff_path
+
+
+def test_take_offs_are_found_again_where_the_curves_grid_has_them_a_fifth_farther_in():
+    """On a thin, nearly incompressible layer that slides; the grids around jump_off know its radius alone."""
+    path = halfspace.trace(219.0, body=Layer(0.01, 0.499, "sliding"), rtol=1e-4)
+    stiff, soft, event = cycle(path).jump_off, cycle(path, 10.0).jump_off, path.event("jump_off")
+    for value in ("approach", "load", "contact_radius"):
+        ours, own = (found.estimate(value) for found in (stiff.take_off, event))
+        assert abs(ours.value - own.value) <= ours.error + own.error
+    assert event.contact_radius < soft.take_off.contact_radius < 1.02 * event.contact_radius
+    assert soft.landing.approach + soft.landing.load / 10 == pytest.approx(
+        soft.take_off.approach + soft.take_off.load / 10, rel=1e-9
+    )

@@ -186,10 +186,7 @@ class AroundEvents(Valued):
         return chart
 
     def farther(self, event: Located) -> Chart:
-        """Chart for an event that may lie farther from where it was found than the window is wide."""
-        chart = self(event)
-        if not chart.problem.interface.follows_contact:
-            return chart
+        """Chart for an event in contact that may lie farther from where it was found than the window is wide."""
         return self.body.around(float(event.point.observables[CONTACT_RADIUS]), WIDE, WIDELY)
 
     @property
@@ -221,6 +218,7 @@ class AlongCurve(Valued):
     body: SizedBody
     to_load: float
     apart: float
+    farther = None
 
     @cached_property
     def charts(self) -> tuple[Chart, Chart]:

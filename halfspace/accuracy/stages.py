@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 
-from halfspace.equilibrium.charts import Chart, Finest, moved
+from halfspace.equilibrium.charts import Chart, Finest, moved_near, settled
 from halfspace.equilibrium.conditions import Located
-from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
+from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.events import Event, estimate_event, is_event
-from halfspace.equilibrium.newton import Traceable
 from halfspace.errors import NotConverged
 from halfspace.values import Valued
 
@@ -24,11 +23,6 @@ State = Mapping[str, Located]
 
 class Stage(Finest, Protocol):
     """One discretisation on which events, found on another, are solved for again."""
-
-    @property
-    def farther(self) -> Callable[[Located], Chart] | None:
-        """Chart for an event that lies farther from where it was found than charts serve; None if these serve all."""
-        ...
 
     @property
     def everywhere(self) -> Finest:
@@ -95,31 +89,8 @@ def _found_again(name: str, event: Located, stage: Stage) -> Located:
 
 
 def moved_to(event: Located, stage: Stage) -> Located:
-    """Solve for an event again, and once more wherever it comes to lie in the reach of another chart."""
-    found, tried = event, {id(event.problem)}
-    for _ in range(MOVES):
-        problem = stage(found).problem
-        if id(problem) in tried:
-            return found
-        tried.add(id(problem))
-        found = _moved_near(found, problem, stage)
-    raise NotConverged("an event lies elsewhere on every grid that is made around it; take a smaller rtol")
-
-
-def _moved_near(event: Located, problem: Traceable, stage: Stage) -> Located:
-    """Solve for an event on a chart made for where it was found, or where that leads astray on one for farther off."""
-    if stage.farther is None:
-        return moved(event, problem)
-    with suppress(NotConverged):
-        found = moved(event, problem)
-        before, after = (e.point.observables[CONTACT_RADIUS] for e in (event, found))
-        if not abs(after - before) > ASTRAY * before:  # nor nan
-            return found
-    return moved(event, stage.farther(event).problem)
-
-
-MOVES = 5  # of an event from chart to chart, after which the last must be one made for where it lies
-ASTRAY = 0.05  # of a contact radius: a leap in which a chart made for the first tells nothing about the second
+    """Solve for an event again, unless it has been on this stage."""
+    return event if stage(event).problem is event.problem else settled(event, stage, partial(moved_near, stage))
 
 
 def estimate_all(chains: Sequence[Sequence[State]], remaining: float, *, along: bool) -> dict[str, Event]:

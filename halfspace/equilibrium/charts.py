@@ -8,6 +8,7 @@ a single chart.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -18,6 +19,7 @@ from halfspace.equilibrium.conditions import FOLD, Located, relocate, same_place
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import WHOLE_BODY, Metric, Point, Segment, Steps, follow, loaded_to, make_point
+from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued
 
 COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwise
@@ -37,6 +39,11 @@ class Finest(Protocol):
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event."""
+        ...
+
+    @property
+    def farther(self) -> Callable[[Located], Chart] | None:
+        """Chart for an event that lies farther from where it was found than charts serve; None if these serve all."""
         ...
 
     @property
@@ -156,3 +163,31 @@ def moved(event: Located, problem: Traceable) -> Located:
     """Solve for an event again on another discretisation."""
     start = transfer(event.problem, event.point.x, problem)
     return relocate(event, problem, start, metric_for(problem))
+
+
+def moved_near(stage: Finest, event: Located, problem: Traceable) -> Located:
+    """Solve for an event on a chart made for where it was found, or where that leads astray on one for farther off."""
+    if stage.farther is None or not problem.interface.follows_contact:
+        return moved(event, problem)
+    with suppress(NotConverged):
+        found = moved(event, problem)
+        before, after = (e.point.observables[CONTACT_RADIUS] for e in (event, found))
+        if abs(after - before) <= ASTRAY * before:
+            return found
+    return moved(event, stage.farther(event).problem)
+
+
+def settled(state: Located, stage: Finest, solve: Callable[[Located, Traceable], Located]) -> Located:
+    """Solve for a state on a stage, and once more wherever it comes to lie in the reach of another chart."""
+    found, tried = state, set[int]()
+    for _ in range(MOVES):
+        problem = stage(found).problem
+        if id(problem) in tried:
+            return found
+        tried.add(id(problem))
+        found = solve(found, problem)
+    raise NotConverged("an event lies elsewhere on every grid that is made around it; take a smaller rtol")
+
+
+ASTRAY = 0.05  # of a contact radius: a leap in which a chart made for the first tells nothing about the second
+MOVES = 5  # of a state from chart to chart, after which the last must be one made for where it lies

@@ -14,13 +14,13 @@ equals the work of the base round the loop, as d(E + W^2/2k) = W db.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import Finest, metric_for, moved, transfer
+from halfspace.equilibrium.charts import Finest, metric_for, moved_near, settled, transfer
 from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -260,22 +260,20 @@ def _landing(problem: Traceable, start: Array, take_off: Located, compliance: fl
 
 def _refined(states: _States, stage: Finest, compliance: float) -> _States:
     """Both states of a jump on another discretisation."""
-    fold = _settled(states.take_off, stage, moved)
+
+    def leave(state: Located, problem: Traceable) -> Located:
+        return moved_near(stage, state, _wide_enough(state, problem))
 
     def land(state: Located, problem: Traceable) -> Located:
-        return _landing(problem, transfer(state.problem, state.point.x, problem), fold, compliance)
+        wide = _wide_enough(state, problem)
+        return _landing(wide, transfer(state.problem, state.point.x, wide), fold, compliance)
 
-    return _States(fold, _settled(states.landing, stage, land), states.on)
-
-
-def _settled(state: Located, stage: Finest, solve: Callable[[Located, Traceable], Located]) -> Located:
-    """Solve for a state again, and once more where it comes to lie in the reach of another chart."""
-    found = solve(state, _wide_enough(state, stage))
-    return found if stage(found).problem is stage(state).problem else solve(found, _wide_enough(found, stage))
+    fold = settled(states.take_off, stage, leave)
+    return _States(fold, settled(states.landing, stage, land), states.on)
 
 
-def _wide_enough(state: Located, stage: Finest) -> Traceable:
-    return widened(stage(state).problem, float(state.point.observables[APPROACH]))
+def _wide_enough(state: Located, problem: Traceable) -> Traceable:
+    return widened(problem, float(state.point.observables[APPROACH]))
 
 
 def _jump(rough: _States, path: EquilibriumPath, compliance: float) -> Jump:
