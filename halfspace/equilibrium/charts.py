@@ -127,17 +127,24 @@ def _hand_over(segment: Segment, problem: Traceable, metric: Metric) -> Point:
 
 def transfer(source: Traceable, x: Array, target: Traceable) -> Array:
     """Interpolate a state of one problem as a start for another."""
-    return target.state_from_surface(_transfer(source.interface, source.surface_state(x), target.interface))
+    surface, state, whole = source.interface, source.surface_state(x), source.interface is not source
+    return target.state_from_surface(_transfer(surface, state, target.interface, by_gaps=whole))
 
 
-def _transfer(source: ContactProblem, x: Array, target: ContactProblem) -> Array:
-    """Interpolate the deflection: gaps are as steep as the profile, and in the cells' polynomials may turn negative."""
+def _transfer(source: ContactProblem, x: Array, target: ContactProblem, *, by_gaps: bool) -> Array:
+    """Interpolate the deflection: gaps are as steep as the profile, and in the cells' polynomials may turn negative.
+
+    Not so where a whole body's contact spreads over its flank: there they vanish, and the deflection is as steep.
+    """
     alpha, body = x[-2], source.operator_at(x)
     scale = source.contact_radius(x) if target.follows_contact else 1.0
     radii = target.operator.at(scale).radii
     inside = radii < body.extent
     deflection = np.empty(radii.size)
     deflection[inside] = body.values_at(radii[inside], source.deflection(x))
+    if by_gaps:
+        undeformed = source.tabor * source.profile.height(radii[inside]) - alpha
+        deflection[inside] = body.values_at(radii[inside], x[:-2]) - undeformed
     deflection[~inside] = _deflection_beyond(source, x, radii[~inside])
     return np.concatenate([source.tabor * source.profile.height(radii) - alpha + deflection, [alpha, scale]])
 
