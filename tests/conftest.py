@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from whole_runs import whole_run
 
+from fem_adhesion.crosscheck import from_scratch
+
 # Files that take longest, begun first, so that no worker is left with one of them when the others are done.
 LONGEST = (
     "test_make.py",
@@ -47,6 +49,13 @@ def pytest_collection_modifyitems(items):
 def _wide(monkeypatch):
     """Let tables be as wide as where there is no terminal, whatever terminal the tests are run in."""
     monkeypatch.setenv("COLUMNS", "150")
+
+
+@pytest.fixture
+def two_solvers(monkeypatch):
+    """No fourth level: what it shows of a defect is asked of it in `test_from_scratch` and `test_compare_bodies`."""
+    for rows in ("closed_forms", "equations", "events"):
+        monkeypatch.setattr(from_scratch, rows, lambda *_: ())
 
 
 @pytest.fixture(scope="session")

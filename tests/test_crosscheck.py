@@ -11,7 +11,7 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Block, HalfSpace, Scene, cli, convergence, discretise
 from fem_adhesion.common.jobs import WorkerDied
-from fem_adhesion.crosscheck import comparison, from_scratch, references
+from fem_adhesion.crosscheck import comparison, references
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Row
 from fem_adhesion.crosscheck.study import Case, Failure, Part
@@ -125,14 +125,7 @@ DEFECTS = {
 }
 
 
-@pytest.fixture
-def _two_solvers(monkeypatch):
-    """No fourth level: what it shows of a defect is asked of it in `test_from_scratch` and `test_compare_bodies`."""
-    for rows in ("closed_forms", "equations", "events"):
-        monkeypatch.setattr(from_scratch, rows, lambda *_: ())
-
-
-@pytest.mark.usefixtures("_two_solvers")
+@pytest.mark.usefixtures("two_solvers")
 @pytest.mark.parametrize("defect", DEFECTS)
 def test_a_defect_in_the_finite_elements_is_shown(defect, monkeypatch):
     inject, body, shown_by = DEFECTS[defect]
@@ -241,7 +234,7 @@ def test_the_tables_of_the_command_show_what_the_record_holds(command, record):
             ]
 
 
-@pytest.mark.usefixtures("_two_solvers")
+@pytest.mark.usefixtures("two_solvers")
 def test_a_solver_less_accurate_than_the_comparison_is_inconclusive_whatever_it_hits():
     """A hundred times less: of all rows that it has a part in, none stays within its budget."""
     case = crosscheck.compare(
@@ -347,7 +340,7 @@ def test_the_worst_verdict_counts():
     assert comparison.worst(["agree"]) == "agree"
 
 
-@pytest.mark.usefixtures("_two_solvers")
+@pytest.mark.usefixtures("two_solvers")
 def test_a_failing_case_does_not_lose_the_others(monkeypatch):
     original = convergence.trace
 

@@ -191,6 +191,7 @@ def test_compare_on_the_command_line_agrees_with_all_that_it_has(body, tmp_path)
     assert all(row["verdict"] == "agree" for row in rows)
 
 
+@pytest.mark.usefixtures("two_solvers")
 @pytest.mark.parametrize(
     ("asked", "wrong"),
     [
