@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
 
 from halfspace.accuracy.further_folds import Completed, FurtherFolds
 from halfspace.accuracy.stages import (
@@ -123,7 +122,8 @@ def _climb_from(
     state: State = {name: event for name, event in found.items() if folds or name not in FOLDS}
     for stage in lowest.stages:
         state = on_all(state, stage)
-    below, higher, chains, events = ascend(state, lowest, rtol, rung, range(start + 1, start + most_rungs + 1))
+    ascent = ascend(state, lowest, rtol, rung, range(start + 1, start + most_rungs + 1))
+    below, higher, chains, events = ascent.below, ascent.higher, ascent.chains, ascent.events
     state = chains[0][-1]
     margin = _margin(chains, higher.remaining)
     if folds and margin and margin.value + margin.error < 0 and "jump_on" not in events:
@@ -149,7 +149,8 @@ def _climb_from(
     )
 
 
-class Ascent(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False)
+class Ascent(Valued):
     """How far a ladder was climbed: the last two rungs, the chains of states between them, and the events there."""
 
     below: Rung
