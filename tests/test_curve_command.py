@@ -477,6 +477,7 @@ def test_fields_inside_are_written_for_every_event(tmp_path):
         ([*MATERIAL, "--counter-modulus", "1GPa"], "counter_poisson = None"),
         ([*MATERIAL, "--profile", "sphere", "--counter-radius", "1um"], "take --body hemisphere"),
         ([*MATERIAL, "--body", "held-sphere", "--counter-radius", "1um"], "a hemisphere meets another or a half-space"),
+        (["--tabor", "2", "--foundation", "sliding"], "limit: with --body layer or --body layers"),
         (["--tabor", "2", "--grip", "sliding"], "--grip would not be heeded, limit: with --body hemisphere"),
         (["--tabor", "2", "--poisson", "0.2"], "--poisson would not be heeded, limit: with a material, fem or both"),
         (

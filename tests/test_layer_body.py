@@ -55,6 +55,7 @@ def traced(scene, rtol):
         (Scene(1.0, Layer(2.0, poisson=0.3), profile=Sphere(30.0)), 1e-4),
         (Scene(1.0, STIFF), 1e-4),
         (Scene(2.0, Coated(0.5, 0.01, 0.0, poisson=0.499)), 1e-3),
+        (Scene(1.0, Coated(0.05, 100.0, poisson=0.3)), 1e-3),
         (Scene(1.0, STACK), 1e-3),
         (Scene(1.0, Layers(PLIES, "sliding")), 1e-3),
     ],

@@ -9,7 +9,8 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Block, Scene
 from halfspace import Coated
-from halfspace.equilibrium import conditions, events
+from halfspace.equilibrium import charts, conditions, events
+from halfspace.equilibrium.charts import settled
 from halfspace.equilibrium.conditions import Condition
 from halfspace.errors import NotConverged
 from halfspace.laws import Dlvo, PowerLaw
@@ -38,6 +39,77 @@ def test_no_gap_turns_negative_where_a_state_under_a_steep_profile_is_interpolat
     """Ended in overflows and invalid powers of the law: cells of the next grid are wide where u^9 rises."""
     loads = [halfspace.trace(tabor, rtol=rtol, **parts).event("pull_off") for rtol in (1e-3, 1e-4)]
     assert abs(loads[0].load - loads[1].load) < loads[0].load_error + loads[1].load_error
+
+
+class Windows:
+    """A stage whose charts, told by numbers, each have a window; events lie where they were solved for last."""
+
+    farther = None
+
+    def __init__(self):
+        self.charts = [SimpleNamespace(problem=SimpleNamespace(number=k)) for k in range(9)]
+
+    def __call__(self, event):
+        """Chart for where an event lies."""
+        return self.charts[event.lies_in]
+
+
+def solved_on(route):
+    """Where an event lies by each chart in turn, and on which charts it was solved for."""
+    asked = []
+
+    def solve(_, problem):
+        asked.append(problem.number)
+        return SimpleNamespace(problem=problem, lies_in=route[len(asked) - 1])
+
+    return asked, solve
+
+
+@pytest.mark.parametrize(
+    ("route", "order"),
+    [
+        ([0], [0]),
+        ([1, 1], [0, 1]),
+        ([1, 0], [0, 1]),  # between two windows: either serves
+        ([1, 2, 3, 4, 4], [0, 1, 2, 3, 4]),
+    ],
+    ids=str,
+)
+def test_an_event_is_settled_where_it_lies_on_a_chart_made_for_it(route, order):
+    asked, solve = solved_on(route)
+    found = settled(SimpleNamespace(problem=None, lies_in=0), Windows(), solve)
+    assert asked == order
+    assert found.problem.number == order[-1]
+
+
+def test_an_event_that_always_lies_elsewhere_is_not_found():
+    _, solve = solved_on([1, 2, 3, 4, 5, 6, 7])
+    with pytest.raises(NotConverged, match="lies elsewhere on every grid"):
+        settled(SimpleNamespace(problem=None, lies_in=0), Windows(), solve)
+
+
+def test_what_a_chart_for_farther_off_tells_is_solved_for_again_on_that_made_for_it(monkeypatch):
+    """The first chart leads astray from far off, by a half of the radius; the wide one does not know it as well."""
+    interface, asked = SimpleNamespace(follows_contact=True), []
+    near, wide = (SimpleNamespace(interface=interface, name=name) for name in ("near", "wide"))
+
+    class Stage:
+        def __call__(self, _):
+            return SimpleNamespace(problem=near)
+
+        def farther(self, _):
+            return SimpleNamespace(problem=wide)
+
+    def lying(radius, problem):
+        return SimpleNamespace(point=SimpleNamespace(observables=np.array([0, 0, 0, radius])), problem=problem)
+
+    def solve(event, problem):
+        asked.append(problem.name)
+        return lying(1.5 if event.problem is None and problem is near else 1.01, problem)
+
+    monkeypatch.setattr(charts, "moved", solve)
+    assert charts.moved_near(Stage(), lying(1.0, None), near).problem is near
+    assert asked == ["near", "wide", "near"]
 
 
 def point(arclength, approach):

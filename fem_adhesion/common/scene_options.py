@@ -254,7 +254,7 @@ def _body(options: argparse.Namespace, values: Mapping[str, Any], material: obje
     name = _name(options)
     own = _fields(name)
     for field, option in FIELDS.items():
-        if field not in own and option != "radius_ratio" and not (field == "foundation" and "base" in own):
+        if option != "radius_ratio" and name not in _having(field):
             refuse(options, (option,), "with " + " or ".join(f"--body {other}" for other in _having(field)))
     values = {field: values.get(field, getattr(options, option)) for field, option in FIELDS.items() if field in own}
     for field, value in values.items():
@@ -272,8 +272,8 @@ def _body(options: argparse.Namespace, values: Mapping[str, Any], material: obje
 
 
 def _having(field: str) -> list[str]:
-    """Bodies that have a field."""
-    return [name for name in PARTS["body"] if field in _fields(name)]
+    """Bodies that have a field; a rigid base of strata is a foundation, too."""
+    return [name for name in PARTS["body"] if {field, "base" if field == "foundation" else field} & set(_fields(name))]
 
 
 def _profile(options: argparse.Namespace, body: Body, radius_ratio: float | None) -> Any:

@@ -173,7 +173,7 @@ def _cause_told(scene: Scene) -> Iterator[None]:
             f"({error}); take traction = 'reference', or a radius_ratio above it"
         ) from error
     except NotConverged as error:
-        if part < SOFT and not isinstance(error, IllPosed):
+        if part < SOFT and not (part and isinstance(error, IllPosed)):
             raise
         raise IllPosed(
             f"radius_ratio = {ratio:g} is close to its limit {ratio * part**2:.3g} for traction = "

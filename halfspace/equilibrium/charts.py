@@ -181,13 +181,14 @@ def moved_near(stage: Finest, event: Located, problem: Traceable) -> Located:
         before, after = (e.point.observables[CONTACT_RADIUS] for e in (event, found))
         if abs(after - before) <= ASTRAY * before:
             return found
-    return moved(event, stage.farther(event).problem)
+    found = moved(event, stage.farther(event).problem)
+    return moved(found, problem) if stage(found).problem is stage(event).problem else found  # from nearer
 
 
 def settled(state: Located, stage: Finest, solve: Callable[[Located, Traceable], Located]) -> Located:
     """Solve for a state on a stage, and once more wherever it comes to lie in the reach of another chart."""
     found, tried = state, set[int]()
-    for _ in range(MOVES):
+    for _ in range(MOVES + 1):
         problem = stage(found).problem
         if id(problem) in tried:
             return found

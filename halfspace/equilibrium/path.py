@@ -14,7 +14,7 @@ import numpy as np
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LARGEST, LOAD
 from halfspace.equilibrium.newton import Control, Equilibrium, Traceable
-from halfspace.errors import GridTooCoarse, NotConverged
+from halfspace.errors import GridTooCoarse, IllPosed, NotConverged
 from halfspace.values import Array, Valued
 
 
@@ -271,10 +271,10 @@ def follow(
 
 
 def _carried(problem: Equilibrium, point: Point) -> bool:
-    """Whether a discretisation is fine enough for a point."""
+    """Whether a discretisation is fine enough for a point, and its equations well-posed there."""
     try:
         problem.require_resolution(point.x)
-    except GridTooCoarse:
+    except (GridTooCoarse, IllPosed):
         return False
     return True
 
