@@ -18,9 +18,9 @@ from scipy.special import ellipe, ellipkm1, elliprd, elliprf
 from halfspace.elastic.grid import gauss_legendre
 from halfspace.values import Array
 
-GRADING = 5  # q of the substitution; with NEAR_POINTS it leaves 1e-13 for panels of up to 16 nodes
-NEAR_POINTS = 64
-FAR_POINTS = 24
+GRADING = 5  # q of the substitution; with NEAR_POINTS it leaves 2e-13 for panels of up to 16 nodes
+NEAR_POINTS = 48
+FAR_POINTS = 8  # and half as many as a panel has nodes: they leave 1e-15 of polynomials from one length away
 FAR_DISTANCE = 1.0  # in panel lengths
 BATCH = 2_000_000  # points at which the kernel is evaluated at a time: 16 MB an array
 
@@ -61,7 +61,7 @@ def _elliptic_b(k: Array) -> Array:
 
 
 @cache
-def graded_rule(points: int = NEAR_POINTS, q: int = GRADING) -> tuple[Array, Array]:
+def graded_rule(points: int, q: int = GRADING) -> tuple[Array, Array]:
     """Points and weights on (0, 1) for integrands with a logarithm at, or just below, 0."""
     x, w = gauss_legendre(points)
     t = (1 + x) / 2
@@ -86,7 +86,7 @@ def panel_integrals(targets: Array, breakpoints: Array, nodes: Array) -> Array:
         Deflection at r_i (E* = 1) by the pressure l_k on panel j, absolute accuracy 1e-12 of the panel's scale.
     """
     targets = np.asarray(targets, float)
-    batches = -(-targets.size * (breakpoints.size - 1) * FAR_POINTS // BATCH)
+    batches = -(-targets.size * (breakpoints.size - 1) * _far_points(nodes.size) // BATCH)
     moments = [_moments(some, breakpoints, nodes.size) for some in np.array_split(targets, batches)]
     return np.concatenate(moments) @ np.linalg.inv(legvander(nodes, nodes.size - 1))
 
@@ -104,9 +104,13 @@ def _moments(targets: Array, breakpoints: Array, k: int) -> Array:
     return moments
 
 
+def _far_points(nodes: int) -> int:
+    return FAR_POINTS + nodes // 2
+
+
 def _far_moments(r: Array, left: Array, right: Array, far: NDArray[np.bool_], k: int) -> Array:
     """Legendre moments of G s on panels far from their targets, for the pairs marked in `far`."""
-    x, w = gauss_legendre(FAR_POINTS)
+    x, w = gauss_legendre(_far_points(k))
     i, j = np.nonzero(far)
     half = (right - left)[j] / 2
     s = ((right + left)[j] / 2)[:, None] + half[:, None] * x
@@ -119,7 +123,7 @@ def _near_moments(r: Array, left: Array, right: Array, nearest: Array, end: Arra
     moments = np.zeros((r.size, k))
     some = nearest != end
     r, left, right, nearest, end = (v[some, None] for v in (r, left, right, nearest, end))
-    t, w = graded_rule()
+    t, w = graded_rule(NEAR_POINTS)
     step = (end - nearest) * t
     s = nearest + step
     x = (s - left - (right - s)) / (right - left)

@@ -31,10 +31,10 @@ from halfspace.values import Array, Valued
 SHALLOWEST, DEEPEST = 1.0, 60.0  # images, in thicknesses of the first stratum and of all
 DEEPER = (1.0, 10.0, 100.0, 1000.0)  # times as deep they go if need be: stiff strata spread a load as widely
 SPACING = 1.14  # ratio of neighbouring depths: with 1.2 the fit is a decade worse, with 1.1 no better
-SAMPLES = 3000  # wave numbers at which S is fitted
+SAMPLES = 500  # wave numbers at which S is fitted
 # Rule for the nodes near a cell that is longer than the first stratum is thick: with 6 nodes a cell a bell of pressure
 # deflects the surface to 1e-8 as by a rule of 64 points, q = 5, up to two lengths away, with 8 nodes to 2e-9.
-NEAR = 0.5  # lengths of the cell
+NEAR = 0.25  # lengths of the cell
 NEAR_POINTS, GRADING = 24, 2  # see `halfspace.elastic.kernel.graded_rule`
 FITTED, AT_WORST = 3e-8, 1e-6  # of the largest S, or of 1: where deeper images are tried no more, and what is refused
 
