@@ -118,9 +118,7 @@ def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
     flat = isinstance(coordinate, FlatCoordinate)
     last = at_equator(scene.tabor, scene.surface, how.degree + 2) if flat else np.inf
     make = partial(_made, scene, how)
-    scales = scene.scales
-    grading = how.finest, how.growth, outer, coordinate, last
-    return SizedBody(scales.tabor, scales.profile, make, *grading, scales.law, scales.softest)
+    return SizedBody(scene.scales, make, how.finest, how.growth, outer, coordinate, last)
 
 
 def discretised_about(scene: Scene, contact_radius: float, how: Discretisation, source: ContactProblem) -> Discretised:

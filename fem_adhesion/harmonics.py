@@ -31,7 +31,7 @@ from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.conditions import Located
-from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
+from halfspace.equilibrium.contact import CONTACT_RADIUS, contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol
@@ -211,7 +211,7 @@ class Standing(Valued):
             if abs(radius - made_for) <= NEAR * body.length:
                 return chart
         operator, unknowns = body.make(body.lines(body.coordinate.of(radius)))
-        chart = Chart(ContactProblem(operator, body.tabor, profile=body.profile), unknowns)
+        chart = Chart(contact_of(body.scales, operator), unknowns)
         self.charts.append((radius, chart))
         return chart
 
@@ -293,8 +293,7 @@ def sized_body(scene: Scene, how: Fineness) -> SizedBody:
     """Body of a scene, to be discretised on any cells of its surface."""
     outer = scene.radii[0] * np.append(1 - (1 - (RIM if scene.counter else 0.98)) * CROWDED, 1.0)
     make = partial(_made, scene, how.nodes, counts(scene, how))
-    surface, law = scene.surface, scene.law
-    return SizedBody(scene.tabor, surface, make, how.finest, how.growth, outer, FlatCoordinate(), law=law)
+    return SizedBody(scene.scales, make, how.finest, how.growth, outer, FlatCoordinate())
 
 
 def _made(scene: Scene, nodes: int, harmonics: list[int], lines: Array) -> Made:

@@ -130,13 +130,13 @@ class Scene:
     def surface(self) -> Surface:
         """Its heights in beta^2/R, up to where the smaller body ends."""
         surface, (end, *_) = self.shape.surface(self.tabor), self._own_radii
-        end = min(end, self.body.extent(Scales(self.tabor, self.law, surface, self.body.softest)))
+        end = min(end, self.body.extent(Scales(self.tabor, self.law, surface, self.body.layered)))
         return surface if surface.end <= end else UpTo(surface, end)
 
     @property
     def scales(self) -> Scales:
         """Its lengths."""
-        return Scales(self.tabor, self.law, self.surface, self.body.softest)
+        return Scales(self.tabor, self.law, self.surface, self.body.layered)
 
     @property
     def sized(self) -> bool:

@@ -14,6 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
+from halfspace.elastic.layers import LayeredBody, softest, stiff_as
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import NEAR
@@ -47,23 +48,29 @@ class Scales:
         Of the tension against the gap.
     profile : Surface
         Of the undeformed surfaces.
-    softest : float
-        How many times as much as a half-space of E* the body yields to waves of any length, at most.
+    body : LayeredBody, optional
+        Strata on a base; what else is elastic yields as a half-space of E* to waves as short as the attraction is wide.
     """
 
     tabor: float
     law: Law = LENNARD_JONES
     profile: Surface = PARABOLOID
-    softest: float = 1.0
+    body: LayeredBody | None = None
+
+    @cached_property
+    def softest(self) -> float:
+        """How many times as much as a half-space of E* the body yields to waves of any length, at most."""
+        return 1.0 if self.body is None else softest(self.body)
 
     @cached_property
     def spike_width(self) -> float:
         """Width over which the tension at a contact edge varies: mu^-2, or about mu^-1/2 when nearly rigid.
 
         A stiffness f' of the law balances an elastic deflection over 1/(mu^2 f'), a strength s the work of adhesion
-        over 1/(mu s)^2.
+        over 1/(mu s)^2; less where something softer below lets strata bend.
         """
-        return float(min(self.tabor**-2 * self._sharpness, self._rigid_width))
+        width = self.tabor**-2 * self._sharpness
+        return float(min(width if self.body is None else stiff_as(self.body, width), self._rigid_width))
 
     @cached_property
     def _sharpness(self) -> float:

@@ -13,7 +13,7 @@ from scipy.special import j0
 from halfspace import trace
 from halfspace.elastic import grid
 from halfspace.elastic.layered import images_of, layered_panels
-from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, surface_compliance
+from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, stiff_as, surface_compliance
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
@@ -55,6 +55,15 @@ def test_long_waves_see_what_is_below_and_short_ones_the_first_stratum():
     long, short = surface_compliance(body, np.array([1e-7, 20.0]))
     assert long == pytest.approx(10 * (1 - 0.2**2) / (1 - 0.3**2), rel=1e-5)
     assert short == pytest.approx(1, rel=1e-12)
+
+
+def test_a_thin_stiff_film_is_as_stiff_over_the_length_that_a_plate_bends_over():
+    """A plate on a half-space: E t^3/(12 l^4) + E_2/(2 l) = E/(2 l_0)."""
+    t, modulus, bends = 0.01, 0.01, 0.04
+    stiffness = t**3 / 12 / bends**4 + modulus / bends / 2
+    assert stiff_as(Coated(t, 1 / modulus), 1 / stiffness / 2) == pytest.approx(bends, rel=0.1)
+    for body in (Coated(0.5, 0.01), Layer(0.05, 0.3), Coated(1.0, 1.0), Coated(5.0, 100.0)):
+        assert stiff_as(body, 0.1) == pytest.approx(0.1, rel=2e-3)
 
 
 @pytest.mark.parametrize("body", BODIES, ids=repr)

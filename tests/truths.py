@@ -24,7 +24,6 @@ from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.events import numbered
 from halfspace.equilibrium.search import find_events, further_folds
-from halfspace.profiles import PARABOLOID
 from halfspace.profiles.sphere import between_spheres
 from halfspace.scales import Scales
 
@@ -69,9 +68,9 @@ def on(stage, state):
 def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
     """The half-space under a sphere or two."""
     gap = between_spheres(float(np.sqrt(radius_ratio / tabor)), counter_radius)
-    outer = np.array([gap.end])
+    scales, outer = Scales(tabor, profile=gap), np.array([gap.end])
     return [
-        Standing(SizedBody(tabor, gap, partial(_panels, nodes), *how, outer, FlatCoordinate(), last * gap.end))
+        Standing(SizedBody(scales, partial(_panels, nodes), *how, outer, FlatCoordinate(), last * gap.end))
         for nodes, *how, last in ((14, 0.45, 2.5, 1e-7), (16, 0.35, 2.2, 1e-8))
     ]
 
@@ -83,7 +82,7 @@ def layered(tabor, body):
     for nodes, finest, growth, far, spacing in hows:
         images = images_of(body, spacing)
         make, outer = partial(_layered_panels, images, nodes), np.array([far / np.sqrt(tabor)])
-        stages.append(Standing(SizedBody(tabor, PARABOLOID, make, finest, growth, outer, FlatCoordinate())))
+        stages.append(Standing(SizedBody(Scales(tabor, body=body), make, finest, growth, outer, FlatCoordinate())))
     return stages
 
 

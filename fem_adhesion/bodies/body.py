@@ -181,11 +181,6 @@ class Body(ABC):
         return self.regions[-1]
 
     @property
-    def softest(self) -> float:
-        """How many times as much as a half-space of E* it yields to waves of pressure of any length, at most."""
-        return 1.0
-
-    @property
     def size(self) -> float:
         """R/eps, R being the radius of curvature at the pole; infinite of a flat surface."""
         return math.inf

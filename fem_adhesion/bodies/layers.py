@@ -26,9 +26,6 @@ WIDTH = 800.0  # of the mesh, in widths of a rigid attraction: the load left out
 # Thicknesses that it is wider: what dies out falls by e^(-0.74 r/t) at least, there and back again to 1e-13. From the
 # roots of what its yield is divided by, (3 - 4 nu) cosh 2x + 2 x^2 + 5 - 12 nu + 8 nu^2, the first at nu = 1/2.
 DIED_OUT = 20.0
-# In beta, of a film stiffer than what is below: coatings 30 to 100 times as stiff and 0.01 to 0.05 thick leave up to
-# 1.9 times what others do, from 0.1 on or 10 times as stiff no more than they.
-THIN = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,13 +63,8 @@ class Stratified(Body):
 
     @property
     def doubt(self) -> Doubt:
-        """Cells that suit the edge of the contact may be long for the rest; twice a usual change may be left.
-
-        Or four times, of a stiff film so thin that it bends over lengths below those of the cells beside the contact.
-        """
-        moduli = [modulus for _, modulus in self.regions]
-        film = len(moduli) > 1 and moduli[0] > moduli[1] and self.strata[0].thickness < THIN
-        return Doubt(other_cells=True, times=4.0 if film else 2.0)
+        """Cells that suit the edge of the contact may be long for the rest; twice a usual change may be left."""
+        return Doubt(other_cells=True, times=2.0)
 
     @property
     def regions(self) -> tuple[Elastic, ...]:
@@ -90,11 +82,6 @@ class Stratified(Body):
         shear = [modulus * (1 - poisson) for poisson, modulus in self.regions]
         whole = sum(G * stratum.thickness for G, stratum in zip(shear, self.strata, strict=True))
         return Elastic(self.regions[0].poisson, whole / shear[0] / layers.total_thickness(self))
-
-    @cached_property
-    def softest(self) -> float:
-        """How many times as much as a half-space of E* it yields to waves of any length, at most."""
-        return layers.softest(self)
 
     @property
     def interfaces(self) -> list[float]:

@@ -20,7 +20,7 @@ from halfspace.accuracy.finite_bodies import SizedBody, at_equator
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.layered import images_of, layered_panels
-from halfspace.equilibrium.contact import ContactProblem
+from halfspace.equilibrium.contact import ContactProblem, contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
 from halfspace.values import Array
@@ -160,7 +160,7 @@ def elements_of(scene: Scene, rtol: float) -> list[ContactProblem]:
     finest = 2 * FINE * radius_of(scene) / scene.scales.spike_width
     hows = [replace(convergence.with_rings(d), finest=finest) for d in (degree, degree + 1)]
     made = [discretise.sized_body(scene, how) for how in hows]
-    return [ContactProblem(_made(body, scene), scene.tabor, scene.law, body.profile) for body in made]
+    return [contact_of(scene.scales, _made(body, scene)) for body in made]
 
 
 def _blocks(scene: Scene, rtol: float) -> list[ContactProblem]:

@@ -19,7 +19,6 @@ from halfspace.elastic.operators import Interpolated, MovingGrid, SurfaceCoordin
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, ContactProblem, contact_of
-from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import Surface
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued
@@ -41,10 +40,8 @@ class SizedBody(Valued):
 
     Parameters
     ----------
-    tabor : float
-        Tabor parameter.
-    profile : Surface
-        Of the undeformed surface.
+    scales : Scales
+        Tabor parameter, law, profile, and the lengths that follow from them.
     make : callable
         From the ends of all cells, in the surface's coordinate, the operator and its number of unknowns.
     finest : float
@@ -57,28 +54,15 @@ class SizedBody(Valued):
         Along the surface.
     last : float
         Length of the last of the others, in beta, if they are to be fine there too; see `at_equator`.
-    law : Law
-        Of the tension against the gap.
-    softest : float
-        How many times as much as a half-space of E* the body yields to waves of any length, at most; above 1 where
-        something softer is below the surface.
     """
 
-    tabor: float
-    profile: Surface
+    scales: Scales
     make: Callable[[Array], Made]
     finest: float
     growth: float
     outer: Array
     coordinate: SurfaceCoordinate
     last: float = np.inf
-    law: Law = LENNARD_JONES
-    softest: float = 1.0
-
-    @cached_property
-    def scales(self) -> Scales:
-        """Lengths of the contact."""
-        return Scales(self.tabor, self.law, self.profile, self.softest)
 
     @property
     def length(self) -> float:
@@ -105,7 +89,7 @@ class SizedBody(Valued):
 
     def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
-        widest = min(self.scales.widest_radius(to_load), WIDEST * self.profile.end)
+        widest = min(self.scales.widest_radius(to_load), WIDEST * self.scales.profile.end)
         least = min(LEAST * LEAVE * self.length, widest / 2)
         count = 2 + int(np.ceil(np.log(widest / least) / np.log(apart)))
         end, edge = float(self.outer[0]), self.coordinate.of(widest)

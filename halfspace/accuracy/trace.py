@@ -179,10 +179,9 @@ def trace(
         If the curve cannot be traced.
     """
     tabor, rtol, to_load = require_tabor(tabor), require_rtol(rtol), require_load(to_load)
-    scales = Scales(tabor, require_law(law), profile.surface(tabor))
+    scales = Scales(tabor, require_law(law), profile.surface(tabor), body)
     if body is not None or math.isfinite(scales.profile.end):
         images = [images_of(body, spacing) if body is not None else None for spacing in IMAGES]
-        scales = replace(scales, softest=images[0].softest if images[0] else 1.0)
         return climb(rtol, partial(_sized_rung, scales, images, rtol, to_load), to_load=to_load)
 
     def rung(level: int) -> Rung:
@@ -230,16 +229,13 @@ def _sized_body(scales: Scales, images: Images | None, resolution: Resolution) -
     last = at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf
     outer = scales.profile.end if ends else scales.outer_radius((FAR * resolution.extent) ** 2 / 2)
     return SizedBody(
-        scales.tabor,
-        scales.profile,
+        scales,
         partial(_made, make, resolution.nodes),
         resolution.finest,
         resolution.growth,
         np.array([outer]),
         FlatCoordinate(),
         last,
-        scales.law,
-        scales.softest,
     )
 
 

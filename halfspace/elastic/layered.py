@@ -51,14 +51,11 @@ class Images(Valued):
         c_j.
     smooth : float
         Thickness of the first stratum in beta: over such a distance the sum hardly changes.
-    softest : float
-        Largest yield to waves of any length, in that of the half-space of the first stratum: 1 or more.
     """
 
     depths: Array
     strengths: Array
     smooth: float
-    softest: float
 
     def kernel(self, r: Array, s: Array) -> Array:
         """Deflection at radius r by all images of a ring of unit pressure times radius at s; arrays broadcast."""
@@ -103,7 +100,7 @@ def images_of(body: LayeredBody, spacing: float = SPACING) -> Images:
             f"the yield of the strata to waves is missed by {misfit:.1g} of a half-space's, limit "
             f"{AT_WORST * largest:.1g}; they differ too much in stiffness or thickness: take thin ones together"
         )
-    return Images(depths, strengths, thin, 1 + max(0.0, float(wanted.max())))
+    return Images(depths, strengths, thin)
 
 
 def _fitted(k: Array, wanted: Array, first: float, last: float, spacing: float) -> tuple[float, Array, Array]:

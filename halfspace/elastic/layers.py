@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Literal, Protocol, get_args, runtime_checkable
 
 import numpy as np
@@ -33,6 +34,7 @@ Foundation = Literal["bonded", "sliding"]
 
 DEEP = 30.0  # wave numbers times depth: what is below moves the surface by e^-60
 WAVES = 300  # lengths of waves among which the one that a body yields to most is looked for
+SHORTEST = 1e-4  # of a length, over which strata may yield as a half-space does over the whole of it
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,10 @@ class LayeredBody(Protocol):
     @property
     def base(self) -> Foundation | Substrate:
         """What carries the last: rigid and bonded to it, rigid and without friction, or elastic and bonded."""
+        ...
+
+    def __hash__(self) -> int:
+        """What is found of a body is kept by it."""
         ...
 
 
@@ -249,10 +255,23 @@ def surface_compliance(body: LayeredBody, wave_numbers: Array) -> Array:
     return np.asarray(free[..., 1, 1] * first.modulus / (1 - first.poisson**2) / 2)
 
 
+@cache
 def softest(body: LayeredBody) -> float:
     """Largest yield to waves of any length, in that of a half-space of the first stratum's E*: 1 or more."""
     waves = np.geomspace(1e-7 / total_thickness(body), DEEP / body.strata[0].thickness, WAVES)
     return max(1.0, float(surface_compliance(body, waves).max()))
+
+
+@cache
+def stiff_as(body: LayeredBody, length: float) -> float:
+    """Length l in beta over which strata are as stiff as a half-space of the first stratum over a given one, or that.
+
+    A pressure p deflects them by 2 p l S(1/l)/E*. A thin stiff film on something softer bends over a shorter one, as a
+    plate on it: t^3/(12 l^4) + E_2/(2 l) = 1/(2 l_0), moduli in those of the film.
+    """
+    lengths = length * np.geomspace(SHORTEST, 1, WAVES)
+    soft = lengths * surface_compliance(body, 1 / lengths) >= length
+    return float(lengths[np.argmax(soft)]) if soft.any() else length
 
 
 def _at_base(base: Foundation | Substrate) -> tuple[Array, Array]:
