@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.integrate import quad
 
 import halfspace
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
@@ -50,6 +49,8 @@ def closed_forms(law: Law = LENNARD_JONES) -> list[Row]:
 
 def _work(law: Law) -> Estimate:
     """Integral of the tension from equilibrium to infinity."""
+    from scipy.integrate import quad  # it takes as long to load as all else, and few need it
+
     ends = (0.0, law.edge_gap, *map(law.range, WORK_LEFT), np.inf)
 
     def tension(H: float) -> float:

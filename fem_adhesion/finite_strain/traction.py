@@ -43,7 +43,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.integrate import quad
 
 from fem_adhesion.finite_strain.surface import ContactSurface
 from halfspace.laws import LENNARD_JONES, Law
@@ -89,6 +88,7 @@ def yielded_adhesion(tabor: float, radius_ratio: float, poisson: float, law: Law
     That is -Phi(eps) - Delta Phi(eps), to the first order in beta/R, of any law that is the sum of what attracts the
     matter at every depth; forces between charges on the surfaces stretch no layer.
     """
+    from scipy.integrate import quad  # it takes as long to load as all else, and few need it
 
     def squared(gap: float) -> float:
         return float(law.pressure(np.array(gap), 1.0)) ** 2

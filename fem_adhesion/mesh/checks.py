@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from halfspace.errors import InputError
 from halfspace.values import Array, Index
@@ -78,6 +77,8 @@ def _left_of_the_axis(mesh: Any) -> str | None:
 
 
 def _coincident_nodes(mesh: Any) -> str | None:
+    from scipy.spatial import cKDTree  # it takes long to load, and few need it
+
     pairs = cKDTree(mesh.p.T).query_pairs(_length(mesh), output_type="ndarray")
     return _complaint("nodes coincide with another", mesh.p[:, pairs[:, 0]], "merge duplicates (Gmsh: Coherence Mesh)")
 

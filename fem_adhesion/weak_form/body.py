@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
@@ -96,8 +96,8 @@ class Body(Valued):
         Upward force, per unknown, of what holds the body.
     borne : (q,) array
         Part of the tension at the points that it bears directly: at the corner where the surface is held.
-    model, size : Body, float
-        The body that this one is so many times as large as, if it is.
+    known : callable, optional
+        Gives the displacements (n,) under given forces where those of another body tell.
     """
 
     stiffness: sparse.csc_array
@@ -108,17 +108,12 @@ class Body(Valued):
     rim: float
     reaction: Array
     borne: Array
-    model: Body | None = None
-    size: float = 1.0
+    known: Callable[[Array], Array] | None = None
 
     @cached_property
-    def factors(self) -> Any:
-        """Of the stiffness."""
-        return factorise(self.stiffness)
-
-    def yielding(self, forces: Array) -> Array:
-        """Displacements (n,) under given forces."""
-        return np.asarray((self.model or self).factors.solve(forces) / self.size)
+    def yielding(self) -> Callable[[Array], Array]:
+        """Gives the displacements (n,) under given forces."""
+        return self.known or factorise(self.stiffness).solve
 
     def rise(self, u: Array) -> Array:
         """u_z at the points of the surface."""
@@ -139,7 +134,11 @@ class Body(Valued):
     def scaled(self, a: float) -> Body:
         """The same body a times as large: its stiffness grows as its size."""
         points = self.values, self.radii * a, self.area * a**2, self.depths * a
-        return Body(self.stiffness * a, *points, self.rim * a, self.reaction * a, self.borne, self, a)
+
+        def known(forces: Array) -> Array:
+            return self.yielding(forces) / a
+
+        return Body(self.stiffness * a, *points, self.rim * a, self.reaction * a, self.borne, known)
 
 
 def discretise(
@@ -237,7 +236,14 @@ def on_ground(body: Body, pressure: Array, load: float, work: float) -> Body:
     """A body on a plate, on a spring with which a pressure of this load does the work that it does on a half-space."""
     forces = body.forces(pressure)
     missed = 1 + (work - float(forces @ body.yielding(forces))) / load**2
-    return on_spring(body, 1 / missed - 1)
+    spring, sunk = 1 / missed - 1, body.yielding(last(body.reaction.size))
+    pushed = sunk * spring / (1 + spring * sunk[-1])  # by the spring as the plate sinks by 1: no factors anew
+
+    def known(forces: Array) -> Array:
+        u = body.yielding(forces)
+        return np.asarray(u - u[-1] * pushed)
+
+    return replace(on_spring(body, spring), known=known)
 
 
 def opposed(first: Body, second: Body, share: float) -> Body:

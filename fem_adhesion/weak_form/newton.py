@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -18,62 +18,109 @@ from halfspace.values import Valued
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Equilibrium(Valued):
-    """A state of equilibrium.
+class Tangent(Valued):
+    """How a contact yields to a small change of a state, with the law's straight line in the place of the law.
 
     Attributes
     ----------
-    gap, approach, load
-        h at the points and alpha in eps, W in R dgamma.
+    gap : (q,) array
+        Gaps h in eps of the state.
+    slope : (q,) array
+        sigma' in dgamma/eps^2 there.
+    factors
+        Of the matrix of a(u, v) + mu^2 int sigma' u_z v_z dA.
     gap_rate, stiffness
         dh/dalpha, and dW/dalpha in R dgamma/eps, along the equilibria.
-    sign, log : float
-        Of the tangent's determinant, and the logarithm of its magnitude.
     """
 
     gap: Array
-    approach: float
-    load: float
+    slope: Array
+    factors: Any
     gap_rate: Array
     stiffness: float
-    sign: float
-    log: float
+
+    @classmethod
+    def at(cls, contact: Contact, h: Array, approach: float) -> Tangent:
+        """Tangent of a contact at the gaps h."""
+        body, mu, slope = contact.body, contact.tabor, contact.law.slope(h)
+        factors = factorise(body.softened(mu**2 * slope))
+        gap_rate = -1 + mu**2 * body.rise(factors.solve(body.forces(slope)))
+        return cls(h, slope, factors, gap_rate, contact.load_slope(slope * -gap_rate, approach))
 
 
-MOST_STEPS, NEAR = 20, 1e-5  # relative change of the gaps by the last step; the next would be far less
-KEPT = 1e-4  # and that by a step after which the next may keep the tangent
+@dataclass(frozen=True, eq=False, repr=False)
+class Equilibrium(Valued):
+    """A state of equilibrium of a contact: h at the points and alpha in eps, W in R dgamma, and a tangent nearby."""
+
+    contact: Contact
+    gap: Array
+    approach: float
+    load: float
+    nearby: Tangent
+
+    @cached_property
+    def tangent(self) -> Tangent:
+        """The tangent at the state itself."""
+        moved = np.abs(self.gap - self.nearby.gap) / self.contact.law.size(self.gap)
+        return self.nearby if moved.max() < SAME else Tangent.at(self.contact, self.gap, self.approach)
+
+    @property
+    def gap_rate(self) -> Array:
+        """dh/dalpha along the equilibria."""
+        return self.tangent.gap_rate
+
+    @property
+    def stiffness(self) -> float:
+        """dW/dalpha in R dgamma/eps."""
+        return self.tangent.stiffness
+
+    @cached_property
+    def determinant(self) -> tuple[float, float]:
+        """Sign of that of the tangent, and the logarithm of its magnitude."""
+        return determinant(self.tangent.factors)
 
 
-def newton(contact: Contact, h: Array, approach: float, *, load: float | None = None) -> Equilibrium:
+MOST_STEPS, NEAR = 20, 1e-9  # relative change of the gaps by one step more
+KEPT = 0.2  # of the step before: one that is shorter may be followed by one along the same tangent
+SAME = 1e-4  # relative change of the gaps over which a tangent is the same
+
+
+def newton(
+    contact: Contact, h: Array, approach: float, *, load: float | None = None, tangent: Tangent | None = None
+) -> Equilibrium:
     """Solve for the equilibrium at an approach, or at a load if one is given, from gaps nearby.
 
-    Each step solves the problem with the law's straight line, sigma(h) + sigma' (h_new - h), in the place of the law;
-    the last ones, close to the solution, keep its slope and with it the factors of the tangent.
+    Each step solves the problem with the law's straight line, sigma(h) + sigma' (h_new - h), in the place of the law.
+    While each is much shorter than the one before, they keep its slope and with it the factors of the tangent, from
+    that given on.
 
     Raises
     ------
     NotConverged
         If the steps run out.
     """
-    body, mu, law, moved = contact.body, contact.tabor, contact.law, np.inf
+    before = 1.0
     for _ in range(MOST_STEPS):
-        if moved > KEPT:
-            slope = law.slope(h)
-            factors = factorise(body.softened(mu**2 * slope))
-            gap_rate = -1 + mu**2 * body.rise(factors.solve(body.forces(slope)))
-            stiffness = contact.load_slope(slope * -gap_rate, approach)
-        tension, size = law.tension(h), law.size(h)
-        u = factors.solve(mu * body.forces(tension + slope * (contact.gap(None, approach) - h)))
-        change = contact.gap(u, approach) - h
-        missing = 0.0 if load is None else load - contact.load(tension + slope * change, approach)
-        d = missing / stiffness
-        change += d * gap_rate
+        if tangent is None:
+            tangent, before = Tangent.at(contact, h, approach), 1.0
+        change, d = _step(contact, h, approach, load, tangent)
+        size = contact.law.size(h)
         part = min(1.0, 0.75 / max(float((-change / size).max()), 0.75))  # lest the surfaces pass through each other
         h, approach, moved = h + part * change, approach + part * d, float(np.abs(change / size).max())
-        if moved < NEAR:
-            found = contact.load(law.tension(h), approach)
-            return Equilibrium(h, approach, found, gap_rate, stiffness, *determinant(factors))
+        if moved**2 < NEAR * before:
+            return Equilibrium(contact, h, approach, contact.load(contact.law.tension(h), approach), tangent)
+        tangent, before = (tangent if moved < KEPT * before else None), moved
     raise NotConverged(f"no equilibrium in {MOST_STEPS} Newton steps of the weak form; try a nearer start")
+
+
+def _step(contact: Contact, h: Array, approach: float, load: float | None, tangent: Tangent) -> tuple[Array, float]:
+    """Changes of the gaps and of the approach towards the equilibrium at this approach, or at a load."""
+    body, mu, tension = contact.body, contact.tabor, contact.law.tension(h)
+    straight = tension + tangent.slope * (contact.gap(None, approach) - h)
+    change = contact.gap(tangent.factors.solve(mu * body.forces(straight)), approach) - h
+    missing = 0.0 if load is None else load - contact.load(tension + tangent.slope * change, approach)
+    d = missing / tangent.stiffness
+    return change + d * tangent.gap_rate, d
 
 
 # The determinant
@@ -119,38 +166,33 @@ def turning_point(
     dW/dalpha; it is passed at given approaches. Where they turn, the cubic through the states on either side does; it
     errs by a power of the steps, which may be that much finer.
     """
-    at = partial(_at, contact, under_load=under_load)
-    place = approach if under_load else load
     # The extremum of the load is flat; along the load an edge moves by a spike's width soon.
     step = FLAT * min(1.0, contact.law.grain / LENNARD_JONES.grain) if under_load else NEARBY
-    step *= (1 + abs(place)) * min(1.0, 9 / contact.sharpness**2) / finer
-    middle = at(place, h, approach)
-    a, b = (at(place + d, *_predicted(middle, d, under_load=under_load)) for d in (-step, step))
-    place, step = place - step, 2 * step
+    step *= (1 + abs(approach if under_load else load)) * min(1.0, 9 / contact.sharpness**2) / finer
+    middle = newton(contact, h, approach, load=None if under_load else load)
+    a, b = (_past(middle, d, under_load=under_load) for d in (-step, step))
+    step = 2 * step
     for _ in range(TRIES):
-        values = [state.sign * np.exp(state.log - a.log) * (state.stiffness if under_load else 1) for state in (a, b)]
+        signs, logs = np.transpose([a.determinant, b.determinant])
+        values = signs * np.exp(logs - logs[0]) * ([a.stiffness, b.stiffness] if under_load else 1.0)
         part = float(values[0] / (values[0] - values[1]))
         if 0 <= part <= 1:
             ends = [(s.load, s.stiffness) if under_load else (s.approach, 1 / s.stiffness) for s in (a, b)]
             part, turned = _extremum(step, *ends)
-            place += part * step
+            place = (a.approach if under_load else a.load) + part * step
             return Turn(turned, place) if under_load else Turn(place, turned)
         if not abs(part) < FARTHEST:
             return None
         step *= 1.3 * part  # past the root
-        b = at(place + step, *_predicted(a, step, under_load=under_load))
+        b = _past(a, step, under_load=under_load)
     return None
 
 
-def _at(contact: Contact, place: float, h: Array, approach: float, *, under_load: bool) -> Equilibrium:
-    """Equilibrium at an approach or a load, from gaps and an approach nearby."""
-    return newton(contact, h, place) if under_load else newton(contact, h, approach, load=place)
-
-
-def _predicted(state: Equilibrium, step: float, *, under_load: bool) -> tuple[Array, float]:
-    """Gaps and approach a step in approach or load from a state, along the tangent."""
-    change = step if under_load else step / state.stiffness
-    return state.gap + change * state.gap_rate, state.approach + change
+def _past(state: Equilibrium, step: float, *, under_load: bool) -> Equilibrium:
+    """Equilibrium a step in approach or load past a state, from what the tangent near that predicts."""
+    near, load = state.nearby, None if under_load else state.load + step
+    change = step if under_load else step / near.stiffness
+    return newton(state.contact, state.gap + change * near.gap_rate, state.approach + change, load=load, tangent=near)
 
 
 def _extremum(length: float, a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
