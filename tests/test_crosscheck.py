@@ -403,6 +403,7 @@ def test_scenes_come_in_their_order_whatever_ends_first(monkeypatch):
     monkeypatch.setattr(crosscheck, "stream", backwards)
     first, died, last = crosscheck.run(scenes)
     assert [part.solved for part in asked] == [False, True, True, True]
+    assert [part.scene.tabor for part in asked[1:]] == [2.0, 1.0, 0.5]  # those that take longest first
     assert [one.scene for one in (first, died, last)] == scenes
     assert [row.verdict for row in first.rows] == ["inconclusive", "agree"]
     assert isinstance(died, Failure)

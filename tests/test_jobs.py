@@ -56,6 +56,24 @@ def test_every_item_comes_once_with_its_result(jobs):
     assert sorted(stream(square, range(20), jobs=jobs)) == [(x, x * x) for x in range(20)]
 
 
+def loaded(module):
+    time.sleep(0.2)  # a worker that starts late may come to it when another has loaded it twice
+    return module in sys.modules
+
+
+def test_workers_load_a_module_while_their_study_does():
+    module = "wave"  # of the standard library, and none that anything here needs
+    with parallel.loaded_ahead(module, jobs=2):
+        assert module not in sys.modules
+    assert any(there for _, there in stream(loaded, [module] * 6, jobs=2))
+    assert module not in sys.modules
+
+
+def test_what_their_study_is_refused_for_is_told_by_it():
+    with pytest.raises(InputError, match="on purpose"), parallel.loaded_ahead("wave", jobs=2):
+        raise InputError("on purpose")
+
+
 def test_results_come_as_they_are_ready(tmp_path):
     """Were they given in order, the others would be too: the first ends when they have."""
     assert [x for _, x in stream(last_if_first, [(x, str(tmp_path)) for x in range(4)], jobs=2)][-1] == 0

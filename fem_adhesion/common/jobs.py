@@ -11,11 +11,12 @@ import importlib
 import os
 import signal
 import socket
+import sys
 import threading
 import time
 import warnings
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from types import ModuleType
@@ -64,6 +65,25 @@ def workers(jobs: int | None) -> int:
     if jobs is not None and jobs < 1:
         raise InputError(f"jobs = {jobs} is outside 1 <= jobs; leave it out to use all cores")
     return jobs or int(joblib.cpu_count())
+
+
+@contextmanager
+def loaded_ahead(module: str, *, jobs: int | None = None, dask: str | None = None) -> Iterator[None]:
+    """Let the local workers load a module while their study loads it too, and wait for them."""
+    count = workers(jobs) if dask is None else 1
+    if count == 1 or module in sys.modules:
+        yield
+        return
+    results = _pool(_load, enumerate([module] * count), count)
+    try:
+        yield
+    finally:
+        with suppress(TerminatedWorkerError):  # of which `stream` tells when there is work to lose
+            list(results)
+
+
+def _load(module: str) -> None:
+    importlib.import_module(module)
 
 
 def _on_cores(

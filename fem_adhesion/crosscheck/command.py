@@ -37,13 +37,17 @@ def add_options(command: Parser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Compare all scenes asked for, print a table each, and write the record."""
-    from fem_adhesion.crosscheck.references import require_comparable
+    from fem_adhesion.common.jobs import loaded_ahead
     from halfspace.limits import require_rtol
 
     require_rtol(options.rtol)
-    scenes = _scenes(options)
-    for scene in scenes:
-        require_comparable(scene, options.rtol)
+    jobs = options.jobs if len(options.tabor) > 1 else 1
+    with loaded_ahead("fem_adhesion.crosscheck.study", jobs=jobs, dask=options.dask):
+        from fem_adhesion.crosscheck.references import require_comparable
+
+        scenes = _scenes(options)
+        for scene in scenes:
+            require_comparable(scene, options.rtol)
     console = console_beside(options.json)
     with written(options.json) as file:
         cases = _compare_with_progress(scenes, options, console)
