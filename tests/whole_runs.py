@@ -17,6 +17,9 @@ BIN = Path(sys.executable).parent
 
 COMPARE = "fem-adhesion compare --tabor 0.5 2 --poisson 0.45 --rtol 1e-4 --json result.json"
 GREENWOOD = "fem-adhesion greenwood --out greenwood --quick"
+ON_ALL_CORES = "make compare"
+"""The one run that takes every core: in others the cores are taken by the tests, and more processes only start up."""
+
 KEEPING = """
 import pickle, sys
 from fem_adhesion import cli
@@ -77,6 +80,8 @@ def whole_run(session, line):
 def _run(line, directory):
     directory.mkdir()
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "COLUMNS": "150", "NO_COLOR": "1"}
+    if line != ON_ALL_CORES:
+        environment["LOKY_MAX_CPU_COUNT"] = "1"
     environment = {name: value for name, value in environment.items() if not name.startswith(("PYTEST_", "MAKE"))}
     program, *arguments = shlex.split(line)
     if program == "make":
