@@ -46,11 +46,16 @@ def real():
     return solve(question)
 
 
+DRAWN = {}  # pages, each beside its curves, which its key is the identity of
+
+
 def _drawn(curves):
-    with rc_context(curve_figure.LOOK):
-        figure = curve_figure.draw(curves)
-        figure.draw_without_rendering()
-    return figure
+    """Page of some curves, which is drawn once."""
+    if id(curves) not in DRAWN:
+        with rc_context(curve_figure.LOOK):
+            DRAWN[id(curves)] = curves, curve_figure.draw(curves)
+            DRAWN[id(curves)][1].draw_without_rendering()
+    return DRAWN[id(curves)][1]
 
 
 def _panel(figure, name):
