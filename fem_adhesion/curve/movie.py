@@ -23,7 +23,7 @@ from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
-from halfspace.values import Array
+from halfspace.values import Array, Index
 
 SIZE = (800, 500)  # of a frame in pixels
 FRAMES = 48  # of a movie, about
@@ -32,7 +32,7 @@ PRESSED = -0.25  # load at which the wall turns back, in that of pull-off
 MOVING, RESTING = 0.1, 0.9  # seconds for which a frame is shown while the wall moves, and at turns and jumps
 COLOURS, SAMPLED = 256, 8  # colours of the movie's palette, and frames it is made for
 WHITE = np.array([255, 255, 255], np.uint8)  # the background
-PACKED = np.array([1, 256, 65536])  # by which the parts of a colour make one number
+PACKED = np.array([65536, 256, 1])  # by which the parts of a colour make one number
 REPEATED = 3  # times that colours of the palette are moved to the middle of those that they stand for
 NEAR = 1e-6  # difference of approaches in eps that is none
 
@@ -145,7 +145,7 @@ def _with_one_palette(images: Sequence[Pixels]) -> Iterator[Image.Image]:
     nearest = KDTree(palette)
     for image in images:
         colours, places = np.unique(image @ PACKED, return_inverse=True)
-        numbers = nearest.query(colours[:, None] // PACKED % 256)[1].astype(np.uint8)
+        numbers = nearest.query(_unpacked(colours))[1].astype(np.uint8)
         indexed = Image.fromarray(np.take(numbers, places).reshape(image.shape[:2]))
         indexed.putpalette(palette.tobytes())
         yield indexed
@@ -153,9 +153,14 @@ def _with_one_palette(images: Sequence[Pixels]) -> Iterator[Image.Image]:
 
 def _palette(image: Pixels) -> Pixels:
     """Colours (n, 3) for an image, in which each of its own counts once, however little there is of it."""
-    every = np.unique(image.reshape(-1, 3), axis=0)
+    every = _unpacked(np.unique(image @ PACKED))
     chosen = Image.fromarray(every[None]).quantize(COLOURS - 1, kmeans=REPEATED).getpalette()
     return np.append(np.array(chosen, np.uint8), WHITE).reshape(-1, 3)
+
+
+def _unpacked(colours: Index) -> Pixels:
+    """Red, green and blue (n, 3) of colours that are one number each."""
+    return np.asarray(colours[:, None] // PACKED % 256, np.uint8)
 
 
 def _approach(state: Located) -> float:
