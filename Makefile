@@ -31,8 +31,8 @@ hard: $(VENV)/installed-dev ## attempt the hard cases and print how each ended (
 honesty: $(VENV)/installed-dev ## hold all error estimates against the truth, by families, and the solvers against each other (QUICK=1: a minute; SEED=n)
 	$(BIN)/python tests/honesty.py $(if $(QUICK),--quick) $(if $(SEED),--seed $(SEED))
 
-docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, into build/docs
-	$(BIN)/python tests/docs.py $(or $(OUT),build/docs)
+docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, into build/docs (QUICK=1: without the code)
+	$(BIN)/python tests/docs.py $(or $(OUT),build/docs) $(if $(QUICK),--quick)
 
 clean: ## remove the environment and all caches
 	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

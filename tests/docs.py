@@ -27,7 +27,7 @@ def rooms(package):
 
 
 if __name__ == "__main__":
-    pdoc.render.configure(docformat="numpy", math=True)
+    pdoc.render.configure(docformat="numpy", math=True, show_source="--quick" not in sys.argv)
     directory = Path(sys.argv[1])
     pdoc.pdoc(*packages(), output_directory=directory)
     print(f"written: {directory / 'index.html'}")
