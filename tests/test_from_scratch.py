@@ -188,7 +188,7 @@ def _load(monkeypatch):
 
 
 def _jumps_on_a_spring(monkeypatch):
-    soft = replace(FOLD, compliance=0.1)
+    soft = replace(FOLD, compliance=0.02)
     for module in (search, conditions):
         monkeypatch.setattr(module, "FOLD", soft)
 
