@@ -19,6 +19,7 @@ from fem_adhesion.common.files import directory_written_aside
 from fem_adhesion.common.page import markdown
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.scene import Scene
+from fem_adhesion.speed import earlier
 from fem_adhesion.speed import element_methods as element_methods_module
 from fem_adhesion.speed import methods as halfspace_methods_module
 from fem_adhesion.speed import page as speed_page
@@ -483,6 +484,45 @@ def test_each_value_stands_under_its_name_in_the_csv(distinct, tmp_path):
         for q in QUANTITIES:
             assert float(row[f"{q}_error"]) == pytest.approx(made.errors[q], rel=1e-3, abs=0)
             assert float(row[f"{q}_truth_uncertainty"]) == pytest.approx(made.floors[q], rel=1e-3, abs=0)
+
+
+def test_an_earlier_run_is_read_back_and_shown_beside_in_yardsticks(distinct, tmp_path):
+    """Twice as slow a run on a machine half as fast took as many yardsticks: only what is known to differ counts."""
+    slower = [dataclasses.replace(made, seconds=4 * made.seconds) for made in distinct.rungs]
+    speed_page.write(dataclasses.replace(distinct, rungs=tuple(slower), yardstick=2e-3), tmp_path)
+    beside = earlier.read(tmp_path / "speed.csv", 1.0)
+    assert [rung.seconds for rung in beside.rungs] == [2 * made.seconds / 1e-3 for made in distinct.rungs]
+    study = dataclasses.replace(distinct, earlier=beside)
+    text = "\n".join(lines_of_page(study))
+    cells = section(text, f"The front of pull_off beside that of {tmp_path / 'speed.csv'}")
+    assert cells[0] == {
+        "tolerance": "1e-02",
+        "earlier": "1000 (some, a)",
+        "now": "500 (some, a)",
+        "now / earlier": "0.50",
+    }
+    assert cells[2] == {"tolerance": "1e-04", "earlier": "-", "now": "-", "now / earlier": "-"}
+    assert "beside that of" not in "\n".join(lines_of_page(distinct))
+    for axes in speed_page.error_against_time(study, "pull_off").axes:
+        now, before = (next(x for x in axes.lines if word in x.get_label()) for word in ("all methods", "earlier"))
+        np.testing.assert_allclose(before.get_xdata(), 2 * np.array(now.get_xdata()))
+        np.testing.assert_allclose(before.get_ydata(), now.get_ydata(), rtol=1e-3)
+
+
+def test_what_is_no_earlier_run_at_this_tabor_parameter_is_refused(distinct, tmp_path):
+    speed_page.write(distinct, tmp_path)
+    file, other = tmp_path / "speed.csv", tmp_path / "other.csv"
+    with pytest.raises(InputError, match="is of tabor 1, not 2"):
+        earlier.read(file, 2.0)
+    with pytest.raises(InputError, match="cannot be read: No such file"):
+        earlier.read(other, 1.0)
+    for text in (file.read_text().replace("yardsticks", "ells"), file.read_text().replace(",500,", ",much,")):
+        other.write_text(text)
+        with pytest.raises(InputError, match=r"is no table of a speed study .*; give its speed\.csv"):
+            earlier.read(other, 1.0)
+    other.write_text(file.read_text().replace("converged", "failed"))
+    with pytest.raises(InputError, match="has no rung with a result"):
+        earlier.read(other, 1.0)
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)

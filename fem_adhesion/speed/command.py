@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import replace
+from pathlib import Path
 
 from fem_adhesion.common.options import Command, Parser, add_output, console_beside, exit_code_of
 from fem_adhesion.common.progress import progress_bar
@@ -14,6 +16,8 @@ def add_options(command: Parser) -> None:
     long = "Tabor parameter, 0.05 to 2; at 2 uniform grids and iterations of 1997 take ten times as long as at 1"
     command.add_argument("--tabor", type=float, default=1.0, help=long, metavar="MU")
     command.add_argument("--quick", action="store_true", help="climb the lower rungs only")
+    beside = "speed.csv of an earlier run at this Tabor parameter, whose fronts are shown beside"
+    command.add_argument("--beside", type=Path, help=beside, metavar="FILE")
     add_output(command)
 
 
@@ -22,12 +26,13 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.common import terminal
     from fem_adhesion.common.files import directory_written_aside, writing
     from fem_adhesion.common.page import markdown
-    from fem_adhesion.speed import page
+    from fem_adhesion.speed import earlier, page
     from fem_adhesion.speed import study as speed
 
     speed.require_tabor(options.tabor)
+    beside = earlier.read(options.beside, options.tabor) if options.beside else None
     with directory_written_aside(options.out, force=options.force) as aside, progress_bar() as step:
-        study = speed.measure(options.tabor, quick=options.quick, progress=step)
+        study = replace(speed.measure(options.tabor, quick=options.quick, progress=step), earlier=beside)
         with writing(options.out):
             page.write(study, aside)
     code = exit_code_of(list(study.troubles()))

@@ -19,7 +19,7 @@ from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.page import Table, markdown, write_csv
 from fem_adhesion.common.style import Picture, draw
 from fem_adhesion.speed.methods import QUANTITIES, Family, Method
-from fem_adhesion.speed.result import EXPONENTS, SpeedStudy, Timing, best, cheapest, pareto_front
+from fem_adhesion.speed.result import EXPONENTS, Earlier, SpeedStudy, Timing, best, cheapest, pareto_front
 from fem_adhesion.speed.study import RTOL, TABOR
 
 CAPTION = "Error against wall time: half-space left, finite elements right."
@@ -45,6 +45,7 @@ FRONT: dict[str, Any] = {
     "solid_joinstyle": "round",
     "zorder": 0,
 }
+BESIDE: dict[str, Any] = {"color": "0.3", "linewidth": 1.5, "linestyle": (0, (6, 2, 1, 2)), "zorder": 1}
 FLOOR: dict[str, Any] = {"color": "0.4", "linewidth": 1, "dashes": (1, 3)}
 HIDDEN: dict[str, Any] = {"color": "0.4", "linestyle": "none", "marker": r"$\downarrow$", "markersize": 11}
 
@@ -68,7 +69,10 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
     figure.suptitle(f"{TITLES[quantity]}: error against wall time at Tabor parameter {study.tabor:g}{quick}")
     panels = figure.subplots(1, 2, sharex=True, sharey=True)
     for axes, family in zip(panels, FAMILIES, strict=True):
-        _draw_front(axes, pareto_front(study.rungs, quantity), quantity)
+        _draw_front(axes, pareto_front(study.rungs, quantity), quantity, 1.0, "Pareto front, all methods", FRONT)
+        if study.earlier:
+            front = pareto_front(study.earlier.rungs, quantity)
+            _draw_front(axes, front, quantity, study.yardstick, "that of the earlier run, in yardsticks", BESIDE)
         axes.axhline(study.uncertainty(family, quantity), label="uncertainty of the truth", **FLOOR)
         for method in study.methods:
             if method.family == family:
@@ -79,12 +83,14 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
     return figure
 
 
-def _draw_front(axes: Any, front: Sequence[Timing], quantity: str) -> None:
-    """A broad grey line behind the points that no other beats in both time and error."""
+def _draw_front(
+    axes: Any, front: Sequence[Timing], quantity: str, unit: float, label: str, look: dict[str, Any]
+) -> None:
+    """A line behind the points that no other beats in both time, in units of so many seconds, and error."""
     if not front:
         return
-    seconds, errors = [rung.seconds for rung in front], [rung.error(quantity) for rung in front]
-    axes.loglog(seconds, errors, label="Pareto front, all methods", drawstyle="steps-post", **FRONT)
+    seconds, errors = [unit * rung.seconds for rung in front], [rung.error(quantity) for rung in front]
+    axes.loglog(seconds, errors, label=label, drawstyle="steps-post", **look)
 
 
 def _draw_method(axes: Any, study: SpeedStudy, method: Method, quantity: str) -> None:
@@ -129,7 +135,7 @@ def _dress(axes: Any, title: str) -> None:
 TOLERANCES = (1e-3, 1e-6)
 GROWTH_COLUMNS = ("solver", "grows", "at", "seconds", "yardsticks")
 UNITS = {"pull_off": "R dgamma", "jump_on": "eps", "hysteresis": "R dgamma eps"}
-COLUMNS = ("method", "setting", "unknowns", "seconds", "yardsticks", "peak_mebibytes")
+COLUMNS = ("tabor", "method", "setting", "unknowns", "seconds", "yardsticks", "peak_mebibytes")
 ERROR_COLUMNS = tuple(f"{quantity}_{what}" for quantity in QUANTITIES for what in ("error", "truth_uncertainty"))
 
 
@@ -138,7 +144,7 @@ def write(study: SpeedStudy, directory: Path) -> None:
 
     Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none.
     """
-    rows = [_cells(rung, study.yardstick) for rung in study.rungs]
+    rows = [[f"{study.tabor!r}", *_cells(rung, study.yardstick)] for rung in study.rungs]
     write_csv(Table("speed", "", "", (*COLUMNS, *ERROR_COLUMNS, "outcome", "reason"), rows), directory)
     write_csv(Table("growth", "", "", GROWTH_COLUMNS, list(_growth_cells(study))), directory)
     (directory / "speed.md").write_text("\n".join(markdown(list(parts(study)))) + "\n")
@@ -180,6 +186,8 @@ def parts(study: SpeedStudy) -> Iterator[str | Table]:
     yield _truths(study)
     yield _costs(study, "What it costs to have every quantity that a method gives", None)
     yield from (_costs(study, f"What it costs to have {quantity}", quantity) for quantity in study.quantities)
+    if study.earlier:
+        yield from (_beside(study, study.earlier, quantity) for quantity in study.quantities)
     yield _exponents(study)
     yield _growths(study)
     failures = [(rung.method, rung.setting, rung.status, rung.reason) for rung in study.rungs if not rung.converged]
@@ -238,6 +246,26 @@ def _best(rung: Timing | None, quantity: str | None) -> str:
         return "-"
     below = "<" if rung.hidden(named) else ""
     return f"{below}{rung.error(named):.0e} in {rung.seconds:.2f} s ({rung.setting})"
+
+
+DECADES = tuple(10.0**-digits for digits in range(2, 9))
+
+
+def _beside(study: SpeedStudy, earlier: Earlier, quantity: str) -> Table:
+    """Yardsticks of the fastest method to each tolerance, of the earlier run and of this one."""
+    rows = []
+    for tolerance in DECADES:
+        before, now = (cheapest(rungs, tolerance, quantity) for rungs in (earlier.rungs, study.rungs))
+        costs = before.seconds if before else math.nan, now.seconds / study.yardstick if now else math.nan
+        cells = [
+            f"{cost:.0f} ({rung.method}, {rung.setting})" if rung else "-"
+            for cost, rung in zip(costs, (before, now), strict=True)
+        ]
+        rows.append([f"{tolerance:.0e}", *cells, _number(costs[1] / costs[0], "{:.2f}") or "-"])
+    title = (
+        f"The front of {quantity} beside that of {earlier.name}: yardsticks of the fastest method, each of its own run"
+    )
+    return Table("", title, "", ("tolerance", "earlier", "now", "now / earlier"), rows)
 
 
 def _exponents(study: SpeedStudy) -> Table:

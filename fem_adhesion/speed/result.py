@@ -99,11 +99,23 @@ class Growth:
 
 
 @dataclass(frozen=True)
+class Earlier:
+    """Rungs of an earlier run that have a result, by the name of its file; their seconds are yardsticks.
+
+    Machines differ, and one differs from hour to hour: what is compared is time in yardsticks, each of its own run.
+    """
+
+    name: str
+    rungs: tuple[Timing, ...]
+
+
+@dataclass(frozen=True)
 class SpeedStudy:
     """All rungs of all methods, in the order of the methods, at one Tabor parameter.
 
     The truths are by the family that is judged; the yardstick is the seconds that one dgesv of n = 200 took in the same
-    run. `growths` tell how the time of the solvers with error control grows with what is asked of them.
+    run. `growths` tell how the time of the solvers with error control grows with what is asked of them; `earlier` is a
+    run to be shown beside, if there is one.
     """
 
     tabor: float
@@ -113,6 +125,7 @@ class SpeedStudy:
     methods: tuple[Method, ...]
     rungs: tuple[Timing, ...]
     growths: tuple[Growth, ...] = ()
+    earlier: Earlier | None = None
 
     @property
     def quantities(self) -> tuple[str, ...]:
