@@ -102,9 +102,9 @@ class Scales:
 
     def widest_radius(self, to_load: float) -> float:
         """Contact radius that a curve up to a load hardly exceeds: a soft and a rigid contact's together."""
-        soft = float(np.cbrt(self.softest)) * jkr_radius(self.profile, to_load)
+        soft = jkr_radius(self.profile, to_load, self.softest)
         if self.tabor < 1:
-            soft = max(soft, hertz_radius(self.profile, to_load + self.rigid_tension))
+            soft = max(soft, hertz_radius(self.profile, to_load + self.rigid_tension, self.softest))
         return float(np.hypot(soft, self._touching_radius))
 
     @cached_property

@@ -4,6 +4,7 @@ import io
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from rich.console import Console
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+import fem_adhesion
 import halfspace
 from fem_adhesion import Scene, convergence
 from fem_adhesion.crosscheck.study import _compare_events
@@ -18,13 +20,14 @@ from fem_adhesion.curve import lines, record, terminal
 from fem_adhesion.curve.movie import experiment
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace.accuracy.fold_birth import count_folds
-from halfspace.accuracy.trace import _sized_body, half_space_charts, resolution_for
+from halfspace.accuracy.trace import _sized_body, half_space_charts, resolution_for, rings
+from halfspace.equilibrium import path as path_module
 from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import usual
 from halfspace.equilibrium.path import Steps
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, Morse
+from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, Morse, PowerLaw
 from halfspace.profiles import Sphere
 from halfspace.scales import Scales
 from halfspace.values import Estimate
@@ -276,3 +279,49 @@ def test_folds_are_found_at_every_tolerance_also_where_contact_is_about_to_be_ma
             assert abs(fold.approach - approach) <= fold.approach_error <= rtol * path.approach_scale
             assert abs(fold.central_gap - gap) <= fold.central_gap_error
             assert max(abs(fold.load - load), fold.load_error) <= rtol
+
+
+@pytest.fixture(scope="module")
+def wound():
+    """At a Tabor parameter at which the last fold but one is next to the birth of contact."""
+    return halfspace.trace(19.829348134526555, rtol=1e-6)
+
+
+@pytest.mark.parametrize("rtol", [1e-1, 1e-2])
+def test_coarse_elements_name_no_wiggle_at_the_birth_of_contact_a_fold(wound, rtol):
+    """The block that follows the contact was a third as large where it took over: a fold was 0.18 eps off."""
+    path = fem_adhesion.trace(Scene(wound.tabor), rtol=rtol)
+    assert list(path.events) == list(wound.events)
+    for name in ("fold_2", "fold_3", "fold_4", "fold_5"):
+        ours, truth = path.events[name], wound.events[name]
+        for quantity in ("approach", "load", "central_gap"):
+            error = getattr(ours, f"{quantity}_error") + getattr(truth, f"{quantity}_error")
+            assert abs(getattr(ours, quantity) - getattr(truth, quantity)) <= error
+
+
+@pytest.mark.parametrize("tabor", [0.1, 1.0, 20.0])
+def test_the_chart_that_follows_the_contact_reaches_as_far_as_the_standing_one_when_it_takes_over(tabor):
+    scales = Scales(tabor)
+    lines = rings(scales, 0.6, 3.0, 8.0)
+    assert lines.edge[-1] * lines.until == pytest.approx(lines.centred[-1], rel=1e-12)
+    assert lines.centred[-1] == pytest.approx(scales.outer_radius(32.0), rel=1e-12)
+    within = lines.centred[lines.centred < lines.until]
+    assert np.diff(np.append(within, lines.centred[within.size])).max() <= 0.3 * scales.spike_width * (1 + 1e-12)
+
+
+def test_a_sphere_whose_contact_is_born_between_folds_is_traced():
+    """A step leapt from the first radius to one that the operator is not known for, and the path went astray."""
+    law, sphere = PowerLaw(3.32, 11.7), Sphere(973.6)
+    rough, fine = (halfspace.trace(28.9388, law=law, profile=sphere, rtol=rtol) for rtol in (1e-4, 1e-6))
+    assert list(rough.events) == list(fine.events)
+    assert "fold_5" in rough.events
+    for name, event in rough.events.items():
+        assert abs(event.approach - fine.events[name].approach) <= event.approach_error
+
+
+def test_a_step_that_leaves_the_radii_for_which_an_operator_is_known_is_refused(monkeypatch):
+    leapt = SimpleNamespace(observables=np.array([0.0, 0.0, 0.0, 0.05]))
+    monkeypatch.setattr(path_module, "_corrected", lambda *_: leapt)
+    problem = SimpleNamespace(interface=SimpleNamespace(operator=SimpleNamespace(known=(0.1, 1.0))))
+    with pytest.raises(NotConverged, match=r"contact radius 0\.05 beta is outside 0\.1 to 1 beta of the chart"):
+        path_module._advance(problem, [leapt], 0.1, None, Steps())

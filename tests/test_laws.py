@@ -17,14 +17,16 @@ import halfspace
 from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck.references import elements_of
 from fem_adhesion.scene import Scene
+from halfspace import Coated
 from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.elastic.layers import softest
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
 from halfspace.laws.check import require_law
 from halfspace.profiles import PARABOLOID, Endless, Hyperboloid, Paraboloid, Power, RoundedPunch
-from halfspace.profiles.indentation import hertz_approach, hertz_load, jkr_approach, jkr_load, jkr_radius
+from halfspace.profiles.indentation import hertz_approach, hertz_load, hertz_radius, jkr_approach, jkr_load, jkr_radius
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 from halfspace.theories.maugis import TENSION_TO_MAUGIS, MaugisDugdale
@@ -335,6 +337,29 @@ def test_contact_with_a_profile_against_closed_forms():
             assert hertz_approach(Power(k), a) == pytest.approx(beta(k / 2, 0.5) / 2 * a**k, rel=1e-12)
     for load in (0.0, 5.0, 100.0):
         assert jkr_radius(PARABOLOID, load) == pytest.approx(float(closed_forms.jkr_radius(load)), rel=1e-13)
+
+
+@pytest.mark.parametrize("softness", [0.1, 1.0, 9.9])
+def test_contacts_of_a_softer_body_are_those_in_lengths_of_its_own(softness):
+    """Whose beta is wider by s^(1/3); by that alone a cone's contact was taken for a quarter of what it is."""
+    wider = np.cbrt(softness)
+    for k in (1.5, 2.0, 7.0):
+        factor = wider ** (k - 2)  # of the same profile's heights, in its own lengths
+        for a in (0.5, 3.0):
+            own = factor * hertz_load(Power(k), a) - np.sqrt(8 * np.pi * a**3)
+            assert jkr_load(Power(k), a * wider, softness) == pytest.approx(own, rel=1e-12)
+    assert jkr_radius(PARABOLOID, 5.0, softness) == pytest.approx(wider * jkr_radius(PARABOLOID, 5.0), rel=1e-12)
+    assert hertz_radius(PARABOLOID, 5.0, softness) == pytest.approx(wider * hertz_radius(PARABOLOID, 5.0), rel=1e-12)
+
+
+def test_a_cone_on_a_soft_base_is_traced_to_its_end():
+    """No end within 2000 points: its contact grew out of the radii that the operator was known for."""
+    film, law = Coated(0.31, modulus_ratio=9.463, poisson=0.225, substrate_poisson=0.05), PowerLaw(3.03, 13.9)
+    path = halfspace.trace(0.5084, law=law, profile=Hyperboloid(0.42), body=film, rtol=1e-3)
+    assert path.met
+    widest = Scales(0.5084, law, Hyperboloid(0.42), softest=softest(film)).widest_radius(5.0)
+    assert path.contact_radius[-2] < widest
+    assert path.event("zero_load").contact_radius > 0.9 * widest
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,8 @@ from halfspace.scales import Scales
 from halfspace.values import Array, Valued
 
 LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the least that the other one knows
-LEAVE = 0.5  # of the first cell: the radius at which the chart centred on the axis is left
+EQUAL = 3  # cells of equal length on the axis of that chart, which carry a contact wherever it ends in them
+LEAVE = 0.8  # of these cells: the radius at which the chart centred on the axis is left
 WINDOW, AROUND = 2e-3, 3  # half the logarithmic width of the radii around an event on the lowest rung, operators in it
 WIDE, WIDELY = 0.4, 7  # the same farther around: an event that lies off by a fifth is then told to 1e-6 of its radius
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
@@ -66,20 +67,32 @@ class SizedBody(Valued):
 
     @property
     def length(self) -> float:
-        """Length of the cells at the contact edge in beta, and the contact radius up to which they do at the centre."""
+        """Length of the cells at the contact edge, or on the axis, in beta."""
         return self.finest * self.scales.spike_width / 2
+
+    @property
+    def until(self) -> float:
+        """Contact radius in beta up to which the chart fine on the axis serves."""
+        return LEAVE * self._reach
+
+    @property
+    def _reach(self) -> float:
+        return min(EQUAL * self.length, float(self.outer[0]) / 2)
 
     def lines(self, edge: float = 0.0) -> Array:
         """Ends of all cells that are finest at a contact edge, in the surface's coordinate, or on the axis."""
         return np.concatenate([self._graded(edge), self.outer[1:]])
 
     def _graded(self, edge: float) -> Array:
-        return grid.graded(edge, self.length, float(self.outer[0]), growth=self.growth, last=self.last)
+        end = float(self.outer[0])
+        if edge:
+            return grid.graded(edge, self.length, end, growth=self.growth, last=self.last)
+        return grid.fine_until(self._reach, self.length, end, growth=self.growth, last=self.last)
 
     def centred(self) -> Chart:
         """Chart fine on the axis."""
         operator, unknowns = self.make(self.lines())
-        return Chart(contact_of(self.scales, operator), unknowns, LEAVE * self.length)
+        return Chart(contact_of(self.scales, operator), unknowns, self.until)
 
     def following(self, moving: MovingGrid, scales: Array) -> Chart:
         """Chart that follows the contact edge, from operators at some contact radii."""
@@ -90,7 +103,7 @@ class SizedBody(Valued):
     def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
         widest = min(self.scales.widest_radius(to_load), WIDEST * self.scales.profile.end)
-        least = min(LEAST * LEAVE * self.length, widest / 2)
+        least = min(LEAST * self.until, widest / 2)
         count = 2 + int(np.ceil(np.log(widest / least) / np.log(apart)))
         end, edge = float(self.outer[0]), self.coordinate.of(widest)
         inner = grid.geometric(1.0, 2 * self.length / edge, self.growth)

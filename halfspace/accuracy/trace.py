@@ -12,7 +12,16 @@ from functools import partial
 
 import numpy as np
 
-from halfspace.accuracy.finite_bodies import TIGHT, AroundEvents, Made, SizedBody, at_equator, surroundings
+from halfspace.accuracy.finite_bodies import (
+    EQUAL,
+    LEAVE,
+    TIGHT,
+    AroundEvents,
+    Made,
+    SizedBody,
+    at_equator,
+    surroundings,
+)
 from halfspace.accuracy.refinement import Rung, climb
 from halfspace.accuracy.stages import Charted
 from halfspace.elastic import compliance, grid
@@ -34,7 +43,6 @@ from halfspace.values import Array, Valued
 EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
 MOST_NODES = 16  # of a panel
 FAR = 100.0  # of the last cell on a layered body, in extents: the energy left out beyond is 1e-10 R dgamma eps
-LEAVE = 0.8  # of the first cell: the contact radius at which the chart centred on the axis is left
 # Found by trial; what each decides at half and at double is in tests/constants.py.
 ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
 MOST_CELLS = 100  # of one length
@@ -101,11 +109,12 @@ def rings(
     outer = scales.outer_radius(extent**2 / 2)
     widest, first = scales.widest_radius(to_load), scales.profile.first_cell(10.0**-nodes)
     growth = 1 + (growth - 1) * scales.gradual
-    centred = grid.graded(0.0, length, outer, growth=growth)
+    reach = EQUAL * length
+    until = LEAVE * reach
+    centred = grid.fine_until(reach, length, outer, growth=growth)
     if scales.law.outermost:
         return Rings(_fine_throughout(scales, finest, growth, outer, to_load), centred, math.inf)
-    edge = grid.graded(1.0, 2 * length / widest, outer / length, growth=growth)
-    until = LEAVE * float(centred[1])  # the cells beyond the first may be too coarse
+    edge = grid.graded(1.0, 2 * length / widest, outer / until, growth=growth)  # as wide from the first
     return Rings(grid.towards_axis(centred, first, growth), grid.towards_axis(edge, first / widest, growth), until)
 
 
@@ -120,8 +129,7 @@ def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float,
             f"{spacing:.2g} beta are needed up to {reach:.3g} beta, limit: {MOST_CELLS}; take a smaller tabor than "
             f"{scales.tabor:g}, or a smaller to_load"
         )
-    inside = grid.uniform(reach, spacing)
-    return np.append(inside, (reach + grid.geometric(max(outer - reach, spacing), spacing, growth))[1:])
+    return grid.fine_until(reach, spacing, max(outer, reach + spacing), growth=growth)
 
 
 def half_space_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:

@@ -66,6 +66,11 @@ class ElasticOperator(Valued):
         return False
 
     @property
+    def known(self) -> tuple[float, float]:
+        """Least and largest contact radius that it serves: all, as far as its cells are fine enough."""
+        return 0.0, np.inf
+
+    @property
     def edge_row(self) -> Array:
         """Row that interpolates at the contact edge, which a grid that stands still has nowhere in particular."""
         raise AttributeError("the grid does not follow the contact; use interpolation at its radius")

@@ -17,6 +17,12 @@ def uniform(extent: float, spacing: float) -> Array:
     return np.linspace(0, extent, int(np.ceil(extent / spacing - 1e-9)) + 1)
 
 
+def fine_until(reach: float, spacing: float, extent: float, *, growth: float, last: float = np.inf) -> Array:
+    """Breakpoints from 0 to `extent`: equally spaced up to `reach`, growing geometrically from there; see `graded`."""
+    beyond = geometric(extent - reach, spacing, growth, last)
+    return np.append(uniform(reach, spacing), (reach + beyond)[1:])
+
+
 def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0, last: float = np.inf) -> Array:
     """Breakpoints from 0 to `extent`, finest at `radius` and growing geometrically away from it on both sides.
 

@@ -29,6 +29,11 @@ class Operator(Protocol):
         ...
 
     @property
+    def known(self) -> tuple[float, float]:
+        """Least and largest contact radius that it serves."""
+        ...
+
+    @property
     def axis_row(self) -> Array:
         """Row (q,) that interpolates nodal values on the axis."""
         ...
@@ -80,6 +85,7 @@ class Homogeneous(Valued):
     unit: ElasticOperator
     _latest: _Latest[ElasticOperator] = field(default_factory=_Latest, compare=False, repr=False)
     follows_contact = True
+    known = (0.0, np.inf)
 
     @property
     def axis_row(self) -> Array:
@@ -199,6 +205,11 @@ class Interpolated(Valued):
     _latest: _Latest[_AtScale] = field(default_factory=_Latest, compare=False, repr=False)
     follows_contact = True
 
+    @property
+    def known(self) -> tuple[float, float]:
+        """Least and largest contact radius that it serves: a little outside those at which it is known."""
+        return float(self.scales.min()) / OUTSIDE, float(self.scales.max()) * OUTSIDE
+
     @cached_property
     def axis_row(self) -> Array:
         """Row (q,) that interpolates nodal values on the axis."""
@@ -303,6 +314,9 @@ class _AtScale(Valued):
     def kernel_rate(self) -> Array:
         """Derivative of the kernel by the scale, but for that of the radii, (q, q)."""
         return self.body._combined(self._rows[1]) / self.nodes.radii[self.body._larger]
+
+
+OUTSIDE = 1.3  # of the outermost radii: as far as the curve's own are apart at the ends, and a step more
 
 
 def chebyshev_radii(least: float, most: float, count: int) -> Array:

@@ -204,14 +204,13 @@ class ContactProblem(Valued):
     def ripples(self, x: Array) -> Array:
         """What the deflection's polynomials end with on the axis, in eps, and at the contact edge, in beta, (2,).
 
-        No better are values at a point known: the central gap by the last three Legendre coefficients in the first
-        cell, as one may be small by accident; the contact radius, nan without contact, by the last but one in the cells
-        on both sides of the edge, in the geometric mean: they have it from either. On finite elements of degree p, with
-        p + 2 nodes, the last is none of theirs.
+        No better are values at a point known: the central gap by the last Legendre coefficients in the first cell, see
+        `_left_out`; the contact radius, nan without contact, by the last but one in the cells on both sides of the
+        edge, in the geometric mean: they have it from either. On finite elements of degree p, with p + 2 nodes, the
+        last is none of theirs.
         """
         body, radius = self.operator_at(x), self.contact_radius(x)
-        nodes = body.cell_nodes.shape[1]
-        gap = self._coefficients(x, 0)[max(min(2, nodes - 1), nodes - 3) :].max()  # but no displacement, and no slope
+        gap = _left_out(self._coefficients(x, 0))
         if np.isnan(radius):
             return np.array([gap, np.nan])
         cells = {body.cell_of(radius * (1 + side)) for side in (-1e-9, 1e-9)}
@@ -307,6 +306,19 @@ class ContactProblem(Valued):
         L = self.operator.root(float(x[-1]))
         hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * self.law.slope(x[:-2], self.tabor))[:, None])
         return count_negative(hessian)
+
+
+def _left_out(coefficients: Array) -> float:
+    """What a polynomial leaves out at the end of a cell, by the sizes of its Legendre coefficients: the last ones.
+
+    Since one may be small by accident, the third last counts as well, carried on to the next by how fast they fall.
+    """
+    count = coefficients.size
+    last = coefficients[max(min(2, count - 1), count - 3) :]  # but no displacement, and no slope
+    if count < 6:
+        return float(last.max())
+    before, after = coefficients[-5:-3].max(), coefficients[-3:-1].max()
+    return float(max(last[0] * min(1.0, np.sqrt(after / before) if before else 1.0), *last[1:]))
 
 
 def contact_of(scales: Scales, operator: Operator) -> ContactProblem:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LARGEST, LOAD
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LARGEST, LOAD
 from halfspace.equilibrium.newton import Control, Equilibrium, Traceable
 from halfspace.errors import GridTooCoarse, IllPosed, NotConverged
 from halfspace.values import Array, Valued
@@ -280,9 +280,13 @@ def _carried(problem: Equilibrium, point: Point) -> bool:
 
 
 def _advance(problem: Traceable, points: list[Point], step: float, metric: Metric, steps: Steps) -> Point:
-    """One step, refused if the path turns too far in it for its folds to be seen."""
+    """One step, refused if it leaves what the operator knows, or if the path turns too far for its folds to be seen."""
     point, before = points[-1], points[-2] if len(points) > 1 else None
     new = _corrected(problem, point, step, _starts(problem, point, step, before), metric, steps)
+    least, most = problem.interface.operator.known
+    radius = new.observables[CONTACT_RADIUS]
+    if radius < least or radius > most:
+        raise NotConverged(f"contact radius {radius:.3g} beta is outside {least:.3g} to {most:.3g} beta of the chart")
     if _turn(point, new, metric) > 2 * steps.turn:
         raise NotConverged("the path turns too sharply")
     if any(_hides_turning_points(point, new, k, metric) for k in (APPROACH, LOAD)):

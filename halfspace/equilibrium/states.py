@@ -110,16 +110,18 @@ class FinestCurve(Valued):
         """Estimated errors of approach, load, central gap and contact radius at each point, (points, 4).
 
         No less than between those at the points beside it, in the geometric mean: along the path a change passes
-        through zero, where it tells nothing. Where there is but one change to tell, no less than the larger of them.
+        through zero, where it tells nothing. Where there is but one change to tell, of two points on either side the
+        larger counts, since a change may be all but zero at several.
         """
         part = max(self.remaining, 1.0)
         return np.concatenate([self._errors_along(segment, part) for segment in self.segments])
 
     def _errors_along(self, segment: Segment, part: float) -> Array:
         own = np.array([self._errors(segment.problem, point, part) for point in segment.points])
-        padded = np.pad(own, ((1, 1), (0, 0)), mode="edge")
-        before, after = padded[:-2], padded[2:]
-        beside = np.fmax(before, after) if self._one_change else np.sqrt(before * after)
+        farther = 2 if self._one_change else 1
+        padded = np.pad(own, ((farther, farther), (0, 0)), mode="edge")
+        sides = [padded[k : k + len(own)] for k in range(2 * farther + 1) if k != farther]
+        beside = np.sqrt(np.fmax.reduce(sides[:farther]) * np.fmax.reduce(sides[farther:]))
         return np.where(np.isnan(own), own, np.fmax(own, beside))
 
     @property

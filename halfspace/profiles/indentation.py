@@ -6,7 +6,8 @@ Lengths in beta, loads in R dgamma, E* = 1, approaches in beta^2/R = mu eps. Aft
     alpha = a int z'(r) dtheta,      W = 2 a^2 int sin(theta)^2 z'(r) dtheta,      0 < theta < pi/2;
 
 adhesion draws the surface up as a flat punch would, which takes sqrt(2 pi a) of the approach and sqrt(8 pi a^3) of the
-load (D. Maugis and M. Barquins, J. Phys. D 11 (1978) 1989).
+load (D. Maugis and M. Barquins, J. Phys. D 11 (1978) 1989). A body that is s times as soft bears 1/s of Hertz's load
+and 1/sqrt(s) of the punch's.
 """
 
 from __future__ import annotations
@@ -52,9 +53,9 @@ def jkr_approach(surface: Surface, radius: ArrayLike) -> Array:
     return hertz_approach(surface, radius) - np.sqrt(2 * np.pi * np.asarray(radius))
 
 
-def jkr_load(surface: Surface, radius: ArrayLike) -> Array:
+def jkr_load(surface: Surface, radius: ArrayLike, softness: float = 1.0) -> Array:
     """JKR's load at contact radii."""
-    return hertz_load(surface, radius) - np.sqrt(8 * np.pi * np.asarray(radius) ** 3)
+    return hertz_load(surface, radius) / softness - np.sqrt(8 * np.pi * np.asarray(radius) ** 3 / softness)
 
 
 def jkr_fold(surface: Surface) -> float:
@@ -72,14 +73,14 @@ def _radii(surface: Surface) -> Array:
     return a[a < surface.end]
 
 
-def hertz_radius(surface: Surface, load: float) -> float:
+def hertz_radius(surface: Surface, load: float, softness: float = 1.0) -> float:
     """Contact radius under a load without adhesion, or the end of the surface if it is wider."""
-    return _widest(lambda a: float(hertz_load(surface, a)), surface, load)
+    return _widest(lambda a: float(hertz_load(surface, a)) / softness, surface, load)
 
 
-def jkr_radius(surface: Surface, load: float) -> float:
+def jkr_radius(surface: Surface, load: float, softness: float = 1.0) -> float:
     """Contact radius under a load of zero or more by JKR's theory, or the end of the surface if it is wider."""
-    return _widest(lambda a: float(jkr_load(surface, a)), surface, load)
+    return _widest(lambda a: float(jkr_load(surface, a, softness)), surface, load)
 
 
 def _widest(load_at: Callable[[float], float], surface: Surface, load: float) -> float:
