@@ -2,6 +2,7 @@
 
 import io
 import math
+import re
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from types import SimpleNamespace
@@ -19,14 +20,16 @@ from fem_adhesion.crosscheck.study import _compare_events
 from fem_adhesion.curve import lines, record, terminal
 from fem_adhesion.curve.movie import experiment
 from fem_adhesion.curve.solve import Curves, Question
+from halfspace.accuracy import further_folds as folds_module
 from halfspace.accuracy.fold_birth import count_folds
+from halfspace.accuracy.stages import on_all, step_up
 from halfspace.accuracy.trace import _sized_body, half_space_charts, resolution_for, rings
 from halfspace.equilibrium import path as path_module
 from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import usual
 from halfspace.equilibrium.path import Steps
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, Morse, PowerLaw
 from halfspace.profiles import Sphere
 from halfspace.scales import Scales
@@ -325,3 +328,57 @@ def test_a_step_that_leaves_the_radii_for_which_an_operator_is_known_is_refused(
     problem = SimpleNamespace(interface=SimpleNamespace(operator=SimpleNamespace(known=(0.1, 1.0))))
     with pytest.raises(NotConverged, match=r"contact radius 0\.05 beta is outside 0\.1 to 1 beta of the chart"):
         path_module._advance(problem, [leapt], 0.1, None, Steps())
+
+
+@pytest.mark.parametrize("lost", [0, 1])
+def test_a_fold_that_no_finer_grid_has_is_told(monkeypatch, lost):
+    """Folds come in pairs: with one the other is in doubt as well."""
+    path, ups = halfspace.trace(5.0, rtol=1e-3), iter(range(9))
+
+    def on_finer_grids(state, *_):
+        if next(ups) == lost:
+            raise NotConverged("not found again")
+        return step_up(state, *_)
+
+    monkeypatch.setattr(folds_module, "step_up", on_finer_grids)
+    assert list(path.events) == ["pull_off", "jump_on", "jump_off", "zero_load"]
+    true = halfspace.trace(5.0, rtol=1e-3)
+    monkeypatch.undo()
+    for fold, name in zip(sorted(path.unconfirmed, key=lambda f: -f.central_gap), ("fold_2", "fold_3"), strict=True):
+        assert fold.approach == pytest.approx(true.event(name).approach, abs=1e-3)
+        assert fold.load == pytest.approx(true.event(name).load, abs=1e-3)
+    assert true.unconfirmed == ()
+    curves = Curves(Question(Scene(5.0)), {"half-space": path}, cycle(path), None)
+    told = [note for note in terminal.notes(curves) if "cannot be told" in note]
+    assert len(told) == 2
+    assert re.match(r"half-space: a fold near approach -4\.\d+ eps, load -0\.\d+ R dgamma cannot be told", told[0])
+    solution = record.record(curves)["solutions"]["half-space"]
+    assert [fold["central_gap"] for fold in solution["unconfirmed_folds"]] == [f.central_gap for f in path.unconfirmed]
+
+
+def test_folds_left_over_are_named_in_turn_as_least_and_largest_approaches(monkeypatch):
+    """Of four with the second lost, the first and the last are a pair; the third is as the first."""
+    path, ups = halfspace.trace(20.0, rtol=1e-3), iter(range(9))
+    every = [halfspace.trace(20.0, rtol=1e-3).event(f"fold_{k}").approach for k in range(2, 6)]
+
+    def on_finer_grids(state, *_):
+        if next(ups) == 1:
+            raise NotConverged("not found again")
+        return step_up(state, *_)
+
+    monkeypatch.setattr(folds_module, "step_up", on_finer_grids)
+    kept = [path.events[name].approach for name in path.events if name.startswith("fold")]
+    assert kept == [every[0], every[3]]
+    assert len(path.unconfirmed) == 2
+
+
+@pytest.mark.parametrize("error", [IllPosed("for any grid"), ContactTooWide("for any grid")])
+def test_a_jump_that_no_grid_has_ends_the_climb_for_what_it_is(error):
+    class Stage:
+        farther = None
+
+        def __call__(self, _):
+            raise error
+
+    with pytest.raises(type(error), match="for any grid"):
+        on_all({"jump_on": SimpleNamespace(problem=None)}, Stage())

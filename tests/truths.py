@@ -22,8 +22,9 @@ from halfspace.elastic import compliance
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.charts import moved, trace_charts
+from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.events import numbered
-from halfspace.equilibrium.search import find_events, further_folds
+from halfspace.equilibrium.search import between_jumps, find_events, with_care
 from halfspace.profiles.sphere import between_spheres
 from halfspace.scales import Scales
 
@@ -49,7 +50,7 @@ def _half_spaces(scales):
 def traced(stages):
     """Events of the curve itself, traced on the first stage and solved for again on the second."""
     segments = trace_charts(stages[0].charts)
-    found = find_events(segments) | numbered(further_folds(segments))
+    found = find_events(segments) | numbered(f for pair in between_jumps(segments) for f in with_care(pair, FOLD))
     return [found, on(stages[1], found)]
 
 

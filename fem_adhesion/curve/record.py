@@ -60,6 +60,7 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
         "met": path.met,
         "jumps": path.jumps,
         "margin": path.margin,
+        "unconfirmed_folds": [fold._asdict() for fold in path.unconfirmed],
         "model_uncertainty": path.spread,
         "energy_released": path.energy,
         "unknowns": path.unknowns,

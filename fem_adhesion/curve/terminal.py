@@ -123,6 +123,9 @@ def notes(curves: Curves) -> Iterator[str]:
     for solver, path in curves.paths.items():
         if path.margin:
             yield f"{solver}: {_how_far(path.margin)}"
+        for fold in path.unconfirmed:
+            where = f"approach {fold.approach:.3g} eps, load {fold.load:.3g} R dgamma"
+            yield f"{solver}: a fold near {where} cannot be told, no finer grid has it; a smaller rtol may"
         told = tolerance_told(path.rtol, path.missed)
         yield f"{solver}: {path.unknowns} unknowns, {path.count} points, {path.seconds:.2f} s; {told}"
     if any(curves.paths[name].tolerance.missed_by(event) for _, name, event in _rows(curves)):

@@ -11,11 +11,11 @@ from typing import TypeVar
 import numpy as np
 
 from halfspace.accuracy.stages import Stage, State, estimate_all, moved_to, step_up
-from halfspace.equilibrium.conditions import Located
+from halfspace.equilibrium.conditions import FOLD, Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS
-from halfspace.equilibrium.events import EVENTS, Event, numbered
-from halfspace.equilibrium.path import Segment
-from halfspace.equilibrium.search import further_folds
+from halfspace.equilibrium.events import EVENTS, Event, Unconfirmed, numbered
+from halfspace.equilibrium.path import Point, Segment
+from halfspace.equilibrium.search import between_jumps, with_care
 from halfspace.errors import NotConverged
 from halfspace.values import Valued
 
@@ -73,19 +73,41 @@ class FurtherFolds(Valued):
     remaining: float
     along: bool
 
-    @cached_property
+    @property
     def chains(self) -> list[list[State]]:
         """Chains of states as of the events; a fold that a finer grid does not have is left out.
 
         That of a ripple on a coarse grid may become another fold, or be lost alone: folds come in pairs.
         """
-        found: list[list[list[Located]]] = []
-        for fold in further_folds(self.segments):
-            chains, known = self._chains(fold), (*self.jumps, *(others[0][-1] for others in found))
-            if chains and not any(_same(chains[0][-1], other) for other in known):
-                found.append(chains)
-        pairs = found[: len(found) // 2 * 2]
-        return [[numbered(states) for states in zip(*chain, strict=True)] for chain in zip(*pairs, strict=True)]
+        return [[numbered(states) for states in zip(*chain, strict=True)] for chain in zip(*self._told[0], strict=True)]
+
+    def unconfirmed(self) -> tuple[Unconfirmed, ...]:
+        """Where the curve as it was traced has folds that were left out."""
+        return tuple(Unconfirmed(*map(float, point.observables[:CONTACT_RADIUS])) for point in self._told[1])
+
+    @cached_property
+    def _told(self) -> tuple[list[list[list[Located]]], list[Point]]:
+        """Folds that are confirmed, least and largest approaches in turn, and about where the rest are."""
+        found: list[tuple[Point, list[list[Located]]]] = []
+        lost: list[Point] = []
+        for point, fold in self._traced():
+            chains = self._chains(fold) if fold else []
+            known = (*self.jumps, *(others[0][-1] for _, others in found))
+            last = known[-1] if found else self.jumps[0]
+            if chains and last.slope * chains[0][-1].slope < 0 and not any(_same(chains[0][-1], k) for k in known):
+                found.append((point, chains))
+            else:
+                lost.append(point)
+        paired = len(found) // 2 * 2
+        return [chains for _, chains in found[:paired]], [*lost, *(point for point, _ in found[paired:])]
+
+    def _traced(self) -> Iterator[tuple[Point, Located | None]]:
+        """Folds of the curve as it was traced, and where about; none where it is not pinned down."""
+        for bracket in between_jumps(self.segments):
+            try:
+                yield from ((fold.point, fold) for fold in with_care(bracket, FOLD))
+            except NotConverged:
+                yield bracket[1], None
 
     def _chains(self, fold: Located) -> list[list[Located]]:
         for stage in self.before:  # where one does not have it, a later one may: its change is then from farther back

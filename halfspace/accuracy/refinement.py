@@ -146,6 +146,7 @@ def _climb_from(
         higher.remaining,
         _ways(below.stages[-1] if below.stages else Charted(tuple(charts)), higher),
         margin,
+        left_out=further.unconfirmed,
     )
 
 

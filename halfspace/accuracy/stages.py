@@ -13,7 +13,7 @@ from halfspace.equilibrium.charts import Chart, Finest, moved_near, settled
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.events import Event, estimate_event, is_event
-from halfspace.errors import NotConverged
+from halfspace.errors import ContactTooWide, IllPosed, NotConverged
 from halfspace.values import Valued
 
 FOLDS = ("jump_on", "jump_off")
@@ -84,6 +84,8 @@ def on_all(state: State, stage: Stage) -> State:
 def _found_again(name: str, event: Located, stage: Stage) -> Located:
     try:
         return moved_to(event, stage)
+    except (ContactTooWide, IllPosed):  # for any grid
+        raise
     except NotConverged as error:
         raise FoldsLost(str(error)) if name in FOLDS else error from error
 

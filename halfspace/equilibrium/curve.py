@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cached_property
@@ -19,6 +19,7 @@ from halfspace.equilibrium.events import (
     REMAINING,
     Event,
     Tolerance,
+    Unconfirmed,
     approach_scale,
     is_event,
     tolerance_told,
@@ -71,6 +72,8 @@ class EquilibriumPath(Valued):
     spread : mapping of str to mapping of str to float
         By event, how far apart its numbers are in models between which the assumptions leave a choice; of no event if
         they leave none.
+    left_out : callable
+        The folds of `unconfirmed`.
     """
 
     tabor: float
@@ -87,6 +90,7 @@ class EquilibriumPath(Valued):
     ways: Ways = ()
     margin: Estimate | None = None
     spread: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    left_out: Callable[[], tuple[Unconfirmed, ...]] = field(default=tuple, compare=False)
 
     @property
     def unknowns(self) -> int:
@@ -139,6 +143,11 @@ class EquilibriumPath(Valued):
         if self.margin and (abs(self.margin.value) <= self.margin.error or found != (self.margin.value < 0)):
             return None
         return found
+
+    @property
+    def unconfirmed(self) -> tuple[Unconfirmed, ...]:
+        """Folds between the jumps that cannot be told: the curve as it was traced has them, but no finer grid."""
+        return self.left_out()
 
     @property
     def approach_scale(self) -> float:

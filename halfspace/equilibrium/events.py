@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -54,6 +54,24 @@ class Event:
     def estimate(self, quantity: str) -> Estimate:
         """One of its numbers with its error: approach, load, central_gap or contact_radius."""
         return Estimate(getattr(self, quantity), getattr(self, f"{quantity}_error"))
+
+
+class Unconfirmed(NamedTuple):
+    """About where a curve as it was traced has a fold that no finer grid has, so that it cannot be told.
+
+    Attributes
+    ----------
+    approach : float
+        In eps.
+    load : float
+        In R dgamma, positive in compression.
+    central_gap : float
+        In eps.
+    """
+
+    approach: float
+    load: float
+    central_gap: float
 
 
 def is_event(name: str) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from itertools import pairwise
 from typing import NoReturn
 
@@ -34,7 +33,7 @@ Bracket = tuple[Traceable, Point, Point]
 
 def states(segments: Sequence[Segment], condition: Condition) -> list[Located]:
     """Every state of a traced curve that meets a condition, in order."""
-    return [state for bracket in _brackets(segments, condition) for state in _with_care(bracket, condition)]
+    return [state for bracket in _brackets(segments, condition) for state in with_care(bracket, condition)]
 
 
 def _brackets(segments: Sequence[Segment], condition: Condition) -> list[Bracket]:
@@ -108,16 +107,12 @@ def _require_touching(segments: Sequence[Segment]) -> None:
         )
 
 
-def further_folds(segments: Sequence[Segment]) -> list[Located]:
-    """Solve for the folds between the jumps, in order along a traced curve; one that is not pinned down is left out."""
-    found: list[Located] = []
-    for bracket in _brackets(segments, FOLD)[1:-1] if segments else ():
-        with suppress(NotConverged):
-            found += _with_care(bracket, FOLD)
-    return found
+def between_jumps(segments: Sequence[Segment]) -> list[Bracket]:
+    """Discretisation and pair of points for every fold but the outermost, in order along a traced curve."""
+    return _brackets(segments, FOLD)[1:-1] if segments else []
 
 
-def _with_care(bracket: Bracket, condition: Condition) -> list[Located]:
+def with_care(bracket: Bracket, condition: Condition) -> list[Located]:
     """State between two points, or those that shorter steps between them find where its own search does not end."""
     problem, a, b = bracket
     metric = metric_for(problem)
