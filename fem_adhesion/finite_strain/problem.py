@@ -179,6 +179,10 @@ class FiniteStrainProblem(Valued):
         """State as the interface knows it: H, alpha*, and the radii's fixed scale 1."""
         return np.append(self.gaps(x), [x[-1], 1.0])
 
+    def rough(self, radii: Array, approach: float) -> Array:  # noqa: ARG002 (nowhere any)
+        """Nothing: where the contact spreads over the flank the gaps vanish, and the deflection is as steep."""
+        return np.zeros_like(radii)
+
     def state_from_surface(self, state: Array, near: Array | None = None) -> Array:
         """State of the body under the pressure that the gaps of an interface's state make, as a start.
 

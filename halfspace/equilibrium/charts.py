@@ -126,27 +126,17 @@ def _hand_over(segment: Segment, problem: Traceable, metric: Metric) -> Point:
 
 
 def transfer(source: Traceable, x: Array, target: Traceable) -> Array:
-    """Interpolate a state of one problem as a start for another."""
-    surface, state, whole = source.interface, source.surface_state(x), source.interface is not source
-    return target.state_from_surface(_transfer(surface, state, target.interface, by_gaps=whole))
-
-
-def _transfer(source: ContactProblem, x: Array, target: ContactProblem, *, by_gaps: bool) -> Array:
-    """Interpolate the deflection: gaps are as steep as the profile, and in the cells' polynomials may turn negative.
-
-    Not so where a whole body's contact spreads over its flank: there they vanish, and the deflection is as steep.
-    """
-    alpha, body = x[-2], source.operator_at(x)
-    scale = source.contact_radius(x) if target.follows_contact else 1.0
-    radii = target.operator.at(scale).radii
+    """Interpolate a state of one problem as a start for another: what of its gaps is smooth, see `Traceable.rough`."""
+    surface, state, other = source.interface, source.surface_state(x), target.interface
+    alpha, body = state[-2], surface.operator_at(state)
+    scale = surface.contact_radius(state) if other.follows_contact else 1.0
+    radii = other.operator.at(scale).radii
     inside = radii < body.extent
-    deflection = np.empty(radii.size)
-    deflection[inside] = body.values_at(radii[inside], source.deflection(x))
-    if by_gaps:
-        undeformed = source.tabor * source.profile.height(radii[inside]) - alpha
-        deflection[inside] = body.values_at(radii[inside], x[:-2]) - undeformed
-    deflection[~inside] = _deflection_beyond(source, x, radii[~inside])
-    return np.concatenate([source.tabor * source.profile.height(radii) - alpha + deflection, [alpha, scale]])
+    within, beyond = radii[inside], radii[~inside]
+    gaps = np.empty(radii.size)
+    gaps[inside] = body.values_at(within, state[:-2] - source.rough(body.radii, alpha)) + source.rough(within, alpha)
+    gaps[~inside] = surface.rough(beyond, alpha) + _deflection_beyond(surface, state, beyond)
+    return target.state_from_surface(np.concatenate([gaps, [alpha, scale]]))
 
 
 def _deflection_beyond(source: ContactProblem, x: Array, radii: Array) -> Array:

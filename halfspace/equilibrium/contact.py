@@ -110,8 +110,11 @@ class ContactProblem(Valued):
 
     def undeformed(self, approach: float, scale: float = 1.0) -> Array:
         """State with the gaps of the undeformed surfaces, H = -alpha* + mu z(u), as a start for Newton's method."""
-        gap = -approach + self.tabor * self.profile.height(self.operator.at(scale).radii)
-        return np.concatenate([gap, [approach, scale]])
+        return np.concatenate([self.rough(self.operator.at(scale).radii, approach), [approach, scale]])
+
+    def rough(self, radii: Array, approach: float) -> Array:
+        """Gaps of the undeformed surfaces: they are as steep as the profile, the deflection is smooth."""
+        return np.asarray(self.tabor * self.profile.height(radii) - approach)
 
     def residual(self, x: Array) -> Array:
         """Left-hand sides of the equilibrium (in eps) and scale equations, shape (q + 1,)."""

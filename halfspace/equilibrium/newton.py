@@ -103,6 +103,10 @@ class Traceable(Equilibrium, Protocol):
         """State whose surface is about that of a state of `interface`, as a start, from one near it if there is one."""
         ...
 
+    def rough(self, radii: Array, approach: float) -> Array:
+        """Part of the gaps in eps that is known at any radii; what is left of them is smooth within the cells."""
+        ...
+
     def undeformed(self, approach: float) -> Array:
         """State without deformation, as a start for Newton's method."""
         ...
