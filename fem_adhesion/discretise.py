@@ -28,7 +28,7 @@ from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import FlatCoordinate, SurfaceCoordinate
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.profiles import Surface
-from halfspace.profiles.table import TabulatedSurface
+from halfspace.profiles.tabulated import TabulatedSurface
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued
 

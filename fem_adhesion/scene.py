@@ -13,7 +13,7 @@ from fem_adhesion.materials import Material
 from fem_adhesion.registry import told
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
-from halfspace.laws.check import require_law
+from halfspace.laws.law import require_law
 from halfspace.limits import (
     require_modulus,
     require_poisson,

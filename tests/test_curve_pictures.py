@@ -11,7 +11,7 @@ from fem_adhesion import Hemisphere
 from fem_adhesion.common.files import written_aside
 from fem_adhesion.common.options import Parser
 from fem_adhesion.curve import command as curve
-from fem_adhesion.curve import movie, still
+from fem_adhesion.curve import pictures as module
 from fem_adhesion.curve.lines import smooth
 from fem_adhesion.curve.load import KINDS
 from fem_adhesion.curve.profiles import STATES
@@ -42,7 +42,7 @@ def sphere():
 
 @pytest.fixture(scope="module")
 def states(block):
-    return still.event_states(block)
+    return module.event_states(block)
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +51,7 @@ def pictures(block, tmp_path_factory):
     for event in ("jump_on", "pull_off", "zero_load"):
         path = folder / f"{event}.png"
         with written_aside(path) as file:
-            still.write_picture(block, file, event, (480, 300))
+            module.write_picture(block, file, event, (480, 300))
         with Image.open(path) as image:
             drawn[event] = np.asarray(image.convert("RGB")).astype(int)
     return drawn
@@ -77,7 +77,7 @@ def test_the_rigid_sphere_over_a_half_space_is_drawn_round(states, name):
 
 
 def test_the_wall_over_a_sphere_is_drawn_flat_and_the_sphere_flattened_where_it_touches(sphere):
-    states = still.event_states(sphere)
+    states = module.event_states(sphere)
     state, view = states["zero_load"], view_of(list(states.values()))
     shown = surfaces(state, view.reach, view.heights)
     wall = view.heights * (1 - state.observables[APPROACH]) / 2.0
@@ -90,7 +90,7 @@ def test_the_wall_over_a_sphere_is_drawn_flat_and_the_sphere_flattened_where_it_
 
 def test_a_small_sphere_is_drawn_to_scale():
     curves = _solved(Scene(2.0, Hemisphere(radius_ratio=30.0)))
-    state = still.event_states(curves)["pull_off"]
+    state = module.event_states(curves)["pull_off"]
     view, R = view_of([state]), np.sqrt(30.0 / 2.0)
     assert view.heights == pytest.approx(1 / R)
     r, z = surfaces(state, view.reach, view.heights).undeformed[:, 1:-1]
@@ -125,7 +125,7 @@ def test_a_picture_has_the_size_and_the_colours_of_its_state(pictures):
 
 
 def test_a_movie_passes_stable_states_only_and_jumps_at_a_fixed_wall(block):
-    frames = movie.experiment(block.path)
+    frames = module.experiment(block.path)
     alpha = np.array([_approach(frame) for frame in frames])
     words = [frame.words for frame in frames]
     assert 40 <= len(frames) <= 60
@@ -143,7 +143,7 @@ def test_a_movie_passes_stable_states_only_and_jumps_at_a_fixed_wall(block):
 
 
 def test_a_movie_without_jumps_goes_and_comes_by_the_same_states():
-    frames = movie.experiment(_solved(Scene(0.5)).path)
+    frames = module.experiment(_solved(Scene(0.5)).path)
     alpha = [_approach(frame) for frame in frames]
     assert not any("jump" in frame.words for frame in frames)
     assert alpha == alpha[::-1]
@@ -151,11 +151,11 @@ def test_a_movie_without_jumps_goes_and_comes_by_the_same_states():
 
 
 def test_a_movie_has_every_frame_and_lingers_at_the_jumps(block, tmp_path, monkeypatch):
-    monkeypatch.setattr(movie, "FRAMES", 10)
-    frames, path = movie.experiment(block.path), tmp_path / "jump.gif"
-    monkeypatch.setattr(movie, "experiment", lambda _: frames)
+    monkeypatch.setattr(module, "FRAMES", 10)
+    frames, path = module.experiment(block.path), tmp_path / "jump.gif"
+    monkeypatch.setattr(module, "experiment", lambda _: frames)
     with written_aside(path) as file:
-        movie.write_movie(block, file, SMALL)
+        module.write_movie(block, file, SMALL)
     with Image.open(path) as shown:
         assert (shown.n_frames, shown.size) == (len(frames), SMALL)
         seen = []
@@ -173,7 +173,7 @@ def test_the_command_draws_and_prints(tmp_path, capsys):
     path = tmp_path / "neck.png"
     assert _run("--tabor", 2, "--rtol", 1e-2, "--render", path, "--at", "jump_off") == 0
     with Image.open(path) as image:
-        assert image.size == still.SIZE
+        assert image.size == module.SIZE
     assert "finite elements" in capsys.readouterr().out
     assert [file.name for file in tmp_path.iterdir()] == ["neck.png"]
 
@@ -220,18 +220,18 @@ def _texts(figure):
 
 def _composed(curves, state, words):
     view = view_of([state])
-    return still.composed(curves, np.full((30, 48, 3), 255, np.uint8), state, view, words), view
+    return module.composed(curves, np.full((30, 48, 3), 255, np.uint8), state, view, words), view
 
 
 def _said(text):
     """Numbers of a caption by their symbols."""
-    found = re.findall(r"\$(W|\\alpha\^\*|\\alpha|a)\$ = (-?[\d.]+)(?:\((\d+)\))?", text.replace(still.MINUS, "-"))
+    found = re.findall(r"\$(W|\\alpha\^\*|\\alpha|a)\$ = (-?[\d.]+)(?:\((\d+)\))?", text.replace(module.MINUS, "-"))
     return {symbol.strip("\\^*"): float(value) for symbol, value, _ in found}
 
 
 @pytest.mark.parametrize("event", ["jump_on", "jump_off", "pull_off", "zero_load"])
 def test_the_caption_has_the_numbers_of_the_event_under_their_symbols(block, event):
-    title, numbers = still._caption(block, event)
+    title, numbers = module._caption(block, event)
     assert title == f"$\\mu$ = 2: {STATES[event].words}"
     found, said = block.path.events[event], _said(numbers)
     assert said["W"] == pytest.approx(found.load, abs=2e-2)
@@ -243,7 +243,7 @@ def test_the_caption_has_the_numbers_of_the_event_under_their_symbols(block, eve
 
 def test_the_words_of_a_frame_are_load_and_approach(block, states):
     for state in states.values():
-        said = _said(still.state_words(block, state))
+        said = _said(module.state_words(block, state))
         assert said["W"] == pytest.approx(state.observables[LOAD], abs=6e-3)
         assert said["alpha"] == pytest.approx(state.observables[APPROACH], abs=6e-3)
 
@@ -265,7 +265,7 @@ def test_the_curve_on_a_picture_is_load_against_approach_with_the_state_on_it(bl
         np.testing.assert_array_equal(drawn.get_ydata(), load)
     assert "vertical stress" in bar.get_ylabel()
     assert bar.get_title() == "tension"
-    ticks = [float(label.get_text().replace(still.MINUS, "-")) for label in bar.get_yticklabels()]
+    ticks = [float(label.get_text().replace(module.MINUS, "-")) for label in bar.get_yticklabels()]
     assert ticks == sorted(ticks)
     assert ticks[-1] == pytest.approx(view.limit, rel=1e-2)
     assert solid.axison is False
@@ -274,7 +274,7 @@ def test_the_curve_on_a_picture_is_load_against_approach_with_the_state_on_it(bl
 def test_a_picture_with_a_material_is_in_si():
     units = Units(100e-9, 1.1e9, 0.05, 0.3e-9)
     curves = solve(Question(Scene(units.tabor), solver="fem", rtol=1e-2, units=units))
-    title, numbers = still._caption(curves, "pull_off")
+    title, numbers = module._caption(curves, "pull_off")
     event = curves.path.events["pull_off"]
     assert title.startswith("$R$ = 100 nm")
     assert _said(numbers)["W"] == pytest.approx(event.load * 5, abs=0.3)

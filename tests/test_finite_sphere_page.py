@@ -13,10 +13,16 @@ from whole_sphere import sphere_operator
 from fem_adhesion.common import style
 from fem_adhesion.finite_sphere import chart_figure, figures
 from fem_adhesion.finite_sphere import page as finite_sphere_page
-from fem_adhesion.finite_sphere.bulk import FINE, bulk_compliance, coefficients, excess_compliance
 from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CAUSES, CRITICAL, MODELS, Record, case_of
 from fem_adhesion.finite_sphere.chart import Field, contour, field_of, rule, safe_from
-from fem_adhesion.finite_sphere.fit import FIXED_GRIPS, leading_terms
+from fem_adhesion.finite_sphere.fit import (
+    FINE,
+    FIXED_GRIPS,
+    bulk_compliance,
+    coefficients,
+    excess_compliance,
+    leading_terms,
+)
 from fem_adhesion.finite_sphere.page import SHOWN
 from fem_adhesion.finite_sphere.study import Study, plan
 from fem_adhesion.finite_sphere.table import borders, results, rows, write_tables

@@ -18,7 +18,7 @@ import halfspace
 from fem_adhesion import Scene, convergence
 from fem_adhesion.crosscheck.study import _compare_events
 from fem_adhesion.curve import lines, record, terminal
-from fem_adhesion.curve.movie import experiment
+from fem_adhesion.curve.pictures import experiment
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace.accuracy import further_folds as folds_module
 from halfspace.accuracy.fold_birth import count_folds

@@ -23,7 +23,7 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
-from halfspace.laws.check import require_law
+from halfspace.laws.law import require_law
 from halfspace.profiles import PARABOLOID, Endless, Hyperboloid, Paraboloid, Power, RoundedPunch
 from halfspace.profiles.indentation import hertz_approach, hertz_load, hertz_radius, jkr_approach, jkr_load, jkr_radius
 from halfspace.scales import Scales

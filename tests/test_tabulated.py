@@ -10,7 +10,7 @@ from fem_adhesion.registry import part_from, record_of
 from halfspace import laws, profiles
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
-from halfspace.laws.check import require_law
+from halfspace.laws.law import require_law
 
 EPS, WORK, R = 0.165, 23.0, 20e-9  # nm and mJ/m^2 of the law, m of the tip
 

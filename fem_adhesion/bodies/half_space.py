@@ -55,7 +55,7 @@ class HalfSpace(Body):
 
     def facing(self, R: float, lines: Array, smaller: float, how: Discretisation) -> Any:  # noqa: ARG002 (it is flat)
         """Block whose cells end where those of the sphere do, and beyond at ever larger distances."""
-        from fem_adhesion.mesh import facing
+        from fem_adhesion.mesh.spheres import block_under
 
         depths = grid.graded(0.0, np.diff(lines).min(), BEYOND * smaller, growth=how.growth)
-        return facing.block(lines, depths, smaller, BEYOND * smaller)
+        return block_under(lines, depths, smaller, BEYOND * smaller)

@@ -59,8 +59,7 @@ class Hemisphere(Held):
 
     def facing(self, R: float, lines: Array, smaller: float, how: Discretisation) -> Any:
         """Its cells end where those of the smaller one do, and beyond at its own core's end."""
-        from fem_adhesion.mesh import facing
-        from fem_adhesion.mesh.spheres import DEPTH
+        from fem_adhesion.mesh.spheres import DEPTH, hemisphere_over
 
         depths = grid.graded(0.0, np.diff(lines).min(), DEPTH * R, growth=how.growth)
-        return facing.hemisphere_over(lines, depths, smaller, R, self.rings(how))
+        return hemisphere_over(lines, depths, smaller, R, self.rings(how))

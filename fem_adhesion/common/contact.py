@@ -16,7 +16,7 @@ from fem_adhesion.scene import facing_pair
 from halfspace.elastic.layers import Foundation, Layer
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
-from halfspace.laws.check import require_law
+from halfspace.laws.law import require_law
 from halfspace.limits import require_poisson
 from halfspace.scaling import Units, contact_modulus, equivalent_radius
 

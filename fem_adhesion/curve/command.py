@@ -151,11 +151,11 @@ def _write_vtk(options: argparse.Namespace, curves: Curves, aside: Path) -> None
 
 def _draw_body(curves: Curves, picture: TextIO | None, at: str, movie: TextIO | None) -> None:
     if picture:
-        from fem_adhesion.curve.still import write_picture
+        from fem_adhesion.curve.pictures import write_picture
 
         write_picture(curves, picture, at)
     if movie:
-        from fem_adhesion.curve.movie import write_movie
+        from fem_adhesion.curve.pictures import write_movie
 
         write_movie(curves, movie)
 

@@ -13,8 +13,7 @@ from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common import style
 from fem_adhesion.curve.load import draw_central_gap, draw_load
 from fem_adhesion.curve.profiles import LEGEND, STATES, draw_gap, draw_pressure, draw_spike
-from fem_adhesion.curve.scales import scales
-from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves
+from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves, scales
 from fem_adhesion.fields import State, require_fields, state_at
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS

@@ -13,8 +13,7 @@ from fem_adhesion.common.numbers import engineering
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.lines import Frame
 from fem_adhesion.curve.profiles import LEGEND, STATES
-from fem_adhesion.curve.scales import Scale, scales
-from fem_adhesion.curve.solve import Curves
+from fem_adhesion.curve.solve import Curves, Scale, scales
 from fem_adhesion.fields import is_same_contact
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import Cycle

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from fem_adhesion.common import style
-from fem_adhesion.curve.scales import scales
-from fem_adhesion.curve.solve import Curves
+from fem_adhesion.curve.solve import Curves, scales
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.values import Array, Valued

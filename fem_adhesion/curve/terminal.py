@@ -13,8 +13,7 @@ from fem_adhesion.common.contact import edge_told
 from fem_adhesion.common.numbers import engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.curve import lines
-from fem_adhesion.curve.scales import EVENT_QUANTITIES, Scale, scales
-from fem_adhesion.curve.solve import Curves
+from fem_adhesion.curve.solve import EVENT_QUANTITIES, Curves, Scale, scales
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
 from halfspace.equilibrium.reach import reaching

@@ -13,12 +13,20 @@ from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.common.page import Section, Table, bullets, page, write_csv
 from fem_adhesion.common.style import Picture, captions, draw, shown
-from fem_adhesion.finite_sphere.bulk import bulk_compliance, coefficients
 from fem_adhesion.finite_sphere.cases import CAUSES, Record
 from fem_adhesion.finite_sphere.chart import LEVELS, Field, Rule, field_of, rule, safe_from
 from fem_adhesion.finite_sphere.chart_figure import CHART
 from fem_adhesion.finite_sphere.figures import BULK_FIGURE, CAUSES_FIGURE, POISSON_FIGURE
-from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, Fit, compare, findings
+from fem_adhesion.finite_sphere.fit import (
+    DEVIATIONS,
+    TOLERANCE,
+    Finding,
+    Fit,
+    bulk_compliance,
+    coefficients,
+    compare,
+    findings,
+)
 from fem_adhesion.finite_sphere.study import Study
 from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results, reference_poisson, results, write_tables
 from halfspace.errors import InputError

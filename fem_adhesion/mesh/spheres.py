@@ -1,4 +1,4 @@
-"""Meshes of bodies with a length: the hemisphere, graded towards the contact.
+"""Meshes of bodies with a length: the hemisphere, graded towards the contact, and bodies that face a smaller sphere.
 
 The stereographic map m(Z) = Z/(1 + i Z/2R) of the complex plane Z = x - i d takes the half-plane of depths d >= 0 to
 the disc of radius R that touches it at the origin, the sphere's meridian section: the axis to the axis, the surface to
@@ -10,12 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from fem_adhesion.mesh.block import with_named_boundaries
 from fem_adhesion.mesh.curved import Block, CurvedQuads, joined
-from fem_adhesion.mesh.nested import refined_towards
+from fem_adhesion.mesh.refinement import refined_towards
+from halfspace.elastic import grid
 from halfspace.values import Array, Index, Valued
 
 CORE, DEPTH = 1.7, 0.9
@@ -108,7 +111,7 @@ def hemisphere(
     along : callable
         The coordinate x as a function of another one in which the lines and the cells between them are given instead.
     rings : (k,) array
-        Sizes of rings around the equator, as `fem_adhesion.mesh.nested.refined_towards` takes them: where a bonded
+        Sizes of rings around the equator, as `fem_adhesion.mesh.refinement.refined_towards` takes them: where a bonded
         mid-plane meets the free surface the stress is singular. The cells that are cut are as long as deep then;
         without rings they are as thin as the contact's.
 
@@ -176,14 +179,6 @@ def with_contact_to(mesh: Any, radius: float) -> Any:
     return mesh.with_boundaries({"contact": facets[inside]})
 
 
-def named_block(mesh: Any) -> Any:
-    """Name the boundaries of a block under z = 0: "axis", "contact" and "far"."""
-    p, facets = mesh.p, mesh.boundary_facets()
-    ends = mesh.facets[:, facets]
-    axis, contact = (np.all(p[k, ends] == 0.0, axis=0) for k in (0, 1))
-    return mesh.with_boundaries({"axis": facets[axis], "contact": facets[contact], "far": facets[~(axis | contact)]})
-
-
 def named(mesh: CurvedQuads, where: Callable[[Array, Array], dict[str, Any]]) -> CurvedQuads:
     """Name the boundary facets for which the masks, by name, hold at the places r and z of their chords' middles."""
     facets = mesh.boundary_facets()
@@ -195,3 +190,46 @@ def named(mesh: CurvedQuads, where: Callable[[Array, Array], dict[str, Any]]) ->
 def vertex_at(mesh: CurvedQuads, r: float, z: float) -> int:
     """Number of the vertex at a place."""
     return int(np.argmin(np.hypot(mesh.p[0] - r, mesh.p[1] - z)))
+
+
+# A body that faces a smaller sphere: its cells end at the same radii and have their nodes there too. The smaller sphere
+# is given by its coordinate s, and its cells by their ends in it.
+
+GROWTH = 2.5  # ratio of neighbouring cells beyond those of the smaller body
+
+
+def hemisphere_over(lines: Array, depths: Array, R1: float, R2: float, rings: Array) -> Any:
+    """Hemisphere of radius R2 whose cells end where those of R1 do, and beyond at its own core's end."""
+    along = partial(_along, coordinate=_coordinate_on(R1, R2), last=float(lines[-1]))
+    rest = CORE * R2 - float(along(lines[-1:])[0])
+    beyond = _beyond(lines, rest) if rest > 1e-9 * R2 else lines[:0]
+    return hemisphere(R2, np.concatenate([lines, beyond]), depths, along, rings)
+
+
+def block_under(lines: Array, depths: Array, R1: float, size: float) -> Any:
+    """Block whose cells end where those of the sphere do, and beyond at ever larger distances."""
+    along = partial(_along, coordinate=_coordinate_on(R1, np.inf), last=float(lines[-1]))
+    s = np.concatenate([lines, _beyond(lines, size)])
+    vertices = np.arange(s.size * depths.size).reshape(s.size, -1)
+    return with_named_boundaries(joined([Block(s, depths, lambda s, d: np.array([along(s), -d]))], [vertices]))
+
+
+def _beyond(lines: Array, length: float) -> Array:
+    """Ends of more cells."""
+    return np.asarray(lines[-1] + grid.geometric(length, float(lines[-1] - lines[-2]), GROWTH)[1:])
+
+
+def _coordinate_on(R1: float, R2: float) -> Callable[[Array], Array]:
+    """Coordinate on the second surface, flat if R2 is infinite, of points at the first one's coordinate s."""
+
+    def coordinate(s: Array) -> Array:
+        r = Stereographic(R1).radius(s)[0]
+        sine = r / R2
+        return np.asarray(2 * r / (1 + np.sqrt((1 - sine) * (1 + sine))))
+
+    return coordinate
+
+
+def _along(s: Array, *, coordinate: Callable[[Array], Array], last: float) -> Array:
+    """The second surface's coordinate: shared with the first up to `last`, then as long as s is."""
+    return coordinate(np.minimum(s, last)) + np.maximum(s - last, 0.0)

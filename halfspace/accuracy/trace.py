@@ -34,7 +34,7 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import REMAINING
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
-from halfspace.laws.check import require_law
+from halfspace.laws.law import require_law
 from halfspace.limits import require_load, require_rtol, require_tabor
 from halfspace.profiles import PARABOLOID, Profile
 from halfspace.scales import Scales

@@ -1,8 +1,7 @@
 """Profiles of the undeformed surfaces, one a module: the gap's height over that on the axis against the radius.
 
 `profile` says what each must know of itself. `paraboloid` is the default and `sphere` the true shape of one sphere or
-two; `tabulated` is read from a file, `table` the surface of a body that is given as a
-mesh.
+two; `tabulated` is read from a file, or the surface of a body that is given as a mesh.
 """
 
 from halfspace.profiles.hyperboloid import Hyperboloid

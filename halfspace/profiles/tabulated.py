@@ -1,4 +1,4 @@
-"""A profile that is known by a table, as of a tip from blind reconstruction."""
+"""Profiles that are known by a table: as of a tip from blind reconstruction, or of a body that is given as a mesh."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from halfspace.profiles.profile import Dimensionless, Surface
 from halfspace.values import Array, Valued, keep, read_columns
 
 if TYPE_CHECKING:
-    from scipy.interpolate import BSpline
+    from scipy.interpolate import BSpline, CubicHermiteSpline
+
 
 FEWEST, MOST, DEGREE = 12, 30, 5  # points of a piece; pieces, and their degree in the square of the radius
 CHECKED = 1000  # radii at which it must rise
@@ -126,3 +127,31 @@ class Tip(Valued, Dimensionless):
     def slope(self, radii: Array) -> Array:
         """Its derivative."""
         return np.asarray(2 * radii * self.table._spline((radii * self.beta) ** 2, 1) * self.table.radius)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TabulatedSurface(Valued, Dimensionless):
+    """Heights (n,) at ascending radii (n,), with their slopes: the surface of a body that is given as a mesh."""
+
+    radii: Array
+    heights: Array
+    slopes: Array
+
+    @property
+    def end(self) -> float:
+        """Radius in beta at which the surface ends."""
+        return float(self.radii[-1])
+
+    def height(self, radii: Array) -> Array:
+        """Cubic between the points."""
+        return np.asarray(self._spline(radii))
+
+    def slope(self, radii: Array) -> Array:
+        """Its derivative."""
+        return np.asarray(self._spline(radii, 1))
+
+    @cached_property
+    def _spline(self) -> CubicHermiteSpline:
+        from scipy.interpolate import CubicHermiteSpline  # it takes as long to load as all else, and few need it
+
+        return CubicHermiteSpline(self.radii, self.heights, self.slopes)

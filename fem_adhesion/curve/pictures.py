@@ -1,0 +1,324 @@
+"""Pictures of the deformed body, cut open, with its stress and the wall, and where on the curve it stands.
+
+A movie is of an experiment under fixed grips: up to the wall, onto it, pressed, pulled and off, stable states only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from io import BytesIO
+from itertools import pairwise
+from typing import Any, TextIO
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from PIL import Image
+from scipy.spatial import KDTree
+
+from fem_adhesion.common.numbers import with_error
+from fem_adhesion.curve import lines
+from fem_adhesion.curve.figure import LOOK
+from fem_adhesion.curve.load import KINDS, contact_words
+from fem_adhesion.curve.profiles import STATES
+from fem_adhesion.curve.solve import Curves, scales
+from fem_adhesion.fields import State, state_at
+from fem_adhesion.paraview.picture import COLOURS, Pixels, View, solid_image, view_of
+from fem_adhesion.registry import name_of
+from fem_adhesion.scene import Scene
+from halfspace.equilibrium.conditions import Condition, Located
+from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.devices import cycle
+from halfspace.errors import InputError
+from halfspace.values import Array, Index
+
+SIZE = (1600, 1000)  # of a picture in pixels
+WIDTH = 8.0  # of a picture in inches
+MINUS = "\N{MINUS SIGN}"  # for the hyphen of Python's numbers
+DIGITS = 6  # significant ones of a number, at most
+
+
+def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tuple[int, int] = SIZE) -> None:
+    """Draw the body at an event and write it as png of a size in pixels to a file of `written_aside`.
+
+    The curves' first path is of finite elements. InputError if it has no such event, or as `require_drawing`.
+    """
+    require_event(curves, at)
+    states = event_states(curves)
+    view = view_of(list(states.values()))
+    solid = solid_image(states[at], view, size)
+    picture = composed(curves, solid, states[at], view, _caption(curves, at))
+    png = BytesIO()
+    picture.savefig(png, format="png")
+    file.buffer.write(png.getbuffer())
+
+
+def require_event(curves: Curves, at: str) -> None:
+    """Raise InputError unless a curve has an event."""
+    if curves.path.event(at) is None:
+        raise InputError(
+            f"at = {at} is not on the curve at tabor = {curves.path.tabor:g}, which does not fold; take pull_off"
+        )
+
+
+def event_states(curves: Curves) -> dict[str, State]:
+    """Fields inside the body at the events of a curve, by name."""
+    scene, found = curves.question.scene, curves.path.stages[-1]
+    return {
+        name: state_at(scene, found[name].problem, found[name].point, name=name) for name in STATES if name in found
+    }
+
+
+def composed(curves: Curves, solid: Pixels, state: State, view: View, words: tuple[str, str]) -> Figure:
+    """Solid with a title and a line below it, colour bar, and the load-approach curve with the state on it."""
+    height, width = solid.shape[:2]
+    with rc_context(LOOK):
+        figure = Figure(figsize=(WIDTH, WIDTH * height / width), dpi=width / WIDTH)
+        FigureCanvasAgg(figure)
+        axes = figure.add_axes((0, 0, 1, 1))
+        axes.imshow(solid, aspect="auto")
+        axes.set_axis_off()
+        figure.text(0.02, 0.97, words[0], va="top", fontsize=13, weight="bold")
+        figure.text(0.02, 0.915, words[1], va="top", fontsize=11)
+        figure.text(0.34, 0.02, _key(curves, view), va="bottom", fontsize=9, color="0.25")
+        _add_bar(figure, curves, view)
+        _add_curve(figure, curves, state)
+    return figure
+
+
+def _caption(curves: Curves, at: str) -> tuple[str, str]:
+    """Which contact and event, and its numbers with their errors."""
+    event, units, numbers = curves.path.events[at], scales(curves), {}
+    for name in SYMBOLS:
+        if (at, name) == ("zero_load", "load"):
+            numbers[name] = "0"
+        elif np.isfinite((found := event.estimate(name)).value):
+            numbers[name] = with_error(found, units[name].size, DIGITS)
+    return f"{contact_words(curves)}: {STATES[at].words}", _listed(curves, numbers)
+
+
+def state_words(curves: Curves, state: State) -> str:
+    """Load and approach of a state, to the digits that a glance takes in."""
+    units, values = scales(curves), {"load": state.observables[LOAD], "approach": state.observables[APPROACH]}
+    return _listed(curves, {name: f"{value * units[name].size:.2f}" for name, value in values.items()})
+
+
+def _listed(curves: Curves, numbers: Mapping[str, str]) -> str:
+    """Numbers by quantity with their symbols and units."""
+    parts = []
+    for name, number in numbers.items():
+        symbol, unit = SYMBOLS[name]
+        if curves.question.units:
+            symbol, unit = symbol.replace("^*", ""), scales(curves)[name].unit
+        parts.append(f"{symbol} = {number} {unit}".replace("-", MINUS).strip())
+    return ",  ".join(parts)
+
+
+SYMBOLS: Mapping[str, tuple[str, str]] = {
+    "load": ("$W$", r"$R\Delta\gamma$"),
+    "approach": (r"$\alpha^*$", ""),
+    "contact_radius": ("$a$", r"$\beta$"),
+}
+"""Of the quantities in the caption, and their units in the paper."""
+
+
+def _key(curves: Curves, view: View) -> str:
+    """What is drawn, and how."""
+    scene, units = curves.question.scene, curves.question.units
+    R = units.radius / units.length if units else scene.sphere_radius
+    factor = view.heights * R
+    if np.isinf(factor):
+        how = f"heights magnified, $\\beta^2/R$ drawn as {view.heights:.2g} $\\beta$"
+    else:
+        how = "to scale" if abs(factor - 1) < 1e-9 else f"heights $\\times\\,${factor:.3g}"
+    return f"{_body(scene)}, a quarter cut away\n{how}; green: undeformed surface"
+
+
+def _body(scene: Scene) -> str:
+    """What is drawn: the rigid side has the shape that the body lacks."""
+    looks = scene.body.looks
+    if scene.counter is not None:
+        return f"{looks} under an elastic counter-body"
+    if np.isinf(scene.body.size):
+        return f"{looks} under a rigid sphere"
+    wall = "flat wall" if scene.shape == scene.body.shape else f"wall, gap of a {name_of(scene.shape)}"
+    return f"{looks} under a rigid {wall}"
+
+
+def _add_bar(figure: Figure, curves: Curves, view: View) -> None:
+    pressure = scales(curves)["pressure"]
+    limit = view.limit * pressure.size
+    axes = figure.add_axes((0.89, 0.2, 0.018, 0.6))
+    bar = figure.colorbar(ScalarMappable(Normalize(-limit, limit), COLOURS), cax=axes, extend="both")
+    ticks = np.linspace(-limit, limit, 5)
+    bar.set_ticks(ticks.tolist(), labels=[f"{tick:.3g}".replace("-", MINUS) for tick in ticks])
+    unit = f", {pressure.unit}" if curves.question.units else r"$\;\mu\epsilon/\Delta\gamma$"
+    bar.set_label(f"vertical stress $\\sigma_{{zz}}${unit}", fontsize=10)
+    axes.set_title("tension", fontsize=9, pad=14)
+    axes.text(0.5, -0.09, "compression", transform=axes.transAxes, fontsize=9, ha="center", va="top")
+
+
+def _add_curve(figure: Figure, curves: Curves, state: State) -> None:
+    """Load against approach around the events, and the state on it."""
+    units, frame, line = scales(curves), lines.around_events(curves.path), lines.smooth(curves.path)
+    x, y = units["approach"], units["load"]
+    axes = figure.add_axes((0.07, 0.11, 0.2, 0.25))
+    for kind, load in line.parts(line.load):
+        axes.plot(x.of(line.approach), y.of(load), **KINDS[kind])
+    at = state.observables[[APPROACH, LOAD]]
+    axes.plot(*(at * [x.size, y.size]), marker="o", markersize=9, color="black", zorder=5)
+    axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
+    axes.set(xlim=x.of(np.array(frame.approach)), ylim=y.of(np.array(frame.load)))
+    axes.set_xlabel(x.label, fontsize=9)
+    axes.set_ylabel(y.label, fontsize=9)
+    axes.tick_params(labelsize=8)
+    axes.patch.set_alpha(0.8)
+
+
+# The movie
+
+FRAME = (800, 500)  # in pixels
+FRAMES = 48  # of a movie, about
+FADED = 0.04  # load at which the movie begins, in that of pull-off
+PRESSED = -0.25  # load at which the wall turns back, in that of pull-off
+MOVING, RESTING = 0.1, 0.9  # seconds for which a frame is shown while the wall moves, and at turns and jumps
+PALETTE, SAMPLED = 256, 8  # colours of the movie, and frames for which they are chosen
+WHITE = np.array([255, 255, 255], np.uint8)  # the background
+PACKED = np.array([65536, 256, 1])  # by which the parts of a colour make one number
+REPEATED = 3  # times that colours of the palette are moved to the middle of those that they stand for
+NEAR = 1e-6  # difference of approaches in eps that is none
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A state that is shown, what is said of it, and for how many seconds."""
+
+    state: Located
+    words: str
+    seconds: float = MOVING
+
+
+def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = FRAME) -> None:
+    """Draw the body along the curve through its jumps and write it as gif; raise as `write_picture` or NotConverged."""
+    frames = experiment(curves.path)
+    images = list(_images(curves, frames, size))
+    first, *rest = _with_one_palette(images)
+    seconds = [round(1000 * frame.seconds) for frame in frames]
+    gif = BytesIO()
+    first.save(gif, "GIF", save_all=True, append_images=rest, duration=seconds, loop=0)
+    file.buffer.write(gif.getbuffer())
+
+
+def experiment(path: EquilibriumPath) -> list[Shot]:
+    """States that a contact passes under fixed grips, up to the wall and back, the wall moving steadily.
+
+    They end at the loads `FADED` and `PRESSED`, or where the path does.
+    """
+    found, loop = path.stages[-1], cycle(path)
+    if loop and len(loop.jumps) > 2:
+        raise InputError(f"movie of {len(loop.jumps)} jumps, limit: one on and one off; take --render")
+    frames = _jumping(path, found["jump_on"], found["jump_off"]) if "jump_on" in found else _smooth(path)
+    back = max(number for number, frame in enumerate(frames) if frame.state is found["pull_off"])
+    frames[back] = replace(frames[back], words="pull-off", seconds=RESTING)
+    return frames
+
+
+def _smooth(path: EquilibriumPath) -> list[Shot]:
+    contact = _contact(path, _states(path, _grid(path, []), lambda _: True))
+    return _run(contact, "approaching", last="turning back") + _run(contact[-2::-1], "withdrawing")
+
+
+def _jumping(path: EquilibriumPath, on: Located, off: Located) -> list[Shot]:
+    """Along the separated branch to its fold, onto contact, and back along contact to its own."""
+    grid = _grid(path, sorted((_approach(on), _approach(off))))
+    separated = _states(path, grid[grid < _approach(on)], lambda s: s < on.point.arclength)
+    contact = _states(path, grid[grid > _approach(off)], lambda s: s > off.point.arclength)
+    contact = _contact(path, [off, *contact])
+    landed = [state for state in contact if _approach(state) > _approach(on) - NEAR]
+    left = [state for state in separated if _approach(state) < _approach(off) + NEAR]
+    return [
+        *_run([*separated, on], "approaching", last="about to jump on"),
+        *_run(landed, "loading", first="jumped on", last="turning back"),
+        *_run(contact[-2::-1], "unloading", last="about to jump off"),
+        *_run(left[::-1], "withdrawing", first="jumped off"),
+    ]
+
+
+def _run(states: Sequence[Located], words: str, *, first: str = "", last: str = "") -> list[Shot]:
+    """Frames of states in turn, of which the first and the last may rest and have words of their own."""
+    frames = [Shot(state, words) for state in states]
+    for number, own in ((0, first), (-1, last)):
+        if own and frames:
+            frames[number] = replace(frames[number], words=own, seconds=RESTING)
+    return frames
+
+
+def _contact(path: EquilibriumPath, states: Sequence[Located]) -> list[Located]:
+    """States in contact with that of the pull-off force, by ascending approach."""
+    return sorted([*states, path.stages[-1]["pull_off"]], key=_approach)
+
+
+def _grid(path: EquilibriumPath, folds: list[float]) -> Array:
+    """Approaches in equal steps, nearly, with those of the folds, which ascend, among them."""
+    pull_off = path.events["pull_off"].load
+    low = _approach(path.states(Condition(LOAD, value=FADED * pull_off))[0])
+    pressed = path.states(Condition(LOAD, value=PRESSED * pull_off))
+    ends = [low, *folds, _approach(pressed[-1]) if pressed else float(path.approach[-1])]
+    step = 2 * (ends[-1] - ends[0]) / FRAMES
+    parts = [np.linspace(a, b, int(np.ceil((b - a) / step)), endpoint=False) for a, b in pairwise(ends)]
+    return np.concatenate([*parts, ends[-1:]])
+
+
+def _states(path: EquilibriumPath, approaches: Array, kept: Callable[[float], bool]) -> list[Located]:
+    """States at approaches whose arclength is kept."""
+    found = [path.states(Condition(APPROACH, value=float(alpha))) for alpha in approaches]
+    return [state for roots in found for state in roots if kept(state.point.arclength)]
+
+
+def _images(curves: Curves, frames: Sequence[Shot], size: tuple[int, int]) -> Iterator[Pixels]:
+    """Frames as they are shown; a state that is passed twice is solved for and drawn once."""
+    scene = curves.question.scene
+    every = {id(frame.state): frame.state for frame in frames}
+    states = {key: state_at(scene, found.problem, found.point) for key, found in every.items()}
+    view = view_of(list(states.values()))
+    solids = {key: solid_image(state, view, size) for key, state in states.items()}
+    for frame in frames:
+        state = states[id(frame.state)]
+        words = f"{contact_words(curves)}: {frame.words}", state_words(curves, state)
+        canvas: Any = FigureCanvasAgg(composed(curves, solids[id(frame.state)], state, view, words))
+        canvas.draw()
+        yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
+def _with_one_palette(images: Sequence[Pixels]) -> Iterator[Image.Image]:
+    """Images in the same few colours, so that none flickers; white stays white."""
+    some = np.concatenate(images[:: max(1, len(images) // SAMPLED)])
+    palette = _palette(some)
+    nearest = KDTree(palette)
+    for image in images:
+        colours, places = np.unique(image @ PACKED, return_inverse=True)
+        numbers = nearest.query(_unpacked(colours))[1].astype(np.uint8)
+        indexed = Image.fromarray(np.take(numbers, places).reshape(image.shape[:2]))
+        indexed.putpalette(palette.tobytes())
+        yield indexed
+
+
+def _palette(image: Pixels) -> Pixels:
+    """Colours (n, 3) for an image, in which each of its own counts once, however little there is of it."""
+    every = _unpacked(np.unique(image @ PACKED))
+    chosen = Image.fromarray(every[None]).quantize(PALETTE - 1, kmeans=REPEATED).getpalette()
+    return np.append(np.array(chosen, np.uint8), WHITE).reshape(-1, 3)
+
+
+def _unpacked(colours: Index) -> Pixels:
+    """Red, green and blue (n, 3) of colours that are one number each."""
+    return np.asarray(colours[:, None] // PACKED % 256, np.uint8)
+
+
+def _approach(state: Located) -> float:
+    return float(state.point.observables[APPROACH])
