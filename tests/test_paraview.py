@@ -12,6 +12,7 @@ import pytest
 import fem_adhesion
 from fem_adhesion import HalfSpace, Hemisphere, Scene
 from fem_adhesion.bodies.body import Discretisation
+from fem_adhesion.common.files import directory_written_aside
 from fem_adhesion.elasticity import stress
 from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.space import cell_quadrature
@@ -19,7 +20,7 @@ from fem_adhesion.elasticity.stress import sampled
 from fem_adhesion.fields import states_along
 from fem_adhesion.paraview.arrays import COMPONENTS, MEANINGS, UNITS, in_si, inside, numbers, unit_of
 from fem_adhesion.paraview.cells import QUAD9, TRIANGLE6, Cut, Lattice, cut_for, revolved
-from fem_adhesion.paraview.write import TOLERANCE, write_path
+from fem_adhesion.paraview.write import TOLERANCE, write_states
 from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import Units
 
@@ -29,6 +30,11 @@ from vtk.util.numpy_support import vtk_to_numpy  # noqa: E402
 
 DEGREE = Discretisation(degree=5)
 RADIUS, SPACING, WORK = 1e-7, 3e-10, 0.1
+
+
+def write_path(states, directory, **how):
+    with directory_written_aside(directory) as aside:
+        write_states(states, aside, directory, **how)
 
 
 @pytest.fixture(scope="module")

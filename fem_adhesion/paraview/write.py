@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from fem_adhesion.common.files import directory_written_aside, writing
+from fem_adhesion.common.files import writing
 from fem_adhesion.fields import State, half_space_beside
 from fem_adhesion.paraview.arrays import (
     COMPONENTS,
@@ -44,15 +44,10 @@ QUADRATIC = {6: 22, 9: 28}
 """VTK's types of cells of the section by their nodes: quadratic triangle, biquadratic quadrilateral."""
 
 
-def write_path(
-    states: Iterable[State],
-    directory: Path,
-    *,
-    units: Units | None = None,
-    revolve: float | None = None,
-    force: bool = False,
-) -> list[Path]:
-    """Write states of a curve for ParaView, all or none.
+def write_states(
+    states: Iterable[State], aside: Path, directory: Path, *, units: Units | None = None, revolve: float | None = None
+) -> list[str]:
+    """Write states of a curve for ParaView into a directory made by `directory_written_aside`, and return the names.
 
     ``body.pvd`` and ``contact.pvd``, and ``solid.pvd`` if revolved, are the time series: their time is the arclength.
     ``body_0000.vtu`` has the meridian section in second-order cells, ``contact_0000.vtp`` the contact surface with the
@@ -62,34 +57,20 @@ def write_path(
     ----------
     states : iterable of State
         Of one scene, in order, from `fem_adhesion.fields.states_along`.
-    directory, force : Path, bool
-        Where to; made unless it exists, and accepted if it is not empty only by force.
+    aside, directory : Path
+        Where to, and what that will become.
     units : Units, optional
         Of a material: points and arrays are in SI then, and the names of arrays end in their unit.
     revolve : float, optional
         Angle of the solid in degrees, 360 for all round; no solid unless given.
 
-    Returns
-    -------
-    list of Path
-        The files, the time series first.
-
     Raises
     ------
     InputError
-        If there are no states, units or angle do not fit, the directory cannot be written, or pyvista is missing.
+        If there are no states, units or angle do not fit, or pyvista is missing.
     NotWritten
         If the disk is full.
     """
-    with directory_written_aside(directory, force=force) as aside:
-        names = write_states(states, aside, directory, units=units, revolve=revolve)
-    return [directory / name for name in names]
-
-
-def write_states(
-    states: Iterable[State], aside: Path, directory: Path, *, units: Units | None, revolve: float | None
-) -> list[str]:
-    """Write into a directory made by `directory_written_aside` and return the names; the rest as `write_path`."""
     if revolve is not None:
         require_angle(revolve)
     pyvista = require_pyvista()
