@@ -14,7 +14,6 @@ from fem_adhesion.common import style
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve import lines as curve_lines
 from fem_adhesion.curve import load as load_panel
-from fem_adhesion.curve import profiles as profiles_panel
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields import state_at
 from fem_adhesion.scene import Scene
@@ -170,7 +169,7 @@ def test_profiles_meet_the_surface_law_and_the_nodes_lie_on_them(curves):
     spike = _lines(_panel(figure, "spike"))["nodes of the grid"]
     r, p = spike.get_xdata(), spike.get_ydata()
     assert r.size > 30
-    np.testing.assert_allclose(profiles_panel.profile(curves[5.0].path, "jump_off", r).pressure, p, atol=1e-9)
+    np.testing.assert_allclose(curve_figure.profile(curves[5.0].path, "jump_off", r).pressure, p, atol=1e-9)
     assert p.min() == pytest.approx(-16 / (9 * np.sqrt(3)) * 5, rel=1e-3)
 
 
@@ -276,7 +275,7 @@ def test_each_axis_is_labelled_with_what_is_drawn_along_it(curves, real, materia
     gaps, pressures = _lines(_panel(figure, "gap")), _lines(_panel(figure, "pressure"))
     marks = [line for line in body.lines if len(line.get_xdata()) == 1]
     assert len(marks) == len(path.events)
-    for event, mark in zip((path.event(name) for name in profiles_panel.STATES), marks, strict=True):
+    for event, mark in zip((path.event(name) for name in load_panel.STATES), marks, strict=True):
         x, y = event.approach * size["approach"], event.load * size["load"]
         assert load[words[event.name]].get_xydata()[0] == pytest.approx((x, y), rel=1e-6, abs=1e-9)
         assert mark.get_xydata()[0] == pytest.approx((x, event.central_gap * size["central_gap"]), rel=1e-6)
@@ -369,7 +368,7 @@ def test_each_legend_names_what_is_to_be_seen(made):
 
 def test_a_gap_is_smooth_up_to_the_equator_of_a_sphere(made):
     for line in _panel(made, "gap").lines:
-        if line.get_label() in {look.words for look in profiles_panel.STATES.values()}:
+        if line.get_label() in {look.words for look in load_panel.STATES.values()}:
             rise = np.diff(line.get_ydata())
             far = line.get_xdata()[:-1] > 0.95 * line.get_xdata().max()
             assert np.all(rise[far] > 0)

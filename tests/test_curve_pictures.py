@@ -13,8 +13,7 @@ from fem_adhesion.common.options import Parser
 from fem_adhesion.curve import command as curve
 from fem_adhesion.curve import pictures as module
 from fem_adhesion.curve.lines import smooth
-from fem_adhesion.curve.load import KINDS
-from fem_adhesion.curve.profiles import STATES
+from fem_adhesion.curve.load import KINDS, STATES
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.paraview import picture as solid_view
 from fem_adhesion.paraview.picture import section, surfaces, view_of

@@ -26,6 +26,7 @@ FADED = 0.04  # of the pull-off force: the attraction at which a frame begins
 MARGIN = 0.08  # of the frame, around what it shows
 HIGHEST = 0.5  # load in pull-off forces that is shown around the events
 
+
 Range = tuple[float, float]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,6 @@ from fem_adhesion.common import style
 from fem_adhesion.common.numbers import engineering
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.lines import Frame
-from fem_adhesion.curve.profiles import LEGEND, STATES
 from fem_adhesion.curve.solve import Curves, Scale, scales
 from fem_adhesion.fields import is_same_contact
 from fem_adhesion.scene import Scene
@@ -35,6 +35,7 @@ THEORIES: Mapping[str, dict[str, Any]] = {
     "Bradley": {"color": "0.55", "linewidth": 1.1, "linestyle": style.CHAIN, "zorder": 1.5},
     "Maugis-Dugdale": {"color": style.PINK, "linewidth": 1.3, "linestyle": "-", "zorder": 1.4},
 }
+LEGEND = {"fontsize": 8, "handlelength": 3.2, "framealpha": 0.9, "edgecolor": "none"}
 GRIPS: dict[str, Any] = {"color": "black", "linestyle": "-"}
 APPARATUS: dict[str, Any] = {"color": style.GREEN, "linestyle": "-"}
 SAMPLES = 600
@@ -43,6 +44,24 @@ WIDER, CLOSE = 1.3, 0.99  # contact radii of theories: than the curve's widest, 
 FAR_BEYOND = 3  # the highest load, in that of the frame around the events, from which on they are enlarged
 
 Ends = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a state is drawn: its name, and what tells it from the others."""
+
+    words: str
+    color: str
+    linestyle: Any
+    marker: str
+
+
+STATES: Mapping[str, Look] = {
+    "jump_on": Look("jump on", style.GREEN, style.CHAIN, "^"),
+    "jump_off": Look("jump off", style.RED, style.DASHED, "v"),
+    "pull_off": Look("pull-off", style.BLUE, "-", "o"),
+    "zero_load": Look("zero load", style.ORANGE, style.LONG, "D"),
+}
 
 
 def draw_load(axes: Any, curves: Curves) -> str:

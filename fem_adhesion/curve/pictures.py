@@ -23,8 +23,7 @@ from scipy.spatial import KDTree
 from fem_adhesion.common.numbers import with_error
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.figure import LOOK
-from fem_adhesion.curve.load import KINDS, contact_words
-from fem_adhesion.curve.profiles import STATES
+from fem_adhesion.curve.load import KINDS, STATES, contact_words
 from fem_adhesion.curve.solve import Curves, scales
 from fem_adhesion.fields import State, state_at
 from fem_adhesion.paraview.picture import COLOURS, Pixels, View, solid_image, view_of
