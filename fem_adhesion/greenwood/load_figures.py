@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,8 +12,9 @@ from matplotlib.figure import Figure
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import listed, rises, told
 from fem_adhesion.common.style import curve, dress, note, panels, theory
-from fem_adhesion.greenwood.curves import elements_beside
 from fem_adhesion.greenwood.study import JUMPS_AT, Greenwood1997
+from halfspace.equilibrium.contact import CENTRAL_GAP
+from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.theories import dmt
 from halfspace.theories.closed_forms import (
     BRADLEY_PULL_OFF,
@@ -185,6 +187,40 @@ def _see_2b(study: Greenwood1997) -> Iterator[str]:
 def _scaled(study: Greenwood1997, tabor: float, name: str) -> float:
     event = study.curves[tabor].event(name)
     return event.approach / tabor if event else float("nan")
+
+
+def gap_falls(path: EquilibriumPath) -> bool:
+    """Whether the central gap falls at every point of a curve, by the tangents: grids hand over with a small step."""
+    return all(point.rates[CENTRAL_GAP] < 0 for point in path.points)
+
+
+def elements_beside(fe: EquilibriumPath | None, path: EquilibriumPath, x: str, y: str) -> str:
+    """How far finite-element points lie from the half-space's curve."""
+    if fe is None:
+        return ""
+    seen = (fe.load <= path.load.max(initial=-np.inf)) & (fe.approach >= path.approach.min(initial=np.inf))
+    if x == "contact_radius" or y == "contact_radius":
+        seen &= np.isfinite(fe.contact_radius)
+    line = np.isfinite(getattr(path, x)) & np.isfinite(getattr(path, y))
+    off = _farthest((getattr(fe, x)[seen], getattr(fe, y)[seen]), (getattr(path, x)[line], getattr(path, y)[line]))
+    text = (
+        f"At mu = {path.tabor:g} the finite-element points are within {off:.1e} of the line, in units of their extent."
+    )
+    return told(text, off)
+
+
+def _farthest(points: tuple[Array, Array], line: tuple[Array, Array]) -> float:
+    """Largest distance of points from a polygon, in units of its width and height where the points are."""
+    at, corners = np.stack(points), np.stack(line)
+    if at.size == 0 or corners.shape[1] < 2:
+        return math.nan
+    size = np.maximum(np.ptp(at, axis=1), 1e-12)[:, None]
+    at, corners = at / size, corners / size
+    start, step = corners[:, :-1], np.diff(corners)
+    length = np.maximum(np.sum(step**2, axis=0), 1e-30)
+    offsets = at[:, :, None] - start[:, None]
+    t = np.clip(np.sum(offsets * step[:, None], axis=0) / length, 0, 1)
+    return float(np.hypot(*(offsets - t * step[:, None])).min(axis=1).max())
 
 
 SMALL = "Load against approach around pull-off, small Tabor parameters"

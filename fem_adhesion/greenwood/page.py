@@ -20,9 +20,8 @@ from fem_adhesion.common.page import Section, Table, bullets, page, write_csv
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.greenwood import load_figures, state_figures, trend_figures
 from fem_adhesion.greenwood.criteria import CriteriaStudy, closed_ratios
-from fem_adhesion.greenwood.curves import DeviceStudy
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
-from fem_adhesion.greenwood.study import JUMPS_AT, WINDING_AT, Greenwood1997, PullOff
+from fem_adhesion.greenwood.study import JUMPS_AT, WINDING_AT, DeviceStudy, Greenwood1997, PullOff
 from fem_adhesion.greenwood.tables import Printed
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 from halfspace.values import Estimate

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import listed, plus_minus, rises, told
 from fem_adhesion.common.style import branches, curve, dress, note, panels, theory
-from fem_adhesion.greenwood.curves import elements_beside, gap_falls
+from fem_adhesion.greenwood.load_figures import elements_beside, gap_falls
 from fem_adhesion.greenwood.study import WINDING_AT, Greenwood1997
 from halfspace.accuracy.fold_birth import count_folds
 from halfspace.equilibrium.curve import EquilibriumPath

@@ -5,26 +5,113 @@ J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.greenwood import curves, tables
+from fem_adhesion.greenwood import tables
 from fem_adhesion.greenwood.criteria import CriteriaStudy, fit, jump_on
-from fem_adhesion.greenwood.curves import DeviceStudy, DrawnState, devices, fine_path
 from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple, Rise, attempts, false_rise, ripple
 from fem_adhesion.greenwood.tables import Printed
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.fold_birth import FIRST, tabor_of
-from halfspace.equilibrium.charts import COMPRESSION
-from halfspace.equilibrium.conditions import FOLD
+from halfspace.accuracy.fold_birth import FIRST, critical_stiffness, tabor_of
+from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.equilibrium.charts import COMPRESSION, trace_charts
+from halfspace.equilibrium.conditions import FOLD, Condition, Located
+from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.devices import Jump
+from halfspace.equilibrium.devices import Cycle, Jump, cycle
+from halfspace.equilibrium.path import Steps
+from halfspace.scales import Scales
 from halfspace.values import Array, Estimate, Valued
+
+FINE = Steps(first=0.02, longest=0.08, turn=0.06)  # a polygon through the points looks smooth
+FINEST = Steps(first=0.02, longest=0.03, turn=0.02)  # even enlarged
+SEEN = 1e-4  # relative accuracy of what is only drawn
+
+# States of [G97] Fig. 4 at mu = 5: the central gap, and whether it is met first or last along the path.
+PROFILES = ((2.554, 0), (1.0, 0), (0.3, 0), (0.02, 0), (0.0, -1), (-0.0036, -1), (-0.01, -1))
+PROFILE_RADII = np.concatenate([[0.0], np.geomspace(1e-3, 0.05, 30), np.linspace(0.052, 4.0, 1200)])
+
+STIFFNESSES = (math.inf, 100.0, 10.0, 3.0, 1.0, 0.3, 0.1)  # R dgamma/eps, of an apparatus
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DrawnState(Valued):
+    """Shape and pressure of one state.
+
+    Central gap and approach in eps, load in R dgamma, contact radius in beta, nan where the central gap exceeds 3^(1/6)
+    eps; radii in beta, gap in eps and pressure in dgamma/(mu eps), (n,) arrays.
+    """
+
+    central_gap: float
+    approach: float
+    load: float
+    contact_radius: float
+    radii: Array
+    gap: Array
+    pressure: Array
+
+
+def fine_path(tabor: float, *, to_load: float = COMPRESSION, steps: Steps = FINE) -> EquilibriumPath:
+    """Trace a curve and put points on it that are close enough to be drawn; its events are the trace's."""
+    scales = Scales(tabor)
+    charts = half_space_charts(scales, resolution_for(scales, SEEN), to_load)
+    path = halfspace.trace(tabor, rtol=SEEN, to_load=to_load)
+    return replace(path, segments=trace_charts(charts, to_load, steps))
+
+
+def jumps(tabor: float) -> dict[str, Jump]:
+    """Jumps under fixed grips by the letters of their ends in [G97] Fig. 2a; none where the curve does not fold."""
+    grips = cycle(halfspace.trace(tabor, rtol=1e-6))
+    return {"AB": grips.jump_on, "CD": grips.jump_off} if grips else {}
+
+
+def profiles(path: EquilibriumPath) -> Iterator[DrawnState]:
+    """States of Fig. 4 on a path, in order along it."""
+    for gap, which in PROFILES:
+        found = path.states(Condition(CENTRAL_GAP, value=gap))
+        if found:
+            yield _profile(found[which])
+
+
+def _profile(state: Located) -> DrawnState:
+    """State as a field; the gap is interpolated, the pressure is what the law gives for it."""
+    problem, x = state.problem.interface, state.problem.surface_state(state.point.x)
+    edge = state.point.observables[CONTACT_RADIUS]  # where the tension is largest
+    radii = np.union1d(PROFILE_RADII, edge[np.isfinite(edge)])
+    gap = problem.operator_at(x).values_at(radii, x[:-2])
+    approach, load, central_gap, radius = state.point.observables
+    pressure = problem.law.pressure(gap, problem.tabor)
+    return DrawnState(central_gap, approach, load, radius, radii, gap, pressure)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DeviceStudy(Valued):
+    """Cycles at a Tabor parameter by falling stiffness, fixed grips first, and the border of jumping and following.
+
+    `border` (n, 2) has Tabor parameters below the critical one, and the stiffness in R dgamma/eps below which they
+    jump.
+    """
+
+    tabor: float
+    cycles: tuple[Cycle, ...]
+    border: Array
+
+
+def devices(path: EquilibriumPath) -> DeviceStudy:
+    """Cycles on a traced curve, which must fold, and the border at every Tabor parameter."""
+    cycles = (cycle(path, stiffness) for stiffness in STIFFNESSES)
+    critical = tabor_of(FIRST)
+    tabors = critical * (1 - np.geomspace(0.999, 1e-3, 40))
+    border = np.array([[tabor, critical_stiffness(float(tabor))] for tabor in tabors])
+    return DeviceStudy(path.tabor, tuple(c for c in cycles if c is not None), border)
+
 
 DRAWN = (0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0)  # Tabor parameters of the figures' curves
 DEEP = {0.02: 20.0}  # load to which a curve goes, Fig. 1c
@@ -185,20 +272,20 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     critical_tabor = Estimate.refined(*(tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7)))
     winding = drawn[WINDING_AT]
     folds = np.array([fold.point.observables for fold in winding.states(FOLD)])
-    jumps, profiles = curves.jumps(JUMPS_AT), tuple(curves.profiles(winding))
+    leaps, states = jumps(JUMPS_AT), tuple(profiles(winding))
     seconds = time.perf_counter() - began
-    parts = drawn, elements, jumps, folds, profiles, pull_offs, ripples, rises, criteria, printed, relaxations
+    parts = drawn, elements, leaps, folds, states, pull_offs, ripples, rises, criteria, printed, relaxations
     return Greenwood1997(*parts, apparatus, critical_tabor, seconds, quick)
 
 
 def _drawn(tabor: float) -> EquilibriumPath:
-    steps = curves.FINEST if tabor == WINDING_AT else curves.FINE
+    steps = FINEST if tabor == WINDING_AT else FINE
     return fine_path(tabor, to_load=DEEP.get(tabor, COMPRESSION), steps=steps)
 
 
 def _rises(extent: Extent) -> dict[float, Rise]:
     """False rise on each spacing, from curves that are resolved."""
-    resolved = [halfspace.trace(mu, rtol=curves.SEEN) for mu in extent.rising]
+    resolved = [halfspace.trace(mu, rtol=SEEN) for mu in extent.rising]
     return {spacing: false_rise(resolved, spacing) for spacing in extent.rises}
 
 
