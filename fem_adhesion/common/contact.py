@@ -27,29 +27,14 @@ RIGID = 1e-9  # part of the pair's compliance that stands for none: a rigid sphe
 class Contact:
     """A sphere against a wall or another sphere, in SI.
 
-    Parameters
-    ----------
-    radius, modulus, poisson : float
-        Radius in m, Young's modulus in Pa and Poisson's ratio of the sphere, 0 <= poisson <= 0.499999.
-    work_of_adhesion, spacing : float
-        In J/m^2; equilibrium spacing of the surface law in m.
-    counter_modulus, counter_poisson, counter_radius : float, optional
-        Of the other body; rigid unless both of the former are given, flat by default.
-    stiffness : float
-        Of the cantilever in N/m; infinite for fixed grips.
-    grip : {"sliding", "bonded"}
-        How spheres are held at their mid-planes.
-    law : Law
-        Of the tension between the surfaces.
-    thickness : float, optional
-        In m: a rigid sphere on a thin sample, whose are `modulus` and `poisson` then.
-    foundation : {"bonded", "sliding"}
-        How the sample stands on its rigid base.
+    Of the sphere these are its radius in m, Young's modulus in Pa and Poisson's ratio, 0 <= poisson <= 0.499999; the
+    work of adhesion is in J/m^2, the equilibrium spacing of the surface law in m. The other body is rigid unless both
+    of its modulus and Poisson's ratio are given, and flat unless its radius is. The stiffness is that of the cantilever
+    in N/m, infinite for fixed grips; the grip is how spheres are held at their mid-planes. With a thickness in m it is
+    a rigid sphere on a thin sample, whose are `modulus` and `poisson` then, and the foundation how that stands on its
+    rigid base.
 
-    Raises
-    ------
-    InputError
-        If a value is out of range, one of the other body's two is missing, or there is one beside a thin sample.
+    InputError if a value is out of range, one of the other body's two is missing, or there is one beside a thin sample.
     """
 
     radius: float

@@ -19,14 +19,7 @@ SizeFunction = Callable[[Array, Array], Array]
 def graded_size(fine: float, fine_radius: float, growth: float) -> SizeFunction:
     """Return size(r, z) = max(fine, growth * distance to the segment 0 <= r <= fine_radius of the surface).
 
-    Parameters
-    ----------
-    fine : float
-        Size on the segment, in beta.
-    fine_radius : float
-        Length of the segment, in beta.
-    growth : float
-        Increase of the size per unit of distance.
+    Sizes and the segment's length are in beta; growth is the increase of the size per unit of distance.
     """
 
     def size(r: Array, z: Array) -> Array:
@@ -37,27 +30,11 @@ def graded_size(fine: float, fine_radius: float, growth: float) -> SizeFunction:
 
 
 def quarter_disc(radius: float, size: SizeFunction) -> Any:
-    """Triangulate the quarter disc of the given radius, no edge longer than `size` at its triangle's centroid.
+    """Triangulate the quarter disc of a radius L in beta, no edge longer than `size` at its triangle's centroid.
 
-    Triangles are cut until they are small enough; new nodes of the far boundary are pushed onto the arc, so
-    the body is a polygon inscribed in the quarter disc.
-
-    Parameters
-    ----------
-    radius : float
-        Radius L of the block, in beta.
-    size : callable
-        size(r, z), bounded away from zero; see `graded_size`.
-
-    Returns
-    -------
-    skfem.MeshTri
-        With the boundaries "axis", "contact" and "far".
-
-    Raises
-    ------
-    InputError
-        If the radius is not positive.
+    Triangles are cut until they are small enough; new nodes of the far boundary are pushed onto the arc, so the body is
+    a polygon inscribed in the quarter disc. The size, in beta, is bounded away from zero. Returns a MeshTri with the
+    boundaries "axis", "contact" and "far"; InputError if the radius is not positive.
     """
     _require_positive("radius", radius)
     diagonal = radius * np.sqrt(0.5)
@@ -69,26 +46,11 @@ def quarter_disc(radius: float, size: SizeFunction) -> Any:
 
 
 def tensor_grid(r_breaks: Array, z_breaks: Array, interfaces: Sequence[float] = ()) -> Any:
-    """Mesh the square box with quadrilaterals between lines of constant radius and depth.
+    """Mesh the square box with quadrilaterals between lines of constant radius (m + 1,) and depth (n + 1,), in beta.
 
-    Parameters
-    ----------
-    r_breaks : (m + 1,) array
-        Radii of the vertical lines, ascending from 0, in beta.
-    z_breaks : (n + 1,) array
-        Depths of the horizontal lines, ascending from 0 and positive into the body, in beta.
-    interfaces : sequence of float
-        Those of them at which another material begins, ascending.
-
-    Returns
-    -------
-    skfem.MeshQuad
-        m times n cells with the boundaries "axis", "contact" and "far", and one subdomain for each material.
-
-    Raises
-    ------
-    InputError
-        If the lines do not ascend from 0.
+    Both ascend from 0, depths positive into the body; the interfaces, ascending, are those at which another material
+    begins. Returns a MeshQuad of m times n cells with the boundaries "axis", "contact" and "far", and one subdomain for
+    each material; InputError if the lines do not ascend from 0.
     """
     for name, lines in (("r_breaks", r_breaks), ("z_breaks", z_breaks)):
         if len(lines) < 2 or lines[0] != 0.0 or np.any(np.diff(lines) <= 0.0):
@@ -99,29 +61,12 @@ def tensor_grid(r_breaks: Array, z_breaks: Array, interfaces: Sequence[float] = 
 
 
 def graded_breaks(fine: float, fine_radius: float, length: float, *, growth: float = 2.0) -> Array:
-    """Cut [0, length] uniformly up to `fine_radius`, then into cells that grow geometrically.
+    """Cut [0, length] uniformly up to `fine_radius`, then into cells that grow geometrically: break points (m + 1,).
 
-    Parameters
-    ----------
-    fine : float
-        Largest spacing on [0, fine_radius], in beta.
-    fine_radius : float
-        End of the uniform part, in beta; equal to `fine` for lines graded from the surface into the depth.
-    length : float
-        Last break point, in beta.
-    growth : float
-        Ratio of one cell to the one before outside the uniform part, above 1; less for the first of them, so that a
-        cell ends at `length`.
-
-    Returns
-    -------
-    (m + 1,) array
-        Break points from 0 to `length`.
-
-    Raises
-    ------
-    InputError
-        If the lengths are not positive, fine_radius reaches length or growth is not above 1.
+    Lengths are in beta. `fine` is the largest spacing of the uniform part, which ends where it does for lines graded
+    from the surface into the depth. Growth, above 1, is the ratio of one cell to the one before outside of it; less for
+    the first of them, so that a cell ends at `length`. InputError if the lengths are not positive, fine_radius reaches
+    length or growth is not above 1.
     """
     _require_positive("fine", fine)
     _require_positive("fine_radius", fine_radius)

@@ -41,15 +41,8 @@ ROUND, NEARLY_ROUND = 3, 2
 def require_body(mesh: Any) -> None:
     """Raise InputError unless a mesh with the boundaries "axis", "contact" and "far" is that of a body.
 
-    Parameters
-    ----------
-    mesh : skfem.MeshTri, MeshTri2, MeshQuad or MeshQuad2
-        Meridian section, coordinates r and z, about in units of the radius of curvature at the pole.
-
-    Raises
-    ------
-    InputError
-        One line: what is wrong with value and limit, and the remedy.
+    It is the meridian section, coordinates r and z, about in units of the radius of curvature at the pole. The error
+    says in one line what is wrong, with value and limit, and the remedy.
     """
     for check in CHECKS:
         complaint = check(mesh)

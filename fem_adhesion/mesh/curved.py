@@ -26,14 +26,9 @@ CORNERS = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]])  # of the refer
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Block(Valued):
-    """A structured block of cells: the exact map of a rectangle that is cut into (m, n) cells.
+    """A structured block of (m, n) cells: the exact map of a rectangle that is cut at s (m + 1,) and t (n + 1,).
 
-    Attributes
-    ----------
-    s, t : (m + 1,) and (n + 1,) array
-        Where the rectangle is cut.
-    place : callable
-        place(s, t) returns r and z of points of the rectangle, (2, ...).
+    place(s, t) returns r and z of points of the rectangle, (2, ...).
     """
 
     s: Array
@@ -51,14 +46,9 @@ class Block(Valued):
 
 
 class CurvedMapping(MappingIsoparametric):  # type: ignore[misc]
-    """Map from the reference square to cells shaped by tensor grids of points.
+    """Map from the reference square to cells of a mesh, each shaped by a tensor grid of points.
 
-    Parameters
-    ----------
-    mesh : skfem.MeshQuad
-        Its topology.
-    points : (2, cells, (k + 1)^2) array
-        Places of the tensor grid of the k + 1 Chebyshev points of each cell.
+    Points (2, cells, (k + 1)^2) are the places of the k + 1 by k + 1 Chebyshev points of each cell.
     """
 
     def __init__(self, mesh: Any, points: Array) -> None:
@@ -133,14 +123,9 @@ class CurvedQuads(MeshQuad):  # type: ignore[misc]
 
 
 def joined(blocks: list[Block], corners: list[Index]) -> CurvedQuads:
-    """Mesh of blocks whose cells share vertices.
+    """Mesh of blocks of (m, n) cells that share vertices.
 
-    Parameters
-    ----------
-    blocks : list of Block
-        Each with (m, n) cells.
-    corners : list of (m + 1, n + 1) int arrays
-        Numbers of the vertices of each block; neighbours share those of their common side.
+    Corners (m + 1, n + 1) are the numbers of the vertices of each block; neighbours share those of their common side.
     """
     points = np.concatenate([block.points() for block in blocks], axis=1)
     cells = [np.array([v[:-1, :-1], v[1:, :-1], v[1:, 1:], v[:-1, 1:]]).reshape(4, -1) for v in corners]

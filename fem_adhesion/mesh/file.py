@@ -44,13 +44,10 @@ def read_body(path: str | Path) -> Any:
 def read_scaled(path: str | Path) -> tuple[Any, float]:
     """Read the mesh of a body, make sure that it is one, and scale it to the radius R of curvature at its pole.
 
-    Parameters
-    ----------
-    path : str or Path
-        File that meshio reads. Cells: triangles of 3 or 6 nodes, or quadrilaterals of 4, 8 or 9, all of one kind. The
-        groups "axis", "contact" and "grip" of lines are Gmsh's physical groups, cell sets, meshio's integer cell data
-        "axis-contact-grip" (in any order, see ``meshio convert --sets-to-int-data``) or the boundaries that scikit-fem
-        saves.
+    Any file that meshio reads will do. Cells are triangles of 3 or 6 nodes, or quadrilaterals of 4, 8 or 9, all of one
+    kind. The groups "axis", "contact" and "grip" of lines are Gmsh's physical groups, cell sets, meshio's integer cell
+    data "axis-contact-grip" (in any order, see ``meshio convert --sets-to-int-data``) or the boundaries that scikit-fem
+    saves.
 
     Returns
     -------

@@ -56,29 +56,14 @@ NEAREST, NESTED = 0.7, 0.4
 
 
 def held_sphere(R: float, x_lines: Array, depths: Array, cap_angle: float) -> CurvedQuads:
-    """Mesh the sphere that touches z = 0 from below, held over a cap around the point opposite the pole.
+    """Mesh the sphere of radius R that touches z = 0 from below, held over a cap around the point opposite the pole.
 
-    Parameters
-    ----------
-    R : float
-        Radius in beta.
-    x_lines, depths : (m + 1,) and (n + 1,) array
-        Lines of the core of the half that faces the wall, as those of `fem_adhesion.mesh.spheres.hemisphere`: on the
-        flat plane from 0 to CORE R and DEPTH R, in beta.
-    cap_angle : float
-        Half-angle of the cap in degrees, 1 to 89.99, or 90.
-
-    Returns
-    -------
-    CurvedQuads
-        With the boundaries "axis", "contact" (the half that faces the wall) and "far" (the cap); the surface between
-        them is free and belongs to none. Beyond the core the contact's cells end at
-        `fem_adhesion.mesh.spheres.contact_ends` of `rings_at_equator`.
-
-    Raises
-    ------
-    InputError
-        If cap_angle is out of range, or x_lines are fewer than three.
+    Lines and depths, (m + 1,) and (n + 1,), are of the core of the half that faces the wall, as those of
+    `fem_adhesion.mesh.spheres.hemisphere`: on the flat plane from 0 to CORE R and DEPTH R. Lengths are in beta; the
+    half-angle of the cap is in degrees, 1 to 89.99, or 90. The boundaries are "axis", "contact" (the half that faces
+    the wall) and "far" (the cap); the surface between them is free and belongs to none. Beyond the core the contact's
+    cells end at `fem_adhesion.mesh.spheres.contact_ends` of `rings_at_equator`. InputError if cap_angle is out of
+    range, or x_lines are fewer than three.
     """
     angle = np.radians(require_cap_angle(cap_angle))
     if len(x_lines) < 3:

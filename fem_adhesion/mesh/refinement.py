@@ -15,24 +15,12 @@ from halfspace.values import Array, Index
 
 
 def refined_towards(mesh: CurvedQuads, vertex: int, sizes: Array) -> CurvedQuads:
-    """Cut the cells around a vertex into rings, whose sizes fall geometrically towards it.
+    """Cut the cells around a vertex, given by its number, into rings, whose sizes fall geometrically towards it.
 
     Each cell keeps a smaller one at the vertex, and what surrounds that is cut into two along the diagonal; then the
     smaller one is cut so, and so on. Sides that do not end at the vertex stay whole, and with them all other cells.
-
-    Parameters
-    ----------
-    mesh : CurvedQuads
-        Its names of boundaries are lost.
-    vertex : int
-        Number of the vertex.
-    sizes : (rings,) array
-        Of the smaller cells, in parts of the old ones, descending.
-
-    Returns
-    -------
-    CurvedQuads
-        With the cells that were cut at the end.
+    Sizes (rings,), descending, are those of the smaller cells, in parts of the old ones. The cells that were cut are at
+    the end; names of boundaries are lost.
     """
     corners, cells = np.nonzero(mesh.t == vertex)
     ends = np.setdiff1d(mesh.t[:, cells], vertex)
@@ -45,18 +33,12 @@ def refined_towards(mesh: CurvedQuads, vertex: int, sizes: Array) -> CurvedQuads
 
 
 def _rings(corner: int, sizes: Array) -> tuple[Index, Array]:
-    """Cells that one is cut into around one of its corners.
+    """Cells that one is cut into around one of its corners, (2 rings + 1, 4), and places (2, 3 (rings + 1) + 1).
 
     Elements of degree 3 and more need neighbours to run along their common side in the same direction: on sides around
-    the corner that of the cell that is cut, on those that lead to it, and on its diagonal, away from it.
-
-    Returns
-    -------
-    parts : (2 rings + 1, 4) int array
-        Places that are the cells' vertices.
-    places : (2, 3 (rings + 1) + 1) array
-        In the reference square: on the side along the first coordinate, on that along the second and on the diagonal,
-        each inwards, and the corner itself.
+    the corner that of the cell that is cut, on those that lead to it, and on its diagonal, away from it. The cells'
+    vertices are numbers of places in the reference square: on the side along the first coordinate, on that along the
+    second and on the diagonal, each inwards, and the corner itself.
     """
     at, k = CORNERS[:, corner], np.arange(len(sizes))
     s, t, diagonal = k, k + len(sizes), k + 2 * len(sizes)
@@ -98,17 +80,9 @@ STRAIGHT = {MeshTri: MeshTri, MeshTri2: MeshTri, MeshQuad: MeshQuad, MeshQuad2: 
 
 
 def refined(mesh: Any) -> Any:
-    """Cut each cell into four of the same shape together.
+    """Cut each cell of a mesh of straight or curved sides into four of the same shape together.
 
-    Parameters
-    ----------
-    mesh : skfem.MeshTri, MeshTri2, MeshQuad or MeshQuad2
-        With straight or curved sides, and named boundaries.
-
-    Returns
-    -------
-    skfem.MeshTri2 or MeshQuad2
-        With the same boundaries.
+    A MeshTri or MeshTri2 becomes a MeshTri2, a MeshQuad or MeshQuad2 a MeshQuad2, with the same named boundaries.
     """
     kind = type(mesh)
     sorting = {"sort_t": False} if STRAIGHT[kind] is MeshTri else {}

@@ -32,14 +32,10 @@ NO_RINGS = np.empty(0)
 
 @dataclass(frozen=True)
 class Stereographic:
-    """Coordinate x along a sphere's surface, the radius on the flat plane: r = x/(1 + k x^2), k = 1/4R^2.
+    """Coordinate x along a sphere's surface, the radius on the flat plane: r = x/(1 + k x^2), k = 1/4R^2, R in beta.
 
-    Parameters
-    ----------
-    R : float
-        Radius of the sphere in beta.
-    area : {"projected", "surface"}
-        Which area the density of a ring's is: that on the plane of the contact, or that on the sphere.
+    The area is that which the density of a ring's is: "projected" on the plane of the contact, or the sphere's
+    "surface".
     """
 
     R: float
@@ -67,14 +63,9 @@ class Stereographic:
 class Lines(Valued):
     """Lines of one half of a sphere.
 
-    Attributes
-    ----------
-    x, depths : (m + 1,) and (n + 1,) array
-        Of the core, a tensor grid on the flat plane.
-    layers : (LAYERS + 1,) array
-        From the core (0) to the mid-plane (1).
-    along : callable
-        The coordinate on the flat plane as a function of x, in which cells are cut.
+    x and depths, (m + 1,) and (n + 1,), are those of the core, a tensor grid on the flat plane; layers (LAYERS + 1,) go
+    from the core (0) to the mid-plane (1). `along` is the coordinate on the flat plane as a function of x, in which
+    cells are cut.
     """
 
     x: Array
@@ -100,25 +91,14 @@ def hemisphere(
     along: Callable[[Array], Array] = np.asarray,
     rings: Array = NO_RINGS,
 ) -> CurvedQuads:
-    """Mesh the hemisphere z >= -R of the sphere that touches z = 0 from below.
+    """Mesh the hemisphere z >= -R of the sphere of radius R in beta that touches z = 0 from below.
 
-    Parameters
-    ----------
-    R : float
-        Radius in beta.
-    lines, depths : (m + 1,) and (n + 1,) array
-        Lines of the core, a tensor grid on the flat plane, from 0 to CORE R and DEPTH R, in beta.
-    along : callable
-        The coordinate x as a function of another one in which the lines and the cells between them are given instead.
-    rings : (k,) array
-        Sizes of rings around the equator, as `fem_adhesion.mesh.refinement.refined_towards` takes them: where a bonded
-        mid-plane meets the free surface the stress is singular. The cells that are cut are as long as deep then;
-        without rings they are as thin as the contact's.
-
-    Returns
-    -------
-    CurvedQuads
-        With the boundaries "axis", "contact" (the sphere) and "far" (the mid-plane).
+    Lines (m + 1,) and depths (n + 1,) are those of the core, a tensor grid on the flat plane, from 0 to CORE R and
+    DEPTH R, in beta; `along` is the coordinate x as a function of another one in which the lines and the cells between
+    them are given instead. Rings (k,) have sizes as `fem_adhesion.mesh.refinement.refined_towards` takes them, around
+    the equator: where a bonded mid-plane meets the free surface the stress is singular. The cells that are cut are as
+    long as deep then; without rings they are as thin as the contact's. The boundaries are "axis", "contact" (the
+    sphere) and "far" (the mid-plane).
     """
     m, n = len(lines), len(depths)
     own = Lines(lines, depths, along=along)

@@ -31,13 +31,7 @@ class ContactState:
 
 
 def bradley_load(approach: ArrayLike) -> Array:
-    """Load on a rigid paraboloid, [G97] (1.3): the limit of vanishing Tabor parameter.
-
-    Parameters
-    ----------
-    approach : array_like
-        Approach alpha* in eps, below 1; the central gap is 1 - alpha*.
-    """
+    """Load on a rigid paraboloid at an approach alpha* below 1, [G97] (1.3): the limit of vanishing Tabor parameter."""
     h = 1 - np.asarray(approach, float)
     return np.asarray(-2 * np.pi * (4 / 3) * (h**-2 - h**-8 / 4))
 

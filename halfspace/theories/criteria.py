@@ -34,11 +34,8 @@ NEWTON_STEPS = 60  # at the end of the fit's range its roots coincide, and a ste
 def fundamental_criterion(approach: ArrayLike, central_gap: ArrayLike) -> Array:
     """Value of b sigma'(h0)/sigma(h0) in a computed state, which Attard & Parker hold stable above -1, [G97] (4.3).
 
-    Parameters
-    ----------
-    approach, central_gap : array_like
-        Approach alpha* and central gap H0 in eps of separated states, such as an `EquilibriumPath` has. The bulge is
-        their distance, b/eps = -alpha* - H0, positive towards the sphere: minus the w(0) of [G97] (2.4).
+    Approach alpha* and central gap H0 are those of separated states in eps, such as an `EquilibriumPath` has. The bulge
+    is their distance, b/eps = -alpha* - H0, positive towards the sphere: minus the w(0) of [G97] (2.4).
     """
     H0 = np.asarray(central_gap, float)
     bulge = -np.asarray(approach, float) - H0
@@ -48,12 +45,7 @@ def fundamental_criterion(approach: ArrayLike, central_gap: ArrayLike) -> Array:
 def closed_gap(tabor: ArrayLike, k: float) -> Array:
     """Central gap H0 at the jump by a closed criterion, (H0 + 1)^(7/2) = k pi sqrt2 mu^(3/2).
 
-    Parameters
-    ----------
-    tabor : array_like
-        Tabor parameter.
-    k : float
-        ATTARD_PARKER, PETHICA_SUTTON or APPENDIX_C.
+    k is ATTARD_PARKER, PETHICA_SUTTON or APPENDIX_C.
     """
     return _solve_power(k * np.pi * np.sqrt(2), tabor) - 1
 

@@ -35,19 +35,9 @@ class RigidSphere:
 
         W = -2 pi int sigma(h0 + z) (R - z) dz.
 
-    The far side counts negative: by the divergence theorem this is the attraction summed over the solid body.
-
-    Parameters
-    ----------
-    radius_ratio : float
-        rho = R/eps, at least 0.001.
-    whole : bool
-        Take the far side into account too; the hemisphere ends at the equator.
-
-    Raises
-    ------
-    InputError
-        If the ratio is out of range.
+    The far side counts negative: by the divergence theorem this is the attraction summed over the solid body. The ratio
+    is rho = R/eps, at least 0.001, or InputError; the hemisphere ends at the equator, and `whole` takes in the far
+    side.
     """
 
     radius_ratio: float
@@ -116,19 +106,9 @@ class JKRSphere:
         W         = X [(X^2 + a^2) L/2 - a X] - sqrt(8 pi a^3),
         alpha*/mu = X a L/2 - sqrt(2 pi a).
 
-    They exceed JKR's values at the same contact radius by 8 a^5/(15 X^2) and a^4/(3 X^2) to leading order.
-
-    Parameters
-    ----------
-    tabor : float
-        Tabor parameter mu, the unit of the approach.
-    radius_ratio : float
-        rho = R/eps, at least mu, lest the contact span the sphere; X = sqrt(rho/mu).
-
-    Raises
-    ------
-    InputError
-        If a parameter is out of range.
+    They exceed JKR's values at the same contact radius by 8 a^5/(15 X^2) and a^4/(3 X^2) to leading order. The Tabor
+    parameter mu is the unit of the approach; the ratio is rho = R/eps, at least mu, lest the contact span the sphere,
+    and X = sqrt(rho/mu). InputError if either is out of range.
     """
 
     tabor: float
