@@ -12,9 +12,17 @@ from rich.console import Console
 from fem_adhesion import cli
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Row
-from fem_adhesion.crosscheck.record import EVENT_NAMES, VERDICTS, crosscheck_record, overall_verdict
+from fem_adhesion.crosscheck.record import (
+    EVENT_NAMES,
+    STYLES,
+    VERDICTS,
+    columns,
+    crosscheck_record,
+    crosscheck_table,
+    crosscheck_tables,
+    overall_verdict,
+)
 from fem_adhesion.crosscheck.study import Failure
-from fem_adhesion.crosscheck.table import STYLES, columns, crosscheck_table, crosscheck_tables
 from fem_adhesion.report import sections
 from fem_adhesion.report.page import WORDS, verdict_words
 from halfspace.values import Estimate

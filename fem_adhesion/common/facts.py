@@ -36,13 +36,8 @@ def plain(value: object) -> object:
     if isinstance(value, (list, tuple)):
         return [plain(part) for part in value]
     if isinstance(value, float):
-        return finite(value)
+        return float(value) if math.isfinite(value) else None
     return value if value is None or isinstance(value, (str, int)) else str(value)
-
-
-def finite(value: float) -> float | None:
-    """The value, or None if it is infinite or not a number."""
-    return float(value) if math.isfinite(value) else None
 
 
 def machine() -> dict[str, str]:

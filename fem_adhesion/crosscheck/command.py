@@ -83,9 +83,8 @@ def _compare_with_progress(
 
 
 def _show(case: Case | Failure, console: Console) -> None:
-    from fem_adhesion.crosscheck.record import told
+    from fem_adhesion.crosscheck.record import crosscheck_tables, told
     from fem_adhesion.crosscheck.study import Case
-    from fem_adhesion.crosscheck.table import crosscheck_tables
 
     if isinstance(case, Case):
         for table in crosscheck_tables(case):

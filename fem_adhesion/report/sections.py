@@ -13,9 +13,8 @@ from pathlib import Path
 from fem_adhesion.common.facts import versions
 from fem_adhesion.common.page import Section, Table, inlined
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, SOLVERS, WEAK_FORM, Row
-from fem_adhesion.crosscheck.record import told, verdict_of
+from fem_adhesion.crosscheck.record import cells, columns, told, verdict_of
 from fem_adhesion.crosscheck.study import Case, Failure
-from fem_adhesion.crosscheck.table import cells, columns
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import tolerance_told
 from halfspace.errors import InputError
