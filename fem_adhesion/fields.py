@@ -137,25 +137,10 @@ class State(Valued):
 def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", how: Discretisation = FIELDS) -> State:
     """Solve for a state of a curve again on a mesh of its own, with the fields inside.
 
-    Parameters
-    ----------
-    scene : Scene
-        The contact, at small strain.
-    problem, point : Traceable, Point
-        Of a path traced by `fem_adhesion.trace`, and on which it was found: that of its segment or event.
-    name : str
-        To go with the state.
-    how : Discretisation
-        How finely.
-
-    Raises
-    ------
-    InputError
-        If the scene's body is a sphere held over a cap, or its strain finite.
-    halfspace.errors.NotConverged
-        If the state does not exist on the new mesh.
-    GridTooCoarse
-        If a user's mesh does not carry the spike of tension at the contact edge.
+    Problem and point are of a path of the scene, at small strain, traced by `fem_adhesion.trace`, and on which it was
+    found: that of its segment or event. The name is to go with the state; `how` says how finely. InputError if the
+    scene's body is a sphere held over a cap, or its strain finite; NotConverged if the state does not exist on the new
+    mesh, as GridTooCoarse if a user's mesh does not carry the spike of tension at the contact edge.
     """
     require_fields(scene)
     made = discretised_about(scene, float(point.observables[CONTACT_RADIUS]), how, problem.interface)
@@ -172,21 +157,9 @@ def states_along(
 ) -> Iterator[State]:
     """Solve for states of a traced curve one by one, in order of their arclength.
 
-    Parameters
-    ----------
-    scene, how
-        As of `state_at`.
-    path : EquilibriumPath
-        The scene's, from `fem_adhesion.trace`.
-    points : int, optional
-        Of the curve's points, nearly equidistant in arclength with both ends; all unless given, none if 0.
-    events : bool
-        Whether to take the events too.
-
-    Raises
-    ------
-    InputError
-        As `state_at`, or if points is negative.
+    The path is the scene's, from `fem_adhesion.trace`; scene, `how` and errors are as of `state_at`. So many of the
+    curve's points are taken, nearly equidistant in arclength with both ends; all unless given, none if 0, InputError if
+    negative. The events are taken too, or not.
     """
     require_fields(scene)
     chosen = [("", *path_point) for path_point in _spread(path, points)]
@@ -256,11 +229,7 @@ def half_space_beside(state: State) -> Beside:
 
     Its rings end where the elements do, except at the contact edge, but its compliance is that of the ring kernel.
     The contact radius is prescribed, or the central gap if there is no contact; approach and load are its own.
-
-    Raises
-    ------
-    halfspace.errors.NotConverged
-        If the half-space has no such state.
+    NotConverged if the half-space has no such state.
     """
     source, tabor = state.problem.operator.at(1.0), state.scene.tabor
     cells = _clear_of(source.cells, float(state.observables[CONTACT_RADIUS]))

@@ -18,17 +18,9 @@ LEAST, MOST = 0.02, 50.0
 class Dlvo(Law):
     """Tension c dgamma/eps [(eps/h)^3 - q e^(-kappa H) - (1 - q) (eps/h)^9], 1/c = 1/2 - q/kappa - (1 - q)/8.
 
-    Parameters
-    ----------
-    charge : float
-        q, the double layer's part of the repulsion at equilibrium: positive of like, negative of unlike charges.
-    screening : float
-        kappa, inverse Debye length in units of 1/eps, 0.02 to 50.
-
-    Raises
-    ------
-    InputError
-        If one is out of range, or the charges leave no adhesion or no core.
+    The charge q is the double layer's part of the repulsion at equilibrium: positive of like, negative of unlike
+    charges. The screening kappa is the inverse Debye length in units of 1/eps, 0.02 to 50. InputError if one is out of
+    range, or the charges leave no adhesion or no core.
     """
 
     charge: float

@@ -21,17 +21,7 @@ SOFTEST, HARDEST = 2, 60
 class Exponential(Law):
     """Tension c dgamma/eps e^(-k H) (1 - (eps/h)^m), 1/c = 1/k - e^k E_m(k) with the exponential integral E_m.
 
-    Parameters
-    ----------
-    k : float
-        Inverse range of the attraction in units of 1/eps, 0.1 to 50.
-    core : int
-        m, 2 to 60.
-
-    Raises
-    ------
-    InputError
-        If one is out of range.
+    The inverse range k of the attraction is in units of 1/eps, 0.1 to 50, the core's power m 2 to 60, or InputError.
     """
 
     k: float

@@ -20,17 +20,7 @@ class Morse(Law):
     """Tension 2 k dgamma/eps (e^(-k H) - e^(-2 k H)); as stiff as the 3-9 law at k = sqrt 8, as strong at k = 2.05.
 
     It is 2 k^2 dgamma/eps^2 stiff and k dgamma/(2 eps) strong, at H = ln 2/k. It has no core: of nearly rigid bodies in
-    compression the gap falls below zero.
-
-    Parameters
-    ----------
-    k : float
-        Inverse range in units of 1/eps, 0.1 to 50.
-
-    Raises
-    ------
-    InputError
-        If it is out of range.
+    compression the gap falls below zero. The inverse range k is in units of 1/eps, 0.1 to 50, or InputError.
     """
 
     k: float

@@ -17,18 +17,9 @@ STEEPEST = 60.0
 class PowerLaw(Law):
     """Attraction and repulsion by inverse powers of the gap, normalised to the work of adhesion.
 
-    sigma(h) = c dgamma/eps [(eps/h)^n - (eps/h)^m] is the tension, zero at h = eps; the amplitude c makes
-    the integral of sigma from eps to infinity equal to dgamma.
-
-    Parameters
-    ----------
-    attraction, repulsion : float
-        Exponents 2 < n < m <= 60; 3 and 9 for Lennard-Jones solids.
-
-    Raises
-    ------
-    InputError
-        If they are out of range.
+    sigma(h) = c dgamma/eps [(eps/h)^n - (eps/h)^m] is the tension, zero at h = eps; the amplitude c makes the integral
+    of sigma from eps to infinity equal to dgamma. The exponents are 2 < n < m <= 60, or InputError; 3 and 9 for
+    Lennard-Jones solids.
     """
 
     attraction: float = 3

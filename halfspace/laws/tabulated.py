@@ -26,17 +26,8 @@ class Tabulated(Law):
     """Cubic spline through a table of gaps and tensions, in any units: spacing and work of adhesion are its own.
 
     Beyond the last gap the tension falls as the power of the gap that it ends with, before the first the pressure rises
-    as the exponential that it begins with.
-
-    Parameters
-    ----------
-    path : Path
-        CSV file with two columns, gap and tension (negative where the surfaces repel), and any header.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, has holes, no repulsive core or no decay.
+    as the exponential that it begins with. The path is of a CSV file with two columns, gap and tension (negative where
+    the surfaces repel), and any header; InputError if it cannot be read, has holes, no repulsive core or no decay.
     """
 
     path: Path

@@ -18,15 +18,7 @@ SHARPEST = 1e-2
 class Hyperboloid(Endless):
     """u^2/2 near the apex, the cone b u from u = b on; a paraboloid as b grows.
 
-    Parameters
-    ----------
-    b : float
-        In beta, 0.01 or more: R tan(angle between cone and plane)/beta.
-
-    Raises
-    ------
-    InputError
-        If it is out of range.
+    b is in beta, 0.01 or more, or InputError: R tan(angle between cone and plane)/beta.
     """
 
     b: float

@@ -21,15 +21,7 @@ SHARPEST, BLUNTEST = 1.5, 10.0
 class Power(Endless):
     """u^k/k in beta^2/R; k = 2 is the paraboloid.
 
-    Parameters
-    ----------
-    k : float
-        Exponent, 1.5 to 10.
-
-    Raises
-    ------
-    InputError
-        If it is out of range: a cone, k = 1, has a pressure without bound on its axis.
+    The exponent k is 1.5 to 10, or InputError: a cone, k = 1, has a pressure without bound on its axis.
     """
 
     k: float

@@ -18,15 +18,7 @@ NARROWEST, WIDEST = 0.1, 5.0
 class RoundedPunch(Endless):
     """z = (sqrt(a^2 + u^2) - a)^2/2 in beta^2/R: u^4/8 a^2 inside, a parabola about u = a far outside.
 
-    Parameters
-    ----------
-    flat : float
-        Radius a of the flat part in beta, 0.1 to 5; a paraboloid as it vanishes.
-
-    Raises
-    ------
-    InputError
-        If it is out of range.
+    The radius a of the flat part is in beta, 0.1 to 5, or InputError; a paraboloid as it vanishes.
     """
 
     flat: float

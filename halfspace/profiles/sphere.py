@@ -16,17 +16,8 @@ from halfspace.values import Array, Valued, keep
 class Sphere:
     """Gap between a sphere and a wall, or another sphere.
 
-    Parameters
-    ----------
-    radius_ratio : float
-        rho = R/eps, 2 to 1e12; R/beta = sqrt(rho/tabor) is 1.5 or more. Of two spheres 1/R = 1/R1 + 1/R2.
-    counter_radius : float
-        R2/R1 of a second sphere, 1 or more; infinite for a wall.
-
-    Raises
-    ------
-    InputError
-        If one is out of range.
+    The ratio is rho = R/eps, 2 to 1e12; R/beta = sqrt(rho/tabor) is 1.5 or more. Of two spheres 1/R = 1/R1 + 1/R2, and
+    the counter-radius is R2/R1, 1 or more; infinite for a wall. InputError if one is out of range.
     """
 
     radius_ratio: float
@@ -69,12 +60,7 @@ class SphereSurface(Dimensionless):
 class PairSurface(Valued, Dimensionless):
     """Gap between two surfaces of radii R1 and R2, 1/R = 1/R1 + 1/R2: their heights add.
 
-    Parameters
-    ----------
-    first, second : Surface
-        In their own units, beta^2/R1 and beta^2/R2.
-    parts : pair of float
-        R/R1 and R/R2.
+    The first and second are in their own units, beta^2/R1 and beta^2/R2; the parts are R/R1 and R/R2.
     """
 
     first: Surface
@@ -96,14 +82,9 @@ class PairSurface(Valued, Dimensionless):
 
 
 def between_spheres(R: float, counter_radius: float = np.inf) -> Surface:
-    """Gap between a sphere and another, or a wall.
+    """Gap between a sphere and another of R2/R1 times its radius, or a wall if that is infinite.
 
-    Parameters
-    ----------
-    R : float
-        Radius of the pair in beta, 1/R = 1/R1 + 1/R2.
-    counter_radius : float
-        R2/R1; infinite for a wall.
+    The radius R of the pair is in beta, 1/R = 1/R1 + 1/R2.
     """
     if np.isinf(counter_radius):
         return SphereSurface(R)
