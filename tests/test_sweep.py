@@ -16,10 +16,11 @@ from halfspace.accuracy import sweep as sweeping
 from halfspace.accuracy.sweep import NUMBERS, UNKNOWN, Summary, summary
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError, NotConverged
+from halfspace.laws import LENNARD_JONES
 
 TABORS = (2.0, 0.3, 1.0)  # of which the second does not fold
 RTOL = 1e-3
-QUESTION = study.Question(RTOL, 5.0)
+ASKED = {"rtol": RTOL, "to_load": 5.0, "law": LENNARD_JONES}
 
 
 @pytest.fixture(scope="module")
@@ -141,9 +142,9 @@ def test_what_is_no_tabor_parameter_is_refused_in_one_line(capsys, tmp_path, tex
     assert not table.exists()
 
 
-def counted(tabor, question):
+def counted(tabor, **asked):
     counted.calls.append(tabor)
-    return summary(tabor, profile=halfspace.profiles.Paraboloid(), body=None, **vars(question))
+    return summary(tabor, **asked)
 
 
 counted.calls = []
@@ -151,23 +152,23 @@ counted.calls = []
 
 def test_what_is_kept_is_not_traced_again(tmp_path):
     store = open_store(tmp_path / "kept", "code", resume=True)
-    first = study.run(TABORS[:2], QUESTION, store, jobs=1, work=counted)
-    again = study.run(TABORS, QUESTION, open_store(tmp_path / "kept", "code", resume=True), jobs=1, work=counted)
+    first = study.run(TABORS[:2], ASKED, store, jobs=1, work=counted)
+    again = study.run(TABORS, ASKED, open_store(tmp_path / "kept", "code", resume=True), jobs=1, work=counted)
     assert counted.calls == list(TABORS)
     assert repr(again[:2]) == repr(first)  # nan is not equal to itself
     other = open_store(tmp_path / "kept", "other code", resume=True)
-    study.run(TABORS[:1], QUESTION, other, jobs=1, work=counted)
+    study.run(TABORS[:1], ASKED, other, jobs=1, work=counted)
     assert counted.calls == [*TABORS, TABORS[0]]
     assert other.notes == ("1 case computed by other code: computed again",)
-    study.run(TABORS[:1], study.Question(RTOL / 2, 5.0), store, jobs=1, work=counted)
+    study.run(TABORS[:1], ASKED | {"rtol": RTOL / 2}, store, jobs=1, work=counted)
     assert len(counted.calls) == 5
 
 
 def test_what_missed_its_tolerance_comes_back_from_the_disk_as_it_was(tmp_path):
     store = open_store(tmp_path / "kept", "code", resume=True)
     missed = Summary(1.0, {}, UNKNOWN, UNKNOWN, {"jump_on": ("approach", "load")}, "")
-    (kept,) = study.run([1.0], QUESTION, store, jobs=1, work=lambda *_, **__: missed)
-    (again,) = study.run([1.0], QUESTION, store, jobs=1, work=counted)
+    (kept,) = study.run([1.0], ASKED, store, jobs=1, work=lambda *_, **__: missed)
+    (again,) = study.run([1.0], ASKED, store, jobs=1, work=counted)
     assert again.missed == kept.missed == {"jump_on": ("approach", "load")}
 
 
@@ -176,9 +177,9 @@ def test_a_curve_whose_worker_died_is_tried_again(monkeypatch, tmp_path):
     monkeypatch.setattr(
         "fem_adhesion.common.store.stream", lambda *_, **__: (item for item in [(1.0, WorkerDied("killed"))])
     )
-    (died,) = study.run([1.0], QUESTION, store)
+    (died,) = study.run([1.0], ASKED, store)
     assert died == Summary(1.0, {}, UNKNOWN, UNKNOWN, {}, "killed")
-    assert store.get(study._inputs(1.0, QUESTION)) is None
+    assert store.get(study._inputs(1.0, ASKED)) is None
 
 
 def test_the_exit_code_says_that_a_curve_is_missing(monkeypatch, capsys, tmp_path):

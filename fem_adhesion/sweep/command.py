@@ -73,11 +73,12 @@ def run(options: argparse.Namespace) -> int:
     from halfspace.limits import require_load, require_rtol
 
     tabors = tabors_of(options.tabor)
-    question = study.Question(require_rtol(options.rtol), require_load(options.to_load), law_of(options))
+    rtol, to_load = require_rtol(options.rtol), require_load(options.to_load)
+    asked = {"rtol": rtol, "to_load": to_load, "law": law_of(options)}
     store = open_store(options.resume, study.code(), resume=True, force=None) if options.resume else None
     try:
         with written(options.csv) as file, progress_bar() as step:
-            curves = study.run(tabors, question, store, jobs=options.jobs, dask=options.dask, progress=step)
+            curves = study.run(tabors, asked, store, jobs=options.jobs, dask=options.dask, progress=step)
             if file:
                 study.write_csv(curves, file)
     except KeyboardInterrupt as how:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import partial
 from typing import IO, Any
 
@@ -15,7 +15,6 @@ from fem_adhesion.registry import record_of
 from halfspace.accuracy.sweep import UNKNOWN, Summary, summary
 from halfspace.equilibrium.events import EVENTS, Event
 from halfspace.errors import InputError
-from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID
 from halfspace.values import Estimate
 
@@ -23,67 +22,31 @@ UNITS = {"approach": "eps", "load": "R_dgamma", "central_gap": "eps", "contact_r
 ENERGY_UNIT = "R_dgamma_eps"
 
 
-@dataclass(frozen=True)
-class Question:
-    """What is asked of every curve.
-
-    Attributes
-    ----------
-    rtol : float
-        Relative accuracy.
-    to_load : float
-        Load in R dgamma at which a curve ends.
-    law : Law
-        Of the tension between the surfaces.
-    """
-
-    rtol: float
-    to_load: float
-    law: Law = LENNARD_JONES
-
-
 def code() -> str:
     """Digest of the code that computes a curve."""
     return code_digest(__name__)
 
 
-def compute(tabor: float, question: Question) -> Summary:
-    """Trace one curve."""
-    to_load, rtol, law = question.to_load, question.rtol, question.law
-    return summary(tabor, law=law, profile=PARABOLOID, body=None, rtol=rtol, to_load=to_load)
-
-
 def run(
     tabors: Sequence[float],
-    question: Question,
+    asked: Mapping[str, Any],
     store: Store | None = None,
     *,
-    work: Callable[..., Summary] = compute,
+    work: Callable[..., Summary] = summary,
     **how: Any,
 ) -> tuple[Summary, ...]:
-    """Trace the curves that the store does not hold, and store each at once.
+    """Trace the curves at Tabor parameters, each once, that the store does not hold, and store each at once.
 
-    What could not be traced says why; where a worker died it is not stored.
-
-    Parameters
-    ----------
-    tabors : sequence of float
-        Tabor parameters, each once.
-    question : Question
-        What is asked of every curve.
-    store : Store, optional
-        From `fem_adhesion.common.store.open_store`.
-    work : callable
-        Traces a curve of a `question`; a function of a module.
-    how
-        Further keywords of `fem_adhesion.common.store.solve_all`: jobs, dask, progress.
+    What is asked of every curve are the relative accuracy `rtol`, the load `to_load` in R dgamma at which it ends, and
+    the `law`. What could not be traced says why; where a worker died it is not stored. The work, a function of a
+    module, traces a curve; `how` are further keywords of `fem_adhesion.common.store.solve_all`: jobs, dask, progress.
     """
-    kept = Kept(partial(_inputs, question=question), "tabor {:g}".format, _to_plain, _from_plain, _died)
-    return solve_all(tabors, store, work=partial(work, question=question), kept=kept, **how)
+    kept = Kept(partial(_inputs, asked=asked), "tabor {:g}".format, _to_plain, _from_plain, _died)
+    return solve_all(tabors, store, work=partial(work, profile=PARABOLOID, body=None, **asked), kept=kept, **how)
 
 
-def _inputs(tabor: float, question: Question) -> Plain:
-    return {"tabor": tabor, "rtol": question.rtol, "to_load": question.to_load, "law": record_of(question.law)}
+def _inputs(tabor: float, asked: Mapping[str, Any]) -> Plain:
+    return {"tabor": tabor, **{name: record_of(value) for name, value in asked.items()}}
 
 
 def _died(tabor: float, reason: str) -> Summary:
