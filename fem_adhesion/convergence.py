@@ -88,16 +88,8 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
 
 
 @dataclass(frozen=True)
-class Resolution:
-    """How finely and how far a half-space is discretised.
-
-    Attributes
-    ----------
-    how : Discretisation
-        How finely.
-    radius : float
-        Size of the block in beta.
-    """
+class BlockResolution:
+    """How finely a half-space is discretised, and how far: the size of the block in beta."""
 
     how: Discretisation
     radius: float
@@ -119,16 +111,16 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     return Rung(curve, charted, above.settings, remaining=1.0 if block_size(scene) is None else 2.0)
 
 
-def resolution_for(scene: Scene, rtol: float, level: int) -> Resolution:
+def resolution_for(scene: Scene, rtol: float, level: int) -> BlockResolution:
     """Resolution of a level, whose events are right to about `rtol` at level 0 and a decade better at each above it."""
     degree = int(np.clip(np.ceil(-np.log10(rtol)), 3, 9)) + level
     larger, size = LARGER_ENDLESS if scene.body.endless else LARGER_HELD, block_size(scene)
     if size is None:
-        return Resolution(Discretisation(degree), size_for(scene.scales, rtol) * larger**level)
-    return Resolution(Discretisation(degree), size if level else size / larger)
+        return BlockResolution(Discretisation(degree), size_for(scene.scales, rtol) * larger**level)
+    return BlockResolution(Discretisation(degree), size if level else size / larger)
 
 
-def block_charts(scene: Scene, resolution: Resolution, to_load: float = COMPRESSION) -> Charts:
+def block_charts(scene: Scene, resolution: BlockResolution, to_load: float = COMPRESSION) -> Charts:
     """Charts of the scene's block.
 
     A block continued by a half-space has no length of its own, so its mesh may follow the contact edge; one that is

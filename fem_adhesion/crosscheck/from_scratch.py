@@ -213,7 +213,7 @@ def _numbers(a: Turn | None, b: Turn | None, of: Callable[[Turn], float]) -> tup
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class State(Valued):
+class StateInWeakForm(Valued):
     """A state of the finite elements in the weak form: the displacements that its gaps would make.
 
     Attributes
@@ -257,13 +257,13 @@ def _opening(law: Law, central_gap: float) -> float:
     return OPENING * grain * max(1 + central_gap, CLOSEST)
 
 
-def _state(contact: Contact, event: Located) -> State:
+def _state(contact: Contact, event: Located) -> StateInWeakForm:
     """Take over the gaps."""
     approach, load = (float(value) for value in event.point.observables[:2])
     h = 1 + _gaps(event, contact)
     u, weight = contact.displacement(h), np.abs(contact.law.tension(h))
     off = contact.body.integral((contact.gap(u, approach) - h) * weight) / contact.body.integral(weight)
-    return State(contact, h, approach, load, u, off)
+    return StateInWeakForm(contact, h, approach, load, u, off)
 
 
 def _gaps(event: Located, contact: Contact) -> Array:
@@ -293,7 +293,7 @@ def gaps_at(event: Located, radii: Array) -> Array:
     return np.asarray(deflection + mu * profile.height(within))
 
 
-def _turn(name: str, state: State) -> Turn | None:
+def _turn(name: str, state: StateInWeakForm) -> Turn | None:
     """Load and approach of the event in the weak form, or None where there is none nearby."""
     if name == "zero_load":
         return _beside(name, state)
@@ -308,7 +308,7 @@ def _turn(name: str, state: State) -> Turn | None:
 FINER = 3.0  # steps past a turning point where there is a body with a length, which the weak form knows better
 
 
-def _beside(name: str, state: State) -> Turn | None:
+def _beside(name: str, state: StateInWeakForm) -> Turn | None:
     """Equilibrium at the approach of pull-off, or at the load of another event: what turns there is stationary."""
     try:
         found = newton(state.contact, state.gap, state.approach, load=None if name == "pull_off" else state.load)
