@@ -77,16 +77,10 @@ class Discretised(Valued):
 
 
 def discretise(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
-    """Discretise the bodies of a scene.
+    """Discretise the bodies of a scene at small strain, as finely as `how` says.
 
-    Parameters
-    ----------
-    scene : Scene
-        At small strain.
-    lines : (m + 1,) array
-        Ends of the cells of the contact surface, in its coordinate; of a mesh that is given their number counts.
-    how : Discretisation
-        How finely below.
+    Lines (m + 1,) are the ends of the cells of the contact surface, in its coordinate; of a mesh that is given their
+    number counts.
     """
     outer, coordinate = layout_of(scene, how)
     core = lines[: len(lines) - len(outer) + 1] if scene.sized else lines
@@ -124,16 +118,8 @@ def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
 def discretised_about(scene: Scene, contact_radius: float, how: Discretisation, source: ContactProblem) -> Discretised:
     """Discretise the bodies of a scene finest about a contact radius, with all that fields inside them need.
 
-    Parameters
-    ----------
-    scene : Scene
-        At small strain.
-    contact_radius : float
-        In beta; nan without contact, the mesh is then finest on the axis.
-    how : Discretisation
-        How finely; without meaning for a mesh that is given.
-    source : ContactProblem
-        Another discretisation of the scene: a mesh that is given is cut as often as there.
+    The radius is in beta, nan without contact, where the mesh is finest on the axis. The source is another
+    discretisation of the scene: a mesh that is given, to which `how` means nothing, is cut as often as there.
     """
     how = replace(how, beyond=BEYOND)
     if scene.body.file:
@@ -205,14 +191,7 @@ def _pair(
 def with_rigid_rim(operator: ElasticOperator, lines: Array, coordinate: SurfaceCoordinate) -> ElasticOperator:
     """Extend an operator by nodes that attract and do not yield.
 
-    Parameters
-    ----------
-    operator : ElasticOperator
-        Of q nodes.
-    lines : (m + 1,) array
-        Ends of m more cells in the coordinate, the first where the operator's end.
-    coordinate : SurfaceCoordinate
-        Of the surface.
+    Lines (m + 1,) are the ends of m more cells in the surface's coordinate, the first where the operator's end.
     """
     k = operator.cell_nodes.shape[1]
     t, w = grid.gauss_legendre(k)

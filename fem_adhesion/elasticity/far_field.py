@@ -144,19 +144,10 @@ def free(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (nothing is 
 
 
 def trace_projection(trace: Trace, field: Callable[[Array, Array], Array]) -> Array:
-    """Return the coefficients of the best approximation to a vector field on a boundary.
+    """Return the coefficients (2, m), u_r first, of the best approximation to a vector field on a boundary.
 
-    Parameters
-    ----------
-    trace : Trace
-        The boundary, with enough points for the field.
-    field : callable
-        field(r, z) returns (2, ...), its components at the given points.
-
-    Returns
-    -------
-    (2, m) array
-        Coefficients of the m functions of the trace, u_r first.
+    field(r, z) returns its components (2, ...) at the given points, of which the trace, of m functions, has enough for
+    it.
     """
     weighted = trace.values.T * trace.lengths.ravel()
     values = field(*trace.places).reshape(2, -1)
@@ -165,23 +156,10 @@ def trace_projection(trace: Trace, field: Callable[[Array, Array], Array]) -> Ar
 
 
 def boussinesq_displacement(r: Array, z: Array, poisson: float) -> Array:
-    """Return (u_r, u_z) in the half-space z <= 0 under a unit load pressing down at the origin.
+    """Return (u_r, u_z), in W/(E* beta), in the half-space z <= 0 under a unit load pressing down at the origin.
 
-    Parameters
-    ----------
-    r, z : array
-        Points other than the origin, in beta.
-    poisson : float
-        Poisson's ratio, 0 <= nu < 0.5.
-
-    Returns
-    -------
-    (2, ...) array
-        Displacement in units of W/(E* beta); u_z < 0, since the load presses into the body.
-
-    Notes
-    -----
-    K. L. Johnson, Contact Mechanics (1985), eqs (3.18a, b).
+    The points r and z, other than the origin, are in beta, and 0 <= poisson < 0.5; u_z < 0, since the load presses into
+    the body. K. L. Johnson, Contact Mechanics (1985), eqs (3.18a, b).
     """
     nu, G, zeta = poisson, lame_parameters(poisson)[1], -z
     rho = np.hypot(r, zeta)
@@ -191,16 +169,9 @@ def boussinesq_displacement(r: Array, z: Array, poisson: float) -> Array:
 
 
 def boussinesq_stress(r: Array, z: Array, poisson: float) -> Array:
-    """Return the stresses (rr, zz, hoop, rz) that belong to `boussinesq_displacement`.
+    """Return the stresses (rr, zz, hoop, rz), in W/beta^2, that belong to `boussinesq_displacement`.
 
-    Returns
-    -------
-    (4, ...) array
-        In units of W/beta^2, tension positive.
-
-    Notes
-    -----
-    K. L. Johnson, Contact Mechanics (1985), eqs (3.19); the sign of rz is turned with the axis z.
+    Tension is positive. K. L. Johnson, Contact Mechanics (1985), eqs (3.19); the sign of rz is turned with the axis z.
     """
     nu, zeta = poisson, -z
     rho = np.hypot(r, zeta)

@@ -115,21 +115,10 @@ def dilatation(B: Array) -> Array:
 def taylor_hood(
     space: Space, poisson: float, pressure: Any, *, far_field: FarField = point_load, points: int | None = None
 ) -> ElasticOperator:
-    """Condense a block of displacements and continuous pressures to its surface.
+    """Condense a block of displacements and continuous pressures to its surface, as `condense` does.
 
-    Parameters
-    ----------
-    space, far_field, points
-        As in `fem_adhesion.elasticity.condensation.condense`.
-    poisson : float
-        Poisson's ratio, 0 < poisson < 0.5.
-    pressure : skfem.Element
-        One degree below the displacement's: ElementTriP1 with ElementTriP2, ElementQuadP(p - 1) with ElementQuadP(p).
-
-    Raises
-    ------
-    InputError
-        If poisson is zero, at which the pressure is undetermined.
+    The pressure's element is one degree below the displacement's: ElementTriP1 with ElementTriP2, ElementQuadP(p - 1)
+    with ElementQuadP(p). InputError if poisson is zero, at which the pressure is undetermined.
     """
     lam = lame_parameters(poisson)[0]
     if lam == 0.0:

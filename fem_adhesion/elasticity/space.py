@@ -30,12 +30,8 @@ BATCH = 400_000
 class Space(Valued):
     """Displacements (u_r, u_z), both expanded in one scalar element on one mesh.
 
-    Attributes
-    ----------
-    mesh : skfem.Mesh
-        Mesh with the boundaries "axis", "contact" and "far", see `fem_adhesion.mesh.block`.
-    element : skfem.Element
-        Scalar element with n functions per cell: ElementTriP1, P2, P3, ElementQuad1 or ElementQuadP(p).
+    The mesh has the boundaries "axis", "contact" and "far", see `fem_adhesion.mesh.block`; the element n functions per
+    cell: ElementTriP1, P2, P3, ElementQuad1 or ElementQuadP(p).
     """
 
     mesh: Any
@@ -106,13 +102,7 @@ CellStiffness = Callable[[Space, float], Array]
 
 
 def lame_parameters(poisson: float) -> tuple[float, float]:
-    """Return Lamé's (lambda, G) of the material with E* = E/(1 - nu^2) = 1.
-
-    Raises
-    ------
-    InputError
-        Unless 0 <= poisson < 0.5.
-    """
+    """Return Lamé's (lambda, G) of the material with E* = E/(1 - nu^2) = 1; InputError unless 0 <= poisson < 0.5."""
     if not 0.0 <= poisson < 0.5:
         raise InputError(f"poisson = {poisson} must lie in [0, 0.5); displacements alone lock at 0.5, use 0.49 or less")
     E = 1.0 - poisson**2
@@ -181,20 +171,7 @@ def _order(space: Space) -> int:
 
 
 def cell_stiffness(space: Space, poisson: float) -> Array:
-    """Return the stiffness matrix of every cell.
-
-    Parameters
-    ----------
-    space : Space
-        Mesh and element.
-    poisson : float
-        Poisson's ratio nu, 0 <= nu < 0.5.
-
-    Returns
-    -------
-    (cells, 2 n, 2 n) array
-        In units of E* beta, rows and columns ordered as in ``space.cell_dofs``.
-    """
+    """Return the stiffness matrix of every cell, (cells, 2 n, 2 n), in E* beta, ordered as in ``space.cell_dofs``."""
     D, size = elastic_matrix(poisson), len(space.cell_dofs)
     K = np.empty((space.mesh.nelements, size, size))
     if isinstance(space.element, ElementQuadP):

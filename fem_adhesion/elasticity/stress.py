@@ -32,20 +32,10 @@ ON_AXIS = 1e-12
 
 
 def sampled(space: Space, coefficients: Array, places: Array) -> Array:
-    """Return the values of scalar fields at points of each cell.
+    """Return the values (..., cells, k) of scalar fields at points of each cell.
 
-    Parameters
-    ----------
-    space : Space
-        Mesh and element.
-    coefficients : (..., functions) array
-        Of the scalar functions.
-    places : (2, k) array
-        Points of the reference cell.
-
-    Returns
-    -------
-    (..., cells, k) array
+    Coefficients (..., functions) are those of the scalar functions of the space; places (2, k) are points of the
+    reference cell.
     """
     dofs = space.scalar_dofs.element_dofs
     values = reference_functions(space.element, places)[0]
@@ -58,21 +48,10 @@ def positions(space: Space, places: Array) -> Array:
 
 
 def strains(space: Space, displacement: Array, places: Array) -> Array:
-    """Return the strains of a displacement at points of each cell.
+    """Return the strains e_rr, e_zz, u_r/r and gamma_rz of a displacement, (4, cells, k), in beta/R.
 
-    Parameters
-    ----------
-    space : Space
-        Mesh and element.
-    displacement : (N,) array
-        All displacement unknowns, in beta^2/R.
-    places : (2, k) array
-        Points of the reference cell.
-
-    Returns
-    -------
-    (4, cells, k) array
-        e_rr, e_zz, u_r/r and gamma_rz, in beta/R; on the axis u_r/r is du_r/dr.
+    The displacement (N,) has all its unknowns, in beta^2/R; places (2, k) are points of the reference cell. On the axis
+    u_r/r is du_r/dr.
     """
     basis = _basis(space, places)
     u_r, u_z = (basis.interpolate(displacement[row]) for row in space.components)
@@ -85,22 +64,11 @@ def strains(space: Space, displacement: Array, places: Array) -> Array:
 def stresses(
     space: Space, poisson: float, displacement: Array, places: Array, *, projected_dilatation: bool = False
 ) -> Array:
-    """Return the stresses of a displacement at points of each cell: discontinuous from cell to cell.
+    """Return the stresses of a displacement at points of each cell, (4, cells, k), in E* beta/R, tension positive.
 
-    Parameters
-    ----------
-    space, displacement, places
-        As of `strains`.
-    poisson : float
-        Poisson's ratio, 0 <= nu < 0.5.
-    projected_dilatation : bool
-        Whether the displacement is that of `fem_adhesion.elasticity.incompressible.projected_stiffness`, whose mean
-        stress is lambda times the projection of div u, not div u itself.
-
-    Returns
-    -------
-    (4, cells, k) array
-        In E* beta/R, tension positive.
+    They are discontinuous from cell to cell; the arguments are those of `strains`. With projected dilatation the
+    displacement is that of `fem_adhesion.elasticity.incompressible.projected_stiffness`, whose mean stress is lambda
+    times the projection of div u, not div u itself.
     """
     strain = strains(space, displacement, places)
     if not projected_dilatation:
@@ -113,18 +81,8 @@ def stresses(
 def recovered_stresses(space: Space, materials: Sequence[Elastic], displacement: Array) -> tuple[Space, Array, Array]:
     """Return the stresses nearest to those of the elements that are continuous in each region of a body.
 
-    Parameters
-    ----------
-    space, displacement
-        As of `stresses`.
-    materials : sequence of Elastic
-        Of the regions.
-
-    Returns
-    -------
-    Space, (N,) array, (4, functions) array
-        The body cut at the interfaces between its regions, its displacement, and the coefficients of the stress, in
-        E* beta/R, for `sampled`.
+    Materials are those of the regions. The stresses are coefficients (4, functions) in E* beta/R, for `sampled`, after
+    the body cut at the interfaces between its regions and its displacement (N,).
     """
     parts = space.regions(materials)
     cut = space if len(materials) == 1 else Space(torn(space.mesh, parts), space.element)
