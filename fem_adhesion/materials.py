@@ -21,20 +21,10 @@ class Elastic(NamedTuple):
 
 @dataclass(frozen=True)
 class LinearElastic:
-    """Small strain.
+    """Small strain, 0 <= poisson < 0.5, or InputError.
 
-    Parameters
-    ----------
-    poisson : float
-        Poisson's ratio, 0 <= poisson < 0.5.
-    traction : {"projected", "surface"}
-        Area that the law's traction, which is vertical, is counted per: the projected one, exact for rigid shapes, or
-        that of the surface itself.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
+    The traction says which area the law's traction, which is vertical, is counted per: the projected one, exact for
+    rigid shapes, or that of the surface itself.
     """
 
     poisson: float = 0.3
@@ -55,21 +45,11 @@ class LinearElastic:
 
 @dataclass(frozen=True)
 class NeoHookean:
-    """Finite strain.
+    """Finite strain; Poisson's ratio is that of small strains, 0 <= poisson < 0.5, or InputError.
 
-    Parameters
-    ----------
-    poisson : float
-        Poisson's ratio of small strains, 0 <= poisson < 0.5.
-    traction : {"projected", "reference", "normal", "vertical"}
-        What the law's traction is counted per where the projected area is stretched: "projected" is the blend that
-        conserves matter of "reference", per undeformed area, and "normal", per deformed area and normal to the surface;
-        "vertical", per deformed area, does not. See `fem_adhesion.finite_strain.traction`.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
+    The traction says what the law's traction is counted per where the projected area is stretched: "projected" is the
+    blend that conserves matter of "reference", per undeformed area, and "normal", per deformed area and normal to the
+    surface; "vertical", per deformed area, does not. See `fem_adhesion.finite_strain.traction`.
     """
 
     poisson: float = 0.3

@@ -32,16 +32,9 @@ class NoBirth(NotConverged):
 
 @dataclass(frozen=True)
 class Birth:
-    """Where to look for the birth of a pair of folds.
+    """Where to look for the birth of a pair of folds: between two Tabor parameters, and two central gaps in eps.
 
-    Attributes
-    ----------
-    tabors : (2,) tuple
-        Tabor parameters below and above it.
-    gaps : (2,) tuple
-        Central gaps, in eps, between which the pair appears.
-    falling : bool
-        Whether the approach falls with growing gap on both sides of the pair.
+    `falling` says whether the approach falls with growing gap on both sides of the pair.
     """
 
     tabors: tuple[float, float]
@@ -60,19 +53,9 @@ def tabor_of(birth: Birth, *, rtol: float = 1e-7) -> float:
 
 
 def born(birth: Birth, problem_at: Callable[[float], Traceable]) -> float:
-    """Tabor parameter at which the pair is born on any body.
+    """Tabor parameter at which the pair is born on any body; NoBirth if it is not between those of `birth`.
 
-    Parameters
-    ----------
-    birth : Birth
-        Where to look.
-    problem_at : callable
-        The contact problem at a Tabor parameter, on a grid fine on the axis.
-
-    Raises
-    ------
-    NoBirth
-        If the pair is not born between the Tabor parameters of `birth`.
+    problem_at gives the contact problem at a Tabor parameter, on a grid fine on the axis.
     """
 
     @cache
@@ -101,12 +84,7 @@ def critical_stiffness(tabor: float, *, rtol: float = 1e-7) -> float:
     """Stiffness of the apparatus below which the contact jumps, in R dgamma/eps: the steepest fall of the curve.
 
     It grows from 32 pi/(9 sqrt 3) * 2/sqrt 3 = 6.45 for a rigid contact ([G97] 1.3) to infinity at the critical Tabor
-    parameter, where fixed grips begin to jump as well.
-
-    Parameters
-    ----------
-    tabor : float
-        Below the critical value `tabor_of` (FIRST).
+    parameter, `tabor_of` (FIRST), where fixed grips begin to jump as well.
     """
     problem = _centred(tabor, rtol)
     x = approached(problem, STEEPEST[1])

@@ -36,15 +36,7 @@ from halfspace.values import Array, Estimate
 
 @dataclass(frozen=True)
 class Jump:
-    """A jump of the contact at a fixed base.
-
-    Attributes
-    ----------
-    take_off, landing : Event
-        States before and after, with error estimates.
-    energy : Estimate
-        Set free, in R dgamma eps.
-    """
+    """A jump of the contact at a fixed base: the states before and after, and the energy set free, in R dgamma eps."""
 
     take_off: Event
     landing: Event
@@ -122,21 +114,9 @@ class _States:
 def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     """All jumps of a cycle with an apparatus of given stiffness, or None where the contact follows it smoothly.
 
-    With fixed grips also where that cannot be told: see `halfspace.equilibrium.curve.EquilibriumPath.jumps`.
-
-    Parameters
-    ----------
-    path : EquilibriumPath
-        A traced curve, of either solver.
-    stiffness : float
-        In R dgamma/eps, positive. A dead load is the limit of none: it jumps off at ``pull_off``, never to land.
-
-    Raises
-    ------
-    InputError
-        If the stiffness is not positive.
-    halfspace.errors.NotConverged
-        If a landing cannot be solved for.
+    With fixed grips also where that cannot be told: see `halfspace.equilibrium.curve.EquilibriumPath.jumps`. The
+    stiffness is in R dgamma/eps, or InputError unless positive; a dead load is the limit of none: it jumps off at
+    ``pull_off``, never to land. NotConverged if a landing cannot be solved for.
     """
     stiffness = require_number(stiffness, "stiffness")
     if not stiffness > 0:
@@ -157,12 +137,7 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
 def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> float | None:
     """Energy lost in a cycle under fixed grips on one discretisation, or None if the curve does not fold.
 
-    Parameters
-    ----------
-    segments : sequence of Segment
-        The traced curve.
-    found : mapping of str to Located
-        Its events, from `halfspace.equilibrium.search.find_events`.
+    Given are the traced curve and its events, from `halfspace.equilibrium.search.find_events`.
     """
     if "jump_on" not in found:
         return None

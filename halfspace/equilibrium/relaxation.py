@@ -26,19 +26,11 @@ CHECKED_EVERY = 10  # sweeps
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Relaxed(Valued):
-    """A state to which an iteration converged.
+    """A state to which an iteration converged: the state vector x of the problem, on its fixed grid.
 
-    Attributes
-    ----------
-    x : array
-        State vector of the problem, on its fixed grid.
-    observables : (4,) array
-        Approach, load, central gap, contact radius.
-    sweeps : int
-        Sweeps taken, a multiple of `CHECKED_EVERY`.
-    residual : float
-        Largest misfit of gap or pressure, relative, below the tolerance; the error is larger by the number of sweeps in
-        which the iteration gains a factor e.
+    Observables (4,) are approach, load, central gap, contact radius; the sweeps taken are a multiple of
+    `CHECKED_EVERY`. The residual is the largest misfit of gap or pressure, relative, below the tolerance; the error is
+    larger by the number of sweeps in which the iteration gains a factor e.
     """
 
     x: Array
@@ -69,27 +61,10 @@ def simple(
 ) -> Relaxed:
     """Solve by simple relaxation, H <- H + c (H' - H), H' being the gaps under the pressures that belong to H.
 
-    Parameters
-    ----------
-    problem : ContactProblem
-        On a fixed grid.
-    start : array
-        First state vector.
-    control : Control
-        Approach or central gap.
-    relaxation : float
-        c; Greenwood needed as little as 0.005, and only a small Tabor parameter converges at all.
-    tolerance : float
-        Largest change H' - H accepted, relative to the gap h.
-    most_sweeps : int
-        Sweeps after which to give up.
-
-    Raises
-    ------
-    InputError
-        If the grid follows the contact, or the control is another one.
-    NotConverged
-        If the gaps run away or the sweeps run out.
+    The problem is on a fixed grid, `start` its first state vector, and the control that of the approach or the central
+    gap. Of c Greenwood needed as little as 0.005, and only a small Tabor parameter converges at all; the tolerance is
+    the largest change H' - H accepted, relative to the gap h. InputError if the grid follows the contact, or the
+    control is another one; NotConverged if the gaps run away or `most_sweeps` run out.
     """
     gaps, tabor, law = _gaps_under(problem, control), problem.tabor, problem.law
     H = start[:-2].copy()
@@ -117,24 +92,11 @@ def greenwood(
     """Solve by Greenwood's local Newton-Raphson iteration.
 
     Node after node, P_i is corrected from its own misfit P_i - P(H_i) while P_(i-1) and P_(i+1) change by half as much
-    the other way, so that the deflection changes near the node only. What is smooth on the grid therefore fades
-    slowly: sweeps grow as the square of the number of nodes.
+    the other way, so that the deflection changes near the node only. What is smooth on the grid therefore fades slowly:
+    sweeps grow as the square of the number of nodes.
 
-    Parameters
-    ----------
-    problem, start, control, most_sweeps
-        As in `simple`.
-    relaxation : float
-        Fraction of each correction that is made, 0.5 to 1.5.
-    tolerance : float
-        Largest misfit of the pressure accepted, relative to the largest pressure.
-
-    Raises
-    ------
-    InputError
-        If the grid follows the contact, or the control is another one.
-    NotConverged
-        If the pressures run away or the sweeps run out.
+    The relaxation is the part of each correction that is made, 0.5 to 1.5, the tolerance the largest misfit of the
+    pressure accepted, relative to the largest pressure; the rest, and what is raised, as of `simple`.
     """
     gaps, tabor, law = _gaps_under(problem, control), problem.tabor, problem.law
     columns, P = _local_changes(gaps.influence).T.copy(), problem.pressure(start)
