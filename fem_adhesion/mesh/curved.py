@@ -25,8 +25,8 @@ CORNERS = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]])  # of the refer
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Block(Valued):
-    """A structured block of (m, n) cells: the exact map of a rectangle that is cut at s (m + 1,) and t (n + 1,).
+class Patch(Valued):
+    """A structured patch of (m, n) cells: the exact map of a rectangle that is cut at s (m + 1,) and t (n + 1,).
 
     place(s, t) returns r and z of points of the rectangle, (2, ...).
     """
@@ -122,12 +122,12 @@ class CurvedQuads(MeshQuad):  # type: ignore[misc]
         return self._cached_mapping
 
 
-def joined(blocks: list[Block], corners: list[Index]) -> CurvedQuads:
-    """Mesh of blocks of (m, n) cells that share vertices.
+def joined(patches: list[Patch], corners: list[Index]) -> CurvedQuads:
+    """Mesh of patches of (m, n) cells that share vertices.
 
-    Corners (m + 1, n + 1) are the numbers of the vertices of each block; neighbours share those of their common side.
+    Corners (m + 1, n + 1) are the numbers of the vertices of each patch; neighbours share those of their common side.
     """
-    points = np.concatenate([block.points() for block in blocks], axis=1)
+    points = np.concatenate([patch.points() for patch in patches], axis=1)
     cells = [np.array([v[:-1, :-1], v[1:, :-1], v[1:, 1:], v[:-1, 1:]]).reshape(4, -1) for v in corners]
     return of_cells(np.concatenate(cells, axis=1), points)
 

@@ -20,7 +20,7 @@ from fem_adhesion.mesh.spheres import (
     LAYERS,
     Lines,
     even,
-    half_blocks,
+    half_patches,
     half_vertices,
     named,
     stereographic,
@@ -73,8 +73,8 @@ def held_sphere(R: float, x_lines: Array, depths: Array, cap_angle: float) -> Cu
     near, far = Lines(x_lines, depths), _far_lines(R, m - 1, n - 1, rim)
     met = Lines(np.linspace(0, CORE * R, m), far.depths)
     own = m * n + (m + n - 1) * (LAYERS - 1)
-    blocks = [*half_blocks(R, near, met, stereographic), *half_blocks(R, far, met, _mirrored)]
-    mesh = joined(blocks, [*half_vertices(m, n, 0, 2 * own), *half_vertices(m, n, own, 2 * own)])
+    patches = [*half_patches(R, near, met, stereographic), *half_patches(R, far, met, _mirrored)]
+    mesh = joined(patches, [*half_vertices(m, n, 0, 2 * own), *half_vertices(m, n, own, 2 * own)])
     if len(past := _past(R, rim)):
         mesh = refined_towards(mesh, vertex_at(mesh, R, -R), past)
     elif rim < NEAREST * far.x[1]:

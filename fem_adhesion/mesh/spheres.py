@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from fem_adhesion.mesh.block import with_named_boundaries
-from fem_adhesion.mesh.curved import Block, CurvedQuads, joined
+from fem_adhesion.mesh.curved import CurvedQuads, Patch, joined
 from fem_adhesion.mesh.refinement import refined_towards
 from halfspace.elastic import grid
 from halfspace.values import Array, Index, Valued
@@ -103,15 +103,15 @@ def hemisphere(
     m, n = len(lines), len(depths)
     own = Lines(lines, depths, along=along)
     met = even(R, m - 1, n - 1) if len(rings) else own
-    mesh = joined(half_blocks(R, own, met, stereographic), half_vertices(m, n, 0, m * n + (m + n - 1) * (LAYERS - 1)))
+    mesh = joined(half_patches(R, own, met, stereographic), half_vertices(m, n, 0, m * n + (m + n - 1) * (LAYERS - 1)))
     if len(rings):
         mesh = refined_towards(mesh, vertex_at(mesh, R, -R), rings)
     above = -R * (1 - 1e-9)
     return named(mesh, lambda r, z: {"axis": r == 0, "contact": (r > 0) & (z > above), "far": (r > 0) & (z < above)})
 
 
-def half_blocks(R: float, own: Lines, met: Lines, onto: Callable[[Array, float], Array]) -> list[Block]:
-    """Blocks of one half of a sphere, whose rays from the core to the mid-plane end where those of other lines would.
+def half_patches(R: float, own: Lines, met: Lines, onto: Callable[[Array, float], Array]) -> list[Patch]:
+    """Patches of one half of a sphere, whose rays from the core to the mid-plane end where those of other lines would.
 
     They are cut at whole numbers, so that halves with different lines run along the mid-plane alike. No cell is turned
     over: the rays end on the circle 2R, inside whose tangents both cores lie, and beyond the sides of both.
@@ -125,14 +125,14 @@ def half_blocks(R: float, own: Lines, met: Lines, onto: Callable[[Array, float],
     m, n = len(own.x) - 1, len(own.depths) - 1
     i, j = np.arange(m + 1.0), np.arange(n + 1.0)
     return [
-        Block(i, j, lambda i, j: onto(own.core(i, j), R)),
-        Block(j, own.layers, lambda j, t: onto(outwards(np.array(m), j, t), R)),
-        Block(i, own.layers, lambda i, t: onto(outwards(i, np.array(n), t), R)),
+        Patch(i, j, lambda i, j: onto(own.core(i, j), R)),
+        Patch(j, own.layers, lambda j, t: onto(outwards(np.array(m), j, t), R)),
+        Patch(i, own.layers, lambda i, t: onto(outwards(i, np.array(n), t), R)),
     ]
 
 
 def half_vertices(m: int, n: int, first: int, middle: int) -> list[Index]:
-    """Numbers of the vertices of `half_blocks` of m lines x and n depths; those on the mid-plane begin at `middle`."""
+    """Numbers of the vertices of `half_patches` of m lines x and n depths; those on the mid-plane begin at `middle`."""
     core = first + np.arange(m * n).reshape(m, n)
     around = m + n - 1
     layers = first + m * n + np.arange(around * (LAYERS - 1)).reshape(around, LAYERS - 1)
@@ -191,7 +191,7 @@ def block_under(lines: Array, depths: Array, R1: float, size: float) -> Any:
     along = partial(_along, coordinate=_coordinate_on(R1, np.inf), last=float(lines[-1]))
     s = np.concatenate([lines, _beyond(lines, size)])
     vertices = np.arange(s.size * depths.size).reshape(s.size, -1)
-    return with_named_boundaries(joined([Block(s, depths, lambda s, d: np.array([along(s), -d]))], [vertices]))
+    return with_named_boundaries(joined([Patch(s, depths, lambda s, d: np.array([along(s), -d]))], [vertices]))
 
 
 def _beyond(lines: Array, length: float) -> Array:
