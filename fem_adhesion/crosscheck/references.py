@@ -160,7 +160,7 @@ def elements_of(scene: Scene, rtol: float) -> list[ContactProblem]:
     finest = 2 * FINE * radius_of(scene) / scene.scales.spike_width
     hows = [replace(convergence.with_rings(d), finest=finest) for d in (degree, degree + 1)]
     made = [discretise.sized_body(scene, how) for how in hows]
-    return [contact_of(scene.scales, _made(body, scene)) for body in made]
+    return [contact_of(body.scales, _made(body, scene)) for body in made]
 
 
 def _blocks(scene: Scene, rtol: float) -> list[ContactProblem]:
