@@ -4,7 +4,7 @@ import csv
 import io
 import re
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,6 +16,7 @@ from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.curve import record as curve_record
 from fem_adhesion.curve import terminal as curve_terminal
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves, Question
+from fem_adhesion.finite_strain import problem as finite_strain_problem
 from fem_adhesion.finite_strain import scene as finite_strain_scene
 from fem_adhesion.finite_strain.meshes import FARTHEST, AroundEvents, ScenesBody, Windows, fine_between
 from fem_adhesion.finite_strain.scene import LITTLE, Stages, find_jumps, raised, trace
@@ -405,6 +406,39 @@ def test_a_surface_drawn_out_to_a_needle_is_given_up_on_the_first_rung(tabor, ra
         r"\(the surface is drawn out [234]\.\d+ times at .*\); take traction = 'reference', or radius_ratio above",
         str(told.value),
     )
+
+
+def test_jumps_on_a_needle_are_refused_as_a_curve_is(monkeypatch):
+    monkeypatch.setattr(finite_strain_problem, "MOST_DRAWN", 1.0)
+    with pytest.raises(IllPosed, match=r"the surface is drawn out 1(\.\d+)? times"):
+        find_jumps(scene(0.1, 2.0), 1e-2)
+
+
+def standing(asked, degree):
+    """Problem of a scene on the first mesh of its curve."""
+    return next(iter(Windows(ScenesBody(asked, Discretisation(degree))))).problem
+
+
+def test_the_ring_force_at_the_equator_adds_to_the_load_with_every_degree_as_is_told():
+    """The surface stress ends there; a line force does work without bound. Without it elements converge at once."""
+    loads, told = {}, {}
+    for traction, degree in product(("reference", "projected"), (4, 6)):
+        problem = standing(scene(0.3, 6.0, traction=traction), degree)
+        x = newton.solve(problem, problem.undeformed(-8.0), newton.approach(-8.0)).x
+        loads[traction, degree], told[traction, degree] = problem.load(x), problem.untold(x)[LOAD]
+    assert loads["reference", 6] == pytest.approx(loads["reference", 4], abs=1e-11)
+    assert told["reference", 6] == 0.0
+    # 8 delta c^2 Phi P/mu for d ln s: law 3-9, c = 3/7, delta = sqrt(mu/rho), h = 1 + 8 + mu R^2; s as 1/(p (p + 1)).
+    mu, h = 0.3, 15.0
+    fold = 8 * np.sqrt(0.05) * (3 / 7) ** 2 * (4 / 3 / h**2) * (8 / 3 / h**3) * mu
+    change = loads["projected", 4] - loads["projected", 6]
+    assert change == pytest.approx(fold * np.log(42 / 20), rel=0.1)
+    assert change < told["projected", 6] < 10 * change
+
+
+def test_a_held_equator_bears_its_ring_force():
+    problem = standing(scene(0.3, 6.0, grip="bonded"), 4)
+    assert problem.untold(problem.undeformed(-8.0))[LOAD] == 0.0
 
 
 @pytest.mark.parametrize("name", ["pull_off", "jump_on", "jump_off", "zero_load"])

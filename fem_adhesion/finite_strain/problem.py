@@ -297,6 +297,25 @@ class FiniteStrainProblem(Valued):
                 f"R dgamma, limit {MOST_DRAWN:g}; take a larger radius_ratio"
             )
 
+    def untold(self, x: Array) -> Array:
+        """Errors of the observables that the changes from degree to degree may not tell, (4,): that of the load alone.
+
+        The surface stress ends at the equator, where it pulls with f = delta c Phi/mu per length, on either half of the
+        sphere. A line force's displacement has no bound, u = -(4 f/pi) ln s at a distance s, nor have the energy and
+        the load: each cut of the cells, and each degree, goes on adding to them, at R = 1/delta
+
+            dW = 8 delta c^2 Phi P/mu d(ln s).
+
+        So the load is known to no more than what lies between the nearest point to the equator and eps, within which
+        no surface law has a meaning, and a factor e. None is there where the equator is held.
+        """
+        R, mu, law, c = self.interface.profile.end, self.tabor, self.interface.law, self.convention.surface_stress
+        if not (c * self.stretch and np.isfinite(R) and self.held.spreads):
+            return np.array([0.0, 0.0, 0.0, np.nan])
+        gap, nearest = np.array(mu * R**2 - x[-1]), R * np.arccos(self.surface.radii[-1] / R)
+        fold = 8 * self.stretch * c**2 * float(law.energy(gap, mu) * law.pressure(gap, mu)) / mu
+        return np.array([0.0, abs(fold) * (1 + abs(np.log(mu * nearest / self.stretch))), 0.0, np.nan])
+
     def elastic_energy(self, x: Array) -> float:
         """Elastic energy of body and exterior in R dgamma eps."""
         return self.tabor * self.held.energy(x[:-1])

@@ -154,7 +154,10 @@ def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
     found = {name: event for name, event in find_events(_linear_curve(scene, LITTLE)).items() if name in JUMPS}
     with _cause_told(scene):
         state = {name: raised(event, start.mesh(event)[1]) for name, event in found.items()}
-        return ascend(state, rung(0), rtol, rung, range(1, 1 + MOST_RUNGS)).events
+        ascent = ascend(state, rung(0), rtol, rung, range(1, 1 + MOST_RUNGS))
+        for event in ascent.chains[0][-1].values():
+            event.problem.require_resolution(event.point.x)
+    return ascent.events
 
 
 @contextmanager

@@ -221,6 +221,10 @@ class ContactProblem(Valued):
         beside = [self._coefficients(x, cell)[-2:][0] for cell in cells]
         return np.array([gap, np.prod(beside) ** (1 / len(beside)) / slope])
 
+    def untold(self, x: Array) -> Array:
+        """Errors of the observables that the changes along a single chain of discretisations may not tell, (4,)."""
+        return np.append(np.zeros(2), self.ripples(x))
+
     def _coefficients(self, x: Array, cell: int) -> Array:
         """Sizes of the Legendre coefficients of the deflection in a cell, whereas the profile is exact, in eps."""
         body = self.operator_at(x)

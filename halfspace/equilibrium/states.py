@@ -22,7 +22,6 @@ from numpy.typing import ArrayLike
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.conditions import ROUND_OFF, Condition, between, hermite, locate
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
-from halfspace.equilibrium.events import AT_A_POINT
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
 from halfspace.errors import InputError
@@ -232,10 +231,10 @@ class FinestCurve(Valued):
             return np.full(4, np.nan)
         errors = change + ROUND_OFF * (1 + np.abs(here))
         if len(self.ways) == 1:
-            ripples, rates = problem.interface.ripples(problem.surface_state(point.x)), point.rates
-            doubt = max(ripples[0] - errors[CENTRAL_GAP], 0.0)  # that the changes do not tell; the plane goes with it
+            untold, rates = problem.untold(point.x), point.rates
+            doubt = max(untold[CENTRAL_GAP] - errors[CENTRAL_GAP], 0.0)  # the plane goes with it
             errors += np.abs(rates) * (self.metric.weights[CENTRAL_GAP] * abs(rates[CENTRAL_GAP]) * doubt)
-            errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], ripples)
+            errors = np.fmax(errors, untold)
         return np.where(np.isnan(errors), np.abs(here), errors)  # a contact that only one discretisation has
 
     def _errors_given(self, k: int, problem: Traceable, point: Point, bend: float) -> Array:
