@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hard.references import taylor_hood
 from scipy.optimize import brentq
 from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2
 
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import clamped, free, point_load, sliding, with_interiors
-from fem_adhesion.elasticity.incompressible import taylor_hood
 from fem_adhesion.elasticity.space import Space, cell_stiffness, lame_parameters, scatter
 from fem_adhesion.finite_strain import material
 from fem_adhesion.finite_strain.assembly import finite_strain_problem

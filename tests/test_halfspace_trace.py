@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hard.references import charted_rung
 
 import halfspace
 from halfspace.accuracy.fold_birth import critical_stiffness
-from halfspace.accuracy.refinement import MOST_RUNGS, charted_rung, climb
+from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.trace import Resolution, half_space_charts, resolution_for
 from halfspace.equilibrium.charts import metric_for, trace_charts
 from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets, locate

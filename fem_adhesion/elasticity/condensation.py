@@ -177,15 +177,6 @@ class CondensedBody(Valued):
         far = self.space.components[1, self.space.boundary_functions("far")]
         return float(self.translation[far] @ forces[far])
 
-    def strain_energy(self, pressure: Array) -> float:
-        """Return the elastic energy of block and exterior, in E* beta^3, summed over the cells."""
-        x, u = self.reduced_displacement(pressure), self.displacement(pressure)
-        cells = u[self.space.cell_dofs].T
-        inside = np.einsum("ci,cij,cj->", cells, self.skeleton.whole, cells, optimize=True)
-        outside = x @ (self.exterior.stiffness @ x)
-        spring = self.exterior.rigid_compliance * (self.operator.weights @ pressure) ** 2
-        return 0.5 * float(inside + outside - spring)
-
 
 def condense(
     space: Space,

@@ -16,7 +16,6 @@ from halfspace.accuracy.further_folds import Completed, FurtherFolds
 from halfspace.accuracy.stages import (
     FOLDS,
     Charted,
-    Charts,
     FoldsLost,
     Stage,
     State,
@@ -66,11 +65,6 @@ class Rung(Valued):
     twin: Stage | None = None
     remaining: float = REMAINING
     along: bool = False
-
-
-def charted_rung(*stages: Charts) -> Rung:
-    """Rung of given charts, the last of which also serve for the curve."""
-    return Rung(lambda: stages[-1], tuple(Charted(charts) for charts in stages), {})
 
 
 def climb(

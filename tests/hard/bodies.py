@@ -14,7 +14,7 @@ from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3, MeshTr
 import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.incompressible import projected_stiffness, taylor_hood
+from fem_adhesion.elasticity.incompressible import projected_stiffness
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh.block import (
     block_grid,
@@ -25,7 +25,7 @@ from fem_adhesion.mesh.block import (
     with_named_boundaries,
 )
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.refinement import Rung, charted_rung, climb
+from halfspace.accuracy.refinement import Rung, climb
 from halfspace.accuracy.stages import Charts
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium.charts import COMPRESSION, Chart, trace_charts
@@ -34,6 +34,7 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
 from halfspace.values import Array
 from hard.measured import Measured, compare_events
+from hard.references import charted_rung, taylor_hood
 
 INDEPENDENT = "half-space"
 POISSON = 0.3

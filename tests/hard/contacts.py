@@ -9,7 +9,7 @@ from scipy.optimize import minimize_scalar
 
 import halfspace
 from halfspace.accuracy.fold_birth import Birth, approached, at_gap, count_folds, tabor_of
-from halfspace.accuracy.refinement import Rung, charted_rung, climb
+from halfspace.accuracy.refinement import Rung, climb
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import COMPRESSION, metric_for, trace_charts, transfer
@@ -20,6 +20,7 @@ from halfspace.equilibrium.search import find_events
 from halfspace.scales import Scales
 from halfspace.values import Array
 from hard.measured import Measured, compare_events, newton_steps, worst
+from hard.references import charted_rung
 
 TIGHTER = "half-space, two decades tighter"
 GRID = 1e-6  # tolerance of the grids on which single states are solved for, and so their error

@@ -1,0 +1,86 @@
+"""References for the condensed body and for ladders: mixed elements, energies, rungs of charts that are given."""
+
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+from skfem import Dofs
+
+from fem_adhesion.elasticity.condensation import CondensedBody, contact_surface, surface_operator
+from fem_adhesion.elasticity.far_field import FarField, point_load, with_interiors
+from fem_adhesion.elasticity.incompressible import dilatation
+from fem_adhesion.elasticity.space import (
+    Space,
+    cell_quadrature,
+    cell_strains,
+    lame_parameters,
+    reference_functions,
+    scatter,
+    scatter_pairs,
+    shear_matrix,
+    strain_products,
+)
+from halfspace.accuracy.refinement import Rung
+from halfspace.accuracy.stages import Charted, Charts
+from halfspace.elastic.compliance import ElasticOperator
+from halfspace.errors import InputError
+from halfspace.values import Array
+
+
+def charted_rung(*stages: Charts) -> Rung:
+    """Rung of given charts, the last of which also serve for the curve."""
+    return Rung(lambda: stages[-1], tuple(Charted(charts) for charts in stages), {})
+
+
+def strain_energy(body: CondensedBody, pressure: Array) -> float:
+    """Elastic energy of block and exterior under a pressure, in E* beta^3, summed over the cells."""
+    x, u = body.reduced_displacement(pressure), body.displacement(pressure)
+    cells = u[body.space.cell_dofs].T
+    inside = np.einsum("ci,cij,cj->", cells, body.skeleton.whole, cells, optimize=True)
+    outside = x @ (body.exterior.stiffness @ x)
+    spring = body.exterior.rigid_compliance * (body.operator.weights @ pressure) ** 2
+    return 0.5 * float(inside + outside - spring)
+
+
+def taylor_hood(
+    space: Space, poisson: float, pressure: Any, *, far_field: FarField = point_load, points: int | None = None
+) -> ElasticOperator:
+    """Condense a block of displacements and continuous pressures to its surface, as `condense` does.
+
+    The pressure's element is one degree below the displacement's: ElementTriP1 with ElementTriP2, ElementQuadP(p - 1)
+    with ElementQuadP(p). InputError if poisson is zero, at which the pressure is undetermined.
+    """
+    lam = lame_parameters(poisson)[0]
+    if lam == 0.0:
+        raise InputError("poisson = 0 leaves the pressure undetermined; use condense, nothing locks there")
+    exterior = with_interiors(far_field(space, poisson), space)
+    T = exterior.reduction
+    K, coupling, volume = _mixed_matrices(space, poisson, pressure)
+    A = T.T @ K @ T + exterior.stiffness
+    # Symmetric and quasi-definite: it can be factorised in any order without pivoting.
+    saddle = sparse.block_array([[A, (coupling @ T).T], [coupling @ T, -volume / lam]], format="csc")
+    factors = splu(saddle, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    surface = contact_surface(space, space.degree + 2 if points is None else points)
+    rows = T.tocsr()[surface.unknowns]
+    forces = sparse.vstack([rows.T, sparse.csr_array((volume.shape[0], len(surface.unknowns)))]).toarray()
+    return surface_operator(surface, exterior, rows @ factors.solve(forces)[: T.shape[1]])
+
+
+def _mixed_matrices(
+    space: Space, poisson: float, pressure: Any
+) -> tuple[sparse.csc_array, sparse.csc_array, sparse.csc_array]:
+    """Shear stiffness (N, N), work of each pressure in each dilatation (M, N) and products of pressures (M, M)."""
+    dofs, D = Dofs(space.mesh, pressure), shear_matrix(poisson)
+    q = reference_functions(pressure, cell_quadrature(space)[0])[0]
+    blocks: list[tuple[Array, Array, Array]] = []
+    for _, B, dA in cell_strains(space):
+        weighted = q * dA[:, None, :]
+        blocks.append((strain_products(D, B, dA), weighted @ dilatation(B), weighted @ q.T))
+    K, coupling, volume = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
+    pressures = np.asarray(dofs.element_dofs, dtype=np.intp)
+    return (
+        scatter(K, space.cell_dofs, space.unknowns),
+        scatter_pairs(coupling, pressures, space.cell_dofs, (dofs.N, space.unknowns)),
+        scatter(volume, pressures, dofs.N),
+    )
