@@ -16,7 +16,7 @@ from halfspace.accuracy import sweep as sweeping
 from halfspace.accuracy.sweep import NUMBERS, UNKNOWN, Summary, summary
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES, Morse
 
 TABORS = (2.0, 0.3, 1.0)  # of which the second does not fold
 RTOL = 1e-3
@@ -160,8 +160,9 @@ def test_what_is_kept_is_not_traced_again(tmp_path):
     study.run(TABORS[:1], ASKED, other, jobs=1, work=counted)
     assert counted.calls == [*TABORS, TABORS[0]]
     assert other.notes == ("1 case computed by other code: computed again",)
-    study.run(TABORS[:1], ASKED | {"rtol": RTOL / 2}, store, jobs=1, work=counted)
-    assert len(counted.calls) == 5
+    for number, other_asked in enumerate(({"rtol": RTOL / 2}, {"to_load": 4.0}, {"law": Morse(3.0)})):
+        study.run(TABORS[1:2], ASKED | other_asked, store, jobs=1, work=counted)
+        assert len(counted.calls) == 5 + number
 
 
 def test_what_missed_its_tolerance_comes_back_from_the_disk_as_it_was(tmp_path):
