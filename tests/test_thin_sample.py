@@ -18,7 +18,8 @@ from fem_adhesion.assess.predictions import QUANTITIES, WORDS, computed, large_t
 from fem_adhesion.assess.terminal import enough_table, indentations_table, report
 from fem_adhesion.assess.thin_sample import WRONG, hertz_until
 from fem_adhesion.common.contact import Contact
-from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate
+from halfspace.elastic import grid
+from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, surface_compliance
 from halfspace.errors import InputError
 from halfspace.scaling import Units
 from halfspace.theories import closed_forms
@@ -74,6 +75,35 @@ def test_the_series_has_the_coefficients_that_are_in_use():
     powers = np.array([1, 0.2, 0.04, 0.008, 0.0016])
     assert thin_sample_series(0.2, 0.5, "bonded") == pytest.approx(powers @ [1, 1.133, 1.283, 0.769, 0.0975], rel=1e-4)
     assert thin_sample_series(0.2, 0.5, "sliding") == pytest.approx(powers @ [1, 0.884, 0.781, 0.386, 0.0048], rel=1e-4)
+
+
+def _moments(poisson, foundation):
+    x, w = grid.gauss_legendre(200)
+    left_out = 10 * w * (surface_compliance(Layer(1.0, poisson, foundation), 10 * (1 + x)) - 1)
+    return [float(left_out @ (10 * (1 + x)) ** power) for power in (0, 2)]
+
+
+@pytest.mark.parametrize(("poisson", "foundation"), [(0.0, "bonded"), (0.499999, "bonded"), (0.3, "sliding")])
+def test_the_series_by_moments_of_the_yield_to_waves_is_that_of_the_dual_integral_equation(poisson, foundation):
+    A, B = _moments(poisson, foundation)
+    cubic = -8 * (200 * A**3 - 9 * np.pi**2 * B) / (135 * np.pi**3)
+    quartic = 2 * A * (715 * A**3 - 72 * np.pi**2 * B) / (45 * np.pi**4)
+    body, chi = Layer(1.0, poisson, foundation), np.array([0.01, 0.02, 0.04])
+    series = 1 - 2 * A / np.pi * chi + 14 / 3 * (A / np.pi) ** 2 * chi**2 + cubic * chi**3 + quartic * chi**4
+    off = np.array([hertz_ratio(body, c**2).value for c in chi]) - series
+    assert np.abs(off / chi**5).max() < 2  # the next term; at chi = 0.01 that is 2e-10
+
+
+@pytest.mark.parametrize(
+    ("poisson", "foundation", "part"),
+    [
+        *((0.0, "bonded", 0.0632), (0.2, "bonded", 0.0133), (0.3, "bonded", 0.0046), (0.499999, "bonded", 0.0052)),
+        *((0.0, "sliding", -0.1084), (0.3, "sliding", 0.0190), (0.499999, "sliding", 0.1888)),
+    ],
+)
+def test_the_published_coefficient_is_as_far_from_the_moment_as_is_said(poisson, foundation, part):
+    published = (thin_sample_series(1e-6, poisson, foundation) - 1) / 1e-6
+    assert published / (-2 / np.pi * _moments(poisson, foundation)[0]) - 1 == pytest.approx(part, abs=1e-4)
 
 
 def test_the_series_is_eight_per_cent_low_at_a_half_and_twenty_at_one():

@@ -20,8 +20,9 @@ class Dugdale(Law):
 
     It rises within w^2 and falls within w about the range eps. In the limit w = 0 it is Maugis's, of the tension
     dgamma/eps; his parameter is then (9/2 pi)^(1/3) times the Tabor parameter. Loads and approaches differ from
-    his by terms in w^2 and w^4, to be extrapolated from 0.16, 0.11 and 0.08; contact radii, as the gap opens as power
-    3/2 of the distance from the edge, in w^(2/3). The width w is in eps, 0.07 to 0.5, or InputError.
+    his by terms in w^2 and w^4, to be extrapolated from 0.16, 0.11 and 0.08, and so do radii where the gap is open by
+    0.2 eps. Those of the contact do in w^(2/3): its edge is where the gap is about w, and it opens as power 3/2 of the
+    distance. The width w is in eps, 0.07 to 0.5, or InputError.
     """
 
     width: float

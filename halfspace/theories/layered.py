@@ -112,6 +112,15 @@ def thin_sample_series(chi: float, poisson: float, foundation: Foundation) -> fl
     Up to chi = 1, by its authors. On a base that holds the sample, poisson 0.5, it is their
     1 + 1.133 chi + 1.283 chi^2 + 0.769 chi^3 + 0.0975 chi^4; the last sign is that of this (12), by which samples are
     corrected, and not of their (10).
+
+    What they expand is, by the moments A = int (S - 1) dx and B = int (S - 1) x^2 dx of the dual integral equation,
+
+        1 - (2 A/pi) chi + (14/3) (A/pi)^2 chi^2 - 8 (200 A^3 - 9 pi^2 B)/(135 pi^3) chi^3
+          + 2 A (715 A^3 - 72 pi^2 B)/(45 pi^4) chi^4,
+
+    1 + 1.127 chi + 1.482 chi^2 + 1.470 chi^3 + 1.005 chi^4 in that case: chi^2 lacks its 7/6. Their alpha is A to 0.6 %
+    on a base that holds a sample of poisson 0.3 and more, but 6 % off at 0; on one that does not, where A = -1.168
+    whatever poisson is, 2 % at 0.3 and 19 % at 0.5.
     """
     nu = poisson
     if foundation == "bonded":
