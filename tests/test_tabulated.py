@@ -109,6 +109,19 @@ def test_what_is_no_table_is_refused(text, tmp_path):
         profiles.Tabulated(tmp_path / "tip.csv", 100.0)
 
 
+def test_a_material_with_another_radius_than_its_tip_is_refused_in_one_line(tmp_path, capsys):
+    r = np.linspace(0, 15e-9, 100)
+    tip = str(written(tmp_path / "tip.csv", r, r**2 / 40e-9))
+    material = ["--modulus", "70GPa", "--poisson", "0.2", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm"]
+    curve = ["curve", *material, "--profile", "tabulated", "--profile-parameter", tip, "--rtol", "1e-2"]
+    assert cli.main([*curve, "--radius", "20.1nm"]) == 0
+    assert "apex radius 2e-08" in capsys.readouterr().out
+    assert cli.main([*curve, "--radius", "20.3nm"]) == 2
+    err = capsys.readouterr().err
+    assert "radius = 2.03e-08 m under a tip whose apex has 2e-08, limit: the same to 1 %" in err
+    assert err.count("\n") == 1
+
+
 def test_a_tip_that_turns_back_is_refused(tmp_path):
     r = np.linspace(0, 1, 100)
     with pytest.raises(InputError, match=r"turns back at radius 0\.7\d*, limit: a height that rises; cut it there"):

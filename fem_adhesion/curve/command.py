@@ -33,8 +33,10 @@ if TYPE_CHECKING:
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
     from halfspace.laws import Law
+    from halfspace.profiles import Profile
 
 POINTS = 20  # of a curve for ParaView
+OWN = 0.01  # part by which the radius of a tip's apex, fitted to its table, may differ from what is given
 
 
 def add_options(command: Parser) -> None:
@@ -219,6 +221,8 @@ def _question(options: argparse.Namespace) -> Question:
     inside = options.vtk or options.render or options.movie
     solver: SolverName = options.solver or ("half-space" if scene.body.endless and not inside else "fem")
     _require_heeded(options, scene, solver, contact)
+    if contact:
+        _require_own_radius(contact.units.radius, scene.shape)
     if inside:
         _require_inside(options, scene, solver)
     if options.vtk:
@@ -241,6 +245,16 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
         refuse(options, ("points",), "with --json, --csv, --plot or --vtk")
     if contact and math.isfinite(contact.counter_radius) and not has_size(options) and scene.sized:
         raise InputError("profile = sphere of two spheres, limit: a hemisphere; take --body hemisphere")
+
+
+def _require_own_radius(radius: float, profile: Profile) -> None:
+    """Refuse a material of another radius than a profile that is known in SI has itself."""
+    own = getattr(profile, "radius", radius)
+    if abs(own / radius - 1) > OWN:
+        raise InputError(
+            f"radius = {radius:.4g} m under a tip whose apex has {own:.4g}, limit: the same to {100 * OWN:g} %, its table "
+            f"in m; give --radius {own:.4g}m"
+        )
 
 
 def _scene(options: argparse.Namespace, contact: Contact | None) -> Scene:
