@@ -58,6 +58,7 @@ def traced(scene, rtol):
         (Scene(1.0, Coated(0.05, 100.0, poisson=0.3)), 1e-3),
         (Scene(1.0, STACK), 1e-3),
         (Scene(1.0, Layers(PLIES, "sliding")), 1e-3),
+        (Scene(1.0, Layers([Stratum(0.2, 0.3), Stratum(0.2, 0.4999, 0.02)], "sliding")), 1e-3),  # complex images
     ],
     ids=str,
 )

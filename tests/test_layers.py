@@ -22,7 +22,8 @@ DATA = Path(__file__).parent / "data"
 WAVES = np.geomspace(1e-3, 25, 300)
 POISSON = [0.0, 0.3, 0.45, 0.499999]
 STACK = Layers([Stratum(0.4, 0.3), Stratum(0.5, 0.45, 0.2), Stratum(3, 0.2, 2.0)], Substrate(5.0, 0.1))
-BODIES = [Layer(2, 0.3), Layer(0.5, 0.4999, "sliding"), Coated(1, 10), Coated(1, 0.01, 0.4999), STACK]
+SOFT_BETWEEN = Layers([Stratum(0.2, 0.3), Stratum(0.2, 0.4999, 0.02)], "sliding")  # images at real depths leave 6e-5
+BODIES = [Layer(2, 0.3), Layer(0.5, 0.4999, "sliding"), Coated(1, 10), Coated(1, 0.01, 0.4999), STACK, SOFT_BETWEEN]
 
 
 @pytest.mark.parametrize("poisson", POISSON)
@@ -172,8 +173,8 @@ def test_what_is_no_layer_is_refused_when_it_is_made(make, words):
 
 
 def test_strata_too_unlike_for_images_are_refused_with_the_misfit():
-    soft, stiff = Stratum(1, 0.499, 0.01), Stratum(1, 0.3, 1e3)
-    unlike = Layers([Stratum(1, 0.3), soft, stiff, soft], Substrate(1e3))
+    soft, *stiff = Stratum(0.44, 0.3, 0.09), Stratum(2.2, 0.499, 410), Stratum(0.46, 0.499, 570)
+    unlike = Layers([Stratum(0.2, 0.499), stiff[0], soft, stiff[1], Stratum(0.19, 0.3, 280)], Substrate(0.013, 0.3))
     with pytest.raises(NotConverged, match="is missed by"):
         images_of(unlike)
 

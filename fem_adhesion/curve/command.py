@@ -252,8 +252,8 @@ def _require_own_radius(radius: float, profile: Profile) -> None:
     own = getattr(profile, "radius", radius)
     if abs(own / radius - 1) > OWN:
         raise InputError(
-            f"radius = {radius:.4g} m under a tip whose apex has {own:.4g}, limit: the same to {100 * OWN:g} %, its table "
-            f"in m; give --radius {own:.4g}m"
+            f"radius = {radius:.4g} m under a tip whose apex has {own:.4g}, limit: the same to {100 * OWN:g} %, its "
+            f"table in m; give --radius {own:.4g}m"
         )
 
 
