@@ -19,6 +19,8 @@ from fem_adhesion.elasticity.incompressible import stiffness_of
 from fem_adhesion.elasticity.space import Space, cell_stiffness
 from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh.block import tensor_grid
+from fem_adhesion.paraview import picture
+from fem_adhesion.paraview.arrays import inside
 from fem_adhesion.paraview.cells import Cut, Lattice
 from halfspace import Stratum, Substrate
 from halfspace.elastic import grid
@@ -170,6 +172,17 @@ def test_stresses_jump_at_an_interface_where_they_must():
     assert strains[0] == pytest.approx(strains[1], abs=5e-3 * np.abs(strains[0]).max())
     assert np.abs(rr[above] - rr[below]).max() > 0.1 * np.abs(rr[above]).max()
     assert stress.energy_density(np.ones(4), 0.3, 0.5) == pytest.approx(2 * stress.energy_density(np.ones(4), 0.3))
+
+
+def test_an_interface_is_drawn_and_written():
+    scene, event = Scene(1.0, STIFF), traced(Scene(1.0, STIFF), 1e-4).stages[-1]["zero_load"]
+    state = fields.state_at(scene, event.problem, event.point)
+    cut, view = Cut(state.space, Lattice(1, triangular=False), 0.0), picture.view_of([state])
+    region, heights = inside(state, cut, 1.0)["region"], cut.points[1]
+    assert heights[region == 0].min() == heights[region == 1].max() == -2
+    (line,) = picture.section(state, view).interfaces
+    on_axis, far = line[1][[0, np.searchsorted(line[0], 5 * view.reach)]]
+    assert on_axis < far == pytest.approx(-2, abs=0.2 * (far - on_axis))  # pressed in under the contact
 
 
 # --- compare and the command line ---

@@ -51,6 +51,16 @@ def test_a_coating_like_its_half_space_is_the_half_space():
     assert surface_compliance(Coated(1, 1.0, 0.3, 0.3), WAVES) == pytest.approx(1, rel=1e-12)
 
 
+@pytest.mark.parametrize("poisson", POISSON)
+def test_a_coating_on_something_ever_stiffer_goes_over_into_the_bonded_layer(poisson):
+    """Linearly in the ratio of moduli, by which it is extrapolated."""
+    near, nearer = (surface_compliance(Coated(2.0, ratio, poisson, 0.2), WAVES / 2) for ratio in (2e-3, 1e-3))
+    rigid = surface_compliance(Layer(2.0, poisson), WAVES / 2)
+    waves = WAVES > 0.3  # longer ones press it in by as much as the half-space, whatever its modulus
+    assert (2 * nearer - near)[waves] == pytest.approx(rigid[waves], rel=0, abs=1e-4)
+    assert not np.allclose(nearer[waves], rigid[waves], rtol=0, atol=1e-4)
+
+
 def test_long_waves_see_what_is_below_and_short_ones_the_first_stratum():
     body = Coated(2, modulus_ratio=10, poisson=0.3, substrate_poisson=0.2)
     long, short = surface_compliance(body, np.array([1e-7, 20.0]))

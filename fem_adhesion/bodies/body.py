@@ -176,6 +176,11 @@ class Body(ABC):
         return (Elastic(self.material.poisson),)
 
     @property
+    def interfaces(self) -> list[float]:
+        """Depths in beta at which one region ends, and another begins or what holds them."""
+        return []
+
+    @property
     def beyond(self) -> Elastic:
         """What it goes on as beyond its mesh, if it does."""
         return self.regions[-1]

@@ -120,7 +120,11 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
     places, moved = outlines(state, 2 * SHOWN * a)
     factor = DRAWN_AS * a / float(np.abs(moved).max())
     look: dict[str, Any] = {"facecolors": "0.94", "edgecolors": style.BLUE, "linewidths": 0.35}
-    axes.add_collection(PolyCollection(list(unit.of(places + factor * moved)), **look))
+    drawn = unit.of(places + factor * moved)
+    axes.add_collection(PolyCollection(list(drawn), **look))
+    for depth in scene.body.interfaces:
+        line = drawn[np.isclose(places[..., 1], -depth, rtol=1e-9, atol=0)]
+        axes.plot(*line[np.argsort(line[:, 0])].T, color=style.BLUE, linewidth=1.3)
     r = np.linspace(0, SHOWN * a, 200)
     sphere = factor * _sphere(state, r)
     if np.isinf(scene.body.size) and sphere[0] < HIGHEST * a:

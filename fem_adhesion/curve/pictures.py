@@ -135,7 +135,8 @@ def _key(curves: Curves, view: View) -> str:
         how = f"heights magnified, $\\beta^2/R$ drawn as {view.heights:.2g} $\\beta$"
     else:
         how = "to scale" if abs(factor - 1) < 1e-9 else f"heights $\\times\\,${factor:.3g}"
-    return f"{_body(scene)}, a quarter cut away\n{how}; green: undeformed surface"
+    lines = ", grey: interfaces" if len(scene.body.regions) > 1 else ""
+    return f"{_body(scene)}, a quarter cut away{lines}\n{how}; green: undeformed surface"
 
 
 def _body(scene: Scene) -> str:

@@ -75,6 +75,7 @@ UNITS: Mapping[str, Unit] = {
     "hydrostatic": _STRESS,
     "principal_stresses": _STRESS,
     "strain_energy_density": _DENSITY,
+    "region": Unit("1"),
     "pressure": _STRESS,
     "gap": _GAP,
     "H": Unit("1"),
@@ -95,6 +96,7 @@ MEANINGS: Mapping[str, str] = {
     "stress": "Cartesian, in the solid",
     "hydrostatic": "mean of the three normal stresses",
     "principal_stresses": "descending",
+    "region": "of its own material, 0 on top",
     "pressure": "that of the surface law; pressure_from_stress what the stress inside exerts",
     "gap": "h, from surface to surface",
     "H": "h/eps - 1",
@@ -139,6 +141,7 @@ def inside(state: State, cut: Cut, scale: float) -> Named:
         "hydrostatic": stresses.hydrostatic(stress),
         "principal_stresses": np.ascontiguousarray(stresses.principal(stress).T),
         "strain_energy_density": state.share * _energy_density(state, cut, stress),
+        **({"region": cut.node_regions.astype(float)} if len(state.scene.body.regions) > 1 else {}),
     }
 
 

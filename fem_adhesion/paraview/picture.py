@@ -55,12 +55,14 @@ class View:
 class MeridianSection(Valued):
     """Meridian section of the body: radius and height as drawn, (2, n), and cells, (m, 3 or 4).
 
-    The stress (n,) is the vertical one in E* beta/R, tension positive.
+    The stress (n,) is the vertical one in E* beta/R, tension positive. The interfaces between its regions are lines
+    of such points.
     """
 
     points: Array
     cells: Index
     stress: Array
+    interfaces: tuple[Array, ...]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -101,9 +103,10 @@ def section(state: State, view: View) -> MeridianSection:
     cells = cut.cells
     linear = cells[:, LINEAR[cells.shape[1]]]
     stress = cut.values(state.stress)[1]
-    return MeridianSection(
-        np.stack([r + u_r / scene.sphere_radius, z + moved]), linear.reshape(-1, linear.shape[2]), stress
-    )
+    points = np.stack([r + u_r / scene.sphere_radius, z + moved])
+    places = (np.flatnonzero(np.isclose(z, -depth, rtol=1e-9, atol=0)) for depth in scene.body.interfaces)
+    interfaces = tuple(points[:, nodes[np.argsort(r[nodes])]] for nodes in places)
+    return MeridianSection(points, linear.reshape(-1, linear.shape[2]), stress, interfaces)
 
 
 def surfaces(state: State, reach: float, heights: float) -> Surfaces:
@@ -202,12 +205,16 @@ def _quiet() -> Iterator[None]:
 
 def _add_body(pyvista: Any, plotter: Any, state: State, view: View) -> None:
     """The cut in its true colours, and the skin lit, so that its shape is seen."""
-    plane = _plane(pyvista, section(state, view), view)
+    shown = section(state, view)
+    plane = _plane(pyvista, shown, view)
     colours = {"scalars": "stress", "cmap": COLOURS, "clim": (-view.limit, view.limit), "show_scalar_bar": False}
     outline = plane.extract_feature_edges(feature_edges=False, manifold_edges=False, non_manifold_edges=False)
     for angle in (0.0, OPEN):
         plotter.add_mesh(plane.rotate_z(angle), lighting=False, **colours)
         plotter.add_mesh(outline.rotate_z(angle), color=OUTLINE, line_width=2)
+        for line in shown.interfaces:
+            seen = _in_view(_line(pyvista, line), view)
+            plotter.add_mesh(seen.rotate_z(angle), color=OUTLINE, line_width=3, lighting=False)
     light = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "smooth_shading": True, "split_sharp_edges": True}
     plotter.add_mesh(_turned(plane), **colours, **light)
 
@@ -218,6 +225,10 @@ def _plane(pyvista: Any, shown: MeridianSection, view: View) -> Any:
     cells = np.insert(shown.cells, 0, shown.cells.shape[1], axis=1)
     plane = pyvista.PolyData(np.stack([r, 0 * r, z], axis=1), faces=cells.ravel())
     plane.point_data["stress"] = shown.stress
+    return _in_view(plane, view)
+
+
+def _in_view(plane: Any, view: View) -> Any:
     return plane.clip("x", origin=(view.reach, 0, 0)).clip("-z", origin=(0, 0, -view.depth))
 
 
