@@ -17,7 +17,7 @@ from fem_adhesion.discretise import discretise, quadrilateral
 from fem_adhesion.elasticity import stress
 from fem_adhesion.elasticity.incompressible import stiffness_of
 from fem_adhesion.elasticity.space import Space, cell_stiffness
-from fem_adhesion.materials import Elastic
+from fem_adhesion.materials import Elastic, LinearElastic
 from fem_adhesion.mesh.block import tensor_grid
 from fem_adhesion.paraview import picture
 from fem_adhesion.paraview.arrays import inside
@@ -97,6 +97,13 @@ def test_layers_are_the_same_bodies_in_both_packages(theirs, ours):
     assert Scene(1.0, body=theirs).body == ours
     assert ours.layered == theirs
     assert (ours.strata, ours.base) == (theirs.strata, theirs.base)
+
+
+def test_strata_are_replaced_with_their_material():
+    others = [Stratum(1.0, 0.45)]
+    with pytest.raises(InputError, match=r"limit: that of the first, 0\.45; .* by LinearElastic\(0\.45\)"):
+        dataclasses.replace(STACK, strata=others)
+    assert dataclasses.replace(STACK, strata=others, material=LinearElastic(0.45)) == Layers(others, STACK.base)
 
 
 # --- operators ---

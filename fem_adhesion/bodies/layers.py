@@ -219,7 +219,8 @@ class Layers(Stratified):
         first, own = self.strata[0].poisson, self.material.poisson if self.material is not USUAL else None
         given = [value for value in (poisson, own) if value not in (None, first)]
         if given:
-            raise InputError(f"poisson = {given[0]:g} with strata, limit: that of the first, {first:g}; leave it out")
+            remedy = f"leave it out, or replace material too, by LinearElastic({first:g})"
+            raise InputError(f"poisson = {given[0]:g} with strata, limit: that of the first, {first:g}; {remedy}")
         super().__post_init__(first)
 
     @property
