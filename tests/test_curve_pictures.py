@@ -137,6 +137,10 @@ def test_a_movie_passes_stable_states_only_and_jumps_at_a_fixed_wall(block):
     top = words.index("turning back")
     assert np.all(np.diff(alpha[: top + 1]) > -1e-4)
     assert np.all(np.diff(alpha[top:]) < 1e-4)
+    at_rest = [frame.words for frame in frames if frame.seconds == module.RESTING]
+    turns = ["about to jump on", "jumped on", "turning back", "pull-off", "about to jump off", "jumped off"]
+    assert at_rest == turns
+    assert {frame.seconds for frame in frames} == {module.MOVING, module.RESTING}
     resting = [frame.state for frame in frames if frame.words not in ("about to jump on", "about to jump off")]
     assert all(state.problem.negative_directions(state.point.x) == 0 for state in resting)
 

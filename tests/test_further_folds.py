@@ -75,6 +75,12 @@ def ordinary():
     return halfspace.trace(5.0, rtol=1e-4)
 
 
+def test_a_stage_has_the_folds_of_its_own_grid(ordinary):
+    """Not those of the twin, which has other cells."""
+    for stage in ordinary.stages:
+        assert stage["fold_2"].problem is stage["fold_3"].problem is stage["jump_on"].problem
+
+
 @pytest.mark.parametrize(
     ("stiffness", "names"),
     [(1.0, ["jump_on", "jump_on_2", "jump_off"]), (1.5, ["jump_on", "jump_on_2", "jump_off", "jump_off_2"])],

@@ -3,6 +3,7 @@
 import csv
 import json
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -161,6 +162,14 @@ def test_estimates_hold_the_truth_between_points_and_at_them():
             assert path.approach_error.max() <= rtol * path.approach_scale
     _judge(between)
     _judge(at_points)
+
+
+def test_the_error_of_a_point_is_the_part_of_the_changes_that_may_be_left_and_no_less_than_they():
+    curve = halfspace.trace(0.5, rtol=1e-3).finest_curve
+    once, threefold, less = (replace(curve, remaining=part).errors for part in (1.0, 3.0, 0.1))
+    np.testing.assert_allclose(threefold, 3 * once, rtol=1e-4, atol=1e-9)  # but for what rounding leaves
+    assert np.nanmax(once) > 1e-7
+    np.testing.assert_array_equal(less, once)
 
 
 def test_next_to_a_fold_the_load_errs_by_the_root_of_what_the_approach_does():

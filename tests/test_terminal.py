@@ -203,6 +203,9 @@ def test_a_page_is_shown_with_its_tables_fitted(width):
     for word in ("# A page", "* a bullet [1]", "## Costs", "half-space", "simple", "relaxation", "The end."):
         assert word in text
     assert "|" not in text
+    lines = [line.strip() for line in text.splitlines()]
+    above, below = lines.index("## Costs") - 1, lines.index("## Costs") + 1
+    assert (lines[above], lines[below]) == ("", "")
     left_out = left_out_of(text)
     for name, cells_ in (("to 1e-03", ("0.25 s", "= 34", "yardsticks")), ("best reached", ("1e-09 in", "7e-02 in"))):
         assert all(cell in text for cell in cells_) != (name in left_out), (name, width)
