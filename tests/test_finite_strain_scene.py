@@ -434,6 +434,17 @@ def test_the_ring_force_at_the_equator_adds_to_the_load_with_every_degree_as_is_
     change = loads["projected", 4] - loads["projected", 6]
     assert change == pytest.approx(fold * np.log(42 / 20), rel=0.1)
     assert change < told["projected", 6] < 10 * change
+    nodes = [np.polynomial.legendre.leggauss(degree + 2)[0][-1] for degree in (4, 6)]
+    finer = np.log((1 - nodes[0]) / (1 - nodes[1]))
+    assert told["projected", 6] - told["projected", 4] == pytest.approx(fold * finer, rel=1e-3, abs=0)
+
+
+def test_loads_before_contact_are_known_no_better_than_to_the_ring_force(path):
+    part = path.finest_curve.segments[0]
+    told = [part.problem.untold(point.x)[LOAD] for point in part.points[:4]]
+    assert min(told) > 1e-11
+    assert np.all(path.load_error[:4] >= told)
+    assert np.all(path.load_error[:4] < 5 * np.array(told))
 
 
 def test_a_held_equator_bears_its_ring_force():
