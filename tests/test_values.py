@@ -5,8 +5,6 @@ import importlib
 import pickle
 import pkgutil
 import re
-import subprocess
-import sys
 from dataclasses import FrozenInstanceError, dataclass, fields, is_dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -233,29 +231,16 @@ def test_what_is_public_is_listed_found_and_typed(package):
         _ = package.nothing
 
 
-PROGRAM = """
-import halfspace, fem_adhesion
-from fem_adhesion import Scene
-sphere = Scene(0.1, fem_adhesion.Hemisphere(radius_ratio=2.0, material=fem_adhesion.NeoHookean()))
-for path in (halfspace.trace(1.0, rtol=1e-2), fem_adhesion.trace(Scene(0.3), rtol=1e-1),
-             fem_adhesion.trace(sphere, rtol=1e-1, to_load=0.5)):
-    print([(e.name, e.approach, e.load, e.load_error) for e in path.events.values()], path.stable.sum())
-try:
-    Scene(-1.0)
-except halfspace.InputError as error:
-    print(error)
-"""
-
-
 def test_the_interpreters_optimisation_changes_nothing():
-    """No check of the program is an assertion."""
-    said = [
-        subprocess.run([sys.executable, *options, "-c", PROGRAM], capture_output=True, text=True, check=True).stdout
-        for options in ([], ["-O"])
+    """No check of the program is an assertion, and nothing asks whether there are any."""
+    files = [file for package in (halfspace, fem_adhesion) for file in Path(package.__file__).parent.rglob("*.py")]
+    found = [
+        f"{file.name}:{node.lineno}"
+        for file in files
+        for node in ast.walk(ast.parse(file.read_bytes()))
+        if isinstance(node, ast.Assert) or getattr(node, "id", "") == "__debug__"
     ]
-    assert said[0] == said[1]
-    assert said[0].count("pull_off") == 3
-    assert "tabor = -1 is outside" in said[0]
+    assert found == []
 
 
 # --- a counter-body from its moduli ---
