@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 from fem_adhesion.common.options import Command, Parser, add_output, console_beside, exit_code_of
@@ -32,7 +31,7 @@ def run(options: argparse.Namespace) -> int:
     speed.require_tabor(options.tabor)
     beside = earlier.read(options.beside, options.tabor) if options.beside else None
     with directory_written_aside(options.out, force=options.force) as aside, progress_bar() as step:
-        study = replace(speed.measure(options.tabor, quick=options.quick, progress=step), earlier=beside)
+        study = speed.measure(options.tabor, quick=options.quick, progress=step, earlier=beside)
         with writing(options.out):
             page.write(study, aside)
     code = exit_code_of(list(study.troubles()))

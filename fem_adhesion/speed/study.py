@@ -30,7 +30,7 @@ from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed.element_methods import POISSON, element_methods
 from fem_adhesion.speed.methods import Family, Method, Solved, Step, estimates, halfspace_methods
-from fem_adhesion.speed.result import Growth, SpeedStudy, Status, Timing, Truth
+from fem_adhesion.speed.result import Earlier, Growth, SpeedStudy, Status, Timing, Truth
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 
@@ -48,11 +48,13 @@ def measure(
     progress: Progress = unheard,
     methods: Sequence[Method] | None = None,
     growths: Sequence[Growth] | None = None,
+    earlier: Earlier | None = None,
 ) -> SpeedStudy:
     """Time every method, all unless given, on its ladder of resolutions, and how the time of others grows.
 
     A quick study climbs the lower rungs only, which `Method.quick` counts, and each once. `progress` is called before
-    each method with its name, and how many of how many are done. All growths are measured unless some are given.
+    each method with its name, and how many of how many are done. All growths are measured unless some are given. An
+    `earlier` run is kept with the study, to be shown beside.
     InputError if tabor is out of range, NotConverged if a truth is not found.
     """
     require_tabor(tabor)
@@ -65,7 +67,7 @@ def measure(
         rungs += _climb(method, tabor, truths[method.family], quick=quick)
     progress("how time grows", len(chosen), len(chosen))
     found = tuple(timed(growth, _seconds) for growth in (growths_for(quick=quick) if growths is None else growths))
-    return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs), found)
+    return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs), found, earlier)
 
 
 def require_tabor(tabor: float) -> float:
