@@ -58,6 +58,9 @@ def traced(scene, rtol):
         (Scene(1.0, STIFF), 1e-4),
         (Scene(2.0, Coated(0.5, 0.01, 0.0, poisson=0.499)), 1e-3),
         (Scene(1.0, Coated(0.05, 100.0, poisson=0.3)), 1e-3),
+        (Scene(1.0, Coated(0.01, 10.0, poisson=0.3)), 1e-4),  # bends over a tenth of a half-space's spike
+        (Scene(1.0, Coated(0.05, 0.01, 0.0, poisson=0.499)), 1e-5),
+        (Scene(1.0, Layer(0.5, poisson=0.499)), 1e-5),
         (Scene(1.0, STACK), 1e-3),
         (Scene(1.0, Layers(PLIES, "sliding")), 1e-3),
         (Scene(1.0, Layers([Stratum(0.2, 0.3), Stratum(0.2, 0.4999, 0.02)], "sliding")), 1e-3),  # complex images
