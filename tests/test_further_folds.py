@@ -20,6 +20,7 @@ from fem_adhesion.crosscheck.study import _compare_events
 from fem_adhesion.curve import lines, record, terminal
 from fem_adhesion.curve.pictures import experiment
 from fem_adhesion.curve.solve import Curves, Question
+from halfspace import Layer
 from halfspace.accuracy import further_folds as folds_module
 from halfspace.accuracy.fold_birth import count_folds
 from halfspace.accuracy.stages import on_all, step_up
@@ -364,8 +365,8 @@ def test_a_fold_that_no_finer_grid_has_is_told(monkeypatch, lost):
 
 def test_folds_left_over_are_named_in_turn_as_least_and_largest_approaches(monkeypatch):
     """Of four with the second lost, the first and the last are a pair; the third is as the first."""
-    path, ups = halfspace.trace(20.0, rtol=1e-3), iter(range(9))
-    every = [halfspace.trace(20.0, rtol=1e-3).event(f"fold_{k}").approach for k in range(2, 6)]
+    path, whole = (halfspace.trace(20.0, rtol=1e-3) for _ in range(2))
+    every, ups = [whole.event(f"fold_{k}").approach for k in range(2, 6)], iter(range(9))
 
     def on_finer_grids(state, *_):
         if next(ups) == 1:
@@ -388,3 +389,9 @@ def test_a_jump_that_no_grid_has_ends_the_climb_for_what_it_is(error):
 
     with pytest.raises(type(error), match="for any grid"):
         on_all({"jump_on": SimpleNamespace(problem=None)}, Stage())
+
+
+def test_a_contact_that_grows_wider_than_was_guessed_is_traced():
+    """A soft law on a layer: its radius comes to 1.3 times the widest that the operator was made for."""
+    layer = Layer(6.51, poisson=0.413)
+    assert halfspace.trace(0.0434, law=Morse(0.63), body=layer, rtol=1e-3).met

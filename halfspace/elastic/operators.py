@@ -207,8 +207,8 @@ class Interpolated(Valued):
 
     @property
     def known(self) -> tuple[float, float]:
-        """Least and largest contact radius that it serves: a little outside those at which it is known."""
-        return float(self.scales.min()) / OUTSIDE, float(self.scales.max()) * OUTSIDE
+        """Least contact radius that it serves, a little below those at which it is known; of wide ones any."""
+        return float(self.scales.min()) / OUTSIDE, np.inf
 
     @cached_property
     def axis_row(self) -> Array:
@@ -316,7 +316,7 @@ class _AtScale(Valued):
         return self.body._combined(self._rows[1]) / self.nodes.radii[self.body._larger]
 
 
-OUTSIDE = 1.3  # of the outermost radii: as far as the curve's own are apart at the ends, and a step more
+OUTSIDE = 1.3  # of the least radius: as far as the curve's own are apart there, and a step more
 
 
 def chebyshev_radii(least: float, most: float, count: int) -> Array:
