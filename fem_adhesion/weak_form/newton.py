@@ -60,9 +60,8 @@ class Equilibrium(Valued):
 
     @cached_property
     def tangent(self) -> Tangent:
-        """The tangent at the state itself."""
-        moved = np.abs(self.gap - self.nearby.gap) / self.contact.law.size(self.gap)
-        return self.nearby if moved.max() < SAME else Tangent.at(self.contact, self.gap, self.approach)
+        """The tangent at the state itself; steps from state to state are too short for one nearby."""
+        return Tangent.at(self.contact, self.gap, self.approach)
 
     @property
     def gap_rate(self) -> Array:
@@ -82,7 +81,6 @@ class Equilibrium(Valued):
 
 MOST_STEPS, NEAR = 20, 1e-9  # relative change of the gaps by one step more
 KEPT = 0.2  # of the step before: one that is shorter may be followed by one along the same tangent
-SAME = 1e-4  # relative change of the gaps over which a tangent is the same
 
 
 def newton(
@@ -99,17 +97,18 @@ def newton(
     NotConverged
         If the steps run out.
     """
-    before = 1.0
+    before: float | None = None
     for _ in range(MOST_STEPS):
         if tangent is None:
-            tangent, before = Tangent.at(contact, h, approach), 1.0
+            tangent, before = Tangent.at(contact, h, approach), 1.0  # its error falls as the square
         change, d = _step(contact, h, approach, load, tangent)
         size = contact.law.size(h)
         part = min(1.0, 0.75 / max(float((-change / size).max()), 0.75))  # lest the surfaces pass through each other
         h, approach, moved = h + part * change, approach + part * d, float(np.abs(change / size).max())
-        if moved**2 < NEAR * before:
+        contraction = KEPT if before is None else moved / before  # along the tangent given, a guess
+        if moved * contraction < NEAR:
             return Equilibrium(contact, h, approach, contact.load(contact.law.tension(h), approach), tangent)
-        tangent, before = (tangent if moved < KEPT * before else None), moved
+        tangent, before = (tangent if contraction <= KEPT else None), moved
     raise NotConverged(f"no equilibrium in {MOST_STEPS} Newton steps of the weak form; try a nearer start")
 
 
