@@ -14,6 +14,7 @@ from fem_adhesion.crosscheck import from_scratch
 LONGEST = (
     "test_make.py",
     "test_report.py",
+    "test_layer_body.py",
     "test_crosscheck.py",
     "test_finite_strain_scene.py",
     "test_from_scratch.py",
