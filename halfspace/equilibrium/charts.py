@@ -65,10 +65,7 @@ def trace_charts(
 ) -> tuple[Segment, ...]:
     """Trace the curve from far separation to a compressive load over the charts in order, as many as it takes.
 
-    Raises
-    ------
-    NotConverged
-        If the continuation gets stuck.
+    NotConverged if the continuation gets stuck.
     """
     segments: list[Segment] = []
     for chart in charts:

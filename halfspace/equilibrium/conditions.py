@@ -26,21 +26,11 @@ ROUND_OFF = 1e-11  # what Newton's method, the root finder and the matrices leav
 
 @dataclass(frozen=True)
 class Condition:
-    """What vanishes at an event: an observable less a value, or the observable's rate along the path.
+    """What vanishes at an event: an observable less a value or, if it is stationary, its rate d/ds along the path.
 
     With a compliance the observable is taken at the far end of a spring that bears the load: the approach and a
-    compliance 1/k make the base of an apparatus of stiffness k.
-
-    Attributes
-    ----------
-    observable : int
-        One of APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS.
-    stationary : bool
-        If true the rate d(observable)/ds vanishes, else the observable less `value`.
-    value : float
-        Value sought.
-    compliance : float
-        Of the spring, in eps/(R dgamma) for the approach.
+    compliance 1/k make the base of an apparatus of stiffness k. The observable is one of APPROACH, LOAD, CENTRAL_GAP
+    and CONTACT_RADIUS; the compliance is in eps/(R dgamma) for the approach.
     """
 
     observable: int
@@ -96,16 +86,7 @@ ZERO_LOAD = Condition(LOAD)
 class Located(Valued):
     """A root of a condition on one discretisation's path.
 
-    Attributes
-    ----------
-    condition : Condition
-        What vanishes.
-    problem : Traceable
-        The discretisation.
-    point : Point
-        The converged point.
-    slope : float
-        Derivative along the path of what vanishes, to start a root finder from.
+    The point has converged; the slope is the derivative along the path of what vanishes, to start a root finder from.
     """
 
     condition: Condition
@@ -250,10 +231,7 @@ def hermite(problem: Traceable, a: Point, b: Point, t: float, metric: Metric) ->
 def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -> Located:
     """Solve for an event again on another discretisation, from a state transferred to it.
 
-    Raises
-    ------
-    NotConverged
-        If the event does not exist near `start` on that discretisation.
+    NotConverged if the event does not exist near `start` on that discretisation.
     """
     condition = event.condition
     if isinstance(condition, Steepest):
@@ -293,10 +271,7 @@ TRIALS, PAST, LONGER = 4, 1.5, 3.0  # steps to beyond an event: how many, how fa
 def steepest_from(problem: Traceable, point: Point, metric: Metric) -> Located:
     """Where the curve falls most steeply near a point: the least compliance, by parabolas ever narrower.
 
-    Raises
-    ------
-    NotConverged
-        If there is no such place near.
+    NotConverged if there is no such place near.
     """
     for width in WIDTHS:
         sides = [correct(problem, point, h, predict(problem, point, h), metric, iterations=20) for h in (-width, width)]

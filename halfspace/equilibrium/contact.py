@@ -59,16 +59,8 @@ class Solver(Protocol):
 class ContactProblem(Valued):
     """Equilibrium of a surface law with an elastic operator.
 
-    Parameters
-    ----------
-    operator : Operator
-        Any body's surface compliance, from any discretisation, on a grid that stands still or follows the contact.
-    tabor : float
-        Tabor parameter mu.
-    law : Law
-        Pressure against gap.
-    profile : Surface
-        Of the undeformed surface.
+    The operator is any body's surface compliance, from any discretisation, on a grid that stands still or follows the
+    contact; tabor is mu, the profile that of the undeformed surface.
     """
 
     operator: Operator
@@ -257,12 +249,8 @@ class ContactProblem(Valued):
         """Refuse a state whose contact edge stands where the grid is too coarse for the spike of tension there.
 
         Linear interpolation wants ten intervals in the spike's width, polynomials fewer (`widest_interval`). A coarser
-        grid still converges, to a pull-off force that is too large ([G97] 4b).
-
-        Raises
-        ------
-        GridTooCoarse
-            With the spacing, its place and the limit.
+        grid still converges, to a pull-off force that is too large ([G97] 4b). GridTooCoarse tells the spacing, its
+        place and the limit.
         """
         radius, body = self.contact_radius(x), self.operator_at(x)
         if np.isnan(radius):

@@ -121,13 +121,7 @@ class EquilibriumPath(Valued):
         return Tolerance.on(usual(self.events), self.rtol)
 
     def event(self, name: str) -> Event | None:
-        """Event by name, or None if the curve does not have it.
-
-        Raises
-        ------
-        InputError
-            If no curve has an event of that name.
-        """
+        """Event by name, or None if the curve does not have it; InputError if no curve has an event of that name."""
         if not is_event(name):
             near = get_close_matches(name, EVENTS, n=1)
             remedy = (
@@ -274,21 +268,13 @@ class EquilibriumPath(Valued):
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Parts of the curve in order along which a coordinate goes in one direction, and its range on each.
 
-        Parameters
-        ----------
-        coordinate : {"approach", "load", "central_gap"}
-            Two folds of the approach make three branches; the four of a winding curve number the unstable ones.
+        The coordinate is "approach", "load" or "central_gap", or InputError. Two folds of the approach make three
+        branches; the four of a winding curve number the unstable ones.
         """
         return self.finest_curve.branches(require_coordinate(coordinate))
 
     def resampled(self, points: int) -> EquilibriumPath:
-        """Return the same path with another number of points, evenly spaced in arclength.
-
-        Raises
-        ------
-        InputError
-            If there are fewer than two.
-        """
+        """Return the same path with another number of points, two or more or InputError, evenly spaced in arclength."""
         return replace(self, segments=resampled(self.segments, require_points(points), self.metric))
 
     @cached_property

@@ -45,19 +45,11 @@ class Jump:
 
 @dataclass(frozen=True)
 class Cycle:
-    """One approach and separation by an apparatus.
+    """One approach and separation by an apparatus of a stiffness in R dgamma/eps, infinite for fixed grips.
 
-    Attributes
-    ----------
-    stiffness : float
-        Of the apparatus, in R dgamma/eps; infinite for fixed grips.
-    on, off : tuple of Jump
-        From separation into contact, A to B in [G97] Fig. 2a, and back, C to D, each in its order: more than one where
-        the curve has stable states between two of its folds.
-    energy_lost : Estimate
-        In the whole cycle, in R dgamma eps.
-    tolerance : Tolerance
-        Accuracy that was asked of the curve, and so of these states.
+    Jumps `on` are from separation into contact, A to B in [G97] Fig. 2a, and `off` back, C to D, each in its order:
+    more than one where the curve has stable states between two of its folds. The energy lost is in the whole cycle, in
+    R dgamma eps; the tolerance is what was asked of the curve, and so of these states.
     """
 
     stiffness: float

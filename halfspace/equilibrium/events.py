@@ -59,14 +59,7 @@ class Event:
 class Unconfirmed(NamedTuple):
     """About where a curve as it was traced has a fold that no finer grid has, so that it cannot be told.
 
-    Attributes
-    ----------
-    approach : float
-        In eps.
-    load : float
-        In R dgamma, positive in compression.
-    central_gap : float
-        In eps.
+    The approach and the central gap are in eps, the load in R dgamma, positive in compression.
     """
 
     approach: float
@@ -98,13 +91,8 @@ def approach_scale(approaches: Iterable[float], spacing: float = 1.0) -> float:
     """Size by which errors and deviations of approaches count: the spacing and the range of those of a path's events.
 
     An approach has no natural zero: its own size says where somebody began to count. Nor has the position of a base.
-
-    Parameters
-    ----------
-    approaches : iterable of float
-        At the events of one path, at least one.
-    spacing : float
-        Of the surfaces, eps, in the unit of the approaches.
+    The approaches are those at the events of one path, at least one; the spacing of the surfaces, eps, is in their
+    unit.
     """
     values = list(approaches)
     return spacing + max(values) - min(values)
@@ -114,14 +102,9 @@ def approach_scale(approaches: Iterable[float], spacing: float = 1.0) -> float:
 class Tolerance:
     """Relative accuracy asked of the loads and approaches of a path's events, and of jumps on it.
 
-    Gaps and radii, values at one point, are not asked to have it: their errors say what they are worth.
-
-    Attributes
-    ----------
-    rtol : float
-        Of a load, in its own size.
-    approach : float
-        What approaches, which have no natural zero, are measured by, in eps: see `approach_scale`.
+    Gaps and radii, values at one point, are not asked to have it: their errors say what they are worth. `rtol` is of a
+    load, in its own size; `approach` is what approaches, which have no natural zero, are measured by, in eps: see
+    `approach_scale`.
     """
 
     rtol: float
@@ -160,22 +143,16 @@ def estimate_event(
 ) -> Event:
     """Turn an event into numbers with error estimates.
 
-    Parameters
-    ----------
-    chains : sequence of sequences of Located
-        The event on discretisations that differ in one respect from one to the next, all chains ending with the best.
-        Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
-        share by accident is not taken for exact. The radius, which at a point errs more than the rest and in turns, is
-        known no better than to what the polynomials there end with; where there is but one chain, or `along`, nor is
-        the gap.
-    remaining : float
-        Part of that change that may be left.
-    along : bool
-        If true, an observable's change is taken to be no less than what the event's shift along the path makes of it:
-        on a single chain, one number may stand still by accident while the event moves. For stationary conditions only.
-        Nor do the gap and radius, which are at a point, then fall as averages do: the changes of all chains add up.
-    least : (4,) array
-        Changes of the observables that count where the chains' own are less.
+    A chain has the event on discretisations that differ in one respect from one to the next, all chains ending with the
+    best. Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
+    share by accident is not taken for exact. The radius, which at a point errs more than the rest and in turns, is
+    known no better than to what the polynomials there end with; where there is but one chain, or `along`, nor is the
+    gap. `remaining` is the part of that change that may be left, `least` (4,) the changes of the observables that count
+    where the chains' own are less.
+
+    If `along`, an observable's change is taken to be no less than what the event's shift along the path makes of it: on
+    a single chain, one number may stand still by accident while the event moves. For stationary conditions only. Nor do
+    the gap and radius, which are at a point, then fall as averages do: the changes of all chains add up.
     """
     values = chains[0][-1].point.observables
     changes = [

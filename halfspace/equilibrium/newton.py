@@ -128,12 +128,7 @@ class Traceable(Equilibrium, Protocol):
 class Control(Valued):
     """One more equation for one more unknown: a weighted sum of the observables has a target.
 
-    Parameters
-    ----------
-    weights : (4,) array
-        Of approach, load, central gap, contact radius.
-    target : float
-        Value of the weighted sum.
+    The weights (4,) are of approach, load, central gap and contact radius.
     """
 
     weights: Array
@@ -173,23 +168,11 @@ def _single(observable: int, value: float) -> Control:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution(Valued):
-    """A converged state.
+    """A converged state x, its observables (4,), approach, load, central gap and contact radius, and its control.
 
-    Attributes
-    ----------
-    x : array
-        State vector of the problem.
-    observables : (4,) array
-        Approach, load, central gap, contact radius.
-    iterations : int
-        Newton steps taken.
-    update : float
-        Relative size of the last step; the error left is of the order of its square, or less than `LEFT` of the
-        tolerance.
-    control : Control
-        What was prescribed.
-    solver : callable
-        For the linearised equations, bordered by the control, at the state or very near to it.
+    The update is the relative size of the last Newton step; the error left is of the order of its square, or less than
+    `LEFT` of the tolerance. The solver is for the linearised equations, bordered by the control, at the state or very
+    near to it.
     """
 
     x: Array
@@ -211,27 +194,10 @@ def solve(
 ) -> Solution:
     """Solve the equilibrium under a control, from a start whose gaps are positive.
 
-    Whether the grid can carry the state found is another question: ask ``problem.require_resolution``.
-
-    Parameters
-    ----------
-    problem : Equilibrium
-        The contact problem.
-    start : array
-        First state vector.
-    control : Control
-        What is prescribed.
-    tolerance : float
-        Relative size of the last step at which the state is accepted; convergence is quadratic.
-    max_iterations : int
-        Newton steps after which to give up.
-    contraction : float
-        Part of the step two before that a step may have; more of it is given up at once.
-
-    Raises
-    ------
-    NotConverged
-        If the steps or the damping run out, or the steps do not shrink; no unconverged state is ever returned.
+    Whether the grid can carry the state found is another question: ask ``problem.require_resolution``. A state is
+    accepted if the last step's relative size is within the tolerance; convergence is quadratic. NotConverged if the
+    steps or the damping run out, or a step is longer than the part `contraction` of that two before; no unconverged
+    state is ever returned.
     """
     x = start.copy()
     F = _equations(problem, x, control)
@@ -293,20 +259,9 @@ def turning_point(problem: Equilibrium, start: Array, weights: Array, direction:
     """Solve for the state near a start at which a weighted sum of the observables is stationary along the path.
 
     Newton's method on the equilibrium and the sum's rate psi = c t, c the sum's gradient, t the tangent of the path.
-
-    Parameters
-    ----------
-    weights : (4,) array
-        Of the observables in the sum.
-    direction : (4,) array
-        The arclength's gradient at a point nearby.
-    reach : float
-        Arclength by which a step may move along the path.
-
-    Raises
-    ------
-    NotConverged
-        If there is no such state so near.
+    The weights (4,) are of the observables in the sum, the direction (4,) is the arclength's gradient at a point
+    nearby, and the reach the arclength by which a step may move along the path. NotConverged if there is no such state
+    so near.
     """
     x = start
     for iteration in range(1, TURNS + 1):

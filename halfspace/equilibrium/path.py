@@ -42,20 +42,10 @@ class Metric:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Point(Valued):
-    """A converged point of the path with its unit tangent.
+    """A converged point x of the path, its observables, unit tangent dx/ds and arclength s from the start of the path.
 
-    Attributes
-    ----------
-    x, observables : arrays
-        State vector; approach, load, central gap and contact radius.
-    tangent : array
-        dx/ds, s the arclength.
-    rates : (4,) array
-        d(observables)/ds; the contact radius' is 0 where there is none.
-    arclength : float
-        From the start of the path.
-    iterations : int
-        Newton steps that the point took.
+    The observables (4,) are approach, load, central gap and contact radius, the rates their derivatives by s, that of
+    the contact radius 0 where there is none; the iterations are the Newton steps that the point took.
     """
 
     x: Array
@@ -92,16 +82,9 @@ class Segment(Valued):
 class Steps:
     """Lengths of the continuation's steps, in arclength, and what they adapt to.
 
-    Attributes
-    ----------
-    first, longest, shortest : float
-        First trial, bounds; a step below `shortest` ends the path with an error.
-    turn : float
-        Largest angle between the tangents at a step's two ends, in radians.
-    iterations, usual : int
-        Newton steps allowed for one continuation step, and those that one of the right length takes.
-    contraction : float
-        Part of the Newton step two before that one may have.
+    A step below `shortest` ends the path with an error. `turn` is the largest angle between the tangents at a step's
+    two ends, in radians. `iterations` are the Newton steps allowed for one continuation step, `usual` those that one of
+    the right length takes, and `contraction` is the part of the Newton step two before that one may have.
     """
 
     first: float = 0.05
@@ -121,10 +104,7 @@ def make_point(
 ) -> Point:
     """Attach the unit tangent to a solution, oriented so that it has a positive component along `direction`.
 
-    Parameters
-    ----------
-    direction : (4,) array
-        Covector on the observables: the arclength's gradient at a point nearby.
+    That (4,) is a covector on the observables: the arclength's gradient at a point nearby.
     """
     tangent = newton.tangent(problem, solution)
     rates = _rates(problem, solution, tangent)
@@ -153,10 +133,7 @@ def correct(
 ) -> Point:
     """Solve for the point of the path at the arclength `step` past `point`, measured along its tangent.
 
-    Raises
-    ------
-    NotConverged
-        If Newton's method does not reach it from `guess`.
+    NotConverged if Newton's method does not reach it from `guess`.
     """
     weights = metric.weights * point.rates
     used = weights != 0
@@ -214,34 +191,11 @@ def follow(
     steps: Steps | None = None,
     max_points: int = 2000,
 ) -> list[Point]:
-    """Continue the path from a point until `stop` holds, in steps adapted to its curvature.
+    """Continue the path from a point to the first for which `stop` holds, in steps adapted to its curvature.
 
-    Parameters
-    ----------
-    problem : Equilibrium
-        The contact problem.
-    start : Point
-        Where to begin; its tangent says in which direction.
-    metric : Metric
-        What arclength means.
-    stop : callable
-        Says of each new point whether it is the last.
-    steps : Steps, optional
-        Bounds of the step length.
-    max_points : int
-        Points after which to give up.
-
-    Returns
-    -------
-    list of Point
-        From `start` to the first point for which `stop` holds.
-
-    Raises
-    ------
-    NotConverged
-        If the step falls below the shortest allowed, or the points run out.
-    GridTooCoarse
-        If the contact edge comes to a place where the grid is too coarse for the spike of tension there.
+    The tangent of the start, which is the first of the points, says in which direction. NotConverged if the step falls
+    below the shortest allowed, or the points run out; GridTooCoarse if the contact edge comes to a place where the grid
+    is too coarse for the spike of tension there.
     """
     steps = steps or (Steps() if problem.interface is problem else WHOLE_BODY)
     points = [start]

@@ -68,17 +68,10 @@ DEEP = 0.1  # of the deepest load by the cubics: others as deep are solved for a
 def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     """Solve for the events of a traced curve and name them.
 
-    Returns
-    -------
-    dict of Located
-        ``pull_off`` (the deepest minimum of the load), ``jump_on`` (the first fold from separation), ``jump_off`` (the
-        first from compression), ``zero_load``, and the two states between which the energy is taken, ``separated``
-        and ``zero_approach``.
-
-    Raises
-    ------
-    NotConverged
-        If the curve ends before one of those that it must have: for want of body, it is a ContactTooWide.
+    They are ``pull_off`` (the deepest minimum of the load), ``jump_on`` (the first fold from separation), ``jump_off``
+    (the first from compression), ``zero_load``, and the two states between which the energy is taken, ``separated`` and
+    ``zero_approach``. NotConverged if the curve ends before one of those that it must have: for want of body, it is a
+    ContactTooWide.
     """
     _require_touching(segments)
     separated = segments[0].problem.interface.scales.separated_approach

@@ -85,18 +85,10 @@ def _onwards(last: Point, point: Point, metric: Metric) -> Point:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FinestCurve(Valued):
-    """A curve on the finest discretisation.
+    """A curve's segments, in order, on the finest discretisation.
 
-    Attributes
-    ----------
-    segments : tuple of Segment
-        In order.
-    ways : chains of callables
-        By which errors are found.
-    remaining : float
-        Part of the changes along a chain that may be left.
-    metric : Metric
-        What arclength means.
+    By the ways, chains of discretisations, errors are found; `remaining` is the part of the changes along a chain that
+    may be left, and the metric says what arclength means.
     """
 
     segments: tuple[Segment, ...]
@@ -294,16 +286,8 @@ def require_coordinate(name: str) -> str:
 def finest_curve(segments: Sequence[Segment], ways: Ways, remaining: float, metric: Metric) -> FinestCurve:
     """Solve for the points of a curve on the finest discretisation; without any the curve stays as it is.
 
-    Parameters
-    ----------
-    segments : sequence of Segment
-        The curve on any discretisation.
-    ways : chains of callables
-        To the finest.
-    remaining : float
-        As of `FinestCurve`.
-    metric : Metric
-        What arclength means.
+    The segments are of the curve on any discretisation; the rest is as of `FinestCurve`, the ways leading to the
+    finest.
     """
     if not ways:
         return FinestCurve(tuple(segments), ways, math.nan, metric)
