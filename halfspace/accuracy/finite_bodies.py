@@ -39,22 +39,11 @@ Made = tuple[ElasticOperator, int]
 class SizedBody(Valued):
     """A body that is discretised anew on any grid of its surface.
 
-    Parameters
-    ----------
-    scales : Scales
-        Tabor parameter, law, profile, and the lengths that follow from them.
-    make : callable
-        From the ends of all cells, in the surface's coordinate, the operator and its number of unknowns.
-    finest : float
-        Length of the cells at the contact edge, in widths of the spike of tension there.
-    growth : float
-        Ratio of neighbouring cells.
-    outer : (k,) array
-        The last cells' ends, ascending, which do not move with the contact: their first is where the others end.
-    coordinate : SurfaceCoordinate
-        Along the surface.
-    last : float
-        Length of the last of the others, in beta, if they are to be fine there too; see `at_equator`.
+    `make` gives the operator and its number of unknowns from the ends of all cells, in the coordinate along the
+    surface. `finest` is the length of the cells at the contact edge, in widths of the spike of tension there, `growth`
+    the ratio of neighbouring cells. `outer` (k,) are the last cells' ends, ascending, which do not move with the
+    contact: their first is where the others end, the last of which is `last` long, in beta, if they are to be fine
+    there too; see `at_equator`.
     """
 
     scales: Scales
@@ -152,17 +141,9 @@ def surroundings(rtol: float, level: int) -> tuple[float, int]:
 class AroundEvents(Valued):
     """Stage of a ladder on which every event has an operator made for its own contact radius.
 
-    Parameters
-    ----------
-    body : SizedBody
-        The body.
-    window : float
-        Half the logarithmic width of the contact radii that a chart serves. A fold is where a derivative vanishes,
-        which errs by a power of it: windows that differ from rung to rung let the error estimate see it.
-    count : int
-        Operators in it, see `surroundings`.
-    to_load : float
-        Compressive load at which the curve ends, in R dgamma.
+    The window is half the logarithmic width of the contact radii that a chart serves, with so many operators in it, see
+    `surroundings`. A fold is where a derivative vanishes, which errs by a power of it: windows that differ from rung to
+    rung let the error estimate see it. The curve ends at the load, in R dgamma.
     """
 
     body: SizedBody
@@ -202,14 +183,8 @@ class AroundEvents(Valued):
 class AlongCurve(Valued):
     """Charts of a body for every point of its curve, made when they are first asked for.
 
-    Attributes
-    ----------
-    body : SizedBody
-        The body.
-    to_load : float
-        Compressive load at which the curve ends, in R dgamma.
-    apart : float
-        Ratio of the radii between which the operator is interpolated.
+    The curve ends at the load, in R dgamma; `apart` is the ratio of the radii between which the operator is
+    interpolated.
     """
 
     body: SizedBody

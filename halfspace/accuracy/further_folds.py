@@ -53,16 +53,8 @@ class Completed(Mapping[str, T]):
 class FurtherFolds(Valued):
     """Folds between the jumps, solved for as the other events and known as well.
 
-    Attributes
-    ----------
-    segments : tuple of Segment
-        The curve as it was traced.
-    jumps : tuple of Located
-        The outermost folds, on the finest discretisation.
-    before : tuple of Stage
-        On each of which an event is solved for on the way to the last rung.
-    stages, twin, remaining, along
-        Of the last rung.
+    The segments are the curve as it was traced, the jumps the outermost folds, on the finest discretisation. On each of
+    the stages `before` an event is solved for on the way to the last rung; `stages` and the rest are of that.
     """
 
     segments: tuple[Segment, ...]

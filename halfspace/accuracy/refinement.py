@@ -41,22 +41,15 @@ FLAT = 1e-9  # eps/(R dgamma), of it: what the last of the parabolas and roundin
 class Rung(Valued):
     """One step of a ladder of discretisations.
 
-    Attributes
-    ----------
-    curve : callable
-        Makes the charts for tracing the curve on this rung; they need not all be made before.
-    stages : tuple of Stage
-        On each of which every event is solved for; each differs from the one before in one respect, the last is the
-        finest. The changes add up to the error. On the lowest rung they only prepare, and there may be none.
-    settings : mapping
-        How the last stage is discretised.
-    twin : Stage or None
-        As fine as the rung below, with other cells: it errs as much, but not by the same accident of sign.
-    remaining : float
-        Part of the changes that may be left as error; above 1 where the error falls slowly from stage to stage.
-    along : bool
-        Whether the shift of an event along the path counts, see `halfspace.equilibrium.events.estimate_event`: on grids
-        that follow the contact, whose radius tells it precisely, and where there is no twin to guard against chance.
+    `curve` makes the charts for tracing the curve on this rung; they need not all be made before. On each of the stages
+    every event is solved for; each differs from the one before in one respect, the last, which the settings tell, is
+    the finest. The changes add up to the error. On the lowest rung they only prepare, and there may be none. The twin
+    is as fine as the rung below, with other cells: it errs as much, but not by the same accident of sign.
+
+    `remaining` is the part of the changes that may be left as error, above 1 where it falls slowly from stage to stage.
+    `along` says whether the shift of an event along the path counts, see `halfspace.equilibrium.events.estimate_event`:
+    on grids that follow the contact, whose radius tells it precisely, and where there is no twin to guard against
+    chance.
     """
 
     curve: Callable[[], Iterable[Chart]]
@@ -72,23 +65,10 @@ def climb(
 ) -> EquilibriumPath:
     """Trace the curve on the lowest rung of a ladder and solve for its events on higher ones until `rtol` is met.
 
-    Parameters
-    ----------
-    rtol : float
-        Relative accuracy asked of loads and approaches.
-    rung : callable
-        Makes the rung of a level: 0 for the curve, 1, 2 ... for the events.
-    to_load : float
-        Compressive load at which the curve ends, in R dgamma.
-    most_rungs : int
-        Levels after which the estimates stand as they are.
-
-    Raises
-    ------
-    halfspace.errors.NotConverged
-        If the curve cannot be traced or an event not be found again.
-    GridTooCoarse
-        If a grid cannot carry the spike at the contact edge.
+    That is the relative accuracy asked of loads and approaches. The rung of level 0 is for the curve, 1, 2 ... for the
+    events; after the most rungs, one or more or InputError, the estimates stand as they are. The curve ends at the
+    compressive load, in R dgamma. NotConverged if it cannot be traced or an event not be found again, as GridTooCoarse
+    if a grid cannot carry the spike at the contact edge.
     """
     for start in range(most_rungs):
         try:

@@ -34,10 +34,7 @@ class Stage(Finest, Protocol):
 class Charted(Valued):
     """The same charts for every event, one for those on a grid that stands still, one for those on one that follows.
 
-    Attributes
-    ----------
-    charts : sequence of Chart
-        That for the grid that follows the contact is the last.
+    The chart for the grid that follows the contact is the last.
     """
 
     charts: Charts

@@ -31,22 +31,11 @@ NUMBERS = tuple(field.name for field in fields(States))
 
 @dataclass(frozen=True)
 class Summary:
-    """What a sweep keeps of one curve.
+    """What a sweep keeps of one curve, or why it could not be traced, then without events and with energies of nan.
 
-    Attributes
-    ----------
-    tabor : float
-        Tabor parameter.
-    events : mapping of str to Event
-        Of the curve; none if it could not be traced.
-    energy : Estimate
-        Potential energy released from separation to zero approach in contact, in R dgamma eps; nan if not traced.
-    energy_lost : Estimate
-        In a cycle under fixed grips, in R dgamma eps: zero if the curve does not fold, nan if that cannot be told.
-    missed : mapping of str to tuple of str
-        By event, the numbers whose estimated errors exceed what was asked for.
-    reason : str
-        Why the curve could not be traced, empty if it was.
+    The energies, in R dgamma eps, are released from separation to zero approach in contact, and lost in a cycle under
+    fixed grips: zero if the curve does not fold, nan if that cannot be told. `missed` are, by event, the numbers whose
+    estimated errors exceed what was asked for.
     """
 
     tabor: float

@@ -54,19 +54,12 @@ Panels = Callable[[Array, int], compliance.ElasticOperator]
 
 @dataclass(frozen=True)
 class Resolution:
-    """How finely the half-space is discretised.
+    """How finely the half-space is discretised, in nodes per panel; the error falls about a decade a node.
 
-    Attributes
-    ----------
-    nodes : int
-        Nodes per panel; the error falls about a decade a node.
-    finest : float
-        Length of the panels at the contact edge, in widths of the spike of tension there.
-    growth : float
-        Ratio of neighbouring panels.
-    extent : float
-        Of the finite cells, in widths of a rigid paraboloid's attraction, beta/sqrt(mu), or where another profile is as
-        high; what lies beyond it is one cell more, see `halfspace.elastic.compliance.to_infinity`.
+    `finest` is the length of the panels at the contact edge, in widths of the spike of tension there, `growth` the
+    ratio of neighbouring panels. The extent of the finite cells is in widths of a rigid paraboloid's attraction,
+    beta/sqrt(mu), or where another profile is as high; beyond it is one cell more, see
+    `halfspace.elastic.compliance.to_infinity`.
     """
 
     nodes: int
