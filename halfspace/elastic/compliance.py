@@ -203,12 +203,8 @@ def _running_products(factors: list[float]) -> list[tuple[float, float]]:
 def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
     """Half-space under pressures that are polynomials between the breakpoints, collocated at Gauss's points.
 
-    Parameters
-    ----------
-    breakpoints : (m + 1,) array
-        Panel ends from 0 outwards, in beta.
-    nodes_per_panel : int
-        k, from 1 to 16; the pressure has degree k - 1 in each panel and may jump between them.
+    The breakpoints (m + 1,) are the panels' ends from 0 outwards, in beta. With k nodes in a panel, 1 to 16 or
+    InputError, the pressure has degree k - 1 there and may jump from panel to panel.
     """
     if not 1 <= nodes_per_panel <= 16:
         raise InputError(f"nodes_per_panel {nodes_per_panel} is outside 1 to 16; use more panels instead")
@@ -230,17 +226,10 @@ def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> El
 
         int_U^inf P G(r, s) s ds = U tau int_0^1 (P/t^3) G(tau, t) t dt.
 
-    P/t^3 falls as t^3 for the 3-9 law on a paraboloid; it is a polynomial through Gauss's points in each cell.
-
-    Parameters
-    ----------
-    operator : ElasticOperator
-        Of a half-space, from any discretisation; how a pressure inside deflects what is beyond follows by reciprocity.
-        Where it reaches to infinity already, the cells beyond its extent are made anew.
-    nodes : int
-        Of each cell, from 1 to 16.
-    reach : float
-        Where the infinite cell begins, in extents; up to there the cells grow threefold at most.
+    P/t^3 falls as t^3 for the 3-9 law on a paraboloid; it is a polynomial through Gauss's points in each cell. The
+    operator is from any discretisation; how a pressure inside deflects what is beyond follows by reciprocity. Where it
+    reaches to infinity already, the cells beyond its extent are made anew, of 1 to 16 nodes each. The infinite cell
+    begins at `reach`, in extents; up to there the cells grow threefold at most.
     """
     x, w = grid.gauss_legendre(nodes)
     ends = np.append(0.0, grid.equal_ratios(1 / reach, 1.0, most=3.0))
@@ -266,10 +255,7 @@ def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> El
 def triangles(nodes: Array) -> ElasticOperator:
     """Half-space under overlapping triangles of pressure, [G97] section 2a.
 
-    Parameters
-    ----------
-    nodes : (q,) array
-        Apices of the triangles from 0 outwards, in beta; the pressure is linear between them.
+    The nodes (q,) are their apices from 0 outwards, in beta; the pressure is linear between them.
     """
     ends = np.array([-1.0, 1.0])
     halves = panel_integrals(nodes, nodes, ends)
@@ -286,10 +272,7 @@ def triangles(nodes: Array) -> ElasticOperator:
 def bands(edges: Array) -> ElasticOperator:
     """Half-space under bands of uniform pressure, in closed form at their mid-radii, [G97] App. B as corrected.
 
-    Parameters
-    ----------
-    edges : (q + 1,) array
-        Ends of the bands from 0 outwards, in beta.
+    The edges (q + 1,) are the bands' ends from 0 outwards, in beta.
     """
     middle = (edges[1:] + edges[:-1]) / 2
     compliance = np.diff(band_deflection(middle[:, None], edges), axis=1)

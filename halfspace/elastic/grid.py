@@ -26,18 +26,9 @@ def fine_until(reach: float, spacing: float, extent: float, *, growth: float, la
 def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0, last: float = np.inf) -> Array:
     """Breakpoints from 0 to `extent`, finest at `radius` and growing geometrically away from it on both sides.
 
-    Parameters
-    ----------
-    radius : float
-        Where the grid is finest, 0 <= radius < extent; 1 for a grid that is scaled with the contact.
-    finest : float
-        Length of the intervals that touch `radius`, or less.
-    extent : float
-        Outer end.
-    growth : float
-        Ratio of the lengths of neighbouring intervals, above 1.
-    last : float
-        Length of the interval that touches `extent`, or less, if they are to be fine there too.
+    The intervals that touch the radius, 0 <= radius < extent, 1 for a grid that is scaled with the contact, are
+    `finest` long, or less; the growth, above 1, is the ratio of the lengths of neighbours. The interval that touches
+    `extent` is `last` long, or less, if they are to be fine there too. InputError if one is out of range.
     """
     _require_positive(finest=finest, extent=extent)
     if not 0 <= radius < extent:

@@ -71,19 +71,10 @@ def graded_rule(points: int, q: int = GRADING) -> tuple[Array, Array]:
 def panel_integrals(targets: Array, breakpoints: Array, nodes: Array) -> Array:
     """Integrate G(r_i, s) s l(s) over each panel for each Lagrange polynomial l of the panel's nodes.
 
-    Parameters
-    ----------
-    targets : (n,) array
-        Radii r_i >= 0 at which the deflection is wanted, anywhere on or off the panels.
-    breakpoints : (m + 1,) array
-        Panel ends, ascending from at least 0.
-    nodes : (k,) array
-        Interpolation nodes of a panel on [-1, 1]; k - 1 is its degree.
-
-    Returns
-    -------
-    (n, m, k) array
-        Deflection at r_i (E* = 1) by the pressure l_k on panel j, absolute accuracy 1e-12 of the panel's scale.
+    The targets (n,) are the radii r_i >= 0 at which the deflection is wanted, anywhere on or off the panels, whose
+    ends, the breakpoints (m + 1,), ascend from at least 0; the nodes (k,) are those of a panel on [-1, 1]. The
+    deflection (n, m, k) at r_i (E* = 1) is by the pressure l_k on panel j, to an absolute accuracy of 1e-12 of the
+    panel's scale.
     """
     targets = np.asarray(targets, float)
     batches = -(-targets.size * (breakpoints.size - 1) * _far_points(nodes.size) // BATCH)

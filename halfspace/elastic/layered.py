@@ -50,14 +50,8 @@ FITTED, AT_WORST = 3e-8, 1e-6  # of the largest S, or of 1: where deeper images 
 class Images(Valued):
     """Rings below the surface whose kernels, summed, are what a layered body has beside the half-space's.
 
-    Attributes
-    ----------
-    depths : (n,) array
-        z_j in beta.
-    strengths : (n,) array
-        c_j.
-    smooth : float
-        Thickness of the first stratum in beta: over such a distance the sum hardly changes.
+    The depths z_j and their strengths c_j are complex, (n,); the depths, and the first stratum's thickness `smooth`, a
+    distance over which the sum hardly changes, are in beta.
     """
 
     depths: Complex
@@ -85,21 +79,10 @@ def _mean(a: Complex, b: Complex) -> Complex:
 
 
 def images_of(body: LayeredBody, spacing: float = SPACING) -> Images:
-    """Fit the images of a layered body.
+    """Fit the images of a layered body at depths of a given ratio of neighbours; another one errs otherwise.
 
-    Parameters
-    ----------
-    body : LayeredBody
-        The strata and their base.
-    spacing : float
-        Ratio of neighbouring depths; another one errs otherwise.
-
-    Raises
-    ------
-    InputError
-        If the body is not made of layers.
-    NotConverged
-        If the strata differ so much in stiffness or thickness that no images fit.
+    InputError if the body is not made of layers, NotConverged if the strata differ so much in stiffness or thickness
+    that no images fit.
     """
     body = require_layered(body)
     thin, all_of_it = body.strata[0].thickness, total_thickness(body)
@@ -143,14 +126,7 @@ def _fitted(k: Array, wanted: Array, depths: Complex) -> tuple[float, Complex, C
 def layered_panels(images: Images, breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
     """Layered body under pressures that are polynomials between the breakpoints, collocated at Gauss's points.
 
-    Parameters
-    ----------
-    images : Images
-        Of the body.
-    breakpoints : (m + 1,) array
-        Panel ends from 0 outwards, in beta.
-    nodes_per_panel : int
-        k, from 1 to 16.
+    The images are the body's; breakpoints (m + 1,), in beta, and nodes are as of `halfspace.elastic.compliance.panels`.
     """
     half_space = panels(breakpoints, nodes_per_panel)
     below = image_integrals(images, half_space.radii, breakpoints, nodes_per_panel).reshape(half_space.compliance.shape)
@@ -162,16 +138,8 @@ def layered_panels(images: Images, breakpoints: Array, nodes_per_panel: int) -> 
 def image_integrals(images: Images, radii: Array, breakpoints: Array, k: int) -> Array:
     """Deflection (q, m, k) at the nodes by the images of the polynomial through each node of each panel.
 
-    Parameters
-    ----------
-    images : Images
-        Of the body.
-    radii : (q,) array
-        Gauss's points of all panels.
-    breakpoints : (m + 1,) array
-        Panel ends.
-    k : int
-        Nodes of a panel.
+    The radii (q,), Gauss's points of all m panels, and the breakpoints (m + 1,), their ends, are in beta; a panel has k
+    nodes.
     """
     left, right = breakpoints[:-1], breakpoints[1:]
     integrals = _by_nodes(images, radii, (right - left) / 2, k)

@@ -236,12 +236,7 @@ def total_thickness(body: LayeredBody) -> float:
 def surface_compliance(body: LayeredBody, wave_numbers: Array) -> Array:
     """S, (n,): the deflection by waves of pressure over that of a half-space of the first stratum's E*.
 
-    Parameters
-    ----------
-    body : LayeredBody
-        The strata and their base.
-    wave_numbers : (n,) array
-        k, positive, in 1/beta.
+    The wave numbers k (n,) are positive, in 1/beta.
     """
     first, k = body.strata[0], np.asarray(wave_numbers, float)
     held, free = _at_base(body.base)  # A and B: A displacement + B stress = 0

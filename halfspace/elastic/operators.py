@@ -74,13 +74,7 @@ class _Latest(Generic[Made]):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Homogeneous(Valued):
-    """A body without a length of its own.
-
-    Parameters
-    ----------
-    unit : ElasticOperator
-        At the contact radius 1.
-    """
+    """A body without a length of its own, by its operator at the contact radius 1."""
 
     unit: ElasticOperator
     _latest: _Latest[ElasticOperator] = field(default_factory=_Latest, compare=False, repr=False)
@@ -157,12 +151,8 @@ class FlatCoordinate:
 class MovingGrid(Valued):
     """Cells that move with the contact edge: their ends are x = fixed + x_a moving, x_a the edge's coordinate.
 
-    Attributes
-    ----------
-    fixed, moving : (m + 1,) array
-        Of the cells' ends, in the surface's coordinate.
-    coordinate : SurfaceCoordinate
-        In which nodes keep their places within their cells.
+    The cells' ends, fixed and moving (m + 1,), are in the surface's coordinate, in which nodes keep their places within
+    their cells.
     """
 
     fixed: Array
@@ -189,14 +179,8 @@ class Interpolated(Valued):
     With C = A w the compliance, the symmetric kernel max(r_i, r_j) A_ij, of order one at every radius and exact for a
     homogeneous body, is what is interpolated.
 
-    Parameters
-    ----------
-    scales : (m,) array
-        Contact radii in beta, positive and distinct; see `chebyshev_radii`.
-    operators : sequence of m ElasticOperator
-        On the grid at these radii, with Gauss's points as nodes.
-    grid : MovingGrid
-        Their grid.
+    The scales (m,) are the contact radii in beta, positive and distinct, see `chebyshev_radii`, at which the operators
+    are on the grid, with Gauss's points as nodes.
     """
 
     scales: Array
