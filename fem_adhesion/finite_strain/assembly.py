@@ -29,27 +29,13 @@ def finite_strain_problem(
 ) -> FiniteStrainProblem:
     """Put a body under a rigid flat wall that attracts it.
 
-    Parameters
-    ----------
-    body : Body
-        From `fem_adhesion.finite_strain.body`, its `displacement_body` or `mixed_body`.
-    exterior : Exterior
-        Of all displacement unknowns of its space, interior ones included: see
-        `fem_adhesion.elasticity.far_field.with_interiors`.
-    tabor, law
-        As in `halfspace.equilibrium.contact.ContactProblem`.
-    profile : Surface
-        Height of the body's undeformed surface over its pole, carried along by its points. That of a block is a
-        perturbation of its flat surface, as in the linear body.
-    convention : Convention
-        What the law's traction is counted per, and its direction.
-    points : int, optional
-        Gauss points per contact facet; p + 2 unless given.
-
-    Raises
-    ------
-    InputError
-        If the exterior holds the body by a spring that has to be taken off again (`free`).
+    The body is a `displacement_body` or `mixed_body` of `fem_adhesion.finite_strain.body`; the exterior is of all
+    displacement unknowns of its space, interior ones included: see `fem_adhesion.elasticity.far_field.with_interiors`.
+    tabor and law are as in `halfspace.equilibrium.contact.ContactProblem`. The profile is the height of the body's
+    undeformed surface over its pole, carried along by its points; that of a block is a perturbation of its flat
+    surface, as in the linear body. The convention says what the law's traction is counted per, and its direction. Of
+    Gauss's points there are p + 2 on each contact facet unless given. InputError if the exterior holds the body by a
+    spring that has to be taken off again (`free`).
     """
     if exterior.rigid_compliance:
         raise InputError("a far field with a rigid_compliance is known to `condense` only; use point_load or clamped")
@@ -71,19 +57,9 @@ def assemble(
 ) -> FiniteStrainProblem:
     """Contact problem of a linear block under a rigid paraboloid, none of its unknowns condensed but in the solver.
 
-    Parameters
-    ----------
-    space, poisson, points
-        As in `fem_adhesion.elasticity.condensation.condense`, whose problem has the same solutions.
-    tabor, law
-        As in `halfspace.equilibrium.contact.ContactProblem`.
-    far_field : callable
-        `point_load` or `clamped`.
-
-    Raises
-    ------
-    InputError
-        If poisson is out of range, or as of `finite_strain_problem`.
+    Space, poisson and points are as in `fem_adhesion.elasticity.condensation.condense`, whose problem has the same
+    solutions, the rest and the errors as of `finite_strain_problem`; the far field is `point_load` or `clamped`.
+    InputError, too, if poisson is out of range.
     """
     body, exterior = displacement_body(space, poisson, 0.0), with_interiors(far_field(space, poisson), space)
     return finite_strain_problem(body, exterior, tabor, convention=Convention(0.0, 0.0), points=points, law=law)

@@ -255,19 +255,10 @@ def displacement_body(space: Space, poisson: float, stretch: float) -> Body:
 
 
 def mixed_body(space: Space, poisson: float, stretch: float, pressure: Any) -> Body:
-    """Prepare a body of displacements and pressures.
+    """Prepare a body of displacements and pressures, the former as in `displacement_body`, with the same errors.
 
-    Parameters
-    ----------
-    space, poisson, stretch
-        As in `displacement_body`.
-    pressure : skfem.Element
-        One degree below the displacement's: ElementTriP1 with ElementTriP2, ElementQuadP(p - 1) with ElementQuadP(p).
-
-    Raises
-    ------
-    InputError
-        If poisson is zero, at which the pressure is undetermined, or poisson or stretch is out of range.
+    The pressure's element is one degree below the displacement's: ElementTriP1 with ElementTriP2, ElementQuadP(p - 1)
+    with ElementQuadP(p). InputError, too, if poisson is zero, at which the pressure is undetermined.
     """
     if lame_parameters(poisson)[0] == 0.0:
         raise InputError("poisson = 0 leaves the pressure undetermined; use displacement_body, nothing locks there")

@@ -37,20 +37,11 @@ SOLVED = 1e-11  # relative accuracy of the linear equations where all digits are
 class Layout(Valued):
     """Where the entries of cell matrices go once their interior unknowns are eliminated; n reduced unknowns in all.
 
-    Attributes
-    ----------
-    inside, outside : (i,) and (o,) int array
-        Positions of the interior and of the shared unknowns among those of a cell.
-    inner : (cells, i) int array
-        The reduced unknowns that are interior to a cell.
-    columns : (cells, o) int array
-        The reduced unknown on which a cell's shared unknown depends, n for none.
-    weights : (cells, o) array
-        And the factor with which it does.
-    regions : Region
-        In which the shared ones are eliminated, but for those of the contact surface and those that the exterior holds.
-    beside : int array
-        The latter without the former.
+    Of the unknowns of a cell, `inside` (i,) and `outside` (o,) are the positions of the interior and of the shared
+    ones. The reduced unknowns `inner` (cells, i) are interior to a cell; on those in `columns` (cells, o), n for none,
+    a cell's shared unknowns depend, with the factors `weights` (cells, o). In the regions the shared ones are
+    eliminated, but for those of the contact surface and those that the exterior holds; `beside` are the latter without
+    the former.
     """
 
     inside: Index
@@ -66,20 +57,9 @@ class Layout(Valued):
 class Tangent(Valued):
     """The tangent of a held body at one state, factorised, and condensed to the contact surface.
 
-    Attributes
-    ----------
-    layout : Layout
-        Numbering.
-    y : (n,) array
-        The state.
-    surface : (m,) int array
-        Reduced unknowns of the contact surface.
-    inverse, recovery : (cells, i, i) and (cells, i, o) array
-        K_ii^-1 and K_ii^-1 K_io of every cell, the latter from the reduced unknowns.
-    fronts : list of Front
-        By which the shared unknowns are eliminated.
-    stiffness : (m, m) array
-        C.
+    The state is y (n,), `surface` (m,) are the reduced unknowns of the contact surface, and the stiffness (m, m) is C.
+    `inverse` (cells, i, i) and `recovery` (cells, i, o) are K_ii^-1 and K_ii^-1 K_io of every cell, the latter from the
+    reduced unknowns; by the fronts the shared unknowns are eliminated.
     """
 
     layout: Layout
@@ -102,12 +82,7 @@ class Tangent(Valued):
     def bordered(self, change: Array, row: Array) -> Callable[[Array], Array]:
         """Solver of the equations with the law's tangent, for right-hand sides (n + 1,).
 
-        Parameters
-        ----------
-        change : (m, m + 1) array
-            (S, b).
-        row : (m + 1,) array
-            Of the control.
+        The change (m, m + 1) is (S, b), the row (m + 1,) that of the control. NotConverged if they make it singular.
         """
         matrix = np.vstack([change, row])
         matrix[:-1, :-1] += self.stiffness
@@ -147,15 +122,9 @@ class Tangent(Valued):
 class HeldBody(Valued):
     """A body with what holds it: forces, tangent and energy of its n reduced unknowns y, u = T y.
 
-    Attributes
-    ----------
-    body : Body
-        The body.
-    exterior : Exterior
-        From all of the body's unknowns to the reduced ones, the interior ones of its space first: every unknown must
-        depend on one reduced unknown at most, as it does for every far field.
-    surface : (m,) int array
-        Reduced unknowns that the surface law and the controls may depend on.
+    The exterior leads from all of the body's unknowns to the reduced ones, the interior ones of its space first: every
+    unknown must depend on one reduced unknown at most, as it does for every far field. On the reduced unknowns
+    `surface` (m,) the surface law and the controls may depend.
     """
 
     body: Body

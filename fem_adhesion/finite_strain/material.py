@@ -33,15 +33,7 @@ TRANSPOSED = ((1, 2), (3, 4))
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Deformation(Valued):
-    """Deformation at points, from the displacement gradient.
-
-    Attributes
-    ----------
-    gradient : (5, ...) array
-        A.
-    stretch : float
-        delta, zero for infinitesimal strains.
-    """
+    """Deformation at points, from the displacement gradient A, (5, ...); delta is zero for infinitesimal strains."""
 
     gradient: Array
     stretch: float
@@ -104,10 +96,7 @@ def _log_remainder(x: Array) -> Array:
 def stress(state: Deformation, shear: float, pressure: Array | float) -> Array:
     """First Piola-Kirchhoff stress over delta, (5, ...), in E*: G (A + F^-T A^T) of the shear energy and p F^-T.
 
-    Parameters
-    ----------
-    pressure : array
-        p = lambda ln(J)/delta, or the pressure of the mixed form: positive in tension.
+    The pressure p is lambda ln(J)/delta, or that of the mixed form: positive in tension.
     """
     A, f = state.gradient, state.inverse_transpose
     stress = np.empty_like(A)

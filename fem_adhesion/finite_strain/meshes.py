@@ -36,14 +36,9 @@ NEARBY = 0.01  # relative difference of contact radii that one mesh of an event 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ScenesBody(Valued):
-    """The body of a scene, to be meshed for any range of contact radii.
+    """The body of a scene, a hemisphere at finite strain, to be meshed for any range of contact radii.
 
-    Attributes
-    ----------
-    scene : Scene
-        A hemisphere at finite strain.
-    how : Discretisation
-        Degree of the elements and size of their cells.
+    `how` is the degree of the elements and the size of their cells.
     """
 
     scene: Scene
@@ -73,13 +68,7 @@ class ScenesBody(Valued):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Windows(Valued):
-    """Charts for the whole curve, each fine for a window of contact radii, made when they are first asked for.
-
-    Attributes
-    ----------
-    body : ScenesBody
-        How they are meshed.
-    """
+    """Charts for the whole curve, each fine for a window of contact radii, made when they are first asked for."""
 
     body: ScenesBody
     made: dict[int, Chart] = field(default_factory=dict, compare=False, repr=False)
@@ -128,14 +117,7 @@ class Windows(Valued):
 class AroundEvents(Valued):
     """A discretisation on which every event has a mesh made for its own contact radius.
 
-    Attributes
-    ----------
-    body : ScenesBody
-        The body, and how it is meshed.
-    everywhere : Windows
-        For the points of a curve.
-    below : AroundEvents, optional
-        With elements of a lower degree, whose meshes are shared.
+    `everywhere` is for the points of a curve, `below` with elements of a lower degree, whose meshes are shared.
     """
 
     body: ScenesBody

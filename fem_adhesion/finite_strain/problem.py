@@ -46,16 +46,9 @@ LEAST_VOLUME = 0.1
 class FiniteStrainProblem(Valued):
     """Equilibrium of a surface law with a body at finite strain; a `halfspace.equilibrium.newton.Traceable`.
 
-    Attributes
-    ----------
-    held : HeldBody
-        Forces, tangent and energy of the material, and how the body is held or goes on; n reduced unknowns.
-    surface : ContactSurface
-        Where the surface law acts.
-    interface : ContactProblem
-        The surface law, and what can be said of a contact from the gaps alone, on a rigid body's operator.
-    convention : Convention
-        What the law's traction is counted per, and its direction.
+    The held body has n reduced unknowns; on the surface acts the law. The interface is that law and what can be said of
+    a contact from the gaps alone, on a rigid body's operator; the convention says what the law's traction is counted
+    per, and its direction.
     """
 
     held: HeldBody
@@ -284,10 +277,7 @@ class FiniteStrainProblem(Valued):
     def require_resolution(self, x: Array) -> None:
         """Refuse a state whose contact edge stands on facets too long for the spike of tension, or that is a needle.
 
-        Raises
-        ------
-        GridTooCoarse, IllPosed
-            With what there is, and the limit.
+        GridTooCoarse and IllPosed tell what there is, and the limit.
         """
         self.interface.require_resolution(self.surface_state(x))
         drawn = np.max(self.surface.deformed_radii(self.surface_unknowns(x), self.stretch) / self.surface.radii)

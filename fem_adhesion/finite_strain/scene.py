@@ -44,29 +44,14 @@ CONSERVATIVE: tuple[TractionName, ...] = ("projected", "reference", "normal")
 def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> EquilibriumPath:
     """Trace the load-approach curve of a scene at finite strain and solve for its events.
 
-    Parameters
-    ----------
-    scene : Scene
-        A hemisphere of Tabor parameter 3 or less.
-    rtol : float
-        Relative accuracy asked of loads and approaches, 1e-6 to 1e-1.
-    to_load : float
-        Compressive load at which the curve ends, in R dgamma.
+    The scene is a hemisphere of Tabor parameter 3 or less, `rtol` the relative accuracy asked of loads and approaches,
+    1e-6 to 1e-1, and `to_load` the compressive load at which the curve ends, in R dgamma. InputError if one is out of
+    range, or does not go with finite strain; NotConverged if the curve or an event is lost, as where the material is
+    squeezed or torn beyond what Newton's method follows.
 
-    Returns
-    -------
-    EquilibriumPath
-        Each event has a mesh of its own; its error estimate is half of its changes from the mesh of the curve and from
-        elements one degree lower. Its spread is that between the tractions ``reference`` and ``normal``. The energy is
-        nan with the vertical traction, which has none; stability is as said at
-        `FiniteStrainProblem.negative_directions`.
-
-    Raises
-    ------
-    InputError
-        If an input is out of range, or does not go with finite strain.
-    halfspace.errors.NotConverged
-        If the curve or an event is lost, as where the material is squeezed or torn beyond what Newton's method follows.
+    Each event has a mesh of its own; its error estimate is half of its changes from the mesh of the curve and from
+    elements one degree lower. Its spread is that between the tractions that have an energy. The energy is nan with the
+    vertical traction, which has none; stability is as said at `FiniteStrainProblem.negative_directions`.
     """
     _require(scene, rtol, to_load)
     if scene.tabor > WIDEST_TABOR:
@@ -84,13 +69,7 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Stages(Valued):
-    """Discretisations of a scene's body by elements of every degree, made when they are first asked for.
-
-    Attributes
-    ----------
-    scene : Scene
-        A hemisphere at finite strain.
-    """
+    """Discretisations of a hemisphere at finite strain by elements of every degree, each made when first asked for."""
 
     scene: Scene
     along: dict[int, Windows] = field(default_factory=dict, compare=False, repr=False)
@@ -189,10 +168,7 @@ def _cause_told(scene: Scene) -> Iterator[None]:
 def raised(event: Located, problem: FiniteStrainProblem, done: float = 0.0) -> Located:
     """Solve for an event again at finite strain, raising delta from where it is done in as many parts as that takes.
 
-    Raises
-    ------
-    NotConverged
-        If a small part of delta is too much.
+    NotConverged if a small part of delta is too much.
     """
     try:
         return moved(event, problem)

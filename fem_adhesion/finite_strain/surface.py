@@ -19,20 +19,9 @@ from halfspace.values import Array, Index, Valued
 class ContactSurface(Valued):
     """Gauss points of the contact facets by radius, q in all, and the m unknowns s that move them.
 
-    Attributes
-    ----------
-    radii : (q,) array
-        r in beta, undeformed.
-    radii_rate : (q,) array
-        r', the derivative by the arclength.
-    measure : (q,) array
-        2 pi ds.
-    ends : array
-        Radii in beta of the facets' ends.
-    unknowns : (m,) int array
-        The body's reduced unknowns that are not zero at the points, ascending.
-    radial, vertical, radial_rate : (q, m) array
-        u_r, u_z and u_r' from these.
+    Radii (q,) are r in beta, undeformed, their rates (q,) r', the derivative by the arclength, and the measure (q,) is
+    2 pi ds; the ends, in beta, are the facets'. Unknowns (m,) are the body's reduced ones that are not zero at the
+    points, ascending: radial, vertical and radial_rate (q, m) give u_r, u_z and u_r' from these.
     """
 
     radii: Array

@@ -53,12 +53,8 @@ from halfspace.values import Array, Valued
 class Convention:
     """What the law's traction is counted per, and whether it spreads the surface.
 
-    Attributes
-    ----------
-    deformed_area : float
-        Part of the traction that is counted per deformed horizontal area; the rest is per undeformed one.
-    surface_stress : float
-        Of the surface, over the energy Phi.
+    `deformed_area` is the part of the traction that is counted per deformed horizontal area, the rest being per
+    undeformed one; `surface_stress` is that of the surface, over the energy Phi.
     """
 
     deformed_area: float
@@ -100,18 +96,9 @@ def yielded_adhesion(tabor: float, radius_ratio: float, poisson: float, law: Law
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Traction(Valued):
-    """Forces of a surface law by a convention.
+    """Forces of a surface law by a convention, at the Tabor parameter mu.
 
-    Attributes
-    ----------
-    surface : ContactSurface
-        Where the law acts.
-    tabor : float
-        Tabor parameter mu.
-    stretch : float
-        Of the deformed area: delta = beta/R.
-    convention : Convention
-        Which area, and which surface stress.
+    The stretch is that of the deformed area, delta = beta/R.
     """
 
     surface: ContactSurface
@@ -132,12 +119,7 @@ class Traction(Valued):
     def forces(self, s: Array, P: Array, Phi: Array) -> Array:
         """Less the forces on the surface's unknowns, (m,), in R dgamma: upwards where the pressure is downwards.
 
-        Parameters
-        ----------
-        s : (m,) array
-            Unknowns of the surface.
-        P, Phi : (q,) array
-            Pressure and energy of the law.
+        s (m,) are the unknowns of the surface, P and Phi (q,) the pressure and energy of the law.
         """
         spreading = self.surface.area_gradient(s, self.stretch, self.convention.surface_stress / self.tabor * Phi)
         return np.asarray((P * self.areas(s)) @ self.surface.vertical + spreading)
