@@ -32,12 +32,8 @@ Layout = tuple[Array, SurfaceCoordinate]
 class Doubt(NamedTuple):
     """How far the cells of a body are to be trusted, beyond what a degree more tells.
 
-    Attributes
-    ----------
-    other_cells : bool
-        Whether what they leave is seen by other cells only.
-    times : float
-        What may be left of a change, in what usually is.
+    `other_cells` says whether what they leave is seen by other cells only, `times` what may be left of a change, in
+    what usually is.
     """
 
     other_cells: bool
@@ -46,21 +42,13 @@ class Doubt(NamedTuple):
 
 @dataclass(frozen=True)
 class Discretisation:
-    """How finely a body is discretised.
+    """How finely a body is discretised, by quadrilaterals of a degree, the error falling by a decade a degree.
 
-    Attributes
-    ----------
-    degree : int
-        Of the quadrilateral elements; the error falls by an order of magnitude a degree.
-    finest : float
-        Length of the cells at the contact edge, in widths of the spike of tension there.
-    growth : float
-        Ratio of neighbouring cells.
-    rings : int
-        Of cells around the corner where a mid-plane meets the free surface, if it is bonded.
-    beyond : float
-        Size of what is meshed of a half-space under a surface that ends, in the radius where that does: nothing acts
-        beyond that, and the far field errs by O(L^-5). Under strata in the length over which they spread a load.
+    `finest` is the length of the cells at the contact edge, in widths of the spike of tension there, `growth` the ratio
+    of neighbouring cells, and `rings` the number of rings of cells around the corner where a mid-plane meets the free
+    surface, if it is bonded. `beyond` is the size of what is meshed of a half-space under a surface that ends, in the
+    radius where that does: nothing acts beyond that, and the far field errs by O(L^-5). Under strata it is in the
+    length over which they spread a load.
     """
 
     degree: int
@@ -74,17 +62,8 @@ class Discretisation:
 class Body(ABC):
     """An elastic body of revolution, below its contact surface, with all of the pair's compliance 1/E* unless shared.
 
-    Parameters
-    ----------
-    material : LinearElastic or NeoHookean
-        What it is made of.
-    poisson : float, optional
-        Short for ``material=LinearElastic(poisson)``; to be read as ``body.material.poisson``.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range, or does not go with the others.
+    `poisson` is short for ``material=LinearElastic(poisson)``; to be read as ``body.material.poisson``.
+    InputError if a value is out of range, or does not go with the others.
     """
 
     material: Material = USUAL
@@ -215,16 +194,9 @@ class Body(ABC):
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Mesh with the boundaries "axis", "contact" and "far".
 
-        Parameters
-        ----------
-        R : float
-            Radius in beta, that of the surface over a half-space; infinite if neither ends.
-        lines : (m + 1,) array
-            Ends of the cells of the contact, in the coordinate, from 0 to the first of those that stand still.
-        length : float
-            Of the cells at the contact edge, in beta.
-        how : Discretisation
-            How finely.
+        R is the radius in beta, that of the surface over a half-space; infinite if neither ends. Lines (m + 1,) are the
+        ends of the cells of the contact, in the coordinate, from 0 to the first of those that stand still; the length,
+        in beta, is that of the cells at the contact edge.
         """
 
     def facing(self, R: float, lines: Array, smaller: float, how: Discretisation) -> Any:  # noqa: ARG002
@@ -234,14 +206,9 @@ class Body(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Held(Body):
-    """A body with a length R of its own, held at its far side.
+    """A body with a length R of its own, held at its far side; rho = R/eps is 2 to 1e12.
 
-    Parameters
-    ----------
-    radius_ratio : float
-        rho = R/eps, 2 to 1e12.
-    grip : {"sliding", "bonded"}
-        Whether the held surface may slide without friction, u_z = 0, or not at all, u = 0.
+    The grip is "sliding", u_z = 0, if the held surface may slide without friction, or "bonded", u = 0, if not at all.
     """
 
     radius_ratio: float
