@@ -51,16 +51,9 @@ def _forgiving_mapping(mesh: Any) -> Any:
 class Trace(Valued):
     """Gauss's points of a named boundary, k on each of its facets, and the scalar functions there.
 
-    Attributes
-    ----------
-    places, normals : (2, facets, k) array
-        r and z of the points, and of the outward normal there.
-    lengths : (facets, k) array
-        Weights of the length along the boundary.
-    functions : (m,) int array
-        Those that do not vanish on it, ascending.
-    values : (facets k, m) sparse array
-        Their values.
+    Places and normals (2, facets, k) are r and z of the points, and of the outward normal there; lengths (facets, k)
+    are the weights of the length along the boundary. Of the functions (m,), those that do not vanish on it, ascending,
+    the values (facets k, m) are at the points.
     """
 
     places: Array

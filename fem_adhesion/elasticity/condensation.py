@@ -24,18 +24,9 @@ from halfspace.values import Array, Index, Valued
 class Skeleton(Valued):
     """Stiffness of the unknowns shared between cells; those interior to one cell are eliminated.
 
-    Attributes
-    ----------
-    cells : (cells, n_o, n_o) array
-        Stiffness of each cell, without its interior unknowns.
-    whole : (cells, 2 n, 2 n) array
-        The same with them.
-    dofs : (2 n, cells) int array
-        Numbers of a cell's unknowns.
-    inner, outer : (n_i,) and (n_o,) int arrays
-        Positions of the interior and of the shared unknowns among them.
-    size : int
-        Number N of all unknowns.
+    `cells` (cells, n_o, n_o) is the stiffness of each cell without its interior unknowns, `whole` (cells, 2 n, 2 n) the
+    same with them. `dofs` (2 n, cells) are the numbers of a cell's unknowns among all N, the size; `inner` (n_i,) and
+    `outer` (n_o,) the positions of the interior and of the shared ones among those of a cell.
     """
 
     cells: Array
@@ -62,18 +53,10 @@ class Skeleton(Valued):
 class Surface(Valued):
     """Quadrature points of the contact surface, facet by facet outwards; q = facets * k points.
 
-    Attributes
-    ----------
-    radii, weights : (q,) array
-        Radii in beta and weights of 2 pi r dr in beta^2.
-    unknowns : (m,) int array
-        The vertical unknowns that do not vanish on the surface.
-    values : (q, m) array
-        Their functions at the points.
-    cells : (facets + 1,) array
-        End radii of the facets, from 0.
-    depths, slopes : (q,) array
-        Depth of the undeformed surface under z = 0, in beta, and its derivative by the radius.
+    Radii (q,) are in beta, their weights (q,), of 2 pi r dr, in beta^2. Unknowns (m,) are the vertical ones that do not
+    vanish on the surface, values (q, m) their functions at the points. `cells` (facets + 1,) are the end radii of the
+    facets, from 0; depths and slopes (q,) the depth of the undeformed surface under z = 0, in beta, and its derivative
+    by the radius.
     """
 
     radii: Array
@@ -113,20 +96,8 @@ class Factorised(Valued):
 class CondensedBody(Valued):
     """A block factorised once: its surface compliance, and the fields inside for a given surface pressure.
 
-    Pressures are (q,) arrays at ``operator.radii``, positive in compression; all is dimensionless, E* = 1.
-
-    Attributes
-    ----------
-    operator : ElasticOperator
-        Deflection of the surface from the pressure on it.
-    space : Space
-        Mesh and element.
-    poisson : float
-        Poisson's ratio.
-    stiffness : callable
-        Stiffness of its cells.
-    skeleton, exterior, surface
-        The parts it was made of.
+    Pressures are (q,) arrays at ``operator.radii``, positive in compression; all is dimensionless, E* = 1. The operator
+    gives the deflection of the surface from the pressure on it; the stiffness is that of the cells.
     """
 
     operator: ElasticOperator
@@ -192,30 +163,11 @@ def condense(
     The compliance is N K^-1 N' diag(w): N evaluates the surface deflection -u_z at the Gauss points of the contact
     facets and w are the weights of 2 pi r dr, so a surface law assembled by quadrature at them is condensed exactly.
 
-    Parameters
-    ----------
-    space : Space
-        Mesh and element.
-    poisson : float
-        Poisson's ratio nu, 0 <= nu < 0.5.
-    far_field : callable
-        `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.far_field`.
-    points : int, optional
-        Gauss points per contact facet, more than the degree p of the element; p + 2 unless given.
-    stiffness : callable
-        Stiffness of the cells; `fem_adhesion.elasticity.incompressible.projected_stiffness` does not lock.
-    traction : {"projected", "surface"}
-        Area on which the pressure acts, vertically: projected on the plane of the contact, or that of the surface.
-
-    Returns
-    -------
-    CondensedBody
-        With the `ElasticOperator`.
-
-    Raises
-    ------
-    InputError
-        If poisson is out of range or `points` too few.
+    The far field is `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.far_field`. Of Gauss's points there
+    are more than the degree p of the element on a contact facet, p + 2 unless given. Of the stiffnesses of the cells
+    `fem_adhesion.elasticity.incompressible.projected_stiffness` does not lock. With the traction "projected" the
+    pressure, which is vertical, acts on the area projected on the plane of the contact, with "surface" on that of the
+    surface. InputError unless 0 <= poisson < 0.5 and the points are enough.
     """
     points = space.degree + 2 if points is None else points
     if points <= space.degree:

@@ -32,20 +32,10 @@ SINGULAR = "the stiffness is singular; hold the body, and mesh it without empty 
 class Region(Valued):
     """Some cells, and how their stiffness is put together; the same for all meshes whose cells meet alike.
 
-    Attributes
-    ----------
-    parts : tuple of Region
-        The two that it joins, none if it consists of cells.
-    cells : (m,) int array
-        Their numbers.
-    unknowns, shares : (k,) int array
-        Numbers of the unknowns that are left, and how many of the cells have each of them.
-    entries : (...) int array
-        Places of the entries of the cells', or the parts', matrices in its own.
-    size : int
-        Of that matrix.
-    complete : (c,) int array
-        Numbers of the unknowns that are eliminated, its first.
+    A region joins two parts, or consists of cells and has none; it has the cells of the numbers (m,). Of the unknowns
+    that are left, (k,), `shares` (k,) says how many of the cells have each. The entries are the places of those of the
+    cells', or the parts', matrices in its own, which is of the size; `complete` (c,) are the numbers of the unknowns
+    that are eliminated, its first.
     """
 
     parts: tuple[Region, ...]
@@ -78,14 +68,9 @@ class Region(Valued):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Front(Valued):
-    """Unknowns that are eliminated together, by their stiffness K_cc, and K_ck with those left.
+    """Unknowns `done` (c,) that are eliminated together, by their stiffness K_cc, and K_ck with those left, (k,).
 
-    Attributes
-    ----------
-    done, left : (c,) and (k,) int array
-        Numbers of both.
-    inverse, recovery : (c, c) and (c, k) array
-        K_cc^-1 and K_cc^-1 K_ck.
+    `inverse` (c, c) is K_cc^-1, `recovery` (c, k) K_cc^-1 K_ck.
     """
 
     done: Index
@@ -103,28 +88,10 @@ class Front(Valued):
 
 
 def condensed_to(mesh: Any, K: Array, unknowns: Index, kept: Mask) -> tuple[Index, Array]:
-    """Stiffness of a body, condensed to some of its unknowns.
+    """Numbers (m,) of the kept unknowns that some cell has, and the stiffness of a body condensed to them, (m, m).
 
-    Parameters
-    ----------
-    mesh : skfem.Mesh
-        With the boundaries "axis" and "contact".
-    K : (cells, k, k) array
-        Stiffness of its cells, symmetric.
-    unknowns : (k, cells) int array
-        Numbers of their unknowns, below 0 where they are held.
-    kept : (n,) bool array
-        Which of all unknowns are kept.
-
-    Returns
-    -------
-    (m,) int array, (m, m) array
-        Numbers of those kept that some cell has, and their stiffness.
-
-    Raises
-    ------
-    NotConverged
-        If the stiffness is singular.
+    The mesh has the boundaries "axis" and "contact". K (cells, k, k) is the stiffness of its cells, symmetric, of the
+    unknowns (k, cells), below 0 where they are held; kept (n,) says which of all are. NotConverged if it is singular.
     """
     whole = dissected(mesh, unknowns, kept)
     return whole.unknowns, whole.stiffness(K)
@@ -171,21 +138,10 @@ def factor(matrix: Array) -> Array:
 
 
 def reduced_cells(K: Array, dofs: Index, T: sparse.csc_array) -> tuple[Array, Index]:
-    """Cell matrices T' K T and the unknowns x they couple, where u = T x.
+    """Cell matrices T' K T (cells, k + g, k + g) and the unknowns x (k + g, cells) they couple, where u = T x.
 
-    Parameters
-    ----------
-    K : (cells, k, k) array
-        Of the unknowns u.
-    dofs : (k, cells) int array
-        Their numbers.
-    T : (N, n) sparse array
-        Most columns select one unknown; any other becomes an unknown of all cells that it moves.
-
-    Returns
-    -------
-    (cells, k + g, k + g) array, (k + g, cells) int array
-        Numbers are -1 where there is no unknown.
+    K (cells, k, k) is of the unknowns u of the numbers dofs (k, cells); the numbers of x are -1 where there is no
+    unknown. Most columns of T (N, n) select one unknown; any other becomes an unknown of all cells that it moves.
     """
     selects = (np.diff(T.indptr) == 1) & (np.add.reduceat(T.data, T.indptr[:-1]) == 1)
     number = np.full(T.shape[0], -1)

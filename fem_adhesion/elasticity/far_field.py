@@ -28,14 +28,9 @@ TRACE_POINTS = 6
 class Exterior(Valued):
     """The far boundary's condition, reduced to matrices; N unknowns in all, n of them reduced.
 
-    Attributes
-    ----------
-    reduction : (N, n) sparse array
-        T, displacement unknowns from reduced ones.
-    stiffness : (n, n) sparse array
-        S, symmetric, in units of E* beta.
-    rigid_compliance : float
-        Deflection per unit load that S adds to the body's own and that must be taken off again, 1/(E* beta).
+    The reduction T (N, n) gives displacement unknowns from reduced ones; the stiffness S (n, n), symmetric, is in
+    E* beta. The rigid compliance is the deflection per unit load, in 1/(E* beta), that S adds to the body's own and
+    that must be taken off again.
     """
 
     reduction: sparse.csc_array

@@ -79,13 +79,9 @@ def pressure_modes(space: Space) -> Array:
     Products of Legendre polynomials of degrees below p, without the product of the two highest. With that one, the
     interior displacements, (1 - x^2)(1 - y^2) times any polynomial of degree p - 2 in each direction, would do no work
     on the pressure L_p'(x) L_p'(y), which they do on every other but a constant. So the pair is stable as Q2 with P1
-    is, the case p = 2: its inf-sup constant stands at 0.54 for p = 2 to 5 however fine the mesh, and at 0.3 or more
-    for cells a million times as long as thick, while that of the full set falls with the mesh.
-
-    Raises
-    ------
-    InputError
-        Unless the cells are quadrilaterals of degree 2 or more.
+    is, the case p = 2: its inf-sup constant stands at 0.54 for p = 2 to 5 however fine the mesh, and at 0.3 or more for
+    cells a million times as long as thick, while that of the full set falls with the mesh. InputError unless the cells
+    are quadrilaterals of degree 2 or more.
     """
     if space.degree < 2 or space.element.refdom.nnodes != 4:
         raise InputError(f"{type(space.element).__name__} has no projected dilatation; use ElementQuadP(2) or more")

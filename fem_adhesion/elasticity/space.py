@@ -128,21 +128,11 @@ def ring_measure(r: Array) -> Array:
 
 
 def strain_displacement(value: Array, grad: Array, r: Array) -> Array:
-    """Return the strains of the unit displacements of a cell.
+    """Return the strains e_rr, e_zz, u_r/r, gamma_rz of the unit displacements of a cell, (cells, 4, q, 2 n).
 
-    Parameters
-    ----------
-    value : (n, cells, q) array
-        Scalar shape functions at q quadrature points.
-    grad : (n, 2, cells, q) array
-        Their derivatives with respect to r and z.
-    r : (cells, q) array
-        Radii of the quadrature points, none of them zero.
-
-    Returns
-    -------
-    (cells, 4, q, 2 n) array
-        Strains e_rr, e_zz, u_r/r, gamma_rz: first of unit u_r of all n functions, then of unit u_z.
+    First are those of unit u_r of all n functions, then of unit u_z. Values (n, cells, q) are of the scalar functions
+    at q quadrature points, grad (n, 2, cells, q) their derivatives by r and z, and r (cells, q) the points' radii, none
+    of them zero.
     """
     n, cells, q = value.shape
     d_dr, d_dz = grad.transpose(1, 2, 3, 0)

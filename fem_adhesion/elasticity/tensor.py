@@ -32,14 +32,8 @@ TERMS = (
 class Products(Valued):
     """Products of two of the k functions along a side at its q points.
 
-    Attributes
-    ----------
-    along_y : tuple of arrays (terms q, k^2)
-        For each group of `TERMS`, and each term in it.
-    along_x : (4 q, k^2) array
-        For each group.
-    places : (n^2,) int array
-        Where those of two functions of the square are among the k^2 k^2 products along y and x.
+    For each group of `TERMS`, along_y has an array (terms q, k^2) of each term in it; along_x (4 q, k^2) is for each
+    group. `places` (n^2,) are where those of two functions of the square are among the k^2 k^2 products along y and x.
     """
 
     along_y: tuple[Array, ...]
@@ -65,19 +59,10 @@ def products(element: Any, order: int) -> Products:
 
 
 def integrated(coefficients: Array, functions: Products) -> Array:
-    """Sums over the points of coefficients times products of two functions or slopes.
+    """Sums (..., n, n) over the points, of coefficients times products of two functions or slopes of the square.
 
-    Parameters
-    ----------
-    coefficients : (..., 3, 3, q, q) array
-        Of the products of value, slope by x and slope by y, at the points, with their weights.
-    functions : Products
-        At the points.
-
-    Returns
-    -------
-    (..., n, n) array
-        For each two functions of the square.
+    The coefficients (..., 3, 3, q, q) are of the products of value, slope by x and slope by y, at the points, with
+    their weights.
     """
     (*many, q, _), size = (*coefficients.shape[:-4], *coefficients.shape[-2:]), functions.along_x.shape[1]
     summed = np.empty((*many, len(TERMS), q, size))
