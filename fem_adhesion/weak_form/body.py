@@ -87,7 +87,7 @@ class Body(Valued):
     values : (q, n) sparse array
         u_z at the points from the unknowns.
     radii, area : (q,) array
-        Of the points, in beta, and their parts of dA, projected on the plane of the contact.
+        Of the points, in beta, and their parts of dA, see `discretise`.
     depths : (q,) array
         How deep the points are under the pole, in beta.
     rim : float
@@ -146,21 +146,11 @@ def discretise(
 ) -> Body:
     """Assemble a body on a mesh that names its boundaries axis, contact and far, and is held at the far one.
 
-    Parameters
-    ----------
-    mesh : skfem.Mesh
-        In beta, the body below its contact surface, of quadrilaterals or triangles. If it slides, it goes on beyond
-        the boundary edge, if there is one.
-    degree : int
-        Of the elements, 3 or more; 4 at most of triangles.
-    materials : sequence of pairs
-        Of its regions, see `Materials`.
-    slides : bool
-        Whether the far boundary may move along r.
-    plate : bool
-        Whether it may move as a whole along z, on a spring of stiffness 1; that is then the last unknown.
-    on_surface : bool
-        Whether dA is the area of the surface itself, not that projected on the plane of the contact.
+    The mesh is in beta, the body below its contact surface, of quadrilaterals or triangles; the materials are of its
+    regions, see `Materials`. The degree of the elements is 3 or more; 4 at most of triangles. If the body slides, the
+    far boundary may move along r, and it goes on beyond the boundary edge, if there is one. On a plate the far boundary
+    may move as a whole along z, on a spring of stiffness 1; that is then the last unknown. If `on_surface`, dA is the
+    area of the surface itself, not that projected on the plane of the contact.
     """
     triangles = isinstance(mesh, MeshTri)
     element = ElementVector(TRIANGLES[degree]() if triangles else ElementQuadP(degree))

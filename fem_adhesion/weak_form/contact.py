@@ -20,14 +20,9 @@ Heights = Callable[[Array], Array]
 class Law:
     """A law of the tension between two surfaces, by its potential alone; what else it is are differences of that.
 
-    Attributes
-    ----------
-    potential : callable
-        w = -int_h^inf sigma in dgamma at gaps h in eps; the attraction of two bodies does the work -w(1) = 1.
-    grain : float
-        Part of a gap over which the tension varies: (sigma'(1))^(-1/2).
-    room : float
-        Gap in eps that counts as one at least: surfaces without a core may come closer than none.
+    The potential is w = -int_h^inf sigma in dgamma at gaps h in eps; the attraction of two bodies does the work
+    -w(1) = 1. The grain, (sigma'(1))^(-1/2), is the part of a gap over which the tension varies. The room is the gap in
+    eps that counts as one at least: surfaces without a core may come closer than none.
     """
 
     potential: Callable[[Array], Array]
@@ -88,20 +83,9 @@ POINTS, FAR = 40, 4  # of the rule from the rim to infinity, and the power by wh
 class Contact(Valued):
     """A body under a rigid surface that attracts it.
 
-    Attributes
-    ----------
-    body : Body
-        In beta.
-    tabor : float
-        Tabor parameter mu.
-    heights : callable
-        z of the undeformed surface at radii in beta.
-    endless : bool
-        Whether the surfaces go on for ever beyond the mesh, as over a half-space.
-    rim : pair of (k,) arrays
-        Radii and parts of dA of points beyond the mesh of a body with an end that attract and do not yield.
-    law : Law
-        Of the tension between the surfaces.
+    The body is in beta, `tabor` is mu, and the heights are z of the undeformed surface at radii in beta. If endless,
+    the surfaces go on for ever beyond the mesh, as over a half-space; the rim, (k,) each, has radii and parts of dA of
+    points beyond the mesh of a body with an end that attract and do not yield.
     """
 
     body: Body

@@ -21,16 +21,9 @@ from halfspace.values import Valued
 class Tangent(Valued):
     """How a contact yields to a small change of a state, with the law's straight line in the place of the law.
 
-    Attributes
-    ----------
-    gap : (q,) array
-        Gaps h in eps of the state.
-    slope : (q,) array
-        sigma' in dgamma/eps^2 there.
-    factors
-        Of the matrix of a(u, v) + mu^2 int sigma' u_z v_z dA.
-    gap_rate, stiffness
-        dh/dalpha, and dW/dalpha in R dgamma/eps, along the equilibria.
+    Gaps h (q,) of the state are in eps, the slope (q,) there is sigma' in dgamma/eps^2, and the factors are of the
+    matrix of a(u, v) + mu^2 int sigma' u_z v_z dA. The gaps' rate is dh/dalpha and the stiffness dW/dalpha in
+    R dgamma/eps, along the equilibria.
     """
 
     gap: Array
@@ -90,12 +83,7 @@ def newton(
 
     Each step solves the problem with the law's straight line, sigma(h) + sigma' (h_new - h), in the place of the law.
     While each is much shorter than the one before, they keep its slope and with it the factors of the tangent, from
-    that given on.
-
-    Raises
-    ------
-    NotConverged
-        If the steps run out.
+    that given on. NotConverged if the steps run out.
     """
     before: float | None = None
     for _ in range(MOST_STEPS):
