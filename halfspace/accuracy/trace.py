@@ -153,7 +153,7 @@ def trace(
     Parameters
     ----------
     tabor : float
-        Tabor parameter mu, mu^3 = R dgamma^2/(E*^2 eps^3).
+        Tabor parameter mu, mu^3 = R dgamma^2/(E*^2 eps^3), 1e-12 to 300.
     law : Law
         Of the tension between the surfaces against their gap, see `halfspace.laws`.
     profile : Profile
@@ -165,7 +165,7 @@ def trace(
         Relative accuracy asked of loads and approaches, 1e-9 to 1e-1; of approaches, which have no natural zero, in
         parts of eps and the range of those of all events.
     to_load : float
-        Compressive load at which the curve ends, in R dgamma.
+        Compressive load at which the curve ends, in R dgamma, up to 1000.
 
     Returns
     -------

@@ -39,19 +39,14 @@ SHORTEST = 1e-4  # of a length, over which strata may yield as a half-space does
 
 @dataclass(frozen=True)
 class Substrate:
-    """An elastic half-space under the strata.
+    """An elastic half-space under the strata; InputError if a value is out of range.
 
     Parameters
     ----------
     modulus : float
-        Young's, in units of that of the first stratum.
+        Young's, in units of that of the first stratum, 0.01 to 1000.
     poisson : float
-        Poisson's ratio.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
+        Poisson's ratio, 0 to 0.499999.
     """
 
     modulus: float = 1.0
@@ -63,21 +58,16 @@ class Substrate:
 
 @dataclass(frozen=True)
 class Stratum:
-    """A homogeneous layer.
+    """A homogeneous layer; InputError if a value is out of range.
 
     Parameters
     ----------
     thickness : float
-        In beta.
+        In beta, 0.01 to 1000.
     poisson : float
-        Poisson's ratio.
+        Poisson's ratio, 0 to 0.499999.
     modulus : float
-        Young's, in units of that of the first stratum.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
+        Young's, in units of that of the first stratum, 0.01 to 1000.
     """
 
     thickness: float
@@ -121,19 +111,14 @@ def require_layered(body: LayeredBody) -> LayeredBody:
 
 @dataclass(frozen=True)
 class Layers:
-    """Strata on a base: a graded or many-layered body.
+    """Strata on a base: a graded or many-layered body; InputError unless the strata and the base are as below.
 
     Parameters
     ----------
     strata : sequence of Stratum
-        From the surface down; the modulus of the first is the unit of all.
+        One or more, from the surface down; the modulus of the first, 1, is the unit of all.
     base : {"bonded", "sliding"} or Substrate
         A rigid one to which the last stratum is bonded, or on which it slides, or an elastic half-space.
-
-    Raises
-    ------
-    InputError
-        If there is no stratum, the first has a modulus other than 1, or the base is none of these.
     """
 
     strata: tuple[Stratum, ...]
@@ -148,21 +133,16 @@ class Layers:
 
 @dataclass(frozen=True)
 class Layer:
-    """A layer on a rigid base.
+    """A layer on a rigid base; InputError if a value is out of range.
 
     Parameters
     ----------
     thickness : float
-        In beta.
+        In beta, 0.01 to 1000.
     poisson : float
-        Poisson's ratio.
+        Poisson's ratio, 0 to 0.499999.
     foundation : {"bonded", "sliding"}
         Whether the base holds the layer, or carries it without friction.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
     """
 
     thickness: float
@@ -188,19 +168,16 @@ class Layer:
 class Coated:
     """A half-space under a coating that is bonded to it; E*, in the Tabor parameter and beta, is the coating's.
 
+    InputError if a value is out of range.
+
     Parameters
     ----------
     thickness : float
-        Of the coating, in beta.
+        Of the coating, in beta, 0.01 to 1000.
     modulus_ratio : float
-        Young's modulus of the coating over that of the half-space.
+        Young's modulus of the coating over that of the half-space, 0.001 to 100.
     poisson, substrate_poisson : float
-        Poisson's ratios of the coating and of the half-space.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
+        Poisson's ratios of the coating and of the half-space, 0 to 0.499999.
     """
 
     thickness: float
