@@ -56,7 +56,8 @@ def test_curve_runs_from_far_separation_into_compression_over_all_meshes(path):
     assert path.load[-1] >= LITTLE > path.load[-2]
     assert np.all(np.diff(path.arclength) >= 0)
     touching = np.isfinite(path.contact_radius)
-    assert np.all(np.diff(path.contact_radius[touching]) >= -path.contact_radius_error[touching][1:])
+    radii, errors = path.contact_radius[touching], path.contact_radius_error[touching]
+    assert np.all(np.diff(radii) >= -(errors[1:] + errors[:-1]))  # from mesh to mesh both may be off
     assert len(path.segments) > 1
 
 

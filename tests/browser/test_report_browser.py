@@ -28,7 +28,7 @@ END = 600_000
 def report(tmp_path_factory):
     """A page whose half-space is another by far, so that its lines are told from those of the elements."""
     cases = list(crosscheck.run([Scene(1.0)], rtol=1e-2))
-    walked = walk(2.0, rtol=1e-3, states=8)
+    walked = walk(2.0, rtol=1e-3, states=10)
     scaled = [
         replace(one, pressure=one.pressure * [[1.0], [0.5]], gap=one.gap * [[1.0], [0.7]]) for one in walked.stations
     ]
