@@ -332,8 +332,8 @@ def test_a_sphere_whose_contact_is_born_between_folds_is_traced():
 def test_a_step_that_leaves_the_radii_for_which_an_operator_is_known_is_refused(monkeypatch):
     leapt = SimpleNamespace(observables=np.array([0.0, 0.0, 0.0, 0.05]))
     monkeypatch.setattr(path_module, "_corrected", lambda *_: leapt)
-    problem = SimpleNamespace(interface=SimpleNamespace(operator=SimpleNamespace(known=(0.1, 1.0))))
-    with pytest.raises(NotConverged, match=r"contact radius 0\.05 beta is outside 0\.1 to 1 beta of the chart"):
+    problem = SimpleNamespace(interface=SimpleNamespace(operator=SimpleNamespace(least_radius=0.1)))
+    with pytest.raises(NotConverged, match=r"contact radius 0\.05 beta is below 0\.1 beta"):
         path_module._advance(problem, [leapt], 0.1, None, Steps())
 
 

@@ -4,6 +4,7 @@ import csv
 from functools import cache
 from pathlib import Path
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.integrate import quad_vec
@@ -11,7 +12,7 @@ from scipy.optimize import brentq, minimize_scalar
 from scipy.special import j0
 
 from halfspace import trace
-from halfspace.elastic import grid
+from halfspace.elastic import grid, layered
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, stiff_as, surface_compliance
 from halfspace.equilibrium import newton
@@ -108,6 +109,31 @@ def test_a_bell_of_pressure_deflects_a_layer_as_hankels_integral_says(thickness)
     inside = operator.radii < 30
     wanted = j0(np.outer(operator.radii[inside], k)) @ waves
     assert found[inside] == pytest.approx(wanted, abs=3e-8)
+
+
+@pytest.mark.parametrize("body", [Layer(0.1, 0.3), Coated(0.02, 30.0)])
+def test_few_nodes_a_cell_deflect_a_thin_film_as_many_do(body, monkeypatch):
+    lines = np.append(0.0, 0.3 * 2.0 ** np.arange(6))
+
+    def deflection():
+        operator = layered_panels(images_of(body), lines, 8)
+        return operator.compliance @ np.exp(-((operator.radii / 0.6) ** 2))
+
+    few = deflection()
+    monkeypatch.setattr(layered, "NEAR", 4.0)
+    monkeypatch.setattr(layered, "NEAR_POINTS", 96)
+    monkeypatch.setattr(layered, "GRADING", 5)
+    many = deflection()
+    assert few == pytest.approx(many, rel=0, abs=2e-8 * np.abs(many).max())
+    assert not np.array_equal(few, many)
+
+
+def test_the_mean_by_arithmetic_and_geometry_is_as_exact_as_its_numbers():
+    a = np.array([1.0, 3.0 + 1e4j, 2.0 + 1j, 1e-3])
+    b = np.array([1e-5, 2.0, 2.0 + 1.0001j, 1e5 + 1e5j])
+    wanted = [complex(mpmath.agm(mpmath.mpc(x), mpmath.mpc(y))) for x, y in zip(a, b, strict=True)]
+    assert layered._mean(a, b) == pytest.approx(np.array(wanted), rel=1e-14, abs=0)
+    assert layered._mean(a[2:3], b[2:3]) == pytest.approx(np.array(wanted[2:3]), rel=1e-14, abs=0)
 
 
 @cache

@@ -516,9 +516,15 @@ def test_what_is_no_earlier_run_at_this_tabor_parameter_is_refused(distinct, tmp
         earlier.read(file, 2.0)
     with pytest.raises(InputError, match="cannot be read: No such file"):
         earlier.read(other, 1.0)
-    for text in (file.read_text().replace("yardsticks", "ells"), file.read_text().replace(",500,", ",much,")):
+    no_table, table = r"is no table of a speed study .*; give its speed\.csv", file.read_text()
+    for text, told in (
+        (table.replace("yardsticks", "ells"), "has no column 'yardsticks'; give speed.csv of this version's study"),
+        (table.replace(",500,", ",much,"), no_table),
+        (table.replace(",500,", ",inf,"), no_table),
+        (f"{table}\n{'9' * 200_000}", no_table),
+    ):
         other.write_text(text)
-        with pytest.raises(InputError, match=r"is no table of a speed study .*; give its speed\.csv"):
+        with pytest.raises(InputError, match=told):
             earlier.read(other, 1.0)
     other.write_text(file.read_text().replace("converged", "failed"))
     with pytest.raises(InputError, match="has no rung with a result"):

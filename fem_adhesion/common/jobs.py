@@ -78,7 +78,7 @@ def loaded_ahead(module: str, *, jobs: int | None = None, dask: str | None = Non
     try:
         yield
     finally:
-        with suppress(TerminatedWorkerError):  # of which `stream` tells when there is work to lose
+        with suppress(TerminatedWorkerError, ImportError):  # of which `stream` or the study itself tells
             list(results)
 
 

@@ -23,7 +23,9 @@ def read(path: Path, tabor: float) -> Earlier:
         raise InputError(
             f"beside = {path} cannot be read: {error.strerror}; give speed.csv of an earlier run"
         ) from None
-    except (KeyError, TypeError, ValueError) as error:
+    except KeyError as error:
+        raise InputError(f"beside = {path} has no column {error}; give speed.csv of this version's study") from None
+    except (TypeError, ValueError, csv.Error) as error:
         raise InputError(f"beside = {path} is no table of a speed study ({error}); give its speed.csv") from None
     if not rungs:
         raise InputError(f"beside = {path} has no rung with a result; give speed.csv of an earlier run")
@@ -37,6 +39,6 @@ def _rung(row: Mapping[str, str]) -> Timing:
     told = [q for q in QUANTITIES if row[f"{q}_error"]]
     errors, floors = ({q: float(row[f"{q}_{what}"]) for q in told} for what in ("error", "truth_uncertainty"))
     yardsticks = float(row["yardsticks"])
-    if not yardsticks > 0 or not all(math.isfinite(error) for error in errors.values()):
+    if not 0 < yardsticks < math.inf or not all(math.isfinite(error) for error in errors.values()):
         raise ValueError(f"{row['method']} at {row['setting']} has no time or no error")
     return Timing(row["method"], row["setting"], "converged", yardsticks, errors=errors, floors=floors)

@@ -66,9 +66,9 @@ class ElasticOperator(Valued):
         return False
 
     @property
-    def known(self) -> tuple[float, float]:
-        """Least and largest contact radius that it serves: all, as far as its cells are fine enough."""
-        return 0.0, np.inf
+    def least_radius(self) -> float:
+        """Least contact radius that it serves: any, as far as its cells are fine enough."""
+        return 0.0
 
     @property
     def edge_row(self) -> Array:

@@ -18,9 +18,9 @@ from scipy.special import ellipe, ellipkm1, elliprd, elliprf
 from halfspace.elastic.grid import gauss_legendre
 from halfspace.values import Array
 
-GRADING = 5  # q of the substitution; with NEAR_POINTS it leaves 2e-13 for panels of up to 16 nodes
+GRADING = 7  # q of the substitution; with NEAR_POINTS it leaves 5e-13 for panels of up to 16 nodes
 NEAR_POINTS = 48
-FAR_POINTS = 8  # and half as many as a panel has nodes: they leave 1e-15 of polynomials from one length away
+FAR_POINTS = 8  # and half as many as a panel has nodes: they leave 3e-14 of polynomials from one length away
 FAR_DISTANCE = 1.0  # in panel lengths
 BATCH = 2_000_000  # points at which the kernel is evaluated at a time: 16 MB an array
 

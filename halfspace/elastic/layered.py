@@ -40,9 +40,9 @@ SPACING = 1.14  # ratio of neighbouring depths: with 1.2 the fit is a decade wor
 SAMPLES = 500  # wave numbers at which S is fitted
 # Rule for the nodes near a cell that is longer than the first stratum is thick: with 6 nodes a cell a bell of pressure
 # deflects the surface to 1e-8 as by a rule of 64 points, q = 5, up to two lengths away, with 8 nodes to 2e-9.
-NEAR = 0.25  # lengths of the cell
+NEAR = 0.5  # lengths of the cell
 NEAR_POINTS, GRADING = 24, 2  # see `halfspace.elastic.kernel.graded_rule`
-ALIKE = 1e-8  # a quarter of its square is what a mean of the two still errs by
+ALIKE = 1e-8  # relative difference of two numbers of which the mean errs by a sixteenth of its square
 FITTED, AT_WORST = 3e-8, 1e-6  # of the largest S, or of 1: where deeper images are tried no more, and what is refused
 
 
@@ -73,9 +73,9 @@ class Images(Valued):
 
 def _mean(a: Complex, b: Complex) -> Complex:
     """Arithmetic-geometric mean of numbers with positive real parts; the digits double from step to step."""
-    while np.abs(a - b).max(initial=0.0) > ALIKE * np.abs(a).max(initial=0.0):
+    while np.any(np.abs(a - b) > ALIKE * np.abs(a)):
         a, b = (a + b) / 2, np.sqrt(a * b)
-    return a
+    return (a + b) / 2
 
 
 def images_of(body: LayeredBody, spacing: float = SPACING) -> Images:

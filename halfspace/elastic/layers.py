@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Literal, Protocol, get_args, runtime_checkable
 
 import numpy as np
@@ -95,10 +94,6 @@ class LayeredBody(Protocol):
     @property
     def base(self) -> Foundation | Substrate:
         """What carries the last: rigid and bonded to it, rigid and without friction, or elastic and bonded."""
-        ...
-
-    def __hash__(self) -> int:
-        """What is found of a body is kept by it."""
         ...
 
 
@@ -227,14 +222,12 @@ def surface_compliance(body: LayeredBody, wave_numbers: Array) -> Array:
     return np.asarray(free[..., 1, 1] * first.modulus / (1 - first.poisson**2) / 2)
 
 
-@cache
 def softest(body: LayeredBody) -> float:
     """Largest yield to waves of any length, in that of a half-space of the first stratum's E*: 1 or more."""
     waves = np.geomspace(1e-7 / total_thickness(body), DEEP / body.strata[0].thickness, WAVES)
     return max(1.0, float(surface_compliance(body, waves).max()))
 
 
-@cache
 def stiff_as(body: LayeredBody, length: float) -> float:
     """Length l in beta over which strata are as stiff as a half-space of the first stratum over a given one, or that.
 

@@ -29,8 +29,8 @@ class Operator(Protocol):
         ...
 
     @property
-    def known(self) -> tuple[float, float]:
-        """Least and largest contact radius that it serves."""
+    def least_radius(self) -> float:
+        """Least contact radius that it serves, in beta."""
         ...
 
     @property
@@ -79,7 +79,7 @@ class Homogeneous(Valued):
     unit: ElasticOperator
     _latest: _Latest[ElasticOperator] = field(default_factory=_Latest, compare=False, repr=False)
     follows_contact = True
-    known = (0.0, np.inf)
+    least_radius = 0.0
 
     @property
     def axis_row(self) -> Array:
@@ -190,9 +190,9 @@ class Interpolated(Valued):
     follows_contact = True
 
     @property
-    def known(self) -> tuple[float, float]:
+    def least_radius(self) -> float:
         """Least contact radius that it serves, a little below those at which it is known; of wide ones any."""
-        return float(self.scales.min()) / OUTSIDE, np.inf
+        return float(self.scales.min()) / OUTSIDE
 
     @cached_property
     def axis_row(self) -> Array:

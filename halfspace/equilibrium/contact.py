@@ -306,14 +306,15 @@ class ContactProblem(Valued):
 def _left_out(coefficients: Array) -> float:
     """What a polynomial leaves out at the end of a cell, by the sizes of its Legendre coefficients: the last ones.
 
-    Since one may be small by accident, the third last counts as well, carried on to the next by how fast they fall.
+    Since one may be small by accident, the third last counts as well, carried on by how fast they fall: half way to the
+    next, in their logarithms, since they fall unevenly.
     """
     count = coefficients.size
     last = coefficients[max(min(2, count - 1), count - 3) :]  # but no displacement, and no slope
     if count < 6:
         return float(last.max())
-    before, after = coefficients[-5:-3].max(), coefficients[-3:-1].max()
-    return float(max(last[0] * min(1.0, np.sqrt(after / before) if before else 1.0), *last[1:]))
+    before, after = coefficients[-5:-3].max(), coefficients[-3:-1].max()  # two orders apart
+    return float(max(last[0] * min(1.0, (after / before) ** 0.25 if before else 1.0), *last[1:]))
 
 
 def contact_of(scales: Scales, operator: Operator) -> ContactProblem:

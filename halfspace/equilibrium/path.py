@@ -237,10 +237,9 @@ def _advance(problem: Traceable, points: list[Point], step: float, metric: Metri
     """One step, refused if it leaves what the operator knows, or if the path turns too far for its folds to be seen."""
     point, before = points[-1], points[-2] if len(points) > 1 else None
     new = _corrected(problem, point, step, _starts(problem, point, step, before), metric, steps)
-    least, most = problem.interface.operator.known
-    radius = new.observables[CONTACT_RADIUS]
-    if radius < least or radius > most:
-        raise NotConverged(f"contact radius {radius:.3g} beta is outside {least:.3g} to {most:.3g} beta of the chart")
+    least, radius = problem.interface.operator.least_radius, new.observables[CONTACT_RADIUS]
+    if radius < least:
+        raise NotConverged(f"contact radius {radius:.3g} beta is below {least:.3g} beta, the chart's least")
     if _turn(point, new, metric) > 2 * steps.turn:
         raise NotConverged("the path turns too sharply")
     if any(_hides_turning_points(point, new, k, metric) for k in (APPROACH, LOAD)):
