@@ -24,8 +24,8 @@ from halfspace.scales import Scales
 from halfspace.values import Array, Valued
 
 LEAST = 0.7  # of the radius at which the chart centred on the axis is left: the least that the other one knows
-EQUAL = 2  # cells of equal length on the axis of that chart, which carry a contact wherever it ends in them
-LEAVE = 0.5  # of these cells: the radius at which the chart centred on the axis is left
+EQUAL = 3  # cells of equal length on the axis of that chart, which carry a contact wherever it ends in them
+LEAVE = 0.8  # of these cells: the radius at which the chart centred on the axis is left
 WINDOW, AROUND = 2e-3, 3  # half the logarithmic width of the radii around an event on the lowest rung, operators in it
 WIDE, WIDELY = 0.4, 7  # the same farther around: an event that lies off by a fifth is then told to 1e-6 of its radius
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough

@@ -123,7 +123,7 @@ def _lost_starts() -> tuple[Case, ...]:
 
 
 def _coarse_grids() -> tuple[Case, ...]:
-    edge = Refusal(GridTooCoarse, "spacing 0.204 beta", "exceeds 0.175 beta for tabor 2", "refine the grid there")
+    edge = Refusal(GridTooCoarse, "spacing 0.202 beta", "exceeds 0.175 beta for tabor 2", "refine the grid there")
     mesh = Refusal(GridTooCoarse, "spacing 0.208 beta", "exceeds 0.084 beta for tabor 2", "refine the grid there")
     return (
         Case("contact on cells that are fine on the axis", partial(from_other_branch, 2.0, -3.0, -3.0), (edge,)),
