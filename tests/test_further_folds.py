@@ -291,6 +291,15 @@ def test_folds_are_found_at_every_tolerance_also_where_contact_is_about_to_be_ma
             assert max(abs(fold.load - load), fold.load_error) <= rtol
 
 
+def test_a_fold_that_the_curve_passes_on_the_axis_is_told_on_cells_that_end_at_its_contact_edge():
+    """On those of the axis, of which its contact covers two, the load at the last fold was known to 6.5e-7."""
+    usual, fine = (halfspace.trace(10.0, profile=Sphere(100.0), rtol=rtol).event("fold_3") for rtol in (1e-7, 1e-9))
+    assert usual.load_error <= 1e-8
+    assert fine.load_error <= 1e-9
+    assert abs(usual.load - fine.load) <= usual.load_error
+    assert abs(usual.approach - fine.approach) <= usual.approach_error
+
+
 @pytest.fixture(scope="module")
 def wound():
     """At a Tabor parameter at which the last fold but one is next to the birth of contact."""

@@ -141,9 +141,11 @@ def surroundings(rtol: float, level: int) -> tuple[float, int]:
 class AroundEvents(Valued):
     """Stage of a ladder on which every event has an operator made for its own contact radius.
 
-    The window is half the logarithmic width of the contact radii that a chart serves, with so many operators in it, see
-    `surroundings`. A fold is where a derivative vanishes, which errs by a power of it: windows that differ from rung to
-    rung let the error estimate see it. The curve ends at the load, in R dgamma.
+    An event is told better by cells that end at its contact edge than by those that stand on the axis, and leaves these
+    as soon as its contact is wider than one of them: earlier than the curve, which gets along with one chart for all
+    radii. The window is half the logarithmic width of the contact radii that a chart serves, with so many operators in
+    it, see `surroundings`. A fold is where a derivative vanishes, which errs by a power of it: windows that differ from
+    rung to rung let the error estimate see it. The curve ends at the load, in R dgamma.
     """
 
     body: SizedBody
@@ -154,8 +156,10 @@ class AroundEvents(Valued):
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event, made unless one made before will do."""
-        follows = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
-        radius = float(event.point.observables[CONTACT_RADIUS]) if follows else 0.0
+        radius = float(event.point.observables[CONTACT_RADIUS])
+        found_following = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
+        follows = found_following or radius > self.body.length
+        radius = radius if follows else 0.0
         for made_for, chart in self.charts:
             if abs(radius - made_for) <= self.window * radius:
                 return chart
