@@ -16,6 +16,7 @@ EXTRA = {  # what each library of the extra is imported as
     "rich": "rich",
     "matplotlib": "matplotlib",
     "joblib": "joblib",
+    "plotille": "plotille",
     "Pint": "pint",
     "Jinja2": "jinja2",
     "MarkupSafe": "markupsafe",  # comes with Jinja2

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
+from plotille import Canvas
 from rich.console import Console
 from rich.markup import escape
 from rich.text import Text
@@ -18,11 +19,12 @@ from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
 from halfspace.equilibrium.reach import reaching
 from halfspace.laws import LENNARD_JONES
-from halfspace.values import Array, Estimate, Index
+from halfspace.values import Array, Estimate
 
 DIGITS = 8  # significant, at most
 MISSED = "*"  # after a number whose error is above the tolerance
 WIDTH, HEIGHT = 76, 18  # of the plot, in characters
+MARGIN = 10  # characters in front of it, for the values at its edges and the frame
 EVENTS: Mapping[str, str] = {
     "pull_off": "pull-off",
     "jump_on": "jump on",
@@ -32,9 +34,6 @@ EVENTS: Mapping[str, str] = {
 LETTERS: Mapping[str, str] = {"pull_off": "P", "jump_on": "A", "jump_off": "C", "zero_load": "Z"}
 COLOURS = {lines.STABLE: "bright_blue", lines.GRIPS_ONLY: "cyan", lines.UNSTABLE: "yellow"}
 RANKS = {"approach": 0, "load": 0, "contact_radius": 1, "central_gap": 2}  # by which columns are left out
-DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])  # by row and column in a character
-BLANK = 0x2800
-FINE = 20  # samples between two points of a line
 THIN = 3  # every how many dots a thinned line has one
 
 
@@ -44,7 +43,7 @@ def show(curves: Curves, console: Console) -> None:
     for line in notes(curves):
         console.print(prose(line), highlight=False)
     if console.is_terminal:
-        console.print(plot(curves, min(WIDTH, console.width - Canvas.MARGIN)))
+        console.print(plot(curves, min(WIDTH, console.width - MARGIN)))
         console.print(Flow(_key(curves), ", "))
 
 
@@ -171,19 +170,40 @@ def plot(curves: Curves, width: int = WIDTH) -> Text:
     """
     units, path = scales(curves), curves.path
     frame = lines.around_events(path)
-    canvas = Canvas(width, HEIGHT, frame.approach, frame.load)
+    canvas = Canvas(width, HEIGHT, frame.approach[0], frame.load[0], frame.approach[1], frame.load[1])
     line = lines.smooth(reaching(path, curves.question.stiffness))
     for kind, load in line.parts(line.load):
-        canvas.line(line.approach, load, COLOURS[kind], thinned=kind == lines.UNSTABLE)
+        _draw(canvas, line.approach, load, COLOURS[kind], THIN if kind == lines.UNSTABLE else 1)
     for name, event in path.events.items():
-        canvas.letter(LETTERS.get(name, name[-1]), event.approach, event.load)
+        canvas.point(event.approach, event.load, marker=LETTERS.get(name, name[-1]))
     for name, jump in curves.grips.jumps.items() if curves.grips else ():
-        canvas.letter("B" if name.startswith("jump_on") else "D", jump.landing.approach, jump.landing.load)
-    x, y = units["approach"], units["load"]
+        letter = "B" if name.startswith("jump_on") else "D"
+        canvas.point(jump.landing.approach, jump.landing.load, marker=letter)
+    return _framed(canvas, units["approach"], units["load"])
+
+
+def _draw(canvas: Canvas, x: Array, y: Array, colour: str, every: int) -> None:
+    """Draw every so manieth dot of a line through points, which nan interrupts."""
+    across, up = canvas.dots_between(canvas.xmin, canvas.ymin, canvas.xmax, canvas.ymax)
+    steps = np.hypot(np.diff(x) * across / (canvas.xmax - canvas.xmin), np.diff(y) * up / (canvas.ymax - canvas.ymin))
+    along = np.append(0, np.cumsum(np.nan_to_num(steps)))
+    at = np.arange(0, along[-1], every)
+    for point in zip(np.interp(at, along, x).tolist(), np.interp(at, along, y).tolist(), strict=True):
+        if np.isfinite(point).all():
+            canvas.point(*point, color=colour)
+
+
+def _framed(canvas: Canvas, x: Scale, y: Scale) -> Text:
+    """What is drawn, with the values at its edges."""
+    low, high = _ticks((canvas.ymin, canvas.ymax), y)
+    drawn = canvas.plot("\n").split("\n")
+    edges = [high, *[""] * (len(drawn) - 2), low]
     text = Text(f"load, {y.unit}\n")
-    text.append_text(canvas.text(_ticks(frame.load, y)))
-    low, high = _ticks(frame.approach, x)
-    return text.append(f"{low:>{Canvas.MARGIN}}{f'approach, {x.unit}':^{width - 10}}{high:>10}")
+    for edge, row in zip(edges, drawn, strict=True):
+        text.append(f"{edge:>{MARGIN - 2}} │").append_text(Text.from_ansi(row)).append("\n")
+    low, high = _ticks((canvas.xmin, canvas.xmax), x)
+    text.append(" " * (MARGIN - 1) + "└" + "─" * canvas.width + "\n")
+    return text.append(f"{low:>{MARGIN}}{f'approach, {x.unit}':^{canvas.width - 10}}{high:>10}")
 
 
 def _key(curves: Curves) -> list[str]:
@@ -199,57 +219,3 @@ def _key(curves: Curves) -> list[str]:
 
 def _ticks(span: Sequence[float], scale: Scale) -> tuple[str, str]:
     return f"{span[0] * scale.size:.3g}", f"{span[1] * scale.size:.3g}"
-
-
-# Lines drawn with the eight dots of Braille characters
-
-
-class Canvas:
-    """Characters, so many by so many, with a frame of values at left and right, lower and upper edge."""
-
-    MARGIN = 10  # characters in front of it, for the values at its edges and the frame
-
-    def __init__(self, width: int, height: int, x: tuple[float, float], y: tuple[float, float]) -> None:
-        self._dots = np.zeros((height, width), dtype=int)
-        self._styles = np.full((height, width), "", dtype=object)
-        self._letters: dict[tuple[int, int], str] = {}
-        self._x, self._y = x, y
-
-    def line(self, x: Array, y: Array, style: str, *, thinned: bool = False) -> None:
-        """Draw a line through points in a colour; nan interrupts it."""
-        fine = np.linspace(0, x.size - 1, FINE * x.size)
-        columns, rows = self._place(np.interp(fine, np.arange(x.size), x), np.interp(fine, np.arange(x.size), y))
-        places = dict.fromkeys(zip(rows.tolist(), columns.tolist(), strict=True))
-        for row, column in list(places)[:: THIN if thinned else 1]:
-            if 0 <= row < 4 * self._dots.shape[0] and 0 <= column < 2 * self._dots.shape[1]:
-                self._dots[row // 4, column // 2] |= DOTS[row % 4, column % 2]
-                self._styles[row // 4, column // 2] = style
-
-    def letter(self, letter: str, x: float, y: float) -> None:
-        """Put a letter over a point."""
-        column, row = (int(value[0]) for value in self._place(np.array([x]), np.array([y])))
-        self._letters[row // 4, column // 2] = letter
-
-    def text(self, edges: tuple[str, str]) -> Text:
-        """Lines of text, with the values at the lower and upper edge in front."""
-        text, (height, width) = Text(), self._dots.shape
-        for row in range(height):
-            text.append(f"{ {0: edges[1], height - 1: edges[0]}.get(row, ''):>{self.MARGIN - 2}} │")
-            for column in range(width):
-                letter = self._letters.get((row, column))
-                text.append(
-                    letter or chr(BLANK + self._dots[row, column]), "bold" if letter else self._styles[row, column]
-                )
-            text.append("\n")
-        return text.append(" " * (self.MARGIN - 1) + "└" + "─" * width + "\n")
-
-    def _place(self, x: Array, y: Array) -> tuple[Index, Index]:
-        """Column and row of dots, counted from the upper left; outside where a value is nan."""
-        height, width = self._dots.shape
-        column = (x - self._x[0]) / (self._x[1] - self._x[0]) * 2 * width
-        row = (self._y[1] - y) / (self._y[1] - self._y[0]) * 4 * height
-        return _whole(column), _whole(row)
-
-
-def _whole(values: Array) -> Index:
-    return np.nan_to_num(np.floor(values), nan=-1.0).astype(np.intp)
