@@ -8,11 +8,11 @@ point nearest to the target: the powers of t smother the logarithm, on the panel
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
-from numpy.typing import NDArray
 from scipy.special import ellipe, ellipkm1, elliprd, elliprf
 
 from halfspace.elastic.grid import gauss_legendre
@@ -20,21 +20,23 @@ from halfspace.values import Array
 
 GRADING = 7  # q of the substitution; with NEAR_POINTS it leaves 5e-13 for panels of up to 16 nodes
 NEAR_POINTS = 48
-FAR_POINTS = 8  # and half as many as a panel has nodes: they leave 3e-14 of polynomials from one length away
-FAR_DISTANCE = 1.0  # in panel lengths
+# From so many panel lengths away Gauss's rule serves with so many points, and half as many as a panel has nodes: they
+# leave 3e-14 of polynomials; the other rule, next to the target, is then a decade worse.
+FAR = ((0.25, 16), (1.0, 8))
 BATCH = 2_000_000  # points at which the kernel is evaluated at a time: 16 MB an array
+
+Ring = Callable[[Array, Array, Array], Array]  # of r, s and |s - r|, which are broadcast
 
 
 def ring_kernel(r: Array, s: Array) -> Array:
     """Deflection at radius r by a ring of unit pressure times radius at s: G = 4/(pi max) K(min/max), [G97] (2.6)."""
-    return _kernel(r, s, s - r)
+    return _kernel(r, s, np.abs(s - r))
 
 
-def _kernel(r: Array, s: Array, offset: Array) -> Array:
-    """G(r, s), given s - r to full relative accuracy: 1 - k^2 must not be formed by cancellation."""
-    larger = np.maximum(r, s)
-    complement = np.minimum(np.abs(offset) * (r + s) / larger**2, 1.0)  # (1 - k)(1 + k)
-    return np.asarray(4 / (np.pi * larger) * ellipkm1(complement))
+def _kernel(r: Array, s: Array, distance: Array) -> Array:
+    """G(r, s) by Landen's K(2 sqrt(r s)/(r + s)), given |s - r|: 1 - k^2 must not be formed by cancellation."""
+    both = r + s
+    return np.asarray(4 / np.pi / both * ellipkm1((distance / both) ** 2))
 
 
 def band_deflection(r: Array, c: Array) -> Array:
@@ -77,47 +79,67 @@ def panel_integrals(targets: Array, breakpoints: Array, nodes: Array) -> Array:
     panel's scale.
     """
     targets = np.asarray(targets, float)
-    batches = -(-targets.size * (breakpoints.size - 1) * _far_points(nodes.size) // BATCH)
-    moments = [_moments(some, breakpoints, nodes.size) for some in np.array_split(targets, batches)]
-    return np.concatenate(moments) @ np.linalg.inv(legvander(nodes, nodes.size - 1))
+    batches = -(-targets.size * (breakpoints.size - 1) * _points(FAR[-1][1], nodes.size) // BATCH)
+    moments = np.concatenate([_moments(some, breakpoints, nodes.size) for some in np.array_split(targets, batches)])
+    return (moments @ np.linalg.inv(legvander(nodes, nodes.size - 1))).reshape(targets.size, -1, nodes.size)
 
 
 def _moments(targets: Array, breakpoints: Array, k: int) -> Array:
-    """Integrals of G(r_i, s) s against the first k Legendre polynomials of each panel, (n, m, k)."""
+    """Integrals of G(r_i, s) s against the first k Legendre polynomials of each panel, (n m, k)."""
     left, right = breakpoints[:-1], breakpoints[1:]
-    r = targets[:, None]
-    nearest = np.clip(r, left, right)
-    near = np.abs(r - nearest) < FAR_DISTANCE * (right - left)
-    moments = np.empty((r.size, left.size, k))
-    moments[~near] = _far_moments(r, left, right, ~near, k)
-    i, j = np.nonzero(near)
-    moments[i, j] = sum(_near_moments(r[i, 0], left[j], right[j], nearest[i, j], end[j], k) for end in (left, right))
+    r, left, right = (v.ravel() for v in np.broadcast_arrays(targets[:, None], left, right))
+    distance = np.searchsorted([least for least, _ in FAR], np.maximum(left - r, r - right) / (right - left))
+    moments = np.empty((r.size, k))
+    for i in range(len(FAR) + 1):
+        some = np.flatnonzero(distance == i)
+        integrals, rule = (beside, (_points(FAR[i - 1][1], k), 1)) if i else (near_moments, (NEAR_POINTS, GRADING))
+        moments[some] = integrals(_kernel, r[some], left[some], right[some], k, rule)
     return moments
 
 
-def _far_points(nodes: int) -> int:
-    return FAR_POINTS + nodes // 2
+def _points(least: int, nodes: int) -> int:
+    return least + nodes // 2
 
 
-def _far_moments(r: Array, left: Array, right: Array, far: NDArray[np.bool_], k: int) -> Array:
-    """Legendre moments of G s on panels far from their targets, for the pairs marked in `far`."""
-    x, w = gauss_legendre(_far_points(k))
-    i, j = np.nonzero(far)
-    half = (right - left)[j] / 2
-    s = ((right + left)[j] / 2)[:, None] + half[:, None] * x
-    values = ring_kernel(r[i], s) * s
-    return np.asarray((values * w * half[:, None]) @ legvander(x, k - 1))
+def near_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: tuple[int, int]) -> Array:
+    """Integrate G(r, s) s against the first k Legendre polynomials of a panel for each target, on the panel or off it.
 
-
-def _near_moments(r: Array, left: Array, right: Array, nearest: Array, end: Array, k: int) -> Array:
-    """Legendre moments of G s between the point of each panel nearest to its target and one of the panel's ends."""
-    moments = np.zeros((r.size, k))
-    some = nearest != end
-    r, left, right, nearest, end = (v[some, None] for v in (r, left, right, nearest, end))
-    t, w = graded_rule(NEAR_POINTS)
-    step = (end - nearest) * t
-    s = nearest + step
-    x = (s - left - (right - s)) / (right - left)
-    values = _kernel(r, s, (nearest - r) + step) * s * w * np.abs(end - nearest)
-    moments[some] = np.einsum("pq,pqk->pk", values, legvander(x, k - 1))
+    A panel with the target r (n,) on it is cut in two there. The rule is as of `graded_rule`, from the target on, or
+    the end of the panel next to it. Return (n, k).
+    """
+    moments = np.empty((r.size, k))
+    on = (left < r) & (r < right)
+    moments[~on] = beside(ring, r[~on], left[~on], right[~on], k, rule)
+    r, left, right = r[on], left[on], right[on]
+    moments[on] = sum(
+        np.einsum("nk,nkl->nl", beside(ring, r, a, b, k, rule), _of_a_part(np.array([a - left, b - left]) / (right - left), k))
+        for a, b in ((left, r), (r, right))
+    )
     return moments
+
+
+def beside(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: tuple[int, int]) -> Array:
+    """Moments as of `near_moments` on panels that have none of the targets within."""
+    t, polynomials = _graded_polynomials(*rule, k)
+    above = r <= left
+    end, inwards = np.where(above, left, right), np.where(above, right - left, left - right)
+    s = end[:, None] + inwards[:, None] * t
+    values = ring(r[:, None], s, np.abs(end - r)[:, None] + np.abs(inwards)[:, None] * t)
+    moments = (values * s) @ polynomials * np.abs(inwards)[:, None]
+    moments[~above, 1::2] *= -1  # odd polynomials, seen from the right end
+    return np.asarray(moments)
+
+
+@cache
+def _graded_polynomials(points: int, q: int, k: int) -> tuple[Array, Array]:
+    """Points (n,) on (0, 1) of a graded rule, and its weights times the first k Legendre polynomials there, (n, k)."""
+    t, w = graded_rule(points, q)
+    return t, w[:, None] * legvander(2 * t - 1, k - 1)
+
+
+def _of_a_part(ends: Array, k: int) -> Array:
+    """Coefficients, by the Legendre polynomials of a part of (0, 1), (n, k), of those of the whole, (..., k)."""
+    x, w = gauss_legendre(k)
+    there = legvander(ends.sum(axis=0)[:, None] - 1 + np.diff(ends, axis=0).T * x, k - 1)
+    own = (np.arange(k) + 0.5)[:, None] * legvander(x, k - 1).T * w
+    return np.asarray(own @ there)

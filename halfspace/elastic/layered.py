@@ -27,7 +27,7 @@ from scipy.special import ellipkm1
 
 from halfspace.elastic.compliance import ElasticOperator, panels
 from halfspace.elastic.grid import gauss_legendre
-from halfspace.elastic.kernel import graded_rule
+from halfspace.elastic.kernel import near_moments
 from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued
@@ -57,6 +57,10 @@ class Images(Valued):
     depths: Complex
     strengths: Complex
     smooth: float
+
+    def ring(self, r: Array, s: Array, _: Array) -> Array:
+        """Kernel as of `halfspace.elastic.kernel.near_moments`: the distance does not matter, all is smooth."""
+        return self.kernel(r, s)
 
     def kernel(self, r: Array, s: Array) -> Array:
         """Deflection at radius r by all images of a ring of unit pressure times radius at s; arrays broadcast."""
@@ -143,12 +147,10 @@ def image_integrals(images: Images, radii: Array, breakpoints: Array, k: int) ->
     """
     left, right = breakpoints[:-1], breakpoints[1:]
     integrals = _by_nodes(images, radii, (right - left) / 2, k)
-    nearest = np.clip(radii[:, None], left, right)
-    near = (np.abs(radii[:, None] - nearest) < NEAR * (right - left)) & (right - left > images.smooth)
-    i, j = np.nonzero(near)
-    if i.size:
-        moments = sum(_moments(images, radii[i], left[j], right[j], nearest[i, j], end[j], k) for end in (left, right))
-        integrals[i, j] = moments @ np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
+    distance = np.maximum(left - radii[:, None], radii[:, None] - right)
+    i, j = np.nonzero((distance < NEAR * (right - left)) & (right - left > images.smooth))
+    moments = near_moments(images.ring, radii[i], left[j], right[j], k, (NEAR_POINTS, GRADING))
+    integrals[i, j] = moments @ np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
     return integrals
 
 
@@ -160,13 +162,3 @@ def _by_nodes(images: Images, radii: Array, half: Array, k: int) -> Array:
     kernel[j, i] = kernel[i, j]
     weights = (half[:, None] * gauss_legendre(k)[1]).ravel()
     return np.asarray((kernel * radii * weights).reshape(radii.size, half.size, k))
-
-
-def _moments(images: Images, r: Array, left: Array, right: Array, nearest: Array, end: Array, k: int) -> Array:
-    """Legendre moments (n, k) between the point of a panel that is nearest to its target and one of its ends."""
-    t, w = graded_rule(NEAR_POINTS, GRADING)
-    step = (end - nearest)[:, None] * t
-    s = nearest[:, None] + step
-    x = (s - left[:, None] - (right[:, None] - s)) / (right - left)[:, None]
-    values = images.kernel(r[:, None], s) * s * w * np.abs(end - nearest)[:, None]
-    return np.asarray(np.einsum("pq,pqk->pk", values, legvander(x, k - 1)))
