@@ -81,7 +81,8 @@ def panel_integrals(targets: Array, breakpoints: Array, nodes: Array) -> Array:
     targets = np.asarray(targets, float)
     batches = -(-targets.size * (breakpoints.size - 1) * _points(FAR[-1][1], nodes.size) // BATCH)
     moments = np.concatenate([_moments(some, breakpoints, nodes.size) for some in np.array_split(targets, batches)])
-    return (moments @ np.linalg.inv(legvander(nodes, nodes.size - 1))).reshape(targets.size, -1, nodes.size)
+    integrals = moments @ np.linalg.inv(legvander(nodes, nodes.size - 1))
+    return np.asarray(integrals.reshape(targets.size, -1, nodes.size))
 
 
 def _moments(targets: Array, breakpoints: Array, k: int) -> Array:
@@ -111,10 +112,10 @@ def near_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: 
     on = (left < r) & (r < right)
     moments[~on] = beside(ring, r[~on], left[~on], right[~on], k, rule)
     r, left, right = r[on], left[on], right[on]
-    moments[on] = sum(
-        np.einsum("nk,nkl->nl", beside(ring, r, a, b, k, rule), _of_a_part(np.array([a - left, b - left]) / (right - left), k))
-        for a, b in ((left, r), (r, right))
-    )
+    before, after = beside(ring, r, left, r, k, rule), beside(ring, r, r, right, k, rule)
+    cut = (r - left) / (right - left)
+    moments[on] = np.einsum("nk,nkl->nl", before, _of_a_part(0 * cut, cut, k))
+    moments[on] += np.einsum("nk,nkl->nl", after, _of_a_part(cut, 1 + 0 * cut, k))
     return moments
 
 
@@ -137,9 +138,9 @@ def _graded_polynomials(points: int, q: int, k: int) -> tuple[Array, Array]:
     return t, w[:, None] * legvander(2 * t - 1, k - 1)
 
 
-def _of_a_part(ends: Array, k: int) -> Array:
-    """Coefficients, by the Legendre polynomials of a part of (0, 1), (n, k), of those of the whole, (..., k)."""
+def _of_a_part(first: Array, last: Array, k: int) -> Array:
+    """Legendre polynomials of (0, 1), the last axis of (n, k, k), by those of a part between two places (n,)."""
     x, w = gauss_legendre(k)
-    there = legvander(ends.sum(axis=0)[:, None] - 1 + np.diff(ends, axis=0).T * x, k - 1)
+    there = legvander((first + last)[:, None] - 1 + (last - first)[:, None] * x, k - 1)
     own = (np.arange(k) + 0.5)[:, None] * legvander(x, k - 1).T * w
     return np.asarray(own @ there)
