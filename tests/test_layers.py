@@ -11,6 +11,8 @@ from scipy.integrate import quad_vec
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import j0
 
+import fem_adhesion
+from fem_adhesion.scene import Scene
 from halfspace import trace
 from halfspace.elastic import grid, layered
 from halfspace.elastic.layered import images_of, layered_panels
@@ -18,6 +20,8 @@ from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, 
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
+from halfspace.laws import LENNARD_JONES
+from halfspace.theories.layered import OnLayers
 
 DATA = Path(__file__).parent / "data"
 WAVES = np.geomspace(1e-3, 25, 300)
@@ -269,9 +273,57 @@ def test_a_thick_layer_goes_over_into_the_half_space():
     assert near.load != pytest.approx(half_space.load, rel=0, abs=near.load_error + half_space.load_error)
 
 
-def test_pull_off_from_a_layer_approaches_jkrs_as_the_tabor_parameter_grows():
-    """By Aitken's rule from three Tabor parameters, each twice the one before."""
-    loads = [-trace(mu, body=Layer(2, 0.3), rtol=1e-4).events["pull_off"].load / np.pi for mu in (10, 20, 40)]
-    first, second = np.diff(loads)
-    assert abs(second) < abs(first) / 2
-    assert loads[-1] + second**2 / (first - second) == pytest.approx(1.642973, rel=1e-4)
+SOFT, THEORY = Layer(2, 0.3), OnLayers(Layer(2, 0.3))
+PRESSED = 100.0  # R dgamma
+
+
+def _in_the_limit(quantity):
+    """JKR's pull-off on the layer, or its approach under a load, and the part by which a wider dgamma changes it.
+
+    What a law of the tension adds to JKR's energy is d(E) = -B a mu^-2 ln mu, from two logarithms of the distance d
+    from the edge, cut off at the spike, d ~ mu^-2: within, tensions p with p^2 = 1/(pi d) stretch the contact, which is
+    as stiff as the law at equilibrium, H = P/(mu f'), by -(1/2) int p^2/(mu^2 f') dA; without, surfaces that open as
+    h^2 = 16 d/pi are left the energy of a tail (8/3) H^-3. So B = 2/f' + pi^2/3, and dgamma acts as one that is
+    1 + B mu^-2 ln mu/(2 pi a).
+    """
+
+    def changed(a):
+        hertz, jkr = THEORY.hertz(a), THEORY.jkr(a)
+        widened = (2 / LENNARD_JONES.stiffness + np.pi**2 / 3) / (2 * np.pi * a) / 2
+        return jkr, widened * (jkr.load - hertz.load), widened * (jkr.approach - hertz.approach)
+
+    if quantity == "pull_off":
+        a = minimize_scalar(lambda a: THEORY.jkr(a).load, bounds=(0.8, 2.0), method="bounded", options={"xatol": 1e-9})
+        jkr, load, _ = changed(a.x)
+        return jkr.load, load / jkr.load
+    a = brentq(lambda a: THEORY.jkr(a).load - PRESSED, 1.0, 9.0)
+    jkr, load, approach = changed(a)
+    below, above = THEORY.jkr(a - 1e-4), THEORY.jkr(a + 1e-4)
+    yields = (above.approach - below.approach) / (above.load - below.load)
+    return jkr.approach, (approach - yields * load) / jkr.approach
+
+
+@pytest.mark.parametrize(
+    ("solver", "tabors", "limit", "order"),
+    [("waves", (20.0, 40.0, 80.0), 1e-6, 0.01), ("elements", (5.0, 10.0, 20.0), 5e-5, 0.06)],
+)
+def test_pull_off_and_approach_go_over_into_jkrs_on_the_layer_as_ln_mu_over_mu_squared(solver, tabors, limit, order):
+    """With the factor that theory has, and after terms in mu^-2 and mu^-3 into JKR's, in compression nearly Hertz's."""
+    sample = fem_adhesion.Layer(2, poisson=0.3)
+    traced = {
+        "waves": lambda mu: trace(mu, body=SOFT, rtol=1e-5, to_load=PRESSED),
+        "elements": lambda mu: fem_adhesion.trace(Scene(mu, sample), rtol=1e-4, to_load=PRESSED),
+    }
+    paths = [traced[solver](mu) for mu in tabors]
+    mu = np.array(tabors)
+    found = {
+        "pull_off": np.array([path.events["pull_off"].load for path in paths]),
+        "pressed": np.array([path.at(load=[PRESSED]).approach[0] for path in paths]) / mu,
+    }
+    for quantity, values in found.items():
+        jkr, factor = _in_the_limit(quantity)
+        off = values / jkr - 1
+        measured = np.linalg.solve(np.stack([np.log(mu), mu**0, 1 / mu], axis=1), mu**2 * off)[0]
+        assert measured == pytest.approx(factor, rel=order), quantity
+        beyond = np.linalg.solve(np.stack([mu**0, mu**-2, mu**-3], axis=1), off - factor * np.log(mu) / mu**2)[0]
+        assert abs(beyond) < limit, quantity

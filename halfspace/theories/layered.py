@@ -11,6 +11,10 @@ Ufliand 1958, Dhaliwal & Rau 1970),
     g(x) + (2/pi) int_0^a g(t) int_0^inf (S(k) - 1) cos(k t) cos(k x) dk dt = (alpha - x^2)/pi.
 
 Hertz's theory has g(a) = 0, JKR's g(a) = -(2 a/pi)^(1/2). Radii in beta, approaches in beta^2/R, loads in R dgamma.
+
+An attraction with a range is JKR's of a dgamma wider by a part (1/f' + c pi^2/16) mu^-2 ln mu/(pi a), f' the stiffness
+of the law and c that of its tail c H^-3, 0 of one that falls faster; then come terms in mu^-2. So pull-off by the 3-9
+law exceeds JKR's by the part 0.368 mu^-2 (ln mu + const.) on a layer of 2 beta, poisson 0.3, which seems mu^-1.7 at 60.
 """
 
 from __future__ import annotations
