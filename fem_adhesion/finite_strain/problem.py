@@ -149,6 +149,10 @@ class FiniteStrainProblem(Valued):
 
         return LinearOperator((n, n + 1), matvec=along, dtype=np.float64)
 
+    def along(self, x: Array, v: Array) -> Array:
+        """Derivative of the residual along a direction of the state, (n,)."""
+        return np.asarray(self.jacobian(x) @ v)
+
     def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Solve the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
         ends = np.append(self.surface_unknowns(row), row[-1])

@@ -13,6 +13,7 @@ spike of tension at the contact edge on the same nodes all along the path.
 from __future__ import annotations
 
 import math
+from collections import deque
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -56,6 +57,30 @@ class Solver(Protocol):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class _Acting(Valued):
+    """Pressure and its slope, the room of the gaps, and rates by the scale, at the nodes in a state x, each (q,)."""
+
+    x: Array
+    problem: ContactProblem
+
+    @cached_property
+    def pressure(self) -> Array:
+        return self.problem.law.pressure(self.x[:-2], self.problem.tabor)
+
+    @cached_property
+    def slope(self) -> Array:
+        return self.problem.law.slope(self.x[:-2], self.problem.tabor)
+
+    @cached_property
+    def room(self) -> Array:
+        return self.problem.law.room(self.x[:-2])
+
+    @cached_property
+    def rates(self) -> tuple[Array, Array, Array]:
+        return self.problem.operator.rates(float(self.x[-1]), self.pressure)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class ContactProblem(Valued):
     """Equilibrium of a surface law with an elastic operator.
 
@@ -77,6 +102,18 @@ class ContactProblem(Valued):
     def scales(self) -> Scales:
         """Lengths of the contact."""
         return Scales(self.tabor, self.law, self.profile)
+
+    @cached_property
+    def _latest(self) -> deque[_Acting]:
+        """What acts in the last two states, that of a step and its trial: each is asked for several times."""
+        return deque(maxlen=2)
+
+    def _acting(self, x: Array) -> _Acting:
+        for known in self._latest:
+            if known.x is x:
+                return known
+        self._latest.append(_Acting(x, self))
+        return self._latest[-1]
 
     @property
     def follows_contact(self) -> bool:
@@ -112,7 +149,7 @@ class ContactProblem(Valued):
         """Left-hand sides of the equilibrium (in eps) and scale equations, shape (q + 1,)."""
         H, alpha, s = x[:-2], x[-2], x[-1]
         mu, body = self.tabor, self.operator_at(x)
-        w = body.compliance @ self.law.pressure(H, mu)
+        w = body.compliance @ self.pressure(x)
         return appended(H + alpha - mu * (self.profile.height(body.radii) + w), self._scale_equation(H, s))
 
     def _scale_equation(self, H: Array, s: float) -> float:
@@ -120,27 +157,41 @@ class ContactProblem(Valued):
 
     def jacobian(self, x: Array) -> Array:
         """Derivative of the residual, shape (q + 1, q + 2)."""
-        H, mu, body = x[:-2], self.tabor, self.operator_at(x)
-        J = np.empty((x.size - 1, x.size))
-        J[:-1, :-2] = body.compliance * (-mu * self.law.slope(H, mu))
-        J[:-1, :-2].flat[:: x.size - 1] += 1
-        J[:-1, -2] = 1
-        J[-1] = 0
+        return self._bordered(x, np.zeros(x.size))[:-1]
+
+    def _bordered(self, x: Array, row: Array) -> Array:
+        """Jacobian with a row below it."""
+        J = np.zeros((x.size, x.size))
+        np.multiply(self.operator_at(x).compliance, -self.tabor * self.slope(x), out=J[:-2, :-2])
+        J.ravel()[: -2 * x.size : x.size + 1] += 1
+        J[:-2, -2] = 1
         if self.follows_contact:
-            d_radii, _, d_deflection = self.operator.rates(float(x[-1]), self.law.pressure(H, mu))
-            J[:-1, -1] = -mu * (self.profile.slope(body.radii) * d_radii + d_deflection)
-            J[-1, :-2] = self.operator.edge_row
+            J[:-2, -1] = self._by_scale(x)
+            J[-2, :-2] = self.operator.edge_row
         else:
-            J[:-1, -1] = 0
-            J[-1, -1] = 1
+            J[-2, -1] = 1
+        J[-1] = row
         return J
+
+    def _by_scale(self, x: Array) -> Array:
+        d_radii, _, d_deflection = self._acting(x).rates
+        return np.asarray(-self.tabor * (self.profile.slope(self.radii(x)) * d_radii + d_deflection))
+
+    def along(self, x: Array, v: Array) -> Array:
+        """Derivative of the residual along a direction of the state, without its matrix, shape (q + 1,)."""
+        dH, d_alpha, ds = v[:-2], v[-2], v[-1]
+        change = dH + d_alpha - self.tabor * (self.operator_at(x).compliance @ (self.slope(x) * dH))
+        if self.follows_contact:
+            return appended(change + self._by_scale(x) * ds, float(self.operator.edge_row @ dH))
+        return appended(change, ds)
 
     def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
-        lu, pivots, info = dgetrf(np.vstack([self.jacobian(x), row]), overwrite_a=True)
+        # Fortran's array is the transpose: it is factorised as it lies there.
+        lu, pivots, info = dgetrf(self._bordered(x, row).T, overwrite_a=True)
         if info > 0:
             raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start")
-        return lambda rhs, _=0.0: np.asarray(dgetrs(lu, pivots, rhs)[0])  # factors have all digits
+        return lambda rhs, _=0.0: np.asarray(dgetrs(lu, pivots, rhs, trans=1)[0])  # factors have all digits
 
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap and contact radius (nan without contact), shape (4,)."""
@@ -165,7 +216,11 @@ class ContactProblem(Valued):
 
     def pressure(self, x: Array) -> Array:
         """Nodal pressures P, shape (q,)."""
-        return self.law.pressure(x[:-2], self.tabor)
+        return self._acting(x).pressure
+
+    def slope(self, x: Array) -> Array:
+        """DP/dH at the nodes, shape (q,)."""
+        return self._acting(x).slope
 
     def radii(self, x: Array) -> Array:
         """Nodal radii in beta, shape (q,)."""
@@ -230,9 +285,8 @@ class ContactProblem(Valued):
         row = np.zeros(x.size)
         row[-2] = weights[APPROACH]
         if weights[LOAD]:
-            P = self.pressure(x)
-            row[:-2] += weights[LOAD] * self.operator_at(x).weights * self.law.slope(x[:-2], self.tabor)
-            row[-1] += weights[LOAD] * float(self.operator.rates(float(x[-1]), P)[1] @ P)
+            row[:-2] += weights[LOAD] * self.operator_at(x).weights * self.slope(x)
+            row[-1] += weights[LOAD] * float(self._acting(x).rates[1] @ self.pressure(x))
         if weights[CENTRAL_GAP]:
             row[:-2] += weights[CENTRAL_GAP] * self.operator.axis_row
         if weights[CONTACT_RADIUS]:
@@ -268,17 +322,17 @@ class ContactProblem(Valued):
 
     def longest_step(self, x: Array, dx: Array) -> float:
         """Fraction of the step dx that leaves a quarter of each gap h, of the scale and of its room on the profile."""
-        shrinks = np.append(-dx[:-2] / self.law.room(x[:-2]), [-dx[-1] / x[-1], dx[-1] / (self.profile.end - x[-1])])
+        shrinks = np.append(-dx[:-2] / self._acting(x).room, [-dx[-1] / x[-1], dx[-1] / (self.profile.end - x[-1])])
         return min(1.0, LARGEST / max(float(shrinks.max()), LARGEST))
 
     def size(self, x: Array, dx: Array) -> float:
         """Relative size of the change dx of the state x."""
-        gaps = float(np.max(np.abs(dx[:-2]) / self.law.room(x[:-2])))
+        gaps = float(np.max(np.abs(dx[:-2]) / self._acting(x).room))
         return max(gaps, float(abs(dx[-2]) / (1 + abs(x[-2]))), float(abs(dx[-1] / x[-1])))
 
     def misfit(self, x: Array, residual: Array) -> float:
         """Norm of the residual relative to the gaps, lest the far field of a scaled grid drown the contact."""
-        gaps = residual[:-1] / self.law.room(x[:-2])
+        gaps = residual[:-1] / self._acting(x).room
         return math.sqrt(float(gaps @ gaps) + float(residual[-1]) ** 2)
 
     def energy(self, x: Array) -> float:
@@ -299,7 +353,7 @@ class ContactProblem(Valued):
         made symmetric by the square roots of the weights.
         """
         L = self.operator.root(float(x[-1]))
-        hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * self.law.slope(x[:-2], self.tabor))[:, None])
+        hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * self.slope(x))[:, None])
         return count_negative(hessian)
 
 

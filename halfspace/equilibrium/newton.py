@@ -25,14 +25,6 @@ LEFT = 1e-4  # of the tolerance: error left by the last step, of either kind; an
 REFINED = 1e-13  # relative error left in a tangent
 
 
-class Linear(Protocol):
-    """A matrix, dense or sparse."""
-
-    def __matmul__(self, other: Array, /) -> Array:
-        """Product with a vector."""
-        ...
-
-
 class Equilibrium(Protocol):
     """What the solver, the path and the events need to know of a contact problem, condensed or not."""
 
@@ -45,8 +37,8 @@ class Equilibrium(Protocol):
         """Left-hand sides of all equations but the control."""
         ...
 
-    def jacobian(self, x: Array) -> Linear:
-        """Derivative of the residual, with one row less than columns."""
+    def along(self, x: Array, v: Array) -> Array:
+        """Derivative of the residual along a direction."""
         ...
 
     def bordered_solver(self, x: Array, row: Array) -> Solver:
@@ -229,13 +221,13 @@ def tangent(problem: Equilibrium, solution: Solution) -> Array:
 
     The factors at hand give it to the size of the last step; what they leave is solved for by them again.
     """
-    J, row = problem.jacobian(solution.x), problem.gradient(solution.x, solution.control.weights)
+    row = problem.gradient(solution.x, solution.control.weights)
     unit = _last(row.size)
     if not problem.reuse:
         return problem.bordered_solver(solution.x, row)(unit)
     t, before = solution.solver(unit), 1.0
     for _ in range(REFINEMENTS):
-        change = solution.solver(unit - appended(J @ t, float(row @ t)))
+        change = solution.solver(unit - appended(problem.along(solution.x, t), float(row @ t)))
         t = t + change
         size = math.sqrt(float(change @ change) / float(t @ t))
         if size * min(1.0, size / before) < REFINED:
@@ -321,7 +313,7 @@ class _Tangent(Valued):
             return 0.0, np.zeros_like(v)
         h, t = LITTLE / size, self.tangent
         beside = self.x + h * v
-        bordered = appended(self.problem.jacobian(beside) @ t, float(self.problem.gradient(beside, self.direction) @ t))
+        bordered = appended(self.problem.along(beside, t), float(self.problem.gradient(beside, self.direction) @ t))
         turned = -self.solver(bordered - _last(t.size), LEFT) / h
         own = (self.problem.gradient(beside, self.weights) - self.gradient) @ t / h
         return float(own + self.gradient @ turned), turned
