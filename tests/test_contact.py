@@ -77,9 +77,22 @@ def test_jacobian_and_gradients_against_finite_differences(problem, touching, fo
     change = (problem.residual(x + step * direction) - problem.residual(x - step * direction)) / (2 * step)
     size = np.append(1 + np.abs(x[:-2]), 1)
     np.testing.assert_allclose((problem.jacobian(x) @ direction - change) / size, 0, atol=1e-7)
+    along = problem.along(x, direction)
+    np.testing.assert_allclose(along, problem.jacobian(x) @ direction, rtol=1e-12, atol=1e-12 * np.abs(along).max())
     for index in range(4):
         slope = (problem.observables(x + step * direction) - problem.observables(x - step * direction)) / (2 * step)
         assert problem.gradient(x, np.eye(4)[index]) @ direction == pytest.approx(slope[index], rel=1e-5)
+
+
+def test_a_state_that_is_written_to_is_another_state(problem, touching):
+    x = touching.copy()
+    before, pressure = problem.residual(x), problem.pressure(x)
+    pressure *= 2
+    np.testing.assert_array_equal(problem.residual(x), before)
+    x[:-2] += 0.1
+    np.testing.assert_array_equal(problem.pressure(x), LENNARD_JONES.pressure(x[:-2], 1.0))
+    np.testing.assert_array_equal(problem.residual(x), problem.residual(x.copy()))
+    assert np.abs(problem.residual(x) - before).max() > 0.05
 
 
 def test_every_control_finds_the_same_state(problem, touching):

@@ -34,13 +34,12 @@ from fem_adhesion.crosscheck.references import (
     tighter,
 )
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.stages import FOLDS
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.conditions import ROUND_OFF, Located
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import EVENTS
+from halfspace.equilibrium.events import EVENTS, FOLDS
 from halfspace.errors import NotConverged
 from halfspace.limits import require_rtol
 from halfspace.values import Array, Estimate

@@ -14,7 +14,6 @@ from functools import partial
 
 from halfspace.accuracy.further_folds import Completed, FurtherFolds
 from halfspace.accuracy.stages import (
-    FOLDS,
     Charted,
     FoldsLost,
     Stage,
@@ -27,7 +26,7 @@ from halfspace.accuracy.stages import (
 from halfspace.equilibrium.charts import COMPRESSION, Chart, placed, trace_charts
 from halfspace.equilibrium.conditions import ROUND_OFF, STEEPEST
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import REMAINING, Event, Tolerance
+from halfspace.equilibrium.events import FOLDS, REMAINING, Event, Tolerance
 from halfspace.equilibrium.search import energy_released, find_events, folds_in_doubt
 from halfspace.equilibrium.states import Ways
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged

@@ -12,11 +12,10 @@ import numpy as np
 from halfspace.equilibrium.charts import Chart, Finest, moved_near, settled
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import ContactProblem
-from halfspace.equilibrium.events import Event, estimate_event, is_event
+from halfspace.equilibrium.events import FOLDS, Event, estimate_event, is_event
 from halfspace.errors import ContactTooWide, IllPosed, NotConverged
 from halfspace.values import Valued
 
-FOLDS = ("jump_on", "jump_off")
 Charts = Sequence[Chart]
 State = Mapping[str, Located]
 

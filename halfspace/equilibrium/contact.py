@@ -60,8 +60,12 @@ class Solver(Protocol):
 class _Acting(Valued):
     """Pressure and its slope, the room of the gaps, and rates by the scale, at the nodes in a state x, each (q,)."""
 
-    x: Array
+    state: bytes
     problem: ContactProblem
+
+    @property
+    def x(self) -> Array:
+        return np.frombuffer(self.state)
 
     @cached_property
     def pressure(self) -> Array:
@@ -109,10 +113,11 @@ class ContactProblem(Valued):
         return deque(maxlen=2)
 
     def _acting(self, x: Array) -> _Acting:
+        state = np.asarray(x, float).tobytes()  # what it holds, since it may be written to
         for known in self._latest:
-            if known.x is x:
+            if known.state == state:
                 return known
-        self._latest.append(_Acting(x, self))
+        self._latest.append(_Acting(state, self))
         return self._latest[-1]
 
     @property
@@ -149,7 +154,7 @@ class ContactProblem(Valued):
         """Left-hand sides of the equilibrium (in eps) and scale equations, shape (q + 1,)."""
         H, alpha, s = x[:-2], x[-2], x[-1]
         mu, body = self.tabor, self.operator_at(x)
-        w = body.compliance @ self.pressure(x)
+        w = body.compliance @ self._acting(x).pressure
         return appended(H + alpha - mu * (self.profile.height(body.radii) + w), self._scale_equation(H, s))
 
     def _scale_equation(self, H: Array, s: float) -> float:
@@ -162,7 +167,7 @@ class ContactProblem(Valued):
     def _bordered(self, x: Array, row: Array) -> Array:
         """Jacobian with a row below it."""
         J = np.zeros((x.size, x.size))
-        np.multiply(self.operator_at(x).compliance, -self.tabor * self.slope(x), out=J[:-2, :-2])
+        np.multiply(self.operator_at(x).compliance, -self.tabor * self._acting(x).slope, out=J[:-2, :-2])
         J.ravel()[: -2 * x.size : x.size + 1] += 1
         J[:-2, -2] = 1
         if self.follows_contact:
@@ -180,7 +185,7 @@ class ContactProblem(Valued):
     def along(self, x: Array, v: Array) -> Array:
         """Derivative of the residual along a direction of the state, without its matrix, shape (q + 1,)."""
         dH, d_alpha, ds = v[:-2], v[-2], v[-1]
-        change = dH + d_alpha - self.tabor * (self.operator_at(x).compliance @ (self.slope(x) * dH))
+        change = dH + d_alpha - self.tabor * (self.operator_at(x).compliance @ (self._acting(x).slope * dH))
         if self.follows_contact:
             return appended(change + self._by_scale(x) * ds, float(self.operator.edge_row @ dH))
         return appended(change, ds)
@@ -212,15 +217,11 @@ class ContactProblem(Valued):
 
     def load(self, x: Array) -> float:
         """W in R dgamma, positive in compression."""
-        return float(self.operator_at(x).weights @ self.pressure(x))
+        return float(self.operator_at(x).weights @ self._acting(x).pressure)
 
     def pressure(self, x: Array) -> Array:
         """Nodal pressures P, shape (q,)."""
-        return self._acting(x).pressure
-
-    def slope(self, x: Array) -> Array:
-        """DP/dH at the nodes, shape (q,)."""
-        return self._acting(x).slope
+        return self._acting(x).pressure.copy()
 
     def radii(self, x: Array) -> Array:
         """Nodal radii in beta, shape (q,)."""
@@ -285,8 +286,8 @@ class ContactProblem(Valued):
         row = np.zeros(x.size)
         row[-2] = weights[APPROACH]
         if weights[LOAD]:
-            row[:-2] += weights[LOAD] * self.operator_at(x).weights * self.slope(x)
-            row[-1] += weights[LOAD] * float(self._acting(x).rates[1] @ self.pressure(x))
+            row[:-2] += weights[LOAD] * self.operator_at(x).weights * self._acting(x).slope
+            row[-1] += weights[LOAD] * float(self._acting(x).rates[1] @ self._acting(x).pressure)
         if weights[CENTRAL_GAP]:
             row[:-2] += weights[CENTRAL_GAP] * self.operator.axis_row
         if weights[CONTACT_RADIUS]:
@@ -353,7 +354,7 @@ class ContactProblem(Valued):
         made symmetric by the square roots of the weights.
         """
         L = self.operator.root(float(x[-1]))
-        hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * self.slope(x))[:, None])
+        hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * self._acting(x).slope)[:, None])
         return count_negative(hessian)
 
 

@@ -15,7 +15,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from halfspace.equilibrium.charts import Finest, metric_for, moved_near, settled
 from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import Event, Tolerance, estimate_event
+from halfspace.equilibrium.events import FOLDS, Event, Tolerance, estimate_event
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Segment, make_point
 from halfspace.equilibrium.reach import reaching, widened
@@ -92,11 +93,12 @@ class Cycle:
 
 @dataclass(frozen=True)
 class _States:
-    """Take-off and landing of one jump, on or off, on one discretisation."""
+    """Take-off and landing of one jump, on or off, on one discretisation; the take-off on others, where it is known."""
 
     take_off: Located
     landing: Located
     on: bool
+    known: tuple[Located, ...] = ()
 
     def energy(self, compliance: float) -> float:
         """Energy set free, that of the spring included."""
@@ -115,7 +117,9 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
         raise InputError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
     if math.isinf(stiffness) and not path.jumps:
         return None
-    rough = jumps(reaching(path, stiffness).segments, 1 / stiffness)
+    stages = path.stages if math.isinf(stiffness) else ()  # only fixed grips jump at the curve's own folds
+    known = {name: tuple(stage[name] for stage in stages if name in stage) for name in FOLDS}
+    rough = jumps(reaching(path, stiffness).segments, 1 / stiffness, known)
     if rough is None:
         return None
     on, off = (
@@ -137,12 +141,24 @@ def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> fl
     return None if states is None else sum(jump.energy(0.0) for jump in states)
 
 
-def jumps(segments: Sequence[Segment], compliance: float) -> tuple[_States, ...] | None:
-    """Jumps on in their order, then jumps off, with compliance 1/k, on the discretisation of the curve itself."""
-    folds = _in_order(segments, Condition(APPROACH, stationary=True, compliance=compliance))
+def jumps(
+    segments: Sequence[Segment], compliance: float, known: Mapping[str, tuple[Located, ...]] = MappingProxyType({})
+) -> tuple[_States, ...] | None:
+    """Jumps on in their order, then jumps off, with compliance 1/k, on the discretisation of the curve itself.
+
+    The outermost folds of the base may be known by name, on this discretisation and others.
+    """
+    base = Condition(APPROACH, stationary=True, compliance=compliance)
+    folds = _in_order(segments, base, [state for states in known.values() for state in states])
     if not folds:
         return None
-    return *_on(segments, folds, compliance), *_off(segments, folds, compliance)
+    ways = _on(segments, folds, compliance), _off(segments, folds, compliance)
+    named = zip(ways, (known.get(name, ()) for name in FOLDS), strict=True)
+    return tuple(
+        replace(states, known=() if number else of_first)
+        for way, of_first in named
+        for number, states in enumerate(way)
+    )
 
 
 @dataclass(frozen=True)
@@ -159,12 +175,12 @@ class _Placed:
         return base.rate(point) * point.rates[APPROACH] > 0 and not self.state.problem.negative_directions(point.x)
 
 
-def _in_order(segments: Sequence[Segment], condition: Condition) -> list[_Placed]:
+def _in_order(segments: Sequence[Segment], condition: Condition, known: Sequence[Located] = ()) -> list[_Placed]:
     """States of a curve that meet a condition, in order along it."""
     return [
         _Placed((number, state.point.arclength), state)
         for number, segment in enumerate(segments)
-        for state in states([segment], condition)
+        for state in states([segment], condition, known)
     ]
 
 
@@ -229,14 +245,16 @@ def _refined(states: _States, stage: Finest, compliance: float) -> _States:
     """Both states of a jump on another discretisation."""
 
     def leave(state: Located, problem: Traceable) -> Located:
-        return moved_near(stage, state, _wide_enough(state, problem))
+        wide = _wide_enough(state, problem)
+        there = next((known for known in states.known if known.problem is wide), None)
+        return there or moved_near(stage, state, wide)
 
     def land(state: Located, problem: Traceable) -> Located:
         wide = _wide_enough(state, problem)
         return _landing(wide, transfer(state.problem, state.point.x, wide), fold, compliance)
 
     fold = settled(states.take_off, stage, leave)
-    return _States(fold, settled(states.landing, stage, land), states.on)
+    return _States(fold, settled(states.landing, stage, land), states.on, states.known)
 
 
 def _wide_enough(state: Located, problem: Traceable) -> Traceable:

@@ -16,7 +16,8 @@ from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS,
 from halfspace.values import Array, Estimate
 
 T = TypeVar("T")
-EVENTS = ("pull_off", "jump_on", "jump_off", "zero_load")
+FOLDS = ("jump_on", "jump_off")  # the outermost in the approach
+EVENTS = ("pull_off", *FOLDS, "zero_load")
 FURTHER = re.compile(r"fold_([2-9]|[1-9]\d+)")  # the folds between the jumps, by their numbers along the curve
 REMAINING = 0.5  # of a change between two discretisations: what is left if each errs at most a third of the one before
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import NoReturn
 
@@ -31,9 +31,18 @@ from halfspace.scales import BRADLEY
 Bracket = tuple[Traceable, Point, Point]
 
 
-def states(segments: Sequence[Segment], condition: Condition) -> list[Located]:
-    """Every state of a traced curve that meets a condition, in order."""
-    return [state for bracket in _brackets(segments, condition) for state in with_care(bracket, condition)]
+def states(segments: Sequence[Segment], condition: Condition, known: Iterable[Located] = ()) -> list[Located]:
+    """Every state of a traced curve that meets a condition, in order; those known are not solved for again."""
+    return [
+        state
+        for bracket in _brackets(segments, condition)
+        for state in _within(bracket, known) or with_care(bracket, condition)
+    ]
+
+
+def _within(bracket: Bracket, known: Iterable[Located]) -> list[Located]:
+    problem, a, b = bracket
+    return [s for s in known if s.problem is problem and a.arclength <= s.point.arclength <= b.arclength]
 
 
 def _brackets(segments: Sequence[Segment], condition: Condition) -> list[Bracket]:
