@@ -148,9 +148,11 @@ def test_a_whole_curve_of_either_kind_of_problem_is_the_same():
     ]
     condensed, whole = (find_events(path) for path in paths)
     assert whole.keys() == condensed.keys()
+    # Newton's last step leaves 1e-12 of the gaps; the law makes ten times as much of it in the pressure.
+    last_step = 2e-11
     for name, event in condensed.items():
         np.testing.assert_allclose(
-            whole[name].point.observables, event.point.observables, rtol=1e-8, atol=1e-12, err_msg=name
+            whole[name].point.observables, event.point.observables, rtol=1e-8, atol=last_step, err_msg=name
         )
     losses = [energy_lost(path, events) for path, events in zip(paths, (condensed, whole), strict=True)]
     assert losses[1] == pytest.approx(losses[0], rel=1e-7, abs=0)

@@ -19,6 +19,7 @@ from halfspace.equilibrium.conditions import FOLD, Located, relocate, same_place
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import WHOLE_BODY, Metric, Point, Segment, Steps, follow, loaded_to, make_point
+from halfspace.equilibrium.prediction import KNOWN, passed
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued
 
@@ -74,7 +75,8 @@ def trace_charts(
         body = problem.interface.profile.end
         radius, ended = WIDEST * body if np.isinf(chart.until) else chart.until, _ended(to_load, body)
         stop, pace = _left(problem, radius, ended), steps or _pace(problem, segments)
-        segments.append(Segment(problem, tuple(follow(problem, point, metric, stop, steps=pace))))
+        trail = [passed(s.problem, p.x, p.arclength) for s in segments[-1:] for p in s.points[-KNOWN:-1]]
+        segments.append(Segment(problem, tuple(follow(problem, point, metric, stop, steps=pace, trail=trail))))
         if ended(segments[-1].points[-1]):
             break
     return tuple(segments)

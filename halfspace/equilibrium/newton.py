@@ -188,14 +188,15 @@ def solve(
 
     Whether the grid can carry the state found is another question: ask ``problem.require_resolution``. A state is
     accepted if the last step's relative size is within the tolerance; convergence is quadratic. NotConverged if the
-    steps or the damping run out, or a step is longer than the part `contraction` of that two before; no unconverged
-    state is ever returned.
+    steps or the damping run out, or a step is longer than the part `contraction` of that two before, at first of 1; no
+    unconverged state is ever returned.
     """
     x = start.copy()
     F = _equations(problem, x, control)
     if np.isnan(F[-1]):
         raise NotConverged("the start has no contact radius to be prescribed; start from a state in contact")
-    before, last, solver = np.inf, np.inf, None
+    before = last = 1.0 if contraction < 1 else math.inf
+    solver: Solver | None = None
     for iteration in range(1, max_iterations + 1):
         fresh = solver is None
         solver = solver or problem.bordered_solver(x, problem.gradient(x, control.weights))

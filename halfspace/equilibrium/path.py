@@ -6,14 +6,15 @@ numbers that every discretisation has, so its value does not depend on the grid,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LARGEST, LOAD
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.newton import Control, Equilibrium, Traceable
+from halfspace.equilibrium.prediction import KNOWN, Passed, passed, with_edge
 from halfspace.errors import GridTooCoarse, IllPosed, NotConverged
 from halfspace.values import Array, Valued
 
@@ -153,33 +154,18 @@ def predict(problem: Traceable, point: Point, step: float, before: Point | None 
 NUDGE = 1e-3  # of arclength: a step too short for the contact edge to leave its place
 
 
-def _starts(problem: Traceable, point: Point, step: float, before: Point | None) -> Iterator[Array]:
+def _starts(problem: Traceable, points: list[Point], step: float, trail: Sequence[Passed]) -> Iterator[Array]:
     """Predictions in the order in which they are tried.
 
-    Where a body's grid stands still the spike of tension at the contact edge moves over it: then see `with_edge`, which
-    is worse, however, where the surface is steep.
+    Where a body's grid stands still see `with_edge` first, which is worse, however, where the surface is steep.
     """
-    if before is not None and problem.interface is not problem and step > NUDGE:
-        moved = with_edge(problem, before, point, step)
+    point, before = points[-1], points[-2] if len(points) > 1 else None
+    if problem.interface is not problem and step > NUDGE:
+        own = [passed(problem, p.x, p.arclength) for p in points[-KNOWN:]]
+        moved = with_edge(problem, [*trail, *own], point.x, point.arclength + step)
         if moved is not None:
             yield moved
     yield predict(problem, point, step, before)
-
-
-def with_edge(problem: Traceable, before: Point, point: Point, step: float) -> Array | None:
-    """State a step past the second of two, gaps extrapolated in parts of the contact radius; None without contact."""
-    surface, part = problem.interface, step / (point.arclength - before.arclength)
-    states = [problem.surface_state(p.x) for p in (before, point)]
-    last, radii = states[1], [surface.contact_radius(state) for state in states]
-    radius = radii[1] + part * (radii[1] - radii[0])
-    if not np.min([*radii, radius]) > 0:  # nor nan
-        return None
-    body = surface.operator_at(last)
-    inside = [np.minimum(body.radii * (old / radius), body.extent) for old in radii]
-    H0, H1 = (body.values_at(r, state[:-2]) for r, state in zip(inside, states, strict=True))
-    H = np.maximum(H1 + part * (H1 - H0), H1 - LARGEST * surface.law.room(H1))
-    alpha = last[-2] + part * (last[-2] - states[0][-2])
-    return problem.state_from_surface(np.append(H, [alpha, 1.0]), point.x)
 
 
 def follow(
@@ -189,20 +175,21 @@ def follow(
     stop: Callable[[Point], bool],
     *,
     steps: Steps | None = None,
+    trail: Sequence[Passed] = (),
     max_points: int = 2000,
 ) -> list[Point]:
     """Continue the path from a point to the first for which `stop` holds, in steps adapted to its curvature.
 
-    The tangent of the start, which is the first of the points, says in which direction. NotConverged if the step falls
-    below the shortest allowed, or the points run out; GridTooCoarse if the contact edge comes to a place where the grid
-    is too coarse for the spike of tension there.
+    The tangent of the start, which is the first of the points, says in which direction; the trail is of states passed
+    before, on whatever grid. NotConverged if the step falls below the shortest allowed, or the points run out;
+    GridTooCoarse if the contact edge comes to a place where the grid is too coarse for the spike of tension there.
     """
     steps = steps or (Steps() if problem.interface is problem else WHOLE_BODY)
     points = [start]
     step = steps.first
     while len(points) < max_points:
         try:
-            new = _advance(problem, points, step, metric, steps)
+            new = _advance(problem, points, step, metric, steps, trail)
         except NotConverged as error:
             step /= 3
             if step < steps.shortest:
@@ -233,10 +220,12 @@ def _carried(problem: Equilibrium, point: Point) -> bool:
     return True
 
 
-def _advance(problem: Traceable, points: list[Point], step: float, metric: Metric, steps: Steps) -> Point:
+def _advance(
+    problem: Traceable, points: list[Point], step: float, metric: Metric, steps: Steps, trail: Sequence[Passed]
+) -> Point:
     """One step, refused if it leaves what the operator knows, or if the path turns too far for its folds to be seen."""
-    point, before = points[-1], points[-2] if len(points) > 1 else None
-    new = _corrected(problem, point, step, _starts(problem, point, step, before), metric, steps)
+    point = points[-1]
+    new = _corrected(problem, point, step, _starts(problem, points, step, trail), metric, steps)
     least, radius = problem.interface.operator.least_radius, new.observables[CONTACT_RADIUS]
     if radius < least:
         raise NotConverged(f"contact radius {radius:.3g} beta is below {least:.3g} beta, the chart's least")
