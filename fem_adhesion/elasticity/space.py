@@ -17,7 +17,7 @@ from skfem import Dofs, ElementQuadP, ElementVector
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
-from fem_adhesion.elasticity.tensor import integrated, products
+from fem_adhesion.elasticity.tensor import Products, integrated, products
 from fem_adhesion.materials import Elastic
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -156,6 +156,11 @@ def cell_quadrature(space: Space) -> tuple[Array, Array]:
     return points, weights
 
 
+def cell_products(space: Space) -> Products:
+    """Products of the functions of a space of ElementQuadP at these points."""
+    return products(space.element, _order(space))
+
+
 def _order(space: Space) -> int:
     return 2 * space.degree + (2 if space.element.refdom is RefTri else 1)
 
@@ -177,7 +182,7 @@ def cell_stiffness(space: Space, poisson: float) -> Array:
 
 def _product_stiffness(space: Space, D: Array) -> Iterator[tuple[slice, Array]]:
     """Stiffness of u_r with u_r, u_z with u_r and u_z with u_z, (3, cells, n, n), batch by batch."""
-    functions, (points, weights) = products(space.element, _order(space)), cell_quadrature(space)
+    functions, (points, weights) = cell_products(space), cell_quadrature(space)
     mapping, q = space.mesh.mapping(), round(np.sqrt(len(weights)))
     radii, (inverse, area) = np.asarray(mapping.F(points)[0]), inverted(mapping.DF(points))
     for cells in _batches(space, len(weights)):

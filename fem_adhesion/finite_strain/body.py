@@ -14,6 +14,7 @@ E* beta/R and positive in tension. J. Bonet and R. D. Wood, Nonlinear Continuum 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -26,12 +27,14 @@ from skfem import Dofs, ElementQuadP
 from fem_adhesion.elasticity.incompressible import REMEDY_FROM
 from fem_adhesion.elasticity.space import (
     Space,
+    cell_products,
     cell_quadrature,
     lame_parameters,
     reference_functions,
     ring_measure,
     scatter,
 )
+from fem_adhesion.elasticity.tensor import integrated
 from fem_adhesion.finite_strain import material
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -110,13 +113,20 @@ class Body(Valued):
 
     def works(self, stress: Array) -> Array:
         """Work of a stress, (5, cells, q), in each unit displacement, (N,)."""
-        weighted, (_, n, q) = stress * self.measure, self.functions.shape
-        plane, amounts = weighted[1:].reshape(2, 2, *self.radii.shape), np.zeros((2, len(self.radii), 3, q))
-        amounts[0, :, 0] = weighted[0] / self.radii
-        for i in range(2):
-            amounts[:, :, 1 + i] = plane[:, 0] * self.inverse[i, 0] + plane[:, 1] * self.inverse[i, 1]
-        cells = amounts.reshape(2, len(self.radii), 3 * q) @ self.functions.transpose(0, 2, 1).reshape(3 * q, n)
+        amounts = self._by_functions(stress * self.measure)
+        cells = (amounts @ self.functions.transpose(0, 2, 1)).sum(axis=1)
         return _summed(self.displacements, cells.transpose(1, 0, 2), self.space.unknowns)
+
+    def _by_functions(self, stress: Array) -> Array:
+        """What of a stress, (5, ..., cells, q), works in a value and in slopes on the reference cell, of u_r and u_z.
+
+        These are the factors, (2, 3, ..., cells, q), of the `functions` of a unit displacement.
+        """
+        plane, amounts = stress[1:].reshape(2, 2, *stress.shape[1:]), np.zeros((2, 3, *stress.shape[1:]))
+        amounts[0, 0] = stress[0] / self.radii
+        for i in range(2):
+            amounts[:, 1 + i] = plane[:, 0] * self.inverse[i, 0] + plane[:, 1] * self.inverse[i, 1]
+        return amounts
 
     def deformation(self, u: Array) -> material.Deformation:
         """Deformation at the points under all unknowns; of the last few states it is known."""
@@ -153,27 +163,33 @@ class Body(Valued):
 
     def cell_tangents(self, u: Array) -> Array:
         """The same, symmetric, cell by cell, (cells, k, k): with pressures each a saddle point."""
-        (lam, _), n, f = self._lame, self.functions.shape[1], self.deformation(u).inverse_transpose
-        D = (self._moduli(u) * self.measure).transpose(2, 3, 0, 1)
-        blocks = np.empty((len(self.radii), *2 * [self.cell_dofs.shape[1]]))
-        for i, (own, rows) in enumerate(self._shapes):
-            for j, (other, columns) in enumerate(self._shapes):
-                DB = np.ascontiguousarray(D[..., own, other]) @ columns
-                blocks[:, i * n : (i + 1) * n, j * n : (j + 1) * n] = _rows(rows).transpose(0, 2, 1) @ _rows(DB)
-            weighted = (f[own] * self.measure).transpose(1, 2, 0)[..., None] * self.pressure_functions.T[:, None]
-            blocks[:, i * n : (i + 1) * n, 2 * n :] = _rows(rows).transpose(0, 2, 1) @ _rows(weighted)
-        blocks[:, 2 * n :, : 2 * n] = blocks[:, : 2 * n, 2 * n :].transpose(0, 2, 1)
-        blocks[:, 2 * n :, 2 * n :] = (self.measure[:, None] * self.pressure_functions) @ self.pressure_functions.T
-        blocks[:, 2 * n :, 2 * n :] /= -lam or 1.0
+        n, blocks = self.functions.shape[1], np.empty((len(self.radii), *2 * [self.cell_dofs.shape[1]]))
+        u_r, u_z = slice(0, n), slice(n, 2 * n)
+        once = self._by_functions(self._moduli(u) * self.measure)
+        twice = self._by_functions(np.moveaxis(once, 2, 0))
+        pairs = np.stack([twice[0, :, 0], twice[1, :, 0], twice[1, :, 1]])
+        blocks[:, u_r, u_r], blocks[:, u_z, u_r], blocks[:, u_z, u_z] = self._integrated(pairs)
+        blocks[:, u_r, u_z] = blocks[:, u_z, u_r].transpose(0, 2, 1)
+        if self._mixed:
+            self._border(blocks, u)
         return blocks
 
-    @cached_property
-    def _shapes(self) -> tuple[tuple[slice, Array], tuple[slice, Array]]:
-        """Which components of grad u unit displacements have, and these, (cells, q, 3 or 2, n): of u_r, and of u_z."""
-        value, *slopes = self.functions.transpose(0, 2, 1)
-        rr, zz = (self.inverse[0, j][..., None] * slopes[0] + self.inverse[1, j][..., None] * slopes[1] for j in (0, 1))
-        hoop = value / self.radii[..., None]
-        return (slice(0, 3), np.stack([hoop, rr, zz], axis=2)), (slice(3, 5), np.stack([rr, zz], axis=2))
+    def _border(self, blocks: Array, u: Array) -> None:
+        """Fill in what couples the pressures of a cell with its displacements and with each other."""
+        n, p, values = self.functions.shape[1], slice(2 * self.functions.shape[1], None), self.pressure_functions
+        amounts = self._by_functions(self.deformation(u).inverse_transpose * self.measure)
+        dilated = np.einsum("iacq,anq->cinq", amounts, self.functions).reshape(len(blocks), 2 * n, -1)
+        blocks[:, : 2 * n, p] = dilated @ values.T
+        blocks[:, p, : 2 * n] = blocks[:, : 2 * n, p].transpose(0, 2, 1)
+        blocks[:, p, p] = (self.measure[:, None] * values) @ values.T / -self._lame[0]
+
+    def _integrated(self, factors: Array) -> Array:
+        """Sums (m, cells, n, n) over the points of factors, (m, 3, 3, cells, q), times products of two functions."""
+        if not isinstance(self.space.element, ElementQuadP):
+            return np.asarray(np.einsum("mabcq,aiq,bjq->mcij", factors, self.functions, self.functions, optimize=True))
+        side = math.isqrt(self.radii.shape[1])
+        grid = np.moveaxis(factors, 3, 1).reshape(len(factors), len(self.radii), 3, 3, side, side)
+        return integrated(grid, cell_products(self.space))
 
     def tangent(self, u: Array) -> sparse.csc_array:
         """Sum of these, (N + M, N + M)."""
@@ -221,11 +237,6 @@ class Body(Valued):
         if not self._mixed:
             return np.zeros(0)
         return _summed(self.pressures, (self.measure * amounts) @ self.pressure_functions.T, self.products.shape[0])
-
-
-def _rows(values: Array) -> Array:
-    """Merge points and components, (cells, q, c, n) to (cells, q c, n)."""
-    return values.reshape(len(values), values.shape[1] * values.shape[2], values.shape[3])
 
 
 def _summed(dofs: Index, values: Array, size: int) -> Array:
