@@ -151,7 +151,7 @@ def between_two_walls(degree):
     kept = np.setdiff1d(np.arange(space.unknowns), np.append(held, centre))
     T = sparse.csc_array((np.ones(kept.size), (kept, np.arange(kept.size))), shape=(space.unknowns, kept.size))
     factors = factorise(
-        eliminate_interiors(space, cell_stiffness(space, NU)), Exterior(T, sparse.csc_array(2 * T.shape[1:]))
+        space, eliminate_interiors(space, cell_stiffness(space, NU)), Exterior(T, sparse.csc_array(2 * T.shape[1:]))
     )
 
     load = surface.weights @ gaussian(surface.radii)

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from scipy import sparse
 from scipy.linalg.blas import dtrsm
-from scipy.sparse.linalg import splu
 
 from fem_adhesion.elasticity.boundaries import trace_on
-from fem_adhesion.elasticity.elimination import SINGULAR, condensed_to, eliminated, factor, reduced_cells
+from fem_adhesion.elasticity.elimination import (
+    Factors,
+    Region,
+    dissected,
+    eliminated,
+    factor,
+    inverses,
+    reduced_cells,
+)
 from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load
 from fem_adhesion.elasticity.space import CellStiffness, Space, cell_stiffness, ring_measure, scatter
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
 
@@ -74,25 +80,6 @@ class Surface(Valued):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Factorised(Valued):
-    """A symmetric, positive definite sparse matrix (n, n), factorised without pivoting when it is first solved with."""
-
-    matrix: sparse.csc_array
-
-    def solve(self, rhs: Array) -> Array:
-        """Solution for a right-hand side (n,) or (n, k)."""
-        return np.asarray(self._factors.solve(rhs))
-
-    @cached_property
-    def _factors(self) -> Any:
-        options = {"SymmetricMode": True}
-        try:
-            return splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
-        except RuntimeError as error:  # SuperLU's way of saying so
-            raise NotConverged(SINGULAR) from error
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class CondensedBody(Valued):
     """A block factorised once: its surface compliance, and the fields inside for a given surface pressure.
 
@@ -109,9 +96,9 @@ class CondensedBody(Valued):
     surface: Surface
 
     @cached_property
-    def factors(self) -> Factorised:
+    def factors(self) -> Factors:
         """The (n, n) reduced stiffness, factorised for fields inside."""
-        return factorise(self.skeleton, self.exterior)
+        return factorise(self.space, self.skeleton, self.exterior)
 
     @property
     def unknowns(self) -> int:
@@ -202,26 +189,37 @@ def eliminate_interiors(space: Space, K: Array) -> Skeleton:
     return Skeleton(np.array(cells), K, space.cell_dofs, inner, outer, space.unknowns)
 
 
-def factorise(skeleton: Skeleton, exterior: Exterior) -> Factorised:
-    """Return the factorised T' K T + S."""
-    T = exterior.reduction
-    return Factorised(sparse.csc_array(T.T @ skeleton.stiffness @ T + exterior.stiffness))
+def factorise(space: Space, skeleton: Skeleton, exterior: Exterior) -> Factors:
+    """Return the factorised T' K T + S of the n reduced unknowns."""
+    region, cells = _regions(space, skeleton, exterior, np.zeros(0, dtype=np.intp))
+    fronts, stiffness = region.factorised(cells)
+    return Factors(fronts, region.unknowns, inverses(_held(region, stiffness, exterior)))
 
 
 def flexibility(space: Space, skeleton: Skeleton, exterior: Exterior, surface: Index) -> Array:
-    """Displacements (m, m) of the m unknowns on the surface under unit forces on each of them.
+    """Displacements (m, m) of the m unknowns on the surface under unit forces on each of them."""
+    rows = exterior.reduction.tocsr()[surface]
+    region, cells = _regions(space, skeleton, exterior, rows.indices.astype(np.intp))
+    lower = factor(_held(region, region.stiffness(cells), exterior))
+    half = dtrsm(1.0, lower, rows[:, region.unknowns].T.toarray(), lower=1)
+    return np.asarray(half.T @ half)
+
+
+def _regions(space: Space, skeleton: Skeleton, exterior: Exterior, kept: Index) -> tuple[Region, Array]:
+    """Regions in which all reduced unknowns are eliminated but those kept, and the stiffness of their cells.
 
     Unknowns that the exterior couples, or that move more than one of the body's, are kept to the last with them.
     """
-    T, S = exterior.reduction, exterior.stiffness
-    rows = T.tocsr()[surface]
-    cells, unknowns = reduced_cells(skeleton.cells, skeleton.dofs[skeleton.outer], T)
-    kept = np.diff(S.indptr) > 0
-    kept[rows.indices] = True
-    numbers, stiffness = condensed_to(space.mesh, cells, unknowns, kept)
-    lower = factor(stiffness + S[numbers][:, numbers].toarray())
-    half = dtrsm(1.0, lower, rows[:, numbers].T.toarray(), lower=1)
-    return np.asarray(half.T @ half)
+    cells, unknowns = reduced_cells(skeleton.cells, skeleton.dofs[skeleton.outer], exterior.reduction)
+    last = np.diff(exterior.stiffness.indptr) > 0
+    last[kept] = True
+    return dissected(space.mesh, unknowns, last), cells
+
+
+def _held(region: Region, stiffness: Array, exterior: Exterior) -> Array:
+    """Stiffness of the unknowns that are left of a body, with that of its exterior."""
+    left = region.unknowns
+    return np.asarray(stiffness + exterior.stiffness[left][:, left].toarray())
 
 
 def surface_operator(surface: Surface, exterior: Exterior, flexibility: Array) -> ElasticOperator:

@@ -87,18 +87,31 @@ class Front(Valued):
         u[self.done] = self.inverse @ u[self.done] - self.recovery @ u[self.left]
 
 
-def condensed_to(mesh: Any, K: Array, unknowns: Index, kept: Mask) -> tuple[Index, Array]:
-    """Numbers (m,) of the kept unknowns that some cell has, and the stiffness of a body condensed to them, (m, m).
+@dataclass(frozen=True, eq=False, repr=False)
+class Factors(Valued):
+    """A factorised stiffness: fronts that are eliminated one after the other, and those left by their inverse."""
 
-    The mesh has the boundaries "axis" and "contact". K (cells, k, k) is the stiffness of its cells, symmetric, of the
-    unknowns (k, cells), below 0 where they are held; kept (n,) says which of all are. NotConverged if it is singular.
-    """
-    whole = dissected(mesh, unknowns, kept)
-    return whole.unknowns, whole.stiffness(K)
+    fronts: list[Front]
+    left: Index
+    inverse: Array
+
+    def solve(self, forces: Array) -> Array:
+        """Displacements (n,) under forces (n,)."""
+        x = forces.copy()
+        for front in self.fronts:
+            front.carry(x)
+        x[self.left] = self.inverse @ x[self.left]
+        for front in reversed(self.fronts):
+            front.recover(x)
+        return x
 
 
 def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
-    """All cells of a mesh as a tree of regions, see `condensed_to`."""
+    """All cells of a mesh, which has the boundaries "axis" and "contact", as a tree of regions.
+
+    The unknowns (k, cells) of the cells are below 0 where they are held; kept (n,) says which of all are in no region
+    eliminated.
+    """
     steps = np.array([_steps(mesh, mesh.f2t[0, mesh.boundaries[name]]) for name in ("axis", "contact")])
     shares = np.bincount(unknowns[unknowns >= 0], minlength=kept.size).astype(np.intp)
     shares[kept] = 0  # in no region is it complete
