@@ -14,13 +14,15 @@ from scipy.special import j0
 import fem_adhesion
 from fem_adhesion.scene import Scene
 from halfspace import trace
-from halfspace.elastic import grid, layered
+from halfspace.accuracy.trace import LayeredHalfSpace, resolution_for
+from halfspace.elastic import compliance, grid, layered
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, stiff_as, surface_compliance
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
+from halfspace.scales import Scales
 from halfspace.theories.layered import OnLayers
 
 DATA = Path(__file__).parent / "data"
@@ -327,3 +329,54 @@ def test_pull_off_and_approach_go_over_into_jkrs_on_the_layer_as_ln_mu_over_mu_s
         assert measured == pytest.approx(factor, rel=order), quantity
         beyond = np.linalg.solve(np.stack([mu**0, mu**-2, mu**-3], axis=1), off - factor * np.log(mu) / mu**2)[0]
         assert abs(beyond) < limit, quantity
+
+
+def test_pull_off_from_a_layer_approaches_jkrs_as_the_tabor_parameter_grows():
+    """By Aitken's rule from three Tabor parameters, each twice the one before."""
+    loads = [-trace(mu, body=Layer(2, 0.3), rtol=1e-4).events["pull_off"].load / np.pi for mu in (10, 20, 40)]
+    first, second = np.diff(loads)
+    assert abs(second) < abs(first) / 2
+    assert loads[-1] + second**2 / (first - second) == pytest.approx(1.642973, rel=1e-4)
+
+
+@pytest.fixture(scope="module")
+def charted():
+    """A layer on the grids of a half-space, the last cell of which is infinite, and its chart that follows contacts."""
+    scales = Scales(1.0, body=Layer(2.0, 0.3))
+    body = LayeredHalfSpace(scales, images_of(scales.body), resolution_for(scales, 1e-8), 5.0)
+    return body, body.around(1.4, count=5).problem.operator
+
+
+def test_a_bell_deflects_a_layer_on_a_scaled_grid_as_on_one_that_stands(charted):
+    _, operator = charted
+    there = operator.at(1.4005)
+    lines = grid.graded(1.4005, 0.1, 60.0)
+    other = layered_panels(images_of(Layer(2.0, 0.3)), lines, 12)
+    wanted = other.compliance @ np.exp(-(other.radii**2))
+    inside = there.radii < 10
+    found = (there.compliance @ np.exp(-(there.radii**2)))[inside]
+    assert found == pytest.approx(other.values_at(there.radii[inside], wanted), rel=0, abs=1e-7)
+
+
+def test_the_scaled_operator_changes_with_the_contact_as_its_rates_say(charted):
+    _, operator = charted
+    a, h = 1.4, 1e-4
+    pressure = np.exp(-(operator.unit.radii**2))
+    before, after = (operator.at(b) for b in (a - h, a + h))
+    radii, weights, deflection = operator.rates(a, pressure)
+    assert (after.radii - before.radii) / (2 * h) == pytest.approx(radii, rel=1e-9)
+    assert (after.weights - before.weights) / (2 * h) == pytest.approx(weights, rel=1e-9)
+    assert (after.compliance - before.compliance) @ pressure / (2 * h) == pytest.approx(deflection, rel=0, abs=1e-6)
+    assert np.abs(deflection).max() > 0.1
+
+
+def test_a_layer_with_other_cells_far_out_is_the_same_layer(charted):
+    body, _ = charted
+    operator = body.centred().problem.operator
+    wide = operator.widened(12, 8.0)
+    assert wide.beyond.size > operator.beyond.size
+    inside = operator.radii < operator.extent
+    found, same = (o.compliance @ (1 + o.radii**2) ** -3.0 for o in (wide, operator))
+    assert found[: inside.sum()] == pytest.approx(same[inside], rel=0, abs=1e-8 * np.abs(same).max())
+    half_space = compliance.to_infinity(operator, 12, 8.0).compliance @ (1 + wide.radii**2) ** -3.0
+    assert np.abs(found - half_space)[~(wide.radii < operator.extent)].max() > 1e-3

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -33,6 +34,27 @@ APART = 1.7  # mean ratio of the radii between which the curve's operator is int
 CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
 
 Made = tuple[ElasticOperator, int]
+
+
+class Charting(Protocol):
+    """A body for which charts are made where they are wanted."""
+
+    @property
+    def length(self) -> float:
+        """Length of the cells at the contact edge, or on the axis, in beta."""
+        ...
+
+    def centred(self) -> Chart:
+        """Chart fine on the axis."""
+        ...
+
+    def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
+        """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
+        ...
+
+    def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
+        """Chart for contact radii near the given one, from so many operators."""
+        ...
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -92,13 +114,11 @@ class SizedBody(Valued):
     def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
         widest = min(self.scales.widest_radius(to_load), WIDEST * self.scales.profile.end)
-        least = min(LEAST * self.until, widest / 2)
-        count = 2 + int(np.ceil(np.log(widest / least) / np.log(apart)))
         end, edge = float(self.outer[0]), self.coordinate.of(widest)
         inner = grid.geometric(1.0, 2 * self.length / edge, self.growth)
         outside = grid.geometric(end, self.length, self.growth, self.last)
         moving = self._moving(1 - inner[::-1], outside / end)
-        return self.centred(), self.following(moving, chebyshev_radii(least, widest, count))
+        return self.centred(), self.following(moving, radii_along(self.until, widest, apart))
 
     def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
         """Chart for contact radii near the given one, from so many operators."""
@@ -106,7 +126,7 @@ class SizedBody(Valued):
         lines = self._graded(edge)
         inner = lines < edge * (1 + 1e-12)
         moving = self._moving(lines[inner] / edge, np.append(0, (lines[~inner] - edge) / (end - edge)))
-        return self.following(moving, chebyshev_radii(radius * np.exp(-window), radius * np.exp(window), count))
+        return self.following(moving, radii_around(radius, window, count))
 
     def _moving(self, inner: Array, outside: Array) -> MovingGrid:
         """Grid from the ends of cells inside the edge, as parts of x_a, and outside, as parts of the rest."""
@@ -114,6 +134,17 @@ class SizedBody(Valued):
         fixed = np.concatenate([0 * inner, end * outside[1:], self.outer[1:]])
         moving = np.concatenate([inner, 1 - outside[1:], 0 * self.outer[1:]])
         return MovingGrid(fixed, moving, self.coordinate)
+
+
+def radii_along(until: float, widest: float, apart: float = APART) -> Array:
+    """Contact radii for a curve from where the chart centred on the axis is left: one `apart` times the other."""
+    least = min(LEAST * until, widest / 2)
+    return chebyshev_radii(least, widest, 2 + int(np.ceil(np.log(widest / least) / np.log(apart))))
+
+
+def radii_around(radius: float, window: float = WINDOW, count: int = AROUND) -> Array:
+    """So many contact radii near a given one, in a window of half that logarithmic width."""
+    return chebyshev_radii(radius * np.exp(-window), radius * np.exp(window), count)
 
 
 def at_equator(tabor: float, profile: Surface, nodes: int) -> float:
@@ -148,7 +179,7 @@ class AroundEvents(Valued):
     rung to rung let the error estimate see it. The curve ends at the load, in R dgamma.
     """
 
-    body: SizedBody
+    body: Charting
     window: float = WINDOW
     count: int = AROUND
     to_load: float = COMPRESSION
@@ -191,7 +222,7 @@ class AlongCurve(Valued):
     interpolated.
     """
 
-    body: SizedBody
+    body: Charting
     to_load: float
     apart: float
     farther = None

@@ -8,26 +8,32 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
 from halfspace.accuracy.finite_bodies import (
+    APART,
+    AROUND,
     EQUAL,
     LEAVE,
     TIGHT,
+    WINDOW,
     AroundEvents,
+    Charting,
     Made,
     SizedBody,
     at_equator,
+    radii_along,
+    radii_around,
     surroundings,
 )
 from halfspace.accuracy.refinement import Rung, climb
 from halfspace.accuracy.stages import Charted
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.layered import Images, images_of, layered_panels
+from halfspace.elastic.layered import Images, image_compliance, images_of, layered, layered_panels
 from halfspace.elastic.layers import LayeredBody
-from halfspace.elastic.operators import FlatCoordinate, Homogeneous
+from halfspace.elastic.operators import FlatCoordinate, Homogeneous, NearlyHomogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -42,7 +48,6 @@ from halfspace.values import Array, Valued
 
 EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
 MOST_NODES = 16  # of a panel
-FAR = 100.0  # of the last cell on a layered body, in extents: the energy left out beyond is 1e-10 R dgamma eps
 # Found by trial; what each decides at half and at double is in tests/constants.py.
 ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
 MOST_CELLS = 100  # of one length
@@ -127,16 +132,69 @@ def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float,
 
 def half_space_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:
     """Panel grids centred on the axis and following the contact edge."""
-    nodes = resolution.nodes
-    lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, nodes)
-    centred, edge = (
-        compliance.to_infinity(compliance.panels(breaks, nodes), nodes, scales.tail_reach)
-        for breaks in (lines.centred, lines.edge)
-    )
+    lines, (centred, edge) = _to_infinity(scales, resolution, to_load)
     return (
         Chart(contact_of(scales, centred), centred.radii.size, lines.until),
         Chart(contact_of(scales, Homogeneous(edge)), edge.radii.size),
     )
+
+
+def _to_infinity(
+    scales: Scales, resolution: Resolution, to_load: float
+) -> tuple[Rings, tuple[compliance.ElasticOperator, compliance.ElasticOperator]]:
+    """Breakpoints and half-space operators centred on the axis and, for the contact radius 1, on the edge."""
+    nodes, reach = resolution.nodes, scales.tail_reach
+    lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, nodes)
+    centred, edge = (compliance.panels(breaks, nodes) for breaks in (lines.centred, lines.edge))
+    return lines, (compliance.to_infinity(centred, nodes, reach), compliance.to_infinity(edge, nodes, reach))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LayeredHalfSpace(Valued):
+    """Charts of a layered body: those of the half-space, with what its images have beside that.
+
+    Twice as far out as the half-space's finite cells end nothing is pressed that could deflect a layer.
+    """
+
+    scales: Scales
+    images: Images
+    resolution: Resolution
+    to_load: float
+
+    @property
+    def length(self) -> float:
+        """Length of the cells at the contact edge, or on the axis, in beta."""
+        return self.resolution.finest * self.scales.spike_width / 2
+
+    @cached_property
+    def _half_space(self) -> tuple[Rings, tuple[compliance.ElasticOperator, compliance.ElasticOperator]]:
+        how = replace(self.resolution, extent=2 * self.resolution.extent)
+        return _to_infinity(self.scales, how, self.to_load)
+
+    @property
+    def _extent(self) -> float:
+        return self.scales.outer_radius(2 * self.resolution.extent**2)
+
+    def centred(self) -> Chart:
+        """Chart fine on the axis."""
+        lines, (centred, _) = self._half_space
+        operator = layered(self.images, centred, self._extent)
+        return Chart(contact_of(self.scales, operator), operator.radii.size, lines.until)
+
+    def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
+        """Charts for the whole curve: the second from images at radii that are `apart` times one the other."""
+        radii = radii_along(self._half_space[0].until, self.scales.widest_radius(to_load), apart)
+        return self.centred(), self._following(radii)
+
+    def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
+        """Chart for contact radii near the given one, from so many sets of images."""
+        return self._following(radii_around(radius, window, count))
+
+    def _following(self, radii: Array) -> Chart:
+        edge = self._half_space[1][1]
+        beside = [image_compliance(self.images, edge.scaled(a), self._extent) / a for a in radii.tolist()]
+        operator = NearlyHomogeneous(edge, radii, np.array(beside))
+        return Chart(contact_of(self.scales, operator), edge.radii.size)
 
 
 def trace(
@@ -210,7 +268,7 @@ def _twin(resolution: Resolution) -> Resolution:
 def _sized_rung(scales: Scales, images: Sequence[Images | None], rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level for a surface that ends, as a sphere's does at its equator, or a body that has a length."""
     resolutions = resolution_for(scales, rtol, level), _twin(resolution_for(scales, rtol, max(level - 1, 0)))
-    fine, other = (_sized_body(scales, *both) for both in zip(images, resolutions, strict=True))
+    fine, other = (_sized_body(scales, *both, to_load) for both in zip(images, resolutions, strict=True))
     resolution = resolutions[0]
     doubt = 2 if images[0] and rtol < TIGHT else 1  # what is left at last is that of the images, who err alike
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
@@ -223,20 +281,20 @@ def _sized_rung(scales: Scales, images: Sequence[Images | None], rtol: float, to
     )
 
 
-def _sized_body(scales: Scales, images: Images | None, resolution: Resolution) -> SizedBody:
-    """Body whose cells end with the surface, or so far out that nothing attracts there."""
-    make = partial(layered_panels, images) if images else compliance.panels
-    ends = math.isfinite(scales.profile.end)
-    last = at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf
-    outer = scales.profile.end if ends else scales.outer_radius((FAR * resolution.extent) ** 2 / 2)
+def _sized_body(
+    scales: Scales, images: Images | None, resolution: Resolution, to_load: float = COMPRESSION
+) -> Charting:
+    """Body whose surface ends, or a layered one."""
+    if images and math.isinf(scales.profile.end):
+        return LayeredHalfSpace(scales, images, resolution, to_load)
     return SizedBody(
         scales,
-        partial(_made, make, resolution.nodes),
+        partial(_made, partial(layered_panels, images) if images else compliance.panels, resolution.nodes),
         resolution.finest,
         resolution.growth,
-        np.array([outer]),
+        np.array([scales.profile.end]),
         FlatCoordinate(),
-        last,
+        at_equator(scales.tabor, scales.profile, resolution.nodes),
     )
 
 

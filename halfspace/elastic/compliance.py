@@ -60,6 +60,10 @@ class ElasticOperator(Valued):
         compliance = self.compliance[np.ix_(inside, inside)]
         return ElasticOperator(self.radii[inside], self.weights[inside], compliance, self.cells, self.cell_nodes)
 
+    def widened(self, nodes: int, reach: float) -> ElasticOperator:
+        """Return the body with other cells beyond its extent, see `to_infinity`."""
+        return to_infinity(self, nodes, reach)
+
     @property
     def follows_contact(self) -> bool:
         """False: this grid stands still; see `halfspace.elastic.operators` for those that do not."""

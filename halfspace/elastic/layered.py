@@ -17,7 +17,7 @@ S rises and falls, and depths and strengths are complex, of which the real part 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from itertools import product
 
 import numpy as np
@@ -25,7 +25,7 @@ from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 from scipy.special import ellipkm1
 
-from halfspace.elastic.compliance import ElasticOperator, panels
+from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
 from halfspace.elastic.grid import gauss_legendre
 from halfspace.elastic.kernel import near_moments
 from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
@@ -133,32 +133,50 @@ def layered_panels(images: Images, breakpoints: Array, nodes_per_panel: int) -> 
     The images are the body's; breakpoints (m + 1,), in beta, and nodes are as of `halfspace.elastic.compliance.panels`.
     """
     half_space = panels(breakpoints, nodes_per_panel)
-    below = image_integrals(images, half_space.radii, breakpoints, nodes_per_panel).reshape(half_space.compliance.shape)
-    return ElasticOperator(
-        half_space.radii, half_space.weights, half_space.compliance + below, half_space.cells, half_space.cell_nodes
-    )
+    return replace(half_space, compliance=half_space.compliance + image_compliance(images, half_space))
 
 
-def image_integrals(images: Images, radii: Array, breakpoints: Array, k: int) -> Array:
-    """Deflection (q, m, k) at the nodes by the images of the polynomial through each node of each panel.
+@dataclass(frozen=True, eq=False, repr=False)
+class LayeredOperator(ElasticOperator):
+    """Layered body on the grid of a half-space's operator; the rest is as of `image_compliance`."""
 
-    The radii (q,), Gauss's points of all m panels, and the breakpoints (m + 1,), their ends, are in beta; a panel has k
-    nodes.
+    images: Images
+    until: float
+
+    def widened(self, nodes: int, reach: float) -> ElasticOperator:
+        """Return the body with other cells beyond its extent, see `halfspace.elastic.compliance.to_infinity`."""
+        wide, inside = to_infinity(self, nodes, reach), np.count_nonzero(self.radii <= self.extent)
+        below = image_compliance(self.images, wide, self.until)
+        below[:inside, :inside] = 0.0  # where they are known
+        return replace(wide, compliance=wide.compliance + below)
+
+
+def layered(images: Images, half_space: ElasticOperator, until: float) -> LayeredOperator:
+    """Layered body on the grid of a half-space's panels, the last of which may be infinite; see `image_compliance`."""
+    own = {field.name: getattr(half_space, field.name) for field in fields(ElasticOperator)}
+    own["compliance"] = half_space.compliance + image_compliance(images, half_space, until)
+    return LayeredOperator(**own, images=images, until=until)
+
+
+def image_compliance(images: Images, body: ElasticOperator, until: float = np.inf) -> Array:
+    """What the images of a layered body deflect the nodes of a half-space's panels by pressures there, (q, q).
+
+    Cells that begin beyond a radius, in beta, and an infinite one are integrated by their nodes even where they are
+    longer than the first stratum is thick: too stiffly for what is pressed there, if anything is.
     """
-    left, right = breakpoints[:-1], breakpoints[1:]
-    integrals = _by_nodes(images, radii, (right - left) / 2, k)
-    distance = np.maximum(left - radii[:, None], radii[:, None] - right)
-    i, j = np.nonzero((distance < NEAR * (right - left)) & (right - left > images.smooth))
-    moments = near_moments(images.ring, radii[i], left[j], right[j], k, (NEAR_POINTS, GRADING))
-    integrals[i, j] = moments @ np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
-    return integrals
+    left, right, k = body.cells[:-1], body.cells[1:], body.cell_nodes.shape[1]
+    compliance = _by_nodes(images, body.radii, body.weights)
+    distance = np.maximum(left - body.radii[:, None], body.radii[:, None] - right)
+    i, j = np.nonzero((distance < NEAR * (right - left)) & (right - left > images.smooth) & (left < until))
+    moments = near_moments(images.ring, body.radii[i], left[j], right[j], k, (NEAR_POINTS, GRADING))
+    compliance[i[:, None], body.cell_nodes[j]] = moments @ np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
+    return compliance
 
 
-def _by_nodes(images: Images, radii: Array, half: Array, k: int) -> Array:
+def _by_nodes(images: Images, radii: Array, weights: Array) -> Array:
     """Gauss's rule at the nodes themselves, where all is smooth; the kernel is symmetric."""
     i, j = np.triu_indices(radii.size)
     kernel = np.zeros((radii.size, radii.size))
     kernel[i, j] = images.kernel(radii[i], radii[j])
     kernel[j, i] = kernel[i, j]
-    weights = (half[:, None] * gauss_legendre(k)[1]).ravel()
-    return np.asarray((kernel * radii * weights).reshape(radii.size, half.size, k))
+    return np.asarray(kernel * (weights / (2 * np.pi)))

@@ -9,7 +9,7 @@ the edge keeps its nodes along the whole path, and the contact radius is one mor
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Generic, Protocol, TypeVar
 
@@ -77,9 +77,13 @@ class Homogeneous(Valued):
     """A body without a length of its own, by its operator at the contact radius 1."""
 
     unit: ElasticOperator
-    _latest: _Latest[ElasticOperator] = field(default_factory=_Latest, compare=False, repr=False)
+    _latest: _Latest[ElasticOperator] = field(default_factory=_Latest, compare=False, repr=False, kw_only=True)
     follows_contact = True
-    least_radius = 0.0
+
+    @property
+    def least_radius(self) -> float:
+        """Least contact radius that it serves: any."""
+        return 0.0
 
     @property
     def axis_row(self) -> Array:
@@ -102,6 +106,65 @@ class Homogeneous(Valued):
     def root(self, scale: float) -> Array:
         """Square root of the balanced compliance."""
         return np.asarray(np.sqrt(scale) * self.unit.compliance_root)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class NearlyHomogeneous(Homogeneous):
+    """A homogeneous body and what another one has beside it, on a grid that is scaled with the contact.
+
+    `beside` (m, q, q) is what it has beside at the contact radii `scales` (m,) over these, see `chebyshev_radii`. The
+    singular part of the kernel is that of the homogeneous body: only what is smooth is interpolated.
+    """
+
+    scales: Array
+    beside: Array
+
+    @property
+    def least_radius(self) -> float:
+        """Least contact radius that it serves, a little below those at which it is known."""
+        return float(self.scales.min()) / OUTSIDE
+
+    def at(self, scale: float) -> ElasticOperator:
+        """Operator at a contact radius in beta."""
+        return self._latest.get(scale, self._made)
+
+    def _made(self, scale: float) -> ElasticOperator:
+        beside = self._combined(self._by_radius.at(scale)[0])
+        return replace(self.unit, compliance=self.unit.compliance + beside).scaled(scale)
+
+    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
+        """Derivatives by the scale of radii, weights and the deflection under a pressure."""
+        radii, weights, _ = super().rates(scale, pressure)
+        rate = self._combined(self._by_radius.at(scale)[1]) @ pressure
+        return radii, weights, self.at(scale).compliance @ pressure / scale + rate
+
+    def root(self, scale: float) -> Array:
+        """Square root of the balanced compliance."""
+        return self.at(scale).compliance_root
+
+    def _combined(self, weights: Array) -> Array:
+        return np.asarray(np.tensordot(weights, self.beside, 1))
+
+    @cached_property
+    def _by_radius(self) -> _Logarithmic:
+        return _Logarithmic(np.log(self.scales))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class _Logarithmic(Valued):
+    """Polynomials in the logarithm of a length through their values at some, log x (m,)."""
+
+    nodes: Array
+
+    def at(self, x: float) -> tuple[Array, Array]:
+        """Weights of the values at x, and of those in its derivative by log x, each (m,)."""
+        values, slopes = lagrange(self.nodes, self._barycentric, float(np.log(x)))
+        return np.array(values), np.array(slopes)
+
+    @cached_property
+    def _barycentric(self) -> Array:
+        t = self.nodes
+        return np.asarray(1 / (t[:, None] - t + np.eye(t.size)).prod(axis=1))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -247,8 +310,8 @@ class Interpolated(Valued):
     def _rows(self, scale: float) -> tuple[Array, Array]:
         """Weights of the operators at a scale, and their derivatives by the scale."""
         x = self.grid.edge(scale)
-        values, slopes = lagrange(self._log_edges, self._barycentric, float(np.log(x)))
-        return np.array(values), np.array(slopes) * (self.grid.edge_rate(scale) / x)
+        values, slopes = self._by_edge.at(x)
+        return values, slopes * (self.grid.edge_rate(scale) / x)
 
     def _combined(self, weights: Array) -> Array:
         """Weighted sum of the kernels, (q, q)."""
@@ -263,13 +326,8 @@ class Interpolated(Valued):
         )
 
     @cached_property
-    def _log_edges(self) -> Array:
-        return np.log([self.grid.edge(float(scale)) for scale in self.scales])
-
-    @cached_property
-    def _barycentric(self) -> Array:
-        t = self._log_edges
-        return np.asarray(1 / (t[:, None] - t + np.eye(t.size)).prod(axis=1))
+    def _by_edge(self) -> _Logarithmic:
+        return _Logarithmic(np.log([self.grid.edge(float(scale)) for scale in self.scales]))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

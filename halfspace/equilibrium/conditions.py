@@ -235,7 +235,7 @@ def relocate(event: Located, problem: Traceable, start: Array, metric: Metric) -
     """
     condition = event.condition
     if isinstance(condition, Steepest):
-        return steepest_from(problem, same_place(event.point, problem, start, metric), metric)
+        return steepest_from(problem, same_place(event.point, problem, start, metric), metric, WIDTHS[1:])
     try:
         found = _solved(problem, condition, start, metric, event.point, NEARBY)
     except NotConverged:
@@ -268,12 +268,15 @@ def _searched(event: Located, problem: Traceable, start: Array, metric: Metric) 
 TRIALS, PAST, LONGER = 4, 1.5, 3.0  # steps to beyond an event: how many, how far past it, how many times the last
 
 
-def steepest_from(problem: Traceable, point: Point, metric: Metric) -> Located:
+WIDTHS = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
+
+
+def steepest_from(problem: Traceable, point: Point, metric: Metric, widths: Sequence[float] = WIDTHS) -> Located:
     """Where the curve falls most steeply near a point: the least compliance, by parabolas ever narrower.
 
     NotConverged if there is no such place near.
     """
-    for width in WIDTHS:
+    for width in widths:
         sides = [correct(problem, point, h, predict(problem, point, h), metric, iterations=20) for h in (-width, width)]
         before, here, after = (STEEPEST.of(p) for p in (sides[0], point, sides[1]))
         bend = before - 2 * here + after
@@ -282,9 +285,6 @@ def steepest_from(problem: Traceable, point: Point, metric: Metric) -> Located:
         step = float(np.clip((before - after) / (2 * bend), -3, 3)) * width
         point = correct(problem, point, step, predict(problem, point, step), metric, iterations=20)
     return Located(STEEPEST, problem, point, 1.0)
-
-
-WIDTHS = (0.1, 0.03, 0.01, 0.003)  # of the parabolas, in arclength
 
 
 def same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from halfspace.elastic.compliance import ElasticOperator, to_infinity
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.contact import APPROACH, ContactProblem
@@ -40,7 +40,7 @@ def widened(problem: Traceable, approach: float) -> Traceable:
     if not body.beyond.size or reach <= scales.tail_reach:
         return problem
     nodes = min(body.beyond.size, body.cell_nodes.shape[1])
-    return replace(problem, operator=to_infinity(body, nodes, reach))
+    return replace(problem, operator=body.widened(nodes, reach))
 
 
 def _far_segment(first: Segment, jump: float) -> Segment:
