@@ -14,23 +14,10 @@ MOST_ITERATIONS = 100  # of Brent's method, which halves its interval at worst e
 
 
 def root(function: Callable[[float], float], first: float, last: float, what: str, **tolerances: Any) -> float:
-    """Root of a function between two places at which its signs differ.
+    """Root of a continuous function between two places at which its signs differ; else, or of nan, raise NotConverged.
 
-    Parameters
-    ----------
-    function : callable
-        Continuous between them.
-    first, last : float
-        The places.
-    what : str
-        What is sought and what to do if it is not there, for the error message: "the contact edge; refine the grid".
-    **tolerances
-        ``xtol``, absolute, and ``rtol``, of the place: the root is known to their sum.
-
-    Raises
-    ------
-    NotConverged
-        If the signs are the same, a value is not a number, or the interval does not shrink.
+    The error says what is sought and what to do if it is not there: "the contact edge; refine the grid". Tolerances are
+    ``xtol``, absolute, and ``rtol``, of the place: the root is known to their sum.
     """
     sought, _, remedy = what.partition("; ")
 

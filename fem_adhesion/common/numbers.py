@@ -59,13 +59,8 @@ class Quantity:
 def parse(text: str, name: str) -> float:
     """Read a positive quantity with its unit, such as ``100nm``, one of `KINDS` by its name, and return it in SI.
 
-    Any unit that pint knows will do: for a work of adhesion mN/m is as good as mJ/m^2.
-
-    Raises
-    ------
-    InputError
-        If the number or the unit is missing, the unit is unknown or of another dimension, or the number is not
-        positive and finite.
+    Any unit that pint knows will do: for a work of adhesion mN/m is as good as mJ/m^2. InputError if the number or the
+    unit is missing, the unit is unknown or of another dimension, or the number is not positive and finite.
     """
     example = KINDS[name][1]
     found = NUMBER_AND_UNIT.fullmatch(text)

@@ -136,15 +136,8 @@ def run(
 ) -> Iterator[Case | Failure]:
     """Compare scenes beside each other and give them in their order, each as soon as it and those before it are there.
 
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        What is compared.
-    rtol : float
-        Accuracy of the comparison.
-    jobs, dask : int and str, optional
-        Local processes, or the address of a cluster: see `fem_adhesion.common.jobs.stream`. One scene needs no other
-        process.
+    The comparison has the accuracy rtol; jobs are local processes and dask the address of a cluster, see
+    `fem_adhesion.common.jobs.stream`. One scene needs no other process.
     """
     of_scenes = [
         (Part(scene if scene.sized else replace(scene, tabor=1.0), False), Part(scene, True)) for scene in scenes

@@ -49,19 +49,11 @@ def read_scaled(path: str | Path) -> tuple[Any, float]:
     data "axis-contact-grip" (in any order, see ``meshio convert --sets-to-int-data``) or the boundaries that scikit-fem
     saves.
 
-    Returns
-    -------
-    mesh : skfem.MeshTri, MeshTri2, MeshQuad or MeshQuad2
-        Lengths in R, the pole at r = z = 0 and the body below, with the boundaries "axis", "contact" and "far", which
-        is the file's "grip". Unused nodes are dropped, a body is shifted along the axis to bring its pole to z = 0,
-        quadrilaterals of 8 nodes get the ninth where their own shape functions have it.
-    radius : float
-        R in the file's unit, 1 if that is R.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read or is no mesh of a body; it says what is wrong and what to do.
+    Given are the MeshTri, MeshTri2, MeshQuad or MeshQuad2 and R in the file's unit, 1 if that is R. The mesh's lengths
+    are in R, the pole is at r = z = 0 and the body below, with the boundaries "axis", "contact" and "far", which is the
+    file's "grip". Unused nodes are dropped, a body is shifted along the axis to bring its pole to z = 0, quadrilaterals
+    of 8 nodes get the ninth where their own shape functions have it. InputError if the file cannot be read or is no
+    mesh of a body says what is wrong and what to do.
     """
     try:
         mesh = _with_boundaries(_read(Path(path)))

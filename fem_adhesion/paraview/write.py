@@ -53,23 +53,10 @@ def write_states(
     ``body_0000.vtu`` has the meridian section in second-order cells, ``contact_0000.vtp`` the contact surface with the
     values of both solvers, ``solid_0000.vtu`` the solid. ``notes.json`` says in words what the arrays are.
 
-    Parameters
-    ----------
-    states : iterable of State
-        Of one scene, in order, from `fem_adhesion.fields.states_along`.
-    aside, directory : Path
-        Where to, and what that will become.
-    units : Units, optional
-        Of a material: points and arrays are in SI then, and the names of arrays end in their unit.
-    revolve : float, optional
-        Angle of the solid in degrees, 360 for all round; no solid unless given.
-
-    Raises
-    ------
-    InputError
-        If there are no states, units or angle do not fit, or pyvista is missing.
-    NotWritten
-        If the disk is full.
+    The states are of one scene, in order, from `fem_adhesion.fields.states_along`. With the units of a material points
+    and arrays are in SI, and the names of arrays end in their unit. There is a solid only if `revolve` gives its angle,
+    360 degrees for all round. InputError if there are no states, units or angle do not fit, or pyvista is missing;
+    NotWritten if the disk is full.
     """
     if revolve is not None:
         require_angle(revolve)
