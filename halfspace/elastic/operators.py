@@ -348,14 +348,14 @@ class _AtScale(Valued):
     @cached_property
     def operator(self) -> ElasticOperator:
         body, nodes = self.body, self.nodes
-        compliance = body._combined(self._rows[0]) / nodes.radii[body._larger] * nodes.weights
+        compliance = body._combined(self._rows[0]) * (nodes.weights / np.maximum.outer(nodes.radii, nodes.radii))
         ends = body.grid.coordinate.radius(body.grid.lines(self.scale))[0]
         return ElasticOperator(nodes.radii, nodes.weights, compliance, ends, body.operators[0].cell_nodes)
 
     @cached_property
     def kernel_rate(self) -> Array:
         """Derivative of the kernel by the scale, but for that of the radii, (q, q)."""
-        return self.body._combined(self._rows[1]) / self.nodes.radii[self.body._larger]
+        return self.body._combined(self._rows[1]) / np.maximum.outer(self.nodes.radii, self.nodes.radii)
 
 
 OUTSIDE = 1.3  # of the least radius: as far as the curve's own are apart there, and a step more
