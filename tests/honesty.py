@@ -340,8 +340,10 @@ def _finite_strain():
             (1, 1000, NeoHookean(), {"grip": "bonded"}),
             (2, 100, NeoHookean(0.2), {}),
             (1.5, 300, NeoHookean(0.499), {"grip": "bonded"}),
+            (1, 6, NeoHookean(), {}),
         )
     ]
+    scenes += [replace(_sphere(1, ratio, material=NeoHookean()), law=Dugdale(0.2)) for ratio in (30, 100)]
     nets = Net(scenes, _decades(3, 4, 5)), Net(scenes[:1], _decades(3))
     return Family(*nets, _by(fem_adhesion.trace), of_path, partial(relocated, truths.finite_strain))
 

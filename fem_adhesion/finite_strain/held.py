@@ -136,13 +136,6 @@ class HeldBody(Valued):
         """Number n of reduced unknowns."""
         return int(self.exterior.reduction.shape[1])
 
-    @property
-    def spreads(self) -> bool:
-        """Whether its far boundary may move along itself."""
-        space = self.body.space
-        along = space.components[0, space.boundary_functions("far")]
-        return bool(self.exterior.reduction.tocsr()[along].nnz)
-
     def unknowns(self, y: Array) -> Array:
         """All unknowns of the body, (N + M,)."""
         return np.asarray(self.exterior.reduction @ y)

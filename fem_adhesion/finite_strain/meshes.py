@@ -117,41 +117,30 @@ class Windows(Valued):
 class AroundEvents(Valued):
     """A discretisation on which every event has a mesh made for its own contact radius.
 
-    `everywhere` is for the points of a curve, `below` with elements of a lower degree, whose meshes are shared.
+    `everywhere` is for the points of a curve.
     """
 
     body: ScenesBody
     everywhere: Windows
-    below: AroundEvents | None = None
     made: list[tuple[float, FiniteStrainProblem]] = field(default_factory=list, compare=False, repr=False)
     farther = None
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event."""
-        _, problem = self.mesh(event)
+        problem = self.mesh(event)
         return Chart(problem, problem.body.unknowns)
 
-    def mesh(self, event: Located) -> tuple[float, FiniteStrainProblem]:
-        """Mesh for an event and the contact radius that it is made for, unless one made before will do."""
-        radius, apart = self._place(event)
-        for made in self.made:
-            if abs(radius - made[0]) <= apart:
-                return made
-        self.made.append((radius, self.body.meshed(radius, radius)))
-        return self.made[-1]
-
-    def _place(self, event: Located) -> tuple[float, float]:
-        """Contact radius that a mesh is wanted for, and how far off it may be: not at all from that of the one below.
-
-        An event may have moved on its mesh by more than meshes serve; it is the mesh that counts, not the event.
-        """
-        own = [radius for stage in (self, self.below) if stage for radius, at in stage.made if at is event.problem]
-        if own:
-            return own[0], 0.0
-        if self.below:
-            return self.below.mesh(event)[0], 0.0
+    def mesh(self, event: Located) -> FiniteStrainProblem:
+        """Mesh for an event, by its contact radius, unless one made before will do."""
+        for _, problem in self.made:  # on its own an event may have moved by more than that serves
+            if problem is event.problem:
+                return problem
         radius = float(np.nan_to_num(undeformed_radius(event.problem, event.point)))
-        return radius, NEARBY * radius
+        for made_for, problem in self.made:
+            if abs(radius - made_for) <= NEARBY * radius:
+                return problem
+        self.made.append((radius, self.body.meshed(radius, radius)))
+        return self.made[-1][1]
 
     @property
     def unknowns(self) -> int:

@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from fem_adhesion.bodies.body import FINEST, Discretisation
+from fem_adhesion.bodies.body import GROWTH, Discretisation
 from fem_adhesion.discretise import CURVE_DEGREE, sized_body
 from fem_adhesion.finite_strain.meshes import AroundEvents, ScenesBody, Windows
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
@@ -18,6 +18,7 @@ from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.refinement import Rung, ascend, climb
+from halfspace.accuracy.trace import TWIN
 from halfspace.equilibrium.charts import COMPRESSION, metric_for, moved, trace_charts
 from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, LOAD
@@ -32,9 +33,10 @@ from halfspace.values import Array, Valued
 WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a minute's work at 3
 TIGHTEST = 1e-6  # relative tolerance
 MOST_RUNGS = 2  # above the lowest
+OTHER_CELLS = 4.0  # halves of the change by other cells and a degree that may be left: it errs less, but not always
 LITTLE = 0.5  # R dgamma: a load past every event
 SOFT = 0.85  # part of the surface's stiffness to short waves, gone, from which solutions get lost
-FLATTENED = 0.08  # c dgamma/(E* R): up to 0.082 all spheres of tabor 0.5 to 1 bear a load, from 0.097 on none does
+FLATTENED = 0.13  # c dgamma/(E* R): up to 0.127 spheres of tabor 0.5 to 1 bear a load, at 0.169 one is lost
 SMALLEST_PART = 0.005  # of delta, in which it is raised where the linear body's events are too far away
 JUMPS = ("pull_off", "jump_on", "jump_off")
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
@@ -49,9 +51,10 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
     range, or does not go with finite strain; NotConverged if the curve or an event is lost, as where the material is
     squeezed or torn beyond what Newton's method follows.
 
-    Each event has a mesh of its own; its error estimate is half of its changes from the mesh of the curve and from
-    elements one degree lower. Its spread is that between the tractions that have an energy. The energy is nan with the
-    vertical traction, which has none; stability is as said at `FiniteStrainProblem.negative_directions`.
+    Each event has a mesh of its own, and another of other cells, for elements one degree lower; its error estimate is
+    half of the change from the mesh of the curve to these and twice that to the event's own. Its spread is that between
+    the tractions that have an energy. The energy is nan with the vertical traction, which has none; stability is as
+    said at `FiniteStrainProblem.negative_directions`.
     """
     _require(scene, rtol, to_load)
     if scene.tabor > WIDEST_TABOR:
@@ -73,28 +76,29 @@ class Stages(Valued):
 
     scene: Scene
     along: dict[int, Windows] = field(default_factory=dict, compare=False, repr=False)
-    about: dict[int, AroundEvents] = field(default_factory=dict, compare=False, repr=False)
 
     def rung(self, lowest: int, level: int) -> Rung:
-        """Rung of a level: events on meshes of their own, by the degree of the rung below and by one more."""
+        """Rung of a level: events on meshes of their own, by the degree below on other cells, then by one more."""
         degree = lowest + level
         windows = self.windows(degree)
         if not level:
             return Rung(lambda: windows, (windows,), asdict(windows.body.how))
-        stages = self.around(degree - 1, lowest), self.around(degree, lowest)
-        return Rung(lambda: windows, stages, asdict(stages[1].body.how))
+        stages = self.around(degree - 1, *TWIN[:2]), self.around(degree)
+        return Rung(lambda: windows, stages, asdict(stages[1].body.how), last=OTHER_CELLS)
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""
-        how = Discretisation(degree)
-        return self.along.setdefault(degree, Windows(ScenesBody(self.scene, how)))
+        return self.along.setdefault(degree, Windows(ScenesBody(self.scene, self._how(degree))))
 
-    def around(self, degree: int, lowest: int) -> AroundEvents:
-        """For events: the spike of tension is as wide as the surface is stiff; on the meshes of the lowest degree."""
-        below = self.around(degree - 1, lowest) if degree > lowest else None
-        how = Discretisation(degree, FINEST * (1 - softening(self.scene)))
-        stage = AroundEvents(ScenesBody(self.scene, how), self.windows(degree), below)
-        return self.about.setdefault(degree, stage)
+    def around(self, degree: int, finest: float = 1.0, growth: float = 1.0) -> AroundEvents:
+        """For events, on cells of other lengths and growth by these factors: stiff surfaces have wide spikes."""
+        how = self._how(degree)
+        how = replace(how, finest=finest * (1 - softening(self.scene)) * how.finest, growth=growth * how.growth)
+        return AroundEvents(ScenesBody(self.scene, how), self.windows(degree))
+
+    def _how(self, degree: int) -> Discretisation:
+        """Degree and cells, which grow the slower the more steeply the tension ends."""
+        return Discretisation(degree, growth=1 + (GROWTH - 1) * self.scene.scales.gradual)
 
 
 def _lowest_degree(rtol: float) -> int:
@@ -124,15 +128,15 @@ def _counted(event: Located, scene: Scene) -> Array:
 def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
     """Solve for pull-off and jumps alone, without the curve between: from those of the linear body.
 
-    Parameters and errors as of `trace`, without the limit of the Tabor parameter. The error estimates are half the
-    changes from elements one degree lower.
+    Parameters, errors and error estimates as of `trace`, without the limit of the Tabor parameter; in the place of the
+    curve's mesh each event has one of its own.
     """
     _require(scene, rtol, COMPRESSION)
     stages, lowest = Stages(scene), _lowest_degree(rtol)
-    start, rung = stages.around(lowest, lowest), partial(stages.rung, lowest)
+    start, rung = stages.around(lowest), partial(stages.rung, lowest)
     found = {name: event for name, event in find_events(_linear_curve(scene, LITTLE)).items() if name in JUMPS}
     with _cause_told(scene):
-        state = {name: raised(event, start.mesh(event)[1]) for name, event in found.items()}
+        state = {name: raised(event, start.mesh(event)) for name, event in found.items()}
         ascent = ascend(state, rung(0), rtol, rung, range(1, 1 + MOST_RUNGS))
         for event in ascent.chains[0][-1].values():
             event.problem.require_resolution(event.point.x)
@@ -155,7 +159,7 @@ def _cause_told(scene: Scene) -> Iterator[None]:
             f"({error}); take traction = 'reference', or a radius_ratio above it"
         ) from error
     except NotConverged as error:
-        if part < SOFT and not (part and isinstance(error, IllPosed)):
+        if part < SOFT and ratio >= round_from and not (part and isinstance(error, IllPosed)):
             raise
         raise IllPosed(
             f"radius_ratio = {ratio:g} is close to its limit {ratio * part**2:.3g} for traction = "

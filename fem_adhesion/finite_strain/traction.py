@@ -26,6 +26,15 @@ a change of the law. It moves the surfaces' equilibrium, too, and deepens it fro
 * ``vertical``: the work of the traction in a displacement v is -int P v_z dA over the deformed area: stretched matter
   counts as new matter. It has no energy.
 
+All that is of a deep column. At the equator of a sphere a column has no depth; one from H down to H_0 has the energy
+(1 + c theta) [Phi(H) - Phi(H_0)] dA_0, and no surface stress is left where H = H_0. Were c Phi to end there at once, it
+would pull on the equator with f = delta c Phi/mu per length, on either half of the sphere. Under a line force the
+displacement has no bound, u = -(4 f/pi) ln s at a distance s, nor have the energy and the load: each cut of the cells,
+and each degree, would go on adding dW = 8 delta c^2 Phi P/mu d(ln s) to them. So c falls to zero there, within eps,
+closer than which no surface law has a meaning: with the height d above the equator's plane, in eps, to
+
+    c [1 - exp(-d^2)].
+
 The surface stress c Phi couples a wave of the surface's height with its slope along the surface, with c sigma, and both
 with the body's stiffness per wave number k: on a half-space
 
@@ -98,30 +107,32 @@ def yielded_adhesion(tabor: float, radius_ratio: float, poisson: float, law: Law
 class Traction(Valued):
     """Forces of a surface law by a convention, at the Tabor parameter mu.
 
-    The stretch is that of the deformed area, delta = beta/R.
+    The stretch is that of the deformed area, delta = beta/R; columns (q,) are the parts of the convention's numbers
+    that hold over what matter there is below the points: 1 but next to an equator.
     """
 
     surface: ContactSurface
     tabor: float
     stretch: float
     convention: Convention
+    columns: Array
 
     def areas(self, s: Array) -> Array:
         """Weights of the horizontal area, (q,), in beta^2."""
-        part = self.convention.deformed_area
+        part = self._deformed_area
         undeformed, deformed = (self.surface.areas(s, stretch) for stretch in (0.0, self.stretch))
         return np.asarray((1 - part) * undeformed + part * deformed)
 
     def area_gradient(self, s: Array, amounts: Array) -> Array:
         """Derivative by s of the areas, summed with the given amounts (q,), (m,)."""
-        return self.surface.area_gradient(s, self.stretch, self.convention.deformed_area * amounts)
+        return self.surface.area_gradient(s, self.stretch, self._deformed_area * amounts)
 
     def forces(self, s: Array, P: Array, Phi: Array) -> Array:
         """Less the forces on the surface's unknowns, (m,), in R dgamma: upwards where the pressure is downwards.
 
         s (m,) are the unknowns of the surface, P and Phi (q,) the pressure and energy of the law.
         """
-        spreading = self.surface.area_gradient(s, self.stretch, self.convention.surface_stress / self.tabor * Phi)
+        spreading = self.surface.area_gradient(s, self.stretch, self._surface_stress / self.tabor * Phi)
         return np.asarray((P * self.areas(s)) @ self.surface.vertical + spreading)
 
     def tangent(self, s: Array, P: Array, Phi: Array, slope: Array) -> Array:
@@ -130,7 +141,20 @@ class Traction(Valued):
         V = surface.vertical
         tangent = V.T @ ((-mu * slope * self.areas(s))[:, None] * V)
         if delta and (c.deformed_area or c.surface_stress):
-            coupling = V.T @ (P[:, None] * surface.area_rates(s, delta))
+            coupling = V.T @ ((self.columns * P)[:, None] * surface.area_rates(s, delta))
             tangent += c.deformed_area * coupling + c.surface_stress * coupling.T
-            tangent += surface.area_curvature(delta, c.surface_stress / mu * Phi)
+            tangent += surface.area_curvature(delta, self._surface_stress / mu * Phi)
         return np.asarray(tangent)
+
+    @property
+    def _deformed_area(self) -> Array:
+        return self.convention.deformed_area * self.columns
+
+    @property
+    def _surface_stress(self) -> Array:
+        return self.convention.surface_stress * self.columns
+
+
+def columns(depths: Array) -> Array:
+    """Parts of a convention's numbers that hold over matter of these depths in eps, infinite but over a sphere."""
+    return np.asarray(-np.expm1(-(depths**2)))

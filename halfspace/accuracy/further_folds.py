@@ -64,6 +64,7 @@ class FurtherFolds(Valued):
     twin: Stage | None
     remaining: float
     along: bool
+    last: float
 
     @property
     def chains(self) -> list[list[State]]:
@@ -112,7 +113,7 @@ class FurtherFolds(Valued):
 
     def events(self) -> Mapping[str, Event]:
         """The folds with their errors."""
-        return estimate_all(self.chains, self.remaining, along=self.along) if self.chains else {}
+        return estimate_all(self.chains, self.remaining, along=self.along, last=self.last) if self.chains else {}
 
     def stage(self, number: int) -> State:
         """The folds on one of the discretisations from the rung below the last to the finest."""

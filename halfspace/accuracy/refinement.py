@@ -45,10 +45,10 @@ class Rung(Valued):
     the finest. The changes add up to the error. On the lowest rung they only prepare, and there may be none. The twin
     is as fine as the rung below, with other cells: it errs as much, but not by the same accident of sign.
 
-    `remaining` is the part of the changes that may be left as error, above 1 where it falls slowly from stage to stage.
-    `along` says whether the shift of an event along the path counts, see `halfspace.equilibrium.events.estimate_event`:
-    on grids that follow the contact, whose radius tells it precisely, and where there is no twin to guard against
-    chance.
+    `remaining` is the part of the changes that may be left as error, above 1 where it falls slowly from stage to stage,
+    and of the last change `last` times as much, where that is from other cells with no twin beside. `along` says
+    whether the shift of an event along the path counts, see `halfspace.equilibrium.events.estimate_event`: on grids
+    that follow the contact, whose radius tells it precisely, and where there is no twin to guard against chance.
     """
 
     curve: Callable[[], Iterable[Chart]]
@@ -57,6 +57,7 @@ class Rung(Valued):
     twin: Stage | None = None
     remaining: float = REMAINING
     along: bool = False
+    last: float = 1.0
 
 
 def climb(
@@ -98,18 +99,20 @@ def _climb_from(
     ascent = ascend(state, lowest, rtol, rung, range(start + 1, start + most_rungs + 1))
     below, higher, chains, events = ascent.below, ascent.higher, ascent.chains, ascent.events
     state = chains[0][-1]
-    margin = _margin(chains, higher.remaining)
+    margin = _margin(chains, higher)
     if folds and margin and margin.value + margin.error < 0 and "jump_on" not in events:
         raise FoldsLost("the curve folds on a finer grid, but not on its own; take a smaller rtol")
     before = (*lowest.stages, *(() if below is lowest else below.stages[-1:]))
     traced = segments if folds else ()
     jumps = tuple(state[name] for name in FOLDS if name in state)
-    further = FurtherFolds(traced, jumps, before, higher.stages, higher.twin, higher.remaining, higher.along)
+    further = FurtherFolds(
+        traced, jumps, before, higher.stages, higher.twin, higher.remaining, higher.along, higher.last
+    )
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,
         Completed(events, further.events),
-        _energy(chains, higher.remaining),
+        _energy(chains, higher),
         tuple(Completed(state, partial(further.stage, number)) for number, state in enumerate(chains[0])),
         higher.stages[-1],
         time.perf_counter() - began,
@@ -138,7 +141,7 @@ def ascend(state: State, higher: Rung, rtol: float, rung: Callable[[int], Rung],
     for level in levels:
         below, higher = higher, rung(level)
         chains = step_up(state, higher.stages, higher.twin)
-        state, events = chains[0][-1], estimate_all(chains, higher.remaining, along=higher.along)
+        state, events = chains[0][-1], estimate_all(chains, higher.remaining, along=higher.along, last=higher.last)
         if not Tolerance.on(events, rtol).missed(events):
             break
     return Ascent(below, higher, chains, events)
@@ -151,15 +154,15 @@ def _ways(below: Stage, higher: Rung) -> Ways:
     return (tuple(chain), (partial(placed, higher.twin.everywhere), chain[-1])) if higher.twin else (tuple(chain),)
 
 
-def _margin(chains: Sequence[Sequence[State]], remaining: float) -> Estimate | None:
+def _margin(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate | None:
     """How far the curve is from folds, with the error that the changes along the chains leave."""
     if "steepest" not in chains[0][-1]:
         return None
     values = [[STEEPEST.of(state["steepest"].point) for state in chain] for chain in chains]
-    return Estimate(values[0][-1], remaining * change_along(values) + FLAT)
+    return Estimate(values[0][-1], rung.remaining * change_along(values, rung.last) + FLAT)
 
 
-def _energy(chains: Sequence[Sequence[State]], remaining: float) -> Estimate:
+def _energy(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate:
     values = [[energy_released(state) for state in chain] for chain in chains]
     best = values[0][-1]
-    return Estimate(best, remaining * change_along(values) + ROUND_OFF * (1 + abs(best)))
+    return Estimate(best, rung.remaining * change_along(values, rung.last) + ROUND_OFF * (1 + abs(best)))

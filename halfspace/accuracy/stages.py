@@ -59,9 +59,10 @@ class FoldsLost(NotConverged):
     """Folds about to merge are found on one rung but not on another."""
 
 
-def change_along(values: Sequence[Sequence[float]]) -> float:
-    """Sum of the changes along a chain, the largest of all chains."""
-    return max(float(np.sum(np.abs(np.diff(chain)))) for chain in values)
+def change_along(values: Sequence[Sequence[float]], last: float) -> float:
+    """Sum of the changes along a chain, of which the last counts so many times, the largest of all chains."""
+    changes = [np.abs(np.diff(chain)) for chain in values]
+    return max(float(np.sum(change) + (last - 1) * change[-1]) for change in changes)
 
 
 def step_up(state: State, stages: Sequence[Stage], twin: Stage | None) -> list[list[State]]:
@@ -91,8 +92,8 @@ def moved_to(event: Located, stage: Stage) -> Located:
     return event if stage(event).problem is event.problem else settled(event, stage, partial(moved_near, stage))
 
 
-def estimate_all(chains: Sequence[Sequence[State]], remaining: float, *, along: bool) -> dict[str, Event]:
+def estimate_all(chains: Sequence[Sequence[State]], remaining: float, *, along: bool, last: float) -> dict[str, Event]:
     """Events of the last state, with their changes along the chains as errors."""
     names = [name for name in chains[0][-1] if is_event(name)]
     by_name = {name: [[state[name] for state in chain] for chain in chains] for name in names}
-    return {name: estimate_event(name, own, remaining, along=along) for name, own in by_name.items()}
+    return {name: estimate_event(name, own, remaining, along=along, last=last) for name, own in by_name.items()}

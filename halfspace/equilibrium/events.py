@@ -141,25 +141,24 @@ def estimate_event(
     remaining: float = REMAINING,
     along: bool = False,
     least: Array | float = 0.0,
+    last: float = 1.0,
 ) -> Event:
     """Turn an event into numbers with error estimates.
 
     A chain has the event on discretisations that differ in one respect from one to the next, all chains ending with the
-    best. Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
-    share by accident is not taken for exact. The radius, which at a point errs more than the rest and in turns, is
-    known no better than to what the polynomials there end with; where there is but one chain, or `along`, nor is the
-    gap. `remaining` is the part of that change that may be left, `least` (4,) the changes of the observables that count
-    where the chains' own are less.
+    best. Along a chain the changes add up, the last one `last` times; of several chains the largest sum counts, so that
+    a number that two grids share by accident is not taken for exact. The radius, which at a point errs more than the
+    rest and in turns, is known no better than to what the polynomials there end with; where there is but one chain, or
+    `along`, nor is the gap. `remaining` is the part of that change that may be left, `least` (4,) the changes of the
+    observables that count where the chains' own are less.
 
     If `along`, an observable's change is taken to be no less than what the event's shift along the path makes of it: on
     a single chain, one number may stand still by accident while the event moves. For stationary conditions only. Nor do
     the gap and radius, which are at a point, then fall as averages do: the changes of all chains add up.
     """
     values = chains[0][-1].point.observables
-    changes = [
-        sum((np.abs(b.point.observables - a.point.observables) for a, b in pairwise(chain)), np.zeros(4))
-        for chain in chains
-    ]
+    steps = [[np.abs(b.point.observables - a.point.observables) for a, b in pairwise(chain)] for chain in chains]
+    changes = [np.sum(step, axis=0) + (last - 1) * step[-1] for step in steps]
     whole = np.sum(changes, axis=0)
     if along and chains[0][-1].condition.stationary:
         changes += [shift for change in changes for shift in _shifted(chains[0][-1], change)]
