@@ -148,8 +148,8 @@ def test_energy_released_is_the_work_of_the_load():
             released -= weight * (end - start) / 2 * problem.load(x)
     assert energy_released(path.stages[0]) == pytest.approx(released, rel=1e-7, abs=0)
     assert abs(path.energy.value - released) <= path.energy.error < 1e-4
-    change = np.sum(np.abs(np.diff([energy_released(stage) for stage in path.stages])))
-    assert path.energy.error == pytest.approx(change / 2, rel=1e-3, abs=1e-10)
+    changes = np.abs(np.diff([energy_released(stage) for stage in path.stages]))
+    assert path.energy.error == pytest.approx(np.sum(changes[:-1]) / 2 + 2 * changes[-1], rel=1e-3, abs=1e-10)
 
 
 # --- spheres as small as their contact ---
@@ -272,7 +272,8 @@ def test_a_code_of_its_own_with_curved_elements_of_high_order_has_the_same_digit
     found = find_jumps(scene(traction=traction), 1e-6)
     load, approach = found["pull_off"].load, found["jump_on"].approach
     assert abs(load - pull_off) <= found["pull_off"].load_error + 1e-8 < 1e-7
-    assert abs(approach - jump_on) <= found["jump_on"].approach_error + 5e-8 < 1e-7
+    assert abs(approach - jump_on) <= found["jump_on"].approach_error + 5e-8  # half of the last digit
+    assert found["jump_on"].approach_error < 6e-8
 
 
 @pytest.mark.parametrize(
