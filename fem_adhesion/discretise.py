@@ -50,18 +50,9 @@ CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated 
 class Discretised(Valued):
     """The bodies of a scene and the contact problem on their surface.
 
-    Attributes
-    ----------
-    first : CondensedBody
-        The first body, as if it had the whole compliance 1/E*; see `Scene.shares`.
-    operator : ElasticOperator
-        Of both; its first nodes are those of the first body, any more are on a rim that is rigid.
-    surface : Surface
-        Undeformed gap.
-    scene : Scene
-        What was asked.
-    unknowns : int
-        Of both bodies.
+    The first is as if it had the whole compliance 1/E*, see `Scene.shares`. Operator and number of unknowns are of both
+    bodies: the operator's first nodes are those of the first body, any more are on a rim that is rigid. The surface is
+    that of the undeformed gap.
     """
 
     first: CondensedBody

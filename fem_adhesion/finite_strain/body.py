@@ -46,26 +46,12 @@ RECENT = 3  # states whose deformation is kept: the last, its trial, and the one
 class Body(Valued):
     """A neo-Hookean body of N displacement and M pressure unknowns, in this order; M = 0 for displacements alone.
 
-    Attributes
-    ----------
-    space : Space
-        Mesh and element of the displacements.
-    poisson : float
-        Poisson's ratio of small strains.
-    stretch : float
-        Stretch parameter delta = beta/R = sqrt(mu/rho), zero for the linear body.
-    functions : (3, n, q) array
-        A cell's n scalar functions at its q quadrature points, and their derivatives on the reference cell.
-    inverse : (2, 2, cells, q) array
-        Derivatives of the reference cell's coordinates by r and z.
-    radii, measure : (cells, q) array
-        r, and 2 pi r dr dz.
-    pressure_functions : (m, q) array
-        The pressure's m functions there, the same in every cell.
-    pressures : (cells, m) int array
-        Pressure unknowns of each cell, from 0.
-    products : (M, M) sparse array
-        Products of pressures, integrated over the body.
+    Poisson's ratio is that of small strains; the stretch delta = beta/R = sqrt(mu/rho) is zero for the linear body. A
+    cell has n scalar functions of displacement and m of pressure. `functions` (3, n, q) are the former at its q
+    quadrature points, with their derivatives on the reference cell, `inverse` (2, 2, cells, q) the derivatives of the
+    reference cell's coordinates by r and z, radii and measure (cells, q) r and 2 pi r dr dz. `pressure_functions`
+    (m, q) are the same in every cell, the numbers `pressures` (cells, m) are from 0, and `products` (M, M) are
+    those of two pressures, integrated over the body.
     """
 
     space: Space
