@@ -78,9 +78,13 @@ class Scales:
         ours, known = self.law, LENNARD_JONES
         return min(known.stiffness / ours.stiffness, (known.strength / ours.strength) ** 2)
 
+    def growth(self, most: float) -> float:
+        """Ratio of neighbouring cells away from the edge, `most` by most laws."""
+        return 1 + (most - 1) * self._gradual
+
     @cached_property
-    def gradual(self) -> float:
-        """Part of the growth of cells away from the edge that the law allows: less where the tension ends by a step.
+    def _gradual(self) -> float:
+        """Part of the growth of cells that the law allows: less where the tension ends by a step.
 
         A gap beyond the edge by H has opened over some distance d, so that a tension which falls within a part of H
         does within that part of d.

@@ -17,7 +17,7 @@ import halfspace
 from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck.references import elements_of
 from fem_adhesion.scene import Scene
-from halfspace import Coated
+from halfspace import Coated, Layer
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
@@ -332,8 +332,18 @@ def _radius_at(gap, event, inside):
 
 def test_only_a_law_that_ends_by_a_step_has_cells_that_grow_more_slowly():
     for law in LAWS[:-1]:
-        assert Scales(1.0, law).gradual == 1
-    assert Scales(1.0, Dugdale(0.1)).gradual < 0.5 * Scales(1.0, Dugdale(0.2)).gradual < 0.5
+        assert Scales(1.0, law).growth(3.0) == 3
+    sharper, softer = (Scales(1.0, Dugdale(width)).growth(3.0) - 1 for width in (0.1, 0.2))
+    assert sharper < softer / 2 < 1
+
+
+def test_a_law_that_ends_by_a_step_is_met_on_a_layer_by_as_few_nodes_as_others():
+    contact = {"law": Dugdale(0.135), "profile": Power(4), "body": Layer(8, 0.45)}
+    rough, fine = (halfspace.trace(0.34, **contact, rtol=rtol) for rtol in (1e-4, 1e-6))
+    assert not rough.missed
+    assert not fine.missed
+    assert fine.settings["events"]["nodes"] <= 12
+    assert_same(rough, fine)
 
 
 @pytest.mark.parametrize(

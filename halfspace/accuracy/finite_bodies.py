@@ -63,7 +63,7 @@ class SizedBody(Valued):
 
     `make` gives the operator and its number of unknowns from the ends of all cells, in the coordinate along the
     surface. `finest` is the length of the cells at the contact edge, in widths of the spike of tension there, `growth`
-    the ratio of neighbouring cells. `outer` (k,) are the last cells' ends, ascending, which do not move with the
+    the most ratio of neighbouring cells. `outer` (k,) are the last cells' ends, ascending, which do not move with the
     contact: their first is where the others end, the last of which is `last` long, in beta, if they are to be fine
     there too; see `at_equator`.
     """
@@ -82,6 +82,10 @@ class SizedBody(Valued):
         return self.finest * self.scales.spike_width / 2
 
     @property
+    def _growth(self) -> float:
+        return self.scales.growth(self.growth)
+
+    @property
     def until(self) -> float:
         """Contact radius in beta up to which the chart fine on the axis serves."""
         return LEAVE * self._reach
@@ -97,8 +101,8 @@ class SizedBody(Valued):
     def _graded(self, edge: float) -> Array:
         end = float(self.outer[0])
         if edge:
-            return grid.graded(edge, self.length, end, growth=self.growth, last=self.last)
-        return grid.fine_until(self._reach, self.length, end, growth=self.growth, last=self.last)
+            return grid.graded(edge, self.length, end, growth=self._growth, last=self.last)
+        return grid.fine_until(self._reach, self.length, end, growth=self._growth, last=self.last)
 
     def centred(self) -> Chart:
         """Chart fine on the axis."""
@@ -115,8 +119,8 @@ class SizedBody(Valued):
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
         widest = min(self.scales.widest_radius(to_load), WIDEST * self.scales.profile.end)
         end, edge = float(self.outer[0]), self.coordinate.of(widest)
-        inner = grid.geometric(1.0, 2 * self.length / edge, self.growth)
-        outside = grid.geometric(end, self.length, self.growth, self.last)
+        inner = grid.geometric(1.0, 2 * self.length / edge, self._growth)
+        outside = grid.geometric(end, self.length, self._growth, self.last)
         moving = self._moving(1 - inner[::-1], outside / end)
         return self.centred(), self.following(moving, radii_along(self.until, widest, apart))
 

@@ -106,7 +106,7 @@ def rings(
     length = finest * scales.spike_width / 2
     outer = scales.outer_radius(extent**2 / 2)
     widest, first = scales.widest_radius(to_load), scales.profile.first_cell(10.0**-nodes)
-    growth = 1 + (growth - 1) * scales.gradual
+    growth = scales.growth(growth)
     reach = EQUAL * length
     until = LEAVE * reach
     centred = grid.fine_until(reach, length, outer, growth=growth)
