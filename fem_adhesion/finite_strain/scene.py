@@ -98,7 +98,7 @@ class Stages(Valued):
 
     def _how(self, degree: int) -> Discretisation:
         """Degree and cells, which grow the slower the more steeply the tension ends."""
-        return Discretisation(degree, growth=1 + (GROWTH - 1) * self.scene.scales.gradual)
+        return Discretisation(degree, growth=self.scene.scales.growth(GROWTH))
 
 
 def _lowest_degree(rtol: float) -> int:
