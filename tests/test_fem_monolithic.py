@@ -12,7 +12,7 @@ from fem_adhesion.finite_strain.body import displacement_body
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Chart, metric_for, trace_charts
-from halfspace.equilibrium.conditions import EXTREMUM, FOLD, locate, relocate
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD, ROUND_OFF, locate, relocate
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.devices import energy_lost
 from halfspace.equilibrium.path import follow, make_point
@@ -148,11 +148,9 @@ def test_a_whole_curve_of_either_kind_of_problem_is_the_same():
     ]
     condensed, whole = (find_events(path) for path in paths)
     assert whole.keys() == condensed.keys()
-    # Newton's last step leaves 1e-12 of the gaps; the law makes ten times as much of it in the pressure.
-    last_step = 2e-11
     for name, event in condensed.items():
         np.testing.assert_allclose(
-            whole[name].point.observables, event.point.observables, rtol=1e-8, atol=last_step, err_msg=name
+            whole[name].point.observables, event.point.observables, rtol=1e-8, atol=2 * ROUND_OFF, err_msg=name
         )
     losses = [energy_lost(path, events) for path, events in zip(paths, (condensed, whole), strict=True)]
     assert losses[1] == pytest.approx(losses[0], rel=1e-7, abs=0)

@@ -343,7 +343,7 @@ def test_a_step_that_leaves_the_radii_for_which_an_operator_is_known_is_refused(
     monkeypatch.setattr(path_module, "_corrected", lambda *_: leapt)
     problem = SimpleNamespace(interface=SimpleNamespace(operator=SimpleNamespace(least_radius=0.1)))
     with pytest.raises(NotConverged, match=r"contact radius 0\.05 beta is below 0\.1 beta"):
-        path_module._advance(problem, [leapt], 0.1, None, Steps())
+        path_module._advance(problem, [leapt], 0.1, None, Steps(), ())
 
 
 @pytest.mark.parametrize("lost", [0, 1])

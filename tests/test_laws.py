@@ -17,14 +17,14 @@ import halfspace
 from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck.references import elements_of
 from fem_adhesion.scene import Scene
-from halfspace import Coated, Layer
+from halfspace import Coated
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
 from halfspace.laws.law import require_law
-from halfspace.profiles import PARABOLOID, Endless, Hyperboloid, Paraboloid, Power, RoundedPunch
+from halfspace.profiles import PARABOLOID, Endless, Hyperboloid, Paraboloid, Power, RoundedPunch, Sphere
 from halfspace.profiles.indentation import hertz_approach, hertz_load, hertz_radius, jkr_approach, jkr_load, jkr_radius
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
@@ -337,9 +337,15 @@ def test_only_a_law_that_ends_by_a_step_has_cells_that_grow_more_slowly():
     assert sharper < softer / 2 < 1
 
 
-def test_a_law_that_ends_by_a_step_is_met_on_a_layer_by_as_few_nodes_as_others():
-    contact = {"law": Dugdale(0.135), "profile": Power(4), "body": Layer(8, 0.45)}
-    rough, fine = (halfspace.trace(0.34, **contact, rtol=rtol) for rtol in (1e-4, 1e-6))
+def test_a_soft_contact_of_a_tip_like_a_punch_is_followed():
+    """Its gaps far out are 1e27 eps, in one matrix with those of the contact."""
+    contact = {"tabor": 3.0, "profile": Power(8)}
+    assert_same(*(halfspace.trace(**contact, rtol=rtol) for rtol in (1e-5, 1e-7)))
+
+
+def test_a_law_that_ends_by_a_step_is_met_on_a_sphere_by_fewer_nodes():
+    """With cells that grow threefold it took 16."""
+    rough, fine = (halfspace.trace(1.0, law=Dugdale(0.2), profile=Sphere(30), rtol=rtol) for rtol in (1e-4, 1e-6))
     assert not rough.missed
     assert not fine.missed
     assert fine.settings["events"]["nodes"] <= 12

@@ -165,10 +165,10 @@ class ContactProblem(Valued):
         return self._bordered(x, np.zeros(x.size))[:-1]
 
     def _bordered(self, x: Array, row: Array) -> Array:
-        """Jacobian with a row below it."""
-        J = np.zeros((x.size, x.size))
+        """Jacobian with a row below it, as Fortran has it: what is factorised need not be copied."""
+        J = np.zeros((x.size, x.size), order="F")
         np.multiply(self.operator_at(x).compliance, -self.tabor * self._acting(x).slope, out=J[:-2, :-2])
-        J.ravel()[: -2 * x.size : x.size + 1] += 1
+        np.einsum("ii->i", J)[:-2] += 1
         J[:-2, -2] = 1
         if self.follows_contact:
             J[:-2, -1] = self._by_scale(x)
@@ -192,11 +192,10 @@ class ContactProblem(Valued):
 
     def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Factorise the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
-        # Fortran's array is the transpose: it is factorised as it lies there.
-        lu, pivots, info = dgetrf(self._bordered(x, row).T, overwrite_a=True)
+        lu, pivots, info = dgetrf(self._bordered(x, row), overwrite_a=True)
         if info > 0:
             raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start")
-        return lambda rhs, _=0.0: np.asarray(dgetrs(lu, pivots, rhs, trans=1)[0])  # factors have all digits
+        return lambda rhs, _=0.0: np.asarray(dgetrs(lu, pivots, rhs)[0])  # factors have all digits
 
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap and contact radius (nan without contact), shape (4,)."""

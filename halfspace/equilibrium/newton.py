@@ -277,7 +277,7 @@ def turning_point(problem: Equilibrium, start: Array, weights: Array, direction:
 
 TURNS = 12  # steps towards a turning point
 ASTRAY = 0.01  # relative size of a step to the path, from where it cannot be told how the path goes
-TURNED = 1e-6  # relative size of the last of them: what it leaves goes as its square
+TURNED = 1e-7  # relative size of the last of them: what it leaves goes as its square
 LITTLE = 1e-6  # relative size of a change by which a derivative is taken
 
 
