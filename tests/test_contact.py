@@ -1,3 +1,6 @@
+import gc
+import weakref
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -9,6 +12,7 @@ from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import ContactProblem, count_negative
+from halfspace.equilibrium.prediction import passed, with_edge
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, PowerLaw
 from halfspace.profiles.sphere import SphereSurface
@@ -331,3 +335,30 @@ def test_of_few_coefficients_a_displacement_and_a_slope_are_no_ripple(nodes):
     flat = ContactProblem(operator, 1.0)
     tilted[:-2] += flat.profile.height(operator.radii)
     assert (flat.ripples(tilted)[0] < 1e-12) == (nodes > 2)
+
+
+def test_a_problem_that_is_left_frees_its_matrices_at_once():
+    """Without the collector of cycles, which does not see how large they are."""
+    chart, _ = half_space_charts(Scales(1.0), resolution_for(Scales(1.0), 1e-3))
+    problem, freed = chart.problem, weakref.ref(chart.problem)
+    problem.residual(problem.undeformed(-5.0))
+    gc.disable()
+    del problem, chart
+    try:
+        assert freed() is None
+    finally:
+        gc.enable()
+
+
+def test_a_state_is_extrapolated_through_three_better_than_through_two(problem, touching):
+    """As seen from a contact edge that runs over a grid which stands still."""
+    radii, x, states = (0.3, 0.33, 0.36, 0.39), touching, []
+    for radius in radii:
+        x = newton.solve(problem, x, newton.contact_radius(radius)).x
+        states.append(x)
+    trail = [passed(problem, state, radius) for state, radius in zip(states, radii, strict=True)]
+    two, three = (with_edge(problem, trail[k:3], states[2], radii[3]) for k in (1, 0))
+    errors = [np.abs(guess - states[3])[:-2].max() for guess in (two, three)]
+    assert errors[1] < errors[0] / 4
+    assert with_edge(problem, [passed(problem, problem.undeformed(-5.0), 0.2), trail[0]], states[0], 0.33) is None
+    assert with_edge(problem, trail[:2], states[1], 1e4) is None

@@ -21,7 +21,7 @@ from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, 
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES
+from halfspace.laws import LENNARD_JONES, Dlvo
 from halfspace.scales import Scales
 from halfspace.theories.layered import OnLayers
 
@@ -356,6 +356,25 @@ def test_a_bell_deflects_a_layer_on_a_scaled_grid_as_on_one_that_stands(charted)
     inside = there.radii < 10
     found = (there.compliance @ np.exp(-(there.radii**2)))[inside]
     assert found == pytest.approx(other.values_at(there.radii[inside], wanted), rel=0, abs=1e-7)
+
+
+def test_a_layer_widened_twice_keeps_its_images(charted):
+    body, _ = charted
+    standing = body.centred().problem.operator
+    twice, once = (operator.widened(6, 20.0) for operator in (standing.widened(6, 8.0), standing))
+    assert np.count_nonzero(standing.radii > standing.extent) > 0
+    np.testing.assert_array_equal(twice.radii, once.radii)
+    pressure = (1 + once.radii**2) ** -2.0
+    assert twice.compliance @ pressure == pytest.approx(once.compliance @ pressure, rel=1e-9, abs=1e-12)
+
+
+def test_a_law_with_two_edges_is_traced_on_a_layer():
+    """As thick as a half-space: 3.5 beta^2/R under a paraboloid."""
+    law = Dlvo(0.4, 1.0)
+    assert law.outermost
+    on_layer, alone = (trace(0.5, law=law, body=body, rtol=1e-4, to_load=20) for body in (Layer(1000, 0.3), None))
+    assert on_layer.met
+    assert on_layer.event("pull_off").load == pytest.approx(alone.event("pull_off").load, abs=1e-3)
 
 
 def test_the_scaled_operator_changes_with_the_contact_as_its_rates_say(charted):

@@ -117,7 +117,7 @@ def test_gaps_that_are_no_numbers_have_no_contact(segments):
 
 
 def test_singular_matrices_are_a_solvers_end():
-    with pytest.raises(NotConverged, match="tangent of a cell is singular; try"):
+    with pytest.raises(NotConverged, match=r"stiffness is singular; hold the body.* of a tangent: try"):
         inverses(np.zeros((1, 2, 2)))
     with pytest.raises(NotConverged, match="stiffness is singular; hold the body"):
         factor(np.zeros((2, 2)))

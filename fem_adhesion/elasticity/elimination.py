@@ -3,7 +3,7 @@
 A region is a few cells, or two neighbouring regions joined. What no cell outside of it shares is eliminated as soon as
 it is complete, so that a region is left with the unknowns on its rim and those that are kept: nested dissection, A.
 George, SIAM J. Numer. Anal. 10 (1973) 345-363. All matrices on the way are dense and of some hundred unknowns, and what
-is left at last is the stiffness of the surface itself: no right-hand side is solved for.
+is left at last is the stiffness of the surface itself; fields below are recovered from front to front.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def inverses(blocks: Array) -> Array:
     try:
         return np.asarray(np.linalg.inv(blocks), dtype=np.float64)
     except np.linalg.LinAlgError as error:
-        raise NotConverged("the tangent of a cell is singular; try another control or a nearer start") from error
+        raise NotConverged(f"{SINGULAR}; of a tangent: try another control or a nearer start") from error
 
 
 def eliminated(K: Array, count: int) -> Array:

@@ -300,8 +300,8 @@ class FiniteStrainProblem(Valued):
                 f"R dgamma, limit {MOST_DRAWN:g}; take a larger radius_ratio"
             )
 
-    def untold(self, x: Array) -> Array:  # noqa: ARG002 (nothing)
-        """Errors of the observables that the changes from degree to degree may not tell, (4,): none."""
+    def untold(self, x: Array) -> Array:  # noqa: ARG002 (the same in all states)
+        """Errors of the observables that the changes between discretisations may not tell, (4,): zero."""
         return np.array([0.0, 0.0, 0.0, np.nan])
 
     def elastic_energy(self, x: Array) -> float:

@@ -150,17 +150,16 @@ def _cause_told(scene: Scene) -> Iterator[None]:
     round_from = scene.tabor * (_surface_stress(scene) / FLATTENED) ** (2 / 3)
     try:
         yield
-    except ContactTooWide as error:
-        if ratio >= round_from:
-            raise
-        raise ContactTooWide(
-            f"radius_ratio = {ratio:g} is below {round_from:.3g} for tabor {scene.tabor:g} and traction = "
-            f"{scene.material.traction!r}: the sphere, of radius {R:.3g} beta, is drawn flat before it bears a load "
-            f"({error}); take traction = 'reference', or a radius_ratio above it"
-        ) from error
     except NotConverged as error:
-        if part < SOFT and ratio >= round_from and not (part and isinstance(error, IllPosed)):
-            raise
+        ill_posed = part >= SOFT or (part > 0 and isinstance(error, IllPosed))
+        if isinstance(error, ContactTooWide) or not ill_posed:
+            if ratio >= round_from:
+                raise
+            raise ContactTooWide(
+                f"radius_ratio = {ratio:g} is below {round_from:.3g} for tabor {scene.tabor:g} and traction = "
+                f"{scene.material.traction!r}: the sphere, of radius {R:.3g} beta, is drawn flat, or nearly so, before "
+                f"it bears a load ({error}); take traction = 'reference', or a radius_ratio above it"
+            ) from error
         raise IllPosed(
             f"radius_ratio = {ratio:g} is close to its limit {ratio * part**2:.3g} for traction = "
             f"{scene.material.traction!r}: the edge tension leaves {1 - part:.1%} of the surface's stiffness "

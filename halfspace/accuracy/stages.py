@@ -60,7 +60,10 @@ class FoldsLost(NotConverged):
 
 
 def change_along(values: Sequence[Sequence[float]], last: float) -> float:
-    """Sum of the changes along a chain, of which the last counts so many times, the largest of all chains."""
+    """Sum of the changes along a chain, of which the last counts so many times, the largest of all chains.
+
+    A chain has two values or more.
+    """
     changes = [np.abs(np.diff(chain)) for chain in values]
     return max(float(np.sum(change) + (last - 1) * change[-1]) for change in changes)
 

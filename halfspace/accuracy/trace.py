@@ -48,6 +48,7 @@ from halfspace.values import Array, Valued
 
 EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
 MOST_NODES = 16  # of a panel
+FAR = 100.0  # of the last cell on a layered body by itself, in extents: the energy left out is 1e-10 R dgamma eps
 # Found by trial; what each decides at half and at double is in tests/constants.py.
 ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
 MOST_CELLS = 100  # of one length
@@ -153,7 +154,8 @@ def _to_infinity(
 class LayeredHalfSpace(Valued):
     """Charts of a layered body: those of the half-space, with what its images have beside that.
 
-    Twice as far out as the half-space's finite cells end nothing is pressed that could deflect a layer.
+    Cells are integrated with all images up to twice the half-space's extent: what is pressed farther out is too little
+    to deflect a layer.
     """
 
     scales: Scales
@@ -285,16 +287,17 @@ def _sized_body(
     scales: Scales, images: Images | None, resolution: Resolution, to_load: float = COMPRESSION
 ) -> Charting:
     """Body whose surface ends, or a layered one."""
-    if images and math.isinf(scales.profile.end):
+    ends = math.isfinite(scales.profile.end)
+    if images and not ends and not scales.law.outermost:  # by such a law the half-space's grid does not scale
         return LayeredHalfSpace(scales, images, resolution, to_load)
     return SizedBody(
         scales,
         partial(_made, partial(layered_panels, images) if images else compliance.panels, resolution.nodes),
         resolution.finest,
         resolution.growth,
-        np.array([scales.profile.end]),
+        np.array([scales.profile.end if ends else scales.outer_radius((FAR * resolution.extent) ** 2 / 2)]),
         FlatCoordinate(),
-        at_equator(scales.tabor, scales.profile, resolution.nodes),
+        at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf,
     )
 
 

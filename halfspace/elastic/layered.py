@@ -148,14 +148,17 @@ class LayeredOperator(ElasticOperator):
         wide, inside = to_infinity(self, nodes, reach), np.count_nonzero(self.radii <= self.extent)
         below = image_compliance(self.images, wide, self.until)
         below[:inside, :inside] = 0.0  # where they are known
-        return replace(wide, compliance=wide.compliance + below)
+        return _with_images(self.images, wide, below, self.until)
 
 
 def layered(images: Images, half_space: ElasticOperator, until: float) -> LayeredOperator:
     """Layered body on the grid of a half-space's panels, the last of which may be infinite; see `image_compliance`."""
+    return _with_images(images, half_space, image_compliance(images, half_space, until), until)
+
+
+def _with_images(images: Images, half_space: ElasticOperator, below: Array, until: float) -> LayeredOperator:
     own = {field.name: getattr(half_space, field.name) for field in fields(ElasticOperator)}
-    own["compliance"] = half_space.compliance + image_compliance(images, half_space, until)
-    return LayeredOperator(**own, images=images, until=until)
+    return LayeredOperator(**own | {"compliance": half_space.compliance + below}, images=images, until=until)
 
 
 def image_compliance(images: Images, body: ElasticOperator, until: float = np.inf) -> Array:

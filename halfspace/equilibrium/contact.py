@@ -61,7 +61,9 @@ class _Acting(Valued):
     """Pressure and its slope, the room of the gaps, and rates by the scale, at the nodes in a state x, each (q,)."""
 
     state: bytes
-    problem: ContactProblem
+    law: Law
+    tabor: float
+    operator: Operator
 
     @property
     def x(self) -> Array:
@@ -69,19 +71,19 @@ class _Acting(Valued):
 
     @cached_property
     def pressure(self) -> Array:
-        return self.problem.law.pressure(self.x[:-2], self.problem.tabor)
+        return self.law.pressure(self.x[:-2], self.tabor)
 
     @cached_property
     def slope(self) -> Array:
-        return self.problem.law.slope(self.x[:-2], self.problem.tabor)
+        return self.law.slope(self.x[:-2], self.tabor)
 
     @cached_property
     def room(self) -> Array:
-        return self.problem.law.room(self.x[:-2])
+        return self.law.room(self.x[:-2])
 
     @cached_property
     def rates(self) -> tuple[Array, Array, Array]:
-        return self.problem.operator.rates(float(self.x[-1]), self.pressure)
+        return self.operator.rates(float(self.x[-1]), self.pressure)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -117,7 +119,7 @@ class ContactProblem(Valued):
         for known in self._latest:
             if known.state == state:
                 return known
-        self._latest.append(_Acting(state, self))
+        self._latest.append(_Acting(state, self.law, self.tabor, self.operator))
         return self._latest[-1]
 
     @property

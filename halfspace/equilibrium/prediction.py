@@ -51,10 +51,11 @@ def with_edge(problem: Traceable, trail: Sequence[Passed], near: Array, arclengt
         return None
     weights = _extrapolating(np.array([state.arclength for state in known]), arclength)
     radius = float(weights @ [state.radius for state in known])
-    if not radius > 0:
-        return None
     surface = problem.interface
-    radii = surface.operator_at(problem.surface_state(near)).radii
+    body = surface.operator_at(problem.surface_state(near))
+    if not 0 < radius < body.extent:
+        return None
+    radii = body.radii
     views = np.array([state.seen(radii, radius) for state in known])
     ahead, last_gaps = weights @ views, views[-1, :-1]
     gaps = np.maximum(ahead[:-1], last_gaps - LARGEST * surface.law.room(last_gaps))
