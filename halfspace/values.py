@@ -20,6 +20,7 @@ from halfspace.errors import InputError
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
+Mask = NDArray[np.bool_]
 
 FEW = 4
 """Items of a sequence, and numbers of an array, that are shown one by one."""

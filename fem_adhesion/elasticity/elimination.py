@@ -14,15 +14,12 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg.blas import dtrsm
 from scipy.linalg.lapack import dpotrf
 
 from halfspace.errors import NotConverged
-from halfspace.values import Array, Index, Valued
-
-Mask = NDArray[np.bool_]
+from halfspace.values import Array, Index, Mask, Valued
 
 LEAST = 8  # cells of the smallest regions: with fewer there are more steps, with more they are longer
 SINGULAR = "the stiffness is singular; hold the body, and mesh it without empty cells"

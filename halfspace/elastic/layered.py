@@ -30,7 +30,7 @@ from halfspace.elastic.grid import gauss_legendre
 from halfspace.elastic.kernel import near_moments
 from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
 from halfspace.errors import NotConverged
-from halfspace.values import Array, Valued
+from halfspace.values import Array, Index, Mask, Valued
 
 Complex = NDArray[np.complex128]
 
@@ -169,8 +169,7 @@ def image_compliance(images: Images, body: ElasticOperator, until: float = np.in
     """
     left, right, k = body.cells[:-1], body.cells[1:], body.cell_nodes.shape[1]
     compliance = _by_nodes(images, body.radii, body.weights)
-    distance = np.maximum(left - body.radii[:, None], body.radii[:, None] - right)
-    i, j = np.nonzero((distance < NEAR * (right - left)) & (right - left > images.smooth) & (left < until))
+    i, j = _near(body.radii, left, right, (right - left > images.smooth) & (left < until))
     moments = near_moments(images.ring, body.radii[i], left[j], right[j], k, (NEAR_POINTS, GRADING))
     compliance[i[:, None], body.cell_nodes[j]] = moments @ np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
     return compliance
@@ -183,3 +182,10 @@ def _by_nodes(images: Images, radii: Array, weights: Array) -> Array:
     kernel[i, j] = images.kernel(radii[i], radii[j])
     kernel[j, i] = kernel[i, j]
     return np.asarray(kernel * (weights / (2 * np.pi)))
+
+
+def _near(radii: Array, left: Array, right: Array, long: Mask) -> tuple[Index, Index]:
+    """Nodes and long cells, by their numbers, that lie near each other."""
+    distance = np.maximum(left - radii[:, None], radii[:, None] - right)
+    i, j = np.nonzero((distance < NEAR * (right - left)) & long)
+    return i, j
