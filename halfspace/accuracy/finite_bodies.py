@@ -176,24 +176,25 @@ def surroundings(rtol: float, level: int) -> tuple[float, int]:
 class AroundEvents(Valued):
     """Stage of a ladder on which every event has an operator made for its own contact radius.
 
-    An event is told better by cells that end at its contact edge than by those that stand on the axis, and leaves these
-    as soon as its contact is wider than one of them: earlier than the curve, which gets along with one chart for all
-    radii. The window is half the logarithmic width of the contact radii that a chart serves, with so many operators in
-    it, see `surroundings`. A fold is where a derivative vanishes, which errs by a power of it: windows that differ from
-    rung to rung let the error estimate see it. The curve ends at the load, in R dgamma.
+    An event may leave the chart that stands on the axis earlier than the curve, which gets along with one for all
+    radii: as soon as its contact is wider than so many of the cells there (`leave`). The window is half the logarithmic
+    width of the contact radii that a chart serves, with so many operators in it, see `surroundings`. A fold is where a
+    derivative vanishes, which errs by a power of it: windows that differ from rung to rung let the error estimate see
+    it. The curve ends at the load, in R dgamma.
     """
 
     body: Charting
     window: float = WINDOW
     count: int = AROUND
     to_load: float = COMPRESSION
+    leave: float = np.inf
     charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event, made unless one made before will do."""
         radius = float(event.point.observables[CONTACT_RADIUS])
         found_following = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
-        follows = found_following or radius > self.body.length
+        follows = found_following or radius > self.leave * self.body.length
         radius = radius if follows else 0.0
         for made_for, chart in self.charts:
             if abs(radius - made_for) <= self.window * radius:
