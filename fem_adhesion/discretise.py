@@ -89,7 +89,7 @@ def mesh_of(scene: Scene, core: Array, how: Discretisation) -> Any:
 
 def finest_length(scene: Scene, how: Discretisation) -> float:
     """Length of the cells at the contact edge in beta."""
-    return how.finest * scene.scales.spike_width / 2
+    return scene.scales.edge_cell(how.finest)
 
 
 def layout_of(scene: Scene, how: Discretisation) -> Layout:

@@ -78,6 +78,10 @@ class Scales:
         ours, known = self.law, LENNARD_JONES
         return min(known.stiffness / ours.stiffness, (known.strength / ours.strength) ** 2)
 
+    def edge_cell(self, finest: float) -> float:
+        """Length in beta of the cells at the contact edge, or on the axis, from that in widths of the spike there."""
+        return finest * self.spike_width / 2
+
     def growth(self, most: float) -> float:
         """Ratio of neighbouring cells away from the edge, `most` by most laws."""
         return 1 + (most - 1) * self._gradual

@@ -79,7 +79,7 @@ class SizedBody(Valued):
     @property
     def length(self) -> float:
         """Length of the cells at the contact edge, or on the axis, in beta."""
-        return self.finest * self.scales.spike_width / 2
+        return self.scales.edge_cell(self.finest)
 
     @property
     def _growth(self) -> float:

@@ -48,9 +48,8 @@ from halfspace.values import Array, Valued
 
 EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
 MOST_NODES = 16  # of a panel
-# Cells on the axis after which an event has its own that end at its contact edge: on those of the axis the
-# estimates of folds were up to a thousand times too large. By finite elements they were not; a
-# fifth of the time is saved there.
+# Cells on the axis after which an event has its own that end at its contact edge: on those of the axis the estimates of
+# folds were up to a thousand times too large. By finite elements they were not; a fifth of the time is saved there.
 EVENTS_LEAVE = 1.0
 FAR = 100.0  # of the last cell on a layered body by itself, in extents: the energy left out is 1e-10 R dgamma eps
 # Found by trial; what each decides at half and at double is in tests/constants.py.
@@ -108,7 +107,7 @@ def rings(
 
     `finest` is in widths of the spike, `extent` in those of the attraction, as in `Resolution`.
     """
-    length = finest * scales.spike_width / 2
+    length = scales.edge_cell(finest)
     outer = scales.outer_radius(extent**2 / 2)
     widest, first = scales.widest_radius(to_load), scales.profile.first_cell(10.0**-nodes)
     growth = scales.growth(growth)
@@ -170,7 +169,7 @@ class LayeredHalfSpace(Valued):
     @property
     def length(self) -> float:
         """Length of the cells at the contact edge, or on the axis, in beta."""
-        return self.resolution.finest * self.scales.spike_width / 2
+        return self.scales.edge_cell(self.resolution.finest)
 
     @cached_property
     def _half_space(self) -> tuple[Rings, tuple[compliance.ElasticOperator, compliance.ElasticOperator]]:
@@ -294,14 +293,17 @@ def _sized_body(
     ends = math.isfinite(scales.profile.end)
     if images and not ends and not scales.law.outermost:  # by such a law the half-space's grid does not scale
         return LayeredHalfSpace(scales, images, resolution, to_load)
+    make = partial(layered_panels, images) if images else compliance.panels
+    last = at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf
+    outer = scales.profile.end if ends else scales.outer_radius((FAR * resolution.extent) ** 2 / 2)
     return SizedBody(
         scales,
-        partial(_made, partial(layered_panels, images) if images else compliance.panels, resolution.nodes),
+        partial(_made, make, resolution.nodes),
         resolution.finest,
         resolution.growth,
-        np.array([scales.profile.end if ends else scales.outer_radius((FAR * resolution.extent) ** 2 / 2)]),
+        np.array([outer]),
         FlatCoordinate(),
-        at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf,
+        last,
     )
 
 
