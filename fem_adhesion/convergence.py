@@ -24,14 +24,15 @@ from fem_adhesion.mesh.block import graded_breaks
 from fem_adhesion.mesh.file import read_scaled
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import AroundEvents, surroundings
-from halfspace.accuracy.refinement import MOST_RUNGS, Rung, climb
-from halfspace.accuracy.stages import Charted, Charts
+from halfspace.accuracy.refinement import MOST_RUNGS, climb
+from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.accuracy.trace import TWIN, rings
 from halfspace.elastic.compliance import to_infinity
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import ErrorRule
 from halfspace.errors import GridTooCoarse
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array
@@ -108,7 +109,8 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     charted = tuple(Charted(block_charts(scene, stage, to_load)) for stage in stages)
     curve = partial(block_charts, scene, above, to_load)
     # A block of given size is compared with one other size only, and if both are small most of the error is left.
-    return Rung(curve, charted, above.settings, remaining=1.0 if block_size(scene) is None else 2.0)
+    rule = ErrorRule(1.0 if block_size(scene) is None else 2.0)
+    return Rung(curve, charted, above.settings, rule=rule)
 
 
 def resolution_for(scene: Scene, rtol: float, level: int) -> BlockResolution:
@@ -162,8 +164,7 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
         (AroundEvents(sized_body(scene, how), *surroundings(rtol, level), to_load),),
         asdict(how) | {"curve_degree": curve.degree},
         other if level and doubt.other_cells else None,
-        remaining=doubt.times * REMAINING,
-        along=True,
+        ErrorRule(doubt.times * REMAINING, along=True),
     )
 
 
@@ -194,7 +195,7 @@ def mesh_ladder(scene: Scene, unit: float, level: int) -> Rung:
     made = on_given_mesh(scene, level)
     charts = (Chart(made.problem, made.unknowns),)
     settings = {"mesh": str(scene.body.file), "pole_radius": unit, "degree": QUADRATIC.degree, "refined": level}
-    return Rung(lambda: charts, (Charted(charts),) if level else (), settings, remaining=1.0)
+    return Rung(lambda: charts, (Charted(charts),) if level else (), settings, rule=ErrorRule(1.0))
 
 
 QUADRATIC = Discretisation(2)

@@ -25,7 +25,8 @@ import numpy as np
 
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import AlongCurve, Made, SizedBody
-from halfspace.accuracy.refinement import Rung, climb
+from halfspace.accuracy.refinement import climb
+from halfspace.accuracy.stages import Rung
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import FlatCoordinate

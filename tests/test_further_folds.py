@@ -21,9 +21,8 @@ from fem_adhesion.curve import lines, record, terminal
 from fem_adhesion.curve.pictures import experiment
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace import Layer
-from halfspace.accuracy import further_folds as folds_module
 from halfspace.accuracy.fold_birth import count_folds
-from halfspace.accuracy.stages import on_all, step_up
+from halfspace.accuracy.stages import Rung, on_all
 from halfspace.accuracy.trace import _sized_body, half_space_charts, resolution_for, rings
 from halfspace.equilibrium import path as path_module
 from halfspace.equilibrium.charts import moved, trace_charts
@@ -349,14 +348,14 @@ def test_a_step_that_leaves_the_radii_for_which_an_operator_is_known_is_refused(
 @pytest.mark.parametrize("lost", [0, 1])
 def test_a_fold_that_no_finer_grid_has_is_told(monkeypatch, lost):
     """Folds come in pairs: with one the other is in doubt as well."""
-    path, ups = halfspace.trace(5.0, rtol=1e-3), iter(range(9))
+    path, ups, chains = halfspace.trace(5.0, rtol=1e-3), iter(range(9)), Rung.chains
 
-    def on_finer_grids(state, *_):
+    def on_finer_grids(rung, state):
         if next(ups) == lost:
             raise NotConverged("not found again")
-        return step_up(state, *_)
+        return chains(rung, state)
 
-    monkeypatch.setattr(folds_module, "step_up", on_finer_grids)
+    monkeypatch.setattr(Rung, "chains", on_finer_grids)
     assert list(path.events) == ["pull_off", "jump_on", "jump_off", "zero_load"]
     true = halfspace.trace(5.0, rtol=1e-3)
     monkeypatch.undo()
@@ -376,13 +375,14 @@ def test_folds_left_over_are_named_in_turn_as_least_and_largest_approaches(monke
     """Of four with the second lost, the first and the last are a pair; the third is as the first."""
     path, whole = (halfspace.trace(20.0, rtol=1e-3) for _ in range(2))
     every, ups = [whole.event(f"fold_{k}").approach for k in range(2, 6)], iter(range(9))
+    chains = Rung.chains
 
-    def on_finer_grids(state, *_):
+    def on_finer_grids(rung, state):
         if next(ups) == 1:
             raise NotConverged("not found again")
-        return step_up(state, *_)
+        return chains(rung, state)
 
-    monkeypatch.setattr(folds_module, "step_up", on_finer_grids)
+    monkeypatch.setattr(Rung, "chains", on_finer_grids)
     kept = [path.events[name].approach for name in path.events if name.startswith("fold")]
     assert kept == [every[0], every[3]]
     assert len(path.unconfirmed) == 2

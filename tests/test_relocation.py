@@ -146,7 +146,7 @@ def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, other):
         SimpleNamespace(condition=own, problem=problem, point=SimpleNamespace(observables=v, rates=rates, x=None))
         for v in values
     ]
-    event = events.estimate_event("any", [chain], 0.5, along=True)
+    event = events.estimate_event("any", [chain], events.ErrorRule(along=True))
     assert event.contact_radius_error == pytest.approx(0.5 * 4e-6 / 2.0 * 0.5, rel=1e-4)
     assert event.central_gap_error == pytest.approx(0.5 * 4e-6 / 2.0 * 1.0, rel=1e-4)
     assert (event.approach_error, event.load_error)[own.observable] < 1e-10

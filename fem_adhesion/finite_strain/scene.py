@@ -17,13 +17,14 @@ from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.refinement import Rung, ascend, climb
+from halfspace.accuracy.refinement import ascend, climb
+from halfspace.accuracy.stages import Rung
 from halfspace.accuracy.trace import TWIN
 from halfspace.equilibrium.charts import COMPRESSION, metric_for, moved, trace_charts
 from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import Event, usual
+from halfspace.equilibrium.events import ErrorRule, Event, usual
 from halfspace.equilibrium.path import Segment
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
@@ -84,7 +85,7 @@ class Stages(Valued):
         if not level:
             return Rung(lambda: windows, (windows,), asdict(windows.body.how))
         stages = self.around(degree - 1, *TWIN[:2]), self.around(degree)
-        return Rung(lambda: windows, stages, asdict(stages[1].body.how), last=OTHER_CELLS)
+        return Rung(lambda: windows, stages, asdict(stages[1].body.how), rule=ErrorRule(last=OTHER_CELLS))
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""

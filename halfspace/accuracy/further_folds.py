@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from halfspace.accuracy.stages import Stage, State, estimate_all, moved_to, step_up
+from halfspace.accuracy.stages import Rung, Stage, State, moved_to
 from halfspace.equilibrium.conditions import FOLD, Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.events import EVENTS, Event, Unconfirmed, numbered
@@ -54,17 +54,13 @@ class FurtherFolds(Valued):
     """Folds between the jumps, solved for as the other events and known as well.
 
     The segments are the curve as it was traced, the jumps the outermost folds, on the finest discretisation. On each of
-    the stages `before` an event is solved for on the way to the last rung; `stages` and the rest are of that.
+    the stages `before` an event is solved for on the way to the last rung.
     """
 
     segments: tuple[Segment, ...]
     jumps: tuple[Located, ...]
     before: tuple[Stage, ...]
-    stages: tuple[Stage, ...]
-    twin: Stage | None
-    remaining: float
-    along: bool
-    last: float
+    last: Rung
 
     @property
     def chains(self) -> list[list[State]]:
@@ -107,13 +103,13 @@ class FurtherFolds(Valued):
             with suppress(NotConverged):
                 fold = moved_to(fold, stage)
         try:
-            return [[state[""] for state in chain] for chain in step_up({"": fold}, self.stages, self.twin)]
+            return [[state[""] for state in chain] for chain in self.last.chains({"": fold})]
         except NotConverged:
             return []
 
     def events(self) -> Mapping[str, Event]:
         """The folds with their errors."""
-        return estimate_all(self.chains, self.remaining, along=self.along, last=self.last) if self.chains else {}
+        return self.last.estimates(self.chains) if self.chains else {}
 
     def stage(self, number: int) -> State:
         """The folds on one of the discretisations from the rung below the last to the finest."""

@@ -8,25 +8,16 @@ half of it where the higher rung leaves a third of that error at most, more wher
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 from halfspace.accuracy.further_folds import Completed, FurtherFolds
-from halfspace.accuracy.stages import (
-    Charted,
-    FoldsLost,
-    Stage,
-    State,
-    change_along,
-    estimate_all,
-    on_all,
-    step_up,
-)
-from halfspace.equilibrium.charts import COMPRESSION, Chart, placed, trace_charts
+from halfspace.accuracy.stages import Charted, FoldsLost, Rung, Stage, State, on_all
+from halfspace.equilibrium.charts import COMPRESSION, placed, trace_charts
 from halfspace.equilibrium.conditions import ROUND_OFF, STEEPEST
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import FOLDS, REMAINING, Event, Tolerance
+from halfspace.equilibrium.events import FOLDS, Event, Tolerance
 from halfspace.equilibrium.search import energy_released, find_events, folds_in_doubt
 from halfspace.equilibrium.states import Ways
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
@@ -34,30 +25,6 @@ from halfspace.values import Estimate, Valued
 
 MOST_RUNGS = 4  # above the lowest
 FLAT = 1e-9  # eps/(R dgamma), of it: what the last of the parabolas and rounding leave
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Rung(Valued):
-    """One step of a ladder of discretisations.
-
-    `curve` makes the charts for tracing the curve on this rung; they need not all be made before. On each of the stages
-    every event is solved for; each differs from the one before in one respect, the last, which the settings tell, is
-    the finest. The changes add up to the error. On the lowest rung they only prepare, and there may be none. The twin
-    is as fine as the rung below, with other cells: it errs as much, but not by the same accident of sign.
-
-    `remaining` is the part of the changes that may be left as error, above 1 where it falls slowly from stage to stage,
-    and of the last change `last` times as much, where that is from other cells with no twin beside. `along` says
-    whether the shift of an event along the path counts, see `halfspace.equilibrium.events.estimate_event`: on grids
-    that follow the contact, whose radius tells it precisely, and where there is no twin to guard against chance.
-    """
-
-    curve: Callable[[], Iterable[Chart]]
-    stages: tuple[Stage, ...]
-    settings: Mapping[str, object]
-    twin: Stage | None = None
-    remaining: float = REMAINING
-    along: bool = False
-    last: float = 1.0
 
 
 def climb(
@@ -103,11 +70,8 @@ def _climb_from(
     if folds and margin and margin.value + margin.error < 0 and "jump_on" not in events:
         raise FoldsLost("the curve folds on a finer grid, but not on its own; take a smaller rtol")
     before = (*lowest.stages, *(() if below is lowest else below.stages[-1:]))
-    traced = segments if folds else ()
     jumps = tuple(state[name] for name in FOLDS if name in state)
-    further = FurtherFolds(
-        traced, jumps, before, higher.stages, higher.twin, higher.remaining, higher.along, higher.last
-    )
+    further = FurtherFolds(segments if folds else (), jumps, before, higher)
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,
@@ -119,7 +83,7 @@ def _climb_from(
         {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
         below.stages[-1] if below.stages else None,
         higher.twin or (higher.stages[-2] if len(higher.stages) > 1 else None),
-        higher.remaining,
+        higher.rule.remaining,
         _ways(below.stages[-1] if below.stages else Charted(tuple(charts)), higher),
         margin,
         left_out=further.unconfirmed,
@@ -140,8 +104,8 @@ def ascend(state: State, higher: Rung, rtol: float, rung: Callable[[int], Rung],
     """Solve for the events of a rung on those of the levels above it, one after the other, until `rtol` is met."""
     for level in levels:
         below, higher = higher, rung(level)
-        chains = step_up(state, higher.stages, higher.twin)
-        state, events = chains[0][-1], estimate_all(chains, higher.remaining, along=higher.along, last=higher.last)
+        chains = higher.chains(state)
+        state, events = chains[0][-1], higher.estimates(chains)
         if not Tolerance.on(events, rtol).missed(events):
             break
     return Ascent(below, higher, chains, events)
@@ -159,10 +123,10 @@ def _margin(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate | None:
     if "steepest" not in chains[0][-1]:
         return None
     values = [[STEEPEST.of(state["steepest"].point) for state in chain] for chain in chains]
-    return Estimate(values[0][-1], rung.remaining * change_along(values, rung.last) + FLAT)
+    return Estimate(values[0][-1], rung.rule.error(values) + FLAT)
 
 
 def _energy(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate:
     values = [[energy_released(state) for state in chain] for chain in chains]
     best = values[0][-1]
-    return Estimate(best, rung.remaining * change_along(values, rung.last) + ROUND_OFF * (1 + abs(best)))
+    return Estimate(best, rung.rule.error(values) + ROUND_OFF * (1 + abs(best)))

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
 
-import numpy as np
-
 from halfspace.equilibrium.charts import Chart, Finest, moved_near, settled
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import ContactProblem
-from halfspace.equilibrium.events import FOLDS, Event, estimate_event, is_event
+from halfspace.equilibrium.events import FOLDS, USUAL, ErrorRule, Event, estimate_event, is_event
 from halfspace.errors import ContactTooWide, IllPosed, NotConverged
 from halfspace.values import Valued
 
@@ -55,25 +53,38 @@ class Charted(Valued):
         return max(chart.unknowns for chart in self.charts)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class Rung(Valued):
+    """One step of a ladder of discretisations.
+
+    `curve` makes the charts for tracing the curve on this rung; they need not all be made before. On each of the stages
+    every event is solved for; each differs from the one before in one respect, the last, which the settings tell, is
+    the finest. The changes add up to the error, by the rule. On the lowest rung they only prepare, and there may be
+    none. The twin is as fine as the rung below, with other cells: it errs as much, but not by the same accident of
+    sign.
+    """
+
+    curve: Callable[[], Iterable[Chart]]
+    stages: tuple[Stage, ...]
+    settings: Mapping[str, object]
+    twin: Stage | None = None
+    rule: ErrorRule = USUAL
+
+    def chains(self, state: State) -> list[list[State]]:
+        """Chains of states from the rung below, and from its twin, to the last stage."""
+        chain = [state]
+        for stage in self.stages:
+            chain.append(on_all(chain[-1], stage))
+        return [chain, [on_all(chain[-1], self.twin), chain[-1]]] if self.twin else [chain]
+
+    def estimates(self, chains: Sequence[Sequence[State]]) -> dict[str, Event]:
+        """Events of the last state, with their changes along the chains as errors."""
+        names = [name for name in chains[0][-1] if is_event(name)]
+        return {name: estimate_event(name, [[s[name] for s in chain] for chain in chains], self.rule) for name in names}
+
+
 class FoldsLost(NotConverged):
     """Folds about to merge are found on one rung but not on another."""
-
-
-def change_along(values: Sequence[Sequence[float]], last: float) -> float:
-    """Sum of the changes along a chain, of which the last counts so many times, the largest of all chains.
-
-    A chain has two values or more.
-    """
-    changes = [np.abs(np.diff(chain)) for chain in values]
-    return max(float(np.sum(change) + (last - 1) * change[-1]) for change in changes)
-
-
-def step_up(state: State, stages: Sequence[Stage], twin: Stage | None) -> list[list[State]]:
-    """Chains of states from the rung below, and from its twin, to the last stage of a rung."""
-    chain = [state]
-    for stage in stages:
-        chain.append(on_all(chain[-1], stage))
-    return [chain, [on_all(chain[-1], twin), chain[-1]]] if twin else [chain]
 
 
 def on_all(state: State, stage: Stage) -> State:
@@ -93,10 +104,3 @@ def _found_again(name: str, event: Located, stage: Stage) -> Located:
 def moved_to(event: Located, stage: Stage) -> Located:
     """Solve for an event again, unless it has been on this stage."""
     return event if stage(event).problem is event.problem else settled(event, stage, partial(moved_near, stage))
-
-
-def estimate_all(chains: Sequence[Sequence[State]], remaining: float, *, along: bool, last: float) -> dict[str, Event]:
-    """Events of the last state, with their changes along the chains as errors."""
-    names = [name for name in chains[0][-1] if is_event(name)]
-    by_name = {name: [[state[name] for state in chain] for chain in chains] for name in names}
-    return {name: estimate_event(name, own, remaining, along=along, last=last) for name, own in by_name.items()}

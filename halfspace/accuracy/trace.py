@@ -28,8 +28,8 @@ from halfspace.accuracy.finite_bodies import (
     radii_around,
     surroundings,
 )
-from halfspace.accuracy.refinement import Rung, climb
-from halfspace.accuracy.stages import Charted
+from halfspace.accuracy.refinement import climb
+from halfspace.accuracy.stages import Charted, Rung
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.layered import Images, image_compliance, images_of, layered, layered_panels
 from halfspace.elastic.layers import LayeredBody
@@ -37,7 +37,7 @@ from halfspace.elastic.operators import FlatCoordinate, Homogeneous, NearlyHomog
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import REMAINING
+from halfspace.equilibrium.events import REMAINING, ErrorRule
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
@@ -254,9 +254,14 @@ def trace(
         if not level:
             return Rung(curve, (), asdict(resolution))
         fine, twin = (Charted(half_space_charts(scales, r, to_load)) for r in (resolution, _twin(below)))
-        return Rung(curve, (fine,), asdict(resolution), twin, ONE_NODE if level == 1 else REMAINING)
+        return Rung(curve, (fine,), asdict(resolution), twin, _rule(level))
 
     return climb(rtol, rung, to_load=to_load)
+
+
+def _rule(level: int, doubt: int = 1) -> ErrorRule:
+    """How errors are told from the change by one node more, or by two and more, and so many times as large."""
+    return ErrorRule(doubt * (ONE_NODE if level == 1 else REMAINING))
 
 
 def _twin(resolution: Resolution) -> Resolution:
@@ -282,7 +287,7 @@ def _sized_rung(scales: Scales, images: Sequence[Images | None], rtol: float, to
         (AroundEvents(fine, *surroundings(rtol, level), to_load, EVENTS_LEAVE),),
         settings,
         AroundEvents(other, *surroundings(rtol, level - 1), to_load, EVENTS_LEAVE) if level else None,
-        doubt * (ONE_NODE if level == 1 else REMAINING),
+        _rule(level, doubt),
     )
 
 

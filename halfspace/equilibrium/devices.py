@@ -25,7 +25,7 @@ from halfspace.equilibrium.charts import Finest, metric_for, moved_near, settled
 from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import FOLDS, Event, Tolerance, estimate_event
+from halfspace.equilibrium.events import FOLDS, ErrorRule, Event, Tolerance, estimate_event
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Segment, make_point
 from halfspace.equilibrium.reach import reaching, widened
@@ -270,11 +270,11 @@ def _jump(rough: _States, path: EquilibriumPath, compliance: float) -> Jump:
     energies = [states.energy(compliance) for states in (*others, fine)]
     change = max(abs(energy - energies[-1]) for energy in energies)
     return Jump(
-        estimate_event("take_off", [[s.take_off, fine.take_off] for s in others], path.remaining, along=alone),
+        estimate_event("take_off", [[s.take_off, fine.take_off] for s in others], ErrorRule(path.remaining, alone)),
         estimate_event(
             "landing",
             [[s.landing, fine.landing] for s in others],
-            path.remaining,
+            ErrorRule(path.remaining),
             least=_by_base(others, fine, compliance),
         ),
         Estimate(energies[-1], max(path.remaining, 1.0) * change + ROUND_OFF * (1 + abs(energies[-1]))),

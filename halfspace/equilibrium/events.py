@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -135,39 +134,59 @@ def tolerance_told(rtol: float, missed: Mapping[str, Sequence[str]]) -> str:
 AT_A_POINT = [CENTRAL_GAP, CONTACT_RADIUS]
 
 
+@dataclass(frozen=True)
+class ErrorRule:
+    """How errors are told from the changes along chains of discretisations, all of which end with the best.
+
+    `remaining` is the part of the changes that may be left as error, above 1 where it falls slowly from one to the
+    next, and of the last change `last` times as much, where that is from other cells with no twin beside. `along` says
+    whether the shift of an event along the path counts, see `estimate_event`: on grids that follow the contact, whose
+    radius tells it precisely, and where there is no twin to guard against chance.
+    """
+
+    remaining: float = REMAINING
+    along: bool = False
+    last: float = 1.0
+
+    def change(self, chain: Sequence[Array | float]) -> Array:
+        """Sum of the changes along a chain of two values or more, arrays (...) or numbers, the last `last` times."""
+        changes = np.abs(np.diff(np.array(chain), axis=0))
+        return np.asarray(changes.sum(axis=0) + (self.last - 1) * changes[-1])
+
+    def error(self, chains: Sequence[Sequence[float]]) -> float:
+        """Of a number, by the chain along which it changes most."""
+        return self.remaining * max(float(self.change(chain)) for chain in chains)
+
+
+USUAL = ErrorRule()
+
+
 def estimate_event(
-    name: str,
-    chains: Sequence[Sequence[Located]],
-    remaining: float = REMAINING,
-    along: bool = False,
-    least: Array | float = 0.0,
-    last: float = 1.0,
+    name: str, chains: Sequence[Sequence[Located]], rule: ErrorRule, least: Array | float = 0.0
 ) -> Event:
     """Turn an event into numbers with error estimates.
 
     A chain has the event on discretisations that differ in one respect from one to the next, all chains ending with the
-    best. Along a chain the changes add up, the last one `last` times; of several chains the largest sum counts, so that
-    a number that two grids share by accident is not taken for exact. The radius, which at a point errs more than the
-    rest and in turns, is known no better than to what the polynomials there end with; where there is but one chain, or
-    `along`, nor is the gap. `remaining` is the part of that change that may be left, `least` (4,) the changes of the
-    observables that count where the chains' own are less.
+    best. Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
+    share by accident is not taken for exact. The radius, which at a point errs more than the rest and in turns, is
+    known no better than to what the polynomials there end with; where there is but one chain, or `rule.along`, nor is
+    the gap. `least` (4,) are the changes of the observables that count where the chains' own are less.
 
-    If `along`, an observable's change is taken to be no less than what the event's shift along the path makes of it: on
-    a single chain, one number may stand still by accident while the event moves. For stationary conditions only. Nor do
-    the gap and radius, which are at a point, then fall as averages do: the changes of all chains add up.
+    If `rule.along`, an observable's change is taken to be no less than what the event's shift along the path makes of
+    it: on a single chain, one number may stand still by accident while the event moves. For stationary conditions only.
+    Nor do the gap and radius, which are at a point, then fall as averages do: the changes of all chains add up.
     """
     values = chains[0][-1].point.observables
-    steps = [[np.abs(b.point.observables - a.point.observables) for a, b in pairwise(chain)] for chain in chains]
-    changes = [np.sum(step, axis=0) + (last - 1) * step[-1] for step in steps]
+    changes = [rule.change([event.point.observables for event in chain]) for chain in chains]
     whole = np.sum(changes, axis=0)
-    if along and chains[0][-1].condition.stationary:
+    if rule.along and chains[0][-1].condition.stationary:
         changes += [shift for change in changes for shift in _shifted(chains[0][-1], change)]
-    errors = remaining * np.maximum(np.max(changes, axis=0), least) + ROUND_OFF * (1 + np.abs(values))
-    if along:
+    errors = rule.remaining * np.maximum(np.max(changes, axis=0), least) + ROUND_OFF * (1 + np.abs(values))
+    if rule.along:
         errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
     best = chains[0][-1]
     gap, radius = best.problem.interface.ripples(best.problem.surface_state(best.point.x))
-    alone = along or len(chains) == 1
+    alone = rule.along or len(chains) == 1
     errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], [gap if alone else 0.0, radius])
     return Event(name, *map(float, values), *map(float, errors))
 

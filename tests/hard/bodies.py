@@ -25,8 +25,8 @@ from fem_adhesion.mesh.block import (
     with_named_boundaries,
 )
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.refinement import Rung, climb
-from halfspace.accuracy.stages import Charts
+from halfspace.accuracy.refinement import climb
+from halfspace.accuracy.stages import Charts, Rung
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium.charts import COMPRESSION, Chart, trace_charts
 from halfspace.equilibrium.contact import ContactProblem

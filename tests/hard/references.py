@@ -21,8 +21,7 @@ from fem_adhesion.elasticity.space import (
     shear_matrix,
     strain_products,
 )
-from halfspace.accuracy.refinement import Rung
-from halfspace.accuracy.stages import Charted, Charts
+from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
 from halfspace.values import Array
