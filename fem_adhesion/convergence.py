@@ -157,11 +157,11 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     degree = degree_for(rtol) + level
     how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
-    other = AroundEvents(sized_body(scene, twin), *surroundings(rtol, level - 1), to_load)
+    other = AroundEvents(sized_body(scene, twin, to_load), *surroundings(rtol, level - 1))
     doubt = scene.body.doubt
     return Rung(
-        partial(sized_body(scene, curve).curve, to_load),
-        (AroundEvents(sized_body(scene, how), *surroundings(rtol, level), to_load),),
+        sized_body(scene, curve, to_load).curve,
+        (AroundEvents(sized_body(scene, how, to_load), *surroundings(rtol, level)),),
         asdict(how) | {"curve_degree": curve.degree},
         other if level and doubt.other_cells else None,
         ErrorRule(doubt.times * REMAINING, along=True),

@@ -26,6 +26,7 @@ from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import FlatCoordinate, SurfaceCoordinate
+from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.profiles import Surface
 from halfspace.profiles.tabulated import TabulatedSurface
@@ -97,13 +98,13 @@ def layout_of(scene: Scene, how: Discretisation) -> Layout:
     return scene.body.layout(scene.radii[0], replace(how, rings=0) if scene.counter else how)
 
 
-def sized_body(scene: Scene, how: Discretisation) -> SizedBody:
-    """Bodies of a scene with a length, to be discretised on any grid of their surface."""
+def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) -> SizedBody:
+    """Bodies of a scene with a length, to be discretised on any grid of their surface, see `SizedBody`."""
     outer, coordinate = layout_of(scene, how)
     flat = isinstance(coordinate, FlatCoordinate)
     last = at_equator(scene.tabor, scene.surface, how.degree + 2) if flat else np.inf
     make = partial(_made, scene, how)
-    return SizedBody(scene.scales, make, how.finest, how.growth, outer, coordinate, last)
+    return SizedBody(scene.scales, make, how.finest, how.growth, outer, coordinate, last, to_load)
 
 
 def discretised_about(scene: Scene, contact_radius: float, how: Discretisation, source: ContactProblem) -> Discretised:

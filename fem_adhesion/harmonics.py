@@ -196,11 +196,10 @@ class Fineness:
 class Standing(Valued):
     """Stage of a ladder on which every event has cells of its own that stand still, finest where its contact ends.
 
-    The curve ends at a compressive load in R dgamma; charts made so far stand with the contact radii they are for.
+    Charts made so far stand with the contact radii they are for.
     """
 
     body: SizedBody
-    to_load: float = COMPRESSION
     charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
     farther = None
 
@@ -219,7 +218,7 @@ class Standing(Valued):
     @property
     def everywhere(self) -> AlongCurve:
         """Cells that follow the contact, for every point of a curve."""
-        return AlongCurve(self.body, self.to_load, APART)
+        return AlongCurve(self.body, APART)
 
     @property
     def unknowns(self) -> int:
@@ -254,10 +253,10 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
     def rung(level: int) -> Rung:
         above, below = (resolution_for(rtol, max(n, 0)) for n in (level, level - 1))
         twin = Fineness(below.nodes, below.harmonics, FINEST * TWIN[0], GROWTH * TWIN[1])
-        curve = sized_body(scene, Fineness(above.nodes, OF_CURVE))
-        stage, other = (Standing(sized_body(scene, how), to_load) for how in (above, twin))
+        curve = sized_body(scene, Fineness(above.nodes, OF_CURVE), to_load)
+        stage, other = (Standing(sized_body(scene, how, to_load)) for how in (above, twin))
         settings = {"nodes": above.nodes, "harmonics": counts(scene, above)}
-        return Rung(partial(curve.curve, to_load), (stage,), settings, other if level else None)
+        return Rung(curve.curve, (stage,), settings, other if level else None)
 
     return climb(rtol, rung, to_load=to_load, most_rungs=2)
 
@@ -290,11 +289,11 @@ CROWDED = 0.3 ** np.arange(5)
 """Cells crowd to the equator, where the profile of a sphere has a vertical tangent, in parts of the last six."""
 
 
-def sized_body(scene: Scene, how: Fineness) -> SizedBody:
+def sized_body(scene: Scene, how: Fineness, to_load: float = COMPRESSION) -> SizedBody:
     """Body of a scene, to be discretised on any cells of its surface."""
     outer = scene.radii[0] * np.append(1 - (1 - (RIM if scene.counter else 0.98)) * CROWDED, 1.0)
     make = partial(_made, scene, how.nodes, counts(scene, how))
-    return SizedBody(scene.scales, make, how.finest, how.growth, outer, FlatCoordinate())
+    return SizedBody(scene.scales, make, how.finest, how.growth, outer, FlatCoordinate(), to_load=to_load)
 
 
 def _made(scene: Scene, nodes: int, harmonics: list[int], lines: Array) -> Made:

@@ -14,7 +14,7 @@ from scipy.special import j0
 import fem_adhesion
 from fem_adhesion.scene import Scene
 from halfspace import trace
-from halfspace.accuracy.trace import LayeredHalfSpace, resolution_for
+from halfspace.accuracy.trace import layered_half_space, resolution_for
 from halfspace.elastic import compliance, grid, layered
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, stiff_as, surface_compliance
@@ -343,7 +343,7 @@ def test_pull_off_from_a_layer_approaches_jkrs_as_the_tabor_parameter_grows():
 def charted():
     """A layer on the grids of a half-space, the last cell of which is infinite, and its chart that follows contacts."""
     scales = Scales(1.0, body=Layer(2.0, 0.3))
-    body = LayeredHalfSpace(scales, images_of(scales.body), resolution_for(scales, 1e-8), 5.0)
+    body = layered_half_space(scales, images_of(scales.body), resolution_for(scales, 1e-8))
     return body, body.around(1.4, count=5).problem.operator
 
 

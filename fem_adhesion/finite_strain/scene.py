@@ -189,8 +189,8 @@ def raised(event: Located, problem: FiniteStrainProblem, done: float = 0.0) -> L
 
 def _linear_curve(scene: Scene, to_load: float) -> tuple[Segment, ...]:
     """Curve of the linear body."""
-    body = sized_body(scene.made_of(LinearElastic(scene.poisson)), Discretisation(CURVE_DEGREE))
-    return trace_charts(body.curve(to_load), to_load)
+    body = sized_body(scene.made_of(LinearElastic(scene.poisson)), Discretisation(CURVE_DEGREE), to_load)
+    return trace_charts(body.curve(), to_load)
 
 
 def _require(scene: Scene, rtol: float, to_load: float) -> None:

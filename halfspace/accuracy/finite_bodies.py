@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
@@ -36,27 +35,6 @@ CLOSER = 1.4  # the same of its points when they are solved for again on the low
 Made = tuple[ElasticOperator, int]
 
 
-class Charting(Protocol):
-    """A body for which charts are made where they are wanted."""
-
-    @property
-    def length(self) -> float:
-        """Length of the cells at the contact edge, or on the axis, in beta."""
-        ...
-
-    def centred(self) -> Chart:
-        """Chart fine on the axis."""
-        ...
-
-    def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
-        """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
-        ...
-
-    def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
-        """Chart for contact radii near the given one, from so many operators."""
-        ...
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class SizedBody(Valued):
     """A body that is discretised anew on any grid of its surface.
@@ -65,7 +43,8 @@ class SizedBody(Valued):
     surface. `finest` is the length of the cells at the contact edge, in widths of the spike of tension there, `growth`
     the most ratio of neighbouring cells. `outer` (k,) are the last cells' ends, ascending, which do not move with the
     contact: their first is where the others end, the last of which is `last` long, in beta, if they are to be fine
-    there too; see `at_equator`.
+    there too; see `at_equator`. Charts for a curve reach as far as the contact under the compressive load `to_load`, in
+    R dgamma.
     """
 
     scales: Scales
@@ -75,6 +54,7 @@ class SizedBody(Valued):
     outer: Array
     coordinate: SurfaceCoordinate
     last: float = np.inf
+    to_load: float = COMPRESSION
 
     @property
     def length(self) -> float:
@@ -115,9 +95,9 @@ class SizedBody(Valued):
         operator = Interpolated(scales, [operator for operator, _ in made], moving)
         return Chart(contact_of(self.scales, operator), made[0][1])
 
-    def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
+    def curve(self, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
-        widest = min(self.scales.widest_radius(to_load), WIDEST * self.scales.profile.end)
+        widest = min(self.scales.widest_radius(self.to_load), WIDEST * self.scales.profile.end)
         end, edge = float(self.outer[0]), self.coordinate.of(widest)
         inner = grid.geometric(1.0, 2 * self.length / edge, self._growth)
         outside = grid.geometric(end, self.length, self._growth, self.last)
@@ -180,13 +160,12 @@ class AroundEvents(Valued):
     radii: as soon as its contact is wider than so many of the cells there (`leave`). The window is half the logarithmic
     width of the contact radii that a chart serves, with so many operators in it, see `surroundings`. A fold is where a
     derivative vanishes, which errs by a power of it: windows that differ from rung to rung let the error estimate see
-    it. The curve ends at the load, in R dgamma.
+    it.
     """
 
-    body: Charting
+    body: SizedBody
     window: float = WINDOW
     count: int = AROUND
-    to_load: float = COMPRESSION
     leave: float = np.inf
     charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
 
@@ -211,7 +190,7 @@ class AroundEvents(Valued):
     def everywhere(self) -> AlongCurve:
         """The same grid for every point of a curve."""
         apart = 1 + (CLOSER - 1) * self.window / WINDOW * 2.0 ** (AROUND - self.count)
-        return AlongCurve(self.body, self.to_load, apart)
+        return AlongCurve(self.body, apart)
 
     @property
     def unknowns(self) -> int:
@@ -223,19 +202,17 @@ class AroundEvents(Valued):
 class AlongCurve(Valued):
     """Charts of a body for every point of its curve, made when they are first asked for.
 
-    The curve ends at the load, in R dgamma; `apart` is the ratio of the radii between which the operator is
-    interpolated.
+    `apart` is the ratio of the radii between which the operator is interpolated.
     """
 
-    body: Charting
-    to_load: float
+    body: SizedBody
     apart: float
     farther = None
 
     @cached_property
     def charts(self) -> tuple[Chart, Chart]:
         """Chart centred on the axis, and that which follows the contact."""
-        return self.body.curve(self.to_load, self.apart)
+        return self.body.curve(self.apart)
 
     def __call__(self, event: Located) -> Chart:
         """Chart for a point of a curve."""

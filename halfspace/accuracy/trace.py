@@ -13,19 +13,13 @@ from functools import cached_property, partial
 import numpy as np
 
 from halfspace.accuracy.finite_bodies import (
-    APART,
-    AROUND,
     EQUAL,
     LEAVE,
     TIGHT,
-    WINDOW,
     AroundEvents,
-    Charting,
     Made,
     SizedBody,
     at_equator,
-    radii_along,
-    radii_around,
     surroundings,
 )
 from halfspace.accuracy.refinement import climb
@@ -33,7 +27,7 @@ from halfspace.accuracy.stages import Charted, Rung
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.layered import Images, image_compliance, images_of, layered, layered_panels
 from halfspace.elastic.layers import LayeredBody
-from halfspace.elastic.operators import FlatCoordinate, Homogeneous, NearlyHomogeneous
+from halfspace.elastic.operators import FlatCoordinate, Homogeneous, MovingGrid, NearlyHomogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -136,7 +130,8 @@ def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float,
 
 def half_space_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:
     """Panel grids centred on the axis and following the contact edge."""
-    lines, (centred, edge) = _to_infinity(scales, resolution, to_load)
+    lines, half_space = _to_infinity(scales, resolution, to_load)
+    centred, edge = half_space(lines.centred), half_space(lines.edge)
     return (
         Chart(contact_of(scales, centred), centred.radii.size, lines.until),
         Chart(contact_of(scales, Homogeneous(edge)), edge.radii.size),
@@ -145,61 +140,54 @@ def half_space_charts(scales: Scales, resolution: Resolution, to_load: float = C
 
 def _to_infinity(
     scales: Scales, resolution: Resolution, to_load: float
-) -> tuple[Rings, tuple[compliance.ElasticOperator, compliance.ElasticOperator]]:
-    """Breakpoints and half-space operators centred on the axis and, for the contact radius 1, on the edge."""
+) -> tuple[Rings, Callable[[Array], compliance.ElasticOperator]]:
+    """Breakpoints, and what makes the half-space's operator of those of either chart."""
     nodes, reach = resolution.nodes, scales.tail_reach
     lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, nodes)
-    centred, edge = (compliance.panels(breaks, nodes) for breaks in (lines.centred, lines.edge))
-    return lines, (compliance.to_infinity(centred, nodes, reach), compliance.to_infinity(edge, nodes, reach))
+    return lines, lambda breaks: compliance.to_infinity(compliance.panels(breaks, nodes), nodes, reach)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class LayeredHalfSpace(Valued):
-    """Charts of a layered body: those of the half-space, with what its images have beside that.
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class LayeredHalfSpace(SizedBody):
+    """Layered body on the grids of the half-space, with what its images have beside that.
 
-    Cells are integrated with all images up to twice the half-space's extent: what is pressed farther out is too little
-    to deflect a layer.
+    The cells end at twice the half-space's extent, to where all images are integrated: what is pressed farther out, in
+    the infinite cell, is too little to deflect a layer. Those that follow the contact scale with it, all of them.
     """
 
-    scales: Scales
     images: Images
-    resolution: Resolution
-    to_load: float
+    rings: Rings
+    half_space: Callable[[Array], compliance.ElasticOperator]
 
-    @property
-    def length(self) -> float:
-        """Length of the cells at the contact edge, or on the axis, in beta."""
-        return self.scales.edge_cell(self.resolution.finest)
+    def lines(self, edge: float = 0.0) -> Array:  # noqa: ARG002 (those of an edge are its multiples)
+        """Ends of all finite cells of the chart fine on the axis."""
+        return self.rings.centred
+
+    def following(self, moving: MovingGrid, scales: Array) -> Chart:  # noqa: ARG002 (its own scales with the contact)
+        """Chart that follows the contact edge, from images at some contact radii."""
+        edge, until = self._edge, float(self.outer[0])
+        beside = [image_compliance(self.images, edge.scaled(a), until) / a for a in scales.tolist()]
+        return Chart(contact_of(self.scales, NearlyHomogeneous(edge, scales, np.array(beside))), edge.radii.size)
 
     @cached_property
-    def _half_space(self) -> tuple[Rings, tuple[compliance.ElasticOperator, compliance.ElasticOperator]]:
-        how = replace(self.resolution, extent=2 * self.resolution.extent)
-        return _to_infinity(self.scales, how, self.to_load)
+    def _edge(self) -> compliance.ElasticOperator:
+        return self.half_space(self.rings.edge)
 
-    @property
-    def _extent(self) -> float:
-        return self.scales.outer_radius(2 * self.resolution.extent**2)
 
-    def centred(self) -> Chart:
-        """Chart fine on the axis."""
-        lines, (centred, _) = self._half_space
-        operator = layered(self.images, centred, self._extent)
-        return Chart(contact_of(self.scales, operator), operator.radii.size, lines.until)
+def layered_half_space(
+    scales: Scales, images: Images, resolution: Resolution, to_load: float = COMPRESSION
+) -> LayeredHalfSpace:
+    """Layered body with charts as fine as a half-space's."""
+    how = replace(resolution, extent=2 * resolution.extent)
+    lines, half_space = _to_infinity(scales, how, to_load)
+    outer = scales.outer_radius(how.extent**2 / 2)
 
-    def curve(self, to_load: float, apart: float = APART) -> tuple[Chart, Chart]:
-        """Charts for the whole curve: the second from images at radii that are `apart` times one the other."""
-        radii = radii_along(self._half_space[0].until, self.scales.widest_radius(to_load), apart)
-        return self.centred(), self._following(radii)
+    def make(breaks: Array) -> Made:
+        operator = layered(images, half_space(breaks), outer)
+        return operator, operator.radii.size
 
-    def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
-        """Chart for contact radii near the given one, from so many sets of images."""
-        return self._following(radii_around(radius, window, count))
-
-    def _following(self, radii: Array) -> Chart:
-        edge = self._half_space[1][1]
-        beside = [image_compliance(self.images, edge.scaled(a), self._extent) / a for a in radii.tolist()]
-        operator = NearlyHomogeneous(edge, radii, np.array(beside))
-        return Chart(contact_of(self.scales, operator), edge.radii.size)
+    body = SizedBody(scales, make, how.finest, how.growth, np.array([outer]), FlatCoordinate(), to_load=to_load)
+    return LayeredHalfSpace(**vars(body), images=images, rings=lines, half_space=half_space)
 
 
 def trace(
@@ -283,21 +271,21 @@ def _sized_rung(scales: Scales, images: Sequence[Images | None], rtol: float, to
     doubt = 2 if images[0] and rtol < TIGHT else 1  # what is left at last is that of the images, who err alike
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
     return Rung(
-        partial(fine.curve, to_load),
-        (AroundEvents(fine, *surroundings(rtol, level), to_load, EVENTS_LEAVE),),
+        fine.curve,
+        (AroundEvents(fine, *surroundings(rtol, level), EVENTS_LEAVE),),
         settings,
-        AroundEvents(other, *surroundings(rtol, level - 1), to_load, EVENTS_LEAVE) if level else None,
+        AroundEvents(other, *surroundings(rtol, level - 1), EVENTS_LEAVE) if level else None,
         _rule(level, doubt),
     )
 
 
 def _sized_body(
     scales: Scales, images: Images | None, resolution: Resolution, to_load: float = COMPRESSION
-) -> Charting:
+) -> SizedBody:
     """Body whose surface ends, or a layered one."""
     ends = math.isfinite(scales.profile.end)
     if images and not ends and not scales.law.outermost:  # by such a law the half-space's grid does not scale
-        return LayeredHalfSpace(scales, images, resolution, to_load)
+        return layered_half_space(scales, images, resolution, to_load)
     make = partial(layered_panels, images) if images else compliance.panels
     last = at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf
     outer = scales.profile.end if ends else scales.outer_radius((FAR * resolution.extent) ** 2 / 2)
@@ -309,6 +297,7 @@ def _sized_body(
         np.array([outer]),
         FlatCoordinate(),
         last,
+        to_load,
     )
 
 
