@@ -145,39 +145,37 @@ class LayeredOperator(ElasticOperator):
 
     def widened(self, nodes: int, reach: float) -> ElasticOperator:
         """Return the body with other cells beyond its extent, see `halfspace.elastic.compliance.to_infinity`."""
-        wide, inside = to_infinity(self, nodes, reach), np.count_nonzero(self.radii <= self.extent)
-        below = image_compliance(self.images, wide, self.until)
-        below[:inside, :inside] = 0.0  # where they are known
-        return _with_images(self.images, wide, below, self.until)
+        known = int(np.count_nonzero(self.radii <= self.extent))
+        return layered(self.images, to_infinity(self, nodes, reach), self.until, known)
 
 
-def layered(images: Images, half_space: ElasticOperator, until: float) -> LayeredOperator:
+def layered(images: Images, half_space: ElasticOperator, until: float, known: int = 0) -> LayeredOperator:
     """Layered body on the grid of a half-space's panels, the last of which may be infinite; see `image_compliance`."""
-    return _with_images(images, half_space, image_compliance(images, half_space, until), until)
-
-
-def _with_images(images: Images, half_space: ElasticOperator, below: Array, until: float) -> LayeredOperator:
+    compliance = half_space.compliance + image_compliance(images, half_space, until, known)
     own = {field.name: getattr(half_space, field.name) for field in fields(ElasticOperator)}
-    return LayeredOperator(**own | {"compliance": half_space.compliance + below}, images=images, until=until)
+    return LayeredOperator(**own | {"compliance": compliance}, images=images, until=until)
 
 
-def image_compliance(images: Images, body: ElasticOperator, until: float = np.inf) -> Array:
+def image_compliance(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> Array:
     """What the images of a layered body deflect the nodes of a half-space's panels by pressures there, (q, q).
 
     Cells that begin beyond a radius, in beta, and an infinite one are integrated by their nodes even where they are
-    longer than the first stratum is thick: too stiffly for what is pressed there, if anything is.
+    longer than the first stratum is thick: too stiffly for what is pressed there, if anything is. Between the first
+    nodes, so many, where it is known, it is left zero; all finite cells are theirs.
     """
     left, right, k = body.cells[:-1], body.cells[1:], body.cell_nodes.shape[1]
-    compliance = _by_nodes(images, body.radii, body.weights)
+    compliance = _by_nodes(images, body.radii, body.weights, known)
     i, j = _near(body.radii, left, right, (right - left > images.smooth) & (left < until))
+    i, j = i[i >= known], j[i >= known]
     moments = near_moments(images.ring, body.radii[i], left[j], right[j], k, (NEAR_POINTS, GRADING))
     compliance[i[:, None], body.cell_nodes[j]] = moments @ np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
     return compliance
 
 
-def _by_nodes(images: Images, radii: Array, weights: Array) -> Array:
+def _by_nodes(images: Images, radii: Array, weights: Array, known: int) -> Array:
     """Gauss's rule at the nodes themselves, where all is smooth; the kernel is symmetric."""
     i, j = np.triu_indices(radii.size)
+    i, j = i[j >= known], j[j >= known]
     kernel = np.zeros((radii.size, radii.size))
     kernel[i, j] = images.kernel(radii[i], radii[j])
     kernel[j, i] = kernel[i, j]
