@@ -133,7 +133,7 @@ class Scene:
         end = min(end, self.body.extent(Scales(self.tabor, self.law, surface, self.body.layered)))
         return surface if surface.end <= end else UpTo(surface, end)
 
-    @property
+    @cached_property
     def scales(self) -> Scales:
         """Its lengths."""
         return Scales(self.tabor, self.law, self.surface, self.body.layered)

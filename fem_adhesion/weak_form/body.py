@@ -53,16 +53,22 @@ def elasticity(basis: Any, D: Array) -> sparse.csr_array:
     """Matrix of a(u, v) = int strains(v) D strains(u) 2 pi r dr dz: a body of revolution without twist.
 
     The strains of each function are formed once, and each cell's matrix is a product B^T D B of them: a form in u and v
-    would form them anew for each pair of functions.
+    would form them anew for each pair of functions. The unknowns inside a cell, the last ones, on which no forces act,
+    are eliminated in it.
     """
     r, _ = basis.global_coordinates()
     B = np.array([strains(function[0], r) for function in basis.basis]).transpose(2, 0, 1, 3)  # by cells, functions
     stresses = D[:, None] @ B * (2 * np.pi * r * basis.dx)[:, None, None]
     cells, functions = B.shape[:2]
     K = stresses.reshape(cells, functions, -1) @ B.reshape(cells, functions, -1).transpose(0, 2, 1)
-    dofs = basis.element_dofs.T
+    outer, inside = np.split(np.arange(functions), [functions - basis.elem.interior_dofs])
+    K = K[:, outer][:, :, outer] - K[:, outer][:, :, inside] @ np.linalg.solve(
+        K[:, inside][:, :, inside], K[:, inside][:, :, outer]
+    )
+    dofs = basis.element_dofs[outer].T
     rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
-    return sparse.coo_array((K.ravel(), (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)).tocsr()
+    size = basis.N - cells * inside.size
+    return sparse.coo_array((K.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsr()
 
 
 def going_on(G: Array) -> Any:
@@ -159,20 +165,21 @@ def discretise(
     surface = FacetBasis(mesh, element, mapping=_mapping(mesh), facets="contact", intorder=4 * degree + 3)
     axis, far = basis.get_dofs("axis").all(["u^1"]), basis.get_dofs("far")
     held = np.concatenate([axis, far.all(["u^2"] if slides else ["u^1", "u^2"])])
-    T = sparse.eye_array(basis.N, format="csc")[:, np.setdiff1d(np.arange(basis.N), held)]
-    # A translation of what is held: of quadrilaterals' functions those of the vertices alone add up to 1.
-    upwards = far.all(["u^2"]) if triangles else far.nodal["u^2"]
-    moved = sparse.csc_array(np.isin(np.arange(basis.N), upwards).astype(float)[:, None])
-    T = sparse.csc_array(sparse.hstack([T, moved])) if plate else T
     D = moduli(mesh, materials)
     K = elasticity(basis, D)
+    unknowns = np.arange(K.shape[0])
+    T = sparse.eye_array(unknowns.size, format="csc")[:, np.setdiff1d(unknowns, held)]
+    # A translation of what is held: of quadrilaterals' functions those of the vertices alone add up to 1.
+    upwards = far.all(["u^2"]) if triangles else far.nodal["u^2"]
+    moved = sparse.csc_array(np.isin(unknowns, upwards).astype(float)[:, None])
+    T = sparse.csc_array(sparse.hstack([T, moved])) if plate else T
     if slides and "edge" in mesh.boundaries:
         edge = FacetBasis(mesh, element, mapping=_mapping(mesh), facets="edge", intorder=2 * degree)
-        K += going_on(D[mesh.f2t[0, edge.find], 3, 3][:, None]).assemble(edge)
+        K += going_on(D[mesh.f2t[0, edge.find], 3, 3][:, None]).assemble(edge)[unknowns][:, unknowns]
     reaction = 0 * last(T.shape[1]) if plate else (moved.T @ K @ T).toarray()[0]
     (radii, heights), rim = surface.global_coordinates(), float(mesh.p[0, mesh.facets[:, surface.find]].max())
     area = 2 * np.pi * radii * surface.dx * (1.0 if on_surface else surface.normals[1])
-    values = surface_values(surface)
+    values = surface_values(surface)[:, unknowns]
     borne = np.zeros(radii.size) if plate else (values @ moved).toarray()[:, 0]
     points = sparse.csr_array(values @ T), radii.ravel(), area.ravel(), -heights.ravel()
     body = Body(sparse.csc_array(T.T @ K @ T), *points, rim, reaction, borne)
