@@ -6,8 +6,7 @@ Long and short ranges, soft and hard cores, tips from nearly a cone to nearly a 
 import time
 
 from fem_adhesion import HalfSpace, Layer, Scene
-from fem_adhesion.common.jobs import stream
-from fem_adhesion.common.progress import progress_bar
+from fem_adhesion.common.jobs import progress_bar, stream
 from fem_adhesion.crosscheck import study as crosscheck
 from halfspace.laws import Dlvo, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, Sphere

@@ -27,8 +27,7 @@ import halfspace
 from fem_adhesion import HalfSpace, HeldSphere, Hemisphere, Meshed, NeoHookean, Scene
 from fem_adhesion.assess.study import assess
 from fem_adhesion.common.contact import Contact
-from fem_adhesion.common.jobs import stream
-from fem_adhesion.common.progress import progress_bar
+from fem_adhesion.common.jobs import progress_bar, stream
 from halfspace import Coated, Layer, Layers, Stratum
 from halfspace.equilibrium.charts import placed
 from halfspace.equilibrium.conditions import Condition, Located

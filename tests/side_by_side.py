@@ -14,8 +14,7 @@ import numpy as np
 import fem_adhesion
 import halfspace
 from fem_adhesion import HalfSpace, Scene
-from fem_adhesion.common.jobs import stream
-from fem_adhesion.common.progress import progress_bar
+from fem_adhesion.common.jobs import progress_bar, stream
 from halfspace.errors import NotConverged
 
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")

@@ -128,6 +128,6 @@ def test_a_body_with_a_length_is_refused_before_any_work():
 
 
 def test_the_record_is_json(collapsed):
-    data = json.loads(json.dumps(beside.record(collapsed), allow_nan=False))
+    data = json.loads(json.dumps(collapsed.record, allow_nan=False))
     assert [one["tabor"] for one in data["laws"]] == [path.tabor for _, path in collapsed.curves]
     assert data["largest_relative_difference"]["jumps"]["value"] == collapsed.apart("jumps").value

@@ -17,8 +17,8 @@ from hard.bodies import Locking
 from hard.run import Row as HardRow
 from rich.console import Console
 
+from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.page import Table
-from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.terminal import WIDE, Column, Fitted, Flow, make_console, page, prose
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Row

@@ -8,8 +8,8 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, Command, Parser, console_beside, require_distinct, written
-from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.scene_options import COUNTER, add_contact, add_law, add_layer, material_of, refuse
 
 if TYPE_CHECKING:

@@ -36,7 +36,7 @@ from fem_adhesion.assess.verdict import (
 )
 from fem_adhesion.bodies.hemisphere import Hemisphere
 from fem_adhesion.common.contact import Contact
-from fem_adhesion.common.progress import Progress, in_turn, unheard
+from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.scene import Scene
 from halfspace.elastic.layers import Layer
 from halfspace.equilibrium.curve import EquilibriumPath

@@ -1,8 +1,7 @@
-"""The same work on many items at once: in local processes by joblib, or on a Dask cluster that is already there.
+"""Long work: how far it is, for those who wait; and the same on many items at once, by loky or on a Dask cluster.
 
-Results come as they are ready. A worker that dies takes no other item with it: locally the pool is made anew, and each
-item that was handed out and not finished runs in a pool of its own, so that one that kills its worker is known for
-certain; on Dask what the scheduler has given up runs again alone.
+Results come as they are ready. A worker that dies takes no other item with it: each that was handed out and lost so
+runs again when nothing else does, so that one that kills its worker is known for certain.
 """
 
 from __future__ import annotations
@@ -15,16 +14,13 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache
-from types import ModuleType
+from itertools import count, islice
 from typing import Any, TypeVar
 from urllib.parse import urlsplit
-
-import joblib
-from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from halfspace.errors import InputError
 
@@ -34,6 +30,43 @@ Result = TypeVar("Result")
 ATTEMPTS = 3  # at an item whose worker dies
 CONNECTION_SECONDS = 30  # a scheduler that is busy answers late; one that is not there is known at once
 WATCH_SECONDS = 1  # between two looks of a local worker at whether its study is still alive
+IDLE_SECONDS = 300  # after which a local worker without work ends
+ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""Each local worker keeps to one thread of BLAS: the cores are taken by the others."""
+
+
+# How far it is
+
+Progress = Callable[[str, int, int], None]
+"""Told what is under way, how much is done and of how much."""
+
+
+def unheard(_name: str, _done: int, _total: int) -> None:
+    """Progress of which nobody wants to know."""
+
+
+def in_turn(progress: Progress, total: int) -> Callable[[str], None]:
+    """What is told the name of each of so many parts, in order, as its work begins."""
+    done = count()
+    return lambda name: progress(name, next(done), total)
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress]:
+    """Bar on standard error if that is a terminal, with the time that has gone and what is expected to be left."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    times = (TimeElapsedColumn(), TextColumn("left:"), TimeRemainingColumn())
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), *times)
+    console = Console(stderr=True)
+    with Bar(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("", total=None)
+        yield lambda name, done, total: bar.update(task, description=name, completed=done, total=total)
+
+
+# Many items
 
 
 @dataclass(frozen=True)
@@ -41,6 +74,21 @@ class WorkerDied:
     """The end of an item whose worker died at every attempt, and why it is thought to have."""
 
     reason: str
+
+
+@dataclass(frozen=True)
+class Pool:
+    """Where work is done: how it is handed out, to how many items at once, and how all is stopped.
+
+    What a future raises whose worker `died`; so often an item runs alone then, and what is said if that is in vain.
+    """
+
+    submit: Callable[..., Future[Any]]
+    stop: Callable[[], None]
+    width: int
+    died: type[Exception]
+    alone: int
+    lost: str
 
 
 def stream(
@@ -56,106 +104,108 @@ def stream(
     InputError at once, if jobs is not positive, distributed is not installed, or the scheduler does not answer.
     """
     if dask is not None:
-        return _on_cluster(work, items, *_connected(dask))
-    return _on_cores(work, items, workers(jobs))
+        return _on_pool(work, items, _cluster(dask, len(items)))
+    number = workers(jobs)
+    return _here(work, items) if number == 1 else _on_pool(work, items, _processes(number))
 
 
 def workers(jobs: int | None) -> int:
     """Number of local processes, or InputError unless it is positive."""
     if jobs is not None and jobs < 1:
         raise InputError(f"jobs = {jobs} is outside 1 <= jobs; leave it out to use all cores")
-    return jobs or int(joblib.cpu_count())
+    if jobs is None:
+        from joblib import cpu_count  # here, as all commands tell how far they are, and few need processes
+
+        return int(cpu_count())
+    return jobs
 
 
 @contextmanager
 def loaded_ahead(module: str, *, jobs: int | None = None, dask: str | None = None) -> Iterator[None]:
     """Let the local workers load a module while their study loads it too, and wait for them."""
-    count = workers(jobs) if dask is None else 1
-    if count == 1 or module in sys.modules:
+    number = workers(jobs) if dask is None else 1
+    if number == 1 or module in sys.modules:
         yield
         return
-    results = _pool(_load, enumerate([module] * count), count)
+    futures = [_processes(number).submit(_load, module) for _ in range(number)]
     try:
         yield
     finally:
-        with suppress(TerminatedWorkerError, ImportError):  # of which `stream` or the study itself tells
-            list(results)
+        wait(futures)  # of what one raises `stream` or the study itself tells
 
 
 def _load(module: str) -> None:
     importlib.import_module(module)
 
 
-def _on_cores(
-    work: Callable[[Item], Result], items: Sequence[Item], jobs: int
+def _here(
+    work: Callable[[Item], Result], items: Sequence[Item]
 ) -> Generator[tuple[Item, Result | WorkerDied], None, None]:
-    todo = dict(enumerate(items))
-    while todo:
-        given: set[int] = set()
+    for item in items:
+        yield item, work(item)
+
+
+def _on_pool(
+    work: Callable[[Item], Result], items: Sequence[Item], pool: Pool
+) -> Generator[tuple[Item, Result | WorkerDied], None, None]:
+    waiting, lost = iter(items), []
+    given: dict[Future[Result], Item] = {}
+    try:
+        while True:
+            given |= {pool.submit(work, item): item for item in islice(waiting, pool.width - len(given))}
+            if not given:
+                break
+            for future in wait(given, return_when=FIRST_COMPLETED).done:
+                item = given.pop(future)
+                if isinstance(future.exception(), pool.died):
+                    lost.append(item)
+                else:
+                    yield item, future.result()
+        for item in lost:
+            yield item, _alone(work, item, pool)
+    finally:
+        pool.stop()
+
+
+def _alone(work: Callable[[Item], Result], item: Item, pool: Pool) -> Result | WorkerDied:
+    """Result of an item in a pool that works on nothing else, tried again while the worker dies."""
+    for _ in range(pool.alone):
         try:
-            with _stopped_early(_pool(work, _handed_out(todo, given), jobs)) as results:
-                for number, result in results:
-                    yield todo.pop(number), result
-        except TerminatedWorkerError:
-            for number in sorted(given & todo.keys()):
-                yield todo[number], _alone(work, todo.pop(number))
-
-
-def _handed_out(todo: Mapping[int, Item], given: set[int]) -> Iterator[tuple[int, Item]]:
-    """Items one by one, noting which have been asked for."""
-    for number, item in list(todo.items()):
-        given.add(number)
-        yield number, item
-
-
-def _alone(work: Callable[[Item], Result], item: Item) -> Result | WorkerDied:
-    """Result of an item in a pool that holds nothing else, tried again while the worker dies."""
-    for _ in range(ATTEMPTS - 1):
-        try:
-            with _stopped_early(_pool(work, [(0, item)], 2)) as results:  # joblib starts no process for a pool of one
-                return next(results)[1]
-        except TerminatedWorkerError as error:
+            result: Result = pool.submit(work, item).result()
+            return result
+        except pool.died as error:
             last = error
-    return WorkerDied(f"its worker died {ATTEMPTS} times: {_one_line(last)}")
+    return WorkerDied(f"{pool.lost}: {str(last).strip().partition(chr(10))[0]}")
 
 
-def _pool(
-    work: Callable[[Item], Result], numbered: Iterable[tuple[int, Item]], jobs: int
-) -> Generator[tuple[int, Result], None, None]:
-    """Generator of the results with their numbers, as they come."""
-    # Each process keeps to one thread of BLAS: the cores are taken by the others.
-    settings: dict[str, Any] = {"backend": "loky", "inner_max_num_threads": 1} if jobs > 1 else {}
+def _processes(number: int) -> Pool:
+    """So many local processes, made anew when one has died."""
+    from joblib.externals.loky import get_reusable_executor
+    from joblib.externals.loky.process_executor import TerminatedWorkerError
+
     # A worker is made anew when it has grown by 300 MB, which large bodies make it do: no trouble of the user's.
     warnings.filterwarnings("ignore", message="A worker stopped while some jobs were given", category=UserWarning)
-    with joblib.parallel_config(**settings):
-        pool = joblib.Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
-    results: Generator[tuple[int, Result], None, None] = pool(
-        joblib.delayed(_numbered)(work, number, item, os.getpid()) for number, item in numbered
+
+    def executor() -> Any:
+        settings = {"timeout": IDLE_SECONDS, "initializer": _watch, "initargs": (os.getpid(),), "env": ONE_THREAD}
+        return get_reusable_executor(number, **settings)
+
+    def submit(*call: Any) -> Future[Any]:
+        future: Future[Any]
+        try:
+            future = executor().submit(*call)
+        except TerminatedWorkerError:  # it has died just now
+            future = executor().submit(*call)
+        return future
+
+    lost = f"its worker died {ATTEMPTS} times"
+    return Pool(
+        submit, lambda: executor().shutdown(kill_workers=True), 2 * number, TerminatedWorkerError, ATTEMPTS - 1, lost
     )
-    return results
 
 
-@contextmanager
-def _stopped_early(results: Generator[Result, None, None]) -> Iterator[Generator[Result, None, None]]:
-    """Close a generator of results at the end, without joblib's warning that what was under way is lost."""
-    try:
-        yield results
-    finally:
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message=".*tasks", category=UserWarning)
-            results.close()
-
-
-def _numbered(work: Callable[[Item], Result], number: int, item: Item, study: int) -> tuple[int, Result]:
-    """Result with its number, in a worker that ends when the process of the study is killed."""
-    if os.getpid() != study:
-        _watch(study)
-    return number, work(item)
-
-
-@cache
 def _watch(study: int) -> None:
-    """Start to look for the process of the study, once in each worker: an orphan would wait for work for minutes.
+    """Let a worker look for the process of its study, without which it would wait for work for minutes.
 
     What interrupts the study is its own to heed, though a terminal sends it to the workers too: it ends them.
     """
@@ -169,19 +219,27 @@ def _watch(study: int) -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
-def _connected(address: str) -> tuple[ModuleType, Any]:
-    """The library `distributed` and a client of the scheduler at an address."""
+def _cluster(address: str, width: int) -> Pool:
+    """Cluster of the scheduler at an address, which is given all items at once: it may grow with them."""
     try:
         distributed = importlib.import_module("distributed")
     except ModuleNotFoundError as error:
         raise InputError(f"dask = {address} needs the extra cluster; pip install 'fem-adhesion[cluster]'") from error
     try:
         _knock(address)
-        return distributed, distributed.Client(address, timeout=CONNECTION_SECONDS, set_as_default=False)
+        client = distributed.Client(address, timeout=CONNECTION_SECONDS, set_as_default=False)
     except (OSError, ValueError) as error:
         raise InputError(
             f"dask = {address} does not answer within {CONNECTION_SECONDS} s; give the scheduler's, as tcp://host:8786"
         ) from error
+    executor = client.get_executor(pure=False)
+
+    def stop() -> None:
+        executor.shutdown(wait=False)
+        client.close()
+
+    # The scheduler gives up what died with a worker too often, also what only waited there: that runs alone, once.
+    return Pool(executor.submit, stop, width, distributed.KilledWorker, 1, "its worker died")
 
 
 def _knock(address: str) -> None:
@@ -190,35 +248,3 @@ def _knock(address: str) -> None:
     if not parts.hostname or not parts.port:
         raise InputError("no host or no port")
     socket.create_connection((parts.hostname, parts.port), timeout=CONNECTION_SECONDS).close()
-
-
-def _on_cluster(
-    work: Callable[[Item], Result], items: Sequence[Item], distributed: ModuleType, client: Any
-) -> Generator[tuple[Item, Result | WorkerDied], None, None]:
-    with client:
-        futures = {client.submit(work, item, pure=False): item for item in items}
-        try:
-            # The scheduler gives up what died with a worker too often, also what only waited there: that runs alone.
-            killed = []
-            for future in distributed.as_completed(futures, loop=client.loop):
-                result = _result(future, distributed.KilledWorker)
-                if isinstance(result, WorkerDied):
-                    killed.append(futures[future])
-                else:
-                    yield futures[future], result
-            for item in killed:
-                futures[again := client.submit(work, item, pure=False)] = item
-                yield item, _result(again, distributed.KilledWorker)
-        finally:
-            client.cancel(list(futures))
-
-
-def _result(future: Any, killed: type[Exception]) -> Any:
-    try:
-        return future.result()
-    except killed as error:
-        return WorkerDied(f"its worker died: {_one_line(error)}")
-
-
-def _one_line(error: Exception) -> str:
-    return str(error).strip().partition("\n")[0]

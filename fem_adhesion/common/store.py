@@ -20,9 +20,8 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 from fem_adhesion.common.files import writing
-from fem_adhesion.common.jobs import WorkerDied, stream
+from fem_adhesion.common.jobs import Progress, WorkerDied, stream, unheard
 from fem_adhesion.common.numbers import counted
-from fem_adhesion.common.progress import Progress, unheard
 from halfspace.errors import InputError
 
 SCHEMA = 2  # raised whenever what is stored changes

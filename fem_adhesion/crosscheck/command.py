@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_workers, console_beside, written
-from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.scene_options import POISSON, add_body, add_other_body, counter_of, scene_of
 
 if TYPE_CHECKING:

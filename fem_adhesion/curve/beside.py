@@ -6,9 +6,9 @@ as 1/s. What all of them share are R dgamma for loads and beta^2/R = mu eps for 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from fem_adhesion import registry
 from fem_adhesion.common import style
 from fem_adhesion.common.facts import plain
-from fem_adhesion.common.progress import Progress, unheard
+from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.solve import Curves, trace
 from fem_adhesion.scene import Scene
@@ -34,9 +34,12 @@ LOOKS = (
     (style.SKY, style.DASHED),
 )
 MARKERS = {"pull_off": "o", "jump_on": "^", "jump_off": "v"}
-COMPARED = {"pull-off": [("pull_off", "load")], "jumps": []}
-COMPARED["jumps"] += [(name, quantity) for name in ("jump_on", "jump_off") for quantity in ("approach", "load")]
+COMPARED = {
+    "pull-off": [("pull_off", "load")],
+    "jumps": [(name, quantity) for name in ("jump_on", "jump_off") for quantity in ("approach", "load")],
+}
 GAPS = np.linspace(-0.4, 6.0, 1200)  # shown of the laws, in dgamma/(largest tension)
+CORE = -0.5  # eps: nearer by are no gaps of a law with a core
 
 
 @dataclass(frozen=True)
@@ -63,28 +66,30 @@ class EquallyStrong:
         parts = (f"{_told(self.apart(subject))} in {subject}" for subject in COMPARED)
         return f"equally strong laws, {named}: curves differ by {', '.join(parts)} at most"
 
+    @property
+    def record(self) -> dict[str, Any]:
+        """The laws with their Tabor parameters, and how far the curves are apart, as plain data."""
+        laws = [{"law": plain(registry.record_of(law)), "tabor": path.tabor} for law, path in self.curves]
+        apart = {subject: plain(self.apart(subject)) for subject in COMPARED}
+        return {"laws": laws, "largest_relative_difference": apart}
+
 
 def _difference(first: EquilibriumPath, other: EquilibriumPath, name: str, quantity: str) -> Estimate | None:
     a, b = first.event(name), other.event(name)
     if a is None or b is None:
         return None
-    ours, theirs = (_shared(path, event.estimate(quantity), quantity) for path, event in ((first, a), (other, b)))
+    ours, theirs = a.estimate(quantity), b.estimate(quantity)
+    # Approaches in the unit that all curves share.
+    units = (first.tabor, other.tabor) if quantity == "approach" else (1.0, 1.0)
     size = first.approach_scale / first.tabor if quantity == "approach" else abs(first.events["pull_off"].load)
-    return Estimate(abs(theirs.value - ours.value) / size, (theirs.error + ours.error) / size)
-
-
-def _shared(path: EquilibriumPath, number: Estimate, quantity: str) -> Estimate:
-    """A number in the unit that all curves share."""
-    unit = path.tabor if quantity == "approach" else 1.0
-    return Estimate(number.value / unit, number.error / unit)
+    off = abs(theirs.value / units[1] - ours.value / units[0])
+    return Estimate(off / size, (theirs.error / units[1] + ours.error / units[0]) / size)
 
 
 def _told(part: Estimate | None) -> str:
-    return (
-        "what cannot be told, as not all fold,"
-        if part is None
-        else f"{100 * part.value:.3g} +- {100 * part.error:.1g} %"
-    )
+    if part is None:
+        return "what cannot be told, as not all fold,"
+    return f"{100 * part.value:.3g} +- {100 * part.error:.1g} %"
 
 
 def _name(law: Law, path: EquilibriumPath) -> str:
@@ -114,11 +119,6 @@ def require(scene: Scene, laws: Sequence[Law]) -> None:
         raise InputError(f"beside = {len(laws)} laws, limit: {len(LOOKS) - 1}; give fewer")
 
 
-def write(beside: EquallyStrong, file: TextIO, form: str) -> None:
-    """Write the figure to a file, in a format of `fem_adhesion.common.style.require_suffix`."""
-    style.write(lambda: draw(beside), file, form)
-
-
 def draw(beside: EquallyStrong) -> Figure:
     """Loads against approaches in units that all share, and the laws, each with its largest tension as 1."""
     figure, (left, right) = style.panels(2, 5.6)
@@ -129,8 +129,9 @@ def draw(beside: EquallyStrong) -> Figure:
         look = {"color": color, "linewidth": 1.9}
         left.plot(x, np.where(unstable, np.nan, line.load), linestyle=dashes, label=_name(law, path), **look)
         left.plot(x, np.where(unstable, line.load, np.nan), color=color, linewidth=1.1, linestyle=style.DOTTED)
-        for event, approach, load in _marks(path):
-            left.plot(approach, load, linestyle="none", marker=MARKERS[event], color=color, zorder=4)
+        for name, marker in MARKERS.items():
+            if event := path.event(name):
+                left.plot(event.approach / path.tabor, event.load, marker, color=color, zorder=4)
         right.plot(*_law(law), linestyle=dashes, **look)
         frames.append((*(value / path.tabor for value in frame.approach), *frame.load))
     low, high = np.min(frames, axis=0), np.max(frames, axis=0)
@@ -148,24 +149,8 @@ def draw(beside: EquallyStrong) -> Figure:
     return figure
 
 
-def _marks(path: EquilibriumPath) -> Iterator[tuple[str, float, float]]:
-    for name in MARKERS:
-        if event := path.event(name):
-            yield name, event.approach / path.tabor, event.load
-
-
 def _law(law: Law) -> tuple[Array, Array]:
     """Gap less that at equilibrium in dgamma/(largest tension), and the tension in that."""
     gaps = GAPS / law.strength
     gaps = gaps[gaps > CORE]
     return gaps * law.strength, -law.pressure(gaps, 1.0) / law.strength
-
-
-CORE = -0.5  # eps: nearer by are no gaps of a law with a core
-
-
-def record(beside: EquallyStrong) -> dict[str, Any]:
-    """What was compared, as plain data: the laws with their Tabor parameters, and how far the curves are apart."""
-    apart = {subject: plain(beside.apart(subject)) for subject in COMPARED}
-    laws = [{"law": plain(registry.record_of(law)), "tabor": path.tabor} for law, path in beside.curves]
-    return {"laws": laws, "largest_relative_difference": apart}

@@ -7,10 +7,10 @@ import json
 import math
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, TextIO
 
+from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, Command, Parser, console_beside, require_distinct, written
-from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.scene_options import (
     POISSON,
     add_body,
@@ -26,9 +26,10 @@ from fem_adhesion.common.scene_options import (
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from fem_adhesion.common.contact import Contact
+    from fem_adhesion.common.jobs import Progress
     from fem_adhesion.curve.beside import EquallyStrong
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
@@ -83,11 +84,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.curve.solve import solve
 
     question = _question(options)
-    laws = [law_named(text) for text in options.beside or ()]
-    if laws:
-        from fem_adhesion.curve import beside
-
-        beside.require(question.scene, laws)
+    collapse = _beside(question, [law_named(text) for text in options.beside or ()])
     form = _form_of(options.plot)
     require_distinct(options.json, options.csv, options.plot, options.render, options.movie, options.vtk)
     with ExitStack() as stack:
@@ -99,18 +96,18 @@ def run(options: argparse.Namespace) -> int:
         )
         with progress_bar() as step:
             curves = solve(question, step)
-        collapsed = _beside(curves, laws, plot, form)
+            collapsed = collapse(curves, step) if collapse else None
         if data:
-            json.dump(record.record(curves) | _record(collapsed), data, indent=1, allow_nan=False)
+            told = {"beside": collapsed.record} if collapsed else {}
+            json.dump(record.record(curves) | told, data, indent=1, allow_nan=False)
         if points:
             record.write_csv(curves, points)
-        if plot and not collapsed:
-            from fem_adhesion.curve import figure
-
-            figure.write(curves, plot, form)
+        if plot:
+            _draw(collapsed or curves, plot, form)
         if fields:
             _write_vtk(options, curves, fields)
-        _draw_body(curves, picture, options.at or "pull_off", movie)
+        if picture or movie:
+            _draw_body(curves, picture, options.at or "pull_off", movie)
         for file in filter(None, (data, points, plot, picture, movie)):
             file.flush()  # all on disk before the first takes its place
     console = console_beside(options.json, options.csv)
@@ -120,26 +117,25 @@ def run(options: argparse.Namespace) -> int:
     return AGREE
 
 
-def _record(collapsed: EquallyStrong | None) -> dict[str, Any]:
-    """What is told of several laws, if there are."""
-    if not collapsed:
-        return {}
-    from fem_adhesion.curve import beside
-
-    return {"beside": beside.record(collapsed)}
-
-
-def _beside(curves: Curves, laws: Sequence[Law], plot: TextIO | None, form: str) -> EquallyStrong | None:
-    """Curves by other laws, drawn in the place of the page about one."""
+def _beside(question: Question, laws: Sequence[Law]) -> Callable[[Curves, Progress], EquallyStrong] | None:
+    """What traces the curves by other laws, if there are, after a check before any work."""
     if not laws:
         return None
     from fem_adhesion.curve import beside
 
-    with progress_bar() as step:
-        found = beside.solve(curves, laws, step)
-    if plot:
-        beside.write(found, plot, form)
-    return found
+    beside.require(question.scene, laws)
+    return lambda curves, step: beside.solve(curves, laws, step)
+
+
+def _draw(found: Curves | EquallyStrong, file: TextIO, form: str) -> None:
+    """The page about one curve, or in its place that of several laws."""
+    from fem_adhesion.common import style
+    from fem_adhesion.curve import beside, figure
+
+    if isinstance(found, beside.EquallyStrong):
+        style.write(lambda: beside.draw(found), file, form)
+    else:
+        style.write(lambda: figure.draw(found), file, form, figure.LOOK)
 
 
 def _write_vtk(options: argparse.Namespace, curves: Curves, aside: Path) -> None:
@@ -152,13 +148,11 @@ def _write_vtk(options: argparse.Namespace, curves: Curves, aside: Path) -> None
 
 
 def _draw_body(curves: Curves, picture: TextIO | None, at: str, movie: TextIO | None) -> None:
-    if picture:
-        from fem_adhesion.curve.pictures import write_picture
+    from fem_adhesion.curve.pictures import write_movie, write_picture
 
+    if picture:
         write_picture(curves, picture, at)
     if movie:
-        from fem_adhesion.curve.pictures import write_movie
-
         write_movie(curves, movie)
 
 

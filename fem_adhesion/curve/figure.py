@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 from matplotlib.collections import PolyCollection
@@ -13,7 +13,7 @@ from skfem import CellBasis, ElementVector, MeshTri
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common import style
 from fem_adhesion.curve.load import LEGEND, STATES, draw_central_gap, draw_load
-from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves, scales
+from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves
 from fem_adhesion.fields import State, require_fields, state_at
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, ContactProblem
@@ -23,11 +23,6 @@ from halfspace.values import Array, Valued
 
 LOOK = {**style.LOOK, "font.size": 9.5}
 SIZE = (7.3, 10.0)  # inches
-
-
-def write(curves: Curves, file: TextIO, form: str) -> None:
-    """Write the page to a file, in a format of `fem_adhesion.common.style.require_suffix`."""
-    style.write(lambda: draw(curves), file, form, LOOK)
 
 
 def has_mesh(curves: Curves) -> bool:
@@ -116,11 +111,11 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
     """
     scene, found = curves.question.scene, curves.path.stages[-1][EVENT]
     state = state_at(scene, found.problem, found.point, name=EVENT, how=MESH)
-    a, unit = _size(state), scales(curves)["radius"]
+    a, unit = _size(state), curves.scales["radius"]
     places, moved = outlines(state, 2 * SHOWN * a)
     factor = DRAWN_AS * a / float(np.abs(moved).max())
     look: dict[str, Any] = {"facecolors": "0.94", "edgecolors": style.BLUE, "linewidths": 0.35}
-    drawn = unit.of(places + factor * moved)
+    drawn = unit.size * (places + factor * moved)
     axes.add_collection(PolyCollection(list(drawn), **look))
     for depth in scene.body.interfaces:
         line = drawn[np.isclose(places[..., 1], -depth, rtol=1e-9, atol=0)]
@@ -128,7 +123,7 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
     r = np.linspace(0, SHOWN * a, 200)
     sphere = factor * _sphere(state, r)
     if np.isinf(scene.body.size) and sphere[0] < HIGHEST * a:
-        axes.plot(unit.of(r), unit.of(sphere), color="black", linewidth=1.3, label="rigid sphere")
+        axes.plot(unit.size * r, unit.size * sphere, color="black", linewidth=1.3, label="rigid sphere")
         axes.legend(loc="lower right", **LEGEND)
     axes.set(xlim=(0, unit.size * SHOWN * a), ylim=(-unit.size * 1.6 * a, unit.size * HIGHEST * a), aspect="equal")
     axes.set_anchor("W")  # under the beginning of its title, which is wider
@@ -204,8 +199,7 @@ def widest(path: EquilibriumPath) -> float:
 
 def draw_pressure(axes: Any, curves: Curves) -> str:
     """Pressure against radius at the events; returns the title."""
-    units = scales(curves)
-    x, y = units["radius"], units["pressure"]
+    x, y = curves.scales["radius"], curves.scales["pressure"]
     _draw(axes, curves, "pressure")
     axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
     style.dress(axes, x.label, y.label, legend=None, xlim=(0, x.size * WIDER * widest(curves.path)))
@@ -214,8 +208,7 @@ def draw_pressure(axes: Any, curves: Curves) -> str:
 
 def draw_gap(axes: Any, curves: Curves) -> str:
     """Gap against radius at the events; the edge of contact is where the tension is largest. Returns the title."""
-    units, path = scales(curves), curves.path
-    x, y = units["radius"], units["gap"]
+    x, y, path = curves.scales["radius"], curves.scales["gap"], curves.path
     _draw(axes, curves, "gap")
     edge = state_of(path, "zero_load")[0].law.edge_gap
     axes.axhline(y.size * edge, color="0.5", linewidth=0.8, linestyle=style.DOTTED, label="edge of contact")
@@ -228,27 +221,27 @@ def draw_gap(axes: Any, curves: Curves) -> str:
 
 def _draw(axes: Any, curves: Curves, quantity: str) -> None:
     """A quantity along the surface at each event."""
-    units, radii = scales(curves), np.linspace(0, WIDER * widest(curves.path), POINTS)
+    radii = np.linspace(0, WIDER * widest(curves.path), POINTS)
     for name, look in STATES.items():
         if curves.path.event(name):
             state = profile(curves.path, name, radii)
             line = {"color": look.color, "linestyle": look.linestyle, "linewidth": 1.6, "label": look.words}
-            axes.plot(units["radius"].of(state.radii), units[quantity].of(getattr(state, quantity)), **line)
+            axes.plot(*curves.shown(radius=state.radii, **{quantity: getattr(state, quantity)}), **line)
 
 
 def draw_spike(axes: Any, curves: Curves) -> str:
     """Pressure around the edge of contact where it is lost, with the nodes of the grid on it; returns the title."""
-    units, path = scales(curves), curves.path
-    x, y = units["radius"], units["pressure"]
+    x, y, path = curves.scales["radius"], curves.scales["pressure"], curves.path
     name = "jump_off" if path.event("jump_off") else "pull_off"
     edge, look = state_of(path, name)[0].contact_radius(state_of(path, name)[1]), STATES[name]
     reach = SPIKES * path.segments[0].problem.interface.scales.spike_width
     low, high = max(0.0, edge - reach), edge + reach
     line, points = profile(path, name, np.linspace(low, high, POINTS)), nodes(path, name)
     shown = (points.radii >= low) & (points.radii <= high)
-    axes.plot(x.of(line.radii), y.of(line.pressure), color=look.color, linewidth=1.3)
+    axes.plot(*curves.shown(radius=line.radii, pressure=line.pressure), color=look.color, linewidth=1.3)
     dots = {"linestyle": "none", "marker": "o", "markersize": 3, "color": "black", "zorder": 3}
-    axes.plot(x.of(points.radii[shown]), y.of(points.pressure[shown]), label="nodes of the grid", **dots)
+    at = curves.shown(radius=points.radii[shown], pressure=points.pressure[shown])
+    axes.plot(*at, label="nodes of the grid", **dots)
     axes.axvline(x.size * edge, color="0.5", linewidth=0.8, linestyle=style.DOTTED, label="edge of contact")
     style.dress(axes, x.label, y.label, legend=None, xlim=(x.size * low, x.size * high))
     axes.legend(loc="best", **LEGEND)

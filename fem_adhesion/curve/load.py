@@ -13,10 +13,9 @@ from fem_adhesion.common import style
 from fem_adhesion.common.numbers import engineering
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.lines import Frame
-from fem_adhesion.curve.solve import Curves, Scale, scales
+from fem_adhesion.curve.solve import Curves
 from fem_adhesion.fields import is_same_contact
 from fem_adhesion.scene import Scene
-from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.reach import reaching
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Paraboloid, Sphere
@@ -68,8 +67,7 @@ def draw_load(axes: Any, curves: Curves) -> str:
     """Load against approach, with the events enlarged where they would be hard to see; returns the title."""
     highest = min(float(curves.path.load.max()), curves.question.to_load)
     _draw_frame(axes, curves, lines.frame(curves.path, highest))
-    units = scales(curves)
-    style.dress(axes, units["approach"].label, units["load"].label, legend=None)
+    style.dress(axes, curves.scales["approach"].label, curves.scales["load"].label, legend=None)
     below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 4, "columnspacing": 1.2}
     axes.legend(handles=_seen(axes), **below, **LEGEND | {"handlelength": 2.5})
     close = lines.around_events(curves.path)
@@ -89,33 +87,32 @@ def _seen(axes: Any) -> list[Any]:
 
 
 def _draw_frame(axes: Any, curves: Curves, frame: Frame) -> None:
-    x, y = scales(curves)["approach"], scales(curves)["load"]
     for name, (approach, load) in _theories(curves.question.scene, frame):
-        axes.plot(x.of(approach), y.of(load), label=name, **THEORIES[name])
+        axes.plot(*curves.shown(approach=approach, load=load), label=name, **THEORIES[name])
     line = lines.smooth(reaching(curves.path, curves.question.stiffness))
     for kind, load in line.parts(line.load):
-        axes.plot(x.of(line.approach), y.of(load), label=lines.KINDS[kind], **KINDS[kind])
+        axes.plot(*curves.shown(approach=line.approach, load=load), label=lines.KINDS[kind], **KINDS[kind])
     _draw_other(axes, curves, frame)
-    _draw_states(axes, curves, x, y)
+    _draw_states(axes, curves)
     _draw_jumps(axes, curves, frame)
     axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
-    axes.set(xlim=tuple(x.size * value for value in frame.approach), ylim=tuple(y.size * v for v in frame.load))
+    xlim, ylim = curves.shown(approach=np.array(frame.approach), load=np.array(frame.load))
+    axes.set(xlim=xlim, ylim=ylim)
 
 
 def _draw_other(axes: Any, curves: Curves, frame: Frame) -> None:
     """The half-space beside the finite elements: points on the same contact, a line for another."""
     if curves.other is None:
         return
-    x, y = scales(curves)["approach"], scales(curves)["load"]
     if is_same_contact(curves.question.scene):
-        points = {"linestyle": "none", "marker": "o", "markersize": 4, "markerfacecolor": "white", "zorder": 4}
-        points |= {"color": "black", "markeredgewidth": 0.8, "label": "half-space"}
+        look: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 4, "markerfacecolor": "white"}
+        look |= {"color": "black", "markeredgewidth": 0.8, "zorder": 4}
         approach, load = _spread(curves.other.approach, curves.other.load, frame)
-        axes.plot(x.of(approach), y.of(load), **points)
     else:
         line = lines.smooth(curves.other)
-        look: dict[str, Any] = {"color": style.ORANGE, "linewidth": 1.5, "linestyle": style.CHAIN, "zorder": 1.8}
-        axes.plot(x.of(line.approach), y.of(line.load), label="half-space", **look)
+        approach, load = line.approach, line.load
+        look = {"color": style.ORANGE, "linewidth": 1.5, "linestyle": style.CHAIN, "zorder": 1.8}
+    axes.plot(*curves.shown(approach=approach, load=load), label="half-space", **look)
 
 
 def _spread(approach: Array, load: Array, frame: Frame) -> tuple[Array, Array]:
@@ -128,45 +125,37 @@ def _spread(approach: Array, load: Array, frame: Frame) -> tuple[Array, Array]:
     return approach[kept], load[kept]
 
 
-def _draw_states(axes: Any, curves: Curves, x: Scale, y: Scale) -> None:
+def _draw_states(axes: Any, curves: Curves) -> None:
     """Markers at the events whose profiles are shown below, and at the folds."""
-    turns = lines.folds(curves.path)
-    if len(turns):
+    approach, load = lines.folds(curves.path).T
+    if approach.size:
         square = {"linestyle": "none", "marker": "|", "markersize": 13, "color": "black", "zorder": 4.5}
-        axes.plot(x.of(turns[:, 0]), y.of(turns[:, 1]), label="fold", **square)
+        axes.plot(*curves.shown(approach=approach, load=load), label="fold", **square)
     for name, look in STATES.items():
         if event := curves.path.event(name):
             marker = {"linestyle": "none", "marker": look.marker, "markersize": 6.5, "color": look.color, "zorder": 5}
-            marker |= {"markeredgecolor": "black", "markeredgewidth": 0.7}
-            axes.plot(x.of(np.array([event.approach])), y.of(np.array([event.load])), label=look.words, **marker)
+            marker |= {"markeredgecolor": "black", "markeredgewidth": 0.7, "label": look.words}
+            axes.plot(*curves.shown(approach=event.approach, load=event.load), **marker)
 
 
 def _draw_jumps(axes: Any, curves: Curves, frame: Frame) -> None:
     """Arrows of the jumps, under fixed grips and along the load lines of an apparatus."""
-    units = scales(curves)
     for cycle, look in ((curves.grips, GRIPS), (curves.apparatus, APPARATUS)):
         jumps = cycle.jumps if cycle else {}
         ends = [[(state.approach, state.load) for state in (jump.take_off, jump.landing)] for jump in jumps.values()]
         seen = list(filter(None, (_clipped(tail, head, frame) for tail, head in ends)))
-        for tail, head in seen:
-            style.arrow(axes, _scaled(tail, units), _scaled(head, units), linewidth=1.4, mutation_scale=11, **look)
+        for both in seen:
+            tail, head = ((*curves.shown(approach=approach, load=load),) for approach, load in both)
+            style.arrow(axes, tail, head, linewidth=1.4, mutation_scale=11, **look)
         if cycle and seen:
             words = "jumps under fixed grips" if math.isinf(cycle.stiffness) else f"jumps, {_stiffness(curves)}"
             axes.plot([], [], label=words, linewidth=1.4, **look)
-    if curves.apparatus:
-        _load_lines(axes, curves.apparatus, units)
-
-
-def _load_lines(axes: Any, cycle: Cycle, units: Any) -> None:
-    """Lines of slope -k, the loads that an apparatus exerts with its base held where it jumps."""
-    slope = -cycle.stiffness * units["load"].size / units["approach"].size
-    for jump in cycle.jumps.values():
-        at = _scaled((jump.take_off.approach, jump.take_off.load), units)
-        axes.axline(at, slope=slope, color=style.GREEN, linewidth=0.8, linestyle=style.DASHED, zorder=1.2)
-
-
-def _scaled(at: Ends, units: Any) -> Ends:
-    return at[0] * units["approach"].size, at[1] * units["load"].size
+    # Lines of slope -k, the loads that an apparatus exerts with its base held where it jumps.
+    for jump in curves.apparatus.jumps.values() if curves.apparatus else ():
+        across, down = curves.shown(approach=1.0, load=-curves.question.stiffness)
+        at = curves.shown(approach=jump.take_off.approach, load=jump.take_off.load)
+        line = {"color": style.GREEN, "linewidth": 0.8, "linestyle": style.DASHED, "zorder": 1.2}
+        axes.axline(at, slope=down / across, **line)
 
 
 def _clipped(tail: Ends, head: Ends, frame: Frame) -> tuple[Ends, Ends] | None:
@@ -226,13 +215,12 @@ def _stiffness(curves: Curves) -> str:
 
 def draw_central_gap(axes: Any, curves: Curves) -> str:
     """Central gap against approach, along which the unstable branch is easiest to follow; returns the title."""
-    units, line = scales(curves), lines.smooth(curves.path)
-    x, y = units["approach"], units["central_gap"]
+    line, x, y = lines.smooth(curves.path), curves.scales["approach"], curves.scales["central_gap"]
     for kind, gap in line.parts(line.central_gap):
-        axes.plot(x.of(line.approach), y.of(gap), label=lines.KINDS[kind], **KINDS[kind])
+        axes.plot(*curves.shown(approach=line.approach, central_gap=gap), label=lines.KINDS[kind], **KINDS[kind])
     for name, look in STATES.items():
         if event := curves.path.event(name):
-            at = x.of(np.array([event.approach])), y.of(np.array([event.central_gap]))
+            at = curves.shown(approach=event.approach, central_gap=event.central_gap)
             axes.plot(*at, linestyle="none", marker=look.marker, color=look.color, markeredgecolor="black", zorder=5)
     left, right = lines.around_events(curves.path).approach
     style.dress(axes, x.label, y.label, legend=None, xlim=(x.size * left, x.size * right))

@@ -24,7 +24,7 @@ from fem_adhesion.common.numbers import with_error
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.figure import LOOK
 from fem_adhesion.curve.load import KINDS, STATES, contact_words
-from fem_adhesion.curve.solve import Curves, scales
+from fem_adhesion.curve.solve import Curves
 from fem_adhesion.fields import State, state_at
 from fem_adhesion.paraview.picture import COLOURS, Pixels, View, solid_image, view_of
 from fem_adhesion.registry import name_of
@@ -92,7 +92,7 @@ def composed(curves: Curves, solid: Pixels, state: State, view: View, words: tup
 
 def _caption(curves: Curves, at: str) -> tuple[str, str]:
     """Which contact and event, and its numbers with their errors."""
-    event, units, numbers = curves.path.events[at], scales(curves), {}
+    event, units, numbers = curves.path.events[at], curves.scales, {}
     for name in SYMBOLS:
         if (at, name) == ("zero_load", "load"):
             numbers[name] = "0"
@@ -103,8 +103,8 @@ def _caption(curves: Curves, at: str) -> tuple[str, str]:
 
 def state_words(curves: Curves, state: State) -> str:
     """Load and approach of a state, to the digits that a glance takes in."""
-    units, values = scales(curves), {"load": state.observables[LOAD], "approach": state.observables[APPROACH]}
-    return _listed(curves, {name: f"{value * units[name].size:.2f}" for name, value in values.items()})
+    load, approach = curves.shown(load=state.observables[LOAD], approach=state.observables[APPROACH])
+    return _listed(curves, {"load": f"{load:.2f}", "approach": f"{approach:.2f}"})
 
 
 def _listed(curves: Curves, numbers: Mapping[str, str]) -> str:
@@ -113,7 +113,7 @@ def _listed(curves: Curves, numbers: Mapping[str, str]) -> str:
     for name, number in numbers.items():
         symbol, unit = SYMBOLS[name]
         if curves.question.units:
-            symbol, unit = symbol.replace("^*", ""), scales(curves)[name].unit
+            symbol, unit = symbol.replace("^*", ""), curves.scales[name].unit
         parts.append(f"{symbol} = {number} {unit}".replace("-", MINUS).strip())
     return ",  ".join(parts)
 
@@ -151,7 +151,7 @@ def _body(scene: Scene) -> str:
 
 
 def _add_bar(figure: Figure, curves: Curves, view: View) -> None:
-    pressure = scales(curves)["pressure"]
+    pressure = curves.scales["pressure"]
     limit = view.limit * pressure.size
     axes = figure.add_axes((0.89, 0.2, 0.018, 0.6))
     bar = figure.colorbar(ScalarMappable(Normalize(-limit, limit), COLOURS), cax=axes, extend="both")
@@ -165,17 +165,17 @@ def _add_bar(figure: Figure, curves: Curves, view: View) -> None:
 
 def _add_curve(figure: Figure, curves: Curves, state: State) -> None:
     """Load against approach around the events, and the state on it."""
-    units, frame, line = scales(curves), lines.around_events(curves.path), lines.smooth(curves.path)
-    x, y = units["approach"], units["load"]
+    frame, line = lines.around_events(curves.path), lines.smooth(curves.path)
     axes = figure.add_axes((0.07, 0.11, 0.2, 0.25))
     for kind, load in line.parts(line.load):
-        axes.plot(x.of(line.approach), y.of(load), **KINDS[kind])
-    at = state.observables[[APPROACH, LOAD]]
-    axes.plot(*(at * [x.size, y.size]), marker="o", markersize=9, color="black", zorder=5)
+        axes.plot(*curves.shown(approach=line.approach, load=load), **KINDS[kind])
+    at = curves.shown(approach=state.observables[APPROACH], load=state.observables[LOAD])
+    axes.plot(*at, marker="o", markersize=9, color="black", zorder=5)
     axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
-    axes.set(xlim=x.of(np.array(frame.approach)), ylim=y.of(np.array(frame.load)))
-    axes.set_xlabel(x.label, fontsize=9)
-    axes.set_ylabel(y.label, fontsize=9)
+    xlim, ylim = curves.shown(approach=np.array(frame.approach), load=np.array(frame.load))
+    axes.set(xlim=xlim, ylim=ylim)
+    axes.set_xlabel(curves.scales["approach"].label, fontsize=9)
+    axes.set_ylabel(curves.scales["load"].label, fontsize=9)
     axes.tick_params(labelsize=8)
     axes.patch.set_alpha(0.8)
 

@@ -8,12 +8,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from functools import cached_property
+from typing import Any, Literal
 
 import halfspace
 from fem_adhesion import convergence
+from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.common.numbers import PREFIXES, exponent_of
-from fem_adhesion.common.progress import Progress, unheard
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
@@ -98,6 +99,19 @@ class Curves:
         """The second path."""
         return self.paths.get(HALF_SPACE) if self.solver == FINITE_ELEMENTS else None
 
+    @cached_property
+    def scales(self) -> Mapping[str, Scale]:
+        """Scale of each quantity, with the prefix that suits the largest of its values at events and jumps."""
+        units = self.question.units
+        if units is None:
+            return PAPER
+        largest = _largest(self)
+        return {name: _si_scale(name, *units.si(name), largest.get(ALIKE.get(name, name), 1.0)) for name in PAPER}
+
+    def shown(self, **values: Array | float) -> list[Any]:
+        """Quantities by their names, in the units in which they are shown."""
+        return [value * self.scales[name].size for name, value in values.items()]
+
 
 def solve(question: Question, progress: Progress = unheard) -> Curves:
     """Trace the curve by each solver asked for, and find its jumps, or raise NotConverged."""
@@ -133,10 +147,6 @@ class Scale:
     unit: str
     size: float = 1.0
 
-    def of(self, value: Array) -> Array:
-        """Quantity in the unit."""
-        return value * self.size
-
 
 PAPER: Mapping[str, Scale] = {
     "approach": Scale(r"approach $\alpha^* = \alpha/\epsilon$", "eps"),
@@ -164,15 +174,6 @@ SYMBOLS_IN_SI: Mapping[str, str] = {
 
 EVENT_QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
 ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}  # quantities with the prefix of another
-
-
-def scales(curves: Curves) -> Mapping[str, Scale]:
-    """Scale of each quantity of a curve, with the prefix that suits the largest of its values at events and jumps."""
-    units = curves.question.units
-    if units is None:
-        return PAPER
-    largest = _largest(curves)
-    return {name: _si_scale(name, *units.si(name), largest.get(ALIKE.get(name, name), 1.0)) for name in PAPER}
 
 
 def _largest(curves: Curves) -> Mapping[str, float]:

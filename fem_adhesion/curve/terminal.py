@@ -14,7 +14,7 @@ from fem_adhesion.common.contact import edge_told
 from fem_adhesion.common.numbers import engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.curve import lines
-from fem_adhesion.curve.solve import EVENT_QUANTITIES, Curves, Scale, scales
+from fem_adhesion.curve.solve import EVENT_QUANTITIES, Curves, Scale
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
 from halfspace.equilibrium.reach import reaching
@@ -49,7 +49,7 @@ def show(curves: Curves, console: Console) -> None:
 
 def table(curves: Curves) -> Fitted:
     """A line for each event of each solver, and for where each jump lands."""
-    units, rows = scales(curves), list(_rows(curves))
+    units, rows = curves.scales, list(_rows(curves))
     words = Column("state", [words for words, _, _ in rows], text=True, wraps=True)
     # The solver tells rows apart only where there are two.
     solver = Column("solver", [name for _, name, _ in rows], 0 if len(curves.paths) > 1 else 3, text=True, wraps=True)
@@ -105,7 +105,7 @@ def _title(curves: Curves) -> Iterator[str]:
 
 def notes(curves: Curves) -> Iterator[str]:
     """Energies lost, how the curve is told to be smooth, cost, and how to read the table."""
-    energy = scales(curves)["energy"]
+    energy = curves.scales["energy"]
     devices = [("fixed grips", curves.grips)]
     if not np.isinf(curves.question.stiffness):
         devices.append((_apparatus(curves), curves.apparatus))
@@ -147,7 +147,7 @@ def _how_far(margin: Estimate) -> str:
 
 def _uncertainty(curves: Curves) -> Iterator[str]:
     """How far models lie apart between which the assumptions leave a choice."""
-    units = scales(curves)
+    units = curves.scales
     for name, spread in curves.path.spread.items():
         numbers = (
             f"{number.replace('_', ' ')} {value * units[number].size:.2g} {units[number].unit}"
@@ -168,7 +168,7 @@ def plot(curves: Curves, width: int = WIDTH) -> Text:
 
     The first path is drawn, in a width in characters without the figures beside it.
     """
-    units, path = scales(curves), curves.path
+    units, path = curves.scales, curves.path
     frame = lines.around_events(path)
     canvas = Canvas(width, HEIGHT, frame.approach[0], frame.load[0], frame.approach[1], frame.load[1])
     line = lines.smooth(reaching(path, curves.question.stiffness))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 import sys
 
+from fem_adhesion.common.jobs import in_turn, progress_bar
 from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_output, add_workers, ended
-from fem_adhesion.common.progress import in_turn, progress_bar
 
 
 def add_options(command: Parser) -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 
+from fem_adhesion.common.jobs import in_turn, progress_bar
 from fem_adhesion.common.options import Command, Parser, add_output, exit_code_of
-from fem_adhesion.common.progress import in_turn, progress_bar
 
 
 def add_options(command: Parser) -> None:

@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser
-from fem_adhesion.common.progress import progress_bar
 
 if TYPE_CHECKING:
     from fem_adhesion.curve.solve import Question

@@ -6,8 +6,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import Command, Parser, add_output, console_beside, exit_code_of
-from fem_adhesion.common.progress import progress_bar
 
 
 def add_options(command: Parser) -> None:
@@ -25,11 +25,12 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.common import terminal
     from fem_adhesion.common.files import directory_written_aside, writing
     from fem_adhesion.common.page import markdown
-    from fem_adhesion.speed import earlier, page
+    from fem_adhesion.speed import page
     from fem_adhesion.speed import study as speed
+    from fem_adhesion.speed.result import read_earlier
 
     speed.require_tabor(options.tabor)
-    beside = earlier.read(options.beside, options.tabor) if options.beside else None
+    beside = read_earlier(options.beside, options.tabor) if options.beside else None
     with directory_written_aside(options.out, force=options.force) as aside, progress_bar() as step:
         study = speed.measure(options.tabor, quick=options.quick, progress=step, earlier=beside)
         with writing(options.out):

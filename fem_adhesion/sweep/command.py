@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, DISAGREE, STANDARD, Command, Parser, add_workers, ended, written
-from fem_adhesion.common.progress import progress_bar
 from fem_adhesion.common.scene_options import add_law, law_of
 from halfspace.errors import InputError
 

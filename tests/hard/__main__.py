@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 from fem_adhesion.common.files import directory_written_aside
+from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import console_beside
-from fem_adhesion.common.progress import progress_bar
 from hard.bodies import locking
 from hard.cases import cases
 from hard.run import Row, run
