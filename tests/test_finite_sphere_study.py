@@ -509,7 +509,9 @@ def synthetic(law, noise=0.0, tabors=(0.1, 0.3, 1.0, 3.0, 10.0)):
     mu, rho = (grid.ravel() for grid in np.meshgrid(tabors, np.geomspace(5, 1e5, 10)))
     exact = law(mu, rho)
     rng = np.random.default_rng(7)
-    return Samples(mu, rho, exact + noise * np.abs(exact) * rng.uniform(-1, 1, mu.size), noise * np.abs(exact) + 1e-12)
+    error = noise * np.abs(exact) + 1e-12
+    deviation = exact + noise * np.abs(exact) * rng.uniform(-1, 1, mu.size)
+    return Samples(mu, rho, np.full_like(mu, 0.3), deviation, error)
 
 
 def test_the_fit_recovers_known_coefficients_from_noisy_data():

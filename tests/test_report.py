@@ -142,7 +142,7 @@ def test_the_stations_of_a_walk_balance(contents):
 def test_a_directory_of_another_kind_is_refused_before_any_work(tmp_path, capsys):
     assert cli.main(["report", "--out", str(tmp_path / "report.html"), "--speed", str(tmp_path)]) == 2
     error = capsys.readouterr().err
-    assert "pull_off.svg is not there; give the directory that fem-adhesion speed --out speed wrote" in error
+    assert "captions.csv is not there; give the directory that fem-adhesion speed --out speed wrote" in error
     assert error.count("\n") == 1
     assert not list(tmp_path.iterdir())
 

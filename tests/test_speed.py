@@ -19,14 +19,30 @@ from fem_adhesion.common.files import directory_written_aside
 from fem_adhesion.common.page import markdown
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.scene import Scene
-from fem_adhesion.speed import earlier
-from fem_adhesion.speed import element_methods as element_methods_module
-from fem_adhesion.speed import methods as halfspace_methods_module
+from fem_adhesion.speed import methods as methods_module
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
-from fem_adhesion.speed.element_methods import element_methods
-from fem_adhesion.speed.methods import MOST_NODES, QUANTITIES, Method, Solved, Step, _affordable, halfspace_methods
-from fem_adhesion.speed.result import Growth, SpeedStudy, Timing, Truth, best, cheapest, pareto_front, slope
+from fem_adhesion.speed.methods import (
+    MOST_NODES,
+    QUANTITIES,
+    Method,
+    Solved,
+    Step,
+    _affordable,
+    element_methods,
+    halfspace_methods,
+)
+from fem_adhesion.speed.result import (
+    Growth,
+    SpeedStudy,
+    Timing,
+    Truth,
+    best,
+    cheapest,
+    pareto_front,
+    read_earlier,
+    slope,
+)
 from fem_adhesion.speed.study import GROWTHS, growths_for, measure, timed
 from halfspace.elastic import compliance
 from halfspace.equilibrium import newton, relaxation
@@ -37,7 +53,9 @@ from halfspace.values import Estimate
 
 METHODS = [*halfspace_methods(), *element_methods()]
 PREFIX = {"half-space": "", "finite elements": "FE "}
-FILES = {"speed.csv", "growth.csv", "speed.md"} | {f"{q}.{suffix}" for q in QUANTITIES for suffix in ("svg", "png")}
+FILES = {"speed.csv", "growth.csv", "captions.csv", "speed.md"} | {
+    f"{q}.{suffix}" for q in QUANTITIES for suffix in ("svg", "png")
+}
 TRUE = {"pull_off": -5.24854818839, "jump_on": -1.62921671169, "hysteresis": 0.2507086026}  # at a Tabor parameter of 1
 SIZES = {"pull_off": 5.24854818839, "jump_on": 4.81849957889, "hysteresis": 0.2507086026}
 REACHED = {  # best relative error of the pull-off load on the quick ladder, at most
@@ -280,9 +298,8 @@ def called(monkeypatch):
 
     for name in ("bands", "triangles", "panels"):
         spy(compliance, name, stops=False)
-    spy(element_methods_module, "condense", stops=True)
-    spy(element_methods_module, "assemble", stops=True)
-    spy(halfspace_methods_module, "from_chart", stops=True)
+    for name in ("condense", "assemble", "from_chart"):
+        spy(methods_module, name, stops=True)
     for module, name in (
         (relaxation, "simple"),
         (relaxation, "greenwood"),
@@ -490,7 +507,7 @@ def test_an_earlier_run_is_read_back_and_shown_beside_in_yardsticks(distinct, tm
     """Twice as slow a run on a machine half as fast took as many yardsticks: only what is known to differ counts."""
     slower = [dataclasses.replace(made, seconds=4 * made.seconds) for made in distinct.rungs]
     speed_page.write(dataclasses.replace(distinct, rungs=tuple(slower), yardstick=2e-3), tmp_path)
-    beside = earlier.read(tmp_path / "speed.csv", 1.0)
+    beside = read_earlier(tmp_path / "speed.csv", 1.0)
     assert [rung.seconds for rung in beside.rungs] == [2 * made.seconds / 1e-3 for made in distinct.rungs]
     study = dataclasses.replace(distinct, earlier=beside)
     text = "\n".join(lines_of_page(study))
@@ -513,9 +530,9 @@ def test_what_is_no_earlier_run_at_this_tabor_parameter_is_refused(distinct, tmp
     speed_page.write(distinct, tmp_path)
     file, other = tmp_path / "speed.csv", tmp_path / "other.csv"
     with pytest.raises(InputError, match="is of tabor 1, not 2"):
-        earlier.read(file, 2.0)
+        read_earlier(file, 2.0)
     with pytest.raises(InputError, match="cannot be read: No such file"):
-        earlier.read(other, 1.0)
+        read_earlier(other, 1.0)
     no_table, table = r"is no table of a speed study .*; give its speed\.csv", file.read_text()
     for text, told in (
         (table.replace("yardsticks", "ells"), "has no column 'yardsticks'; give speed.csv of this version's study"),
@@ -525,10 +542,10 @@ def test_what_is_no_earlier_run_at_this_tabor_parameter_is_refused(distinct, tmp
     ):
         other.write_text(text)
         with pytest.raises(InputError, match=told):
-            earlier.read(other, 1.0)
+            read_earlier(other, 1.0)
     other.write_text(file.read_text().replace("converged", "failed"))
     with pytest.raises(InputError, match="has no rung with a result"):
-        earlier.read(other, 1.0)
+        read_earlier(other, 1.0)
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)

@@ -51,31 +51,15 @@ WORDS = {
 
 @dataclass(frozen=True)
 class Prediction:
-    """What one model says.
+    """What one model says: those of `QUANTITIES` that it has, and the curve that they are read off, if one.
 
-    Attributes
-    ----------
-    model : str
-        Its name.
-    values : mapping of str to Quantity
-        Of `QUANTITIES` those that the model has:
-
-        ``pull_off_force``
-            Largest tension in N.
-        ``pull_off_radius``, ``zero_load_radius``
-            Contact radius in m at the largest tension and under no load; of a computed state that of the largest
-            traction.
-        ``jump_on_separation``, ``jump_off_separation``
-            Distance in m of the undeformed surfaces where the cantilever's jump takes off; negative if they overlap.
-        ``jump_on_base``, ``jump_off_base``
-            Position in m of the cantilever's base there, positive towards the wall, zero where the undeformed surfaces
-            would be one spacing apart with the cantilever straight.
-        ``energy_lost``
-            In J, in a cycle of approach and separation.
-    curve : EquilibriumPath, Curve or None
-        Where they are read off, if a curve.
-    missed : mapping of str to tuple of str
-        By state of a computed curve or of its jumps, the numbers that are less accurate than was asked.
+    ``pull_off_force`` is the largest tension in N; ``pull_off_radius`` and ``zero_load_radius`` are contact radii in m
+    there and under no load, of a computed state those of the largest traction. Where the cantilever's jumps take off,
+    ``jump_on_separation`` and ``jump_off_separation`` are the distance in m of the undeformed surfaces, negative if
+    they overlap; ``jump_on_base`` and ``jump_off_base`` the position in m of its base, positive towards the wall, zero
+    where the undeformed surfaces would be one spacing apart with the cantilever straight. ``energy_lost`` in J is that
+    of a cycle of approach and separation. By state of a computed curve or of its jumps, `missed` are the numbers that
+    are less accurate than was asked.
     """
 
     model: str

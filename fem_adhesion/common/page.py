@@ -7,16 +7,21 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 from xml.etree import ElementTree
 
 from markupsafe import Markup
 
+from fem_adhesion.common.facts import machine, versions
 from halfspace.errors import InputError
+
+Item = TypeVar("Item")
+Columns = Mapping[str | tuple[str, ...], Callable[[Item], str | Sequence[str]]]
+"""Of a table with a row for each item: a column's name and its text of an item, or names and texts of some at once."""
 
 SYMBOLS: Mapping[str, str] = {
     "mu": "μ",
@@ -49,6 +54,16 @@ class Table:
     rows: Sequence[Sequence[str]]
     open: bool = False
 
+    @classmethod
+    def of(cls, stem: str, title: str, see: str, items: Iterable[Item], columns: Columns[Item]) -> Table:
+        """Table with a row for each item."""
+        rows = [[cell for get in columns.values() for cell in _listed(get(item))] for item in items]
+        return cls(stem, title, see, [name for key in columns for name in _listed(key)], rows)
+
+
+def _listed(cells: str | Sequence[str]) -> Sequence[str]:
+    return (cells,) if isinstance(cells, str) else cells
+
 
 @dataclass(frozen=True)
 class Figure:
@@ -80,9 +95,11 @@ class Section:
     tables: Sequence[Table] = ()
 
 
-def page(title: str, lead: Sequence[str], sections: Sequence[Section], facts: Mapping[str, str]) -> str:
-    """A page as HTML: title, paragraphs, links to its sections, these, and facts at its foot."""
-    return render("common/page.html.j2", title=title, lead=lead, sections=sections, facts=facts)
+def write_page(directory: Path, title: str, lead: Sequence[str], sections: Sequence[Section], spent: str) -> None:
+    """Write ``index.html``: title, paragraphs, links to sections, these, and at its foot machine, versions and cost."""
+    facts = {**machine(), **versions(), "computed in": spent}
+    text = render("common/page.html.j2", title=title, lead=lead, sections=sections, facts=facts)
+    (directory / "index.html").write_text(text, encoding="utf-8")
 
 
 def render(template: str, **contents: Any) -> str:
@@ -118,12 +135,11 @@ def bullets(items: Sequence[str]) -> Markup:
     return Markup("<ul>{}</ul>").format(Markup("").join(Markup("<li>{}</li>").format(item) for item in items))
 
 
-def write_csv(table: Table, directory: Path) -> None:
-    """Write a table as a CSV file."""
-    with (directory / f"{table.stem}.csv").open("w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(table.columns)
-        writer.writerows(table.rows)
+def write_csv(tables: Iterable[Table], directory: Path) -> None:
+    """Write each table as a CSV file."""
+    for table in tables:
+        with (directory / f"{table.stem}.csv").open("w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows([table.columns, *table.rows])
 
 
 def markdown(parts: Sequence[str | Table]) -> Iterator[str]:

@@ -20,20 +20,11 @@ CLOSED_FORM: Pair = ("closed form", "half-space")
 
 @dataclass(frozen=True)
 class Row:
-    """One quantity from two sources.
+    """One quantity from two sources, whose names are `between`.
 
-    Attributes
-    ----------
-    quantity, unit : str
-        What it is.
-    first, second : Estimate or None
-        Values with error estimates; None where a source does not find it.
-    difference : float
-        Magnitude of the difference: of the values, or the largest over a field.
-    budget : float
-        Largest sum of both error estimates with which a comparison means something.
-    between : pair of str
-        What the sources are.
+    Values have error estimates, and are None where a source does not find one. The difference is the magnitude of that
+    of the values, or the largest over a field; the budget the largest sum of both error estimates with which a
+    comparison means something.
     """
 
     quantity: str

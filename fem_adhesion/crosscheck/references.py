@@ -30,16 +30,10 @@ Operators = list[ElasticOperator]
 
 @dataclass(frozen=True)
 class Reference:
-    """A solver of another kind for the body of a scene.
+    """A solver of another kind for the body of a scene: its name and that of the finite elements.
 
-    Attributes
-    ----------
-    between : pair of str
-        Its name and that of the finite elements.
-    trace : callable
-        Its curve to a tolerance, ``trace(rtol=...)``.
-    operators : callable
-        Two of its operators, the finer one last, for the first level of a comparison, from its tolerance.
+    ``trace(rtol=...)`` is its curve to a tolerance; `operators`, from the tolerance of a comparison, two of its
+    operators for the first level, the finer one last.
     """
 
     between: Pair

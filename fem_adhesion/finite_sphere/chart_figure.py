@@ -209,7 +209,7 @@ def _figure_chart(results: Results) -> Figure:
 
 def no_sphere(results: Results) -> str:
     """What is lacking where no sphere was solved, or empty."""
-    solved = samples(results.rows, "all", "pull_off_load", reference_poisson(results.rows))
+    solved = samples(results.rows, "all", "pull_off_load", poisson=reference_poisson(results.rows))
     return "" if solved.tabor.size else "no elastic sphere was solved beside the half-space"
 
 

@@ -82,8 +82,7 @@ def _plain(axis: Any, write: Callable[[float], str] = "{:g}".format) -> None:
 
 
 def _cause(axes: Any, rows: Sequence[DeviationRow], cause: str, tabor: float, poisson: float | None) -> None:
-    data = samples(rows, cause, "pull_off_load", None if cause == "profile" else poisson)
-    data = data.where(data.tabor == tabor)
+    data = _pull_off(rows, cause, poisson, tabor=tabor)
     colour, marker, label = CAUSES[cause]
     size = WHOLE if cause == "all" else PART
     signed(axes, data, color=colour, marker=marker, markersize=size, label=label)
@@ -122,16 +121,16 @@ def _caption(results: Results) -> Iterator[str]:
     rows, poisson = results.rows, reference_poisson(results.rows)
     yield "Filled markers: the force is weakened; hollow: strengthened; only what exceeds its error has one."
     for tabor in panel_tabors(rows):
-        found = {cause: _of(rows, cause, tabor, poisson) for cause in PARTS}
+        found = {cause: _pull_off(rows, cause, poisson, tabor=tabor).significant for cause in PARTS}
         yield from _largest(found, tabor)
     yield from _exponents(rows, poisson)
     yield from _changes(rows, poisson)
     yield from _given_back(rows, poisson)
 
 
-def _of(rows: Sequence[DeviationRow], cause: str, tabor: float, poisson: float | None) -> Samples:
-    data = samples(rows, cause, "pull_off_load", None if cause == "profile" else poisson).significant
-    return data.where(data.tabor == tabor)
+def _pull_off(rows: Sequence[DeviationRow], cause: str, poisson: float | None, **at: float) -> Samples:
+    """Deviations of the pull-off, those by the profile whatever Poisson's ratio."""
+    return samples(rows, cause, "pull_off_load", poisson=None if cause == "profile" else poisson, **at)
 
 
 def _largest(found: Mapping[str, Samples], tabor: float) -> Iterator[str]:
@@ -155,7 +154,7 @@ def _size_at(data: Samples, ratio: float) -> float:
 def _exponents(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[str]:
     """Powers of beta/R in which profile and body go between the two largest spheres, of the middle panel."""
     for tabor in panel_tabors(rows)[1:2]:
-        found = {cause: _of(rows, cause, tabor, poisson) for cause in ("profile", "body")}
+        found = {cause: _pull_off(rows, cause, poisson, tabor=tabor).significant for cause in PARTS}
         powers = [
             f"the {cause}'s as (beta/R)^{_power(data):.2g}" for cause, data in found.items() if data.stretch.size > 1
         ]
@@ -171,12 +170,12 @@ def _power(data: Samples) -> float:
 
 def _changes(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[str]:
     """What grip and strain change beside the whole."""
-    whole = samples(rows, "all", "pull_off_load", poisson)
+    whole = _pull_off(rows, "all", poisson)
     for cause, name in (("grip", "The grip"), ("strain", "Finite strain")):
-        shares = np.abs(_ratios(samples(rows, cause, "pull_off_load", poisson), whole))
+        shares = np.abs(_ratios(_pull_off(rows, cause, poisson), whole))
         if shares.size:
             yield f"{name} changes the force by {span(100 * shares)} % of the whole deviation{at_points(shares.size)}."
-    others = [_ratios(samples(rows, cause, "pull_off_load", poisson), whole) for cause in ("reference", "normal")]
+    others = [_ratios(_pull_off(rows, cause, poisson), whole) for cause in ("reference", "normal")]
     spread = np.abs(np.concatenate(others))
     if spread.size:
         yield (
@@ -187,9 +186,7 @@ def _changes(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[st
 
 def _given_back(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[str]:
     """Whether the law per true area undoes what the profile does."""
-    shares = _ratios(
-        samples(rows, "traction", "pull_off_load", poisson), samples(rows, "profile", "pull_off_load", None)
-    )
+    shares = _ratios(_pull_off(rows, "traction", poisson), _pull_off(rows, "profile", poisson))
     if not shares.size:
         return
     where = at_points(shares.size)
@@ -287,9 +284,8 @@ def _figure_bulk(results: Results) -> Figure:
     for axes, (quantity, name) in zip(panels, JUMPS.items(), strict=True):
         for number, tabor in enumerate(jumping_tabors(rows)[:MOST_LINES]):
             for suffix, how, dashes in (("", "raw", "-"), ("_less_bulk", "bulk yield taken out", style.DASHED)):
-                data = samples(rows, "all", quantity + suffix, reference_poisson(rows))
-                label = rf"$\mu = {tabor:g}$, {how}"
-                _line(axes, data.where(data.tabor == tabor), number, dashes, label)
+                data = samples(rows, "all", quantity + suffix, poisson=reference_poisson(rows), tabor=tabor)
+                _line(axes, data, number, dashes, rf"$\mu = {tabor:g}$, {how}")
         axes.set_title(f"approach at {name}")
     finish(figure, panels, columns=4)
     return figure
@@ -325,7 +321,7 @@ def _see_bulk(results: Results) -> Iterator[str]:
 
 def _left(rows: Sequence[DeviationRow], quantity: str, poisson: float | None) -> Array:
     """Part of an approach's deviation, at most, that is left without the yield, where the whole exceeds its error."""
-    whole, rest = (samples(rows, "all", quantity + suffix, poisson) for suffix in ("", "_less_bulk"))
+    whole, rest = (samples(rows, "all", quantity + suffix, poisson=poisson) for suffix in ("", "_less_bulk"))
     return np.abs(_over(rest, np.abs(rest.deviation) + rest.error, whole.significant))
 
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import chain
 from math import log, pi
 
 import numpy as np
@@ -122,7 +123,8 @@ class TheoryCheck:
 def findings(rows: Sequence[DeviationRow], poisson: float = 0.3) -> tuple[Finding, ...]:
     """Fits of every quantity for every cause, at all Tabor parameters together and at each."""
     keys = dict.fromkeys((row.cause, row.quantity, row.poisson) for row in rows if row.poisson in (None, poisson))
-    return tuple(finding for key in keys for finding in _findings(key[0], key[1], samples(rows, *key)))
+    found = (_findings(cause, quantity, samples(rows, cause, quantity, poisson=nu)) for cause, quantity, nu in keys)
+    return tuple(chain.from_iterable(found))
 
 
 def _findings(cause: str, quantity: str, data: Samples) -> Iterator[Finding]:
@@ -141,7 +143,7 @@ def _finding(cause: str, quantity: str, tabor: float | None, data: Samples, term
 
 def compare(rows: Sequence[DeviationRow]) -> tuple[TheoryCheck, ...]:
     """Compare the profile's part in the pull-off with the rigid sphere's and Maugis'; InputError of too few points."""
-    data = samples(rows, "profile", "pull_off_load", None)
+    data = samples(rows, "profile", "pull_off_load", poisson=None)
     if not data.tabor.size:
         raise InputError(
             "0 deviations of the pull-off by the profile, limit 4; solve for some at small tabor/radius_ratio"

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from markupsafe import Markup
 
-from fem_adhesion.common.facts import machine, versions
+from fem_adhesion.bodies.body import GripName
 from fem_adhesion.common.numbers import plus_minus
-from fem_adhesion.common.page import Section, Table, bullets, page, write_csv
+from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.finite_sphere.cases import CAUSES, Record
 from fem_adhesion.finite_sphere.chart import LEVELS, Field, Rule, field_of, rule, safe_from
@@ -20,6 +20,7 @@ from fem_adhesion.finite_sphere.figures import BULK_FIGURE, CAUSES_FIGURE, POISS
 from fem_adhesion.finite_sphere.fit import (
     DEVIATIONS,
     TOLERANCE,
+    Bulk,
     Finding,
     Fit,
     bulk_compliance,
@@ -83,22 +84,24 @@ def _rule(rows: Sequence[DeviationRow], quantity: str, level: float, poisson: fl
 
 
 def _fits(found: Sequence[Finding]) -> Table:
-    columns = ("quantity", "cause", "mu", "leading terms", "up to beta/R", "points", "largest residual", "why no fit")
     see = (
         f"Errors are {DEVIATIONS:g} standard deviations and the change when the points farther than half-way are left "
         f"out; up to the beta/R stated, every point is within {100 * TOLERANCE:g} % of the terms beside its own error."
     )
-    shown = [f for f in found if f.quantity in SHOWN and (f.cause == "all" or f.quantity == "pull_off_load")]
-    return Table("fits", "Leading terms of the relative deviations", see, columns, tuple(map(_finding, shown)))
+    columns: Columns[Finding] = {
+        "quantity": lambda one: SHOWN[one.quantity],
+        "cause": lambda one: one.cause,
+        "mu": lambda one: "all" if one.tabor is None else f"{one.tabor:g}",
+        ("leading terms", "up to beta/R", "points", "largest residual"): lambda one: _fit(one.fit),
+        "why no fit": lambda one: one.reason,
+    }
+    shown = (f for f in found if f.quantity in SHOWN and (f.cause == "all" or f.quantity == "pull_off_load"))
+    return Table.of("fits", "Leading terms of the relative deviations", see, shown, columns)
 
 
-def _finding(finding: Finding) -> tuple[str, ...]:
-    tabor = "all" if finding.tabor is None else f"{finding.tabor:g}"
-    head = (SHOWN[finding.quantity], finding.cause, tabor)
-    return (*head, *(_fit(finding.fit) if finding.fit else ("", "", "", "")), finding.reason)
-
-
-def _fit(fit: Fit) -> tuple[str, ...]:
+def _fit(fit: Fit | None) -> tuple[str, ...]:
+    if fit is None:
+        return ("", "", "", "")
     terms = "; ".join(f"({plus_minus(c)}) {name}" for name, c in fit.coefficients.items())
     return (terms, f"{fit.holds_to:.2g}", str(fit.points), f"{fit.worst:.1e}")
 
@@ -120,43 +123,50 @@ def _theories(rows: Sequence[DeviationRow]) -> Table:
 
 
 def _bulk(records: Sequence[Record]) -> Table:
-    known = sorted({r.case.poisson for r in records if r.case.poisson is not None})
-    columns = ("grip", "Poisson's ratio", "kappa_0", "error", "kappa_1", "size of the term in beta/R")
     see = (
         "The body approaches by W/(E* R) (kappa_0 + kappa_1 ln(beta/R)) more than the half-space, in eps by mu beta/R "
         "times as much. kappa_1 = -(1 - 2 nu)^2/(2 pi (1 - nu)) is exact, kappa_0 is measured under Hertz's pressure "
         "on r < beta; the term in beta/R is not taken out, but counted as error."
     )
-    return Table("bulk", "The body's linear yield, in 1/(E* R)", see, columns, tuple(_yields(known)))
-
-
-def _yields(poissons: Sequence[float]) -> Iterator[tuple[str, ...]]:
-    for grip in ("sliding", "bonded"):
-        for poisson in poissons:
-            found = coefficients(grip, poisson)
-            constant = (f"{found.constant.value:.4f}", f"{found.constant.error:.1e}")
-            yield (grip, f"{poisson:g}", *constant, f"{found.logarithm:.5f}", f"{found.linear:.2g}")
+    grips: tuple[GripName, ...] = ("sliding", "bonded")
+    poissons = sorted({r.case.poisson for r in records if r.case.poisson is not None})
+    columns: Columns[tuple[GripName, float, Bulk]] = {
+        "grip": lambda row: row[0],
+        "Poisson's ratio": lambda row: f"{row[1]:g}",
+        "kappa_0": lambda row: f"{row[2].constant.value:.4f}",
+        "error": lambda row: f"{row[2].constant.error:.1e}",
+        "kappa_1": lambda row: f"{row[2].logarithm:.5f}",
+        "size of the term in beta/R": lambda row: f"{row[2].linear:.2g}",
+    }
+    rows = [(grip, poisson, coefficients(grip, poisson)) for grip in grips for poisson in poissons]
+    return Table.of("bulk", "The body's linear yield, in 1/(E* R)", see, rows, columns)
 
 
 def _failures(records: Sequence[Record]) -> Table:
-    lines = tuple((r.case.name, r.status, r.kind, r.reason) for r in records if r.status != "solved")
-    see = f"{len(lines)} of {len(records)} cases."
-    return Table("failures", "What was not solved, and why", see, ("case", "status", "kind", "reason"), lines)
+    failed = [record for record in records if record.status != "solved"]
+    columns: Columns[Record] = {
+        "case": lambda record: record.case.name,
+        "status": lambda record: record.status,
+        "kind": lambda record: record.kind,
+        "reason": lambda record: record.reason,
+    }
+    see = f"{len(failed)} of {len(records)} cases."
+    return Table.of("failures", "What was not solved, and why", see, failed, columns)
 
 
 def _borders(borders: Sequence[Border]) -> Table:
-    columns = ("R/eps", "Poisson's ratio", "mu", "error", "why none")
     see = (
         "From this mu on the approach turns back along the curve; the spheres are held on a sliding mid-plane. Errors "
         "are the changes from elements one degree lower, or from a coarser grid."
     )
-    return Table("first_jumps", "Where jumps under fixed grips begin", see, columns, tuple(map(_border, borders)))
-
-
-def _border(border: Border) -> tuple[str, ...]:
-    size = "half-space" if border.radius_ratio is None else f"{border.radius_ratio:g}"
-    found = (f"{border.tabor.value:.9g}", f"{border.tabor.error:.1e}") if border.tabor else ("", "")
-    return (size, "" if border.poisson is None else f"{border.poisson:g}", *found, border.reason)
+    columns: Columns[Border] = {
+        "R/eps": lambda one: "half-space" if one.radius_ratio is None else f"{one.radius_ratio:g}",
+        "Poisson's ratio": lambda one: "" if one.poisson is None else f"{one.poisson:g}",
+        "mu": lambda one: f"{one.tabor.value:.9g}" if one.tabor else "",
+        "error": lambda one: f"{one.tabor.error:.1e}" if one.tabor else "",
+        "why none": lambda one: one.reason,
+    }
+    return Table.of("first_jumps", "Where jumps under fixed grips begin", see, borders, columns)
 
 
 PICTURES = (CHART, CAUSES_FIGURE, POISSON_FIGURE, BULK_FIGURE)
@@ -177,9 +187,8 @@ def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _
     draw(PICTURES, found, directory, begin)
     begin("page")
     tables = all_tables(found)
-    for one in (*tables, captions(PICTURES, found)):
-        write_csv(one, directory)
-    (directory / "index.html").write_text(_page(found, tables, directory), encoding="utf-8")
+    write_csv([*tables, captions(PICTURES, found)], directory)
+    _write_page(found, tables, directory)
     return note
 
 
@@ -190,7 +199,7 @@ def remove_outdated(directory: Path, written: Path) -> None:
             (directory / name).unlink(missing_ok=True)
 
 
-def _page(found: Results, tables: Sequence[Table], directory: Path) -> str:
+def _write_page(found: Results, tables: Sequence[Table], directory: Path) -> None:
     records = found.study.records
     rules, *others = tables
     chart = _section("where", CHART.title, (CHART,), found, directory, tables=[rules])
@@ -200,8 +209,7 @@ def _page(found: Results, tables: Sequence[Table], directory: Path) -> str:
     lead = [Markup("<strong>{}.</strong>").format(found.study.headline), *_answer(found.rows)]
     sections = [chart, causes, Section("tables", "Tables", tables=others), _settings(records)]
     spent = f"{sum(r.seconds for r in records):.0f} s of work on {len(records)} cases"
-    facts = {**machine(), **versions(), "computed in": spent}
-    return page("Is the half-space good enough for my sphere?", lead, sections, facts)
+    write_page(directory, "Is the half-space good enough for my sphere?", lead, sections, spent)
 
 
 def _section(

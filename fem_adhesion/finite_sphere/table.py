@@ -24,7 +24,6 @@ from fem_adhesion.finite_sphere.cases import (
     QUANTITIES,
     Record,
     SphereCase,
-    Values,
     case_of,
 )
 from fem_adhesion.finite_sphere.study import Study
@@ -90,8 +89,9 @@ def _rows_of(
     bulk: BulkCompliance | None,
 ) -> Iterator[DeviationRow]:
     case = record.case
-    others = [_partner(case, model, found) for model in (CAUSES[cause].baseline, "half_space")]
-    tables = [_values(one, bulk) if one else {} for one in (record, *others)]
+    point = case.tabor, case.radius_ratio, case.poisson, case.rtol
+    others = [found.get(case_of(model, *point)) for model in (CAUSES[cause].baseline, "half_space")]
+    tables = [{**one.values, **less_bulk(one, bulk)} if one else {} for one in (record, *others)]
     for name in quantities:
         value, baseline, half_space = three = [table.get(name) for table in tables]
         scale = half_space and tables[-1].get(APPROACH_SCALE) if UNITS[name] == "eps" else half_space
@@ -101,18 +101,10 @@ def _rows_of(
         yield DeviationRow(*head, value, baseline, half_space, deviation, *ending)
 
 
-def _partner(case: SphereCase, model: str, found: Mapping[SphereCase, Record]) -> Record | None:
-    """Record of another model at the same point."""
-    return found.get(case_of(model, case.tabor, case.radius_ratio, case.poisson, case.rtol))
-
-
-def _values(record: Record, bulk: BulkCompliance | None) -> Values:
-    """Stored quantities of a record, and those that follow from them."""
-    return {**record.values, **less_bulk(record, bulk)} if bulk else record.values
-
-
-def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
-    """Approaches of the jumps without the linear yield of the body, alpha* - kappa mu W/(R/beta)."""
+def less_bulk(record: Record, bulk: BulkCompliance | None) -> dict[str, Estimate]:
+    """Approaches of the jumps without the linear yield of the body, alpha* - kappa mu W/(R/beta); none without it."""
+    if bulk is None:
+        return {}
     values, yielding = record.values, _yielding(record.case, bulk)
     return {
         name: _without_yield(values[f"{event}_approach"], yielding, values[f"{event}_load"])
@@ -171,20 +163,16 @@ class Border:
 
 def borders(records: Sequence[Record]) -> tuple[Border, ...]:
     """Where the jumps begin: on the half-space, then on spheres of growing size."""
-    models = ("first_jump_half_space", "first_jump")
-    chosen = sorted((r for r in records if r.case.model in models), key=_size)
-    return tuple(_border(record) for record in chosen)
+    found = [
+        Border(record.case.radius_ratio, record.case.poisson, tabor, record.reason or ("" if tabor else NEVER))
+        for record in records
+        if record.case.model in ("first_jump_half_space", "first_jump")
+        for tabor in (record.values.get(CRITICAL),)
+    ]
+    return tuple(sorted(found, key=lambda border: (border.poisson or 0.0, border.radius_ratio or 0.0)))
 
 
-def _size(record: Record) -> tuple[float, float]:
-    case = record.case
-    return (case.poisson or 0.0, case.radius_ratio or 0.0)
-
-
-def _border(record: Record) -> Border:
-    found = record.values.get(CRITICAL)
-    reason = record.reason or ("" if found else "it does not jump at any Tabor parameter for which it is large enough")
-    return Border(record.case.radius_ratio, record.case.poisson, found, reason)
+NEVER = "it does not jump at any Tabor parameter for which it is large enough"
 
 
 @dataclass(frozen=True)
@@ -232,13 +220,11 @@ def _arrow(rows: Sequence[DeviationRow]) -> Any:
 
 def _cells(row: DeviationRow) -> dict[str, object]:
     """Cells of a line by the names of their columns, None where there is nothing."""
-    return dict(zip(COLUMNS, (cell for name in FIELDS for cell in _cells_of(name, getattr(row, name))), strict=True))
-
-
-def _cells_of(name: str, content: object) -> tuple[object, ...]:
-    if name not in NUMBERS:
-        return (content,)
-    return (content.value, content.error) if isinstance(content, Estimate) else (None, None)
+    cells: dict[str, object] = {name: getattr(row, name) for name in FIELDS}
+    for name in NUMBERS:
+        number: Estimate | None = getattr(row, name)
+        cells |= {name: number and number.value, f"{name}_error": number and number.error}
+    return cells
 
 
 FAVOURED = (0.3, 1.0, 3.0)  # Tabor parameters of a panel each
@@ -247,10 +233,14 @@ POISSON = 0.3
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Samples(Valued):
-    """Relative deviations of one quantity for one cause at n points, and the bounds of their errors; arrays (n,)."""
+    """Relative deviations of one quantity for one cause at n points, and the bounds of their errors; arrays (n,).
+
+    Poisson's ratio is nan where there is none.
+    """
 
     tabor: Array
     radius_ratio: Array
+    poisson: Array
     deviation: Array
     error: Array
 
@@ -266,18 +256,19 @@ class Samples(Valued):
 
     def where(self, chosen: NDArray[np.bool_]) -> Samples:
         """Those chosen."""
-        return Samples(self.tabor[chosen], self.radius_ratio[chosen], self.deviation[chosen], self.error[chosen])
+        return Samples(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
 
-def samples(rows: Iterable[DeviationRow], cause: str, quantity: str, poisson: float | None) -> Samples:
-    """Deviations of a quantity for a cause, of the rows that have one, and a finite one."""
+def samples(rows: Iterable[DeviationRow], cause: str, quantity: str, **at: float | None) -> Samples:
+    """Deviations of a quantity for a cause at the inputs given, of the rows that have one, and a finite one."""
     chosen = [
-        (row.tabor, row.radius_ratio, row.deviation.value, row.deviation.error)
+        (row.tabor, row.radius_ratio, row.poisson, row.deviation.value, row.deviation.error)
         for row in rows
-        if (row.cause, row.quantity, row.poisson) == (cause, quantity, poisson) and row.deviation and row.radius_ratio
+        if (row.cause, row.quantity) == (cause, quantity) and row.deviation and row.radius_ratio
+        if all(getattr(row, name) == value for name, value in at.items())
     ]
-    numbers = np.array(chosen, float).reshape(-1, 4)
-    return Samples(*numbers[np.isfinite(numbers).all(axis=1)].T)
+    numbers = np.array(chosen, float).reshape(-1, len(fields(Samples)))
+    return Samples(*numbers[np.isfinite(numbers[:, -2:]).all(axis=1)].T)
 
 
 def reference_poisson(rows: Sequence[DeviationRow]) -> float | None:
@@ -294,28 +285,20 @@ def panel_tabors(rows: Sequence[DeviationRow]) -> list[float]:
 
 def points_by_poisson(rows: Sequence[DeviationRow]) -> list[tuple[float, float]]:
     """Tabor parameters and R/eps whose pull-off is known at two Poisson's ratios or more."""
-    points = dict.fromkeys((row.tabor, row.radius_ratio) for row in rows if row.radius_ratio)
-    known = ((mu, rho) for mu, rho in points if rho and by_poisson(rows, "pull_off_load", mu, rho)[0].size > 1)
-    return sorted(known, key=lambda point: point[::-1])
+    data = samples(rows, "all", "pull_off_load")
+    points, counts = np.unique([data.radius_ratio, data.tabor], axis=1, return_counts=True)
+    return [(float(mu), float(rho)) for rho, mu in points[:, counts > 1].T]
 
 
 def by_poisson(rows: Sequence[DeviationRow], quantity: str, tabor: float, ratio: float) -> tuple[Array, Array]:
     """Poisson's ratios, ascending, and the deviations at a point."""
-    wanted = ("all", quantity, tabor, ratio)
-    chosen = sorted(
-        (row.poisson, row.deviation.value)
-        for row in rows
-        if (row.cause, row.quantity, row.tabor, row.radius_ratio) == wanted
-        and row.poisson is not None
-        and row.deviation
-        and np.isfinite(row.deviation.value)
-    )
-    nu, deviation = np.array(chosen, float).reshape(-1, 2).T
-    return nu, deviation
+    data = samples(rows, "all", quantity, tabor=tabor, radius_ratio=ratio)
+    order = np.argsort(data.poisson)
+    return data.poisson[order], data.deviation[order]
 
 
 def jumping_tabors(rows: Sequence[DeviationRow]) -> list[float]:
     """Tabor parameters whose jump-on is known on spheres of two sizes or more."""
-    data = samples(rows, "all", "jump_on_approach", reference_poisson(rows))
+    data = samples(rows, "all", "jump_on_approach", poisson=reference_poisson(rows))
     tabors, counts = np.unique(data.tabor, return_counts=True)
     return [float(tabor) for tabor in tabors[counts > 1]]

@@ -7,40 +7,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from itertools import starmap
 from pathlib import Path
 
 import numpy as np
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
-from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.numbers import digits, joined, plus_minus, rises, told
-from fem_adhesion.common.page import Section, Table, bullets, page, write_csv
+from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.greenwood import load_figures, state_figures, trend_figures
-from fem_adhesion.greenwood.criteria import CriteriaStudy, closed_ratios
+from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, closed_ratios
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
 from fem_adhesion.greenwood.study import JUMPS_AT, WINDING_AT, DeviceStudy, Greenwood1997, PullOff
 from fem_adhesion.greenwood.tables import Printed
+from halfspace.equilibrium.devices import Cycle
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 from halfspace.values import Estimate
 
 PAPER = "J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1277-1297"
 DOI = "10.1098/rspa.1997.0070"
-
-
-def _picture(
-    number: str, title: str, draw: Callable[[Greenwood1997], Figure], see: Callable[[Greenwood1997], Iterator[str]]
-) -> Picture[Greenwood1997]:
-    """Picture under the number that it has in the paper, or would have."""
-    origin = "Beyond the paper," if number in BEYOND else "After"
-    return Picture(f"fig_{number}", f"{origin} Fig. {number}: {title}", draw, see)
-
-
 BEYOND = ("8",)
 DRAWN = (*load_figures.FIGURES, *state_figures.FIGURES, *trend_figures.FIGURES)  # in the paper's order
-FIGURES = tuple(starmap(_picture, DRAWN))
+FIGURES = tuple(  # under the number that each has in the paper, or would have
+    Picture(f"fig_{number}", f"{'Beyond the paper,' if number in BEYOND else 'After'} Fig. {number}: {title}", *how)
+    for number, title, *how in DRAWN
+)
 
 
 def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = lambda _: None) -> None:
@@ -51,13 +42,11 @@ def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = 
     """
     draw(FIGURES, study, directory, begin)
     written = tables(study)
-    for table in (*written, captions(FIGURES, study)):
-        write_csv(table, directory)
+    write_csv([*written, captions(FIGURES, study)], directory)
     title = f"Greenwood (1997), computed again{', quick run' if study.quick else ''}"
     figures = Section("figures", "Figures", figures=shown(FIGURES, study, directory))
-    facts = {**machine(), **versions(), "computed in": f"{study.seconds:.1f} s, drawing apart"}
-    text = page(title, list(lead(study)), [figures, Section("tables", "Tables", tables=written)], facts)
-    (directory / "index.html").write_text(text, encoding="utf-8")
+    sections = [figures, Section("tables", "Tables", tables=written)]
+    write_page(directory, title, list(lead(study)), sections, f"{study.seconds:.1f} s, drawing apart")
 
 
 def lead(study: Greenwood1997) -> Iterator[str]:
@@ -90,7 +79,7 @@ def tables(study: Greenwood1997) -> list[Table]:
         _jumps(study),
         _cycles(study.devices),
         _relaxations(study.relaxations),
-        _pull_offs(study),
+        _pull_offs(study.pull_offs),
         _rises(study),
         _true_jumps(study.criteria),
         _constants(study.criteria),
@@ -110,11 +99,16 @@ def _printed_tables(study: Greenwood1997) -> Iterator[Table]:
 
 
 def _printed(stem: str, title: str, see: str, column: str, entries: Sequence[Printed]) -> Table:
-    columns = ("row", column, "unit", "printed", "computed", "error", "relative deviation", "note")
-    rows = tuple(
-        (p.row, f"{p.column:g}", p.unit, p.printed, *_cells(p.computed), f"{p.deviation:+.1e}", p.note) for p in entries
-    )
-    return Table(stem, title, see, columns, rows)
+    columns: Columns[Printed] = {
+        "row": lambda p: p.row,
+        column: lambda p: f"{p.column:g}",
+        "unit": lambda p: p.unit,
+        "printed": lambda p: p.printed,
+        ("computed", "error"): lambda p: _cells(p.computed),
+        "relative deviation": lambda p: f"{p.deviation:+.1e}",
+        "note": lambda p: p.note,
+    }
+    return Table.of(stem, title, see, entries, columns)
 
 
 def _agreement(entries: Sequence[Printed]) -> str:
@@ -156,79 +150,71 @@ def _see_profile_checks(entries: Sequence[Printed]) -> str:
 
 
 def _jumps(study: Greenwood1997) -> Table:
-    loads = (f"{what} {when}, R dgamma" for when in ("before", "after") for what in ("W", "error of W"))
-    columns = ("jump", "alpha*, eps", "error of alpha*, eps", *loads)
-    rows = tuple(
-        (
-            " to ".join(letters),
-            *_cells(jump.take_off.estimate("approach")),
-            *(cell for state in (jump.take_off, jump.landing) for cell in _cells(state.estimate("load"))),
-        )
-        for letters, jump in study.jumps.items()
-    )
-    see = "Where each jump takes off and lands." if rows else "No jump was found."
-    return Table("jumps", f"Jumps of Fig. 2a, mu = {JUMPS_AT:g}, fixed grips", see, columns, rows)
+    columns: Columns[str] = {
+        "jump": " to ".join,
+        ("alpha*, eps", "error of alpha*, eps"): lambda ends: _cells(study.jumps[ends].take_off.estimate("approach")),
+        ("W before, R dgamma", "error of W before, R dgamma"): lambda ends: _cells(
+            study.jumps[ends].take_off.estimate("load")
+        ),
+        ("W after, R dgamma", "error of W after, R dgamma"): lambda ends: _cells(
+            study.jumps[ends].landing.estimate("load")
+        ),
+    }
+    see = "Where each jump takes off and lands." if study.jumps else "No jump was found."
+    return Table.of("jumps", f"Jumps of Fig. 2a, mu = {JUMPS_AT:g}, fixed grips", see, study.jumps, columns)
 
 
 def _cycles(devices: DeviceStudy) -> Table:
     """Both jumps and the loss of every apparatus."""
     ends = ("jump on", "landing in contact", "jump off", "landing apart")
-    parts = (
-        f"{end}: {what}" for end in ends for what in ("alpha*, eps", "error, eps", "W, R dgamma", "error, R dgamma")
-    )
-    rows = []
-    for cycle in devices.cycles:
-        states = (state for jump in (cycle.jump_on, cycle.jump_off) for state in (jump.take_off, jump.landing))
-        numbers = (state.estimate(name) for state in states for name in ("approach", "load"))
-        name = "fixed grips" if math.isinf(cycle.stiffness) else f"{cycle.stiffness:g}"
-        rows.append((name, *(cell for one in (*numbers, cycle.energy_lost) for cell in _cells(one))))
-    title = f"Cycles of an apparatus, mu = {devices.tabor:g}"
-    columns = ("stiffness, R dgamma/eps", *parts, "energy lost, R dgamma eps", "error, R dgamma eps")
-    return Table("devices", title, _see_devices(devices), columns, rows)
-
-
-def _see_devices(study: DeviceStudy) -> str:
-    """Whether a softer apparatus loses more."""
-    lost = np.array([cycle.energy_lost.value for cycle in study.cycles])
+    quantities = ("alpha*, eps", "error, eps", "W, R dgamma", "error, R dgamma")
+    columns: Columns[Cycle] = {
+        "stiffness, R dgamma/eps": lambda c: "fixed grips" if math.isinf(c.stiffness) else f"{c.stiffness:g}",
+        tuple(f"{end}: {what}" for end in ends for what in quantities): _cycle_cells,
+        ("energy lost, R dgamma eps", "error, R dgamma eps"): lambda c: _cells(c.energy_lost),
+    }
+    lost = np.array([cycle.energy_lost.value for cycle in devices.cycles])
     grows = "the more energy a cycle loses" if rises(lost) else "the energy that a cycle loses does not always grow"
-    return joined(told(f"The softer the apparatus, {grows}.", lost), "The loss is the work of the base round the loop.")
+    see = joined(told(f"The softer the apparatus, {grows}.", lost), "The loss is the work of the base round the loop.")
+    return Table.of("devices", f"Cycles of an apparatus, mu = {devices.tabor:g}", see, devices.cycles, columns)
+
+
+def _cycle_cells(cycle: Cycle) -> list[str]:
+    """Approach and load of the four ends of both jumps."""
+    states = [state for jump in (cycle.jump_on, cycle.jump_off) for state in (jump.take_off, jump.landing)]
+    return [cell for state in states for name in ("approach", "load") for cell in _cells(state.estimate(name))]
 
 
 def _relaxations(attempts: Sequence[Attempt]) -> Table:
     """Sweeps and times of the iterations of 1997."""
-    columns = ("mu", "iteration", "sweeps", "seconds", "Newton, seconds", "outcome")
-    rows = tuple(
-        (
-            f"{a.tabor:g}",
-            a.method,
-            "not converged" if a.sweeps is None else str(a.sweeps),
-            f"{a.seconds:.3f}",
-            f"{a.newton_seconds:.3f}",
-            a.outcome,
-        )
-        for a in attempts
-    )
-    title = f"The iterations of 1997 on {NODES} uniform nodes, from the undeformed surfaces to H(0) = 0"
-    return Table("relaxation", title, _see_relaxations(attempts), columns, rows)
-
-
-def _see_relaxations(attempts: Sequence[Attempt]) -> str:
-    """How many of each iteration ended, and in how many sweeps."""
+    columns: Columns[Attempt] = {
+        "mu": lambda a: f"{a.tabor:g}",
+        "iteration": lambda a: a.method,
+        "sweeps": lambda a: "not converged" if a.sweeps is None else str(a.sweeps),
+        "seconds": lambda a: f"{a.seconds:.3f}",
+        "Newton, seconds": lambda a: f"{a.newton_seconds:.3f}",
+        "outcome": lambda a: a.outcome,
+    }
     names = dict.fromkeys(attempt.method for attempt in attempts)
-    return joined(*(_iteration(name, [a for a in attempts if a.method == name]) for name in names))
+    see = joined(*(_iteration(name, [a for a in attempts if a.method == name]) for name in names))
+    title = f"The iterations of 1997 on {NODES} uniform nodes, from the undeformed surfaces to H(0) = 0"
+    return Table.of("relaxation", title, see, attempts, columns)
 
 
 def _iteration(name: str, attempts: Sequence[Attempt]) -> str:
+    """How many attempts of an iteration ended, and in how many sweeps."""
     sweeps = [attempt.sweeps for attempt in attempts if attempt.sweeps is not None]
     ended = f"{name}: {len(sweeps)} of {len(attempts)} converged"
     return f"{ended}, in {min(sweeps)} to {max(sweeps)} sweeps." if sweeps else f"{ended}."
 
 
-def _pull_offs(study: Greenwood1997) -> Table:
-    solvers = ("half-space", "finite elements")
-    columns = ("mu", *(f"{solver}{what}, R dgamma" for solver in solvers for what in ("", ", error")))
-    rows = tuple((f"{p.tabor:.6g}", *_cells(p.half_space), *_cells(p.finite_element)) for p in study.pull_offs)
-    return Table("pull_off", "Load at pull-off, Fig. 7", _see_pull_offs(study.pull_offs), columns, rows)
+def _pull_offs(found: Sequence[PullOff]) -> Table:
+    columns: Columns[PullOff] = {
+        "mu": lambda p: f"{p.tabor:.6g}",
+        ("half-space, R dgamma", "half-space, error, R dgamma"): lambda p: _cells(p.half_space),
+        ("finite elements, R dgamma", "finite elements, error, R dgamma"): lambda p: _cells(p.finite_element),
+    }
+    return Table.of("pull_off", "Load at pull-off, Fig. 7", _see_pull_offs(found), found, columns)
 
 
 def _see_pull_offs(found: Sequence[PullOff]) -> str:
@@ -245,35 +231,28 @@ def _see_pull_offs(found: Sequence[PullOff]) -> str:
 
 def _rises(study: Greenwood1997) -> Table:
     """Least loads met on grids that are too coarse, wrong on purpose."""
-    columns = ("spacing, beta", "mu", "least load, R dgamma")
-    rows = tuple(
+    rows = [
         (f"{spacing:g}", f"{r.tabor:.6g}", f"{r.pull_off:.4f}")
         for spacing, rise in study.rises.items()
         for r in rise.ripples
-    )
+    ]
     see = joined(*(f"{spacing:g} beta: ended as {rise.ended}." for spacing, rise in study.rises.items()))
     title = "Least load on uniform triangles that are too wide, Fig. 7: wrong on purpose, so without an error"
-    return Table("coarse_grids", title, see, columns, rows)
+    return Table("coarse_grids", title, see, ("spacing, beta", "mu", "least load, R dgamma"), rows)
 
 
-def _true_jumps(criteria: CriteriaStudy) -> Table:
+def _true_jumps(study: CriteriaStudy) -> Table:
     """True jumps beside what the criteria predict for them."""
-    usable = [c for c in criteria.criteria if c.predict is not None]
-    predicted = [c.predict(criteria.tabor) for c in usable if c.predict]
-    names = (f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps" for c in usable)
-    errors = ("error of alpha*, eps", "error of H0, eps")
-    columns = ("mu", "alpha*, eps", errors[0], "H0, eps", errors[1], "b sigma'/sigma", *names)
-    rows = tuple(
-        (
-            f"{jump.tabor:.6g}",
-            *_cells(jump.approach),
-            *_cells(jump.central_gap),
-            f"{jump.fundamental:.5f}",
-            *(f"{values[i]:.5f}" for values in predicted),
-        )
-        for i, jump in enumerate(criteria.jumps)
-    )
-    return Table("criteria", "True jumps on and the criteria's predictions", _see_true_jumps(criteria), columns, rows)
+    usable = {f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps": c.predict for c in study.criteria if c.predict}
+    columns: Columns[JumpOn] = {
+        "mu": lambda jump: f"{jump.tabor:.6g}",
+        ("alpha*, eps", "error of alpha*, eps"): lambda jump: _cells(jump.approach),
+        ("H0, eps", "error of H0, eps"): lambda jump: _cells(jump.central_gap),
+        "b sigma'/sigma": lambda jump: f"{jump.fundamental:.5f}",
+        tuple(usable): lambda jump: [f"{predict(np.array(jump.tabor)):.5f}" for predict in usable.values()],
+    }
+    title = "True jumps on and the criteria's predictions"
+    return Table.of("criteria", title, _see_true_jumps(study), study.jumps, columns)
 
 
 def _see_true_jumps(study: CriteriaStudy) -> str:
@@ -291,11 +270,11 @@ def _see_true_jumps(study: CriteriaStudy) -> str:
 
 def _constants(criteria: CriteriaStudy) -> Table:
     columns = ("criterion", "formula", "constant", "printed", "refitted", "standard error", "scatter of ln(left side)")
-    rows = tuple(
+    rows = [
         (c.name, c.formula, name, "" if printed is None else f"{printed:.6g}", *_cells(fitted), f"{c.scatter:.1e}")
         for c in criteria.criteria
         for name, printed, fitted in c.constants
-    )
+    ]
     span = f" for mu = {criteria.tabor[0]:g} to {criteria.tabor[-1]:g}" if criteria.jumps else ""
     title = f"Constants of the criteria, refitted{span}"
     return Table("criteria_constants", title, _see_constants(criteria), columns, rows)

@@ -129,7 +129,7 @@ class PullOff:
 
     tabor: float
     half_space: Estimate
-    finite_element: Estimate | None
+    finite_element: Estimate | None = None
 
     @property
     def agree(self) -> bool:
@@ -252,18 +252,21 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     began = time.perf_counter()
     extent = QUICK if quick else FULL
     begin("curves")
-    drawn = {mu: _drawn(mu) for mu in DRAWN}
+    steps = {mu: FINEST if mu == WINDING_AT else FINE for mu in DRAWN}
+    drawn = {mu: fine_path(mu, to_load=DEEP.get(mu, COMPRESSION), steps=steps[mu]) for mu in DRAWN}
     begin("finite elements")
-    elements = {mu: convergence.trace(Scene(tabor=mu), rtol=1e-3) for mu in extent.elements}
+    elements = {mu: _by_elements(mu) for mu in extent.elements}
     begin("criteria")
     criteria = fit(jump_on(mu) for mu in extent.jumps)
     begin("pull-off")
     pull_offs = tuple(_pull_off(mu, extent) for mu in sorted({*extent.pull_offs, *extent.element_pull_offs}))
     begin("false rise")
     ripples = tuple(ripple(drawn[RIPPLE_AT], spacing, RIPPLE_WINDOW) for spacing in RIPPLES)
-    rises = _rises(extent)
+    resolved = [halfspace.trace(mu, rtol=SEEN) for mu in extent.rising]
+    rises = {spacing: false_rise(resolved, spacing) for spacing in extent.rises}
     begin("tables")
-    printed = _printed(extent)
+    paths = {mu: halfspace.trace(mu, rtol=extent.rtol) for mu in tables.TABORS}
+    printed = Tables(tables.table_1(), tables.table_2(paths), tables.profile_checks(), tables.excess_asymptote())
     begin("relaxations")
     relaxations = tuple(attempts(extent.sweeps))
     begin("devices")
@@ -278,27 +281,11 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     return Greenwood1997(*parts, apparatus, critical_tabor, seconds, quick)
 
 
-def _drawn(tabor: float) -> EquilibriumPath:
-    steps = FINEST if tabor == WINDING_AT else FINE
-    return fine_path(tabor, to_load=DEEP.get(tabor, COMPRESSION), steps=steps)
-
-
-def _rises(extent: Extent) -> dict[float, Rise]:
-    """False rise on each spacing, from curves that are resolved."""
-    resolved = [halfspace.trace(mu, rtol=SEEN) for mu in extent.rising]
-    return {spacing: false_rise(resolved, spacing) for spacing in extent.rises}
-
-
-def _printed(extent: Extent) -> Tables:
-    paths = {mu: halfspace.trace(mu, rtol=extent.rtol) for mu in tables.TABORS}
-    return Tables(tables.table_1(), tables.table_2(paths), tables.profile_checks(), tables.excess_asymptote())
-
-
 def _pull_off(tabor: float, extent: Extent) -> PullOff:
-    asked = tabor in extent.element_pull_offs
-    element = convergence.trace(Scene(tabor=tabor), rtol=1e-3) if asked else None
-    return PullOff(tabor, _least_load(halfspace.trace(tabor, rtol=1e-5)), _least_load(element) if element else None)
+    by_elements = tabor in extent.element_pull_offs
+    paths = [halfspace.trace(tabor, rtol=1e-5), *([_by_elements(tabor)] if by_elements else [])]
+    return PullOff(tabor, *(path.events["pull_off"].estimate("load") for path in paths))
 
 
-def _least_load(path: EquilibriumPath) -> Estimate:
-    return path.events["pull_off"].estimate("load")
+def _by_elements(tabor: float) -> EquilibriumPath:
+    return convergence.trace(Scene(tabor=tabor), rtol=1e-3)

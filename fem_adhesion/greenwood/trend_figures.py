@@ -14,7 +14,7 @@ from fem_adhesion.common.numbers import digits, listed, plus_minus, rises, told
 from fem_adhesion.common.style import dress, note, panels, plain_ticks
 from fem_adhesion.greenwood.criteria import Criterion, words_on
 from fem_adhesion.greenwood.numerics_1997 import Ripple
-from fem_adhesion.greenwood.study import RIPPLE_AT, Greenwood1997, PullOff
+from fem_adhesion.greenwood.study import RIPPLE_AT, Greenwood1997
 from halfspace.equilibrium.devices import Cycle
 from halfspace.scaling import MAUGIS
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
@@ -69,11 +69,6 @@ def _criterion(axes: Any, criterion: Criterion, tabor: Array, power: float = 0.0
     axes.plot(tabor, predicted, color=colour, linestyle=dashes, label=criterion.name)
 
 
-def _see_6a(study: Greenwood1997) -> Iterator[str]:
-    """Too wide or too narrow a gap by the closed criteria, and how far the fits are off."""
-    return words_on(study.criteria)
-
-
 def _figure_6b(study: Greenwood1997) -> Figure:
     figure, (axes,) = panels()
     jumps = study.criteria
@@ -103,7 +98,8 @@ def _figure_7(study: Greenwood1997) -> Figure:
     tabor = np.array([p.tabor for p in study.pull_offs])
     force = [-p.half_space.value for p in study.pull_offs]
     trend.semilogx(tabor, force, color=style.BLUE, linewidth=2, marker=".", label="half-space")
-    _elements(trend, [p for p in study.pull_offs if p.finite_element])
+    elements = [(p.tabor, -p.finite_element.value) for p in study.pull_offs if p.finite_element]
+    trend.semilogx(*np.reshape(elements, (-1, 2)).T, color=style.BLUE, label="finite elements", **style.ELEMENTS)
     maugis = [-MaugisDugdale.matched(mu).pull_off().load for mu in tabor]
     trend.semilogx(tabor, maugis, color=style.GREEN, linestyle=style.CHAIN, label="Maugis-Dugdale")
     carpick = -carpick_pull_off(MAUGIS.of(tabor))
@@ -115,12 +111,6 @@ def _figure_7(study: Greenwood1997) -> Figure:
     dress(trend, TABOR, r"pull-off force $-W_\mathrm{min}/R\Delta\gamma$", legend="below", columns=2, ylim=(4.5, 6.5))
     _ripples(ripple, study)
     return figure
-
-
-def _elements(axes: Any, pull_offs: Sequence[PullOff]) -> None:
-    tabor = [p.tabor for p in pull_offs]
-    force = [-p.finite_element.value for p in pull_offs if p.finite_element]
-    axes.semilogx(tabor, force, color=style.BLUE, label="finite elements", **style.ELEMENTS)
 
 
 def _spacing(axes: Any, spacing: float, x: Sequence[float] | Array, y: Sequence[float] | Array) -> None:
@@ -241,7 +231,12 @@ def _follows(border: Array) -> str:
 
 
 FIGURES = (
-    ("6a", "Central gap and approach at jump-on, with the criteria", _figure_6a, _see_6a),
+    (
+        "6a",
+        "Central gap and approach at jump-on, with the criteria",
+        _figure_6a,
+        lambda study: words_on(study.criteria),
+    ),
     ("6b", "Central gap at jump-on, scaled by mu^(3/7)", _figure_6b, _see_6b),
     ("7", "Pull-off force against the Tabor parameter, and on coarse grids", _figure_7, _see_7),
     ("8", "Jumps of an apparatus of finite stiffness, and where they begin", _figure_8, _see_8),

@@ -6,12 +6,12 @@ import csv
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from fem_adhesion.common.facts import versions
-from fem_adhesion.common.page import Section, Table, inlined
+from fem_adhesion.common.page import Columns, Section, Table, inlined
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, SOLVERS, WEAK_FORM, Row
 from fem_adhesion.crosscheck.record import cells, columns, told, verdict_of
 from fem_adhesion.crosscheck.study import Case, Failure
@@ -28,7 +28,7 @@ LEVELS = {
     "": ("The events", SOLVERS),
 }
 VERDICTS = ("agree", "inconclusive", "disagree")
-SETTINGS = ("Tabor parameter", "solver", "settings", "tolerance", "unknowns", "seconds")
+
 SUMMARY = ("level", "quantities", *VERDICTS, "largest difference / error", "largest error / budget")
 
 Cases = Sequence[Case | Failure]
@@ -52,14 +52,10 @@ def crosscheck_section(cases: Cases) -> Section:
     )
 
 
-def _rows(cases: Cases, level: str) -> Iterator[tuple[float, Row]]:
+def _rows(cases: Cases, level: str) -> list[tuple[float, Row]]:
     """Tabor parameters and rows of a level."""
-    for case in cases:
-        yield from ((case.scene.tabor, row) for row in case.rows if _level(row) == level)
-
-
-def _level(row: Row) -> str:
-    return next(level for level in LEVELS if row.quantity.startswith(level))
+    rows = [(case.scene.tabor, row) for case in cases for row in case.rows]
+    return [(at, row) for at, row in rows if level == next(filter(row.quantity.startswith, LEVELS))]
 
 
 def _summary(cases: Cases) -> Table:
@@ -85,27 +81,20 @@ def _level_table(cases: Cases, level: str) -> Table:
     return Table("", title, "", ("Tabor parameter", *columns(between)), lines)
 
 
-def settings_section(cases: Cases, machine: Mapping[str, str]) -> Section:
+def settings_section(cases: Cases, machine: dict[str, str]) -> Section:
     """Versions, machine and what the solvers chose."""
-    facts = {**versions(), **machine}
-    lines = [
-        [f"{case.scene.tabor:g}", name, _settings(path.settings), tolerance_told(path.rtol, path.missed), *_cost(path)]
-        for case in cases
-        if isinstance(case, Case)
-        for name, path in case.solutions.items()
-    ]
-    return Section(
-        "settings",
-        "Versions and settings",
-        tables=(
-            Table("", "Versions", "", ("what", "which"), list(map(list, facts.items())), open=True),
-            Table("", "Settings", "", SETTINGS, lines),
-        ),
-    )
-
-
-def _cost(path: EquilibriumPath) -> tuple[str, str]:
-    return str(path.unknowns), f"{path.seconds:.2f}"
+    columns: Columns[tuple[Case, str, EquilibriumPath]] = {
+        "Tabor parameter": lambda solved: f"{solved[0].scene.tabor:g}",
+        "solver": lambda solved: solved[1],
+        "settings": lambda solved: _settings(solved[2].settings),
+        "tolerance": lambda solved: tolerance_told(solved[2].rtol, solved[2].missed),
+        "unknowns": lambda solved: str(solved[2].unknowns),
+        "seconds": lambda solved: f"{solved[2].seconds:.2f}",
+    }
+    every = [(case, *named) for case in cases if isinstance(case, Case) for named in case.solutions.items()]
+    facts = Table("", "Versions", "", ("what", "which"), list((versions() | machine).items()), open=True)
+    settings = Table.of("", "Settings", "", every, columns)
+    return Section("settings", "Versions and settings", tables=(facts, settings))
 
 
 def _settings(value: object) -> str:
@@ -127,19 +116,17 @@ class Source:
     """What a command line leaves in a directory that goes into the report.
 
     The line is the command of the same name unless given. The name is that of the section and of the option that takes
-    the directory; the introduction is what to know before looking. Figures are SVG files by stem and caption, which is
-    the text alternative too; what the command measured itself stands in `captions`, a CSV file with columns ``figure``
-    and ``caption``, or "". Tables are CSV files by stem and title; of one, `counted` or "", the column ``outcome`` is
-    counted.
+    the directory; the introduction is what to know before looking. Figures are SVG files by stem, whose captions, the
+    text alternatives too, stand in ``captions.csv``. Tables are CSV files by stem and title; of one, `counted` or "",
+    the column ``outcome`` is counted.
     """
 
     name: str
     title: str
     introduction: str
-    figures: Sequence[tuple[str, str]]
+    figures: Sequence[str]
     tables: Sequence[tuple[str, str]]
     counted: str = ""
-    captions: str = ""
     line: str = ""
 
     @property
@@ -154,11 +141,7 @@ SOURCES = (
         "Speed against error",
         "Each line is a method at ever finer settings. The grey band is the least time for each error by any method, "
         "the dotted line the uncertainty of the truth that errors are taken against: the other family's solution.",
-        (
-            ("pull_off", "Error of the pull-off load against wall time: half-space left, finite elements right."),
-            ("jump_on", "Error of the approach at jump-on against wall time: half-space left, finite elements right."),
-            ("hysteresis", "Error of the energy lost in a cycle: half-space left, finite elements right."),
-        ),
+        ("pull_off", "jump_on", "hysteresis"),
         (
             ("speed", "Every method on every rung of its ladder"),
             ("growth", "How the time of the solvers with error control grows"),
@@ -178,17 +161,15 @@ SOURCES = (
         "Greenwood (1997), printed and computed",
         "The paper's tables beside the same quantities computed here with their estimated errors, and figures after "
         "the paper's and beyond.",
-        tuple((stem, "") for stem in ("fig_3b", "fig_7", "fig_8")),
+        ("fig_3b", "fig_7", "fig_8"),
         (("table_1", "Table 1"), ("table_2", "Table 2"), ("criteria_constants", "Criteria for jumping on")),
-        captions="captions",
     ),
     Source(
         "finite-sphere",
         "Is the half-space good enough for my sphere?",
         "An elastic sphere of finite radius R beside the half-space with a parabolic profile.",
-        (("chart", ""), ("causes", "")),
+        ("chart", "causes"),
         (("rules", "Rules of thumb"), ("theories", "Beside the theories of the rigid and of the soft sphere")),
-        captions="captions",
     ),
 )
 
@@ -197,11 +178,11 @@ def section_of(source: Source, directory: Path | None) -> Section:
     """Section from a command's directory, InputError if it lacks what that writes, or one that it was not computed."""
     if directory is None:
         return Section(source.name, source.title, missing=source.made_by)
-    captions = dict(source.figures) | _captions(source, directory)
+    captions = _captions(source, directory) if source.figures else {}
     figures = tuple(
         inlined(_require(directory / f"{stem}.svg", source).read_bytes(), f"{source.name}-{stem}", captions[stem])
-        for stem, _ in source.figures
-        if captions[stem]  # those without were not drawn
+        for stem in source.figures
+        if captions.get(stem)  # those without were not drawn
     )
     tables = {stem: read_table(_require(directory / f"{stem}.csv", source), title) for stem, title in source.tables}
     paragraphs, warning = [source.introduction], ""
@@ -216,9 +197,7 @@ def section_of(source: Source, directory: Path | None) -> Section:
 
 def _captions(source: Source, directory: Path) -> dict[str, str]:
     """Captions that the command left beside its figures."""
-    if not source.captions:
-        return {}
-    with _require(directory / f"{source.captions}.csv", source).open(newline="", encoding="utf-8") as file:
+    with _require(directory / "captions.csv", source).open(newline="", encoding="utf-8") as file:
         return {row["figure"]: row["caption"] for row in csv.DictReader(file)}
 
 

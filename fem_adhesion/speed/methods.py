@@ -1,4 +1,4 @@
-"""What a method is to the speed study, and those on the half-space: iterations of 1997, fixed grids, adaptive solver.
+"""What a method is to the speed study; those on the half-space, from the iterations of 1997 on, and by finite elements.
 
 A method is a ladder of resolutions, each computed from the set-up to the events. Grids scale with the contact: spacings
 f are in widths of the spike of tension at the contact edge, extents U and sizes of blocks L in beta/sqrt(mu).
@@ -6,16 +6,24 @@ f are in widths of the spike of tension at the contact edge, extents U and sizes
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 from scipy.optimize import minimize_scalar
+from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
 import halfspace
-from fem_adhesion.mesh.block import graded_breaks
+from fem_adhesion import convergence
+from fem_adhesion.bodies.half_space import HalfSpace
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.far_field import FarField, clamped, point_load
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain.assembly import assemble
+from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quarter_disc
+from fem_adhesion.scene import Scene
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium import newton, relaxation
@@ -32,6 +40,7 @@ from halfspace.theories.closed_forms import jkr_radius
 from halfspace.values import Array, Estimate
 
 QUANTITIES = ("pull_off", "jump_on", "hysteresis")
+POISSON = 0.3  # of the finite elements
 
 Family = Literal["half-space", "finite elements"]
 Variant = Literal["", "clamped", "monolithic"]
@@ -81,17 +90,17 @@ class Method:
         return self.steps[: self.quick] if quick else self.steps
 
 
+def trace_elements(tabor: float, rtol: float) -> EquilibriumPath:
+    """Curve of a half-space by finite elements with error control."""
+    return convergence.trace(Scene(tabor, HalfSpace(poisson=POISSON)), rtol=rtol)
+
+
 def estimates(path: EquilibriumPath) -> dict[str, Estimate]:
     """Quantities of a path with their errors; jump and hysteresis only where it folds."""
     found = {"pull_off": path.events["pull_off"].estimate("load")}
     if grips := cycle(path):
         found |= {"jump_on": grips.jump_on.take_off.estimate("approach"), "hysteresis": grips.energy_lost}
     return found
-
-
-def from_path(path: EquilibriumPath) -> Solved:
-    """Quantities of an adaptive solver's path."""
-    return Solved(path.unknowns, {name: estimate.value for name, estimate in estimates(path).items()})
 
 
 def from_chart(problem: Traceable, unknowns: int) -> Solved:
@@ -137,7 +146,7 @@ def halfspace_methods() -> list[Method]:
         method("uniform triangles", ladder(triangles, "f U", uniform), 4),
         method("graded triangles", ladder(_on_graded, "f U growth", graded), 4),
         method("panels, fixed grid", ladder(_on_panels, "nodes U", panels), 4),
-        method("adaptive", ladder(_adaptive, "rtol", [(10.0**-k,) for k in range(2, 10)]), 5),
+        method("adaptive", adaptive(lambda tabor, rtol: halfspace.trace(tabor, rtol=rtol), range(2, 10)), 5),
     ]
 
 
@@ -150,6 +159,16 @@ def ladder(solve: Callable[..., Solved], names: str, rungs: Sequence[tuple[Any, 
         return Step(" ".join(told), lambda tabor: solve(tabor, *settings))
 
     return list(map(step, rungs))
+
+
+def adaptive(trace: Callable[..., EquilibriumPath], digits: Iterable[int]) -> list[Step]:
+    """Rungs of a solver with error control."""
+
+    def solve(tabor: float, rtol: float) -> Solved:
+        path = trace(tabor, rtol=rtol)
+        return Solved(path.unknowns, {name: estimate.value for name, estimate in estimates(path).items()})
+
+    return ladder(solve, "rtol", [(10.0**-k,) for k in digits])
 
 
 def _graded(tabor: float, f: float, U: float, growth: float, fine_radius: float | None = None) -> Array:
@@ -179,10 +198,6 @@ def _on_panels(tabor: float, nodes: int, U: float) -> Solved:
 
 def _fixed(operator: ElasticOperator, tabor: float) -> Solved:
     return from_chart(ContactProblem(operator, tabor), operator.radii.size)
-
-
-def _adaptive(tabor: float, rtol: float) -> Solved:
-    return from_path(halfspace.trace(tabor, rtol=rtol))
 
 
 Relaxation = Callable[[ContactProblem, Array, Control], Relaxed]
@@ -233,3 +248,71 @@ def _downhill(function: Callable[[float], float], start: float, step: float) -> 
     while (after := function(at + step)) < here:
         at, here = at + step, after
     return min(at - step, at + step), max(at - step, at + step)
+
+
+# Finite elements
+
+
+def element_methods() -> list[Method]:
+    """Every finite-element method: triangles and quadrilaterals on graded meshes, and degrees that rise.
+
+    Degrees rise with the resolution, adaptively, and on fixed meshes for the other far field and solver.
+    """
+    method = partial(Method, "finite elements")
+    P1, P2, P3 = (partial(_on_disc, element) for element in (ElementTriP1(), ElementTriP2(), ElementTriP3()))
+    tri = [(0.6, 16.0), (0.4, 24.0), (0.28, 34.0), (0.2, 48.0), (0.14, 68.0), (0.1, 96.0)]
+    quad = [(0.6, 16.0, 2.0), (0.4, 24.0, 1.7), (0.28, 34.0, 1.45), (0.2, 48.0, 1.3), (0.14, 68.0, 1.2)]
+    boxes = [(4, 0.8, 1e2, 2.5), (5, 0.8, 1e3, 2.5), (6, 0.8, 1e4, 2.5), (7, 0.8, 1e5, 2.5), (8, 0.8, 1e6, 2.5)]
+    small = [(2, 0.8, 20.0, 2.5), (3, 0.8, 40.0, 2.5), (4, 0.8, 80.0, 2.5)]
+    return [
+        method("P1", ladder(P1, "f L", tri), 4),
+        method("P2", ladder(P2, "f L", tri), 3),
+        method("P3", ladder(P3, "f L", tri), 3),
+        method("Q2", ladder(_on_block, "p f L", [(2, *s) for s in quad]), 4),
+        method("P1", ladder(partial(P1, far_field=clamped), "f L", tri), 4, "clamped"),
+        method("P2", ladder(partial(P2, far_field=clamped), "f L", tri), 3, "clamped"),
+        method("P2", ladder(partial(P2, solve=_monolithic), "f L", tri[:3]), 1, "monolithic"),
+        method("hp", adaptive(trace_elements, range(3, 9)), 4),  # looser tolerances choose the same degree
+        method("hp", ladder(partial(_on_block, far_field=clamped), "p f L", boxes), 3, "clamped"),
+        method("hp", ladder(partial(_on_block, solve=_monolithic), "p f L", small), 2, "monolithic"),
+    ]
+
+
+Solver = Callable[[Space, float, FarField], Solved]
+
+
+def _condensed(space: Space, tabor: float, far_field: FarField) -> Solved:
+    body = condense(space, POISSON, far_field=far_field)
+    return from_chart(ContactProblem(body.operator, tabor), body.unknowns)
+
+
+def _monolithic(space: Space, tabor: float, far_field: FarField) -> Solved:
+    problem = assemble(space, POISSON, tabor, far_field=far_field)
+    return from_chart(problem, space.unknowns)
+
+
+def _on_disc(
+    element: Any, tabor: float, f: float, L: float, far_field: FarField = point_load, solve: Solver = _condensed
+) -> Solved:
+    """Quarter disc of triangles whose edges grow by the fraction f of the distance."""
+    size = graded_size(f * Scales(tabor).spike_width, widest(tabor), f)
+    return solve(Space(quarter_disc(_box(L, tabor), size), element), tabor, far_field)
+
+
+def _on_block(
+    tabor: float,
+    p: int,
+    f: float,
+    L: float,
+    growth: float,
+    far_field: FarField = point_load,
+    solve: Solver = _condensed,
+) -> Solved:
+    """Box of quadrilaterals of degree p between graded lines."""
+    mesh = block_grid(f * Scales(tabor).spike_width, widest(tabor), _box(L, tabor), growth=growth)
+    return solve(Space(mesh, ElementQuad2() if p == 2 else ElementQuadP(p)), tabor, far_field)
+
+
+def _box(L: float, tabor: float) -> float:
+    """Size of a block in beta."""
+    return max(L * unit(tabor), 2 * widest(tabor))

@@ -16,10 +16,10 @@ from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
 from fem_adhesion.common.facts import machine, versions
-from fem_adhesion.common.page import Table, markdown, write_csv
-from fem_adhesion.common.style import Picture, draw
+from fem_adhesion.common.page import Columns, Table, markdown, write_csv
+from fem_adhesion.common.style import Picture, captions, draw
 from fem_adhesion.speed.methods import QUANTITIES, Family, Method
-from fem_adhesion.speed.result import EXPONENTS, Earlier, SpeedStudy, Timing, best, cheapest, pareto_front
+from fem_adhesion.speed.result import EXPONENTS, Earlier, Growth, SpeedStudy, Timing, best, cheapest, pareto_front
 from fem_adhesion.speed.study import RTOL, TABOR
 
 CAPTION = "Error against wall time: half-space left, finite elements right."
@@ -78,8 +78,10 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
             if method.family == family:
                 _draw_method(axes, study, method, quantity)
         _draw_hidden(axes, study, family, quantity)
-        _dress(axes, f"{family}, judged by the {study.truths[family].family}")
-    panels[0].set_ylabel(ERRORS[quantity])
+        axes.set_title(f"{family}, judged by the {study.truths[family].family}")
+        axes.tick_params(labelleft=True)
+        label = ERRORS[quantity] if axes is panels[0] else ""
+        style.dress(axes, "wall time from set-up to events, s", label, legend="below", columns=2)
     return figure
 
 
@@ -126,49 +128,49 @@ def _style(study: SpeedStudy, method: Method) -> tuple[str, str]:
     return ADAPTIVE.get(method.basis) or STYLES[list(bases).index(method.basis)]
 
 
-def _dress(axes: Any, title: str) -> None:
-    axes.set_title(title)
-    axes.tick_params(labelleft=True)
-    style.dress(axes, "wall time from set-up to events, s", axes.get_ylabel(), legend="below", columns=2)
-
-
 TOLERANCES = (1e-3, 1e-6)
-GROWTH_COLUMNS = ("solver", "grows", "at", "seconds", "yardsticks")
+DECADES = tuple(10.0**-digits for digits in range(2, 9))
 UNITS = {"pull_off": "R dgamma", "jump_on": "eps", "hysteresis": "R dgamma eps"}
-COLUMNS = ("tabor", "method", "setting", "unknowns", "seconds", "yardsticks", "peak_mebibytes")
-ERROR_COLUMNS = tuple(f"{quantity}_{what}" for quantity in QUANTITIES for what in ("error", "truth_uncertainty"))
 
 
 def write(study: SpeedStudy, directory: Path) -> None:
-    """Write ``speed.csv``, ``growth.csv``, ``speed.md`` and plots of each quantity, SVG and PNG, into a directory.
+    """Write ``speed.csv``, ``growth.csv``, ``speed.md``, plots of each quantity, SVG and PNG, and their captions.
 
     Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none.
     """
-    rows = [[f"{study.tabor!r}", *_cells(rung, study.yardstick)] for rung in study.rungs]
-    write_csv(Table("speed", "", "", (*COLUMNS, *ERROR_COLUMNS, "outcome", "reason"), rows), directory)
-    write_csv(Table("growth", "", "", GROWTH_COLUMNS, list(_growth_cells(study))), directory)
+    write_csv([_rungs(study), _times(study), captions(pictures(study), study)], directory)
     (directory / "speed.md").write_text("\n".join(markdown(list(parts(study)))) + "\n")
     draw(pictures(study), study, directory)
 
 
-def _cells(rung: Timing, yardstick: float) -> list[str]:
-    """Row of the table; what is not known is left empty."""
-    errors = [
-        _number(value, "{:.3e}")
-        for quantity in QUANTITIES
-        for value in (rung.error(quantity), rung.floors.get(quantity, math.nan))
+def _rungs(study: SpeedStudy) -> Table:
+    """Every rung; what is not known is left empty."""
+    errors = tuple(f"{quantity}_{what}" for quantity in QUANTITIES for what in ("error", "truth_uncertainty"))
+    columns: Columns[Timing] = {
+        "tabor": lambda _: f"{study.tabor!r}",
+        "method": lambda rung: rung.method,
+        "setting": lambda rung: rung.setting,
+        "unknowns": lambda rung: "" if rung.unknowns is None else str(rung.unknowns),
+        "seconds": lambda rung: _number(rung.seconds, "{:.4f}"),
+        "yardsticks": lambda rung: _number(rung.seconds / study.yardstick, "{:.0f}"),
+        "peak_mebibytes": lambda rung: _number(rung.memory, "{:.1f}"),
+        errors: lambda rung: [
+            _number(value, "{:.3e}") for q in QUANTITIES for value in (rung.error(q), rung.floors.get(q, math.nan))
+        ],
+        "outcome": lambda rung: rung.status,
+        "reason": lambda rung: rung.reason,
+    }
+    return Table.of("speed", "", "", study.rungs, columns)
+
+
+def _times(study: SpeedStudy) -> Table:
+    """How long each growth took at each of its values."""
+    rows = [
+        (growth.solver, growth.grows, f"{x:g}", f"{seconds:.4f}", f"{seconds / study.yardstick:.0f}")
+        for growth in study.growths
+        for x, seconds in zip(growth.at, growth.seconds, strict=True)
     ]
-    return [
-        rung.method,
-        rung.setting,
-        "" if rung.unknowns is None else str(rung.unknowns),
-        _number(rung.seconds, "{:.4f}"),
-        _number(rung.seconds / yardstick, "{:.0f}"),
-        _number(rung.memory, "{:.1f}"),
-        *errors,
-        rung.status,
-        rung.reason,
-    ]
+    return Table("growth", "", "", ("solver", "grows", "at", "seconds", "yardsticks"), rows)
 
 
 def _number(value: float, form: str) -> str:
@@ -190,16 +192,20 @@ def parts(study: SpeedStudy) -> Iterator[str | Table]:
         yield from (_beside(study, study.earlier, quantity) for quantity in study.quantities)
     yield _exponents(study)
     yield _growths(study)
-    failures = [(rung.method, rung.setting, rung.status, rung.reason) for rung in study.rungs if not rung.converged]
-    yield Table("", "Rungs without result", "", ("method", "setting", "outcome", "reason"), failures)
+    failures: Columns[Timing] = {
+        "method": lambda rung: rung.method,
+        "setting": lambda rung: rung.setting,
+        "outcome": lambda rung: rung.status,
+        "reason": lambda rung: rung.reason,
+    }
+    yield Table.of("", "Rungs without result", "", (rung for rung in study.rungs if not rung.converged), failures)
 
 
 def verdict(study: SpeedStudy) -> Iterator[str]:
     """What the run was, and what failed that should not have; a sentence each."""
     rungs = sum(len(method.steps) for method in study.methods)
-    counted = (
-        f"{len(study.rungs)} of {rungs} rungs were climbed, {sum(r.converged for r in study.rungs)} have a result."
-    )
+    solved = sum(rung.converged for rung in study.rungs)
+    counted = f"{len(study.rungs)} of {rungs} rungs were climbed, {solved} have a result."
     yield f"A quick run: {counted} The finer ones were left out." if study.quick else counted
     troubles = list(study.troubles())
     if troubles:
@@ -210,28 +216,28 @@ def verdict(study: SpeedStudy) -> Iterator[str]:
 def _truths(study: SpeedStudy) -> Table:
     """What the errors are taken against, and whether the two truths agree."""
     title = "The truths: each family is judged by the other; an error below the truth's own uncertainty is shown as <"
-    columns = [
-        f"judge of the {judged}: {truth.family}, rtol {truth.rtol:.0e}" for judged, truth in study.truths.items()
-    ]
-    rows = []
-    for quantity in study.quantities:
-        a, b = (truth.values[quantity] for truth in study.truths.values())
-        cells = [f"{estimate.value:.12g}, error {estimate.error:.0e}" for estimate in (a, b)]
-        rows.append(
-            [quantity, UNITS[quantity], *cells, f"{abs(a.value - b.value):.0e}", "yes" if a.agrees(b) else "NO"]
-        )
-    return Table("", title, "", ("quantity", "unit", *columns, "difference", "within both errors"), rows)
+    judges = tuple(f"judge of the {judged}: {t.family}, rtol {t.rtol:.0e}" for judged, t in study.truths.items())
+    both = {quantity: [truth.values[quantity] for truth in study.truths.values()] for quantity in study.quantities}
+    columns: Columns[str] = {
+        "quantity": str,
+        "unit": lambda name: UNITS[name],
+        judges: lambda name: [f"{one.value:.12g}, error {one.error:.0e}" for one in both[name]],
+        "difference": lambda name: f"{abs(both[name][0].value - both[name][1].value):.0e}",
+        "within both errors": lambda name: "yes" if both[name][0].agrees(both[name][1]) else "NO",
+    }
+    return Table.of("", title, "", study.quantities, columns)
 
 
 def _costs(study: SpeedStudy, title: str, quantity: str | None) -> Table:
     """One line per method: seconds to each tolerance, and the best that it reached."""
-    rows = []
-    for method in study.methods:
-        rungs = study.of(method.name)
-        cells = [_cost(cheapest(rungs, tolerance, quantity), study) for tolerance in TOLERANCES]
-        rows.append([method.name, *cells, _best(best(rungs, quantity), quantity)])
-    columns = ("method", *(f"to {tolerance:.0e}" for tolerance in TOLERANCES), "best reached")
-    return Table("", title, "", columns, rows)
+    columns: Columns[Method] = {
+        "method": lambda method: method.name,
+        tuple(f"to {tolerance:.0e}" for tolerance in TOLERANCES): lambda method: [
+            _cost(cheapest(study.of(method.name), tolerance, quantity), study) for tolerance in TOLERANCES
+        ],
+        "best reached": lambda method: _best(best(study.of(method.name), quantity), quantity),
+    }
+    return Table.of("", title, "", study.methods, columns)
 
 
 def _cost(rung: Timing | None, study: SpeedStudy) -> str:
@@ -246,9 +252,6 @@ def _best(rung: Timing | None, quantity: str | None) -> str:
         return "-"
     below = "<" if rung.hidden(named) else ""
     return f"{below}{rung.error(named):.0e} in {rung.seconds:.2f} s ({rung.setting})"
-
-
-DECADES = tuple(10.0**-digits for digits in range(2, 9))
 
 
 def _beside(study: SpeedStudy, earlier: Earlier, quantity: str) -> Table:
@@ -269,17 +272,13 @@ def _beside(study: SpeedStudy, earlier: Earlier, quantity: str) -> Table:
 
 
 def _exponents(study: SpeedStudy) -> Table:
+    columns: Columns[Method] = {
+        "method": lambda method: method.name,
+        "rungs": lambda method: str(sum(rung.converged for rung in study.of(method.name))),
+        EXPONENTS: lambda method: [_number(b, "{:.2f}") or "-" for b in study.exponents(method.name).values()],
+    }
     title = "How the cost grows: exponents b fitted to cost ~ x^b; the error is that of pull_off"
-    fitted = {method.name: study.exponents(method.name) for method in study.methods}
-    rows = [
-        [
-            name,
-            str(sum(rung.converged for rung in study.of(name))),
-            *(_number(b, "{:.2f}") or "-" for b in found.values()),
-        ]
-        for name, found in fitted.items()
-    ]
-    return Table("", title, "", ("method", "rungs", *EXPONENTS), rows)
+    return Table.of("", title, "", study.methods, columns)
 
 
 def _growths(study: SpeedStudy) -> Table:
@@ -287,20 +286,11 @@ def _growths(study: SpeedStudy) -> Table:
         "How the time of the solvers with error control grows: exponents b of time ~ x^b, 0 where only the logarithm "
         f"of x counts; at a Tabor parameter of {TABOR:g} and an rtol of {RTOL:.0e}, unless they are what grows"
     )
-    rows = [
-        [
-            growth.solver,
-            growth.grows,
-            ", ".join(f"{seconds:.2f} s at {x:g}" for x, seconds in zip(growth.at, growth.seconds, strict=True)),
-            _number(growth.exponent, "{:.2f}") or "-",
-            f"{growth.expected:g}",
-        ]
-        for growth in study.growths
-    ]
-    return Table("", title, "", ("solver", "x", "time", "b", "b expected at most"), rows)
-
-
-def _growth_cells(study: SpeedStudy) -> Iterator[list[str]]:
-    for growth in study.growths:
-        for x, seconds in zip(growth.at, growth.seconds, strict=True):
-            yield [growth.solver, growth.grows, f"{x:g}", f"{seconds:.4f}", f"{seconds / study.yardstick:.0f}"]
+    columns: Columns[Growth] = {
+        "solver": lambda growth: growth.solver,
+        "x": lambda growth: growth.grows,
+        "time": lambda growth: ", ".join(f"{s:.2f} s at {x:g}" for x, s in zip(growth.at, growth.seconds, strict=True)),
+        "b": lambda growth: _number(growth.exponent, "{:.2f}") or "-",
+        "b expected at most": lambda growth: f"{growth.expected:g}",
+    }
+    return Table.of("", title, "", study.growths, columns)

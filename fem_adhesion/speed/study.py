@@ -14,7 +14,7 @@ of finite elements of degree p has p^2 inside, whose elimination costs p^6.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -23,13 +23,20 @@ from scipy.linalg.lapack import dgesv
 
 import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.bodies.hemisphere import Hemisphere
 from fem_adhesion.common.facts import with_peak_memory
-from fem_adhesion.common.progress import Progress, unheard
+from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.scene import Scene
-from fem_adhesion.speed.element_methods import POISSON, element_methods
-from fem_adhesion.speed.methods import Family, Method, Solved, Step, estimates, halfspace_methods
+from fem_adhesion.speed.methods import (
+    POISSON,
+    Family,
+    Method,
+    Step,
+    element_methods,
+    estimates,
+    halfspace_methods,
+    trace_elements,
+)
 from fem_adhesion.speed.result import Earlier, Growth, SpeedStudy, Status, Timing, Truth
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
@@ -64,7 +71,10 @@ def measure(
     rungs: list[Timing] = []
     for number, method in enumerate(chosen):
         progress(method.name, number, len(chosen))
-        rungs += _climb(method, tabor, truths[method.family], quick=quick)
+        truth = truths[method.family]
+        for rung, step in enumerate(method.ladder(quick=quick)):
+            # Those of the quick ladder, which are cheap, are timed once more, warm, in the full study.
+            rungs.append(_run(method.name, step, tabor, truth, again=not quick and rung < method.quick))
     progress("how time grows", len(chosen), len(chosen))
     found = tuple(timed(growth, _seconds) for growth in (growths_for(quick=quick) if growths is None else growths))
     return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs), found, earlier)
@@ -81,7 +91,7 @@ def require_tabor(tabor: float) -> float:
 def find_truths(tabor: float) -> dict[Family, Truth]:
     """What each family is judged by: the other one at its tightest tolerance, with its own uncertainties."""
     half_space = _truth("half-space", halfspace.trace(tabor, rtol=TIGHTEST))
-    elements = _truth("finite elements", convergence.trace(Scene(tabor, HalfSpace(poisson=POISSON)), rtol=TIGHTEST))
+    elements = _truth("finite elements", trace_elements(tabor, TIGHTEST))
     return {"half-space": elements, "finite elements": half_space}
 
 
@@ -102,12 +112,6 @@ def _seconds(work: Callable[[], object]) -> float:
     return time.perf_counter() - began
 
 
-def _climb(method: Method, tabor: float, truth: Truth, *, quick: bool) -> Iterator[Timing]:
-    """Rungs of a method; in the full study those of the quick ladder, which are cheap, are timed once more, warm."""
-    for number, step in enumerate(method.ladder(quick=quick)):
-        yield _run(method.name, step, tabor, truth, again=not quick and number < method.quick)
-
-
 def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) -> Timing:
     """One rung: run it, time it again if asked, and compare with the truth."""
     began = time.perf_counter()
@@ -118,7 +122,12 @@ def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) ->
     seconds = time.perf_counter() - began
     if again:
         seconds = min(seconds, _seconds(lambda: step.run(tabor)))
-    errors, floors = _errors(solved, truth), {name: truth.relative(name, e.error) for name, e in truth.values.items()}
+    known = {name: true for name, true in truth.values.items() if name in solved.values}
+    errors = {  # not below the truth's own uncertainty, since nothing less can be told
+        name: truth.relative(name, max(abs(solved.values[name] - true.value), true.error))
+        for name, true in known.items()
+    }
+    floors = {name: truth.relative(name, true.error) for name, true in truth.values.items()}
     return Timing(method, step.setting, "converged", seconds, "", solved.unknowns, memory, errors, floors)
 
 
@@ -129,36 +138,19 @@ def _status(error: InputError | NotConverged) -> Status:
     return "too coarse" if isinstance(error, GridTooCoarse) else "failed"
 
 
-def _errors(solved: Solved, truth: Truth) -> dict[str, float]:
-    """Differences from the truth; not below its own uncertainty, since nothing less can be told."""
-    return {
-        name: truth.relative(name, max(abs(value - truth.values[name].value), truth.values[name].error))
-        for name, value in solved.values.items()
-        if name in truth.values
-    }
-
-
 # How the time grows
-
-
-def _block(tabor: float, rtol: float) -> object:
-    return convergence.trace(Scene(tabor, HalfSpace(poisson=POISSON)), rtol=rtol)
 
 
 def _hemisphere(radius_ratio: float) -> object:
     return convergence.trace(Scene(TABOR, Hemisphere(radius_ratio=radius_ratio, poisson=POISSON)), rtol=RTOL)
 
 
-def _rtol(digits: float) -> float:
-    return float(10**-digits)
-
-
 DIGITS = tuple(map(float, range(3, 9)))
 GROWTHS = (
-    Growth("half-space", "digits", 3.0, DIGITS, lambda x: halfspace.trace(TABOR, rtol=_rtol(x))),
-    Growth("finite elements", "digits", 6.0, DIGITS, lambda x: _block(TABOR, _rtol(x))),
+    Growth("half-space", "digits", 3.0, DIGITS, lambda x: halfspace.trace(TABOR, rtol=10.0**-x)),
+    Growth("finite elements", "digits", 6.0, DIGITS, lambda x: trace_elements(TABOR, 10.0**-x)),
     Growth("half-space", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0, 100.0), lambda x: halfspace.trace(x, rtol=RTOL)),
-    Growth("finite elements", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0), lambda x: _block(x, RTOL)),
+    Growth("finite elements", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0), lambda x: trace_elements(x, RTOL)),
     Growth("hemisphere", "R/eps", LOGARITHMIC, (10.0, 100.0, 1e3, 1e4), _hemisphere),
 )
 
