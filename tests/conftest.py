@@ -1,5 +1,6 @@
 """What the test files share: whole runs of commands, and an `approx` that does not swallow small numbers."""
 
+import gc
 import os
 from collections.abc import Mapping
 from functools import partial
@@ -44,6 +45,12 @@ ORIGINAL, RELATIVE, ABSOLUTE = pytest.approx, 1e-6, 1e-12
 def pytest_collection_modifyitems(items):
     """Begin with the files that take longest."""
     items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
+
+
+def pytest_collection_finish():
+    """Let the collector pass over all that is loaded by now, which stays, and look at the rest less often."""
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
 
 
 @pytest.fixture(autouse=True)

@@ -5,7 +5,9 @@ No target installs anything here: the stamps that say that the environment is co
 
 import re
 import subprocess
+import tomllib
 from pathlib import Path
+from unittest.mock import ANY
 
 import honesty
 import pytest
@@ -15,14 +17,14 @@ from whole_runs import BIN, ROOT, tables_in
 
 MAKEFILE = (ROOT / "Makefile").read_text()
 
-# How each target is run; `test` is what runs this, and `clean` works on a copy.
+# How each target is run; `test` is what runs this, `check` is run before it, and `clean` works on a copy.
 COMPARE = "make compare"
 HARD = "make hard OUT=hard"
 TARGETS = {
     "help": "make help",
     "compare": COMPARE,
     "test": "make --dry-run test",
-    "check": "make check",
+    "check": "make --dry-run check",
     "bench": "make bench QUICK=1",
     "honesty": "make honesty QUICK=1 SEED=77",  # a new seed each time finds what is not known yet: no test's verdict
     "hard": HARD,  # tests/hard reads what it writes
@@ -63,13 +65,19 @@ def test_compare_prints_six_tables_and_agrees(made):
             assert error <= float(row["budget"]) * 1.1
 
 
-def test_check_finds_nothing(made):
+def test_check_asks_every_tool_about_all_there_is(made):
+    """A rehearsal: what decides whether work lands runs it, and would read all sources here a second time."""
     run = made("check")
-    assert run.code == 0, run.out + run.err
-    for tool in ("ruff format --check .", "ruff check .", "mypy"):
-        assert f"{BIN}/{tool}" in run.out
-    assert "All checks passed!" in run.out
-    assert re.search(r"Success: no issues found in \d+ source files", run.out)
+    assert run.code == 0
+    assert run.out.splitlines() == [f"{BIN}/ruff format --check .", f"{BIN}/ruff check .", f"{BIN}/mypy"]
+    landing = (ROOT / ".ci/run").read_text().splitlines()
+    assert "set -euo pipefail" in landing
+    assert landing[-2:] == ["make check", "make test"]
+    assert tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"] == {
+        "strict": True,
+        "files": ["halfspace", "fem_adhesion"],
+        "overrides": ANY,
+    }
 
 
 def test_test_runs_all_tests_on_all_processors(made):

@@ -488,9 +488,20 @@ def distinct():
     return made_study(rungs, methods=methods)
 
 
-def test_each_value_stands_under_its_name_in_the_csv(distinct, tmp_path):
-    speed_page.write(distinct, tmp_path)
-    table = list(csv.DictReader((tmp_path / "speed.csv").read_text().splitlines()))
+@pytest.fixture
+def written(tmp_path, monkeypatch):
+    """Write a study and give its table; its figures are drawn by the quick run."""
+    monkeypatch.setattr(speed_page, "draw", lambda *_: None)
+
+    def write(made):
+        speed_page.write(made, tmp_path)
+        return tmp_path / "speed.csv"
+
+    return write
+
+
+def test_each_value_stands_under_its_name_in_the_csv(distinct, written):
+    table = list(csv.DictReader(written(distinct).read_text().splitlines()))
     assert len(table) == 4
     for row, made in zip(table, distinct.rungs, strict=True):
         assert (row["method"], row["setting"], row["outcome"]) == (made.method, made.setting, "converged")
@@ -503,15 +514,15 @@ def test_each_value_stands_under_its_name_in_the_csv(distinct, tmp_path):
             assert float(row[f"{q}_truth_uncertainty"]) == pytest.approx(made.floors[q], rel=1e-3, abs=0)
 
 
-def test_an_earlier_run_is_read_back_and_shown_beside_in_yardsticks(distinct, tmp_path):
+def test_an_earlier_run_is_read_back_and_shown_beside_in_yardsticks(distinct, written):
     """Twice as slow a run on a machine half as fast took as many yardsticks: only what is known to differ counts."""
     slower = [dataclasses.replace(made, seconds=4 * made.seconds) for made in distinct.rungs]
-    speed_page.write(dataclasses.replace(distinct, rungs=tuple(slower), yardstick=2e-3), tmp_path)
-    beside = read_earlier(tmp_path / "speed.csv", 1.0)
+    table = written(dataclasses.replace(distinct, rungs=tuple(slower), yardstick=2e-3))
+    beside = read_earlier(table, 1.0)
     assert [rung.seconds for rung in beside.rungs] == [2 * made.seconds / 1e-3 for made in distinct.rungs]
     study = dataclasses.replace(distinct, earlier=beside)
     text = "\n".join(lines_of_page(study))
-    cells = section(text, f"The front of pull_off beside that of {tmp_path / 'speed.csv'}")
+    cells = section(text, f"The front of pull_off beside that of {table}")
     assert cells[0] == {
         "tolerance": "1e-02",
         "earlier": "1000 (some, a)",
@@ -526,9 +537,9 @@ def test_an_earlier_run_is_read_back_and_shown_beside_in_yardsticks(distinct, tm
         np.testing.assert_allclose(before.get_ydata(), now.get_ydata(), rtol=1e-3)
 
 
-def test_what_is_no_earlier_run_at_this_tabor_parameter_is_refused(distinct, tmp_path):
-    speed_page.write(distinct, tmp_path)
-    file, other = tmp_path / "speed.csv", tmp_path / "other.csv"
+def test_what_is_no_earlier_run_at_this_tabor_parameter_is_refused(distinct, written):
+    file = written(distinct)
+    other = file.with_name("other.csv")
     with pytest.raises(InputError, match="is of tabor 1, not 2"):
         read_earlier(file, 2.0)
     with pytest.raises(InputError, match="cannot be read: No such file"):
