@@ -21,6 +21,7 @@ from halfspace.values import Array, Valued, appended
 GROWTH = 10.0  # of the relative residual, let through in one step
 ROUND_OFF = 1e-10  # relative size of a step below which the residual may be no more than rounding
 SLOW = 0.1  # part of a step that may be left after one with old factors; if it is more, they are made anew
+ROUGH = 3e-2  # relative accuracy of a first step that is iterated for; of a later one the square of that before
 LEFT = 1e-4  # of the tolerance: error left by the last step, of either kind; and of any step that is iterated for
 REFINED = 1e-13  # relative error left in a tangent
 
@@ -200,10 +201,11 @@ def solve(
     for iteration in range(1, max_iterations + 1):
         fresh = solver is None
         solver = solver or problem.bordered_solver(x, problem.gradient(x, control.weights))
-        dx = -solver(F, LEFT)
+        accuracy = LEFT if problem.reuse else min(max(before**2, LEFT), ROUGH)
+        dx = -solver(F, accuracy)
         update = problem.size(x, dx)
         x, F, damping = _damped(problem, x, F, dx, control)
-        left = update * min(1.0, update if fresh else update / before)
+        left = update * min(1.0, max(update, accuracy) if fresh else update / before)
         if damping == 1 and update < tolerance and left < LEFT * tolerance:
             return Solution(x, problem.observables(x), iteration, update, control, solver)
         if damping < 1 or update > problem.reuse or (not fresh and update > SLOW * before):

@@ -6,6 +6,7 @@ numbers that every discretisation has, so its value does not depend on the grid,
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -157,12 +158,12 @@ NUDGE = 1e-3  # of arclength: a step too short for the contact edge to leave its
 def _starts(problem: Traceable, points: list[Point], step: float, trail: Sequence[Passed]) -> Iterator[Array]:
     """Predictions in the order in which they are tried.
 
-    Where a body's grid stands still see `with_edge` first, which is worse, however, where the surface is steep.
+    Where a body's grid stands still see `with_edge` first, which is worse, however, where the surface is steep. The
+    trail is of the states passed, on whatever grid, down to that of the last point.
     """
     point, before = points[-1], points[-2] if len(points) > 1 else None
     if problem.interface is not problem and step > NUDGE:
-        own = [passed(problem, p.x, p.arclength) for p in points[-KNOWN:]]
-        moved = with_edge(problem, [*trail, *own], point.x, point.arclength + step)
+        moved = with_edge(problem, trail, point.x, point.arclength + step)
         if moved is not None:
             yield moved
     yield predict(problem, point, step, before)
@@ -185,7 +186,7 @@ def follow(
     GridTooCoarse if the contact edge comes to a place where the grid is too coarse for the spike of tension there.
     """
     steps = steps or (Steps() if problem.interface is problem else WHOLE_BODY)
-    points = [start]
+    points, trail = [start], deque([*trail, passed(problem, start.x, start.arclength)], KNOWN)
     step = steps.first
     while len(points) < max_points:
         try:
@@ -205,6 +206,7 @@ def follow(
             continue
         problem.require_resolution(new.x)
         points.append(new)
+        trail.append(passed(problem, new.x, new.arclength))
         if ended:
             return points
         step = _next_step(step, points, metric, steps)
