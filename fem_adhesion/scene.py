@@ -206,6 +206,11 @@ class UpTo(Valued):
     surface: Surface
     end: float
 
+    @property
+    def pointed(self) -> bool:
+        """Whether it rises from the axis as a power of the radius."""
+        return self.surface.pointed
+
     def height(self, radii: Array) -> Array:
         """Height in beta^2/R."""
         return self.surface.height(radii)

@@ -432,6 +432,7 @@ LAWS_AND_PROFILES = (
     Scene(0.05, law=Exponential(3)),
     Scene(3.0, law=Dlvo(-0.5, 0.3)),
     Scene(1.0, law=Dugdale(0.2)),
+    Scene(1.0, law=Dugdale(0.1)),
     Scene(1.0, profile=Power(1.5)),
     Scene(0.1, profile=Power(10)),
     Scene(3.0, profile=Power(3)),

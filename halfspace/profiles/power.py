@@ -41,6 +41,11 @@ class Power(Endless):
         """Return u^(k-1)."""
         return np.asarray(radii ** (self.k - 1))
 
+    @property
+    def pointed(self) -> bool:
+        """Whether u^k is no polynomial in u^2."""
+        return self.k % 2 != 0
+
     def first_cell(self, tolerance: float) -> float:
-        """Radius at which u^k is as small as the tolerance, unless it is a polynomial in u^2."""
-        return np.inf if self.k % 2 == 0 else float(tolerance ** (1 / self.k))
+        """Radius at which u^k is as small as the tolerance, if it is pointed."""
+        return float(tolerance ** (1 / self.k)) if self.pointed else np.inf

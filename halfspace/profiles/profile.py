@@ -21,6 +21,11 @@ class Surface(Protocol):
         """Radius in beta at which the surface ends; infinite if it does not."""
         ...
 
+    @property
+    def pointed(self) -> bool:
+        """Whether it rises from the axis as a power of the radius that is no polynomial in its square."""
+        ...
+
     def height(self, radii: Array) -> Array:
         """Height in beta^2/R at radii in beta."""
         ...
@@ -44,6 +49,11 @@ class Profile(Protocol):
 
 class Dimensionless:
     """A profile that is the same surface at every Tabor parameter, as smooth across the axis as a paraboloid."""
+
+    @property
+    def pointed(self) -> bool:
+        """False: smooth."""
+        return False
 
     def surface(self, tabor: float) -> Self:  # noqa: ARG002 (the same at all)
         """Return the profile itself."""
