@@ -23,7 +23,7 @@ from fem_adhesion.finite_strain import scene as finite_strain_scene
 from fem_adhesion.mesh.block import graded_breaks
 from fem_adhesion.mesh.file import read_scaled
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.finite_bodies import AroundEvents, surroundings
+from halfspace.accuracy.finite_bodies import AroundEvents, operators_across, surroundings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.accuracy.trace import TWIN, rings
@@ -157,15 +157,22 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     degree = degree_for(rtol) + level
     how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
-    other = AroundEvents(sized_body(scene, twin, to_load), *surroundings(rtol, level - 1))
+    other = _around_events(scene, twin, rtol, level - 1, to_load)
     doubt = scene.body.doubt
     return Rung(
         sized_body(scene, curve, to_load).curve,
-        (AroundEvents(sized_body(scene, how, to_load), *surroundings(rtol, level)),),
+        (_around_events(scene, how, rtol, level, to_load),),
         asdict(how) | {"curve_degree": curve.degree},
         other if level and doubt.other_cells else None,
         ErrorRule(doubt.times * REMAINING, along=True),
     )
+
+
+def _around_events(scene: Scene, how: Discretisation, rtol: float, level: int, to_load: float) -> AroundEvents:
+    """Stage of a level; events on a layer, whose kernel has its images near by, have operators each its own."""
+    body = sized_body(scene, how, to_load)
+    across = partial(operators_across, body, rtol, level) if scene.body.curved else None
+    return AroundEvents(body, *surroundings(rtol, level), across=across)
 
 
 def degree_for(rtol: float) -> int:

@@ -201,7 +201,7 @@ class Standing(Valued):
 
     body: SizedBody
     charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
-    farther = None
+    farther = together = None
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event, made unless one made before will do."""

@@ -391,7 +391,7 @@ def test_folds_left_over_are_named_in_turn_as_least_and_largest_approaches(monke
 @pytest.mark.parametrize("error", [IllPosed("for any grid"), ContactTooWide("for any grid")])
 def test_a_jump_that_no_grid_has_ends_the_climb_for_what_it_is(error):
     class Stage:
-        farther = None
+        farther = together = None
 
         def __call__(self, _):
             raise error

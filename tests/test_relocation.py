@@ -44,7 +44,7 @@ def test_no_gap_turns_negative_where_a_state_under_a_steep_profile_is_interpolat
 class Windows:
     """A stage whose charts, told by numbers, each have a window; events lie where they were solved for last."""
 
-    farther = None
+    farther = together = None
 
     def __init__(self):
         self.charts = [SimpleNamespace(problem=SimpleNamespace(number=k)) for k in range(9)]

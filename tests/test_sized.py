@@ -16,7 +16,7 @@ import halfspace
 from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic, Meshed, NeoHookean, Scene
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
-from halfspace.accuracy.finite_bodies import AroundEvents, surroundings
+from halfspace.accuracy.finite_bodies import AroundEvents, operators_across, radii_around, surroundings
 from halfspace.accuracy.stages import on_all
 from halfspace.accuracy.trace import _sized_body, resolution_for
 from halfspace.elastic import compliance, grid
@@ -224,6 +224,31 @@ def test_events_share_an_operator_within_its_window_alone(part, shared):
     assert {(window, count) for _, window, count in made} == {(2e-3, 5)}
 
 
+def test_events_share_one_chart_where_that_takes_fewer_operators_than_one_for_each():
+    """And far from the equator alone: near it the kernel is not smooth enough for few of them."""
+    path = fem_adhesion.trace(Scene(3.0, Hemisphere(radius_ratio=1e4)), rtol=1e-5, to_load=0.5)
+    ((_, _, chart),) = [made for made in path.finest.charts if made[0]]
+    assert {e.problem for name, e in path.stages[-1].items() if e.problem.follows_contact} == {chart.problem}
+    small = fem_adhesion.trace(Scene(2.0, Hemisphere(radius_ratio=5.0)), rtol=1e-5, to_load=0.5)
+    assert len([made for made in small.finest.charts if made[0]]) > 1
+
+
+@pytest.mark.parametrize(("window", "level"), [(0.29, 0), (0.7, 0), (0.7, 1)])
+def test_an_operator_across_events_errs_as_the_number_it_was_made_for_says(window, level):
+    """Against one made where it errs most, at the end of its window, on the same grid."""
+    body = sized_body(Scene(3.0, Hemisphere(radius_ratio=300.0)), Discretisation(4))
+    errors = {}
+    for rtol in (1e-3, 1e-5):
+        count = operators_across(body, rtol, level, 1.2, window)
+        operator = body.around(1.2, window, count).problem.operator
+        a = 1.2 * np.exp(0.95 * window)
+        exact = body.make(operator.grid.lines(a))[0]
+        pressure = np.exp(-(exact.radii**2))
+        errors[rtol] = np.abs((operator.at(a).compliance - exact.compliance) @ pressure).max()
+    assert errors[1e-5] < errors[1e-3] / 5
+    assert errors[1e-5] < 1e-6 / 10**level
+
+
 def test_an_event_that_moves_out_of_a_window_is_solved_for_on_an_operator_of_its_own():
     path = halfspace.trace(1.0, profile=Sphere(30.0), rtol=1e-2)
     coarse, stage = path.stages[0]["pull_off"], replace(path.finest, window=1e-7, charts=[])
@@ -236,10 +261,12 @@ def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_toleran
     """By which a fold is found; against differences of whole operators over ever narrower windows, extrapolated."""
     scales = Scales(2.0, profile=between_spheres(np.sqrt(5.0), np.inf))
     body = _sized_body(scales, None, resolution_for(scales, 1e-8))
-    pressure = -np.exp(-8 * (body.around(1.18).problem.operator.at(1.18).radii / 1.18 - 1) ** 2)
+    operator = body.around(1.18).problem.operator
+    pressure = -np.exp(-8 * (operator.at(1.18).radii / 1.18 - 1) ** 2)
 
     def derivative(window, count):
-        return body.around(1.18, window, count).problem.operator.rates(1.18, pressure)[2]
+        chart = body.following(operator.grid, radii_around(1.18, window, count))
+        return chart.problem.operator.rates(1.18, pressure)[2]
 
     wide, middle, narrow = (derivative(window, 2) for window in (4e-2, 2e-2, 1e-2))
     exact = (64 * narrow - 20 * middle + wide) / 45

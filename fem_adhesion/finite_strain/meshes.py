@@ -72,7 +72,7 @@ class Windows(Valued):
 
     body: ScenesBody
     made: dict[int, Chart] = field(default_factory=dict, compare=False, repr=False)
-    farther = None
+    farther = together = None
 
     def __iter__(self) -> Iterator[Chart]:
         """All of them in order."""
@@ -123,7 +123,7 @@ class AroundEvents(Valued):
     body: ScenesBody
     everywhere: Windows
     made: list[tuple[float, FiniteStrainProblem]] = field(default_factory=list, compare=False, repr=False)
-    farther = None
+    farther = together = None
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event."""

@@ -1,15 +1,17 @@
 """Bodies with a length of their own: charts for their load-approach curve, and operators around its events.
 
 No single compliance serves all contact radii of such a body. The curve is traced on an operator interpolated between a
-few radii (`halfspace.elastic.operators.Interpolated`). Each event is then solved for on a grid and an operator of its
-own, made for radii close to that of the event, where the interpolation is as good as exact.
+few radii (`halfspace.elastic.operators.Interpolated`). The events are then solved for on one between more of them,
+across the radii of the events alone, or each on an operator of its own, made for radii close to that of the event,
+where the interpolation is as good as exact: whichever takes fewer operators.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -28,6 +30,8 @@ EQUAL = 3  # cells of equal length on the axis of that chart, which carry a cont
 LEAVE = 0.8  # of these cells: the radius at which the chart centred on the axis is left
 WINDOW, AROUND = 2e-3, 3  # half the logarithmic width of the radii around an event on the lowest rung, operators in it
 WIDE, WIDELY = 0.4, 7  # the same farther around: an event that lies off by a fifth is then told to 1e-6 of its radius
+ACROSS = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
+BESIDE = 0.02  # logarithmic width by which a chart for all events reaches past them: they move from grid to grid
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
@@ -105,11 +109,11 @@ class SizedBody(Valued):
         return self.centred(), self.following(moving, radii_along(self.until, widest, apart))
 
     def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
-        """Chart for contact radii near the given one, from so many operators."""
-        end, edge = float(self.outer[0]), self.coordinate.of(radius)
-        lines = self._graded(edge)
-        inner = lines < edge * (1 + 1e-12)
-        moving = self._moving(lines[inner] / edge, np.append(0, (lines[~inner] - edge) / (end - edge)))
+        """Chart for contact radii near the given one, from so many operators, on cells fine enough for all."""
+        end, (least, most) = float(self.outer[0]), (self.coordinate.of(radius * np.exp(w)) for w in (-window, window))
+        inner = grid.geometric(1.0, self.length / most, self._growth)
+        outside = grid.geometric(end - least, self.length, self._growth, self.last)
+        moving = self._moving(1 - inner[::-1], outside / (end - least))
         return self.following(moving, radii_around(radius, window, count))
 
     def _moving(self, inner: Array, outside: Array) -> MovingGrid:
@@ -152,34 +156,70 @@ def surroundings(rtol: float, level: int) -> tuple[float, int]:
     return window / 2**level, count
 
 
+def operators_across(body: SizedBody, rtol: float, level: int, radius: float, window: float) -> int:
+    """Operators for one chart of all events, within so much of the logarithm of a contact radius, on a rung.
+
+    In that logarithm the kernel is analytic up to pi beside the real axis, where a node is the image of another, and
+    along it up to the end of the cells that move. The polynomial through n of them errs by rho^-n, rho the sum of the
+    half axes, in windows, of the ellipse around the window that reaches so far (Bernstein). There is one more on each
+    rung, whose change tells the error.
+    """
+    end = np.log(float(body.outer[0]) / body.coordinate.of(radius)) / window
+    side, end = np.pi / window, max(end, 1.1)  # where they end within the window, more than ever pay
+    rho = min(side + np.sqrt(side**2 + 1), end + np.sqrt(end**2 - 1))
+    return int(np.ceil(np.log(ACROSS / rtol) / np.log(rho))) + level
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class AroundEvents(Valued):
-    """Stage of a ladder on which every event has an operator made for its own contact radius.
+    """Stage of a ladder on which events have operators made for their contact radii, all of them together or each.
 
     An event may leave the chart that stands on the axis earlier than the curve, which gets along with one for all
     radii: as soon as its contact is wider than so many of the cells there (`leave`). The window is half the logarithmic
-    width of the contact radii that a chart serves, with so many operators in it, see `surroundings`. A fold is where a
-    derivative vanishes, which errs by a power of it: windows that differ from rung to rung let the error estimate see
-    it.
+    width of the contact radii that a chart for one event serves, with so many operators in it, see `surroundings`. A
+    fold is where a derivative vanishes, which errs by a power of it: windows that differ from rung to rung let the
+    error estimate see it. `across` tells how many operators a chart for all events has, by its middle radius and its
+    window, see `operators_across`.
     """
 
     body: SizedBody
     window: float = WINDOW
     count: int = AROUND
     leave: float = np.inf
-    charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
+    across: Callable[[float, float], int] | None = None
+    charts: list[tuple[float, float, Chart]] = field(default_factory=list, compare=False)
+
+    def together(self, events: Iterable[Located]) -> None:
+        """Make one chart for all these events, where one for each takes more operators."""
+        radii = sorted({radius for event in events if (radius := self._radius(event)) and not self._known(radius)})
+        if not self.across or not radii:
+            return
+        alone = 1 + sum(b > a * (1 + self.window) for a, b in pairwise(radii))
+        middle, window = float(np.sqrt(radii[0] * radii[-1])), float(np.log(radii[-1] / radii[0])) / 2 + BESIDE
+        if (count := self.across(middle, window)) < alone * self.count:
+            self._add(middle, window, count)
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event, made unless one made before will do."""
+        radius = self._radius(event)
+        return self._known(radius) or self._add(radius, self.window, self.count)
+
+    def _radius(self, event: Located) -> float:
+        """Contact radius for which an event has operators; 0 on the chart that stands on the axis."""
         radius = float(event.point.observables[CONTACT_RADIUS])
         found_following = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
-        follows = found_following or radius > self.leave * self.body.length
-        radius = radius if follows else 0.0
-        for made_for, chart in self.charts:
-            if abs(radius - made_for) <= self.window * radius:
+        return radius if found_following or radius > self.leave * self.body.length else 0.0
+
+    def _known(self, radius: float) -> Chart | None:
+        """Chart made before that serves a radius."""
+        for middle, window, chart in self.charts:
+            if radius == middle or (radius and middle and abs(np.log(radius / middle)) <= window):
                 return chart
-        chart = self.body.around(radius, self.window, self.count) if follows else self.body.centred()
-        self.charts.append((radius, chart))
+        return None
+
+    def _add(self, radius: float, window: float, count: int) -> Chart:
+        chart = self.body.around(radius, window, count) if radius else self.body.centred()
+        self.charts.append((radius, window, chart))
         return chart
 
     def farther(self, event: Located) -> Chart:
@@ -195,7 +235,7 @@ class AroundEvents(Valued):
     @property
     def unknowns(self) -> int:
         """Most unknowns of a chart made so far."""
-        return max(chart.unknowns for _, chart in self.charts)
+        return max(chart.unknowns for *_, chart in self.charts)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

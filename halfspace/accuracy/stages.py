@@ -22,6 +22,11 @@ class Stage(Finest, Protocol):
     """One discretisation on which events, found on another, are solved for again."""
 
     @property
+    def together(self) -> Callable[[Iterable[Located]], None] | None:
+        """Makes a chart that serves all these events, where that is less work; None if the charts are there."""
+        ...
+
+    @property
     def everywhere(self) -> Finest:
         """The same for every point of a curve, if charts for events do not serve these."""
         ...
@@ -35,7 +40,7 @@ class Charted(Valued):
     """
 
     charts: Charts
-    farther = None
+    farther = together = None
 
     def __call__(self, event: Located) -> Chart:
         """Chart of the event's kind."""
@@ -89,6 +94,8 @@ class FoldsLost(NotConverged):
 
 def on_all(state: State, stage: Stage) -> State:
     """Solve for all events again on a stage."""
+    if stage.together:
+        stage.together(state.values())
     return {name: _found_again(name, event, stage) for name, event in state.items()}
 
 
