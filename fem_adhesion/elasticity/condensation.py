@@ -12,11 +12,12 @@ from scipy.linalg.blas import dtrsm
 from fem_adhesion.elasticity.boundaries import trace_on
 from fem_adhesion.elasticity.elimination import (
     Factors,
+    Front,
     Region,
     dissected,
     eliminated,
+    eliminated_by,
     factor,
-    inverses,
     reduced_cells,
 )
 from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load
@@ -49,10 +50,16 @@ class Skeleton(Valued):
 
     def recovered(self, u: Array) -> Array:
         """Return the displacement u, (N,), with its interior unknowns filled in."""
-        full, inside = u.copy(), self.whole[:, self.inner]
-        carried = inside[:, :, self.outer] @ u[self.dofs[self.outer]].T[:, :, None]
-        full[self.dofs[self.inner].T] = -np.linalg.solve(inside[:, :, self.inner], carried)[:, :, 0]
+        full = u.copy()
+        full[self._interiors.done] = 0.0
+        self._interiors.recover(full)
         return full
+
+    @cached_property
+    def _interiors(self) -> Front:
+        order = np.append(self.inner, self.outer)
+        whole = self.whole[:, order[:, None], order]
+        return eliminated_by(whole, self.dofs[self.inner].T, self.dofs[self.outer].T)[0]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -193,14 +200,14 @@ def factorise(space: Space, skeleton: Skeleton, exterior: Exterior) -> Factors:
     """Return the factorised T' K T + S of the n reduced unknowns."""
     region, cells = _regions(space, skeleton, exterior, np.zeros(0, dtype=np.intp))
     fronts, stiffness = region.factorised(cells)
-    return Factors(fronts, region.unknowns, inverses(_held(region, stiffness, exterior)))
+    return Factors(fronts, region.unknowns, with_exterior(region, stiffness, exterior))
 
 
 def flexibility(space: Space, skeleton: Skeleton, exterior: Exterior, surface: Index) -> Array:
     """Displacements (m, m) of the m unknowns on the surface under unit forces on each of them."""
     rows = exterior.reduction.tocsr()[surface]
     region, cells = _regions(space, skeleton, exterior, rows.indices.astype(np.intp))
-    lower = factor(_held(region, region.stiffness(cells), exterior))
+    lower = factor(with_exterior(region, region.stiffness(cells), exterior))
     half = dtrsm(1.0, lower, rows[:, region.unknowns].T.toarray(), lower=1)
     return np.asarray(half.T @ half)
 
@@ -216,7 +223,7 @@ def _regions(space: Space, skeleton: Skeleton, exterior: Exterior, kept: Index) 
     return dissected(space.mesh, unknowns, last), cells
 
 
-def _held(region: Region, stiffness: Array, exterior: Exterior) -> Array:
+def with_exterior(region: Region, stiffness: Array, exterior: Exterior) -> Array:
     """Stiffness of the unknowns that are left of a body, with that of its exterior."""
     left = region.unknowns
     return np.asarray(stiffness + exterior.stiffness[left][:, left].toarray())

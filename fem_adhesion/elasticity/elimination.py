@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -85,22 +85,52 @@ class Front(Valued):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class Interiors(Front):
+    """The same of many cells at once, (cells, c) and (cells, k): of each the unknowns that no other one shares."""
+
+    def carry(self, forces: Array) -> None:
+        """Carry the forces on its unknowns over to those left, in place."""
+        np.subtract.at(forces, self.left, (forces[self.done][:, None] @ self.recovery)[:, 0])
+
+    def recover(self, u: Array) -> None:
+        """Turn the forces on its unknowns into their displacements, in place, where those left are known."""
+        u[self.done] = (self.inverse @ u[self.done][..., None] - self.recovery @ u[self.left][..., None])[..., 0]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Factors(Valued):
-    """A factorised stiffness: fronts that are eliminated one after the other, and those left by their inverse."""
+    """A factorised stiffness of n unknowns: fronts that are eliminated one after the other, and that of those left.
+
+    Vectors on the way have a last number for all unknowns that are held, (n + 1,).
+    """
 
     fronts: list[Front]
     left: Index
-    inverse: Array
+    stiffness: Array
+
+    @cached_property
+    def flexibility(self) -> Array:
+        """Inverse of the stiffness (k, k) of those left."""
+        return inverses(self.stiffness)
+
+    def carried(self, forces: Array) -> Array:
+        """Forces (n,) with those on eliminated unknowns carried over to those left, (n + 1,)."""
+        x = np.append(forces, 0.0)
+        for front in self.fronts:
+            front.carry(x)
+        return x
+
+    def recover(self, x: Array, ends: Array) -> None:
+        """Turn what was carried into displacements, in place, where those left have the displacements `ends`."""
+        x[self.left], x[-1] = ends, 0.0
+        for front in reversed(self.fronts):
+            front.recover(x)
 
     def solve(self, forces: Array) -> Array:
         """Displacements (n,) under forces (n,)."""
-        x = forces.copy()
-        for front in self.fronts:
-            front.carry(x)
-        x[self.left] = self.inverse @ x[self.left]
-        for front in reversed(self.fronts):
-            front.recover(x)
-        return x
+        x = self.carried(forces)
+        self.recover(x, self.flexibility @ x[self.left])
+        return x[:-1]
 
 
 def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
@@ -116,11 +146,14 @@ def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
 
 
 def eliminated_by(K: Array, done: Index, left: Index) -> tuple[Front, Array]:
-    """What the first unknowns are recovered by, and the stiffness without them; it need not be positive definite."""
-    count = done.size
-    inverse = inverses(K[:count, :count])
-    recovery = inverse @ K[:count, count:]
-    return Front(done, left, inverse, recovery), K[count:, count:] - K[count:, :count] @ recovery
+    """What the first unknowns are recovered by, and the stiffness without them; it need not be positive definite.
+
+    Or those of each of many cells, K (cells, n, n).
+    """
+    count, kind = done.shape[-1], Interiors if done.ndim > 1 else Front
+    inverse = inverses(K[..., :count, :count])
+    recovery = inverse @ K[..., :count, count:]
+    return kind(done, left, inverse, recovery), K[..., count:, count:] - K[..., count:, :count] @ recovery
 
 
 def inverses(blocks: Array) -> Array:
@@ -153,16 +186,20 @@ def reduced_cells(K: Array, dofs: Index, T: sparse.csc_array) -> tuple[Array, In
     K (cells, k, k) is of the unknowns u of the numbers dofs (k, cells); the numbers of x are -1 where there is no
     unknown. Most columns of T (N, n) select one unknown; any other becomes an unknown of all cells that it moves.
     """
-    selects = (np.diff(T.indptr) == 1) & (np.add.reduceat(T.data, T.indptr[:-1]) == 1)
-    number = np.full(T.shape[0], -1)
-    number[T.indices[T.indptr[:-1][selects]]] = np.flatnonzero(selects)
-    unknowns, gathering = number[dofs], np.flatnonzero(~selects)
-    if not gathering.size:
+    unknowns, t = reduced_unknowns(dofs, T)
+    if not t.size:
         return K, unknowns
-    t = T[:, gathering].toarray()[dofs].transpose(1, 0, 2)
     Kt = K @ t
-    extended = np.block([[K, Kt], [Kt.transpose(0, 2, 1), t.transpose(0, 2, 1) @ Kt]])
-    return extended, np.vstack([unknowns, np.where(t.any(axis=1), gathering, -1).T])
+    return np.block([[K, Kt], [Kt.transpose(0, 2, 1), t.transpose(0, 2, 1) @ Kt]]), unknowns
+
+
+def reduced_unknowns(dofs: Index, T: sparse.csc_array) -> tuple[Index, Array]:
+    """Of these the numbers of x, (k + g, cells), and the columns of T that select none, cell by cell, (cells, k, g)."""
+    selects = (np.diff(T.indptr) == 1) & (np.add.reduceat(T.data, T.indptr[:-1]) == 1)
+    number, gathering = np.full(T.shape[0], -1), np.flatnonzero(~selects)
+    number[T.indices[T.indptr[:-1][selects]]] = np.flatnonzero(selects)
+    t = T[:, gathering].toarray()[dofs].transpose(1, 0, 2)
+    return np.vstack([number[dofs], np.where(t.any(axis=1), gathering, -1).T]), t
 
 
 @lru_cache(maxsize=1)

@@ -22,7 +22,15 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg.lapack import dgetrf, dgetrs
 
-from fem_adhesion.elasticity.elimination import Front, Region, dissected, eliminated_by, inverses
+from fem_adhesion.elasticity.condensation import with_exterior
+from fem_adhesion.elasticity.elimination import (
+    Factors,
+    Region,
+    dissected,
+    eliminated_by,
+    reduced_cells,
+    reduced_unknowns,
+)
 from fem_adhesion.elasticity.far_field import Exterior
 from fem_adhesion.finite_strain.body import Body
 from halfspace.equilibrium.contact import Solver, count_negative
@@ -34,50 +42,17 @@ SOLVED = 1e-11  # relative accuracy of the linear equations where all digits are
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Layout(Valued):
-    """Where the entries of cell matrices go once their interior unknowns are eliminated; n reduced unknowns in all.
+class Tangent(Factors):
+    """The tangent of a held body at one state y (n,), factorised, and condensed to the contact surface.
 
-    Of the unknowns of a cell, `inside` (i,) and `outside` (o,) are the positions of the interior and of the shared
-    ones. The reduced unknowns `inner` (cells, i) are interior to a cell; on those in `columns` (cells, o), n for none,
-    a cell's shared unknowns depend, with the factors `weights` (cells, o). In the regions the shared ones are
-    eliminated, but for those of the contact surface and those that the exterior holds; `beside` are the latter without
-    the former.
+    What is left are the reduced unknowns of the surface, (m,), and the stiffness (m, m) is C.
     """
 
-    inside: Index
-    outside: Index
-    inner: Index
-    columns: Index
-    weights: Array
-    regions: Region
-    beside: Index
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Tangent(Valued):
-    """The tangent of a held body at one state, factorised, and condensed to the contact surface.
-
-    The state is y (n,), `surface` (m,) are the reduced unknowns of the contact surface, and the stiffness (m, m) is C.
-    `inverse` (cells, i, i) and `recovery` (cells, i, o) are K_ii^-1 and K_ii^-1 K_io of every cell, the latter from the
-    reduced unknowns; by the fronts the shared unknowns are eliminated.
-    """
-
-    layout: Layout
     y: Array
-    surface: Index
-    inverse: Array
-    recovery: Array
-    fronts: list[Front]
-    stiffness: Array
-
-    @cached_property
-    def flexibility(self) -> Array:
-        """C^-1."""
-        return inverses(self.stiffness)
 
     def surface_change(self, forces: Array) -> Array:
         """Change of the surface's unknowns, (m,), under forces on all, (n,)."""
-        return np.asarray(self.flexibility @ self._carried(forces)[self.surface])
+        return np.asarray(self.flexibility @ self.carried(forces)[self.left])
 
     def bordered(self, change: Array, row: Array) -> Callable[[Array], Array]:
         """Solver of the equations with the law's tangent, for right-hand sides (n + 1,).
@@ -91,12 +66,9 @@ class Tangent(Valued):
             raise NotConverged("the bordered Jacobian is singular; try another control or a nearer start")
 
         def solve(rhs: Array) -> Array:
-            x, e = self._carried(rhs[:-1]), self.layout
-            ends = dgetrs(lu, pivots, np.append(x[self.surface], rhs[-1]))[0]
-            x[self.surface], x[-1] = ends[:-1], 0.0  # the last stands for what is held, till here
-            for front in reversed(self.fronts):
-                front.recover(x)
-            x[e.inner] = (self.inverse @ rhs[e.inner][..., None] - self.recovery @ x[e.columns][..., None])[..., 0]
+            x = self.carried(rhs[:-1])
+            ends = dgetrs(lu, pivots, np.append(x[self.left], rhs[-1]))[0]
+            self.recover(x, ends[:-1])
             x[-1] = ends[-1]
             return x
 
@@ -104,27 +76,16 @@ class Tangent(Valued):
 
     def negative_directions(self) -> int:
         """Count the negative ones among those of all unknowns but the surface's."""
-        shared = sum(count_negative(front.inverse) for front in self.fronts if front.done.size)
-        return int(np.sum(np.linalg.eigvalsh(self.inverse) < 0)) + shared
-
-    def _carried(self, forces: Array) -> Array:
-        """Forces, and one for what is held, (n + 1,), with those on eliminated unknowns carried over to the others."""
-        e = self.layout
-        carried = (forces[e.inner][:, None] @ self.recovery).ravel()
-        x = np.append(forces, 0.0)
-        x -= np.bincount(e.columns.ravel(), carried, forces.size + 1)
-        for front in self.fronts:
-            front.carry(x)
-        return x
+        shared = sum(count_negative(front.inverse) for front in self.fronts[1:] if front.done.size)
+        return int(np.sum(np.linalg.eigvalsh(self.fronts[0].inverse) < 0)) + shared
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class HeldBody(Valued):
     """A body with what holds it: forces, tangent and energy of its n reduced unknowns y, u = T y.
 
-    The exterior leads from all of the body's unknowns to the reduced ones, the interior ones of its space first: every
-    unknown must depend on one reduced unknown at most, as it does for every far field. On the reduced unknowns
-    `surface` (m,) the surface law and the controls may depend.
+    The exterior leads from all of the body's unknowns to the reduced ones, the interior ones of its space first. On the
+    reduced unknowns `surface` (m,) the surface law and the controls may depend.
     """
 
     body: Body
@@ -204,36 +165,32 @@ class HeldBody(Valued):
 
     def _factorised(self, y: Array) -> Tangent:
         """Eliminate the interior unknowns of every cell, then all others but those of the surface."""
-        e, cells = self._layout, self.body.cell_tangents(self.unknowns(y))
-        inside, outside = e.inside, e.outside
-        K_io = cells[:, inside[:, None], outside] * e.weights[:, None]
-        inverse = inverses(cells[:, inside[:, None], inside])
-        recovery: Array = inverse @ K_io
-        K_oo = cells[:, outside[:, None], outside] * (e.weights[:, :, None] * e.weights[:, None, :])
-        fronts, K = e.regions.factorised(K_oo - K_io.transpose(0, 2, 1) @ recovery)
-        kept = np.concatenate([e.beside, self.surface])
-        places = np.searchsorted(e.regions.unknowns, kept)
-        last, stiffness = eliminated_by(
-            K[places][:, places] + self.exterior.stiffness[kept][:, kept].toarray(), e.beside, self.surface
-        )
-        return Tangent(e, y.copy(), self.surface, inverse, recovery, [*fronts, last], stiffness)
+        body, reduction, (regions, beside) = self.body, self.exterior.reduction, self._regions
+        cells, unknowns = reduced_cells(body.cell_tangents(self.unknowns(y)), body.cell_dofs.T, reduction)
+        outside = self._outside(unknowns)
+        order = np.append(body.inside, outside)
+        interiors, cells = eliminated_by(cells[:, order[:, None], order], unknowns[body.inside].T, unknowns[outside].T)
+        fronts, K = regions.factorised(cells)
+        places = np.searchsorted(regions.unknowns, np.append(beside, self.surface))
+        held = with_exterior(regions, K, self.exterior)[places][:, places]
+        last, stiffness = eliminated_by(held, beside, self.surface)
+        return Tangent([interiors, *fronts, last], self.surface, stiffness, y.copy())
 
     @cached_property
     def _transposed(self) -> sparse.csr_array:
         return sparse.csr_array(self.exterior.reduction.T)
 
     @cached_property
-    def _layout(self) -> Layout:
-        dofs, inside, T = self.body.cell_dofs, self.body.inside, self.exterior.reduction.tocsr()
-        outside, n = np.setdiff1d(np.arange(dofs.shape[1]), inside), self.size
-        rows, reduced = T.nonzero()
-        column, weight = np.full(T.shape[0], n, dtype=np.intp), np.zeros(T.shape[0])
-        column[rows], weight[rows] = reduced, T.data[T.data != 0]
-        columns, kept = column[dofs[:, outside]], np.diff(self.exterior.stiffness.indptr) > 0
+    def _regions(self) -> tuple[Region, Index]:
+        """In which the shared unknowns are eliminated, but for the surface's and others that the exterior holds."""
+        unknowns, _ = reduced_unknowns(self.body.cell_dofs.T, self.exterior.reduction)
+        kept = np.diff(self.exterior.stiffness.indptr) > 0
         beside = np.setdiff1d(np.flatnonzero(kept), self.surface)
         kept[self.surface] = True
-        regions = dissected(self.body.space.mesh, np.where(columns < n, columns, -1).T, kept)
-        return Layout(inside, outside, column[dofs[:, inside]], columns, weight[dofs[:, outside]], regions, beside)
+        return dissected(self.body.space.mesh, unknowns[self._outside(unknowns)], kept), beside
+
+    def _outside(self, unknowns: Index) -> Index:
+        return np.setdiff1d(np.arange(len(unknowns)), self.body.inside)
 
 
 def _iterated(product: Callable[[Array], Array], rhs: Array, accuracy: float) -> Array | None:
