@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 import fem_adhesion
 from fem_adhesion import HalfSpace, Scene, cli, scene
@@ -12,9 +13,9 @@ from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM
 from fem_adhesion.crosscheck.study import Failure
 from fem_adhesion.crosscheck.weak_bodies import law_of
-from fem_adhesion.weak_form.body import factorise, fine_within, half_space, half_space_mesh
+from fem_adhesion.weak_form.body import fine_within, half_space, half_space_mesh
 from fem_adhesion.weak_form.contact import Contact, lennard_jones
-from fem_adhesion.weak_form.newton import _extremum, determinant, newton, turning_point
+from fem_adhesion.weak_form.newton import _extremum, newton, turning_point
 from halfspace.accuracy import trace
 from halfspace.equilibrium import conditions, search
 from halfspace.equilibrium.conditions import FOLD
@@ -53,18 +54,18 @@ def test_the_box_is_a_half_space(poisson):
     """Under the pressure (1 + r^2)^-3, whose work is 945 pi^3/24576, and under Hertz's, whose deflection is known."""
     body = half_space(0.04, 30.0, 4, poisson)
     forces = body.forces((1 + body.radii**2) ** -3)
-    assert forces @ body.yielding(forces) == pytest.approx(945 * np.pi**3 / 24576, rel=3e-5)
+    assert forces @ body.yielding.solve(forces) == pytest.approx(945 * np.pi**3 / 24576, rel=3e-5)
     inside = body.radii < 0.9
-    hertz = -body.rise(body.yielding(-body.forces(np.sqrt(np.maximum(1 - body.radii**2, 0)))))
+    hertz = -body.rise(body.yielding.solve(-body.forces(np.sqrt(np.maximum(1 - body.radii**2, 0)))))
     np.testing.assert_allclose(hertz[inside], np.pi / 4 * (2 - body.radii[inside] ** 2), rtol=1e-3)
 
 
 def test_a_body_twice_as_large_is_twice_as_stiff(box):
     larger = box.scaled(2.0)
     forces = box.forces(np.exp(-(box.radii**2)))
-    np.testing.assert_allclose(larger.yielding(forces), box.yielding(forces) / 2)
+    np.testing.assert_allclose(larger.yielding.solve(forces), box.yielding.solve(forces) / 2)
     assert larger.integral(np.ones_like(larger.radii)) == pytest.approx(np.pi * larger.rim**2)
-    assert box.reaction @ box.yielding(forces) == pytest.approx(-box.integral(np.exp(-(box.radii**2))), rel=1e-10)
+    assert box.reaction @ box.yielding.solve(forces) == pytest.approx(-box.integral(np.exp(-(box.radii**2))), rel=1e-10)
 
 
 @pytest.fixture(scope="module")
@@ -94,14 +95,29 @@ def test_newton_says_when_it_ends_without_an_equilibrium(box):
         newton(Contact(box, 1.0), 1 + box.radii**2, 0.0, load=-50.0)
 
 
-@pytest.mark.parametrize("size", [7, 8])
-def test_the_determinant_is_that_of_a_dense_matrix(size):
-    rng = np.random.default_rng(size)
-    for _ in range(5):
-        matrix = rng.normal(size=(size, size))
-        matrix += matrix.T
-        found = determinant(factorise(matrix))
-        np.testing.assert_allclose(found, np.linalg.slogdet(matrix), rtol=1e-9, atol=1e-9)
+def test_the_matrix_of_the_surface_is_what_is_left_when_all_else_is_eliminated(box):
+    """With one stiffness of the law and another: determinants, and what points rise by, as of the whole matrix."""
+    tension, logs = np.exp(-(box.radii**2)), []
+    for slope in (-0.3, 2.0):
+        small = box.softened(slope * tension)
+        whole = (box.stiffness + box.values.T @ sparse.diags_array(box.area * slope * tension) @ box.values).toarray()
+        rise = box.rise(np.linalg.solve(whole, box.forces(tension)))
+        np.testing.assert_allclose(box.softened_rise(small, tension), rise, rtol=0, atol=1e-9 * np.abs(rise).max())
+        (sign, log), (sign_of_whole, log_of_whole) = np.linalg.slogdet(small), np.linalg.slogdet(whole)
+        assert sign == sign_of_whole
+        logs.append(log_of_whole - log)
+    assert logs[0] == pytest.approx(logs[1], rel=1e-10)
+
+
+@pytest.mark.parametrize("share", [0.5, 1.0, 2.0])
+def test_the_determinant_changes_its_sign_where_the_surface_gives_way(box, share):
+    """Softened by its own compliance: the largest eigenvalue c of what points rise by makes 1 - share vanish at 1."""
+    pressed = np.exp(-(box.radii**2))
+    V = box.values[:, box.moving].toarray()
+    stiff, soft = box.surface, V.T @ ((box.area * pressed)[:, None] * V)
+    largest = np.linalg.eigvals(np.linalg.solve(stiff, soft)).real.max()
+    sign, _ = np.linalg.slogdet(box.softened(-1.001 * share * pressed / largest))
+    assert sign == (1 if share < 1 else -1)
 
 
 def test_where_nothing_turns_no_turning_point_is_found(in_contact):

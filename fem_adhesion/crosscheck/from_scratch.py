@@ -122,7 +122,7 @@ def _apart(contact: Contact, radius: float) -> list[float]:
     def mean(field: Array) -> float:
         return body.integral(field * weight) / radius**2
 
-    rise, further = (mu * mean(body.rise(body.yielding(body.forces(values)))) for values in tensions)
+    rise, further = (mu * mean(body.rise(body.yielding.solve(body.forces(values)))) for values in tensions)
     load, slope = (-body.integral(values) for values in tensions)
     load -= mu * float(contact.rim[1] @ contact.law.tension(1 + _made_up(contact.rim[0] / radius)[0]))
     residual, tangent = mean(H + APPROACH - mu * contact.height) + rise, mean(dH + CHANGE) + further

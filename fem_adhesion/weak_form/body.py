@@ -52,22 +52,22 @@ def moduli(mesh: Any, materials: Materials) -> Array:
 def elasticity(basis: Any, D: Array) -> sparse.csr_array:
     """Matrix of a(u, v) = int strains(v) D strains(u) 2 pi r dr dz: a body of revolution without twist.
 
-    The strains of each function are formed once, and each cell's matrix is a product B^T D B of them: a form in u and v
-    would form them anew for each pair of functions. The unknowns inside a cell, the last ones, on which no forces act,
-    are eliminated in it.
+    The strains of each function are formed once, times a root of D: each cell's matrix is a weighted product A A^T of
+    them, whereas a form in u and v would form them anew for each pair of functions. The unknowns inside a cell, the
+    last ones, on which no forces act, are eliminated in it.
     """
     r, _ = basis.global_coordinates()
-    B = np.array([strains(function[0], r) for function in basis.basis]).transpose(2, 0, 1, 3)  # by cells, functions
-    stresses = D[:, None] @ B * (2 * np.pi * r * basis.dx)[:, None, None]
-    cells, functions = B.shape[:2]
-    K = stresses.reshape(cells, functions, -1) @ B.reshape(cells, functions, -1).transpose(0, 2, 1)
-    outer, inside = np.split(np.arange(functions), [functions - basis.elem.interior_dofs])
-    K = K[:, outer][:, :, outer] - K[:, outer][:, :, inside] @ np.linalg.solve(
-        K[:, inside][:, :, inside], K[:, inside][:, :, outer]
-    )
-    dofs = basis.element_dofs[outer].T
+    cells, functions, outer = len(r), len(basis.basis), len(basis.basis) - basis.elem.interior_dofs
+    roots, weights = np.linalg.cholesky(D).transpose(0, 2, 1), 2 * np.pi * r * basis.dx
+    A = np.empty((cells, functions, *roots.shape[1:2], r.shape[1]))
+    for n, (function,) in enumerate(basis.basis):
+        A[:, n] = roots @ strains(function, r).transpose(1, 0, 2)
+    left, right = (part.reshape(cells, functions, -1) for part in (A * weights[:, None, None], A))
+    K = left @ right.transpose(0, 2, 1)
+    K = K[:, :outer, :outer] - K[:, :outer, outer:] @ np.linalg.solve(K[:, outer:, outer:], K[:, outer:, :outer])
+    dofs = basis.element_dofs[:outer].T
     rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
-    size = basis.N - cells * inside.size
+    size = basis.N - cells * (functions - outer)
     return sparse.coo_array((K.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsr()
 
 
@@ -80,6 +80,22 @@ def going_on(G: Array) -> Any:
 
 
 # The body
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Yielding(Valued):
+    """How a body yields to forces.
+
+    Attributes
+    ----------
+    solve : callable
+        Gives the displacements (n,) under given forces.
+    surface : callable
+        Gives the matrix `Body.surface`.
+    """
+
+    solve: Callable[[Array], Array]
+    surface: Callable[[], Array]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -102,8 +118,8 @@ class Body(Valued):
         Upward force, per unknown, of what holds the body.
     borne : (q,) array
         Part of the tension at the points that it bears directly: at the corner where the surface is held.
-    known : callable, optional
-        Gives the displacements (n,) under given forces where those of another body tell.
+    known : Yielding, optional
+        How it yields, where another body tells.
     """
 
     stiffness: sparse.csc_array
@@ -114,12 +130,27 @@ class Body(Valued):
     rim: float
     reaction: Array
     borne: Array
-    known: Callable[[Array], Array] | None = None
+    known: Yielding | None = None
 
     @cached_property
-    def yielding(self) -> Callable[[Array], Array]:
-        """Gives the displacements (n,) under given forces."""
-        return self.known or factorise(self.stiffness).solve
+    def moving(self) -> NDArray[np.intp]:
+        """Unknowns (s,) on which the points depend, and the last one, which may be a plate's."""
+        return np.union1d(self.values.indices, self.reaction.size - 1)
+
+    @cached_property
+    def yielding(self) -> Yielding:
+        """How it yields."""
+        return self.known or factorise(self.stiffness, self.moving)
+
+    @cached_property
+    def surface(self) -> Array:
+        """Matrix (s, s) from displacements of these unknowns to the forces on them, while none act on the others."""
+        return self.yielding.surface()
+
+    @cached_property
+    def _on_surface(self) -> sparse.csr_array:
+        """u_z at the points from the unknowns on which they depend, (q, s)."""
+        return self.values[:, self.moving]
 
     def rise(self, u: Array) -> Array:
         """u_z at the points of the surface."""
@@ -133,17 +164,23 @@ class Body(Valued):
         """Forces (n,) of a tension on the surface: int tension v_z dA."""
         return np.asarray(self.values.T @ (self.area * tension))
 
-    def softened(self, slope: Array) -> sparse.csc_array:
-        """Matrix (n, n) of a(u, v) + int slope u_z v_z dA."""
-        return sparse.csc_array(self.stiffness + self.values.T @ sparse.diags_array(self.area * slope) @ self.values)
+    def softened(self, slope: Array) -> Array:
+        """Matrix (s, s) of a(u, v) + int slope u_z v_z dA for the surface, while no forces act on the other unknowns.
+
+        Its determinant is that of the matrix of all unknowns over a positive number, which is the body's.
+        """
+        V = self._on_surface
+        return np.asarray(self.surface + (V.T @ sparse.diags_array(self.area * slope) @ V).toarray())
+
+    def softened_rise(self, matrix: Array, tension: Array) -> Array:
+        """u_z at the points under a tension there, by the matrix of such a form."""
+        V = self._on_surface
+        return np.asarray(V @ np.linalg.solve(matrix, V.T @ (self.area * tension)))
 
     def scaled(self, a: float) -> Body:
         """The same body a times as large: its stiffness grows as its size."""
         points = self.values, self.radii * a, self.area * a**2, self.depths * a
-
-        def known(forces: Array) -> Array:
-            return self.yielding(forces) / a
-
+        known = Yielding(lambda forces: self.yielding.solve(forces) / a, lambda: self.surface * a)
         return Body(self.stiffness * a, *points, self.rim * a, self.reaction * a, self.borne, known)
 
 
@@ -231,16 +268,17 @@ def half_space(
 
 def on_ground(body: Body, pressure: Array, load: float, work: float) -> Body:
     """A body on a plate, on a spring with which a pressure of this load does the work that it does on a half-space."""
-    forces = body.forces(pressure)
-    missed = 1 + (work - float(forces @ body.yielding(forces))) / load**2
-    spring, sunk = 1 / missed - 1, body.yielding(last(body.reaction.size))
+    forces, foot = body.forces(pressure), last(body.reaction.size)
+    missed = 1 + (work - float(forces @ body.yielding.solve(forces))) / load**2
+    spring, sunk = 1 / missed - 1, body.yielding.solve(foot)
     pushed = sunk * spring / (1 + spring * sunk[-1])  # by the spring as the plate sinks by 1: no factors anew
 
     def known(forces: Array) -> Array:
-        u = body.yielding(forces)
+        u = body.yielding.solve(forces)
         return np.asarray(u - u[-1] * pushed)
 
-    return replace(on_spring(body, spring), known=known)
+    held = Yielding(known, lambda: body.surface + np.diag(spring * foot[body.moving]))
+    return replace(on_spring(body, spring), known=held)
 
 
 def opposed(first: Body, second: Body, share: float) -> Body:
@@ -260,10 +298,19 @@ def last(size: int) -> Array:
     return np.asarray(np.eye(1, size, size - 1)[0])
 
 
-def factorise(matrix: Any) -> Any:
-    """Factors L U of a symmetric sparse matrix, with pivots off the diagonal only where those on it are tiny."""
-    options = {"SymmetricMode": True}
-    return splu(sparse.csc_array(matrix), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options=options)
+def factorise(matrix: sparse.csc_array, surface: NDArray[np.intp]) -> Yielding:
+    """Factors L U of a positive definite matrix, and what it leaves for the unknowns of a surface."""
+    how: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+    factors, count = splu(matrix, permc_spec="MMD_AT_PLUS_A", **how), surface.size
+
+    def left() -> Array:
+        """What is left for the surface when all others are eliminated: with it at the end, L U of it alone."""
+        few = np.argsort(factors.perm_c)
+        order = np.append(few[~np.isin(few, surface)], surface)
+        last = splu(sparse.csc_array(matrix[order][:, order]), permc_spec="NATURAL", **how)
+        return np.asarray((last.L[-count:, -count:] @ last.U[-count:, -count:]).toarray())
+
+    return Yielding(factors.solve, left)
 
 
 # The mesh

@@ -144,7 +144,7 @@ class Contact(Valued):
 
     def displacement(self, h: Array) -> Array:
         """What the tensions of given gaps make of the body, whether or not it leaves those gaps."""
-        return np.asarray(self.body.yielding(self.tabor * self.body.forces(self.law.tension(h))))
+        return np.asarray(self.body.yielding.solve(self.tabor * self.body.forces(self.law.tension(h))))
 
     def energy(self, u: Array, approach: float) -> float:
         """Potential energy in R dgamma eps, less that of the undeformed surfaces in touch, which may be infinite."""

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
-from fem_adhesion.weak_form.body import Array, factorise
+from fem_adhesion.weak_form.body import Array
 from fem_adhesion.weak_form.contact import LENNARD_JONES, Contact
 from halfspace.errors import NotConverged
 from halfspace.values import Valued
@@ -21,14 +17,14 @@ from halfspace.values import Valued
 class Tangent(Valued):
     """How a contact yields to a small change of a state, with the law's straight line in the place of the law.
 
-    Gaps h (q,) of the state are in eps, the slope (q,) there is sigma' in dgamma/eps^2, and the factors are of the
-    matrix of a(u, v) + mu^2 int sigma' u_z v_z dA. The gaps' rate is dh/dalpha and the stiffness dW/dalpha in
-    R dgamma/eps, along the equilibria.
+    Gaps h (q,) of the state are in eps, the slope (q,) there is sigma' in dgamma/eps^2, and the matrix is that of
+    a(u, v) + mu^2 int sigma' u_z v_z dA, see `Body.softened`. The gaps' rate is dh/dalpha and the stiffness dW/dalpha
+    in R dgamma/eps, along the equilibria.
     """
 
     gap: Array
     slope: Array
-    factors: Any
+    matrix: Array
     gap_rate: Array
     stiffness: float
 
@@ -36,9 +32,9 @@ class Tangent(Valued):
     def at(cls, contact: Contact, h: Array, approach: float) -> Tangent:
         """Tangent of a contact at the gaps h."""
         body, mu, slope = contact.body, contact.tabor, contact.law.slope(h)
-        factors = factorise(body.softened(mu**2 * slope))
-        gap_rate = -1 + mu**2 * body.rise(factors.solve(body.forces(slope)))
-        return cls(h, slope, factors, gap_rate, contact.load_slope(slope * -gap_rate, approach))
+        matrix = body.softened(mu**2 * slope)
+        gap_rate = -1 + mu**2 * body.softened_rise(matrix, slope)
+        return cls(h, slope, matrix, gap_rate, contact.load_slope(slope * -gap_rate, approach))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,7 +65,8 @@ class Equilibrium(Valued):
     @cached_property
     def determinant(self) -> tuple[float, float]:
         """Sign of that of the tangent, and the logarithm of its magnitude."""
-        return determinant(self.tangent.factors)
+        sign, magnitude = np.linalg.slogdet(self.tangent.matrix)
+        return float(sign), float(magnitude)
 
 
 MOST_STEPS, NEAR = 20, 1e-9  # relative change of the gaps by one step more
@@ -104,28 +101,10 @@ def _step(contact: Contact, h: Array, approach: float, load: float | None, tange
     """Changes of the gaps and of the approach towards the equilibrium at this approach, or at a load."""
     body, mu, tension = contact.body, contact.tabor, contact.law.tension(h)
     straight = tension + tangent.slope * (contact.gap(None, approach) - h)
-    change = contact.gap(tangent.factors.solve(mu * body.forces(straight)), approach) - h
+    change = contact.gap(None, approach) - mu * body.softened_rise(tangent.matrix, mu * straight) - h
     missing = 0.0 if load is None else load - contact.load(tension + tangent.slope * change, approach)
     d = missing / tangent.stiffness
     return change + d * tangent.gap_rate, d
-
-
-# The determinant
-
-
-def determinant(factors: Any) -> tuple[float, float]:
-    """Sign of a determinant, and the logarithm of its magnitude, from the factors L U of the permuted matrix."""
-    pivots = factors.U.diagonal()
-    sign = np.prod(np.sign(pivots)) * _parity(factors.perm_r) * _parity(factors.perm_c)
-    return float(sign), float(np.log(np.abs(pivots)).sum())
-
-
-def _parity(permutation: NDArray[np.int32]) -> int:
-    """1 if a permutation is an even number of exchanges, -1 if odd: it has as many as it is short of cycles."""
-    size = permutation.size
-    links = sparse.csr_array((np.ones(size), (np.arange(size), permutation)), shape=(size, size))
-    cycles, _ = connected_components(links)
-    return 1 if (size - int(cycles)) % 2 == 0 else -1
 
 
 # Turning points
