@@ -147,8 +147,10 @@ def scene_of(
     strata, traction = _strata(options, poisson), {} if options.traction is None else {"traction": options.traction}
     poisson = strata[0].poisson if strata and options.poisson is None else poisson
     material = class_of("material", MATERIALS[options.strain or "small"])(poisson, **traction)
-    own = {"radius_ratio": radius_ratio, "thickness": _thickness(options, layer)}
-    body = _body(options, own | {"strata": strata or None, "base": _base(options)}, material)
+    own: dict[str, object] = {"radius_ratio": radius_ratio, "strata": strata or None, "base": _base(options)}
+    if layer or options.thickness is not None:
+        own["thickness"] = layer.thickness if layer else _plain(options, "thickness", "beta")
+    body = _body(options, own, material)
     profile, law = _profile(options, body, radius_ratio), law_of(options)
     return Scene(tabor, body, profile, law, counter=counter, share=share)
 
@@ -177,7 +179,7 @@ def law_named(text: str) -> Law:
 def _values(options: argparse.Namespace, kind: str) -> list[float | Path]:
     """Parameters of a law or a profile."""
     name, given = getattr(options, kind), getattr(options, f"{kind}_parameter") or []
-    own = _parameters(kind, name)
+    own = [field for field in _fields(name, kind) if field not in GIVEN_OTHERWISE]
     least = sum(_fields(name, kind)[field].default is MISSING for field in own)
     if not least <= len(given) <= len(own):
         optional = [f"[{field}]" for field in own[least:]]
@@ -186,11 +188,6 @@ def _values(options: argparse.Namespace, kind: str) -> list[float | Path]:
         raise InputError(f"{kind}_parameter = {' '.join(given) or None} for {kind} = {name}, limit: {listed}; {remedy}")
     named = zip(own, given, strict=False)
     return [Path(text) if field == "path" else _number(f"{kind}_parameter", text) for field, text in named]
-
-
-def _parameters(kind: str, name: str) -> list[str]:
-    """Fields of a law or a profile that are numbers of its own, none of which other options give."""
-    return [field for field in _fields(name, kind) if field not in GIVEN_OTHERWISE]
 
 
 def _number(name: str, text: str, why: str = ", limit: a plain number; give one without a unit") -> float:
@@ -213,13 +210,6 @@ def _name(options: argparse.Namespace) -> str:
 
 def _fields(name: str, kind: str = "body") -> dict[str, Any]:
     return {field.name: field for field in fields(class_of(kind, name))}
-
-
-def _thickness(options: argparse.Namespace, layer: Layer | None) -> float | None:
-    """Of a layer in beta."""
-    if layer or options.thickness is None:
-        return layer.thickness if layer else None
-    return _plain(options, "thickness", "beta")
 
 
 def _strata(options: argparse.Namespace, poisson: float) -> tuple[Stratum, ...]:
@@ -259,16 +249,19 @@ def _body(options: argparse.Namespace, values: Mapping[str, Any], material: obje
     values = {field: values.get(field, getattr(options, option)) for field, option in FIELDS.items() if field in own}
     for field, value in values.items():
         if value is None and own[field].default is MISSING:
-            what = {
-                "path": "a file; give --mesh FILE",
-                "radius": "a number; give --block-radius, in beta",
-                "thickness": "a number; give --thickness, in beta, or with a material as 500nm",
-                "modulus_ratio": "a number; give --modulus-ratio",
-                "strata": "one or more; give --strata T:NU:E, the thickness in beta",
-            }
-            raise InputError(f'{field} = None for body = "{name}", limit: {what.get(field, "a number; give R/eps")}')
+            raise InputError(f'{field} = None for body = "{name}", limit: {LACKED.get(field, "a number; give R/eps")}')
     given = {field: value for field, value in values.items() if value is not None}
     return class_of("body", name)(material=material, **given)
+
+
+LACKED = {
+    "path": "a file; give --mesh FILE",
+    "radius": "a number; give --block-radius, in beta",
+    "thickness": "a number; give --thickness, in beta, or with a material as 500nm",
+    "modulus_ratio": "a number; give --modulus-ratio",
+    "strata": "one or more; give --strata T:NU:E, the thickness in beta",
+}
+"""What to do about a field of a body that was not given."""
 
 
 def _having(field: str) -> list[str]:
@@ -323,12 +316,6 @@ def material_unless_tabor(options: argparse.Namespace) -> Contact | None:
     return material_of(options)
 
 
-def material_of(options: argparse.Namespace) -> Contact:
-    """The contact in SI."""
-    _require_whole(options)
-    return _contact(options)
-
-
 def _require_whole(options: argparse.Namespace) -> None:
     """Refuse a material that lacks something, or whose spacing is given twice, or by a constant of another law."""
     missing = [f"--{name.replace('_', '-')}" for name in MATERIAL if getattr(options, name) is None]
@@ -343,11 +330,13 @@ def _require_whole(options: argparse.Namespace) -> None:
         refuse(options, ("hamaker",), "the 3-9 law, by whose tail it gives the spacing, and --spacing with others")
 
 
-def _contact(options: argparse.Namespace) -> Contact:
+def material_of(options: argparse.Namespace) -> Contact:
+    """The contact in SI."""
     from fem_adhesion.common.contact import Contact
     from fem_adhesion.common.numbers import KINDS, parse
     from halfspace.scaling import spacing_of
 
+    _require_whole(options)
     named = {name: text for name in KINDS if (text := getattr(options, name)) is not None}
     quantities = {name: parse(text, name) for name, text in named.items()}
     if "hamaker" in quantities:

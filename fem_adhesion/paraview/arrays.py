@@ -38,7 +38,6 @@ COMPONENTS = {
 """Names of the components, in VTK's order of a symmetric tensor's; in a section x, y, z are r, theta, z."""
 
 VECTORS = ("displacement", "displacement_in_beta", "displacement_magnified")
-
 COMPONENTS_OF_SOLID = COMPONENTS | dict.fromkeys(VECTORS, ("x", "y", "z"))  # the same in the solid of revolution
 
 
@@ -61,27 +60,21 @@ _LENGTH = Unit("beta = (R^2 dgamma/E*)^(1/3)", "radius")
 _DISPLACEMENT = Unit("beta^2/R = mu eps", "displacement")
 _GAP = Unit("eps", "gap")
 _STRESS = Unit("E* beta/R = dgamma/(mu eps)", "pressure")
-_DENSITY = Unit("E* (beta/R)^2", "energy_density")
-_LOAD = Unit("R dgamma", "load")
+
 
 UNITS: Mapping[str, Unit] = {
     "points": _LENGTH,
     "displacement": _DISPLACEMENT,
-    "displacement_in_beta": _LENGTH,
-    "displacement_magnified": _LENGTH,
-    "stress_cylindrical": _STRESS,
-    "stress": _STRESS,
-    "von_mises": _STRESS,
-    "hydrostatic": _STRESS,
-    "principal_stresses": _STRESS,
-    "strain_energy_density": _DENSITY,
+    **dict.fromkeys(("displacement_in_beta", "displacement_magnified"), _LENGTH),
+    **dict.fromkeys(("stress_cylindrical", "stress", "von_mises", "hydrostatic", "principal_stresses"), _STRESS),
+    "strain_energy_density": Unit("E* (beta/R)^2", "energy_density"),
     "region": Unit("1"),
     "pressure": _STRESS,
     "gap": _GAP,
     "H": Unit("1"),
     "deflection": _DISPLACEMENT,
     "approach": _GAP,
-    "load": _LOAD,
+    "load": Unit("R dgamma", "load"),
     "central_gap": _GAP,
     "contact_radius": _LENGTH,
 }
@@ -203,39 +196,22 @@ def numbers(state: State, scale: float, units: Units | None) -> dict[str, float]
 
     No words: not every reader of these files knows strings.
     """
-    observed = dict(zip(OBSERVED, map(float, state.observables), strict=True))
-    rho = state.scene.radius_ratio
-    return (
-        {"tabor": state.scene.tabor, "poisson": state.scene.poisson}
-        | ({} if rho is None else {"radius_ratio": rho})
-        | observed
-        | (in_si(observed, units) if units else {})
-        | {f"is_{name}": float(state.name == name) for name in EVENTS}
-        | {"arclength": state.arclength, "stable_under_fixed_grips": float(state.stable)}
-        | {"stable_under_dead_load": float(state.stable_under_dead_load)}
-        | _magnification(state.scene, scale, units)
-        | (_material(units) if units else {})
-    )
-
-
-def radius_in_beta(scene: Scene, units: Units | None) -> float:
-    """Radius of the sphere in beta, infinite where neither the scene nor a material says."""
-    return units.radius / units.length if units else scene.sphere_radius
-
-
-def _magnification(scene: Scene, scale: float, units: Units | None) -> dict[str, float]:
-    R = radius_in_beta(scene, units)
-    true = {} if np.isinf(R) else {"sphere_radius_in_beta": R, "magnification_of_true_displacement": scale * R}
-    return {"magnified_beta_per_displacement_unit": scale, **true}
-
-
-def _material(units: Units) -> dict[str, float]:
-    return {
-        "radius_m": units.radius,
-        "contact_modulus_Pa": units.modulus,
-        "work_of_adhesion_J_per_m2": units.work_of_adhesion,
-        "spacing_m": units.spacing,
-    }
+    scene, observed = state.scene, dict(zip(OBSERVED, map(float, state.observables), strict=True))
+    found = {"tabor": scene.tabor, "poisson": scene.poisson}
+    if scene.radius_ratio is not None:
+        found["radius_ratio"] = scene.radius_ratio
+    found |= observed | (in_si(observed, units) if units else {})
+    found |= {f"is_{name}": float(state.name == name) for name in EVENTS}
+    found |= {"arclength": state.arclength, "stable_under_fixed_grips": float(state.stable)}
+    found |= {"stable_under_dead_load": float(state.stable_under_dead_load)}
+    found["magnified_beta_per_displacement_unit"] = scale
+    R = units.radius / units.length if units else scene.sphere_radius
+    if np.isfinite(R):
+        found |= {"sphere_radius_in_beta": R, "magnification_of_true_displacement": scale * R}
+    if units:
+        found |= {"radius_m": units.radius, "contact_modulus_Pa": units.modulus}
+        found |= {"work_of_adhesion_J_per_m2": units.work_of_adhesion, "spacing_m": units.spacing}
+    return found
 
 
 def half_space_numbers(beside: Beside, units: Units | None) -> dict[str, float]:

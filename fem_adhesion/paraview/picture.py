@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from fem_adhesion.fields import State
 from fem_adhesion.paraview.cells import cut_for
-from fem_adhesion.paraview.write import require_pyvista
+from fem_adhesion.paraview.write import in_plane, require_pyvista
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -221,9 +221,8 @@ def _add_body(pyvista: Any, plotter: Any, state: State, view: View) -> None:
 
 def _plane(pyvista: Any, shown: MeridianSection, view: View) -> Any:
     """The section in the plane y = 0, as far as it is in view."""
-    r, z = shown.points
     cells = np.insert(shown.cells, 0, shown.cells.shape[1], axis=1)
-    plane = pyvista.PolyData(np.stack([r, 0 * r, z], axis=1), faces=cells.ravel())
+    plane = pyvista.PolyData(in_plane(*shown.points), faces=cells.ravel())
     plane.point_data["stress"] = shown.stress
     return _in_view(plane, view)
 
@@ -247,8 +246,8 @@ def _add_surfaces(pyvista: Any, plotter: Any, state: State, view: View) -> None:
 
 
 def _line(pyvista: Any, line: Array) -> Any:
-    r, z = line
-    return pyvista.PolyData(np.stack([r, 0 * r, z], axis=1), lines=np.append(r.size, np.arange(r.size)))
+    points = in_plane(*line)
+    return pyvista.PolyData(points, lines=np.append(len(points), np.arange(len(points))))
 
 
 def _turned(plane: Any) -> Any:

@@ -111,9 +111,8 @@ def _grids(
 ) -> Iterator[tuple[str, str, Any]]:
     """Kind, suffix and grid of each file of a state."""
     cut = cut_for(state.space, state.components, TOLERANCE)
-    cells, (r, z) = cut.cells, cut.points
-    section = {QUADRATIC[cells.shape[1]]: cells}
-    yield "body", "vtu", _grid(pyvista, section, np.stack([r, 0 * r, z], axis=1), inside(state, cut, scale), units)
+    section = {QUADRATIC[cut.cells.shape[1]]: cut.cells}
+    yield "body", "vtu", _grid(pyvista, section, in_plane(*cut.points), inside(state, cut, scale), units)
     yield "contact", "vtp", _surface(pyvista, state, scale, units)
     if revolve is not None:
         coarse = cut_for(state.space, state.components, SOLID_TOLERANCE)
@@ -136,12 +135,15 @@ def _grid(
 
 def _surface(pyvista: Any, state: State, scale: float, units: Units | None) -> Any:
     """Contact surface as one line through its nodes."""
-    r, z = state.surface.radii, -state.surface.depths
-    line = np.append(r.size, np.arange(r.size))
-    beside = half_space_beside(state)
-    grid = pyvista.PolyData(_placed(np.stack([r, 0 * r, z], axis=1), units), lines=line)
+    points, beside = in_plane(state.surface.radii, -state.surface.depths), half_space_beside(state)
+    grid = pyvista.PolyData(_placed(points, units), lines=np.append(len(points), np.arange(len(points))))
     _annotate(grid, half_space_numbers(beside, units))
     return _with_arrays(grid, on_surface(state, beside, scale), units)
+
+
+def in_plane(r: Array, z: Array) -> Array:
+    """Points (n, 3) in the plane y = 0, radii along x."""
+    return np.stack([r, 0 * r, z], axis=1)
 
 
 def _placed(points: Array, units: Units | None) -> Array:
