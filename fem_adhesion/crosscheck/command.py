@@ -45,7 +45,8 @@ def run(options: argparse.Namespace) -> int:
     with loaded_ahead("fem_adhesion.crosscheck.study", jobs=jobs, dask=options.dask):
         from fem_adhesion.crosscheck.references import require_comparable
 
-        scenes = _scenes(options)
+        parts = counter_of(options)
+        scenes = [scene_of(options, mu, options.poisson, *parts) for mu in options.tabor]
         for scene in scenes:
             require_comparable(scene, options.rtol)
     console = console_beside(options.json)
@@ -58,12 +59,6 @@ def run(options: argparse.Namespace) -> int:
             json.dump(record, file, indent=1, allow_nan=False)
     console.print(f"verdict: {record['verdict']}", highlight=False)
     return AGREE if record["verdict"] == "agree" else DISAGREE
-
-
-def _scenes(options: argparse.Namespace) -> list[Scene]:
-    """Scenes asked for, with nothing given that would not be heeded."""
-    parts = counter_of(options)
-    return [scene_of(options, mu, options.poisson, *parts) for mu in options.tabor]
 
 
 def _compare_with_progress(

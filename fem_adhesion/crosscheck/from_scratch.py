@@ -10,7 +10,7 @@ its budget is a part in a thousand, whatever the tolerance.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +18,7 @@ import numpy as np
 import halfspace
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
 from fem_adhesion.crosscheck.weak_bodies import SHARP, FineAt, contacts, sharpness
+from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.contact import Contact
 from fem_adhesion.weak_form.newton import Turn, newton, turning_point
@@ -273,24 +274,6 @@ def _gaps(event: Located, contact: Contact) -> Array:
     beyond = -approach + event.problem.tabor * (contact.height + load / (np.pi * radii))
     extent = event.problem.interface.operator_at(event.problem.surface_state(event.point.x)).extent
     return np.where((radii < extent) | (not contact.endless), inside, beyond)
-
-
-def gaps_at(event: Located, radii: Array) -> Array:
-    """Gaps H of a state at radii on its cells.
-
-    It is the deflection that is interpolated, whereas the profile is exact; under a surface that ends by the angle
-    sin(theta) = r/R, since at the equator it is no polynomial of the radius.
-    """
-    problem, x = event.problem.interface, event.problem.surface_state(event.point.x)
-    operator, mu, profile = problem.operator_at(x), problem.tabor, problem.profile
-    within = np.minimum(radii, operator.extent)
-
-    def angle(r: Array) -> Array:
-        return r if np.isinf(profile.end) else np.asarray(np.arcsin(np.minimum(r / profile.end, 1.0)))
-
-    by_angle = replace(operator, radii=angle(operator.radii), cells=angle(operator.cells))
-    deflection = by_angle.values_at(angle(within), x[:-2] - mu * profile.height(operator.radii))
-    return np.asarray(deflection + mu * profile.height(within))
 
 
 def _turn(name: str, state: StateInWeakForm) -> Turn | None:

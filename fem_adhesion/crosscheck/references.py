@@ -51,13 +51,9 @@ def _by_integral_equation(scene: Scene) -> Reference:
     return Reference(SOLVERS, trace, partial(_half_spaces, scene))
 
 
-def _by_harmonics(scene: Scene) -> Reference:
-    return Reference(HARMONICS, partial(harmonics.trace, scene), partial(_spheres, scene))
-
-
 REFERENCES: Mapping[SolverName, Callable[[Scene], Reference]] = {
     "half-space": _by_integral_equation,
-    "harmonics": _by_harmonics,
+    "harmonics": lambda scene: Reference(HARMONICS, partial(harmonics.trace, scene), partial(_spheres, scene)),
 }
 
 

@@ -24,7 +24,6 @@ from fem_adhesion import convergence
 from fem_adhesion.common.jobs import WorkerDied, stream
 from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck.comparison import SOLVERS, Pair, Row, Verdict, difference, worst
-from fem_adhesion.crosscheck.from_scratch import gaps_at
 from fem_adhesion.crosscheck.references import (
     elements_of,
     pressures_for,
@@ -33,6 +32,7 @@ from fem_adhesion.crosscheck.references import (
     require_comparable,
     tighter,
 )
+from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium.charts import transfer

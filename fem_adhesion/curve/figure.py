@@ -14,7 +14,7 @@ from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common import style
 from fem_adhesion.curve.load import LEGEND, STATES, draw_central_gap, draw_load
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves
-from fem_adhesion.fields import State, require_fields, state_at
+from fem_adhesion.fields import State, gaps_at, require_fields, state_at
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -174,15 +174,10 @@ def state_of(path: EquilibriumPath, name: str) -> tuple[ContactProblem, Array]:
 
 
 def profile(path: EquilibriumPath, name: str, radii: Array) -> SurfaceState:
-    """State of an event at radii (beta), by the polynomials of its discretisation; none beyond its end.
-
-    The deflection goes through the polynomials, not the gap, in which the equator of a sphere is vertical.
-    """
+    """State of an event at radii (beta), by the polynomials of its discretisation; none beyond its end."""
     problem, x = state_of(path, name)
-    body = problem.operator_at(x)
-    inside = radii[radii <= body.extent]
-    undeformed, nodal = (problem.tabor * problem.profile.height(r) for r in (inside, body.radii))
-    gap = undeformed + body.values_at(inside, x[:-2] - nodal)
+    inside = radii[radii <= problem.operator_at(x).extent]
+    gap = gaps_at(path.stages[-1][name], inside)
     return SurfaceState(inside, problem.law.pressure(gap, problem.tabor), gap)
 
 

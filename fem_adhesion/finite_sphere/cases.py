@@ -200,14 +200,9 @@ def _jumps(events: Mapping[str, Event]) -> dict[str, Estimate]:
     return values
 
 
-def _half_space(case: SphereCase) -> Values:
-    """Reference: a paraboloid on a half-space."""
-    return quantities_of(halfspace.trace(case.given("tabor"), rtol=case.rtol, to_load=TO_LOAD))
-
-
-def _true_profile(case: SphereCase) -> Values:
-    """A half-space under a sphere."""
-    profile = Sphere(case.given("radius_ratio"))
+def _half_space(case: SphereCase, *, true_profile: bool = False) -> Values:
+    """A half-space under a sphere, or a paraboloid, which is the reference."""
+    profile = Sphere(case.given("radius_ratio")) if true_profile else PARABOLOID
     return quantities_of(halfspace.trace(case.given("tabor"), profile=profile, rtol=case.rtol, to_load=TO_LOAD))
 
 
@@ -220,12 +215,9 @@ def hemisphere(
     return Scene(case.given("tabor"), body, profile)
 
 
-def _elastic(
-    case: SphereCase, *, profile: Profile | None = None, grip: GripName = "sliding", traction: AreaName = "projected"
-) -> Values:
+def _elastic(case: SphereCase, made: Callable[[SphereCase], Scene] = hemisphere) -> Values:
     """A linear hemisphere."""
-    scene = hemisphere(case, profile=profile, grip=grip, traction=traction)
-    return quantities_of(trace(scene, rtol=case.rtol, to_load=TO_LOAD))
+    return quantities_of(trace(made(case), rtol=case.rtol, to_load=TO_LOAD))
 
 
 def _neo_hookean(case: SphereCase, traction: TractionName) -> Scene:
@@ -245,18 +237,15 @@ def _first_jump(case: SphereCase) -> Values:
     birth = Birth((FEWEST, min(MOST, LARGEST * ratio / SMALLEST_SPHERE)), FIRST.gaps, FIRST.falling)
 
     def at(degree: int) -> float:
-        return born(birth, lambda mu: _centred(replace(case, tabor=mu), degree))
+        def problem(mu: float) -> Traceable:  # its elements fine on the axis
+            return sized_body(hemisphere(replace(case, tabor=mu)), Discretisation(degree)).centred().problem
+
+        return born(birth, problem)
 
     try:
-        coarse, fine = map(at, DEGREES)
+        return {CRITICAL: Estimate.refined(*map(at, DEGREES))}
     except NoBirth:
         return {}
-    return {CRITICAL: Estimate.refined(coarse, fine)}
-
-
-def _centred(case: SphereCase, degree: int) -> Traceable:
-    """Problem of a hemisphere, its elements fine on the axis."""
-    return sized_body(hemisphere(case), Discretisation(degree)).centred().problem
 
 
 def _first_jump_half_space(case: SphereCase) -> Values:
@@ -280,11 +269,11 @@ def _model_of(traction: TractionName) -> Model:
 
 MODELS: Mapping[str, Model] = {
     "half_space": Model(_half_space, ("tabor",)),
-    "true_profile": Model(_true_profile, ("tabor", "radius_ratio")),
-    "finite_body": Model(partial(_elastic, profile=PARABOLOID), SPHERE, "sliding"),
+    "true_profile": Model(partial(_half_space, true_profile=True), ("tabor", "radius_ratio")),
+    "finite_body": Model(partial(_elastic, made=partial(hemisphere, profile=PARABOLOID)), SPHERE, "sliding"),
     "sphere": Model(_elastic, SPHERE, "sliding"),
-    "bonded": Model(partial(_elastic, grip="bonded"), SPHERE, "bonded"),
-    "surface_traction": Model(partial(_elastic, traction="surface"), SPHERE, "sliding"),
+    "bonded": Model(partial(_elastic, made=partial(hemisphere, grip="bonded")), SPHERE, "bonded"),
+    "surface_traction": Model(partial(_elastic, made=partial(hemisphere, traction="surface")), SPHERE, "sliding"),
     "finite_strain": _model_of("projected"),
     "finite_strain_normal": _model_of("normal"),
     "finite_strain_reference": _model_of("reference"),

@@ -149,10 +149,6 @@ def code() -> str:
     return code_digest(compute.__module__)
 
 
-def _died(case: SphereCase, reason: str) -> Record:
-    return Record(case, "died", {}, reason)
-
-
-KEPT = Kept(asdict, lambda case: case.name, to_plain, from_plain, _died)
+KEPT = Kept(asdict, lambda case: case.name, to_plain, from_plain, lambda case, why: Record(case, "died", {}, why))
 run = partial(solve_all, work=compute, kept=KEPT)
 """Records of cases of a plan: `fem_adhesion.common.store.solve_all`."""

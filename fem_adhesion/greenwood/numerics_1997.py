@@ -71,23 +71,14 @@ def ripple(path: EquilibriumPath, spacing: float, window: float, steps: int = ST
     problem = Unguarded(compliance.triangles(grid.uniform(EXTENT, spacing)), path.tabor)
     centre = path.events["pull_off"].contact_radius
     radii = np.arange(centre + window, centre - window, -spacing / steps)
-    values = np.array(list(_separated(problem, _start(path, problem, radii[0]), radii)))
-    return Ripple(path.tabor, spacing, values[:, APPROACH], values[:, LOAD])
-
-
-def _start(path: EquilibriumPath, problem: ContactProblem, radius: float) -> Array:
-    """Resolved state near a contact radius, moved to the coarse grid."""
-    source = path.segments[-1]
-    near = min(source.points, key=lambda point: abs(float(point.observables[CONTACT_RADIUS]) - radius))
-    return transfer(source.problem, near.x, problem)
-
-
-def _separated(problem: ContactProblem, x: Array, radii: Array) -> Iterator[Array]:
-    """Observables at falling contact radii."""
+    resolved = path.segments[-1]
+    near = min(resolved.points, key=lambda point: abs(float(point.observables[CONTACT_RADIUS]) - radii[0]))
+    x, values = transfer(resolved.problem, near.x, problem), []
     for radius in radii:
         solution = newton.solve(problem, x, newton.contact_radius(radius))
         x = solution.x
-        yield solution.observables
+        values.append(solution.observables[[APPROACH, LOAD]])
+    return Ripple(path.tabor, spacing, *np.transpose(values))
 
 
 def false_rise(paths: Sequence[EquilibriumPath], spacing: float) -> Rise:

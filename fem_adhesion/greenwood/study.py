@@ -14,6 +14,7 @@ import numpy as np
 
 import halfspace
 from fem_adhesion import convergence
+from fem_adhesion.fields import gaps_at
 from fem_adhesion.greenwood import tables
 from fem_adhesion.greenwood.criteria import CriteriaStudy, fit, jump_on
 from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple, Rise, attempts, false_rise, ripple
@@ -82,10 +83,10 @@ def profiles(path: EquilibriumPath) -> Iterator[DrawnState]:
 
 def _profile(state: Located) -> DrawnState:
     """State as a field; the gap is interpolated, the pressure is what the law gives for it."""
-    problem, x = state.problem.interface, state.problem.surface_state(state.point.x)
+    problem = state.problem.interface
     edge = state.point.observables[CONTACT_RADIUS]  # where the tension is largest
     radii = np.union1d(PROFILE_RADII, edge[np.isfinite(edge)])
-    gap = problem.operator_at(x).values_at(radii, x[:-2])
+    gap = gaps_at(state, radii)
     approach, load, central_gap, radius = state.point.observables
     pressure = problem.law.pressure(gap, problem.tabor)
     return DrawnState(central_gap, approach, load, radius, radii, gap, pressure)

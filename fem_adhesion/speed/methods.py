@@ -138,13 +138,13 @@ def halfspace_methods() -> list[Method]:
     graded = [(0.2, 8.0, 1.4), (0.1, 10.0, 1.2), (0.05, 20.0, 1.1), (0.025, 40.0, 1.05), (0.0125, 80.0, 1.025)]
     panels = [(4, 8.0), (5, 12.0), (6, 20.0), (8, 50.0), (10, 120.0), (12, 300.0), (14, 800.0)]
     simple, local = (ladder(partial(_relaxed, relax), "f U growth", relaxed) for relax in (_simple, _greenwood))
-    bands, triangles = (partial(_on_uniform, make) for make in (compliance.bands, compliance.triangles))
+    bands, triangles = (partial(_on_grid, make) for make in (compliance.bands, compliance.triangles))
     return [
         method("simple relaxation", simple, 4, may_diverge=True),
         method("Greenwood's iteration", local[:-1], 2, may_diverge=True),  # on the finest the sweeps run out
         method("uniform bands", ladder(bands, "f U", uniform), 4),
         method("uniform triangles", ladder(triangles, "f U", uniform), 4),
-        method("graded triangles", ladder(_on_graded, "f U growth", graded), 4),
+        method("graded triangles", ladder(triangles, "f U growth", graded), 4),
         method("panels, fixed grid", ladder(_on_panels, "nodes U", panels), 4),
         method("adaptive", adaptive(lambda tabor, rtol: halfspace.trace(tabor, rtol=rtol), range(2, 10)), 5),
     ]
@@ -183,13 +183,14 @@ def _affordable(nodes: Array) -> Array:
     return nodes
 
 
-def _on_uniform(make: Callable[[Array], ElasticOperator], tabor: float, f: float, U: float) -> Solved:
+def _on_grid(
+    make: Callable[[Array], ElasticOperator], tabor: float, f: float, U: float, growth: float | None = None
+) -> Solved:
+    """Uniform grid, or one that grows beyond the contact."""
+    if growth is not None:
+        return _fixed(make(_graded(tabor, f, U, growth)), tabor)
     nodes = grid.uniform(max(U * unit(tabor), 1.5 * widest(tabor)), f * Scales(tabor).spike_width)
     return _fixed(make(_affordable(nodes)), tabor)
-
-
-def _on_graded(tabor: float, f: float, U: float, growth: float) -> Solved:
-    return _fixed(compliance.triangles(_graded(tabor, f, U, growth)), tabor)
 
 
 def _on_panels(tabor: float, nodes: int, U: float) -> Solved:
