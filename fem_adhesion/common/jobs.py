@@ -31,7 +31,8 @@ ATTEMPTS = 3  # at an item whose worker dies
 CONNECTION_SECONDS = 30  # a scheduler that is busy answers late; one that is not there is known at once
 WATCH_SECONDS = 1  # between two looks of a local worker at whether its study is still alive
 IDLE_SECONDS = 300  # after which a local worker without work ends
-ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+BLAS = ("OPENBLAS", "OMP", "MKL", "BLIS")
+ONE_THREAD = {**{f"{name}_NUM_THREADS": "1" for name in BLAS}, "VECLIB_MAXIMUM_THREADS": "1"}
 """Each local worker keeps to one thread of BLAS: the cores are taken by the others."""
 
 
@@ -106,7 +107,7 @@ def stream(
     if dask is not None:
         return _on_pool(work, items, _cluster(dask, len(items)))
     number = workers(jobs)
-    return _here(work, items) if number == 1 else _on_pool(work, items, _processes(number))
+    return ((item, work(item)) for item in items) if number == 1 else _on_pool(work, items, _processes(number))
 
 
 def workers(jobs: int | None) -> int:
@@ -136,13 +137,6 @@ def loaded_ahead(module: str, *, jobs: int | None = None, dask: str | None = Non
 
 def _load(module: str) -> None:
     importlib.import_module(module)
-
-
-def _here(
-    work: Callable[[Item], Result], items: Sequence[Item]
-) -> Generator[tuple[Item, Result | WorkerDied], None, None]:
-    for item in items:
-        yield item, work(item)
 
 
 def _on_pool(

@@ -120,6 +120,12 @@ def template_text(folder: str, name: str) -> str:
     return (resources.files("fem_adhesion") / folder / "templates" / name).read_text(encoding="utf-8")
 
 
+def data_rows(folder: str, name: str) -> list[dict[str, str]]:
+    """Rows of a table that comes with a folder, comments left out."""
+    text = (resources.files("fem_adhesion") / folder / "data" / name).read_text(encoding="utf-8")
+    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+
+
 def symbols(text: str) -> str:
     """Greek letters for their names, as in the paper, and the sign of an error; markup stays markup."""
     return type(text)(WORDS.sub(lambda match: SYMBOLS[match[0]], text).replace("+-", "±"))

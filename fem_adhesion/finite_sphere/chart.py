@@ -11,14 +11,13 @@ nothing.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fem_adhesion.common.page import data_rows
 from fem_adhesion.finite_sphere.table import DeviationRow
 from halfspace.errors import InputError
 from halfspace.scaling import Units, contact_modulus, spacing_of
@@ -150,9 +149,6 @@ def _require_true(field: Field, found: Rule) -> None:
         )
 
 
-FILE = Path(__file__).parent / "data" / "materials.csv"
-
-
 @dataclass(frozen=True)
 class Material:
     """An elastic sphere against a rigid wall: what it is, and how large; its Poisson's ratio.
@@ -170,8 +166,7 @@ class Material:
 
 def materials() -> tuple[Material, ...]:
     """All materials of the file ``data/materials.csv``."""
-    with FILE.open(newline="") as file:
-        return tuple(_material(line) for line in csv.DictReader(line for line in file if not line.startswith("#")))
+    return tuple(map(_material, data_rows("finite_sphere", "materials.csv")))
 
 
 def _material(line: dict[str, str]) -> Material:

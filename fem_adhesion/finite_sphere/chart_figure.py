@@ -57,7 +57,9 @@ def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence
         _panel(axes, field_of(rows, quantity, poisson))
         axes.set_title(f"half-space's {title}")
         _materials(axes)
-        _dress(axes)
+        style.plain_ticks(axes.xaxis, (0.1, 0.3, 1, 3, 10))
+        axes.set(xlabel=TABOR, ylabel=RATIO, axisbelow=True)
+        axes.grid(True, color="0.9", linewidth=0.6)
     _no_jump(panels[1], [border for border in borders if border.poisson == poisson])
     if heading:
         figure.suptitle(heading, fontsize=10.5, color="0.25")
@@ -160,14 +162,6 @@ def _label(axes: Any, material: Material, name: str) -> None:
         style.note(axes, size, (mu, rho), (7, 4), zorder=4)
     elif name == "silica":
         axes.text(LEFT * 1.06, rho, size, color="0.25", fontsize=9.5, va="center")
-
-
-def _dress(axes: Any) -> None:
-    style.plain_ticks(axes.xaxis, (0.1, 0.3, 1, 3, 10))
-    axes.set_xlabel(TABOR)
-    axes.set_ylabel(RATIO)
-    axes.grid(True, color="0.9", linewidth=0.6)
-    axes.set_axisbelow(True)
 
 
 def _caption(results: Results) -> Iterator[str]:

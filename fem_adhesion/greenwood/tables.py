@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from importlib import resources
 
 import numpy as np
 from scipy.optimize import curve_fit
 
+from fem_adhesion.common.page import data_rows
 from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -66,7 +65,8 @@ class Printed:
 def table_1() -> list[Printed]:
     """Table 1: f(alpha*)/alpha*^(3/2) of the force method."""
     return [
-        _excess(float(row["alpha_star"]), row["f_over_alpha_star_1_5"]) for row in _rows("greenwood1997_table1.csv")
+        _excess(float(row["alpha_star"]), row["f_over_alpha_star_1_5"])
+        for row in data_rows("greenwood", "greenwood1997_table1.csv")
     ]
 
 
@@ -87,7 +87,7 @@ def excess_asymptote() -> tuple[Estimate, Estimate]:
 
 def table_2(paths: Mapping[float, EquilibriumPath]) -> list[Printed]:
     """Table 2, jumping on and off, from converged paths at those of its Tabor parameters that are given."""
-    return [entry for row in _rows("greenwood1997_table2.csv") for entry in _entries(row, paths)]
+    return [entry for row in data_rows("greenwood", "greenwood1997_table2.csv") for entry in _entries(row, paths)]
 
 
 def _entries(row: Mapping[str, str], paths: Mapping[float, EquilibriumPath]) -> Iterator[Printed]:
@@ -134,7 +134,7 @@ def explained(name: str, quantity: str, path: EquilibriumPath, computed: Estimat
 
 def printed_column(name: str, tabor: float) -> dict[str, str]:
     """Printed numbers of one event at one Tabor parameter, by quantity."""
-    rows = _rows("greenwood1997_table2.csv")
+    rows = data_rows("greenwood", "greenwood1997_table2.csv")
     return {row["quantity"]: row[f"mu={tabor:g}"] for row in rows if row["event"] == name}
 
 
@@ -216,9 +216,3 @@ def is_rounded(printed: str, computed: Estimate) -> bool:
 
 def _last_digit(printed: str) -> float:
     return float(10.0 ** -len(printed.partition(".")[2]))
-
-
-def _rows(name: str) -> list[dict[str, str]]:
-    """Rows of a packaged table, comments left out."""
-    text = (resources.files("fem_adhesion.greenwood") / "data" / name).read_text()
-    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))

@@ -38,6 +38,16 @@ def crosscheck_section(cases: Cases) -> Section:
     """The comparison: a summary, and tables of its levels."""
     failures = [(f"{case.scene.tabor:g}", told(case)) for case in cases if isinstance(case, Failure)]
     lost = (Table("", "Not solved", "", ("Tabor parameter", "reason"), failures, open=True),) if failures else ()
+    levels = [
+        Table(
+            "",
+            title,
+            "",
+            ("Tabor parameter", *columns(between)),
+            [(tabor, *cells(row)) for tabor, row in _rows(cases, level)],
+        )
+        for level, (title, between) in LEVELS.items()
+    ]
     return Section(
         "levels",
         "The four levels",
@@ -48,13 +58,13 @@ def crosscheck_section(cases: Cases) -> Section:
             + "; ".join(f"Tabor parameter {case.scene.tabor:g}: {verdict_of(case)}" for case in cases)
             + ".",
         ),
-        tables=(_summary(cases), *lost, *(_level_table(cases, level) for level in LEVELS)),
+        tables=(_summary(cases), *lost, *levels),
     )
 
 
-def _rows(cases: Cases, level: str) -> list[tuple[float, Row]]:
+def _rows(cases: Cases, level: str) -> list[tuple[str, Row]]:
     """Tabor parameters and rows of a level."""
-    rows = [(case.scene.tabor, row) for case in cases for row in case.rows]
+    rows = [(f"{case.scene.tabor:g}", row) for case in cases for row in case.rows]
     return [(at, row) for at, row in rows if level == next(filter(row.quantity.startswith, LEVELS))]
 
 
@@ -73,12 +83,6 @@ def _summary_line(title: str, rows: Sequence[Row]) -> list[str]:
 
 def _ratio(part: float, whole: float) -> float:
     return part / whole if whole else (math.inf if part else 0.0)
-
-
-def _level_table(cases: Cases, level: str) -> Table:
-    lines = [[f"{tabor:g}", *cells(row)] for tabor, row in _rows(cases, level)]
-    title, between = LEVELS[level]
-    return Table("", title, "", ("Tabor parameter", *columns(between)), lines)
 
 
 def settings_section(cases: Cases, machine: dict[str, str]) -> Section:
@@ -187,7 +191,8 @@ def section_of(source: Source, directory: Path | None) -> Section:
     tables = {stem: read_table(_require(directory / f"{stem}.csv", source), title) for stem, title in source.tables}
     paragraphs, warning = [source.introduction], ""
     if source.counted:
-        ended = _outcomes(tables[source.counted])
+        counted = tables[source.counted]
+        ended = Counter(dict(zip(counted.columns, row, strict=True))["outcome"] for row in counted.rows)
         paragraphs.append(f"Of {ended.total()} cases: {', '.join(f'{n} {outcome}' for outcome, n in ended.items())}.")
         wrong = {outcome: n for outcome, n in ended.items() if outcome not in WELL}
         warning = f"{', '.join(f'{n} {outcome}' for outcome, n in wrong.items())}." if wrong else ""
@@ -199,12 +204,6 @@ def _captions(source: Source, directory: Path) -> dict[str, str]:
     """Captions that the command left beside its figures."""
     with _require(directory / "captions.csv", source).open(newline="", encoding="utf-8") as file:
         return {row["figure"]: row["caption"] for row in csv.DictReader(file)}
-
-
-def _outcomes(table: Table) -> Counter[str]:
-    """How many rows of a table ended how."""
-    place = list(table.columns).index("outcome")
-    return Counter(row[place] for row in table.rows)
 
 
 def read_table(file: Path, title: str) -> Table:
