@@ -16,7 +16,7 @@ import time
 import warnings
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from itertools import count, islice
 from typing import Any, TypeVar
@@ -192,10 +192,14 @@ def _processes(number: int) -> Pool:
             future = executor().submit(*call)
         return future
 
-    lost = f"its worker died {ATTEMPTS} times"
-    return Pool(
-        submit, lambda: executor().shutdown(kill_workers=True), 2 * number, TerminatedWorkerError, ATTEMPTS - 1, lost
-    )
+    def stop() -> None:  # loky's own way to kill them stumbles over what it was given and has not handed out yet
+        pool = executor()
+        for worker in list(pool._processes):
+            with suppress(ProcessLookupError):
+                os.kill(worker, signal.SIGKILL)
+        pool.shutdown()
+
+    return Pool(submit, stop, 2 * number, TerminatedWorkerError, ATTEMPTS - 1, f"its worker died {ATTEMPTS} times")
 
 
 def _watch(study: int) -> None:
