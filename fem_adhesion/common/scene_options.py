@@ -179,7 +179,7 @@ def law_named(text: str) -> Law:
 def _values(options: argparse.Namespace, kind: str) -> list[float | Path]:
     """Parameters of a law or a profile."""
     name, given = getattr(options, kind), getattr(options, f"{kind}_parameter") or []
-    own = [field for field in _fields(name, kind) if field not in GIVEN_OTHERWISE]
+    own = _parameters(kind, name)
     least = sum(_fields(name, kind)[field].default is MISSING for field in own)
     if not least <= len(given) <= len(own):
         optional = [f"[{field}]" for field in own[least:]]
@@ -188,6 +188,11 @@ def _values(options: argparse.Namespace, kind: str) -> list[float | Path]:
         raise InputError(f"{kind}_parameter = {' '.join(given) or None} for {kind} = {name}, limit: {listed}; {remedy}")
     named = zip(own, given, strict=False)
     return [Path(text) if field == "path" else _number(f"{kind}_parameter", text) for field, text in named]
+
+
+def _parameters(kind: str, name: str) -> list[str]:
+    """Fields of a law or a profile that are numbers of its own, none of which other options give."""
+    return [field for field in _fields(name, kind) if field not in GIVEN_OTHERWISE]
 
 
 def _number(name: str, text: str, why: str = ", limit: a plain number; give one without a unit") -> float:
