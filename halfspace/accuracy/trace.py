@@ -13,13 +13,16 @@ from functools import cached_property, partial
 import numpy as np
 
 from halfspace.accuracy.finite_bodies import (
+    AROUND,
     EQUAL,
     LEAVE,
     TIGHT,
+    WINDOW,
     AroundEvents,
     Made,
     SizedBody,
     at_equator,
+    radii_around,
     surroundings,
 )
 from halfspace.accuracy.refinement import climb
@@ -167,8 +170,15 @@ class LayeredHalfSpace(SizedBody):
         """Ends of all finite cells of the chart fine on the axis."""
         return self.rings.centred
 
+    def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
+        """Chart for contact radii near the given one, which may be beyond where the cells on the axis end."""
+        return self._scaled(radii_around(radius, window, count))
+
     def following(self, moving: MovingGrid, scales: Array) -> Chart:  # noqa: ARG002 (its own scales with the contact)
         """Chart that follows the contact edge, from images at some contact radii."""
+        return self._scaled(scales)
+
+    def _scaled(self, scales: Array) -> Chart:
         edge, until = self._edge, float(self.outer[0])
         beside = [image_compliance(self.images, edge.scaled(a), until) / a for a in scales.tolist()]
         return Chart(contact_of(self.scales, NearlyHomogeneous(edge, scales, np.array(beside))), edge.radii.size)
