@@ -85,7 +85,7 @@ def test_linear_displacements_keep_their_energy():
             np.einsum("ic,cij,jc->", u, stiffness(space, 0.49), u)
             for stiffness in (cell_stiffness, projected_stiffness)
         )
-        assert projected == pytest.approx(plain, rel=1e-10, abs=1e-6)
+        assert projected == pytest.approx(plain, rel=1e-10, abs=1e-10)
 
 
 def _field(space, function):
