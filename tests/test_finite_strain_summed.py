@@ -11,7 +11,7 @@ from skfem import ElementQuadP
 
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import sliding, with_interiors
-from fem_adhesion.elasticity.space import Space, cell_quadrature, reference_functions
+from fem_adhesion.elasticity.space import Space, cell_quadrature, reference_functions, scatter
 from fem_adhesion.finite_strain.assembly import finite_strain_problem
 from fem_adhesion.finite_strain.body import displacement_body
 from fem_adhesion.finite_strain.meshes import fine_between
@@ -95,7 +95,9 @@ class Summed:
         residual = self.T.T @ self.problem.body.forces(u) - self.vector(slope)
         products = np.einsum("cq,iq,jq->cij", TABOR * curvature, self.values, self.values, optimize=True)
         pairs = [np.broadcast_to(d, products.shape).ravel() for d in (self.dofs[:, :, None], self.dofs[:, None])]
-        K = self.problem.body.tangent(u) + sparse.csc_array((products.ravel(), pairs), shape=2 * (u.size,))
+        body = self.problem.body
+        K = scatter(body.cell_tangents(u), body.cell_dofs.T, u.size)
+        K += sparse.csc_array((products.ravel(), pairs), shape=K.shape)
         by_approach = self.vector(curvature)
         matrix = sparse.block_array([[self.T.T @ K @ self.T, by_approach[:, None]], [row[None, :-1], row[None, -1:]]])
         symmetric = {"permc_spec": "MMD_AT_PLUS_A", "options": {"SymmetricMode": True}}

@@ -177,10 +177,6 @@ class Body(Valued):
         grid = np.moveaxis(factors, 3, 1).reshape(len(factors), len(self.radii), 3, 3, side, side)
         return integrated(grid, cell_products(self.space))
 
-    def tangent(self, u: Array) -> sparse.csc_array:
-        """Sum of these, (N + M, N + M)."""
-        return scatter(self.cell_tangents(u), self.cell_dofs.T, self.unknowns)
-
     def energy(self, u: Array) -> float:
         """Elastic energy in R dgamma mu eps."""
         (lam, G), state, p = self._lame, self.deformation(u), self._pressure(u)
