@@ -337,6 +337,22 @@ def test_only_a_law_that_ends_by_a_step_has_cells_that_grow_more_slowly():
     assert sharper < softer / 2 < 1
 
 
+def test_a_sharp_step_is_resolved():
+    """On cells that grow as fast as where a law ends less sharply, 16 nodes in each missed the tolerance."""
+    contact = {"tabor": 1.0, "law": Dugdale(0.1)}
+    rough, fine = (halfspace.trace(**contact, rtol=rtol) for rtol in (1e-4, 1e-6))
+    assert rough.met
+    assert fine.met
+    assert_same(rough, fine)
+
+
+def test_a_tip_takes_a_hundred_unknowns_more_than_a_paraboloid():
+    """With cells of one ratio towards it it took 160, and had the same digits."""
+    tip, finer = (halfspace.trace(1.0, profile=Power(1.5), rtol=rtol) for rtol in (1e-6, 1e-8))
+    assert tip.unknowns <= halfspace.trace(1.0).unknowns + 100
+    assert_same(tip, finer)
+
+
 def test_a_soft_contact_of_a_tip_like_a_punch_is_followed():
     """Its gaps far out are 1e27 eps, in one matrix with those of the contact."""
     contact = {"tabor": 3.0, "profile": Power(8)}
