@@ -103,8 +103,9 @@ def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) 
     outer, coordinate = layout_of(scene, how)
     flat = isinstance(coordinate, FlatCoordinate)
     last = at_equator(scene.tabor, scene.surface, how.degree + 2) if flat else np.inf
+    first = scene.surface.first_cell(10.0 ** -(how.degree + 2))
     make = partial(_made, scene, how)
-    return SizedBody(scene.scales, make, how.finest, how.growth, outer, coordinate, last, to_load)
+    return SizedBody(scene.scales, make, how.finest, how.growth, outer, coordinate, last, to_load, first)
 
 
 def discretised_about(scene: Scene, contact_radius: float, how: Discretisation, source: ContactProblem) -> Discretised:

@@ -5,14 +5,16 @@ Long and short ranges, soft and hard cores, tips from nearly a cone to nearly a 
 
 import time
 
-from fem_adhesion import HalfSpace, Layer, Scene
+from fem_adhesion import HalfSpace, Layer, Layers, Scene
 from fem_adhesion.common.jobs import progress_bar, stream
 from fem_adhesion.crosscheck import study as crosscheck
+from halfspace import Stratum
 from halfspace.laws import Dlvo, Exponential, Morse, PowerLaw
-from halfspace.profiles import Hyperboloid, Power, Sphere
+from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
 
 RTOL = 1e-4
 RUBBER, SLIDING = HalfSpace(poisson=0.4999), Layer(0.5, "sliding")
+PLIES = Stratum(2.3, 0.2), Stratum(0.9, 0.37, 0.5), Stratum(0.36, 0.47, 0.24)
 SCENES = (
     Scene(1.0, law=PowerLaw(2.1, 2.5)),
     Scene(0.5, law=PowerLaw(20, 60)),
@@ -44,6 +46,12 @@ SCENES = (
     Scene(1.0, Layer(1.0, poisson=0.4999), profile=Power(4)),
     Scene(0.3, Layer(5.0, poisson=0.0), law=Exponential(3), profile=Power(3)),
     Scene(0.5, SLIDING, law=PowerLaw(2.5, 9.5), profile=Power(4)),
+    # Of forty drawn at random, those that did not agree before
+    Scene(3.5, Layers(PLIES, "sliding"), profile=RoundedPunch(0.6)),
+    Scene(7.0, HalfSpace(poisson=0.45), profile=RoundedPunch(0.4)),
+    Scene(9.6, HalfSpace(poisson=0.499), law=Morse(1.8)),
+    Scene(7.0, Layer(0.9, "sliding", poisson=0.0), law=Morse(0.9), profile=Hyperboloid(0.7)),
+    Scene(4.6, HalfSpace(poisson=0.0), law=Exponential(3.5, 12), profile=Hyperboloid(2.5)),
 )
 
 

@@ -20,7 +20,7 @@ from fem_adhesion.elasticity import space
 from halfspace import limits
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import NotConverged
-from halfspace.laws import PowerLaw
+from halfspace.laws import Morse, PowerLaw
 from halfspace.values import Estimate
 
 RTOL = 1e-4  # defects change the numbers by per cents: coarse meshes show them as well
@@ -244,6 +244,27 @@ def test_a_solver_less_accurate_than_the_comparison_is_inconclusive_whatever_it_
     verdicts = {row.quantity: row.verdict for row in case.rows if row.between == comparison.SOLVERS}
     assert len(verdicts) == 14
     assert set(verdicts.values()) == {"inconclusive"}
+
+
+@pytest.mark.usefixtures("two_solvers")
+def test_what_estimates_leave_open_is_asked_once_more_to_a_closer_tolerance():
+    asked = []
+
+    def at_first_too_coarse(scene, *, rtol):
+        asked.append(rtol)
+        return fem_adhesion.trace(scene, rtol=rtol if len(asked) > 1 else 1e-2)
+
+    case = crosscheck.compare(Scene(tabor=2.0), rtol=RTOL, before=(), solve=at_first_too_coarse)
+    assert [row.quantity for row in case.rows if row.between == comparison.SOLVERS and row.verdict != "agree"] == []
+    assert asked == pytest.approx([0.9 * RTOL, 0.09 * RTOL])
+
+
+@pytest.mark.usefixtures("two_solvers")
+def test_a_residual_is_no_better_known_than_the_equations():
+    """A stiff law makes of ripples of the gap, of 1e-5 eps, a residual of 2e-4 of either sign on other nodes."""
+    scene = Scene(9.576, HalfSpace(poisson=0.499), law=Morse(1.822))
+    case = crosscheck.compare(scene, rtol=RTOL, before=())
+    assert [row.quantity for row in case.rows if row.between == comparison.SOLVERS and row.verdict != "agree"] == []
 
 
 # --- verdicts ---

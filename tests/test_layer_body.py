@@ -13,7 +13,7 @@ from fem_adhesion import Coated, HalfSpace, Layer, Layers, Scene, fields
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.cli import main
 from fem_adhesion.crosscheck.comparison import difference
-from fem_adhesion.discretise import discretise, quadrilateral
+from fem_adhesion.discretise import discretise, quadrilateral, sized_body
 from fem_adhesion.elasticity import stress
 from fem_adhesion.elasticity.incompressible import stiffness_of
 from fem_adhesion.elasticity.space import Space, cell_stiffness
@@ -28,7 +28,7 @@ from halfspace.elastic.compliance import panels
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.errors import InputError
 from halfspace.laws import PowerLaw
-from halfspace.profiles import Power, Sphere
+from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
 
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
 STIFF = Coated(2.0, 10.0, poisson=0.3)
@@ -39,6 +39,16 @@ STACK = Layers([Stratum(0.4, 0.3), Stratum(0.5, 0.45, 0.2), Stratum(3, 0.2, 2.0)
 @cache
 def traced(scene, rtol):
     return fem_adhesion.trace(scene, rtol=rtol)
+
+
+@pytest.mark.parametrize("profile", [Hyperboloid(0.3), RoundedPunch(0.3)])
+def test_cells_under_a_tip_are_no_longer_than_what_is_round_of_it(profile):
+    """At a distance of 0.3 beta from the axis, at an imaginary radius, both are singular."""
+    body = sized_body(Scene(1.0, Layer(2.0), profile), Discretisation(4))
+    assert all(body.lines(edge)[1] <= 0.3 for edge in (0.0, 1.0, 3.0))
+    _, following = body.curve(5.0)
+    assert following.problem.operator.at(3.0).cells[1] <= 0.3
+    assert body.around(3.0).problem.operator.at(3.0).cells[1] <= 0.3 * (1 + 1e-2)  # in the window around it
 
 
 @pytest.mark.parametrize(

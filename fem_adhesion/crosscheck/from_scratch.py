@@ -115,7 +115,7 @@ def _shared(problem: ContactProblem, radius: float) -> list[float]:
 
 
 def _apart(contact: Contact, radius: float) -> list[float]:
-    """The same by the weak form, and of each the elastic part alone."""
+    """The same by the weak form, and the size of each: its elastic part, or the load, by tensions of one sign."""
     body, mu = contact.body, contact.tabor
     H, dH, weight = _made_up(body.radii / radius)
     tensions = mu * contact.law.tension(1 + H), mu * contact.law.slope(1 + H) * dH
@@ -123,11 +123,15 @@ def _apart(contact: Contact, radius: float) -> list[float]:
     def mean(field: Array) -> float:
         return body.integral(field * weight) / radius**2
 
-    rise, further = (mu * mean(body.rise(body.yielding.solve(body.forces(values)))) for values in tensions)
+    def rise(tension: Array) -> float:
+        return mu * mean(body.rise(body.yielding.solve(body.forces(tension))))
+
     load, slope = (-body.integral(values) for values in tensions)
     load -= mu * float(contact.rim[1] @ contact.law.tension(1 + _made_up(contact.rim[0] / radius)[0]))
-    residual, tangent = mean(H + APPROACH - mu * contact.height) + rise, mean(dH + CHANGE) + further
-    return [residual, tangent, load, slope, rise, further, load, slope]
+    raised, further = map(rise, tensions)
+    residual, tangent = mean(H + APPROACH - mu * contact.height) + raised, mean(dH + CHANGE) + further
+    sizes = [of(np.abs(values)) for of in (rise, body.integral) for values in tensions]
+    return [residual, tangent, load, slope, *sizes]
 
 
 def _estimate(values: Sequence[float]) -> Estimate:

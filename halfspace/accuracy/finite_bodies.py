@@ -48,7 +48,7 @@ class SizedBody(Valued):
     the most ratio of neighbouring cells. `outer` (k,) are the last cells' ends, ascending, which do not move with the
     contact: their first is where the others end, the last of which is `last` long, in beta, if they are to be fine
     there too; see `at_equator`. Charts for a curve reach as far as the contact under the compressive load `to_load`, in
-    R dgamma.
+    R dgamma. No cell on the axis is longer than `first`, in beta; see `Surface.first_cell`.
     """
 
     scales: Scales
@@ -59,6 +59,7 @@ class SizedBody(Valued):
     coordinate: SurfaceCoordinate
     last: float = np.inf
     to_load: float = COMPRESSION
+    first: float = np.inf
 
     @property
     def length(self) -> float:
@@ -85,8 +86,10 @@ class SizedBody(Valued):
     def _graded(self, edge: float) -> Array:
         end = float(self.outer[0])
         if edge:
-            return grid.graded(edge, self.length, end, growth=self._growth, last=self.last)
-        return grid.fine_until(self._reach, self.length, end, growth=self._growth, last=self.last)
+            lines = grid.graded(edge, self.length, end, growth=self._growth, last=self.last)
+        else:
+            lines = grid.fine_until(self._reach, self.length, end, growth=self._growth, last=self.last)
+        return grid.towards_axis(lines, self.first, self._growth)
 
     def centred(self) -> Chart:
         """Chart fine on the axis."""
@@ -103,9 +106,10 @@ class SizedBody(Valued):
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
         widest = min(self.scales.widest_radius(self.to_load), WIDEST * self.scales.profile.end)
         end, edge = float(self.outer[0]), self.coordinate.of(widest)
-        inner = grid.geometric(1.0, 2 * self.length / edge, self._growth)
+        inner = 1 - grid.geometric(1.0, 2 * self.length / edge, self._growth)[::-1]
+        inner = grid.towards_axis(inner, self.first / widest, self._growth)
         outside = grid.geometric(end, self.length, self._growth, self.last)
-        moving = self._moving(1 - inner[::-1], outside / end)
+        moving = self._moving(inner, outside / end)
         return self.centred(), self.following(moving, radii_along(self.until, widest, apart))
 
     def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:

@@ -313,6 +313,7 @@ def _sized_body(
         FlatCoordinate(),
         last,
         to_load,
+        scales.profile.first_cell(10.0**-resolution.nodes),
     )
 
 

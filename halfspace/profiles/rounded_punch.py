@@ -41,3 +41,7 @@ class RoundedPunch(Endless):
     def slope(self, radii: Array) -> Array:
         """Return it times u/sqrt(a^2 + u^2)."""
         return self._rise(radii) * radii / np.hypot(self.flat, radii)
+
+    def first_cell(self, tolerance: float) -> float:  # noqa: ARG002 (smooth over the length a)
+        """Return the radius a: the height is singular at as far from the axis, at imaginary radii."""
+        return self.flat
