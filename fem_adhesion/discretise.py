@@ -22,7 +22,7 @@ from fem_adhesion.elasticity.incompressible import stiffness_of
 from fem_adhesion.elasticity.space import Space, cell_stiffness
 from fem_adhesion.mesh.spheres import with_contact_to
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator
+from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator, at_tip
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import FlatCoordinate, SurfaceCoordinate
@@ -103,7 +103,7 @@ def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) 
     outer, coordinate = layout_of(scene, how)
     flat = isinstance(coordinate, FlatCoordinate)
     last = at_equator(scene.tabor, scene.surface, how.degree + 2) if flat else np.inf
-    first = scene.surface.first_cell(10.0 ** -(how.degree + 2))
+    first = at_tip(scene.surface, how.degree + 2)
     make = partial(_made, scene, how)
     return SizedBody(scene.scales, make, how.finest, how.growth, outer, coordinate, last, to_load, first)
 

@@ -106,8 +106,7 @@ class SizedBody(Valued):
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
         widest = min(self.scales.widest_radius(self.to_load), WIDEST * self.scales.profile.end)
         end, edge = float(self.outer[0]), self.coordinate.of(widest)
-        inner = 1 - grid.geometric(1.0, 2 * self.length / edge, self._growth)[::-1]
-        inner = grid.towards_axis(inner, self.first / widest, self._growth)
+        inner = self._inner(2 * self.length / edge, widest)
         outside = grid.geometric(end, self.length, self._growth, self.last)
         moving = self._moving(inner, outside / end)
         return self.centred(), self.following(moving, radii_along(self.until, widest, apart))
@@ -115,10 +114,15 @@ class SizedBody(Valued):
     def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
         """Chart for contact radii near the given one, from so many operators, on cells fine enough for all."""
         end, (least, most) = float(self.outer[0]), (self.coordinate.of(radius * np.exp(w)) for w in (-window, window))
-        inner = grid.geometric(1.0, self.length / most, self._growth)
+        inner = self._inner(self.length / most, radius * np.exp(window))
         outside = grid.geometric(end - least, self.length, self._growth, self.last)
-        moving = self._moving(1 - inner[::-1], outside / (end - least))
+        moving = self._moving(inner, outside / (end - least))
         return self.following(moving, radii_around(radius, window, count))
+
+    def _inner(self, last: float, widest: float) -> Array:
+        """Ends of the cells inside an edge as parts of its coordinate, the last so long, for radii up to the widest."""
+        lines = 1 - grid.geometric(1.0, last, self._growth)[::-1]
+        return grid.towards_axis(lines, self.first / widest, self._growth)
 
     def _moving(self, inner: Array, outside: Array) -> MovingGrid:
         """Grid from the ends of cells inside the edge, as parts of x_a, and outside, as parts of the rest."""
@@ -148,6 +152,14 @@ def at_equator(tabor: float, profile: Surface, nodes: int) -> float:
     """
     h = 1 + tabor * float(profile.height(np.array(profile.end)))
     return float(profile.end * (10.0 ** (1 - nodes) * h**2) ** (2 / 3))
+
+
+def at_tip(profile: Surface, nodes: int) -> float:
+    """Length in beta of the cell on the axis, infinite where that of a paraboloid will do.
+
+    Of a pointed tip, u^k, n nodes leave n^(-2 k) of what one would.
+    """
+    return profile.first_cell(10.0**-nodes) * (nodes**2 if profile.pointed else 1)
 
 
 def surroundings(rtol: float, level: int) -> tuple[float, int]:

@@ -22,6 +22,7 @@ from halfspace.accuracy.finite_bodies import (
     Made,
     SizedBody,
     at_equator,
+    at_tip,
     radii_around,
     surroundings,
 )
@@ -110,7 +111,7 @@ def rings(
     """
     length = scales.edge_cell(finest)
     outer = scales.outer_radius(extent**2 / 2)
-    widest, first = scales.widest_radius(to_load), scales.profile.first_cell(10.0**-nodes)
+    widest, first = scales.widest_radius(to_load), at_tip(scales.profile, nodes)
     growth = scales.growth(growth)
     reach = EQUAL * length
     until = LEAVE * reach
@@ -118,7 +119,7 @@ def rings(
     if scales.law.outermost:
         return Rings(_fine_throughout(scales, finest, growth, outer, to_load), centred, math.inf)
     edge = grid.graded(1.0, 2 * length / widest, outer / until, growth=growth)  # as wide from the first
-    first, inwards = (nodes**2 * first, TIP * growth) if scales.profile.pointed else (first, growth)
+    inwards = TIP * growth if scales.profile.pointed else growth
     return Rings(grid.towards_axis(centred, first, inwards), grid.towards_axis(edge, first / widest, inwards), until)
 
 
@@ -313,7 +314,7 @@ def _sized_body(
         FlatCoordinate(),
         last,
         to_load,
-        scales.profile.first_cell(10.0**-resolution.nodes),
+        at_tip(scales.profile, resolution.nodes),
     )
 
 
