@@ -23,7 +23,7 @@ from numpy.polynomial.legendre import legvander
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.elastic.operators import Operator
+from halfspace.elastic.operators import Interpolated, Operator
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
@@ -258,7 +258,8 @@ class ContactProblem(Valued):
 
         No better are values at a point known: the central gap by the last Legendre coefficients in the first cell, see
         `_left_out`; the contact radius, nan without contact, by the last but one in the cells on both sides of the
-        edge, in the geometric mean: they have it from either. On finite elements of degree p, with p + 2 nodes, the
+        edge, in the geometric mean: they have it from either. On a grid whose cells inside the contact alone
+        grow with it they are not alike, and the larger counts. On finite elements of degree p, with p + 2 nodes, the
         last is none of theirs.
         """
         body, radius = self.operator_at(x), self.contact_radius(x)
@@ -268,7 +269,8 @@ class ContactProblem(Valued):
         cells = {body.cell_of(radius * (1 + side)) for side in (-1e-9, 1e-9)}
         slope = abs(body.continuous(radius)[1] @ x[:-2])
         beside = [self._coefficients(x, cell)[-2:][0] for cell in cells]
-        return np.array([gap, np.prod(beside) ** (1 / len(beside)) / slope])
+        alike = not isinstance(self.operator, Interpolated)
+        return np.array([gap, (np.prod(beside) ** (1 / len(beside)) if alike else max(beside)) / slope])
 
     def untold(self, x: Array) -> Array:
         """Errors of the observables that the changes along a single chain of discretisations may not tell, (4,)."""
