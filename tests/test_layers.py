@@ -1,6 +1,7 @@
 """Layers: the yield of their surface to waves, its images, and the limits of Hertz and JKR on a layer."""
 
 import csv
+import pickle
 from functools import cache
 from pathlib import Path
 
@@ -237,6 +238,11 @@ def test_pull_off_from_a_layer_is_within_its_estimate_of_the_reference(on_layer,
     assert abs(event.load - load) <= event.load_error + 1e-8
     assert event.approach_error <= rtol * 3
     assert event.load_error <= rtol * 6
+
+
+def test_a_curve_on_a_layer_can_be_pickled():
+    path = trace(1.0, body=Layer(2.0), rtol=1e-2)
+    assert pickle.loads(pickle.dumps(path)) == path
 
 
 def test_the_energy_on_a_layer_falls_by_the_work_of_the_load():

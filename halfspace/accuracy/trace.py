@@ -153,7 +153,11 @@ def _to_infinity(
     """Breakpoints, and what makes the half-space's operator of those of either chart."""
     nodes, reach = resolution.nodes, scales.tail_reach
     lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, nodes)
-    return lines, lambda breaks: compliance.to_infinity(compliance.panels(breaks, nodes), nodes, reach)
+    return lines, partial(_endless, nodes, reach)  # no function of its own, as what is pickled holds it
+
+
+def _endless(nodes: int, reach: float, breaks: Array) -> compliance.ElasticOperator:
+    return compliance.to_infinity(compliance.panels(breaks, nodes), nodes, reach)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -197,13 +201,16 @@ def layered_half_space(
     how = replace(resolution, extent=2 * resolution.extent)
     lines, half_space = _to_infinity(scales, how, to_load)
     outer = scales.outer_radius(how.extent**2 / 2)
-
-    def make(breaks: Array) -> Made:
-        operator = layered(images, half_space(breaks), outer)
-        return operator, operator.radii.size
-
+    make = partial(_made_layered, images, half_space, outer)
     body = SizedBody(scales, make, how.finest, how.growth, np.array([outer]), FlatCoordinate(), to_load=to_load)
     return LayeredHalfSpace(**vars(body), images=images, rings=lines, half_space=half_space)
+
+
+def _made_layered(
+    images: Images, half_space: Callable[[Array], compliance.ElasticOperator], until: float, breaks: Array
+) -> Made:
+    operator = layered(images, half_space(breaks), until)
+    return operator, operator.radii.size
 
 
 def trace(
