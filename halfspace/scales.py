@@ -87,10 +87,10 @@ class Scales:
 
     def growth(self, most: float) -> float:
         """Ratio of neighbouring cells away from the edge, `most` by most laws."""
-        return 1 + (most - 1) * self._gradual
+        return 1 + (most - 1) * self.gradual
 
     @cached_property
-    def _gradual(self) -> float:
+    def gradual(self) -> float:
         """Part of the growth of cells that the law allows: less where the tension ends by a step.
 
         A gap beyond the edge by H has opened over some distance d, so that a tension which falls within a part of H

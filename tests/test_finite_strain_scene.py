@@ -489,6 +489,12 @@ def outside(path, asked, how):
     return found
 
 
+def test_errors_hold_where_the_tension_ends_by_a_step():
+    """There a degree more gains little, and cells that grew as slowly as its own made the degree below as good."""
+    asked = replace(scene(1.0, 30.0), law=Dugdale(0.2))
+    assert outside(trace(asked, 1e-3), asked, Discretisation(8, 0.35, 2.0)) == []
+
+
 def test_events_of_a_tiny_sliding_sphere_are_those_on_cells_graded_to_its_equator(monkeypatch):
     """A surface stress that ended there would shift loads by 3e-4 on the first rings."""
     asked = scene(1.0, 6.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from skfem import ElementQuadP
@@ -38,7 +38,8 @@ NEARBY = 0.01  # relative difference of contact radii that one mesh of an event 
 class ScenesBody(Valued):
     """The body of a scene, a hemisphere at finite strain, to be meshed for any range of contact radii.
 
-    `how` is the degree of the elements and the size of their cells.
+    `how` is the degree of the elements and the size of their cells, which grow the slower the more steeply the tension
+    ends.
     """
 
     scene: Scene
@@ -46,10 +47,12 @@ class ScenesBody(Valued):
 
     def meshed(self, inner: float, outer: float) -> FiniteStrainProblem:
         """Discretise with cells that are fine for contact radii between these, as far as a contact may reach."""
-        scene, R, (ends, coordinate) = self.scene, self.scene.sphere_radius, layout_of(self.scene, self.how)
+        scene, R = self.scene, self.scene.sphere_radius
+        how = replace(self.how, growth=scene.scales.growth(self.how.growth))
+        ends, coordinate = layout_of(scene, how)
         first, last = (coordinate.of(min(radius, FARTHEST * R)) for radius in (inner, outer))
-        lines = fine_between(first, last, self.length, float(ends[0]), self.how.growth)
-        space = Space(mesh_of(scene, lines, self.how), ElementQuadP(self.how.degree))
+        lines = fine_between(first, last, self.length, float(ends[0]), how.growth)
+        space = Space(mesh_of(scene, lines, how), ElementQuadP(how.degree))
         exterior = with_interiors(FAR_FIELDS[scene.body.held](space, scene.poisson), space)
         return finite_strain_problem(
             material_body(space, scene.poisson, 1 / R),

@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from fem_adhesion.bodies.body import GROWTH, Discretisation
+from fem_adhesion.bodies.body import FINEST, GROWTH, Discretisation
 from fem_adhesion.discretise import CURVE_DEGREE, sized_body
 from fem_adhesion.finite_strain.meshes import AroundEvents, ScenesBody, Windows
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
@@ -24,7 +24,7 @@ from halfspace.equilibrium.charts import COMPRESSION, metric_for, moved, trace_c
 from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import ErrorRule, Event, usual
+from halfspace.equilibrium.events import REMAINING, ErrorRule, Event, usual
 from halfspace.equilibrium.path import Segment
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
@@ -53,9 +53,9 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
     squeezed or torn beyond what Newton's method follows.
 
     Each event has a mesh of its own, and another of other cells, for elements one degree lower; its error estimate is
-    half of the change from the mesh of the curve to these and twice that to the event's own. Its spread is that between
-    the tractions that have an energy. The energy is nan with the vertical traction, which has none; stability is as
-    said at `FiniteStrainProblem.negative_directions`.
+    half of the change from the mesh of the curve to these and twice that to the event's own, and more where the tension
+    ends by a step. Its spread is that between the tractions that have an energy. The energy is nan with the vertical
+    traction, which has none; stability is as said at `FiniteStrainProblem.negative_directions`.
     """
     _require(scene, rtol, to_load)
     if scene.tabor > WIDEST_TABOR:
@@ -79,27 +79,26 @@ class Stages(Valued):
     along: dict[int, Windows] = field(default_factory=dict, compare=False, repr=False)
 
     def rung(self, lowest: int, level: int) -> Rung:
-        """Rung of a level: events on meshes of their own, by the degree below on other cells, then by one more."""
+        """Rung of a level: events on meshes of their own, by the degree below on other cells, then by one more.
+
+        Where the tension ends by a step, in whichever cell that is, a degree more may gain no more than a factor of 2.
+        """
         degree = lowest + level
         windows = self.windows(degree)
         if not level:
             return Rung(lambda: windows, (windows,), asdict(windows.body.how))
         stages = self.around(degree - 1, *TWIN[:2]), self.around(degree)
-        return Rung(lambda: windows, stages, asdict(stages[1].body.how), rule=ErrorRule(last=OTHER_CELLS))
+        left = REMAINING / self.scene.scales.gradual
+        return Rung(lambda: windows, stages, asdict(stages[1].body.how), rule=ErrorRule(left, last=OTHER_CELLS))
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""
-        return self.along.setdefault(degree, Windows(ScenesBody(self.scene, self._how(degree))))
+        return self.along.setdefault(degree, Windows(ScenesBody(self.scene, Discretisation(degree))))
 
     def around(self, degree: int, finest: float = 1.0, growth: float = 1.0) -> AroundEvents:
         """For events, on cells of other lengths and growth by these factors: stiff surfaces have wide spikes."""
-        how = self._how(degree)
-        how = replace(how, finest=finest * (1 - softening(self.scene)) * how.finest, growth=growth * how.growth)
+        how = Discretisation(degree, finest * (1 - softening(self.scene)) * FINEST, growth * GROWTH)
         return AroundEvents(ScenesBody(self.scene, how), self.windows(degree))
-
-    def _how(self, degree: int) -> Discretisation:
-        """Degree and cells, which grow the slower the more steeply the tension ends."""
-        return Discretisation(degree, growth=self.scene.scales.growth(GROWTH))
 
 
 def _lowest_degree(rtol: float) -> int:
