@@ -165,7 +165,7 @@ def pair_meshes(scene: Scene, counter: Body, core: Array, how: Discretisation) -
     """Meshes of two bodies, whose contact ends with the cells that are given."""
     (R1, R2), (_, coordinate) = scene.radii, layout_of(scene, how)
     end = float(coordinate.radius(core[-1:])[0][0])
-    meshes = mesh_of(scene, core, how), counter.facing(R2, core, R1, how)
+    meshes = mesh_of(scene, core, how), counter.facing(R2, core, finest_length(scene, how), R1, how)
     return with_contact_to(meshes[0], end), with_contact_to(meshes[1], end)
 
 

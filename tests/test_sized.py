@@ -249,6 +249,17 @@ def test_an_operator_across_events_errs_as_the_number_it_was_made_for_says(windo
     assert errors[1e-5] < 1e-6 / 10**level
 
 
+@pytest.mark.parametrize(("tabor", "ratio"), [(1.0, 300.0), (1.0, 60.0), (3.0, 30.0), (0.3, 100.0)])
+def test_meshes_for_one_chart_have_the_same_cells(tabor, ratio):
+    """By a layer of cells more or less the operators would differ by 1e-7, and so would what lies between them."""
+    body = sized_body(Scene(tabor, Hemisphere(radius_ratio=ratio)), Discretisation(6))
+    operator = body.around(1.2, 0.3, 9).problem.operator
+    assert len({body.make(operator.grid.lines(a))[1] for a in operator.scales}) == 1
+    exact = body.make(operator.grid.lines(1.3))[0]
+    pressure = np.exp(-(exact.radii**2))
+    assert np.abs((operator.at(1.3).compliance - exact.compliance) @ pressure).max() < 1e-9
+
+
 def test_an_event_that_moves_out_of_a_window_is_solved_for_on_an_operator_of_its_own():
     path = halfspace.trace(1.0, profile=Sphere(30.0), rtol=1e-2)
     coarse, stage = path.stages[0]["pull_off"], replace(path.finest, window=1e-7, charts=[])

@@ -196,10 +196,12 @@ class Body(ABC):
 
         R is the radius in beta, that of the surface over a half-space; infinite if neither ends. Lines (m + 1,) are the
         ends of the cells of the contact, in the coordinate, from 0 to the first of those that stand still; the length,
-        in beta, is that of the cells at the contact edge.
+        in beta, is that of the cells at the contact edge. Where the surface ends neither depths nor what is beyond may
+        depend on the lines: a polynomial goes through the operators at some contact radii, and those of meshes with a
+        layer of cells more or less differ by what these leave.
         """
 
-    def facing(self, R: float, lines: Array, smaller: float, how: Discretisation) -> Any:  # noqa: ARG002
+    def facing(self, R: float, lines: Array, length: float, smaller: float, how: Discretisation) -> Any:  # noqa: ARG002
         """Mesh of the body as a counter-body of one of the radius `smaller`, whose cells' ends are `lines`."""
         raise InputError(f"counter = {self.name} does not face another body; take a hemisphere or a half-space")
 

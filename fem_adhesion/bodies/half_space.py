@@ -53,9 +53,16 @@ class HalfSpace(Body):
         depths = grid.graded(0.0, length, how.beyond * R, growth=how.growth)
         return with_contact_to(tensor_grid(np.concatenate([lines, R + past]), depths), R)
 
-    def facing(self, R: float, lines: Array, smaller: float, how: Discretisation) -> Any:  # noqa: ARG002 (it is flat)
+    def facing(
+        self,
+        R: float,  # noqa: ARG002 (it is flat)
+        lines: Array,
+        length: float,
+        smaller: float,
+        how: Discretisation,
+    ) -> Any:
         """Block whose cells end where those of the sphere do, and beyond at ever larger distances."""
         from fem_adhesion.mesh.spheres import block_under
 
-        depths = grid.graded(0.0, np.diff(lines).min(), BEYOND * smaller, growth=how.growth)
+        depths = grid.graded(0.0, length, BEYOND * smaller, growth=how.growth)
         return block_under(lines, depths, smaller, BEYOND * smaller)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
 from fem_adhesion.bodies.body import Discretisation, Held, Layout
 from halfspace.elastic import grid
 from halfspace.limits import require_cap_angle
@@ -49,11 +47,9 @@ class HeldSphere(Held):
 
         return contact_ends(R, rings_at_equator(R, self.cap_angle)), Stereographic(R, self.material.area)
 
-    def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
+    def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Graded from the contact, and towards the rim of the cap."""
         from fem_adhesion.mesh.held_sphere import held_sphere
         from fem_adhesion.mesh.spheres import DEPTH
 
-        return held_sphere(
-            R, lines, grid.graded(0.0, np.diff(lines).min(), DEPTH * R, growth=how.growth), self.cap_angle
-        )
+        return held_sphere(R, lines, grid.graded(0.0, length, DEPTH * R, growth=how.growth), self.cap_angle)

@@ -50,16 +50,16 @@ class Hemisphere(Held):
 
         return contact_ends(R, self.rings(how)), Stereographic(R, self.material.area)
 
-    def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
+    def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Graded from the contact."""
         from fem_adhesion.mesh.spheres import DEPTH, hemisphere
 
-        depths = grid.graded(0.0, np.diff(lines).min(), DEPTH * R, growth=how.growth)
+        depths = grid.graded(0.0, length, DEPTH * R, growth=how.growth)
         return hemisphere(R, lines, depths, rings=self.rings(how))
 
-    def facing(self, R: float, lines: Array, smaller: float, how: Discretisation) -> Any:
+    def facing(self, R: float, lines: Array, length: float, smaller: float, how: Discretisation) -> Any:
         """Its cells end where those of the smaller one do, and beyond at its own core's end."""
         from fem_adhesion.mesh.spheres import DEPTH, hemisphere_over
 
-        depths = grid.graded(0.0, np.diff(lines).min(), DEPTH * R, growth=how.growth)
+        depths = grid.graded(0.0, length, DEPTH * R, growth=how.growth)
         return hemisphere_over(lines, depths, smaller, R, self.rings(how))

@@ -113,11 +113,15 @@ class SizedBody(Valued):
 
     def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
         """Chart for contact radii near the given one, from so many operators, on cells fine enough for all."""
-        end, (least, most) = float(self.outer[0]), (self.coordinate.of(radius * np.exp(w)) for w in (-window, window))
-        inner = self._inner(self.length / most, radius * np.exp(window))
-        outside = grid.geometric(end - least, self.length, self._growth, self.last)
-        moving = self._moving(inner, outside / (end - least))
-        return self.following(moving, radii_around(radius, window, count))
+        end, (least, most) = float(self.outer[0]), self.span(radius, window)
+        inner = self._inner(self.length / self.coordinate.of(most), most)
+        rest = end - self.coordinate.of(least)
+        outside = grid.geometric(rest, self.length, self._growth, self.last)
+        return self.following(self._moving(inner, outside / rest), chebyshev_radii(least, most, count))
+
+    def span(self, radius: float, window: float) -> tuple[float, float]:
+        """Least and widest contact radius in a window about one, inside the cells that move."""
+        return radius * np.exp(-window), min(radius * np.exp(window), WIDEST * self.scales.profile.end)
 
     def _inner(self, last: float, widest: float) -> Array:
         """Ends of the cells inside an edge as parts of its coordinate, the last so long, for radii up to the widest."""
@@ -175,12 +179,14 @@ def surroundings(rtol: float, level: int) -> tuple[float, int]:
 def operators_across(body: SizedBody, rtol: float, level: int, radius: float, window: float) -> int:
     """Operators for one chart of all events, within so much of the logarithm of a contact radius, on a rung.
 
-    In that logarithm the kernel is analytic up to pi beside the real axis, where a node is the image of another, and
-    along it up to the end of the cells that move. The polynomial through n of them errs by rho^-n, rho the sum of the
-    half axes, in windows, of the ellipse around the window that reaches so far (Bernstein). There is one more on each
-    rung, whose change tells the error.
+    In the logarithm of the edge's coordinate the kernel is analytic up to pi beside the real axis, where a node is the
+    image of another, and along it up to the end of the cells that move. The polynomial through n of them errs by
+    rho^-n, rho the sum of the half axes, in windows, of the ellipse around the window that reaches so far (Bernstein).
+    There is one more on each rung, whose change tells the error.
     """
-    end = np.log(float(body.outer[0]) / body.coordinate.of(radius)) / window
+    least, most = (np.log(body.coordinate.of(a)) for a in body.span(radius, window))
+    window, middle = (most - least) / 2, (most + least) / 2
+    end = (np.log(float(body.outer[0])) - middle) / window
     side, end = np.pi / window, max(end, 1.1)  # where they end within the window, more than ever pay
     rho = min(side + np.sqrt(side**2 + 1), end + np.sqrt(end**2 - 1))
     return int(np.ceil(np.log(ACROSS / rtol) / np.log(rho))) + level
