@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from halfspace.elastic.layers import LayeredBody, softest, stiff_as
-from halfspace.errors import NotConverged
+from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import NEAR
 from halfspace.profiles import PARABOLOID, Surface
@@ -30,6 +30,9 @@ FARTHER = 8.0  # extents, up to which the infinite cell is cut where the tail is
 # cells grow where it falls by more. With 0.7 and 1 the sharper of Dugdale's laws did not meet 1e-6, and at 1e-8 it
 # erred by twice the estimates.
 SUDDEN, SLOWER = 0.65, 1.5
+# Of the load, what cells with no infinite one should leave beyond, and may at most; how much farther they go for it: by
+# elements that are longer still, beside as thin ones, the stiffness is singular.
+LEFT, MOST_LEFT, FARTHEST = 1e-9, 1e-6, 1e5
 UNTOLD, CROWD = 1e-7, 64.0  # of the load beyond, what the last cell may leave of it; how much nearer its nodes are
 STEP = 0.1  # of the trapezoidal rule in ln r for the tension of undeformed surfaces
 LOGARITHMS = np.arange(-16.0, 16.0, STEP)
@@ -152,6 +155,24 @@ class Scales:
     def outer_radius(self, height: float) -> float:
         """Radius at which finite cells end: the undeformed gap opens by `height`, or by a tail without an exponent."""
         return self.radius_at(max(height, self.law.range(NOTHING)) if math.isinf(self.law.decay) else height)
+
+    def whole_radius(self, height: float) -> float:
+        """Radius at which cells end beyond which nothing acts: `outer_radius`, or farther if too much load is there.
+
+        On a profile that rises as r^g a tension that decays as h^-n leaves 2 pi r^2 sigma/(g n - 2) beyond r.
+        """
+        r, power = self.outer_radius(height), self.law.decay * self._growth - 2
+        if math.isinf(power) or math.isfinite(self.profile.end):
+            return r
+        tension = abs(float(self.law.pressure(self.tabor * self.profile.height(np.array(r)), self.tabor)))
+        beyond = 2 * math.pi * r**2 * tension / power / self.rigid_tension
+        farther = min(max(1.0, beyond / LEFT) ** (1 / power), FARTHEST)
+        if beyond > MOST_LEFT * farther**power:
+            raise InputError(
+                f"{self.law} on {self.profile}: the load beyond r falls as r^-{power:.2g} alone, limit on layers: "
+                f"r^-{math.log(beyond / MOST_LEFT) / math.log(FARTHEST):.2g}; take a law or a profile that rises faster"
+            )
+        return float(r * farther)
 
     @property
     def widened(self) -> float:

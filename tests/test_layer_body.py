@@ -276,3 +276,16 @@ def test_the_integral_equation_takes_the_layer_of_the_elements_and_refuses_other
     assert ours.events == theirs.events
     with pytest.raises(InputError, match=r"body = HalfSpace\(.*\), limit: layers on a base; give Layer, Coated or"):
         halfspace.trace(1.0, body=HalfSpace())
+
+
+def test_what_pulls_beyond_the_mesh_is_little_under_a_tip_that_rises_as_a_cone():
+    """The load beyond r falls as r^-1/2 there: cells up to 800 widths of the attraction left 2.5e-4 of it out."""
+    scene = Scene(1.0, Layer(thickness=1.0), profile=Hyperboloid(5.0), law=PowerLaw(2.5, 9.5))
+    elements = fem_adhesion.trace(scene, rtol=1e-4).event("pull_off")
+    waves = halfspace.trace(1.0, law=scene.law, profile=scene.profile, body=scene.body.layered, rtol=1e-6)
+    assert abs(elements.load - waves.event("pull_off").load) < elements.load_error < 1e-4
+
+
+def test_a_load_that_hardly_falls_with_the_radius_is_refused_on_a_layer():
+    with pytest.raises(InputError, match=r"falls as r\^-0.1 alone, limit on layers: r\^-1; take a law"):
+        fem_adhesion.trace(Scene(1.0, Layer(thickness=1.0), profile=Hyperboloid(5.0), law=PowerLaw(2.1, 9.0)))

@@ -90,7 +90,7 @@ class Stratified(Body):
 
     def extent(self, scales: Scales) -> float:
         """Radius up to which its surface attracts."""
-        return scales.outer_radius((WIDTH * scales.widened) ** 2 / 2)
+        return scales.whole_radius((WIDTH * scales.widened) ** 2 / 2)
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
         """Cells up to the end of what attracts, or of the surface over it."""

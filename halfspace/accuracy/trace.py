@@ -311,7 +311,7 @@ def _sized_body(
         return layered_half_space(scales, images, resolution, to_load)
     make = partial(layered_panels, images) if images else compliance.panels
     last = at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf
-    outer = scales.profile.end if ends else scales.outer_radius((FAR * resolution.extent) ** 2 / 2)
+    outer = scales.profile.end if ends else scales.whole_radius((FAR * resolution.extent) ** 2 / 2)
     return SizedBody(
         scales,
         partial(_made, make, resolution.nodes),
