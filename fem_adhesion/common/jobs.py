@@ -16,9 +16,10 @@ import time
 import warnings
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import count, islice
+from multiprocessing import active_children
 from typing import Any, TypeVar
 from urllib.parse import urlsplit
 
@@ -79,13 +80,13 @@ class WorkerDied:
 
 @dataclass(frozen=True)
 class Pool:
-    """Where work is done: how it is handed out, to how many items at once, and how all is stopped.
+    """Where work is done: how it is handed out, to how many items at once, and how all is stopped, at work or idle.
 
     What a future raises whose worker `died`; so often an item runs alone then, and what is said if that is in vain.
     """
 
     submit: Callable[..., Future[Any]]
-    stop: Callable[[], None]
+    stop: Callable[[bool], None]
     width: int
     died: type[Exception]
     alone: int
@@ -158,7 +159,7 @@ def _on_pool(
         for item in lost:
             yield item, _alone(work, item, pool)
     finally:
-        pool.stop()
+        pool.stop(bool(given))
 
 
 def _alone(work: Callable[[Item], Result], item: Item, pool: Pool) -> Result | WorkerDied:
@@ -175,6 +176,7 @@ def _alone(work: Callable[[Item], Result], item: Item, pool: Pool) -> Result | W
 def _processes(number: int) -> Pool:
     """So many local processes, made anew when one has died."""
     from joblib.externals.loky import get_reusable_executor
+    from joblib.externals.loky.backend.process import LokyProcess
     from joblib.externals.loky.process_executor import TerminatedWorkerError
 
     # A worker is made anew when it has grown by 300 MB, which large bodies make it do: no trouble of the user's.
@@ -192,12 +194,13 @@ def _processes(number: int) -> Pool:
             future = executor().submit(*call)
         return future
 
-    def stop() -> None:  # loky's own way to kill them stumbles over what it was given and has not handed out yet
-        pool = executor()
-        for worker in list(pool._processes):
-            with suppress(ProcessLookupError):
-                os.kill(worker, signal.SIGKILL)
-        pool.shutdown()
+    def stop(at_work: bool) -> None:
+        if not at_work:
+            return  # they wait for more
+        for worker in active_children():  # loky's own way stumbles over what it was given and has not handed out yet
+            if isinstance(worker, LokyProcess):
+                worker.kill()
+        executor().shutdown()
 
     return Pool(submit, stop, 2 * number, TerminatedWorkerError, ATTEMPTS - 1, f"its worker died {ATTEMPTS} times")
 
@@ -232,7 +235,7 @@ def _cluster(address: str, width: int) -> Pool:
         ) from error
     executor = client.get_executor(pure=False)
 
-    def stop() -> None:
+    def stop(at_work: bool) -> None:  # noqa: ARG001 (the client goes in any case)
         executor.shutdown(wait=False)
         client.close()
 
