@@ -83,7 +83,8 @@ def equations(scene: Scene, problems: Sequence[ContactProblem], radius: float) -
     """Residual, tangent, load and its slope at a state made up, by the shared code and by the weak form.
 
     The shared code is given the problem on elastic operators of two degrees, the finer one last. Residual and tangent
-    are means over a contact of the radius given; what is off counts relative to what in them is elastic.
+    are means over a contact of the radius given; what is off counts relative to what in them is elastic under
+    tensions of one sign.
     """
     apart = np.array([_apart(contact(radius, radius), radius) for contact in contacts(scene)[:2]])
     shared = np.array([_shared(problem, radius) for problem in problems])

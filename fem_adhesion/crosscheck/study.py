@@ -116,7 +116,8 @@ def compare(
     require_comparable(scene, rtol)
     known = unsolved(scene, rtol=rtol) if before is None else before
     case = _solved(scene, rtol, rtol, solve)
-    if case.verdict == "inconclusive" and any(r.verdict != "agree" for r in case.rows if r.between == SOLVERS):
+    between = {row.verdict for row in case.rows if row.between == SOLVERS}
+    if rtol > CLOSER * TIGHTEST and case.verdict == "inconclusive" and between - {"agree"}:
         with suppress(NotConverged):
             case = _solved(scene, rtol, rtol / CLOSER, solve)
     return replace(case, rows=(*known, *case.rows))

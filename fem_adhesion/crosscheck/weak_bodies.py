@@ -95,7 +95,7 @@ def _finest(scene: Scene, radius: float) -> float:
 
 
 def _tip(scene: Scene, radius: float) -> float:
-    """Length of the cell under a sharp tip in contact radii, by powers of 2 so that few bodies serve all."""
+    """Length of the cell under a tip that needs one in contact radii, by powers of 2 so that few bodies serve all."""
     first = scene.surface.first_cell(TIP) / radius
     return float(2.0 ** np.floor(np.log2(first))) if np.isfinite(first) else np.inf
 

@@ -22,7 +22,7 @@ GROWTH = 10.0  # of the relative residual, let through in one step
 ROUND_OFF = 1e-10  # relative size of a step below which the residual may be no more than rounding
 SLOW = 0.1  # part of a step that may be left after one with old factors; if it is more, they are made anew
 ROUGH = 3e-2  # relative accuracy of a first step that is iterated for; of a later one the square of that before
-LEFT = 1e-4  # of the tolerance: error left by the last step, of either kind; and of any step that is iterated for
+LEFT = 1e-4  # of the tolerance: error left by the last step, of either kind; the least of any step that is iterated for
 REFINED = 1e-13  # relative error left in a tangent
 
 

@@ -35,7 +35,7 @@ class Surface(Protocol):
         ...
 
     def first_cell(self, tolerance: float) -> float:
-        """Length in beta of the cell on the axis that leaves `tolerance`; infinite where a paraboloid's will do."""
+        """Length in beta of a cell on the axis of which one node leaves `tolerance`; infinite where a paraboloid's will do."""
         ...
 
 
