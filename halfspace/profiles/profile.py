@@ -35,7 +35,7 @@ class Surface(Protocol):
         ...
 
     def first_cell(self, tolerance: float) -> float:
-        """Length in beta of a cell on the axis of which one node leaves `tolerance`; infinite where a paraboloid's will do."""
+        """Length in beta of an axis cell of which one node leaves `tolerance`; infinite if a paraboloid's will do."""
         ...
 
 
