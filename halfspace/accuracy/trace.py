@@ -13,6 +13,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from halfspace.accuracy.finite_bodies import (
+    APART,
     AROUND,
     EQUAL,
     LEAVE,
@@ -23,6 +24,7 @@ from halfspace.accuracy.finite_bodies import (
     SizedBody,
     at_equator,
     at_tip,
+    radii_along,
     radii_around,
     surroundings,
 )
@@ -31,7 +33,7 @@ from halfspace.accuracy.stages import Charted, Rung
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.layered import Images, image_compliance, images_of, layered, layered_panels
 from halfspace.elastic.layers import LayeredBody
-from halfspace.elastic.operators import FlatCoordinate, Homogeneous, MovingGrid, NearlyHomogeneous
+from halfspace.elastic.operators import FlatCoordinate, Homogeneous, NearlyHomogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -180,9 +182,9 @@ class LayeredHalfSpace(SizedBody):
         """Chart for contact radii near the given one, which may be beyond where the cells on the axis end."""
         return self._scaled(radii_around(radius, window, count))
 
-    def following(self, moving: MovingGrid, scales: Array) -> Chart:  # noqa: ARG002 (its own scales with the contact)
-        """Chart that follows the contact edge, from images at some contact radii."""
-        return self._scaled(scales)
+    def curve(self, apart: float = APART) -> tuple[Chart, Chart]:
+        """Charts for the whole curve: the second from images at radii that are `apart` times one the other."""
+        return self.centred(), self._scaled(radii_along(self.until, self.scales.widest_radius(self.to_load), apart))
 
     def _scaled(self, scales: Array) -> Chart:
         edge, until = self._edge, float(self.outer[0])
@@ -202,8 +204,18 @@ def layered_half_space(
     lines, half_space = _to_infinity(scales, how, to_load)
     outer = scales.outer_radius(how.extent**2 / 2)
     make = partial(_made_layered, images, half_space, outer)
-    body = SizedBody(scales, make, how.finest, how.growth, np.array([outer]), FlatCoordinate(), to_load=to_load)
-    return LayeredHalfSpace(**vars(body), images=images, rings=lines, half_space=half_space)
+    return LayeredHalfSpace(
+        scales,
+        make,
+        how.finest,
+        how.growth,
+        np.array([outer]),
+        FlatCoordinate(),
+        to_load=to_load,
+        images=images,
+        rings=lines,
+        half_space=half_space,
+    )
 
 
 def _made_layered(
