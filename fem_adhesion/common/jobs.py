@@ -199,7 +199,7 @@ def _processes(number: int) -> Pool:
             return  # they wait for more
         for worker in active_children():  # loky's own way stumbles over what it was given and has not handed out yet
             if isinstance(worker, LokyProcess):
-                worker.kill()
+                worker.terminate()
         executor().shutdown()
 
     return Pool(submit, stop, 2 * number, TerminatedWorkerError, ATTEMPTS - 1, f"its worker died {ATTEMPTS} times")
