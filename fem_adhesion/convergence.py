@@ -202,7 +202,7 @@ def mesh_ladder(scene: Scene, unit: float, level: int) -> Rung:
     made = on_given_mesh(scene, level)
     charts = (Chart(made.problem, made.unknowns),)
     settings = {"mesh": str(scene.body.file), "pole_radius": unit, "degree": QUADRATIC.degree, "refined": level}
-    return Rung(lambda: charts, (Charted(charts),) if level else (), settings, rule=ErrorRule(1.0))
+    return Rung(partial(tuple, charts), (Charted(charts),) if level else (), settings, rule=ErrorRule(1.0))
 
 
 QUADRATIC = Discretisation(2)

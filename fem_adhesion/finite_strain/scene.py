@@ -84,12 +84,12 @@ class Stages(Valued):
         Where the tension ends by a step, in whichever cell that is, a degree more may gain no more than a factor of 2.
         """
         degree = lowest + level
-        windows = self.windows(degree)
+        curve, windows = partial(self.windows, degree), self.windows(degree)
         if not level:
-            return Rung(lambda: windows, (windows,), asdict(windows.body.how))
+            return Rung(curve, (windows,), asdict(windows.body.how))
         stages = self.around(degree - 1, *TWIN[:2]), self.around(degree)
         left = REMAINING / self.scene.scales.gradual
-        return Rung(lambda: windows, stages, asdict(stages[1].body.how), rule=ErrorRule(left, last=OTHER_CELLS))
+        return Rung(curve, stages, asdict(stages[1].body.how), rule=ErrorRule(left, last=OTHER_CELLS))
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""
