@@ -84,7 +84,8 @@ class Stages(Valued):
         Where the tension ends by a step, in whichever cell that is, a degree more may gain no more than a factor of 2.
         """
         degree = lowest + level
-        curve, windows = partial(self.windows, degree), self.windows(degree)
+        windows = self.windows(degree)
+        curve = partial(iter, windows)
         if not level:
             return Rung(curve, (windows,), asdict(windows.body.how))
         stages = self.around(degree - 1, *TWIN[:2]), self.around(degree)
