@@ -16,6 +16,7 @@ from skfem import MeshTri
 
 from fem_adhesion.bodies.body import Body as ElasticBody
 from fem_adhesion.bodies.body import Discretisation
+from fem_adhesion.bodies.layers import WIDTH
 from fem_adhesion.discretise import finest_length, layout_of, mesh_of, pair_meshes
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.body import TRIANGLES, Body, discretise, fine_within, half_space, on_ground, opposed
@@ -130,7 +131,7 @@ def _sized(scene: Scene, degree: int, radius: float, reach: float) -> Contact:
     R = scene.radii[0]
     radius, reach = (min(r, WIDEST * R) for r in (radius, reach))  # what attracts from afar may be wider
     how = Discretisation(degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, GROWTH, RINGS)
-    how = replace(how, beyond=CLAMPED) if scene.body.held == "substrate" else how
+    how = replace(how, beyond=_clamped(scene, R)) if scene.body.held == "substrate" else how
     outer, coordinate = layout_of(scene, how)
     lines = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=GROWTH)
     core = fine_within(coordinate.of(reach), lines)
@@ -141,6 +142,12 @@ def _sized(scene: Scene, degree: int, radius: float, reach: float) -> Contact:
     first, second = (_standing(*one, degree) for one in zip((scene.body, scene.counter), meshes, strict=True))
     body = opposed(first, second, scene.shares[1])
     return Contact(body, scene.tabor, _heights(scene), False, _rim(first.rim, R), law_of(scene))
+
+
+def _clamped(scene: Scene, R: float) -> float:
+    """Size of a half-space under strata in R: as large under a cone, whose load is farther out, as under a sphere."""
+    width = scene.scales.widened * scene.scales.radius_at(0.5)
+    return CLAMPED * min(1.0, WIDTH * width / R)
 
 
 def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:
