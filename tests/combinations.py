@@ -5,7 +5,7 @@ Long and short ranges, soft and hard cores, tips from nearly a cone to nearly a 
 
 import time
 
-from fem_adhesion import HalfSpace, Layer, Layers, Scene
+from fem_adhesion import Coated, HalfSpace, Layer, Layers, Scene
 from fem_adhesion.common.jobs import progress_bar, stream
 from fem_adhesion.crosscheck import study as crosscheck
 from halfspace import Stratum
@@ -52,6 +52,7 @@ SCENES = (
     Scene(9.6, HalfSpace(poisson=0.499), law=Morse(1.8)),
     Scene(7.0, Layer(0.9, "sliding", poisson=0.0), law=Morse(0.9), profile=Hyperboloid(0.7)),
     Scene(4.6, HalfSpace(poisson=0.0), law=Exponential(3.5, 12), profile=Hyperboloid(2.5)),
+    Scene(1.0, Coated(thickness=1.0, modulus_ratio=5.0), profile=Hyperboloid(5.0)),
 )
 
 
