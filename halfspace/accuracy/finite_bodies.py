@@ -48,7 +48,7 @@ class SizedBody(Valued):
     the most ratio of neighbouring cells. `outer` (k,) are the last cells' ends, ascending, which do not move with the
     contact: their first is where the others end, the last of which is `last` long, in beta, if they are to be fine
     there too; see `at_equator`. Charts for a curve reach as far as the contact under the compressive load `to_load`, in
-    R dgamma. No cell on the axis is longer than `first`, in beta; see `Surface.first_cell`.
+    R dgamma. No cell on the axis is longer than `first`, in beta; see `at_tip`.
     """
 
     scales: Scales
