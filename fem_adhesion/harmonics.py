@@ -17,22 +17,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from itertools import count, islice, pairwise
 
 import numpy as np
 
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.finite_bodies import AlongCurve, Made, SizedBody
+from halfspace.accuracy.finite_bodies import Made, SizedBody, standing
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import FlatCoordinate
-from halfspace.equilibrium.charts import COMPRESSION, Chart
-from halfspace.equilibrium.conditions import Located
-from halfspace.equilibrium.contact import CONTACT_RADIUS, contact_of
+from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol
@@ -192,44 +190,6 @@ class Fineness:
     growth: float = GROWTH
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Standing(Valued):
-    """Stage of a ladder on which every event has cells of its own that stand still, finest where its contact ends.
-
-    Charts made so far stand with the contact radii they are for.
-    """
-
-    body: SizedBody
-    charts: list[tuple[float, Chart]] = field(default_factory=list, compare=False)
-    farther = together = None
-
-    def __call__(self, event: Located) -> Chart:
-        """Chart for an event, made unless one made before will do."""
-        body, radius = self.body, float(event.point.observables[CONTACT_RADIUS])
-        radius = radius if radius > body.length else 0.0
-        for made_for, chart in self.charts:
-            if abs(radius - made_for) <= NEAR * body.length:
-                return chart
-        operator, unknowns = body.make(body.lines(body.coordinate.of(radius)))
-        chart = Chart(contact_of(body.scales, operator), unknowns)
-        self.charts.append((radius, chart))
-        return chart
-
-    @property
-    def everywhere(self) -> AlongCurve:
-        """Cells that follow the contact, for every point of a curve."""
-        return AlongCurve(self.body, APART)
-
-    @property
-    def unknowns(self) -> int:
-        """Most unknowns of a chart made so far."""
-        return max(chart.unknowns for _, chart in self.charts)
-
-
-NEAR = 0.1  # of the finest cell, that a contact may end beside the place for which a grid was made
-APART = 1.7  # ratio of the radii between which the operator of a curve is interpolated
-
-
 def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> EquilibriumPath:
     """Trace the load-approach curve of a sphere in the sliding grip and solve for its events by spherical harmonics.
 
@@ -254,9 +214,9 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
         above, below = (resolution_for(rtol, max(n, 0)) for n in (level, level - 1))
         twin = Fineness(below.nodes, below.harmonics, FINEST * TWIN[0], GROWTH * TWIN[1])
         curve = sized_body(scene, Fineness(above.nodes, OF_CURVE), to_load)
-        stage, other = (Standing(sized_body(scene, how, to_load)) for how in (above, twin))
+        body, other = (sized_body(scene, how, to_load) for how in (above, twin))
         settings = {"nodes": above.nodes, "harmonics": counts(scene, above)}
-        return Rung(curve.curve, (stage,), settings, other if level else None)
+        return Rung(curve.curve, (standing(body),), settings, standing(other) if level else None)
 
     return climb(rtol, rung, to_load=to_load, most_rungs=2)
 

@@ -222,7 +222,7 @@ CONSTANTS = (
     Constant(halfspace.accuracy.finite_bodies, "LEAVE", folds_at_the_birth_of_contact),
     Constant(halfspace.accuracy.finite_bodies, "LEAST", folds_at_the_birth_of_contact),
     Constant(halfspace.elastic.operators, "OUTSIDE", folds_at_the_birth_of_contact, to_the_power),
-    Constant(halfspace.equilibrium.charts, "ASTRAY", folds_at_the_birth_of_contact),
+    Constant(halfspace.accuracy.finite_bodies, "ASTRAY", folds_at_the_birth_of_contact),
     Constant(halfspace.equilibrium.charts, "MOVES", folds_at_the_birth_of_contact),
     Constant(halfspace.equilibrium.contact, "widest_interval", pull_off_on_wide_cells, of_its_values),
     Constant(fem_adhesion.convergence, "REMAINING", estimates("hemisphere, sliding", "block under a sphere")),

@@ -7,7 +7,7 @@ import pytest
 from scenes import hemisphere, pair
 from scipy.optimize import brentq
 from skfem import ElementQuadP
-from truths import Standing, on
+from truths import on, standing
 
 import fem_adhesion
 from fem_adhesion.bodies.body import Discretisation
@@ -81,7 +81,7 @@ def traced(request):
     """A curve, and its events on elements of a higher degree, shorter cells of another growth and more rings."""
     path = fem_adhesion.trace(request.param, rtol=1e-5)
     finer = Discretisation(path.settings["events"]["degree"] + 2, finest=0.45, growth=2.1, rings=6)
-    return path, on(Standing(sized_body(request.param, finer)), path.stages[-1])
+    return path, on(standing(sized_body(request.param, finer)), path.stages[-1])
 
 
 def test_bonded_estimates_hold_a_tighter_solution_on_other_cells(traced):

@@ -19,11 +19,12 @@ from fem_adhesion.curve import terminal as curve_terminal
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves, Question
 from fem_adhesion.finite_strain import problem as finite_strain_problem
 from fem_adhesion.finite_strain import scene as finite_strain_scene
-from fem_adhesion.finite_strain.meshes import FARTHEST, AroundEvents, ScenesBody, Windows, fine_between
+from fem_adhesion.finite_strain.meshes import FARTHEST, ScenesBody, Windows, fine_between
 from fem_adhesion.finite_strain.scene import LITTLE, Stages, find_jumps, raised, trace
 from fem_adhesion.finite_strain.traction import Convention
+from halfspace.accuracy.stages import Standing
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import moved, placed, transfer, undeformed_radius
+from halfspace.equilibrium.charts import Chart, moved, placed, transfer, undeformed_radius
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.search import energy_released
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
@@ -238,14 +239,14 @@ def test_an_event_that_moved_on_its_mesh_keeps_it():
     """Else it might go from mesh to mesh without end."""
     interface = SimpleNamespace(contact_radius=lambda x: x)
 
-    def meshed(radius, _):
+    def problem(radius):
         return SimpleNamespace(interface=interface, surface_state=lambda x: x, made_for=radius)
 
-    stage = AroundEvents(SimpleNamespace(meshed=meshed), None)
+    stage = Standing(SimpleNamespace(length=0.1, standing=lambda radius: Chart(problem(radius), 1)), None)
     for radius, made_for in ((1.0, 1.0), (1.015, 1.015), (1.009, 1.0)):
-        mesh = stage.mesh(SimpleNamespace(problem=meshed(0, 0), point=SimpleNamespace(x=radius)))
+        mesh = stage(SimpleNamespace(problem=problem(0), point=SimpleNamespace(x=radius))).problem
         assert mesh.made_for == made_for
-        assert stage.mesh(SimpleNamespace(problem=mesh, point=SimpleNamespace(x=1.3))) is mesh
+        assert stage(SimpleNamespace(problem=mesh, point=SimpleNamespace(x=1.3))).problem is mesh
 
 
 # --- its accuracy ---
@@ -362,7 +363,7 @@ def test_an_edge_that_makes_the_equations_ill_posed_is_refused_before_work(
 def test_meshes_of_events_are_as_much_finer_as_the_surface_is_softened(traction, left):
     """At tabor 3, R/eps 300 and degree 4 that leaves a fifth of the error in the approach of the pull-off."""
     stages = Stages(scene(3.0, 300.0, traction=traction))
-    assert stages.around(5).body.length == pytest.approx(left * stages.windows(4).body.length, rel=1e-3)
+    assert stages.body(5).length == pytest.approx(left * stages.windows(4).body.length, rel=1e-3)
 
 
 @pytest.mark.parametrize(("radius_ratio", "told"), [(38.0, True), (50.0, False)])
@@ -478,7 +479,7 @@ def test_where_the_surface_stress_fades_forces_and_load_are_still_derivatives_of
 def outside(path, asked, how):
     """Numbers of a path's events that are farther from those on other meshes than estimated."""
     body = ScenesBody(asked, how)
-    stage, found = AroundEvents(body, Windows(body)), []
+    stage, found = Standing(body, Windows(body)), []
     for name in ("pull_off", "jump_on", "jump_off", "zero_load"):
         event, state = path.events[name], path.stages[-1][name]
         truth = moved(state, stage(state).problem).point.observables

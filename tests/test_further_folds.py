@@ -25,7 +25,7 @@ from halfspace.accuracy.fold_birth import count_folds
 from halfspace.accuracy.stages import Rung, on_all
 from halfspace.accuracy.trace import _sized_body, half_space_charts, resolution_for, rings
 from halfspace.equilibrium import path as path_module
-from halfspace.equilibrium.charts import moved, trace_charts
+from halfspace.equilibrium.charts import Stage, moved, trace_charts
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import usual
 from halfspace.equilibrium.path import Steps
@@ -390,14 +390,14 @@ def test_folds_left_over_are_named_in_turn_as_least_and_largest_approaches(monke
 
 @pytest.mark.parametrize("error", [IllPosed("for any grid"), ContactTooWide("for any grid")])
 def test_a_jump_that_no_grid_has_ends_the_climb_for_what_it_is(error):
-    class Stage:
-        farther = together = None
+    class Refusing(Stage):
+        unknowns = 0
 
         def __call__(self, _):
             raise error
 
     with pytest.raises(type(error), match="for any grid"):
-        on_all({"jump_on": SimpleNamespace(problem=None)}, Stage())
+        on_all({"jump_on": SimpleNamespace(problem=None)}, Refusing())
 
 
 def test_a_contact_that_grows_wider_than_was_guessed_is_traced():

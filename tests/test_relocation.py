@@ -9,8 +9,10 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Block, Scene
 from halfspace import Coated
-from halfspace.equilibrium import charts, conditions, events
-from halfspace.equilibrium.charts import settled
+from halfspace.accuracy import finite_bodies
+from halfspace.accuracy.finite_bodies import AroundEvents
+from halfspace.equilibrium import conditions, events
+from halfspace.equilibrium.charts import Chart, settled
 from halfspace.equilibrium.conditions import Condition
 from halfspace.errors import NotConverged
 from halfspace.laws import Dlvo, PowerLaw
@@ -43,8 +45,6 @@ def test_no_gap_turns_negative_where_a_state_under_a_steep_profile_is_interpolat
 
 class Windows:
     """A stage whose charts, told by numbers, each have a window; events lie where they were solved for last."""
-
-    farther = together = None
 
     def __init__(self):
         self.charts = [SimpleNamespace(problem=SimpleNamespace(number=k)) for k in range(9)]
@@ -91,24 +91,19 @@ def test_an_event_that_always_lies_elsewhere_is_not_found():
 def test_what_a_chart_for_farther_off_tells_is_solved_for_again_on_that_made_for_it(monkeypatch):
     """The first chart leads astray from far off, by a half of the radius; the wide one does not know it as well."""
     interface, asked = SimpleNamespace(follows_contact=True), []
-    near, wide = (SimpleNamespace(interface=interface, name=name) for name in ("near", "wide"))
-
-    class Stage:
-        def __call__(self, _):
-            return SimpleNamespace(problem=near)
-
-        def farther(self, _):
-            return SimpleNamespace(problem=wide)
+    found_on, near, wide = (SimpleNamespace(interface=interface, name=name) for name in ("found on", "near", "wide"))
+    stage = AroundEvents(SimpleNamespace(around=lambda *_: Chart(wide, 1)))
+    stage.keep(0.9, 1.1, Chart(near, 1))
 
     def lying(radius, problem):
         return SimpleNamespace(point=SimpleNamespace(observables=np.array([0, 0, 0, radius])), problem=problem)
 
     def solve(event, problem):
         asked.append(problem.name)
-        return lying(1.5 if event.problem is None and problem is near else 1.01, problem)
+        return lying(1.5 if event.problem is found_on and problem is near else 1.01, problem)
 
-    monkeypatch.setattr(charts, "moved", solve)
-    assert charts.moved_near(Stage(), lying(1.0, None), near).problem is near
+    monkeypatch.setattr(finite_bodies, "moved", solve)
+    assert stage.moved(lying(1.0, found_on), near).problem is near
     assert asked == ["near", "wide", "near"]
 
 

@@ -204,7 +204,7 @@ def test_a_degree_more_leaves_a_tenth_where_the_attraction_of_a_block_ends_with_
     """A quarter, where cells that are long beside the equator carry the root in its profile."""
     (_, states), scene = small, Scene(1.0, profile=Sphere(6.0))
     event = states[-1]["jump_on"]
-    stages = [truths.Standing(sized_body(scene, Discretisation(degree))) for degree in (4, 5)]
+    stages = [truths.standing(sized_body(scene, Discretisation(degree))) for degree in (4, 5)]
     found = [moved(event, stage(event).problem).point.observables for stage in stages]
     fourth, fifth = (np.abs(observables - event.point.observables)[:3] for observables in found)
     assert np.all(fifth < fourth / 10)
@@ -227,10 +227,10 @@ def test_events_share_an_operator_within_its_window_alone(part, shared):
 def test_events_share_one_chart_where_that_takes_fewer_operators_than_one_for_each():
     """And far from the equator alone: near it the kernel is not smooth enough for few of them."""
     path = fem_adhesion.trace(Scene(3.0, Hemisphere(radius_ratio=1e4)), rtol=1e-5, to_load=0.5)
-    ((_, _, chart),) = [made for made in path.finest.charts if made[0]]
+    ((_, _, chart),) = [made for made in path.finest.made if made[0]]
     assert {e.problem for name, e in path.stages[-1].items() if e.problem.follows_contact} == {chart.problem}
     small = fem_adhesion.trace(Scene(2.0, Hemisphere(radius_ratio=5.0)), rtol=1e-5, to_load=0.5)
-    assert len([made for made in small.finest.charts if made[0]]) > 1
+    assert len([made for made in small.finest.made if made[0]]) > 1
 
 
 @pytest.mark.parametrize(("window", "level"), [(0.29, 0), (0.7, 0), (0.7, 1)])
@@ -262,7 +262,7 @@ def test_meshes_for_one_chart_have_the_same_cells(tabor, ratio):
 
 def test_an_event_that_moves_out_of_a_window_is_solved_for_on_an_operator_of_its_own():
     path = halfspace.trace(1.0, profile=Sphere(30.0), rtol=1e-2)
-    coarse, stage = path.stages[0]["pull_off"], replace(path.finest, window=1e-7, charts=[])
+    coarse, stage = path.stages[0]["pull_off"], replace(path.finest, window=1e-7, made=[])
     (found,) = on_all({"pull_off": coarse}, stage).values()
     before, after = (float(event.point.observables[CONTACT_RADIUS]) for event in (coarse, found))
     assert abs(found.problem.operator.scales.mean() - after) < 0.01 * abs(after - before)

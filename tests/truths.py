@@ -13,10 +13,9 @@ from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.finite_strain import meshes as finite_strain_meshes
 from fem_adhesion.finite_strain.scene import softening
 from fem_adhesion.harmonics import Fineness as Series
-from fem_adhesion.harmonics import Standing
 from fem_adhesion.harmonics import sized_body as series
-from halfspace.accuracy.finite_bodies import SizedBody
-from halfspace.accuracy.stages import Charted
+from halfspace.accuracy.finite_bodies import SizedBody, standing
+from halfspace.accuracy.stages import Charted, Standing
 from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.elastic import compliance
 from halfspace.elastic.layered import images_of, layered_panels
@@ -71,7 +70,7 @@ def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
     gap = between_spheres(float(np.sqrt(radius_ratio / tabor)), counter_radius)
     scales, outer = Scales(tabor, profile=gap), np.array([gap.end])
     return [
-        Standing(SizedBody(scales, partial(_panels, nodes), *how, outer, FlatCoordinate(), last * gap.end))
+        standing(SizedBody(scales, partial(_panels, nodes), *how, outer, FlatCoordinate(), last * gap.end))
         for nodes, *how, last in ((14, 0.45, 2.5, 1e-7), (16, 0.35, 2.2, 1e-8))
     ]
 
@@ -83,7 +82,7 @@ def layered(tabor, body):
     for nodes, finest, growth, far, spacing in hows:
         images = images_of(body, spacing)
         make, outer = partial(_layered_panels, images, nodes), np.array([far / np.sqrt(tabor)])
-        stages.append(Standing(SizedBody(Scales(tabor, body=body), make, finest, growth, outer, FlatCoordinate())))
+        stages.append(standing(SizedBody(Scales(tabor, body=body), make, finest, growth, outer, FlatCoordinate())))
     return stages
 
 
@@ -97,7 +96,7 @@ def _panels(nodes, lines):
 
 def elements(scene):
     """The body of a scene by finite elements of high degree."""
-    return [Standing(discretise.sized_body(scene, Discretisation(*how))) for how in ((8, 0.55, 2.0), (9, 0.5, 2.2))]
+    return [standing(discretise.sized_body(scene, Discretisation(*how))) for how in ((8, 0.55, 2.0), (9, 0.5, 2.2))]
 
 
 def finite_strain(scene):
@@ -105,7 +104,7 @@ def finite_strain(scene):
     finest = 1 - softening(scene)
     hows = ((7, 0.55 * finest, 2.2), (8, 0.45 * finest, 2.0))
     found = [finite_strain_meshes.ScenesBody(scene, Discretisation(*how)) for how in hows]
-    return [finite_strain_meshes.AroundEvents(body, finite_strain_meshes.Windows(body)) for body in found]
+    return [Standing(body, finite_strain_meshes.Windows(body)) for body in found]
 
 
 def along_at_finite_strain(scene):
@@ -116,4 +115,4 @@ def along_at_finite_strain(scene):
 def harmonics(scene):
     """The whole sphere by spherical harmonics, whose upper half is the hemisphere in the sliding grip."""
     hows = [Series(nodes, number, finest=0.35, growth=1.8) for nodes, number in ((13, 30.0), (15, 40.0))]
-    return [Standing(series(scene, how)) for how in hows]
+    return [standing(series(scene, how)) for how in hows]

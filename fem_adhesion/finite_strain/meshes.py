@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from skfem import ElementQuadP
@@ -17,6 +17,7 @@ from fem_adhesion.finite_strain.body import material_body
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.scene import Scene
+from halfspace.accuracy.stages import WhereAsked
 from halfspace.elastic import grid
 from halfspace.equilibrium.charts import Chart, undeformed_radius
 from halfspace.equilibrium.conditions import Located
@@ -31,8 +32,6 @@ Small slopes end before: `halfspace.equilibrium.contact.WIDEST`.
 WINDOW = 8
 """Fine cells in a mesh of the curve: more cost more unknowns, fewer more meshes."""
 
-NEARBY = 0.01  # relative difference of contact radii that one mesh of an event serves
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ScenesBody(Valued):
@@ -45,12 +44,21 @@ class ScenesBody(Valued):
     scene: Scene
     how: Discretisation
 
+    def standing(self, radius: float) -> Chart:
+        """Chart finest at a contact radius in beta."""
+        return replace(self.chart(radius, radius), until=np.inf)
+
+    def chart(self, inner: float, outer: float) -> Chart:
+        """Chart that serves contact radii between these."""
+        problem = self.meshed(inner, outer)
+        return Chart(problem, problem.body.unknowns, min(outer, self.farthest))
+
     def meshed(self, inner: float, outer: float) -> FiniteStrainProblem:
         """Discretise with cells that are fine for contact radii between these, as far as a contact may reach."""
         scene, R = self.scene, self.scene.sphere_radius
         how = replace(self.how, growth=scene.scales.growth(self.how.growth))
         ends, coordinate = layout_of(scene, how)
-        first, last = (coordinate.of(min(radius, FARTHEST * R)) for radius in (inner, outer))
+        first, last = (coordinate.of(min(radius, self.farthest)) for radius in (inner, outer))
         lines = fine_between(first, last, self.length, float(ends[0]), how.growth)
         space = Space(mesh_of(scene, lines, how), ElementQuadP(how.degree))
         exterior = with_interiors(FAR_FIELDS[scene.body.held](space, scene.poisson), space)
@@ -64,18 +72,21 @@ class ScenesBody(Valued):
         )
 
     @property
+    def farthest(self) -> float:
+        """Undeformed radius in beta up to which a contact may spread."""
+        return FARTHEST * self.scene.sphere_radius
+
+    @property
     def length(self) -> float:
         """Length in beta of the cells at the contact edge."""
         return finest_length(self.scene, self.how)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Windows(Valued):
-    """Charts for the whole curve, each fine for a window of contact radii, made when they are first asked for."""
+class Windows(WhereAsked):
+    """Charts for the whole curve, each fine for a window of contact radii."""
 
     body: ScenesBody
-    made: dict[int, Chart] = field(default_factory=dict, compare=False, repr=False)
-    farther = together = None
 
     def __iter__(self) -> Iterator[Chart]:
         """All of them in order."""
@@ -87,68 +98,16 @@ class Windows(Valued):
         return self._chart(min(int(radius / self._width), self._count - 1))
 
     def _chart(self, number: int) -> Chart:
-        if number not in self.made:
-            first, last = self._width * number, self._width * (number + 1)
-            problem = self.body.meshed(first, last)
-            self.made[number] = Chart(problem, problem.body.unknowns, min(last, self._farthest))
-        return self.made[number]
+        first, last = self._width * number, self._width * (number + 1)
+        return self.serving((first + last) / 2) or self.keep(first, last, self.body.chart(first, last))
 
     @property
     def _width(self) -> float:
         return WINDOW * self.body.length
 
     @property
-    def _farthest(self) -> float:
-        return FARTHEST * self.body.scene.sphere_radius
-
-    @property
     def _count(self) -> int:
-        return int(np.ceil(self._farthest / self._width))
-
-    @property
-    def everywhere(self) -> Windows:
-        """The same."""
-        return self
-
-    @property
-    def unknowns(self) -> int:
-        """Most unknowns of a mesh made so far."""
-        return max(chart.unknowns for chart in self.made.values())
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class AroundEvents(Valued):
-    """A discretisation on which every event has a mesh made for its own contact radius.
-
-    `everywhere` is for the points of a curve.
-    """
-
-    body: ScenesBody
-    everywhere: Windows
-    made: list[tuple[float, FiniteStrainProblem]] = field(default_factory=list, compare=False, repr=False)
-    farther = together = None
-
-    def __call__(self, event: Located) -> Chart:
-        """Chart for an event."""
-        problem = self.mesh(event)
-        return Chart(problem, problem.body.unknowns)
-
-    def mesh(self, event: Located) -> FiniteStrainProblem:
-        """Mesh for an event, by its contact radius, unless one made before will do."""
-        for _, problem in self.made:  # on its own an event may have moved by more than that serves
-            if problem is event.problem:
-                return problem
-        radius = float(np.nan_to_num(undeformed_radius(event.problem, event.point)))
-        for made_for, problem in self.made:
-            if abs(radius - made_for) <= NEARBY * radius:
-                return problem
-        self.made.append((radius, self.body.meshed(radius, radius)))
-        return self.made[-1][1]
-
-    @property
-    def unknowns(self) -> int:
-        """Most unknowns of a mesh made so far."""
-        return max(problem.body.unknowns for _, problem in self.made)
+        return int(np.ceil(self.body.farthest / self._width))
 
 
 def fine_between(inner: float, outer: float, finest: float, end: float, growth: float) -> Array:

@@ -12,17 +12,17 @@ import numpy as np
 
 from fem_adhesion.bodies.body import FINEST, GROWTH, Discretisation
 from fem_adhesion.discretise import CURVE_DEGREE, sized_body
-from fem_adhesion.finite_strain.meshes import AroundEvents, ScenesBody, Windows
+from fem_adhesion.finite_strain.meshes import ScenesBody, Windows
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.refinement import ascend, climb
-from halfspace.accuracy.stages import Rung
+from halfspace.accuracy.stages import Rung, Standing
 from halfspace.accuracy.trace import TWIN
 from halfspace.equilibrium.charts import COMPRESSION, metric_for, moved, trace_charts
 from halfspace.equilibrium.conditions import Located, relocate
-from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import REMAINING, ErrorRule, Event, usual
 from halfspace.equilibrium.path import Segment
@@ -88,18 +88,19 @@ class Stages(Valued):
         curve = partial(iter, windows)
         if not level:
             return Rung(curve, (windows,), asdict(windows.body.how))
-        stages = self.around(degree - 1, *TWIN[:2]), self.around(degree)
+        bodies = self.body(degree - 1, *TWIN[:2]), self.body(degree)
+        stages = tuple(Standing(body, self.windows(body.how.degree)) for body in bodies)
         left = REMAINING / self.scene.scales.gradual
-        return Rung(curve, stages, asdict(stages[1].body.how), rule=ErrorRule(left, last=OTHER_CELLS))
+        return Rung(curve, stages, asdict(bodies[1].how), rule=ErrorRule(left, last=OTHER_CELLS))
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""
         return self.along.setdefault(degree, Windows(ScenesBody(self.scene, Discretisation(degree))))
 
-    def around(self, degree: int, finest: float = 1.0, growth: float = 1.0) -> AroundEvents:
-        """For events, on cells of other lengths and growth by these factors: stiff surfaces have wide spikes."""
+    def body(self, degree: int, finest: float = 1.0, growth: float = 1.0) -> ScenesBody:
+        """For events, in cells of other lengths and growth by these factors: stiff surfaces have wide spikes."""
         how = Discretisation(degree, finest * (1 - softening(self.scene)) * FINEST, growth * GROWTH)
-        return AroundEvents(ScenesBody(self.scene, how), self.windows(degree))
+        return ScenesBody(self.scene, how)
 
 
 def _lowest_degree(rtol: float) -> int:
@@ -134,10 +135,11 @@ def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
     """
     _require(scene, rtol, COMPRESSION)
     stages, lowest = Stages(scene), _lowest_degree(rtol)
-    start, rung = stages.around(lowest), partial(stages.rung, lowest)
+    body, rung = stages.body(lowest), partial(stages.rung, lowest)
     found = {name: event for name, event in find_events(_linear_curve(scene, LITTLE)).items() if name in JUMPS}
     with _cause_told(scene):
-        state = {name: raised(event, start.mesh(event)) for name, event in found.items()}
+        radii = {name: float(np.nan_to_num(event.point.observables[CONTACT_RADIUS])) for name, event in found.items()}
+        state = {name: raised(event, body.meshed(radii[name], radii[name])) for name, event in found.items()}
         ascent = ascend(state, rung(0), rtol, rung, range(1, 1 + MOST_RUNGS))
         for event in ascent.chains[0][-1].values():
             event.problem.require_resolution(event.point.x)

@@ -9,18 +9,22 @@ where the interpolation is as good as exact: whichever takes fewer operators.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
+from halfspace.accuracy.stages import Charted, Standing, WhereAsked
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.operators import Interpolated, MovingGrid, SurfaceCoordinate, chebyshev_radii
-from halfspace.equilibrium.charts import COMPRESSION, Chart
+from halfspace.equilibrium.charts import COMPRESSION, Chart, Stage, moved
 from halfspace.equilibrium.conditions import Located
-from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, ContactProblem, contact_of
+from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, contact_of
+from halfspace.equilibrium.newton import Traceable
+from halfspace.errors import NotConverged
 from halfspace.profiles import Surface
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued
@@ -93,8 +97,12 @@ class SizedBody(Valued):
 
     def centred(self) -> Chart:
         """Chart fine on the axis."""
-        operator, unknowns = self.make(self.lines())
-        return Chart(contact_of(self.scales, operator), unknowns, self.until)
+        return replace(self.standing(0.0), until=self.until)
+
+    def standing(self, radius: float) -> Chart:
+        """Chart that stands still, finest at a contact radius in beta, or on the axis."""
+        operator, unknowns = self.make(self.lines(self.coordinate.of(radius)))
+        return Chart(contact_of(self.scales, operator), unknowns)
 
     def following(self, moving: MovingGrid, scales: Array) -> Chart:
         """Chart that follows the contact edge, from operators at some contact radii."""
@@ -134,6 +142,11 @@ class SizedBody(Valued):
         fixed = np.concatenate([0 * inner, end * outside[1:], self.outer[1:]])
         moving = np.concatenate([inner, 1 - outside[1:], 0 * self.outer[1:]])
         return MovingGrid(fixed, moving, self.coordinate)
+
+
+def standing(body: SizedBody) -> Standing:
+    """Stage on which every event has cells of its own."""
+    return Standing(body, AlongCurve(body))
 
 
 def radii_along(until: float, widest: float, apart: float = APART) -> Array:
@@ -193,7 +206,7 @@ def operators_across(body: SizedBody, rtol: float, level: int, radius: float, wi
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AroundEvents(Valued):
+class AroundEvents(WhereAsked):
     """Stage of a ladder on which events have operators made for their contact radii, all of them together or each.
 
     An event may leave the chart that stands on the axis earlier than the curve, which gets along with one for all
@@ -209,44 +222,43 @@ class AroundEvents(Valued):
     count: int = AROUND
     leave: float = np.inf
     across: Callable[[float, float], int] | None = None
-    charts: list[tuple[float, float, Chart]] = field(default_factory=list, compare=False)
 
-    def together(self, events: Iterable[Located]) -> None:
+    def prepare(self, events: Iterable[Located]) -> None:
         """Make one chart for all these events, where one for each takes more operators."""
-        radii = sorted({radius for event in events if (radius := self._radius(event)) and not self._known(radius)})
+        radii = sorted({radius for event in events if (radius := self._radius(event)) and not self.serving(radius)})
         if not self.across or not radii:
             return
         alone = 1 + sum(b > a * (1 + self.window) for a, b in pairwise(radii))
         middle, window = float(np.sqrt(radii[0] * radii[-1])), float(np.log(radii[-1] / radii[0])) / 2 + BESIDE
         if (count := self.across(middle, window)) < alone * self.count:
-            self._add(middle, window, count)
+            self._made_around(middle, window, count)
 
     def __call__(self, event: Located) -> Chart:
         """Chart for an event, made unless one made before will do."""
         radius = self._radius(event)
-        return self._known(radius) or self._add(radius, self.window, self.count)
+        return self.serving(radius) or self._made_around(radius, self.window, self.count)
 
     def _radius(self, event: Located) -> float:
         """Contact radius for which an event has operators; 0 on the chart that stands on the axis."""
         radius = float(event.point.observables[CONTACT_RADIUS])
-        found_following = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
+        found_following = event.problem.interface.follows_contact
         return radius if found_following or radius > self.leave * self.body.length else 0.0
 
-    def _known(self, radius: float) -> Chart | None:
-        """Chart made before that serves a radius."""
-        for middle, window, chart in self.charts:
-            if radius == middle or (radius and middle and abs(np.log(radius / middle)) <= window):
-                return chart
-        return None
-
-    def _add(self, radius: float, window: float, count: int) -> Chart:
+    def _made_around(self, radius: float, window: float, count: int) -> Chart:
         chart = self.body.around(radius, window, count) if radius else self.body.centred()
-        self.charts.append((radius, window, chart))
-        return chart
+        return self.keep(radius * np.exp(-window), radius * np.exp(window), chart)
 
-    def farther(self, event: Located) -> Chart:
-        """Chart for an event in contact that may lie farther from where it was found than the window is wide."""
-        return self.body.around(float(event.point.observables[CONTACT_RADIUS]), WIDE, WIDELY)
+    def moved(self, event: Located, problem: Traceable) -> Located:
+        """Solve for an event on a chart made for where it was found, or if that leads astray on one for farther off."""
+        if not problem.interface.follows_contact:
+            return moved(event, problem)
+        before = float(event.point.observables[CONTACT_RADIUS])
+        with suppress(NotConverged):
+            found = moved(event, problem)
+            if abs(found.point.observables[CONTACT_RADIUS] - before) <= ASTRAY * before:
+                return found
+        found = moved(event, self.body.around(before, WIDE, WIDELY).problem)
+        return moved(found, problem) if self(found).problem is self(event).problem else found  # from nearer
 
     @property
     def everywhere(self) -> AlongCurve:
@@ -254,34 +266,29 @@ class AroundEvents(Valued):
         apart = 1 + (CLOSER - 1) * self.window / WINDOW * 2.0 ** (AROUND - self.count)
         return AlongCurve(self.body, apart)
 
-    @property
-    def unknowns(self) -> int:
-        """Most unknowns of a chart made so far."""
-        return max(chart.unknowns for *_, chart in self.charts)
+
+ASTRAY = 0.05  # of a contact radius: a leap in which a chart made for the first tells nothing about the second
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AlongCurve(Valued):
+class AlongCurve(Stage):
     """Charts of a body for every point of its curve, made when they are first asked for.
 
     `apart` is the ratio of the radii between which the operator is interpolated.
     """
 
     body: SizedBody
-    apart: float
-    farther = None
+    apart: float = APART
 
     @cached_property
-    def charts(self) -> tuple[Chart, Chart]:
-        """Chart centred on the axis, and that which follows the contact."""
-        return self.body.curve(self.apart)
+    def _made(self) -> Charted:
+        return Charted(self.body.curve(self.apart))
 
     def __call__(self, event: Located) -> Chart:
         """Chart for a point of a curve."""
-        follows = isinstance(event.problem, ContactProblem) and event.problem.follows_contact
-        return self.charts[1 if follows else 0]
+        return self._made(event)
 
     @property
     def unknowns(self) -> int:
         """Unknowns of the larger chart."""
-        return max(chart.unknowns for chart in self.charts)
+        return self._made.unknowns

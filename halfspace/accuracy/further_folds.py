@@ -10,7 +10,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from halfspace.accuracy.stages import Rung, Stage, State, moved_to
+from halfspace.accuracy.stages import Rung, State, moved_to
+from halfspace.equilibrium.charts import Stage
 from halfspace.equilibrium.conditions import FOLD, Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.events import EVENTS, Event, Unconfirmed, numbered

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from functools import partial
 
 from halfspace.accuracy.further_folds import Completed, FurtherFolds
-from halfspace.accuracy.stages import Charted, FoldsLost, Rung, Stage, State, on_all
-from halfspace.equilibrium.charts import COMPRESSION, placed, trace_charts
+from halfspace.accuracy.stages import Charted, FoldsLost, Rung, State, on_all
+from halfspace.equilibrium.charts import COMPRESSION, Stage, placed, trace_charts
 from halfspace.equilibrium.conditions import ROUND_OFF, STEEPEST
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import FOLDS, Event, Tolerance

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, field
 from typing import Protocol
 
-from halfspace.equilibrium.charts import Chart, Finest, moved_near, settled
+from halfspace.equilibrium.charts import Chart, Stage, settled, undeformed_radius
 from halfspace.equilibrium.conditions import Located
-from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.events import FOLDS, USUAL, ErrorRule, Event, estimate_event, is_event
 from halfspace.errors import ContactTooWide, IllPosed, NotConverged
 from halfspace.values import Valued
@@ -18,44 +16,85 @@ Charts = Sequence[Chart]
 State = Mapping[str, Located]
 
 
-class Stage(Finest, Protocol):
-    """One discretisation on which events, found on another, are solved for again."""
-
-    @property
-    def together(self) -> Callable[[Iterable[Located]], None] | None:
-        """Makes a chart that serves all these events, where that is less work; None if the charts are there."""
-        ...
-
-    @property
-    def everywhere(self) -> Finest:
-        """The same for every point of a curve, if charts for events do not serve these."""
-        ...
-
-
 @dataclass(frozen=True, eq=False, repr=False)
-class Charted(Valued):
+class Charted(Stage):
     """The same charts for every event, one for those on a grid that stands still, one for those on one that follows.
 
     The chart for the grid that follows the contact is the last.
     """
 
     charts: Charts
-    farther = together = None
 
     def __call__(self, event: Located) -> Chart:
         """Chart of the event's kind."""
-        source = event.problem
-        return self.charts[-1 if isinstance(source, ContactProblem) and source.follows_contact else 0]
-
-    @property
-    def everywhere(self) -> Finest:
-        """The same charts."""
-        return self
+        return self.charts[-1 if event.problem.interface.follows_contact else 0]
 
     @property
     def unknowns(self) -> int:
         """Unknowns of the largest chart."""
         return max(chart.unknowns for chart in self.charts)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WhereAsked(Stage):
+    """A stage whose charts are made when first asked for, each with the contact radii from and to which it serves."""
+
+    made: list[tuple[float, float, Chart]] = field(default_factory=list, compare=False, repr=False, kw_only=True)
+
+    def serving(self, radius: float) -> Chart | None:
+        """Chart made before that serves a contact radius in beta."""
+        return next((chart for least, most, chart in self.made if least <= radius <= most), None)
+
+    def keep(self, least: float, most: float, chart: Chart) -> Chart:
+        """Keep a chart that serves contact radii between these."""
+        self.made.append((least, most, chart))
+        return chart
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a chart made so far."""
+        return max(chart.unknowns for *_, chart in self.made)
+
+
+class Gridded(Protocol):
+    """A body that a grid can be made on for any contact radius."""
+
+    @property
+    def length(self) -> float:
+        """Length in beta of the cells at the contact edge."""
+        ...
+
+    def standing(self, radius: float) -> Chart:
+        """Chart that stands still, its cells finest at a contact radius in beta, or on the axis."""
+        ...
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Standing(WhereAsked):
+    """A stage on which every event has a grid of its own that stands still, finest where its contact ends.
+
+    `along` is for the points of a curve.
+    """
+
+    body: Gridded
+    along: Stage
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event, made unless one made before will do."""
+        for *_, chart in self.made:  # on its own an event may have moved by more than that serves
+            if chart.problem is event.problem:
+                return chart
+        radius, near = undeformed_radius(event.problem, event.point), NEAR * self.body.length
+        radius = radius if radius > self.body.length else 0.0
+        return self.serving(radius) or self.keep(radius - near, radius + near, self.body.standing(radius))
+
+    @property
+    def everywhere(self) -> Stage:
+        """That for the points of a curve."""
+        return self.along
+
+
+NEAR = 0.1  # of the finest cell, that a contact may end beside the place for which a grid was made
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -94,8 +133,7 @@ class FoldsLost(NotConverged):
 
 def on_all(state: State, stage: Stage) -> State:
     """Solve for all events again on a stage."""
-    if stage.together:
-        stage.together(state.values())
+    stage.prepare(state.values())
     return {name: _found_again(name, event, stage) for name, event in state.items()}
 
 
@@ -110,4 +148,4 @@ def _found_again(name: str, event: Located, stage: Stage) -> Located:
 
 def moved_to(event: Located, stage: Stage) -> Located:
     """Solve for an event again, unless it has been on this stage."""
-    return event if stage(event).problem is event.problem else settled(event, stage, partial(moved_near, stage))
+    return event if stage(event).problem is event.problem else settled(event, stage, stage.moved)

@@ -64,15 +64,8 @@ class ElasticOperator(Valued):
         """Return the body with other cells beyond its extent, see `to_infinity`."""
         return to_infinity(self, nodes, reach)
 
-    @property
-    def follows_contact(self) -> bool:
-        """False: this grid stands still; see `halfspace.elastic.operators` for those that do not."""
-        return False
-
-    @property
-    def least_radius(self) -> float:
-        """Least contact radius that it serves: any, as far as its cells are fine enough."""
-        return 0.0
+    # This grid stands still, and serves any contact radius, as far as its cells are fine enough.
+    follows_contact, alike, least_radius = False, True, 0.0
 
     @property
     def edge_row(self) -> Array:

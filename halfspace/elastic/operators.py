@@ -29,6 +29,11 @@ class Operator(Protocol):
         ...
 
     @property
+    def alike(self) -> bool:
+        """Whether the cells on both sides of the contact edge are, as on a grid that stands still or is scaled."""
+        ...
+
+    @property
     def least_radius(self) -> float:
         """Least contact radius that it serves, in beta."""
         ...
@@ -78,7 +83,7 @@ class Homogeneous(Valued):
 
     unit: ElasticOperator
     _latest: _Latest[ElasticOperator] = field(default_factory=_Latest, compare=False, repr=False, kw_only=True)
-    follows_contact = True
+    follows_contact = alike = True
 
     @property
     def least_radius(self) -> float:
@@ -250,7 +255,7 @@ class Interpolated(Valued):
     operators: Sequence[ElasticOperator]
     grid: MovingGrid
     _latest: _Latest[_AtScale] = field(default_factory=_Latest, compare=False, repr=False)
-    follows_contact = True
+    follows_contact, alike = True, False
 
     @property
     def least_radius(self) -> float:

@@ -7,10 +7,9 @@ a single chart.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -35,22 +34,29 @@ class Chart(Valued):
     until: float = np.inf
 
 
-class Finest(Protocol):
-    """The finest discretisation that a path was computed on."""
+class Stage(Valued, ABC):
+    """A discretisation by charts on which events and points of a path, found on another, are solved for again."""
 
+    @abstractmethod
     def __call__(self, event: Located) -> Chart:
-        """Chart for an event."""
-        ...
+        """Chart for an event, or for a point of a path."""
 
     @property
-    def farther(self) -> Callable[[Located], Chart] | None:
-        """Chart for an event that lies farther from where it was found than charts serve; None if these serve all."""
-        ...
-
-    @property
+    @abstractmethod
     def unknowns(self) -> int:
-        """Unknowns of its largest chart."""
-        ...
+        """Most unknowns of a chart made so far."""
+
+    @property
+    def everywhere(self) -> Stage:
+        """The same for every point of a path: itself, unless its charts are for events."""
+        return self
+
+    def prepare(self, events: Iterable[Located]) -> None:
+        """Make one chart for all these events, where that is less work than one for each; here they are made."""
+
+    def moved(self, event: Located, problem: Traceable) -> Located:
+        """Solve for an event again on a chart made for where it was found."""
+        return moved(event, problem)
 
 
 def metric_for(problem: Traceable) -> Metric:
@@ -146,7 +152,7 @@ def _deflection_beyond(source: ContactProblem, x: Array, radii: Array) -> Array:
     return np.asarray(source.tabor * source.load(x) / (np.pi * radii))
 
 
-def placed(finest: Finest, problem: Traceable, point: Point) -> tuple[Traceable, Point]:
+def placed(finest: Stage, problem: Traceable, point: Point) -> tuple[Traceable, Point]:
     """Solve for a point of the path again on another discretisation, in the plane across the path at that point."""
     target = finest(Located(FOLD, problem, point, 1.0)).problem
     if target is problem:
@@ -161,20 +167,7 @@ def moved(event: Located, problem: Traceable) -> Located:
     return relocate(event, problem, start, metric_for(problem))
 
 
-def moved_near(stage: Finest, event: Located, problem: Traceable) -> Located:
-    """Solve for an event on a chart made for where it was found, or where that leads astray on one for farther off."""
-    if stage.farther is None or not problem.interface.follows_contact:
-        return moved(event, problem)
-    with suppress(NotConverged):
-        found = moved(event, problem)
-        before, after = (e.point.observables[CONTACT_RADIUS] for e in (event, found))
-        if abs(after - before) <= ASTRAY * before:
-            return found
-    found = moved(event, stage.farther(event).problem)
-    return moved(found, problem) if stage(found).problem is stage(event).problem else found  # from nearer
-
-
-def settled(state: Located, stage: Finest, solve: Callable[[Located, Traceable], Located]) -> Located:
+def settled(state: Located, stage: Stage, solve: Callable[[Located, Traceable], Located]) -> Located:
     """Solve for a state on a stage, and once more wherever it comes to lie in the reach of another chart."""
     found, tried = state, set[int]()
     for _ in range(MOVES + 1):
@@ -186,5 +179,4 @@ def settled(state: Located, stage: Finest, solve: Callable[[Located, Traceable],
     raise NotConverged("an event lies elsewhere on every grid that is made around it; take a smaller rtol")
 
 
-ASTRAY = 0.05  # of a contact radius: a leap in which a chart made for the first tells nothing about the second
 MOVES = 5  # of a state from chart to chart, after which the last must be one made for where it lies

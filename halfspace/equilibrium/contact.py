@@ -23,7 +23,7 @@ from numpy.polynomial.legendre import legvander
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.elastic.operators import Interpolated, Operator
+from halfspace.elastic.operators import Operator
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
@@ -269,8 +269,8 @@ class ContactProblem(Valued):
         cells = {body.cell_of(radius * (1 + side)) for side in (-1e-9, 1e-9)}
         slope = abs(body.continuous(radius)[1] @ x[:-2])
         beside = [self._coefficients(x, cell)[-2:][0] for cell in cells]
-        alike = not isinstance(self.operator, Interpolated)
-        return np.array([gap, (np.prod(beside) ** (1 / len(beside)) if alike else max(beside)) / slope])
+        uncertain = np.prod(beside) ** (1 / len(beside)) if self.operator.alike else max(beside)
+        return np.array([gap, uncertain / slope])
 
     def untold(self, x: Array) -> Array:
         """Errors of the observables that the changes along a single chain of discretisations may not tell, (4,)."""

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from halfspace.equilibrium.charts import Finest, metric_for
+from halfspace.equilibrium.charts import Stage, metric_for
 from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.events import (
@@ -81,11 +81,11 @@ class EquilibriumPath(Valued):
     events: Mapping[str, Event]
     energy: Estimate
     stages: tuple[Mapping[str, Located], ...]
-    finest: Finest
+    finest: Stage
     seconds: float = field(compare=False)
     settings: Mapping[str, Any] = field(default_factory=dict)
-    below: Finest | None = None
-    twin: Finest | None = None
+    below: Stage | None = None
+    twin: Stage | None = None
     remaining: float = REMAINING
     ways: Ways = ()
     margin: Estimate | None = None

@@ -21,7 +21,7 @@ from types import MappingProxyType
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import Finest, metric_for, moved_near, settled, transfer
+from halfspace.equilibrium.charts import Stage, metric_for, settled, transfer
 from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -241,13 +241,13 @@ def _landing(problem: Traceable, start: Array, take_off: Located, compliance: fl
     return Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
 
 
-def _refined(states: _States, stage: Finest, compliance: float) -> _States:
+def _refined(states: _States, stage: Stage, compliance: float) -> _States:
     """Both states of a jump on another discretisation."""
 
     def leave(state: Located, problem: Traceable) -> Located:
         wide = _wide_enough(state, problem)
         there = next((known for known in states.known if known.problem is wide), None)
-        return there or moved_near(stage, state, wide)
+        return there or stage.moved(state, wide)
 
     def land(state: Located, problem: Traceable) -> Located:
         wide = _wide_enough(state, problem)
