@@ -3,8 +3,7 @@
 from types import SimpleNamespace
 
 from fem_adhesion import Scene
-from fem_adhesion.crosscheck.comparison import SOLVERS, Row
-from fem_adhesion.crosscheck.study import Case, Failure
+from fem_adhesion.crosscheck.comparison import SOLVERS, Case, Failure, Row
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Event
 from halfspace.values import Estimate

@@ -13,9 +13,7 @@ from fem_adhesion import Block, HalfSpace, Scene, cli, convergence, discretise
 from fem_adhesion.common.jobs import WorkerDied
 from fem_adhesion.crosscheck import comparison, references
 from fem_adhesion.crosscheck import study as crosscheck
-from fem_adhesion.crosscheck.comparison import Row
-from fem_adhesion.crosscheck.record import crosscheck_tables
-from fem_adhesion.crosscheck.study import Case, Failure, Part
+from fem_adhesion.crosscheck.comparison import Case, Failure, Part, Row, crosscheck_tables
 from fem_adhesion.elasticity import space
 from halfspace import limits
 from halfspace.equilibrium.contact import ContactProblem

@@ -11,11 +11,11 @@ from rich.console import Console
 
 from fem_adhesion import cli
 from fem_adhesion.crosscheck import study as crosscheck
-from fem_adhesion.crosscheck.comparison import Row
-from fem_adhesion.crosscheck.record import (
+from fem_adhesion.crosscheck.comparison import (
     EVENT_NAMES,
     STYLES,
     VERDICTS,
+    Row,
     columns,
     crosscheck_record,
     crosscheck_table,

@@ -21,8 +21,7 @@ from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.page import Table
 from fem_adhesion.common.terminal import WIDE, Column, Fitted, Flow, make_console, page, prose
 from fem_adhesion.crosscheck import study as crosscheck
-from fem_adhesion.crosscheck.comparison import Row
-from fem_adhesion.crosscheck.record import cells, columns, crosscheck_tables
+from fem_adhesion.crosscheck.comparison import Row, cells, columns, crosscheck_tables
 from fem_adhesion.scene import Scene
 from halfspace.values import Estimate
 

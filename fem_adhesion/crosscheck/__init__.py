@@ -1,8 +1,8 @@
 """Do the two solvers agree? The command ``compare``.
 
-In the order of reading: `comparison` (two numbers with errors, a budget, a verdict), `study` (operators, residuals,
-events; of spheres, `references`), `from_scratch` (what both share, against `fem_adhesion.weak_form`), `record`
-(with the tables), `command`.
+In the order of reading: `comparison` (two numbers with errors, a budget, a verdict; what is told of them), `study`
+(operators, residuals, events; of spheres, `references`), `from_scratch` (what both share, against
+`fem_adhesion.weak_form`), `command`.
 
 How independent the two solvers are:
 

@@ -15,7 +15,7 @@ from fem_adhesion.common.scene_options import POISSON, add_body, add_other_body,
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from fem_adhesion.crosscheck.study import Case, Failure
+    from fem_adhesion.crosscheck.comparison import Case, Failure
     from fem_adhesion.scene import Scene
 
 
@@ -52,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
     console = console_beside(options.json)
     with written(options.json) as file:
         cases = _compare_with_progress(scenes, options, console)
-        from fem_adhesion.crosscheck.record import crosscheck_record
+        from fem_adhesion.crosscheck.comparison import crosscheck_record
 
         record = crosscheck_record(cases)
         if file:
@@ -78,8 +78,7 @@ def _compare_with_progress(
 
 
 def _show(case: Case | Failure, console: Console) -> None:
-    from fem_adhesion.crosscheck.record import crosscheck_tables, told
-    from fem_adhesion.crosscheck.study import Case
+    from fem_adhesion.crosscheck.comparison import Case, crosscheck_tables, told
 
     if isinstance(case, Case):
         for table in crosscheck_tables(case):

@@ -1,13 +1,20 @@
-"""One quantity from two sources, and whether they agree on it."""
+"""What a comparison finds: quantities from two sources, whether they agree, the record, and tables."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
 
+from fem_adhesion.common.facts import plain, versions
+from fem_adhesion.scene import Scene
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import Event, is_fold, tolerance_told
 from halfspace.values import Estimate
+
+if TYPE_CHECKING:
+    from fem_adhesion.common.terminal import Fitted
 
 Verdict = Literal["agree", "disagree", "inconclusive"]
 Pair = tuple[str, str]
@@ -61,3 +68,190 @@ def worst(verdicts: Sequence[Verdict]) -> Verdict:
         if bad in verdicts:
             return bad
     return "agree"
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A scene that a solver could not solve, with the reason and the rows that need no solution.
+
+    It does not stop the others. A row that disagrees says what is wrong with the solver.
+    """
+
+    scene: Scene
+    reason: str
+    rows: tuple[Row, ...] = ()
+
+    @property
+    def shown_by(self) -> tuple[str, ...]:
+        """Rows that disagree."""
+        return tuple(row.quantity for row in self.rows if row.verdict == "disagree")
+
+
+@dataclass(frozen=True)
+class Case:
+    """Solutions of one scene, by the names of their solvers, and their comparison."""
+
+    scene: Scene
+    solutions: Mapping[str, EquilibriumPath]
+    rows: tuple[Row, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """The worst of the rows' verdicts."""
+        return worst([row.verdict for row in self.rows])
+
+
+# What is told of it: a record for machines, tables for the terminal
+
+VERDICTS = ("failed", "disagree", "inconclusive", "agree")  # worst first
+EVENT_KEYS = ("approach", "load", "central_gap", "contact_radius", "approach_error", "load_error")
+EVENT_NAMES = ("pull_off", "jump_on", "jump_off")
+
+
+def verdict_of(case: Case | Failure) -> str:
+    """Verdict of a case, ``failed`` if it was not solved."""
+    return "failed" if isinstance(case, Failure) else case.verdict
+
+
+def told(failure: Failure) -> str:
+    """Why a case has no solution, and which rows show what is wrong."""
+    return "; ".join([failure.reason, *(f"{quantity} disagrees" for quantity in failure.shown_by)])
+
+
+def overall_verdict(cases: Sequence[Case | Failure]) -> str:
+    """The worst verdict of all."""
+    return min(map(verdict_of, cases), key=VERDICTS.index)
+
+
+def crosscheck_record(cases: Sequence[Case | Failure]) -> dict[str, Any]:
+    """All cases with verdict and versions, ready for JSON: no NaN, an event that does not exist is absent."""
+    told_of = [plain(_case(case)) for case in cases]
+    return {"verdict": overall_verdict(cases), "versions": versions(), "cases": told_of}
+
+
+def _case(case: Case | Failure) -> dict[str, Any]:
+    scene = {"tabor": case.scene.tabor, "poisson": case.scene.poisson, "verdict": verdict_of(case)}
+    if isinstance(case, Failure):
+        return {**scene, "reason": told(case), "comparison": [_row(row) for row in case.rows]}
+    solutions = {KEYS[name]: _solution(path) for name, path in case.solutions.items()}
+    return {**scene, **solutions, "comparison": [_row(row) for row in case.rows]}
+
+
+KEYS = {"half-space": "halfspace", "harmonics": "harmonics", "finite elements": "finite_element"}
+
+
+def _solution(path: EquilibriumPath) -> dict[str, Any]:
+    return {
+        "events": {name: _event(event) for name, event in path.events.items() if name in EVENT_NAMES or is_fold(name)},
+        "jumps": path.jumps,
+        "rtol": path.rtol,
+        "missed": path.missed,
+        "unknowns": path.unknowns,
+        "seconds": path.seconds,
+        "settings": path.settings,
+    }
+
+
+def _event(event: Event) -> dict[str, float]:
+    return {key: getattr(event, key) for key in EVENT_KEYS}
+
+
+def _row(row: Row) -> dict[str, Any]:
+    return {
+        "quantity": row.quantity,
+        "unit": row.unit,
+        "between": row.between,
+        "first": row.first and row.first.value,
+        "second": row.second and row.second.value,
+        "difference": row.difference,
+        "first_error": row.first and row.first.error,
+        "second_error": row.second and row.second.error,
+        "error": row.error,
+        "budget": row.budget,
+        "verdict": row.verdict,
+    }
+
+
+SHORT = {
+    "half-space": "hs",
+    "harmonics": "ha",
+    "finite elements": "fe",
+    "weak form": "wf",
+    "closed form": "cf",
+}
+WORDS = ("quantity", "unit", "verdict")  # columns without numbers
+STYLES = {"agree": "green", "disagree": "bold red", "inconclusive": "yellow"}
+
+
+def columns(between: Pair = SOLVERS) -> tuple[str, ...]:
+    """Headers of a table of quantities from two sources."""
+    errors = (f"error ({SHORT[source]})" for source in between)
+    return ("quantity", "unit", *between, "difference", *errors, "budget", "verdict")
+
+
+RANKS = (0, 1, 1, 1, 2, 3, 3, 4, 0)  # of the columns
+
+
+def crosscheck_tables(case: Case) -> list[Fitted]:
+    """Tables of a case, one for each pair of sources; the first says what was compared and what it cost."""
+    style = STYLES[case.verdict]
+    *parts, last = scene_parts(case.scene)
+    title = [*parts, f"{last}: [{style}]{case.verdict}[/]"]
+    cost = [f"{name} {cost_told(path)}" for name, path in case.solutions.items()]
+    made = [crosscheck_table(case.rows, between) for between in dict.fromkeys(row.between for row in case.rows)]
+    return [replace(made[0], title=title, caption=cost), *made[1:]]
+
+
+def scene_parts(scene: Scene) -> list[str]:
+    """What is compared, in rich's markup."""
+    from rich.markup import escape
+
+    return list(map(escape, scene.told))
+
+
+def crosscheck_table(rows: Sequence[Row], between: Pair = SOLVERS) -> Fitted:
+    """One line for each quantity: both values, the difference, both error estimates, the budget and the verdict."""
+    from fem_adhesion.common.terminal import Column, Fitted
+
+    own = [row for row in rows if row.between == between]
+    named = zip(columns(between), zip(*map(cells, own), strict=True), RANKS, strict=True)
+    return Fitted(
+        [Column(name, texts, rank, name in WORDS, wraps=name == "quantity") for name, texts, rank in named],
+        [" and ".join(between)],
+        styles=["" if row.verdict == "agree" else STYLES[row.verdict] for row in own],
+    )
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """What stands in `columns`: values with digits down to the first uncertain one, errors with two."""
+    first, second = row.first, row.second
+    return (
+        row.quantity,
+        row.unit,
+        _value(first),
+        _value(second),
+        _small(row.difference),
+        _small(first.error if first else math.nan),
+        _small(second.error if second else math.nan),
+        _small(row.budget),
+        row.verdict,
+    )
+
+
+def _value(estimate: Estimate | None) -> str:
+    """Digits down to the first uncertain one; two of a residual, which is of the size of its error."""
+    if estimate is None:
+        return "none"
+    if not abs(estimate.value) >= 100 * estimate.error:
+        return _small(estimate.value)
+    digits = max(0, min(10, -math.floor(math.log10(estimate.error or 1e-10))))
+    return f"{estimate.value:.{digits}f}"
+
+
+def _small(value: float) -> str:
+    return f"{value:.1e}" if math.isfinite(value) else "-"
+
+
+def cost_told(path: EquilibriumPath) -> str:
+    """Cost of a curve, and whether it has the accuracy that was asked of it."""
+    return f"{path.unknowns} unknowns, {path.seconds:.2f} s, {tolerance_told(path.rtol, path.missed)}"

@@ -12,7 +12,7 @@ refinement and from the size of the block, never from a choice.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -23,7 +23,7 @@ import numpy as np
 from fem_adhesion import convergence
 from fem_adhesion.common.jobs import WorkerDied, stream
 from fem_adhesion.crosscheck import from_scratch
-from fem_adhesion.crosscheck.comparison import SOLVERS, Pair, Row, Verdict, difference, worst
+from fem_adhesion.crosscheck.comparison import SOLVERS, Case, Failure, Pair, Row, difference
 from fem_adhesion.crosscheck.references import (
     elements_of,
     pressures_for,
@@ -52,37 +52,6 @@ RESIDUAL = 50  # of residuals, which see every wiggle of the pressure
 
 TIGHTEST = 1e-9  # tolerance of a solver
 CLOSER = 10.0  # times, as both solvers are asked for once more where their estimates leave a comparison open
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A scene that a solver could not solve, with the reason and the rows that need no solution.
-
-    It does not stop the others. A row that disagrees says what is wrong with the solver.
-    """
-
-    scene: Scene
-    reason: str
-    rows: tuple[Row, ...] = ()
-
-    @property
-    def shown_by(self) -> tuple[str, ...]:
-        """Rows that disagree."""
-        return tuple(row.quantity for row in self.rows if row.verdict == "disagree")
-
-
-@dataclass(frozen=True)
-class Case:
-    """Solutions of one scene, by the names of their solvers, and their comparison."""
-
-    scene: Scene
-    solutions: Mapping[str, EquilibriumPath]
-    rows: tuple[Row, ...]
-
-    @property
-    def verdict(self) -> Verdict:
-        """The worst of the rows' verdicts."""
-        return worst([row.verdict for row in self.rows])
 
 
 def compare(

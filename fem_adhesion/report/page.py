@@ -16,8 +16,7 @@ from matplotlib import rc_context
 from fem_adhesion.common.facts import machine
 from fem_adhesion.common.page import Section, inlined, render, template_text
 from fem_adhesion.common.style import laid_out
-from fem_adhesion.crosscheck.record import overall_verdict, verdict_of
-from fem_adhesion.crosscheck.study import Case, Failure
+from fem_adhesion.crosscheck.comparison import Case, Failure, overall_verdict, verdict_of
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve.lines import UNSTABLE, Line, smooth
 from fem_adhesion.curve.solve import Curves

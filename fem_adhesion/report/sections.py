@@ -12,9 +12,18 @@ from pathlib import Path
 
 from fem_adhesion.common.facts import versions
 from fem_adhesion.common.page import Columns, Section, Table, inlined
-from fem_adhesion.crosscheck.comparison import CLOSED_FORM, SOLVERS, WEAK_FORM, Row
-from fem_adhesion.crosscheck.record import cells, columns, told, verdict_of
-from fem_adhesion.crosscheck.study import Case, Failure
+from fem_adhesion.crosscheck.comparison import (
+    CLOSED_FORM,
+    SOLVERS,
+    WEAK_FORM,
+    Case,
+    Failure,
+    Row,
+    cells,
+    columns,
+    told,
+    verdict_of,
+)
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import tolerance_told
 from halfspace.errors import InputError
