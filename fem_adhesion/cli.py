@@ -19,7 +19,7 @@ from halfspace.errors import InputError, NotConverged
 
 COMMANDS = (COMPARE, CURVE, SWEEP, ASSESS, FINITE_SPHERE, SPEED, GREENWOOD, REPORT)
 
-STUDIES = ("PIL", "jinja2", "joblib", "markupsafe", "matplotlib", "pint", "plotille", "rich")
+STUDIES = ("PIL", "jinja2", "loky", "markupsafe", "matplotlib", "pint", "plotille", "rich")
 """Libraries of the extra that every command needs, the solvers none."""
 
 

@@ -15,7 +15,7 @@ PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text
 EXTRA = {  # what each library of the extra is imported as
     "rich": "rich",
     "matplotlib": "matplotlib",
-    "joblib": "joblib",
+    "loky": "loky",
     "plotille": "plotille",
     "Pint": "pint",
     "Jinja2": "jinja2",

@@ -12,8 +12,15 @@ from types import SimpleNamespace
 import pytest
 
 from fem_adhesion import cli
-from fem_adhesion.common.files import ELSEWHERE, REMEDIES, NotWritten, directory_written_aside, writing, written_aside
-from fem_adhesion.common.store import open_store
+from fem_adhesion.common.files import (
+    ELSEWHERE,
+    REMEDIES,
+    NotWritten,
+    directory_written_aside,
+    open_store,
+    writing,
+    written_aside,
+)
 from fem_adhesion.curve import solve as curves
 
 CURVE = ["curve", "--tabor", "0.5", "--rtol", "1e-2"]

@@ -20,9 +20,8 @@ from processes import alive, wait_until
 import fem_adhesion
 import halfspace
 from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene
-from fem_adhesion.common import store
-from fem_adhesion.common.files import NotWritten
-from fem_adhesion.common.store import open_store
+from fem_adhesion.common import files
+from fem_adhesion.common.files import NotWritten, open_store
 from fem_adhesion.finite_sphere import cases as finite_sphere_cases
 from fem_adhesion.finite_sphere import fit as finite_sphere_fit
 from fem_adhesion.finite_sphere import study as finite_sphere
@@ -359,7 +358,7 @@ def test_results_of_other_code_or_another_format_are_computed_again_and_counted(
     again = run(CASES[:3], later, jobs=1)
     assert later.notes == ("3 cases computed by other code: computed again",)
     assert [record.values for record in again] == [record.values for record in records]
-    monkeypatch.setattr(store, "SCHEMA", store.SCHEMA + 1)
+    monkeypatch.setattr(files, "SCHEMA", files.SCHEMA + 1)
     later = open_store(tmp_path, "edited code", resume=True)
     run(CASES[:1], later, jobs=1)
     assert later.notes == ("1 case computed by another format: computed again",)

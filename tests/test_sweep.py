@@ -9,8 +9,8 @@ import pytest
 
 import halfspace
 from fem_adhesion import cli
+from fem_adhesion.common.files import open_store
 from fem_adhesion.common.jobs import WorkerDied
-from fem_adhesion.common.store import open_store
 from fem_adhesion.sweep import study
 from halfspace.accuracy import sweep as sweeping
 from halfspace.accuracy.sweep import NUMBERS, UNKNOWN, Summary, summary
@@ -176,7 +176,7 @@ def test_what_missed_its_tolerance_comes_back_from_the_disk_as_it_was(tmp_path):
 def test_a_curve_whose_worker_died_is_tried_again(monkeypatch, tmp_path):
     store = open_store(tmp_path / "kept", "code", resume=True)
     monkeypatch.setattr(
-        "fem_adhesion.common.store.stream", lambda *_, **__: (item for item in [(1.0, WorkerDied("killed"))])
+        "fem_adhesion.common.jobs.stream", lambda *_, **__: (item for item in [(1.0, WorkerDied("killed"))])
     )
     (died,) = study.run([1.0], ASKED, store)
     assert died == Summary(1.0, {}, UNKNOWN, UNKNOWN, {}, "killed")

@@ -1,5 +1,7 @@
 """Long work: how far it is, for those who wait; and the same on many items at once, by loky or on a Dask cluster.
 
+`stream` works on items of any kind, `solve_all` on the cases of a study, leaving out those whose results are there.
+
 Results come as they are ready. A worker that dies takes no other item with it: each that was handed out and lost so
 runs again when nothing else does, so that one that kills its worker is known for certain.
 """
@@ -16,13 +18,14 @@ import time
 import warnings
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from itertools import count, islice
 from multiprocessing import active_children
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 from urllib.parse import urlsplit
 
+from fem_adhesion.common.files import Plain, Store
 from halfspace.errors import InputError
 
 Item = TypeVar("Item")
@@ -116,7 +119,7 @@ def workers(jobs: int | None) -> int:
     if jobs is not None and jobs < 1:
         raise InputError(f"jobs = {jobs} is outside 1 <= jobs; leave it out to use all cores")
     if jobs is None:
-        from joblib import cpu_count  # here, as all commands tell how far they are, and few need processes
+        from loky import cpu_count  # here, as all commands tell how far they are, and few need processes
 
         return int(cpu_count())
     return jobs
@@ -175,9 +178,9 @@ def _alone(work: Callable[[Item], Result], item: Item, pool: Pool) -> Result | W
 
 def _processes(number: int) -> Pool:
     """So many local processes, made anew when one has died."""
-    from joblib.externals.loky import get_reusable_executor
-    from joblib.externals.loky.backend.process import LokyProcess
-    from joblib.externals.loky.process_executor import TerminatedWorkerError
+    from loky import get_reusable_executor
+    from loky.backend.process import LokyProcess
+    from loky.process_executor import TerminatedWorkerError
 
     # A worker is made anew when it has grown by 300 MB, which large bodies make it do: no trouble of the user's.
     warnings.filterwarnings("ignore", message="A worker stopped while some jobs were given", category=UserWarning)
@@ -249,3 +252,68 @@ def _knock(address: str) -> None:
     if not parts.hostname or not parts.port:
         raise InputError("no host or no port")
     socket.create_connection((parts.hostname, parts.port), timeout=CONNECTION_SECONDS).close()
+
+
+# The cases of a study
+
+
+@dataclass(frozen=True)
+class Kept(Generic[Item, Result]):
+    """How the results of a study are kept.
+
+    Of an item, `inputs` are what its result depends on, and `name` what it is called for the eye. `write` goes from a
+    result to plain data and `read`, with the item, back, or to InputError if they are none of a result; `died` is the
+    result of an item whose worker died, for a reason.
+    """
+
+    inputs: Callable[[Item], Plain]
+    name: Callable[[Item], str]
+    write: Callable[[Result], Plain]
+    read: Callable[[Item, Plain], Result]
+    died: Callable[[Item, str], Result]
+
+
+def solve_all(
+    items: Sequence[Item],
+    store: Store | None,
+    *,
+    work: Callable[[Item], Result],
+    kept: Kept[Item, Result],
+    fresh: bool = False,
+    jobs: int | None = None,
+    dask: str | None = None,
+    progress: Progress = unheard,
+) -> tuple[Result, ...]:
+    """Results of all items in their order: what the store holds, and the others, computed and stored at once.
+
+    The work, a function of a module, computes the result of an item, each of which is given once, and `kept` says how
+    results are kept; if `fresh`, all are computed, whatever the store holds. What a worker died of is not stored: it is
+    tried again when the study is resumed. `jobs` and `dask` are those of `stream`; `progress`
+    is called with the last item's name, how many are done, and of how many. InputError before any work, if jobs is not
+    positive or the cluster does not answer.
+    """
+    found = dict(_stored(items, store, kept)) if store and not fresh else {}
+    todo = [item for item in items if item not in found]
+    with closing(stream(work, todo, jobs=jobs, dask=dask)) as results:
+        progress("starting", len(found), len(items))
+        for item, result in results:
+            if isinstance(result, WorkerDied):
+                found[item] = kept.died(item, result.reason)
+            else:
+                found[item] = result
+                if store:
+                    store.put(kept.inputs(item), kept.write(result))
+            progress(kept.name(item), len(found), len(items))
+    return tuple(found[item] for item in items)
+
+
+def _stored(items: Sequence[Item], store: Store, kept: Kept[Item, Result]) -> Iterator[tuple[Item, Result]]:
+    """Items whose results the store holds."""
+    for item in items:
+        inputs = kept.inputs(item)
+        if (plain := store.get(inputs)) is None:
+            continue
+        try:
+            yield item, kept.read(item, plain)
+        except InputError as error:
+            store.distrust(inputs, str(error))

@@ -26,8 +26,7 @@ def add_options(command: Parser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Run what is left of the study and write table, pictures and page; 1 if any case has no solution, else 0."""
-    from fem_adhesion.common.files import directory_written_aside, writing
-    from fem_adhesion.common.store import open_store
+    from fem_adhesion.common.files import directory_written_aside, open_store, writing
     from fem_adhesion.finite_sphere import page
     from fem_adhesion.finite_sphere import study as finite_sphere
 

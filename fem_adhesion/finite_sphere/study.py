@@ -13,8 +13,8 @@ from functools import partial
 from itertools import product
 
 from fem_adhesion.common.facts import code_digest
+from fem_adhesion.common.jobs import Kept, solve_all
 from fem_adhesion.common.numbers import counted
-from fem_adhesion.common.store import Kept, solve_all
 from fem_adhesion.finite_sphere.cases import MODELS, Record, SphereCase, case_of, compute, from_plain, to_plain
 from halfspace.errors import InputError
 from halfspace.limits import require_poisson, require_radius_ratio, require_tabor
@@ -151,4 +151,4 @@ def code() -> str:
 
 KEPT = Kept(asdict, lambda case: case.name, to_plain, from_plain, lambda case, why: Record(case, "died", {}, why))
 run = partial(solve_all, work=compute, kept=KEPT)
-"""Records of cases of a plan: `fem_adhesion.common.store.solve_all`."""
+"""Records of cases of a plan: `fem_adhesion.common.jobs.solve_all`."""

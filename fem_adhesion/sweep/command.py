@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
     int
         1 if any curve could not be traced, else 0.
     """
-    from fem_adhesion.common.store import open_store
+    from fem_adhesion.common.files import open_store
     from fem_adhesion.sweep import study
     from halfspace.limits import require_load, require_rtol
 

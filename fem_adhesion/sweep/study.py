@@ -10,7 +10,8 @@ from functools import partial
 from typing import IO, Any
 
 from fem_adhesion.common.facts import code_digest, plain
-from fem_adhesion.common.store import Kept, Plain, Store, solve_all
+from fem_adhesion.common.files import Plain, Store
+from fem_adhesion.common.jobs import Kept, solve_all
 from fem_adhesion.registry import record_of
 from halfspace.accuracy.sweep import UNKNOWN, Summary, summary
 from halfspace.equilibrium.events import EVENTS, Event
@@ -39,7 +40,7 @@ def run(
 
     What is asked of every curve are the relative accuracy `rtol`, the load `to_load` in R dgamma at which it ends, and
     the `law`. What could not be traced says why; where a worker died it is not stored. The work, a function of a
-    module, traces a curve; `how` are further keywords of `fem_adhesion.common.store.solve_all`: jobs, dask, progress.
+    module, traces a curve; `how` are further keywords of `fem_adhesion.common.jobs.solve_all`: jobs, dask, progress.
     """
     kept = Kept(partial(_inputs, asked=asked), "tabor {:g}".format, _to_plain, _from_plain, _died)
     return solve_all(tabors, store, work=partial(work, profile=PARABOLOID, body=None, **asked), kept=kept, **how)
