@@ -31,10 +31,32 @@ LONGEST = 60
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number and the estimated bound of its error, in the same unit."""
+    """A number and the estimated bound of its error, in the same unit.
+
+    Of sums the bounds add up, of products to the first order: they are no standard deviations, of which some cancel.
+    """
 
     value: float
     error: float
+
+    def __add__(self, other: Estimate | float) -> Estimate:
+        more = _exact(other)
+        return Estimate(self.value + more.value, self.error + more.error)
+
+    def __sub__(self, other: Estimate | float) -> Estimate:
+        less = _exact(other)
+        return Estimate(self.value - less.value, self.error + less.error)
+
+    def __mul__(self, other: Estimate | float) -> Estimate:
+        by = _exact(other)
+        return Estimate(self.value * by.value, abs(self.value) * by.error + self.error * abs(by.value))
+
+    def __truediv__(self, other: Estimate | float) -> Estimate:
+        by, value = _exact(other), self.value / _exact(other).value
+        return Estimate(value, (self.error + abs(value) * by.error) / abs(by.value))
+
+    def __abs__(self) -> Estimate:
+        return Estimate(abs(self.value), self.error)
 
     @classmethod
     def refined(cls, coarse: float, fine: float) -> Estimate:
@@ -44,6 +66,10 @@ class Estimate:
     def agrees(self, other: Estimate) -> bool:
         """Whether the two differ by no more than both errors; not so if one is not a number."""
         return abs(self.value - other.value) <= self.error + other.error
+
+
+def _exact(number: Estimate | float) -> Estimate:
+    return number if isinstance(number, Estimate) else Estimate(number, 0.0)
 
 
 class Valued:

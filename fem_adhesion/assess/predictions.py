@@ -122,8 +122,7 @@ def _lost(curve: Curve, stiffness: float) -> float:
 
 def _take_off(name: str, approach: Estimate, load: Estimate, stiffness: float) -> dict[str, Estimate]:
     """Where a jump takes off, along both axes, in eps."""
-    base = Estimate(approach.value + load.value / stiffness, approach.error + load.error / stiffness)
-    return {f"{name}_separation": Estimate(1 - approach.value, approach.error), f"{name}_base": base}
+    return {f"{name}_separation": Estimate(1.0, 0.0) - approach, f"{name}_base": approach + load / stiffness}
 
 
 def _in_si(found: Mapping[str, Estimate], units: Units) -> dict[str, Quantity]:
@@ -158,7 +157,7 @@ def _part(tabor: float) -> float:
 def _widened(read: Prediction, parts: Mapping[str, float]) -> Prediction:
     """Prediction of some quantities, its errors raised by parts of `DISTANCE`."""
     values = {
-        name: Quantity(q.value, q.error + abs(q.value) * DISTANCE[name] * parts[name], q.unit)
+        name: Quantity.of(q * Estimate(1.0, DISTANCE[name] * parts[name]), 1.0, q.unit)
         for name, q in read.values.items()
         if name in parts
     }
@@ -198,4 +197,4 @@ def relative(ours: Prediction, reference: Prediction, name: str, spacing: float)
     size = approach_scale(alike, spacing) if alike else abs(b.value)
     if not size:
         return None
-    return Quantity((a.value - b.value) / size, (a.error + b.error) / size, "1")
+    return Quantity.ratio((a - b) / size)

@@ -84,7 +84,7 @@ def indentations(contact: Contact, thickness: float) -> Iterator[Indentation]:
 
 def _off(value: float, true: Estimate) -> Quantity:
     """Relative difference of a value from the true one."""
-    return Quantity(value / true.value - 1, value * true.error / true.value**2, "1")
+    return Quantity.ratio(Estimate(value, 0.0) / true - 1)
 
 
 def hertz_until(contact: Contact) -> Quantity:
@@ -97,7 +97,7 @@ def hertz_until(contact: Contact) -> Quantity:
 
     a = root(beyond, 1e-4, 1.0, "where Hertz's load is off; take a thick sample", xtol=NARROW)
     chi = math.sqrt(theory.hertz(a).approach)
-    return Quantity(chi, 2 * NARROW, "1")
+    return Quantity.ratio(Estimate(chi, 2 * NARROW))
 
 
 def _of_unit_thickness(contact: Contact) -> Layer:
@@ -138,7 +138,7 @@ def enough(contact: Contact, half_space: Prediction, on_layer: Callable[[Layer],
 def _part(model: Prediction, half_space: Prediction, name: str, spacing: float) -> Estimate:
     """Difference of the half-space from a model as a part of the half-space's value; none of what one of them lacks."""
     found = relative(model, half_space, name, spacing)
-    return Estimate(abs(found.value), found.error) if found else Estimate(0.0, 0.0)
+    return abs(found) if found else Estimate(0.0, 0.0)
 
 
 def _outermost(off: Callable[[float], Estimate], power: float) -> Estimate | str:

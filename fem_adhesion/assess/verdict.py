@@ -60,7 +60,7 @@ def deviations(
 
 
 def _rest(total: Quantity | None, part: Quantity | None) -> Quantity | None:
-    return Quantity(total.value - part.value, total.error + part.error, "1") if total and part else None
+    return Quantity.ratio(total - part) if total and part else None
 
 
 def ranked(models: Sequence[Prediction | None], spacing: float) -> tuple[Distance, ...]:

@@ -43,17 +43,21 @@ DIGITS = 6  # significant, at most
 
 
 @dataclass(frozen=True)
-class Quantity:
+class Quantity(Estimate):
     """A number in SI with the estimated bound of its error, in the same unit; `unit` is "1" for a ratio."""
 
-    value: float
-    error: float
     unit: str
 
     @classmethod
     def of(cls, estimate: Estimate, size: float, unit: str) -> Quantity:
         """Dimensionless estimate times the SI size of its unit."""
-        return cls(estimate.value * size, abs(estimate.error * size), unit)
+        whole = estimate * size
+        return cls(whole.value, whole.error, unit)
+
+    @classmethod
+    def ratio(cls, estimate: Estimate) -> Quantity:
+        """What has no unit."""
+        return cls.of(estimate, 1.0, "1")
 
 
 def parse(text: str, name: str) -> float:
@@ -95,16 +99,16 @@ def _registry() -> Any:
     return pint.UnitRegistry()
 
 
-def with_error(quantity: Quantity | Estimate, scale: float = 1.0, digits: int = DIGITS) -> str:
+def with_error(quantity: Estimate, scale: float = 1.0, digits: int = DIGITS) -> str:
     """Number, times a scale, with the error of its last digit in brackets, rounded up: 60.4440(1).
 
     It has so many significant digits at most.
     """
-    value, error = quantity.value * scale, quantity.error * scale
-    most = digits - 1 - _decade(value)
-    decimals = max(0, min(most, -_decade(error)) if error else most)
-    uncertain = max(1, math.ceil(error * 10**decimals * (1 - 1e-9)))
-    return f"{value:.{decimals}f}({uncertain})"
+    number = quantity * scale
+    most = digits - 1 - _decade(number.value)
+    decimals = max(0, min(most, -_decade(number.error)) if number.error else most)
+    uncertain = max(1, math.ceil(number.error * 10**decimals * (1 - 1e-9)))
+    return f"{number.value:.{decimals}f}({uncertain})"
 
 
 def plus_minus(estimate: Estimate) -> str:

@@ -202,8 +202,7 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
     yield Compared(f"{name} balance", "eps", balances, Estimate(0.0, approach.error), width)
     if name != "zero_load":
         doubt = abs(_state(fine.contact, path.stages[-2][name]).reaction - fine.reaction)
-        doubted = Estimate(load.value, load.error + doubt)
-        yield Compared(f"{name} reaction", "R dgamma", reactions, doubted, force)
+        yield Compared(f"{name} reaction", "R dgamma", reactions, load + Estimate(0.0, doubt), force)
     # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
     smooth, sharp = name == "jump_on", sharpness(scene, radius) > SHARP
     a = (_turn if smooth else _beside)(name, coarse)

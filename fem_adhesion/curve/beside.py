@@ -82,8 +82,7 @@ def _difference(first: EquilibriumPath, other: EquilibriumPath, name: str, quant
     # Approaches in the unit that all curves share.
     units = (first.tabor, other.tabor) if quantity == "approach" else (1.0, 1.0)
     size = first.approach_scale / first.tabor if quantity == "approach" else abs(first.events["pull_off"].load)
-    off = abs(theirs.value / units[1] - ours.value / units[0])
-    return Estimate(off / size, (theirs.error / units[1] + ours.error / units[0]) / size)
+    return abs(theirs / units[1] - ours / units[0]) / size
 
 
 def _told(part: Estimate | None) -> str:

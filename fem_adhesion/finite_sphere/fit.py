@@ -248,8 +248,7 @@ def bulk_compliance(grip: GripName, poisson: float, sphere_radius: float) -> Est
     As an approach in eps it is kappa mu W/(R/beta). InputError if grip or poisson is out of range.
     """
     terms = coefficients(grip, poisson)
-    value = terms.constant.value - terms.logarithm * log(sphere_radius)
-    return Estimate(value, terms.constant.error + terms.linear / sphere_radius)
+    return terms.constant - terms.logarithm * log(sphere_radius) + Estimate(0.0, terms.linear / sphere_radius)
 
 
 @cache

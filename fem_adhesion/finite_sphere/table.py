@@ -95,7 +95,7 @@ def _rows_of(
     for name in quantities:
         value, baseline, half_space = three = [table.get(name) for table in tables]
         scale = half_space and tables[-1].get(APPROACH_SCALE) if UNITS[name] == "eps" else half_space
-        deviation = relative(value, baseline, scale) if value and baseline and scale else None
+        deviation = (value - baseline) / scale if value and baseline and scale else None
         head = (case.given("tabor"), case.radius_ratio, case.poisson, cause, name, UNITS[name])
         ending = (*_ending(record, others, three), record.seconds, record.kind)
         yield DeviationRow(*head, value, baseline, half_space, deviation, *ending)
@@ -107,7 +107,7 @@ def less_bulk(record: Record, bulk: BulkCompliance | None) -> dict[str, Estimate
         return {}
     values, yielding = record.values, _yielding(record.case, bulk)
     return {
-        name: _without_yield(values[f"{event}_approach"], yielding, values[f"{event}_load"])
+        name: values[f"{event}_approach"] - yielding * values[f"{event}_load"]
         for name, event in LESS_BULK.items()
         if f"{event}_approach" in values
     }
@@ -120,20 +120,8 @@ def _yielding(case: SphereCase, bulk: BulkCompliance) -> Estimate:
         return Estimate(0.0, 0.0)
     tabor = case.given("tabor")
     R = (case.given("radius_ratio") / tabor) ** 0.5
-    kappa = bulk(grip, case.given("poisson"), R)
-    return Estimate(kappa.value * tabor / R, kappa.error * tabor / R)
-
-
-def _without_yield(approach: Estimate, compliance: Estimate, load: Estimate) -> Estimate:
-    error = abs(compliance.value) * load.error + compliance.error * abs(load.value)
-    return Estimate(approach.value - compliance.value * load.value, approach.error + error)
-
-
-def relative(value: Estimate, baseline: Estimate, scale: Estimate) -> Estimate:
-    """(value - baseline)/scale, with the errors of all three added."""
-    deviation = (value.value - baseline.value) / scale.value
-    error = value.error + baseline.error + abs(deviation) * scale.error
-    return Estimate(deviation, error / abs(scale.value))
+    kappa: Estimate = bulk(grip, case.given("poisson"), R)
+    return kappa * (tabor / R)
 
 
 def _ending(record: Record, others: Sequence[Record | None], three: Sequence[Estimate | None]) -> tuple[str, str]:

@@ -115,8 +115,7 @@ def _quantity(quantity: str, event: Event, tabor: float) -> tuple[Estimate, str]
         "H0_plus_1_over_mu_3_7": ("central_gap", tabor ** (3 / 7), 1.0, "1"),
         "a_star": ("contact_radius", 1.0, 0.0, "beta"),
     }[quantity]
-    found = event.estimate(name)
-    return Estimate((found.value + shift) / size, found.error / abs(size)), unit
+    return (event.estimate(name) + shift) / size, unit
 
 
 def explained(name: str, quantity: str, path: EquilibriumPath, computed: Estimate) -> str:
