@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import importlib
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -119,9 +120,8 @@ def _yielding(case: SphereCase, bulk: BulkCompliance) -> Estimate:
     if grip is None:
         return Estimate(0.0, 0.0)
     tabor = case.given("tabor")
-    R = (case.given("radius_ratio") / tabor) ** 0.5
-    kappa: Estimate = bulk(grip, case.given("poisson"), R)
-    return kappa * (tabor / R)
+    R = math.sqrt(case.given("radius_ratio") / tabor)
+    return bulk(grip, case.given("poisson"), R) * (tabor / R)
 
 
 def _ending(record: Record, others: Sequence[Record | None], three: Sequence[Estimate | None]) -> tuple[str, str]:

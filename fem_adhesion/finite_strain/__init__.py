@@ -3,5 +3,5 @@
 In the order of reading: `material` (stress and tangent at a point), `body` (forces, tangent and energy, with a pressure
 where displacements alone would lock), `held` (what holds it, and its linear equations), `surface` (its Gauss points,
 and how they move), `traction` (what the law's traction is counted per), `problem` (the equations) and `assembly` (from
-its parts), `meshes` (fine where the contact is), `scene` (curve and events).
+its parts, or on meshes fine where the contact is), `scene` (curve and events).
 """

@@ -12,7 +12,7 @@ import numpy as np
 
 from fem_adhesion.bodies.body import FINEST, GROWTH, Discretisation
 from fem_adhesion.discretise import CURVE_DEGREE, sized_body
-from fem_adhesion.finite_strain.meshes import ScenesBody, Windows
+from fem_adhesion.finite_strain.assembly import ScenesBody, Windows
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
