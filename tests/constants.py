@@ -58,6 +58,7 @@ import halfspace.accuracy.trace
 import halfspace.elastic.operators
 import halfspace.equilibrium.charts
 import halfspace.equilibrium.contact
+import halfspace.scales
 from fem_adhesion import Scene
 from fem_adhesion.crosscheck import from_scratch, weak_bodies
 from fem_adhesion.weak_form import body as weak_body
@@ -214,7 +215,18 @@ CONSTANTS = (
     Constant(halfspace.accuracy.trace, "EXTENT", estimates("half-space")),
     Constant(halfspace.accuracy.trace, "at_equator", estimates("sphere's profile"), of_its_values),
     Constant(halfspace.accuracy.finite_bodies, "WINDOW", estimates("sphere's profile")),
-    Constant(halfspace.accuracy.finite_bodies, "APART", estimates("sphere's profile"), to_the_power),
+    Constant(halfspace.accuracy.trace, "EVENTS_LEAVE", estimates("sphere's profile")),
+    Constant(halfspace.accuracy.trace, "TIP", estimates("laws and profiles"), to_the_power),
+    Constant(halfspace.scales, "SUDDEN", estimates("laws and profiles")),
+    Constant(halfspace.accuracy.finite_bodies, "ACROSS", estimates("hemisphere, sliding")),
+    Constant(halfspace.accuracy.finite_bodies, "BESIDE", estimates("hemisphere, sliding")),
+    Constant(
+        halfspace.accuracy.finite_bodies,
+        "APART",
+        estimates("sphere's profile"),
+        of_a_default(0, to_the_power),
+        (halfspace.accuracy.finite_bodies.SizedBody.curve, "__defaults__"),
+    ),
     Constant(halfspace.accuracy.finite_bodies, "CLOSER", estimates("states, hemisphere"), to_the_power),
     Constant(halfspace.accuracy.finite_bodies, "WIDE", folds_at_the_birth_of_contact),
     Constant(halfspace.accuracy.finite_bodies, "WIDELY", folds_at_the_birth_of_contact),

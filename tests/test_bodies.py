@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from facets import boundary_basis
 from hard.references import strain_energy
 from skfem import CellBasis, ElementQuadP
 from whole_sphere import sphere_operator, surface_deflection
 
-from fem_adhesion.elasticity.boundaries import boundary_basis
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import clamped, sliding
 from fem_adhesion.elasticity.incompressible import stiffness_for

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from facets import boundary_basis
 from scipy.sparse.linalg import spsolve
 from scipy.special import j0, j1
 from skfem import (
@@ -19,7 +20,7 @@ from skfem import (
 )
 from skfem.helpers import ddot, div, sym_grad
 
-from fem_adhesion.elasticity.boundaries import boundary_basis, trace_on
+from fem_adhesion.elasticity.boundaries import trace_on
 from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress, trace_projection
 from fem_adhesion.elasticity.space import (
     Space,
@@ -348,3 +349,6 @@ def test_traces_are_those_of_scikit_fem(space, name):
     np.testing.assert_allclose(trace.lengths, basis.dx, rtol=1e-8)
     u = np.sin(np.arange(1.0, basis.N + 1))
     np.testing.assert_allclose(trace.values @ u[trace.functions], np.ravel(basis.interpolate(u)), atol=1e-10)
+    (n_r, n_z), grad = basis.normals, basis.interpolate(u).grad
+    along = np.ravel(grad[0] * n_z - grad[1] * n_r)
+    np.testing.assert_allclose(trace.rates @ u[trace.functions], along, atol=1e-8 * np.abs(along).max())

@@ -6,10 +6,10 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+from facets import boundary_basis
 from scipy.spatial import cKDTree
 from skfem import CellBasis, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2, MeshTri, MeshTri2
 
-from fem_adhesion.elasticity.boundaries import boundary_basis
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import clamped
 from fem_adhesion.elasticity.space import Space

@@ -1,50 +1,16 @@
-"""Boundaries of a mesh: Gauss's points on a named one with the functions there, and scikit-fem's basis on it."""
+"""Boundaries of a mesh: Gauss's points on a named one, and the functions there."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
-from typing import Any
 
 import numpy as np
 from scipy import sparse
-from skfem import FacetBasis
-from skfem.mapping import MappingIsoparametric
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine
 
 from fem_adhesion.elasticity.space import Space, reference_functions
 from halfspace.values import Array, Index, Valued
-
-INVERSION_TOLERANCE = 1e-6
-"""Summed over the points of a facet, in units of the reference cell; a cell of 1e-9 of its radius is still resolved."""
-
-
-def boundary_basis(space: Space, name: str, points: int) -> Any:
-    """Return skfem's basis of the scalar element on the named boundary, with Gauss `points` on each facet."""
-    quadrature = get_quadrature(RefLine, 2 * points - 1)
-    facets = space.mesh.boundaries[name]
-    return FacetBasis(
-        space.mesh,
-        space.element,
-        mapping=_forgiving_mapping(space.mesh),
-        facets=facets,
-        quadrature=quadrature,
-        dofs=space.scalar_dofs,
-        disable_doflocs=True,
-    )
-
-
-def _forgiving_mapping(mesh: Any) -> Any:
-    """The mesh's mapping; inverted on quadrilaterals only as far as rounding allows.
-
-    skfem inverts them by Newton's method to 1e-12 of a cell, which the coordinates of thin cells far from the origin
-    cannot resolve. On straight-sided rectangles its first step is exact.
-    """
-    mapping = mesh.mapping()
-    if isinstance(mapping, MappingIsoparametric):
-        mapping.invF = partial(mapping.invF, newton_tol=INVERSION_TOLERANCE)
-    return mapping
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -53,7 +19,8 @@ class Trace(Valued):
 
     Places and normals (2, facets, k) are r and z of the points, and of the outward normal there; lengths (facets, k)
     are the weights of the length along the boundary. Of the functions (m,), those that do not vanish on it, ascending,
-    the values (facets k, m) are at the points.
+    the values (facets k, m) are at the points, the rates (facets k, m) their derivatives by the arclength along
+    (n_z, -n_r): on the contact surface, whose normal is upwards at the pole, that is outwards from it.
     """
 
     places: Array
@@ -61,6 +28,7 @@ class Trace(Valued):
     lengths: Array
     functions: Index
     values: sparse.csr_array
+    rates: sparse.csr_array
 
 
 def trace_on(space: Space, name: str, points: int) -> Trace:
@@ -70,7 +38,8 @@ def trace_on(space: Space, name: str, points: int) -> Trace:
     cells, (X, weights) = mesh.f2t[0, facets], get_quadrature(RefLine, 2 * points - 1)
     ends = [np.argmax(mesh.t[:, cells] == vertex, axis=0) for vertex in mesh.facets[:, facets]]
     places, normals = np.empty((2, 2, cells.size, points))
-    lengths, values = np.empty((cells.size, points)), np.empty((len(space.scalar_dofs.element_dofs), *places.shape[1:]))
+    lengths = np.empty((cells.size, points))
+    values, rates = np.empty((2, len(space.scalar_dofs.element_dofs), *lengths.shape))
     for side in np.unique(ends, axis=1).T:  # all facets between the same corners at once
         alike = np.all(np.transpose(ends) == side, axis=1)
         Y, along, outwards = _side(space.element.refdom.p, side[0], side[1], X[0])
@@ -80,9 +49,12 @@ def trace_on(space: Space, name: str, points: int) -> Trace:
         turned = outwards * np.sign(J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0])
         normals[:, alike] = turned * np.array([tangents[1], -tangents[0]]) / lengths[alike]
         places[:, alike] = mesh.mapping().F(Y, tind=cells[alike])
-        values[:, alike] = reference_functions(space.element, Y)[0][:, None]
-    rows = _rows(values, np.asarray(space.scalar_dofs.element_dofs)[:, cells], functions)
-    return Trace(places, normals, lengths * weights, functions, rows)
+        value, slopes = reference_functions(space.element, Y)
+        values[:, alike] = value[:, None]
+        rates[:, alike] = np.einsum("nik,i->nk", slopes, along)[:, None] * -turned / lengths[alike]
+    dofs = np.asarray(space.scalar_dofs.element_dofs)[:, cells]
+    rows = (_rows(amounts, dofs, functions) for amounts in (values, rates))
+    return Trace(places, normals, lengths * weights, functions, *rows)
 
 
 def _side(corners: Array, first: int, second: int, X: Array) -> tuple[Array, Array, float]:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from scipy import sparse
 
-from fem_adhesion.elasticity.boundaries import boundary_basis
+from fem_adhesion.elasticity.boundaries import trace_on
 from fem_adhesion.elasticity.far_field import Exterior
 from fem_adhesion.elasticity.space import Space
 from halfspace.elastic.compliance import ElasticOperator
@@ -72,26 +70,13 @@ class ContactSurface(Valued):
 
 def contact_surface(space: Space, exterior: Exterior, points: int) -> ContactSurface:
     """Evaluate the contact surface and the reduced unknowns at `points` Gauss points a facet."""
-    basis = boundary_basis(space, "contact", points)
-    r = basis.global_coordinates()[0].ravel()
-    order = np.argsort(r)
-    n_z = np.asarray(basis.normals)[1].ravel()[order]
-    values = np.array([b[0] for b in basis.basis])
-    # The tangent that leads outwards from the pole, where the outward normal points up, is (n_z, -n_r).
-    rates = np.array([b[0].grad[0] * basis.normals[1] - b[0].grad[1] * basis.normals[0] for b in basis.basis])
-    own = space.boundary_functions("contact")  # the others of a facet's cell vanish on it but for rounding
-    at_points, along = (_rows(basis, v)[order][:, own] for v in (values, rates))
-    parts = [exterior.reduction.tocsr()[components[own]] for components in space.components]
+    trace = trace_on(space, "contact", points)
+    radii, n_z = trace.places[0].ravel(), trace.normals[1].ravel()
+    order = np.argsort(radii)
+    parts = [exterior.reduction.tocsr()[components[trace.functions]] for components in space.components]
     moved = np.unique(np.concatenate([part.nonzero()[1] for part in parts]))
     radial, vertical = (part[:, moved].toarray() for part in parts)
     ends = np.sort(space.mesh.p[0, np.unique(space.mesh.facets[:, space.mesh.boundaries["contact"]])])
+    measure, at_points, along = 2 * np.pi * trace.lengths.ravel()[order], trace.values[order], trace.rates[order]
     fields = (at_points @ radial, at_points @ vertical, along @ radial)
-    return ContactSurface(r[order], n_z, 2 * np.pi * basis.dx.ravel()[order], ends, moved, *fields)
-
-
-def _rows(basis: Any, values: Array) -> sparse.csr_array:
-    """Sparse rows, (facets k, functions), from values (functions of a cell, facets, k) of a boundary basis."""
-    rows = np.broadcast_to(np.arange(values[0].size).reshape(values[0].shape), values.shape)
-    columns = np.broadcast_to(basis.element_dofs[:, :, None], values.shape)
-    shape = (values[0].size, basis.N)
-    return sparse.csr_array((values.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
+    return ContactSurface(radii[order], n_z[order], measure, ends, moved, *fields)

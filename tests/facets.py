@@ -1,0 +1,38 @@
+"""scikit-fem's own basis on a boundary, beside which ours is held."""
+
+from functools import partial
+
+from skfem import FacetBasis
+from skfem.mapping import MappingIsoparametric
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefLine
+
+INVERSION_TOLERANCE = 1e-6
+"""Summed over the points of a facet, in units of the reference cell; a cell of 1e-9 of its radius is still resolved."""
+
+
+def boundary_basis(space, name, points):
+    """Return skfem's basis of the scalar element on the named boundary, with Gauss `points` on each facet."""
+    quadrature = get_quadrature(RefLine, 2 * points - 1)
+    facets = space.mesh.boundaries[name]
+    return FacetBasis(
+        space.mesh,
+        space.element,
+        mapping=_forgiving_mapping(space.mesh),
+        facets=facets,
+        quadrature=quadrature,
+        dofs=space.scalar_dofs,
+        disable_doflocs=True,
+    )
+
+
+def _forgiving_mapping(mesh):
+    """The mesh's mapping; inverted on quadrilaterals only as far as rounding allows.
+
+    skfem inverts them by Newton's method to 1e-12 of a cell, which the coordinates of thin cells far from the origin
+    cannot resolve. On straight-sided rectangles its first step is exact.
+    """
+    mapping = mesh.mapping()
+    if isinstance(mapping, MappingIsoparametric):
+        mapping.invF = partial(mapping.invF, newton_tol=INVERSION_TOLERANCE)
+    return mapping
