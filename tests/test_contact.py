@@ -1,20 +1,24 @@
 import gc
 import weakref
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from truths import relocated, under_sphere
 
+import halfspace
 from halfspace.accuracy.fold_birth import approached
 from halfspace.accuracy.trace import half_space_charts, resolution_for, rings
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
-from halfspace.equilibrium.contact import ContactProblem, count_negative
+from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem, count_negative
 from halfspace.equilibrium.prediction import passed, with_edge
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, PowerLaw
+from halfspace.profiles import PARABOLOID, Power, Sphere
 from halfspace.profiles.sphere import SphereSurface
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
@@ -325,6 +329,32 @@ def test_a_radius_is_known_no_better_than_to_the_last_coefficient_but_one_beside
     ripple = problem.ripples(np.append(gaps, [0.0, 1.0]))[1]
     beside = np.prod([last[k] for k in cells]) ** (1 / len(cells))
     assert ripple == pytest.approx(beside / (0.3 + 0.5 * edge), rel=1e-3, abs=0)
+
+
+@pytest.mark.parametrize("nodes", [2, 5, 8])
+def test_what_is_even_in_the_radius_is_told_on_the_axis_by_a_polynomial_in_its_square(nodes):
+    operator = replace(compliance.panels(np.array([0.0, 1.3, 2.0]), nodes), even=True)
+    even = np.polynomial.Polynomial(np.linspace(-1.0, 2.0, nodes))
+    assert operator.axis_row @ even(operator.radii**2) == pytest.approx(-1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("profile", [PARABOLOID, Power(1.5)])
+def test_the_central_gap_is_that_of_a_smooth_deflection_under_any_profile(profile):
+    problem = ContactProblem(compliance.panels(np.array([0.0, 1.0, 2.0]), 5), 0.7, profile=profile)
+    state = problem.undeformed(-3.0)
+    state[:-2] += 1 - problem.operator.radii**2 / 2
+    assert problem.observables(state)[CENTRAL_GAP] == pytest.approx(4.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(("tabor", "ratio", "rtol"), [(0.05, 10, 1e-4), (0.3, 10, 1e-3), (0.3, 10, 1e-1)])
+def test_a_central_gap_under_a_small_sphere_is_within_its_error(tabor, ratio, rtol):
+    """Polynomials in the radius missed it by 7 and 4 times its estimate, alike on grids that differ in all else."""
+    path = halfspace.trace(tabor, profile=Sphere(ratio), rtol=rtol)
+    rough, best = (s["pull_off"].point for s in relocated(path.stages[-1], under_sphere(tabor, ratio)))
+    known = abs(best.observables - rough.observables)[CENTRAL_GAP]
+    event = path.event("pull_off")
+    assert abs(event.central_gap - best.observables[CENTRAL_GAP]) < event.central_gap_error + known
+    assert known < 1e-11
 
 
 @pytest.mark.parametrize("nodes", [1, 2, 3, 4])

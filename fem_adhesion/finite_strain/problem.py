@@ -224,7 +224,7 @@ class FiniteStrainProblem(Valued):
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap and contact radius as deformed (nan without contact), shape (4,)."""
         state = self.surface_state(x)
-        gap = float(self.interface.operator.axis_row @ state[:-2])
+        gap = self.interface.central_gap(state)
         radius = self._deformed(x, self.interface.contact_radius(state))
         return np.array([float(x[-1]), self.load(x), gap, radius])
 

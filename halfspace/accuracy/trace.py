@@ -338,4 +338,4 @@ def _sized_body(
 
 
 def _made(make: Panels, nodes: int, lines: Array) -> Made:
-    return make(lines, nodes), nodes * (lines.size - 1)
+    return replace(make(lines, nodes), even=True), nodes * (lines.size - 1)

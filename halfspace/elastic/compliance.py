@@ -35,6 +35,9 @@ class ElasticOperator(Valued):
         Radii between which one interpolation polynomial holds, from 0 outwards.
     cell_nodes : (m, k) int array
         The k nodes whose values define the polynomial in each cell.
+    even : bool
+        Whether values on the axis are those of a polynomial in the square of the radius, as befits where the cell there
+        is long; elements have one in the radius itself.
     """
 
     radii: Array
@@ -42,6 +45,7 @@ class ElasticOperator(Valued):
     compliance: Array
     cells: Array
     cell_nodes: Index
+    even: bool = False
 
     @property
     def extent(self) -> float:
@@ -58,7 +62,8 @@ class ElasticOperator(Valued):
         """The operator without the nodes past its extent."""
         inside = self.radii <= self.extent
         compliance = self.compliance[np.ix_(inside, inside)]
-        return ElasticOperator(self.radii[inside], self.weights[inside], compliance, self.cells, self.cell_nodes)
+        of_these = self.radii[inside], self.weights[inside], compliance
+        return ElasticOperator(*of_these, self.cells, self.cell_nodes, self.even)
 
     def widened(self, nodes: int, reach: float) -> ElasticOperator:
         """Return the body with other cells beyond its extent, see `to_infinity`."""
@@ -102,6 +107,7 @@ class ElasticOperator(Valued):
             self.compliance * factor,
             self.cells * factor,
             self.cell_nodes,
+            self.even,
         )
 
     def cell_of(self, radius: float) -> int:
@@ -157,8 +163,17 @@ class ElasticOperator(Valued):
 
     @cached_property
     def axis_row(self) -> Array:
-        """Row (q,) that interpolates nodal values on the axis."""
-        return self.interpolation(0.0)[0]
+        """Row (q,) that interpolates nodal values on the axis.
+
+        In the squares of the radii the nodes lie near to it. A polynomial in the radius, which is not even, misses the
+        value there by the same on grids that differ in all else.
+        """
+        if not self.even:
+            return self.interpolation(0.0)[0]
+        nodes, row = self.cell_nodes[0], np.zeros(self.radii.size)
+        squares = self.radii[nodes] ** 2
+        row[nodes] = lagrange(squares, _barycentric(squares), 0.0)[0]
+        return row
 
     @cached_property
     def unit_row(self) -> Array:
@@ -168,9 +183,13 @@ class ElasticOperator(Valued):
     @cached_property
     def _barycentric(self) -> Array:
         """Weights 1/prod (u_j - u_m) of the nodes of each cell, (m, k)."""
-        nodes = self.radii[self.cell_nodes]
-        differences = nodes[:, :, None] - nodes[:, None, :] + np.eye(nodes.shape[1])
-        return np.asarray(1 / differences.prod(axis=2))
+        return _barycentric(self.radii[self.cell_nodes])
+
+
+def _barycentric(nodes: Array) -> Array:
+    """Weights 1/prod (x_j - x_m), (..., k), of nodes (..., k)."""
+    differences = nodes[..., :, None] - nodes[..., None, :] + np.eye(nodes.shape[-1])
+    return np.asarray(1 / differences.prod(axis=-1))
 
 
 def lagrange(nodes: Array, barycentric: Array, x: float) -> tuple[list[float], list[float]]:
@@ -246,6 +265,7 @@ def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> El
         np.block([[inner.compliance, inward], [outward, own]]),
         inner.cells,
         inner.cell_nodes,
+        inner.even,
     )
 
 

@@ -136,7 +136,7 @@ def layered_panels(images: Images, breakpoints: Array, nodes_per_panel: int) -> 
     return replace(half_space, compliance=half_space.compliance + image_compliance(images, half_space))
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class LayeredOperator(ElasticOperator):
     """Layered body on the grid of a half-space's operator; the rest is as of `image_compliance`."""
 

@@ -213,12 +213,16 @@ class ContactProblem(Valued):
         if index == LOAD:
             return self.load(x)
         if index == CENTRAL_GAP:
-            return float(self.operator.axis_row @ x[:-2])
+            return self.central_gap(x)
         return self.contact_radius(x)
 
     def load(self, x: Array) -> float:
         """W in R dgamma, positive in compression."""
         return float(self.operator_at(x).weights @ self._acting(x).pressure)
+
+    def central_gap(self, x: Array) -> float:
+        """H(0) in eps: the deflection is smooth across the axis, as the profile need not be."""
+        return float(self.operator.axis_row @ self.deflection(x) - x[-2])
 
     def pressure(self, x: Array) -> Array:
         """Nodal pressures P, shape (q,)."""
@@ -241,7 +245,7 @@ class ContactProblem(Valued):
             return float(x[-1])
         H, edge, body = x[:-2], self.law.edge_gap, self.operator_at(x)
         inside = np.flatnonzero(edge > H)
-        if inside.size == 0 and not body.axis_row @ H <= edge:
+        if inside.size == 0 and not body.interpolation(0.0)[0] @ H <= edge:
             return float("nan")
         if inside.size and inside[-1] == H.size - 1 and body.continuous(body.extent)[0] @ H <= edge:
             return body.extent
@@ -259,18 +263,18 @@ class ContactProblem(Valued):
         No better are values at a point known: the central gap by the last Legendre coefficients in the first cell, see
         `_left_out`; the contact radius, nan without contact, by the last but one in the cells on both sides of the
         edge, in the geometric mean: they have it from either. On a grid whose cells inside the contact alone
-        grow with it they are not alike, and the larger counts. On finite elements of degree p, with p + 2 nodes, the
-        last is none of theirs.
+        grow with it they are not alike, and that outside counts, of whose polynomial the radius is a root. On finite
+        elements of degree p, with p + 2 nodes, the last is none of theirs.
         """
         body, radius = self.operator_at(x), self.contact_radius(x)
         gap = _left_out(self._coefficients(x, 0))
         if np.isnan(radius):
             return np.array([gap, np.nan])
-        cells = {body.cell_of(radius * (1 + side)) for side in (-1e-9, 1e-9)}
+        sides = (-1e-9, 1e-9) if self.operator.alike else (1e-9,)
+        cells = {body.cell_of(radius * (1 + side)) for side in sides}
         slope = abs(body.continuous(radius)[1] @ x[:-2])
-        beside = [self._coefficients(x, cell)[-2:][0] for cell in cells]
-        uncertain = np.prod(beside) ** (1 / len(beside)) if self.operator.alike else max(beside)
-        return np.array([gap, uncertain / slope])
+        left = np.prod([self._coefficients(x, cell)[-2:][0] for cell in cells]) ** (1 / len(cells))
+        return np.array([gap, left / slope])
 
     def untold(self, x: Array) -> Array:
         """Errors of the observables that the changes along a single chain of discretisations may not tell, (4,)."""
@@ -292,7 +296,10 @@ class ContactProblem(Valued):
             row[:-2] += weights[LOAD] * self.operator_at(x).weights * self._acting(x).slope
             row[-1] += weights[LOAD] * float(self._acting(x).rates[1] @ self._acting(x).pressure)
         if weights[CENTRAL_GAP]:
-            row[:-2] += weights[CENTRAL_GAP] * self.operator.axis_row
+            axis = self.operator.axis_row
+            by_scale = self.tabor * float(axis @ (self.profile.slope(self.radii(x)) * self._acting(x).rates[0]))
+            row[:-2] += weights[CENTRAL_GAP] * axis
+            row[-1] -= weights[CENTRAL_GAP] * by_scale
         if weights[CONTACT_RADIUS]:
             row += weights[CONTACT_RADIUS] * self._radius_gradient(x)
         return row
