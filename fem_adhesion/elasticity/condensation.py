@@ -15,9 +15,10 @@ from fem_adhesion.elasticity.elimination import (
     Front,
     Region,
     dissected,
-    eliminated,
+    eliminate,
     eliminated_by,
     factor,
+    mirrored,
     reduced_cells,
 )
 from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load
@@ -190,10 +191,15 @@ def eliminate_interiors(space: Space, K: Array) -> Skeleton:
     """Eliminate the interior unknowns from the (cells, 2 n, 2 n) cell matrices."""
     n, interior = len(K[0]) // 2, space.element.interior_dofs
     functions = np.arange(2 * n).reshape(2, n)
-    outer, inner = functions[:, : n - interior].ravel(), functions[:, n - interior :].ravel()
-    order = np.concatenate([inner, outer])
-    cells = [eliminated(cell.take(order, axis=0).take(order, axis=1), inner.size) for cell in K]
-    return Skeleton(np.array(cells), K, space.cell_dofs, inner, outer, space.unknowns)
+    shared, own = slice(n - interior), slice(n - interior, n)
+    outer, inner = functions[:, shared].ravel(), functions[:, own].ravel()
+    parts = K.reshape(-1, 2, n, 2, n)
+    done = parts[:, :, own, :, own].reshape(len(K), inner.size, inner.size)
+    beside = parts[:, :, own, :, shared].reshape(len(K), inner.size, outer.size)
+    left = parts[:, :, shared, :, shared].reshape(len(K), outer.size, outer.size)
+    for blocks in zip(done, beside, left, strict=True):
+        eliminate(*blocks)
+    return Skeleton(mirrored(left), K, space.cell_dofs, inner, outer, space.unknowns)
 
 
 def factorise(space: Space, skeleton: Skeleton, exterior: Exterior) -> Factors:

@@ -8,59 +8,82 @@ is left at last is the stiffness of the surface itself; fields below are recover
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg.blas import dtrsm
+from scipy.linalg.blas import dsyrk, dtrsm
 from scipy.linalg.lapack import dpotrf
 
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
 LEAST = 8  # cells of the smallest regions: with fewer there are more steps, with more they are longer
+FAR = 2**40  # a place beyond all, where a zero is read
 SINGULAR = "the stiffness is singular; hold the body, and mesh it without empty cells"
+
+
+Elimination = Callable[["Region", Array, Array, Array], None]
+"""Takes the complete unknowns of a region out of the stiffness of those left, in place; see `Region.blocks`."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Region(Valued):
     """Some cells, and how their stiffness is put together; the same for all meshes whose cells meet alike.
 
-    A region joins two parts, or consists of cells and has none; it has the cells of the numbers (m,). Of the unknowns
-    that are left, (k,), `shares` (k,) says how many of the cells have each. The entries are the places of those of the
-    cells', or the parts', matrices in its own, which is of the size; `complete` (c,) are the numbers of the unknowns
-    that are eliminated, its first.
+    A region joins two parts, or consists of cells, (m,), and has none. Its unknowns are (k,) that are left and the
+    `complete` (c,), that are eliminated; both are numbered as those of the body. Its stiffness is one array of three
+    blocks and a zero at its end, and `places` say where its entries are among the first part's, those of the second
+    part, or where the entries of its cells go; see `blocks`.
     """
 
     parts: tuple[Region, ...]
     cells: Index
     unknowns: Index
-    shares: Index
-    entries: Index
-    size: int
     complete: Index
+    places: tuple[Index, ...]
 
     def stiffness(self, K: Array) -> Array:
         """Stiffness (k, k) of the unknowns that are left, from that of all cells, positive definite."""
-        return eliminated(
-            self._joined([part.stiffness(K) for part in self.parts] or [K[self.cells]]), self.complete.size
-        )
+        return self._reduced(K, lambda _, done, beside, left: eliminate(done, beside, left))
 
     def factorised(self, K: Array) -> tuple[list[Front], Array]:
         """What the unknowns of all its regions are recovered by, the smallest first, and the stiffness left, (k, k)."""
-        parts = [part.factorised(K) for part in self.parts]
-        joined = self._joined([left for _, left in parts] or [K[self.cells]])
-        own, left = eliminated_by(joined, self.complete, self.unknowns)
-        return [*(front for fronts, _ in parts for front in fronts), own], left
+        fronts = []
 
-    def _joined(self, matrices: list[Array]) -> Array:
-        """Stiffness of the complete unknowns and those left, from those of the parts or the cells."""
-        joined = np.bincount(self.entries, np.concatenate([matrix.ravel() for matrix in matrices]), self.size**2)
-        used = self.complete.size + self.unknowns.size
-        return np.asarray(joined, dtype=np.float64).reshape(self.size, self.size)[:used, :used]
+        def by_front(region: Region, done: Array, beside: Array, left: Array) -> None:
+            whole = np.block([[mirrored(done), beside], [beside.T, mirrored(left)]])
+            front, left[:] = eliminated_by(whole, region.complete, region.unknowns)
+            fronts.append(front)
+
+        return fronts, self._reduced(K, by_front)
+
+    def blocks(self, joined: Array) -> tuple[Array, Array, Array]:
+        """The complete unknowns' stiffness (c, c), theirs with those left (c, k), and that of those left, (k, k).
+
+        Of the two that are square the upper triangle alone has a meaning.
+        """
+        c, k = self.complete.size, self.unknowns.size
+        done, beside, left = np.split(joined[:-1], [c * c, c * (c + k)])
+        return done.reshape(c, c), beside.reshape(c, k), left.reshape(k, k)
+
+    def _reduced(self, K: Array, elimination: Elimination) -> Array:
+        return mirrored(self.blocks(self._eliminated(K, elimination))[2])
+
+    def _eliminated(self, K: Array, elimination: Elimination) -> Array:
+        """The three blocks from all cells' stiffness, of those left without the others."""
+        if self.parts:
+            first, second = (part._eliminated(K, elimination) for part in self.parts)
+            joined = first.take(self.places[0], mode="clip")
+            joined += second.take(self.places[1], mode="clip")
+        else:
+            joined = np.bincount(self.places[0], K[self.cells].ravel()).astype(np.float64, copy=False)
+            joined[-1] = 0.0
+        elimination(self, *self.blocks(joined))
+        return joined
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -139,10 +162,10 @@ def dissected(mesh: Any, unknowns: Index, kept: Mask) -> Region:
     The unknowns (k, cells) of the cells are below 0 where they are held; kept (n,) says which of all are in no region
     eliminated.
     """
-    steps = np.array([_steps(mesh, mesh.f2t[0, mesh.boundaries[name]]) for name in ("axis", "contact")])
-    shares = np.bincount(unknowns[unknowns >= 0], minlength=kept.size).astype(np.intp)
-    shares[kept] = 0  # in no region is it complete
-    return _dissected(unknowns.tobytes(), steps.tobytes(), shares.tobytes(), steps.shape[1])
+    first = [np.asarray(mesh.f2t[0, mesh.boundaries[name]], dtype=np.intp) for name in ("axis", "contact")]
+    across = np.asarray(mesh.f2t[:, mesh.f2t[1] >= 0], dtype=np.intp)
+    ends = tuple(cells.tobytes() for cells in first)
+    return _dissected(unknowns.tobytes(), kept.tobytes(), across.tobytes(), ends, mesh.nelements)
 
 
 def eliminated_by(K: Array, done: Index, left: Index) -> tuple[Front, Array]:
@@ -164,12 +187,24 @@ def inverses(blocks: Array) -> Array:
         raise NotConverged(f"{SINGULAR}; of a tangent: try another control or a nearer start") from error
 
 
-def eliminated(K: Array, count: int) -> Array:
-    """Stiffness without the first unknowns, so many; raise NotConverged unless it is positive definite in them."""
-    if not count:
-        return K
-    W = dtrsm(1.0, factor(K[:count, :count]), K[count:, :count], side=1, lower=1, trans_a=1)
-    return np.asarray(K[count:, count:] - W @ W.T)
+def eliminate(done: Array, beside: Array, left: Array) -> None:
+    """Take unknowns out of the stiffness (k, k) of those left, in place; raise NotConverged if not positive definite.
+
+    `done` (c, c) is theirs, `beside` (c, k) what couples both. They are contiguous and overwritten; of the square ones
+    the upper triangle is used.
+    """
+    if len(done):
+        # By columns, as LAPACK has them, these are the lower triangles.
+        lower, info = dpotrf(done.T, lower=1, clean=0, overwrite_a=1)
+        if info:
+            raise NotConverged(SINGULAR)
+        W = dtrsm(1.0, lower, beside.T, side=1, lower=1, trans_a=1, overwrite_b=1)
+        dsyrk(-1.0, W, 1.0, left.T, lower=1, overwrite_c=1)
+
+
+def mirrored(upper: Array) -> Array:
+    """Symmetric matrices (..., n, n) of which the upper triangle is given."""
+    return np.where(np.tri(upper.shape[-1], dtype=bool), upper.swapaxes(-1, -2), upper)
 
 
 def factor(matrix: Array) -> Array:
@@ -203,37 +238,71 @@ def reduced_unknowns(dofs: Index, T: sparse.csc_array) -> tuple[Index, Array]:
 
 
 @lru_cache(maxsize=1)
-def _dissected(unknowns: bytes, steps: bytes, shares: bytes, cells: int) -> Region:
+def _dissected(unknowns: bytes, kept: bytes, across: bytes, ends: tuple[bytes, ...], cells: int) -> Region:
     """All cells as a tree of regions; kept, as bodies are meshed for several contact radii near each other."""
-    numbers, away = (np.frombuffer(data, dtype=np.intp).reshape(-1, cells) for data in (unknowns, steps))
-    complete = np.frombuffer(shares, dtype=np.intp)
+    pairs = np.frombuffer(across, dtype=np.intp).reshape(2, -1)
+    chosen, regions = _halved(np.array([_steps(pairs, np.frombuffer(end, dtype=np.intp), cells) for end in ends]))
+    numbers = np.frombuffer(unknowns, dtype=np.intp).reshape(-1, cells)[:, chosen]
+    owners = _owners(numbers, regions, np.frombuffer(kept, dtype=bool))
+    order = np.argsort(owners, kind="stable")  # in which they are eliminated
+    rank = np.append(np.argsort(order), -1)
+    made: list[Region] = []
+    for number, region in enumerate(regions):
+        parts = [] if region.stop - region.start <= LEAST else [made.pop(), made.pop()][::-1]
+        own = rank[numbers[:, region].T] if not parts else np.concatenate([rank[part.unknowns] for part in parts])
+        ranks = np.unique(own[own >= 0])
+        complete, left = (order[ranks[own]] for own in (owners[order[ranks]] == number, owners[order[ranks]] > number))
+        made.append(
+            Region(tuple(parts), chosen[region], left, complete, _places(parts, rank, own, ranks, complete.size))
+        )
+    return made[0]
 
-    def region(chosen: Index) -> Region:
-        if chosen.size <= LEAST:
-            own = numbers[:, chosen].T
-            return _region((), chosen, own, np.ones_like(own), complete)
-        first = _half(away[:, chosen])
-        parts = region(chosen[first]), region(chosen[~first])
-        return _region(parts, chosen, [part.unknowns for part in parts], [part.shares for part in parts], complete)
 
-    return region(np.arange(cells))
+def _halved(steps: Index, start: int = 0) -> tuple[Index, list[slice]]:
+    """Cells in the order of the regions, and these as parts of that order, each after those it consists of."""
+    count = steps.shape[1]
+    if count <= LEAST:
+        return np.arange(count), [slice(start, start + count)]
+    first = _half(steps)
+    order, regions = _halved(steps[:, first], start)
+    others, more = _halved(steps[:, ~first], start + order.size)
+    both = np.append(np.flatnonzero(first)[order], np.flatnonzero(~first)[others])
+    return both, [*regions, *more, slice(start, start + count)]
 
 
-def _region(
-    parts: tuple[Region, ...], cells: Index, unknowns: Iterable[Index], shares: Iterable[Index], complete: Index
-) -> Region:
-    """Region of matrices with these unknowns: first those that are complete, then those left, then those held."""
-    unknowns = list(unknowns)
-    numbers, places = np.unique(np.concatenate(unknowns), return_inverse=True)
-    shared = np.bincount(places, np.concatenate(list(shares))).astype(np.intp)
-    held = numbers < 0
-    done = ~held & (shared == complete[numbers])
-    order = np.argsort(np.where(held, 2, ~done), kind="stable")
-    places = np.argsort(order)[places]
-    rows = np.split(places, np.cumsum([own.size for own in unknowns])[:-1])
-    entries = np.concatenate([(row[:, None] * numbers.size + row).ravel() for row in rows])
-    left = order[done.sum() : numbers.size - np.count_nonzero(held)]
-    return Region(parts, cells, numbers[left], shared[left], entries, numbers.size, numbers[order[: done.sum()]])
+def _owners(numbers: Index, regions: list[slice], kept: Mask) -> Index:
+    """Of each unknown the first region that has all its cells; one more than there are if it is kept."""
+    free = numbers >= 0
+    first, last = np.full(kept.size, numbers.shape[1]), np.full(kept.size, -1)
+    cells = np.broadcast_to(np.arange(numbers.shape[1]), numbers.shape)[free]
+    np.minimum.at(first, numbers[free], cells)
+    np.maximum.at(last, numbers[free], cells)
+    owners = np.full(kept.size, len(regions))
+    for number, region in reversed(list(enumerate(regions))):
+        owners[(first >= region.start) & (last < region.stop)] = number
+    owners[kept] = len(regions)
+    return owners
+
+
+def _places(parts: list[Region], rank: Index, own: Index, ranks: Index, c: int) -> tuple[Index, ...]:
+    """Where a region's entries are in its parts, or where those of its cells go, see `Region`.
+
+    The c unknowns that are complete are the first in the ranks, which ascend, as they do in the parts.
+    """
+    size, k = ranks.size, ranks.size - c
+    if not parts:
+        at = np.where(own < 0, size, np.searchsorted(ranks, own))
+        row, column = at[:, :, None], at[:, None, :]
+        places = np.where(column < c, row * c, c * c - c + row * k) + column
+        return (np.where((row <= column) & (column < size), places, c * c + size * k).ravel(),)
+    found = []
+    for part in parts:
+        at, left = np.full(size, FAR), part.unknowns.size
+        at[np.searchsorted(ranks, rank[part.unknowns])] = np.arange(left)
+        rows = left * at + part.complete.size * (part.complete.size + left)
+        blocks = np.add.outer(rows[:c], at[:c]), np.add.outer(rows, at[c:])
+        found.append(np.concatenate([*(block.ravel() for block in blocks), [FAR]]))
+    return tuple(found)
 
 
 def _half(steps: Index) -> Mask:
@@ -246,12 +315,11 @@ def _half(steps: Index) -> Mask:
     return np.asarray(steps[across] <= values[middle])
 
 
-def _steps(mesh: Any, first: Index) -> Index:
-    """Steps from cell to cell, over facets, from the first ones."""
-    steps = np.full(mesh.nelements, -1)
+def _steps(pairs: Index, first: Index, cells: int) -> Index:
+    """Steps from cell to cell, over the facets between pairs (2, m) of them, from the first ones."""
+    steps = np.full(cells, -1)
     steps[first] = 0
-    pairs = mesh.f2t[:, mesh.f2t[1] >= 0]
-    for step in range(1, mesh.nelements):
+    for step in range(1, cells):
         reached = steps[pairs] == step - 1
         new = pairs[::-1][reached & (steps[pairs[::-1]] < 0)]
         if not new.size:

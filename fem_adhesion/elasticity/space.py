@@ -167,35 +167,30 @@ def _order(space: Space) -> int:
 
 def cell_stiffness(space: Space, poisson: float) -> Array:
     """Return the stiffness matrix of every cell, (cells, 2 n, 2 n), in E* beta, ordered as in ``space.cell_dofs``."""
-    D, size = elastic_matrix(poisson), len(space.cell_dofs)
-    K = np.empty((space.mesh.nelements, size, size))
+    D = elastic_matrix(poisson)
     if isinstance(space.element, ElementQuadP):
-        for cells, blocks in _product_stiffness(space, D):
-            parts = K[cells].reshape(-1, 2, size // 2, 2, size // 2)
-            parts[:, 0, :, 0], parts[:, 1, :, 0], parts[:, 1, :, 1] = blocks
-            parts[:, 0, :, 1] = blocks[1].transpose(0, 2, 1)
-        return K
-    for cells, B, dA in cell_strains(space):
-        K[cells] = strain_products(D, B, dA)
-    return K
+        return _product_stiffness(space, D)
+    return np.concatenate([strain_products(D, B, dA) for _, B, dA in cell_strains(space)])
 
 
-def _product_stiffness(space: Space, D: Array) -> Iterator[tuple[slice, Array]]:
-    """Stiffness of u_r with u_r, u_z with u_r and u_z with u_z, (3, cells, n, n), batch by batch."""
+def _product_stiffness(space: Space, D: Array) -> Array:
+    """Return the same of quadrilaterals, where a sum over points is one of products."""
     functions, (points, weights) = cell_products(space), cell_quadrature(space)
-    mapping, q = space.mesh.mapping(), round(np.sqrt(len(weights)))
-    radii, (inverse, area) = np.asarray(mapping.F(points)[0]), inverted(mapping.DF(points))
+    mapping = space.mesh.mapping()
+    r, (inverse, area) = np.asarray(mapping.F(points)[0]), inverted(mapping.DF(points))
+    dA = ring_measure(r) * area * weights
+    K = np.empty((space.mesh.nelements, *functions.places.shape))
     for cells in _batches(space, len(weights)):
         # Of a function whose value or one of whose slopes is 1.
-        r, value, grad = radii[cells], np.zeros((3, *radii[cells].shape)), np.zeros((3, 2, *radii[cells].shape))
+        value, grad = np.zeros((3, *dA[cells].shape)), np.zeros((3, 2, *dA[cells].shape))
         value[0], grad[1:] = 1.0, inverse[:, :, cells]
-        B = strain_displacement(value, grad, r)
-        stress = (D @ B.reshape(*B.shape[:2], -1)).reshape(B.shape)
-        stress *= (ring_measure(r) * area[cells] * weights)[:, None, :, None]
+        B = np.ascontiguousarray(strain_displacement(value, grad, r[cells]).transpose(1, 3, 0, 2))
+        stress = np.tensordot(D, B, axes=1) * dA[cells]
         u_r, u_z = slice(0, 3), slice(3, 6)
         pairs = (u_r, u_r), (u_z, u_r), (u_z, u_z)
-        work = np.array([np.einsum("ceqa,ceqb->cabq", B[..., a], stress[..., b]) for a, b in pairs])
-        yield cells, integrated(work.reshape(*work.shape[:-1], q, q), functions)
+        work = [sum(b[one, None] * s[other] for b, s in zip(B, stress, strict=True)) for one, other in pairs]
+        K[cells] = integrated(np.array(work), functions)
+    return K
 
 
 def strain_products(D: Array, B: Array, dA: Array) -> Array:

@@ -26,14 +26,16 @@ TERMS = (
     ((BY_X, BY_X),),
 )
 """Products of two functions, by what stands along x: f f, f f', f' f and f' f'."""
+FIRST, SECOND = np.transpose([term for terms in TERMS for term in terms])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Products(Valued):
     """Products of two of the k functions along a side at its q points.
 
-    For each group of `TERMS`, along_y has an array (terms q, k^2) of each term in it; along_x (4 q, k^2) is for each
-    group. `places` (n^2,) are where those of two functions of the square are among the k^2 k^2 products along y and x.
+    For each group of `TERMS`, along_y has an array (terms q, k^2) of each term in it; along_x (k^2, q 4) is for each
+    group. `places` (2 n, 2 n) are where those of two of the n = k^2 functions of the square, of u_r and then of u_z,
+    are among the k^2 k^2 products along x and y for u_r with u_r, u_z with u_r and u_z with u_z.
     """
 
     along_y: tuple[Array, ...]
@@ -50,24 +52,27 @@ def products(element: Any, order: int) -> Products:
     f, slope = np.array([value for value, _ in found]), np.array([np.ravel(slope) for _, slope in found])
     pairs = [(g[:, None] * h).reshape(k * k, -1).T for g, h in product((f, slope), repeat=2)]
     along_y = tuple(np.concatenate([pairs[2 * (m == BY_Y) + (n == BY_Y)] for m, n in terms]) for terms in TERMS)
+    along_x = np.stack(pairs, axis=1).reshape(-1, k * k).T.copy()
     points, _ = get_quadrature(element, order)  # y runs fastest
     values = np.array([element.lbasis(points, i)[0] for i in range(k * k)])
     grid = np.einsum("ix,jy->ijxy", f, f).reshape(k * k, -1)
     i, j = np.divmod(np.argmin(np.abs(values[:, None] - grid).sum(axis=-1), axis=1), k)
-    places = (j[:, None] * k + j) * k * k + i[:, None] * k + i
-    return Products(along_y, np.concatenate(pairs), places.ravel())
+    own = (i[:, None] * k + i) * k * k + j[:, None] * k + j
+    return Products(along_y, along_x, np.block([[own, own.T + k**4], [own + k**4, own + 2 * k**4]]))
 
 
 def integrated(coefficients: Array, functions: Products) -> Array:
-    """Sums (..., n, n) over the points, of coefficients times products of two functions or slopes of the square.
+    """Matrices (cells, 2 n, 2 n) of u_r and u_z: sums over the points of the square.
 
-    The coefficients (..., 3, 3, q, q) are of the products of value, slope by x and slope by y, at the points, with
-    their weights.
+    The coefficients (3, 3, 3, cells, q^2), for u_r with u_r, u_z with u_r and u_z with u_z, are of the products of
+    value, slope by x and slope by y of two functions at the points, with their weights.
     """
-    (*many, q, _), size = (*coefficients.shape[:-4], *coefficients.shape[-2:]), functions.along_x.shape[1]
-    summed = np.empty((*many, len(TERMS), q, size))
-    for group, (terms, table) in enumerate(zip(TERMS, functions.along_y, strict=True)):
-        along = np.stack([coefficients[..., m, n, :, :] for m, n in terms], axis=-2)
-        summed[..., group, :, :] = along.reshape(*many, q, -1) @ table
-    both = summed.reshape(*many, -1, size).swapaxes(-1, -2) @ functions.along_x
-    return both.reshape(*many, -1).take(functions.places, axis=-1).reshape(*many, size, size)
+    (size, along), cells = functions.along_x.shape, coefficients.shape[3]
+    q = along // len(TERMS)
+    by_terms = coefficients[:, FIRST, SECOND].reshape(3, len(FIRST), cells, q, q).transpose(2, 0, 3, 1, 4)
+    by_terms, summed, first = by_terms.reshape(-1, len(FIRST) * q), np.empty((cells * 3 * q, len(TERMS), size)), 0
+    for group, table in enumerate(functions.along_y):
+        np.matmul(by_terms[:, first : first + len(table)], table, out=summed[:, group])
+        first += len(table)
+    both = functions.along_x @ summed.reshape(cells, 3, along, size)
+    return both.reshape(cells, -1).take(functions.places, axis=1)

@@ -14,7 +14,6 @@ E* beta/R and positive in tension. J. Bonet and R. D. Wood, Nonlinear Continuum 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -150,12 +149,10 @@ class Body(Valued):
     def cell_tangents(self, u: Array) -> Array:
         """The same, symmetric, cell by cell, (cells, k, k): with pressures each a saddle point."""
         n, blocks = self.functions.shape[1], np.empty((len(self.radii), *2 * [self.cell_dofs.shape[1]]))
-        u_r, u_z = slice(0, n), slice(n, 2 * n)
         once = self._by_functions(self._moduli(u) * self.measure)
         twice = self._by_functions(np.moveaxis(once, 2, 0))
         pairs = np.stack([twice[0, :, 0], twice[1, :, 0], twice[1, :, 1]])
-        blocks[:, u_r, u_r], blocks[:, u_z, u_r], blocks[:, u_z, u_z] = self._integrated(pairs)
-        blocks[:, u_r, u_z] = blocks[:, u_z, u_r].transpose(0, 2, 1)
+        blocks[:, : 2 * n, : 2 * n] = self._integrated(pairs)
         if self._mixed:
             self._border(blocks, u)
         return blocks
@@ -170,12 +167,14 @@ class Body(Valued):
         blocks[:, p, p] = (self.measure[:, None] * values) @ values.T / -self._lame[0]
 
     def _integrated(self, factors: Array) -> Array:
-        """Sums (m, cells, n, n) over the points of factors, (m, 3, 3, cells, q), times products of two functions."""
-        if not isinstance(self.space.element, ElementQuadP):
-            return np.asarray(np.einsum("mabcq,aiq,bjq->mcij", factors, self.functions, self.functions, optimize=True))
-        side = math.isqrt(self.radii.shape[1])
-        grid = np.moveaxis(factors, 3, 1).reshape(len(factors), len(self.radii), 3, 3, side, side)
-        return integrated(grid, cell_products(self.space))
+        """Matrices (cells, 2 n, 2 n): sums over the points of factors times products of two functions.
+
+        The factors (3, 3, 3, cells, q) are of u_r with u_r, u_z with u_r and u_z with u_z.
+        """
+        if isinstance(self.space.element, ElementQuadP):
+            return integrated(factors, cell_products(self.space))
+        r, z_r, z = np.einsum("mabcq,aiq,bjq->mcij", factors, self.functions, self.functions, optimize=True)
+        return np.block([[r, z_r.transpose(0, 2, 1)], [z_r, z]])
 
     def energy(self, u: Array) -> float:
         """Elastic energy in R dgamma mu eps."""
