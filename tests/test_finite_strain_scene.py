@@ -19,10 +19,11 @@ from fem_adhesion.curve import terminal as curve_terminal
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves, Question
 from fem_adhesion.finite_strain import problem as finite_strain_problem
 from fem_adhesion.finite_strain import scene as finite_strain_scene
-from fem_adhesion.finite_strain.assembly import FARTHEST, ScenesBody, Windows, fine_between
+from fem_adhesion.finite_strain.assembly import FARTHEST, ScenesBody, Windows
 from fem_adhesion.finite_strain.scene import LITTLE, Stages, find_jumps, raised, trace
 from fem_adhesion.finite_strain.traction import Convention
 from halfspace.accuracy.stages import Standing
+from halfspace.elastic import grid
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Chart, moved, placed, transfer, undeformed_radius
 from halfspace.equilibrium.contact import APPROACH, LOAD
@@ -316,7 +317,7 @@ def test_attraction_per_deformed_area_grows_with_the_area_that_it_stretches():
 
 @pytest.mark.parametrize(("inner", "outer"), [(0.0, 0.0), (0.0, 1.0), (1.2, 1.2), (1.2, 2.5)])
 def test_cells_are_fine_where_the_edge_passes_and_grow_beyond(inner, outer):
-    lines = fine_between(inner, outer, 0.1, 20.0, 2.0)
+    lines = grid.graded(inner, 0.1, 20.0, until=outer)
     lengths, middles = np.diff(lines), (lines[1:] + lines[:-1]) / 2
     assert lines[0] == 0.0
     assert lines[-1] == pytest.approx(20.0)

@@ -12,7 +12,7 @@ from skfem import ElementQuadP
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import sliding, with_interiors
 from fem_adhesion.elasticity.space import Space, cell_quadrature, reference_functions, scatter
-from fem_adhesion.finite_strain.assembly import fine_between, finite_strain_problem
+from fem_adhesion.finite_strain.assembly import finite_strain_problem
 from fem_adhesion.finite_strain.body import displacement_body
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.mesh import spheres
@@ -38,7 +38,7 @@ def potential(H):
 def hemisphere(ratio):
     """A hemisphere with cells fine at the contact edge and in the attracted layer, and its linear pull-off."""
     R = np.sqrt(ratio / TABOR)
-    lines = fine_between(1.35, 1.6, 0.25, spheres.CORE * R, 2.0)
+    lines = grid.graded(1.35, 0.25, spheres.CORE * R, until=1.6)
     depths = grid.graded(0.0, 0.35 / (TABOR * R), spheres.DEPTH * R, growth=2.0)
     space = Space(spheres.hemisphere(R, lines, depths), ElementQuadP(4))
     condensed = condense(space, POISSON, far_field=sliding)

@@ -27,7 +27,7 @@ from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
-from halfspace.values import Array, Valued
+from halfspace.values import Valued
 
 FARTHEST = 0.98
 """Undeformed radius in R up to which a contact may spread.
@@ -126,7 +126,7 @@ class ScenesBody(Valued):
         how = replace(self.how, growth=scene.scales.growth(self.how.growth))
         ends, coordinate = layout_of(scene, how)
         first, last = (coordinate.of(min(radius, self.farthest)) for radius in (inner, outer))
-        lines = fine_between(first, last, self.length, float(ends[0]), how.growth)
+        lines = grid.graded(first, self.length, float(ends[0]), growth=how.growth, until=last)
         space = Space(mesh_of(scene, lines, how), ElementQuadP(how.degree))
         exterior = with_interiors(FAR_FIELDS[scene.body.held](space, scene.poisson), space)
         return finite_strain_problem(
@@ -175,13 +175,3 @@ class Windows(WhereAsked):
     @property
     def _count(self) -> int:
         return int(np.ceil(self.body.farthest / self._width))
-
-
-def fine_between(inner: float, outer: float, finest: float, end: float, growth: float) -> Array:
-    """Ends of cells from 0 to `end`: no longer than `finest` from `inner` to `outer`, growing away from both."""
-    count = max(int(np.ceil((outer - inner) / finest - 1e-9)), 0)
-    before = inner - grid.geometric(inner, finest, growth)[:0:-1] if inner else np.zeros(0)
-    beyond = outer + grid.geometric(end - outer, finest, growth)[1:]
-    lines = np.concatenate([before, np.linspace(inner, outer, count + 1), beyond])
-    lines[0] = 0.0  # not what rounding leaves of it
-    return lines

@@ -85,15 +85,9 @@ class SizedBody(Valued):
 
     def lines(self, edge: float = 0.0) -> Array:
         """Ends of all cells that are finest at a contact edge, in the surface's coordinate, or on the axis."""
-        return np.concatenate([self._graded(edge), self.outer[1:]])
-
-    def _graded(self, edge: float) -> Array:
-        end = float(self.outer[0])
-        if edge:
-            lines = grid.graded(edge, self.length, end, growth=self._growth, last=self.last)
-        else:
-            lines = grid.fine_until(self._reach, self.length, end, growth=self._growth, last=self.last)
-        return grid.towards_axis(lines, self.first, self._growth)
+        end, until = float(self.outer[0]), edge or self._reach
+        lines = grid.graded(edge, self.length, end, growth=self._growth, last=self.last, until=until)
+        return np.concatenate([grid.towards_axis(lines, self.first, self._growth), self.outer[1:]])
 
     def centred(self) -> Chart:
         """Chart fine on the axis."""

@@ -117,7 +117,7 @@ def rings(
     growth = scales.growth(growth)
     reach = EQUAL * length
     until = LEAVE * reach
-    centred = grid.fine_until(reach, length, outer, growth=growth)
+    centred = grid.graded(0.0, length, outer, growth=growth, until=reach)
     if scales.law.outermost:
         return Rings(_fine_throughout(scales, finest, growth, outer, to_load), centred, math.inf)
     edge = grid.graded(1.0, 2 * length / widest, outer / until, growth=growth)  # as wide from the first
@@ -136,7 +136,7 @@ def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float,
             f"{spacing:.2g} beta are needed up to {reach:.3g} beta, limit: {MOST_CELLS}; take a smaller tabor than "
             f"{scales.tabor:g}, or a smaller to_load"
         )
-    return grid.fine_until(reach, spacing, max(outer, reach + spacing), growth=growth)
+    return grid.graded(0.0, spacing, max(outer, reach + spacing), growth=growth, until=reach)
 
 
 def half_space_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:

@@ -17,18 +17,21 @@ def uniform(extent: float, spacing: float) -> Array:
     return np.linspace(0, extent, int(np.ceil(extent / spacing - 1e-9)) + 1)
 
 
-def fine_until(reach: float, spacing: float, extent: float, *, growth: float, last: float = np.inf) -> Array:
-    """Breakpoints from 0 to `extent`: equally spaced up to `reach`, growing geometrically from there; see `graded`."""
-    beyond = geometric(extent - reach, spacing, growth, last)
-    return np.append(uniform(reach, spacing), (reach + beyond)[1:])
-
-
-def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0, last: float = np.inf) -> Array:
+def graded(
+    radius: float,
+    finest: float,
+    extent: float,
+    *,
+    growth: float = 2.0,
+    last: float = np.inf,
+    until: float | None = None,
+) -> Array:
     """Breakpoints from 0 to `extent`, finest at `radius` and growing geometrically away from it on both sides.
 
     The intervals that touch the radius, 0 <= radius < extent, 1 for a grid that is scaled with the contact, are
     `finest` long, or less; the growth, above 1, is the ratio of the lengths of neighbours. The interval that touches
-    `extent` is `last` long, or less, if they are to be fine there too. InputError if one is out of range.
+    `extent` is `last` long, or less, if they are to be fine there too. Beyond the radius they are equally long `until`
+    another one, if it is given. InputError if one is out of range.
     """
     _require_positive(finest=finest, extent=extent)
     if not 0 <= radius < extent:
@@ -37,7 +40,9 @@ def graded(radius: float, finest: float, extent: float, *, growth: float = 2.0, 
         raise InputError(f"growth {growth:g} is not above 1; take about 2")
     inner = radius - geometric(radius, finest, growth)[::-1] if radius else np.zeros(1)
     inner[0] = 0.0  # not what rounding leaves of it
-    return np.concatenate([inner, (radius + geometric(extent - radius, finest, growth, last))[1:]])
+    until = radius if until is None else until
+    even = np.linspace(radius, until, int(np.ceil((until - radius) / finest - 1e-9)) + 1)
+    return np.concatenate([inner, even[1:], (until + geometric(extent - until, finest, growth, last))[1:]])
 
 
 def towards_axis(lines: Array, first: float, growth: float) -> Array:
