@@ -20,13 +20,13 @@ from fem_adhesion.discretise import (
     sized_body,
 )
 from fem_adhesion.finite_strain import scene as finite_strain_scene
-from fem_adhesion.mesh.block import graded_breaks
 from fem_adhesion.mesh.file import read_scaled
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import AroundEvents, operators_across, surroundings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.accuracy.trace import TWIN, rings
+from halfspace.elastic import grid
 from halfspace.elastic.compliance import to_infinity
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
@@ -131,7 +131,7 @@ def block_charts(scene: Scene, resolution: BlockResolution, to_load: float = COM
     how, radius = resolution.how, resolution.radius
     if not scene.body.endless:
         widest = min(scene.scales.widest_radius(to_load), radius / 2)
-        made = discretise(scene, graded_breaks(finest_length(scene, how), widest, radius), how)
+        made = discretise(scene, grid.graded(0.0, finest_length(scene, how), radius, until=widest), how)
         return (Chart(made.problem, made.unknowns),)
     extent = np.sqrt(2 * scene.tabor * float(scene.surface.height(np.array(radius))))
     lines = rings(scene.scales, how.finest, how.growth, extent, to_load, how.degree + 2)

@@ -12,7 +12,8 @@ from fem_adhesion.elasticity.boundaries import trace_on
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import boussinesq_displacement, clamped, free, point_load
 from fem_adhesion.elasticity.space import Space, cell_stiffness, ring_measure, scatter
-from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
+from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
+from halfspace.elastic import grid
 
 NU = 0.3
 
@@ -20,9 +21,9 @@ NU = 0.3
 def edge_space(degree, length=1e3, halvings=8):
     """Quadrilaterals graded about the edge r = 1 of a pressure distribution."""
     steps = 0.5 ** np.arange(2.0, halvings + 2.0)
-    outside = graded_breaks(0.5, 3.0, length)[3:]
+    outside = grid.graded(0.0, 0.5, length, until=3.0)[3:]
     r_breaks = np.concatenate([[0.0, 0.25, 0.5], 1.0 - steps[1:], [1.0], 1.0 + steps[::-1], outside])
-    z_breaks = graded_breaks(steps[-1], steps[-1], length)
+    z_breaks = grid.graded(0.0, steps[-1], length, until=steps[-1])
     return Space(tensor_grid(np.unique(r_breaks), z_breaks), ElementQuadP(degree))
 
 

@@ -34,7 +34,6 @@ from fem_adhesion.elasticity.space import (
 )
 from fem_adhesion.mesh.block import (
     block_grid,
-    graded_breaks,
     graded_size,
     quarter_disc,
     tensor_grid,
@@ -42,6 +41,7 @@ from fem_adhesion.mesh.block import (
 )
 from fem_adhesion.mesh.held_sphere import held_sphere
 from fem_adhesion.mesh.refinement import refined
+from halfspace.elastic import grid
 
 NU = 0.3
 
@@ -99,7 +99,7 @@ def test_quarter_disc_respects_the_size_function_with_no_sharp_angle(fine):
 
 @pytest.mark.parametrize(("fine", "fine_radius", "length"), [(0.3, 3.0, 50.0), (0.3, 0.3, 1e6), (0.4, 1.0, 1.2)])
 def test_breaks_are_uniform_then_geometric_and_end_at_the_length(fine, fine_radius, length):
-    breaks = graded_breaks(fine, fine_radius, length, growth=2.0)
+    breaks = grid.graded(0.0, fine, length, growth=2.0, until=fine_radius)
     steps = np.diff(breaks)
     ratios = steps[1:] / steps[:-1]
     assert breaks[0] == 0.0
@@ -114,9 +114,12 @@ def test_breaks_are_uniform_then_geometric_and_end_at_the_length(fine, fine_radi
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: graded_breaks(0.3, 3.0, 2.0), "fine_radius = 3.0 must be less than length = 2.0"),
-        (lambda: graded_breaks(0.3, 3.0, 50.0, growth=1.0), "growth = 1.0"),
-        (lambda: graded_breaks(-0.3, 3.0, 50.0), "fine = -0.3"),
+        (
+            lambda: grid.graded(0.0, 0.3, 2.0, until=3.0),
+            "from 0 to 3, lies outside 0 <= radius < extent = 2",
+        ),
+        (lambda: grid.graded(0.0, 0.3, 50.0, growth=1.0, until=3.0), "growth 1 is not above 1"),
+        (lambda: grid.graded(0.0, -0.3, 50.0, until=3.0), "finest -0.3 is not a positive length"),
         (lambda: tensor_grid(np.array([0.0, 2.0, 1.0]), np.array([0.0, 1.0])), "r_breaks"),
         (lambda: quarter_disc(np.nan, graded_size(0.3, 3.0, 0.3)), "radius = nan"),
         (lambda: lame_parameters(0.5), "poisson = 0.5"),

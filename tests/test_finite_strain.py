@@ -16,7 +16,8 @@ from fem_adhesion.finite_strain import material
 from fem_adhesion.finite_strain.assembly import finite_strain_problem
 from fem_adhesion.finite_strain.body import displacement_body, mixed_body
 from fem_adhesion.finite_strain.traction import Convention, convention_of, yielded_adhesion
-from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
+from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
+from halfspace.elastic import grid
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Chart, moved, trace_charts, transfer
 from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem
@@ -43,7 +44,7 @@ def problem_of(space, stretch, poisson=0.3, convention=VERTICAL, pressure=None, 
 
 def hemisphere(R, fine=0.6, flat=2.4):
     """Quadratic cells: a square bent to the quarter disc |Z| < 2R, and by Z/(1 + i Z/2R) to the hemisphere."""
-    near, depths = graded_breaks(fine, flat, 0.8 * R, growth=2.0), graded_breaks(fine, fine, 0.8 * R, growth=2.0)
+    near, depths = (grid.graded(0.0, fine, 0.8 * R, until=until) for until in (flat, fine))
     rim = np.linspace(0.8 * R, 2 * R, 7)[1:]
     flat_mesh = MeshQuad2.from_mesh(MeshQuad.init_tensor(np.append(near, rim), np.append(depths, rim)))
     a, d = flat_mesh.doflocs

@@ -29,7 +29,8 @@ from fem_adhesion.elasticity.space import (
     shear_matrix,
     strain_products,
 )
-from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quarter_disc, tensor_grid
+from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
+from halfspace.elastic import grid
 
 
 def deflection_error(operator):
@@ -71,7 +72,10 @@ def test_the_pressures_are_stable_however_fine_the_mesh(degree):
 
 
 def test_the_pressures_are_stable_however_flat_the_cells():
-    flat = [Space(tensor_grid(np.linspace(0, 1, 3), graded_breaks(f, f, 1.0)), ElementQuadP(3)) for f in (1e-2, 1e-6)]
+    flat = [
+        Space(tensor_grid(np.linspace(0, 1, 3), grid.graded(0.0, f, 1.0, until=f)), ElementQuadP(3))
+        for f in (1e-2, 1e-6)
+    ]
     moderate, extreme = (inf_sup(space, pressure_modes(space)) for space in flat)
     assert extreme > 0.95 * moderate
 
@@ -175,7 +179,8 @@ def test_the_remedy_is_taken_from_a_threshold_on():
 @pytest.mark.parametrize("degree", [3, 4, 5, 6])
 def test_at_the_threshold_the_remedy_is_no_worse(degree):
     edge = Space(
-        tensor_grid(graded_breaks(0.2, 3.0, 50.0), graded_breaks(0.2, 0.2, 50.0, growth=2.5)), ElementQuadP(degree)
+        tensor_grid(grid.graded(0.0, 0.2, 50.0, until=3.0), grid.graded(0.0, 0.2, 50.0, growth=2.5, until=0.2)),
+        ElementQuadP(degree),
     )
     plain = deflection_error(condense(edge, REMEDY_FROM).operator)
     assert deflection_error(condense(edge, REMEDY_FROM, stiffness=projected_stiffness).operator) < 2 * plain

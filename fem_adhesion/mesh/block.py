@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from skfem import MeshQuad, MeshTri
 
-from halfspace.elastic.grid import geometric
+from halfspace.elastic import grid
 from halfspace.errors import InputError
 from halfspace.values import Array, Index
 
@@ -36,7 +36,8 @@ def quarter_disc(radius: float, size: SizeFunction) -> Any:
     a polygon inscribed in the quarter disc. The size, in beta, is bounded away from zero. Returns a MeshTri with the
     boundaries "axis", "contact" and "far"; InputError if the radius is not positive.
     """
-    _require_positive("radius", radius)
+    if not (np.isfinite(radius) and radius > 0.0):
+        raise InputError(f"radius = {radius} must be positive and finite; give a length in beta")
     diagonal = radius * np.sqrt(0.5)
     nodes = np.array([[0.0, radius, diagonal, 0.0], [0.0, 0.0, -diagonal, -radius]])
     mesh = MeshTri(nodes, np.array([[0, 0], [1, 2], [2, 3]]))
@@ -60,32 +61,14 @@ def tensor_grid(r_breaks: Array, z_breaks: Array, interfaces: Sequence[float] = 
     return mesh.with_subdomains({str(n): np.flatnonzero(region == n) for n in range(len(interfaces) + 1)})
 
 
-def graded_breaks(fine: float, fine_radius: float, length: float, *, growth: float = 2.0) -> Array:
-    """Cut [0, length] uniformly up to `fine_radius`, then into cells that grow geometrically: break points (m + 1,).
-
-    Lengths are in beta. `fine` is the largest spacing of the uniform part, which ends where it does for lines graded
-    from the surface into the depth. Growth, above 1, is the ratio of one cell to the one before outside of it; less for
-    the first of them, so that a cell ends at `length`. InputError if the lengths are not positive, fine_radius reaches
-    length or growth is not above 1.
-    """
-    _require_positive("fine", fine)
-    _require_positive("fine_radius", fine_radius)
-    if not fine_radius < length:
-        raise InputError(f"fine_radius = {fine_radius} must be less than length = {length}; enlarge the block")
-    if not growth > 1.0:
-        raise InputError(f"growth = {growth} must be above 1; use a value between 1.2 and 3")
-    uniform = np.linspace(0.0, fine_radius, int(np.ceil(fine_radius / fine - 1e-9)) + 1)
-    outside = fine_radius + geometric(length - fine_radius, uniform[1], growth)[1:]
-    return np.concatenate([uniform, outside[:-1], [length]])
-
-
 def block_grid(fine: float, fine_radius: float, length: float, *, growth: float = 2.0) -> Any:
-    """Mesh the box [0, length] x [-length, 0], graded from the centre of its surface.
+    """Mesh the box [0, length] x [-length, 0]: cells of the size `fine` on its surface up to a radius, growing beyond.
 
-    Parameters and errors as in `graded_breaks`, which makes the lines in both directions.
+    Lengths are in beta; the growth, above 1, is the ratio of one cell to the one before. InputError as of
+    `halfspace.elastic.grid.graded`, which makes the lines in both directions.
     """
-    r_breaks = graded_breaks(fine, fine_radius, length, growth=growth)
-    return tensor_grid(r_breaks, graded_breaks(fine, fine, length, growth=growth))
+    r_breaks, z_breaks = (grid.graded(0.0, fine, length, growth=growth, until=end) for end in (fine_radius, fine))
+    return tensor_grid(r_breaks, z_breaks)
 
 
 def with_named_boundaries(mesh: Any) -> Any:
@@ -112,8 +95,3 @@ def _on_arc(mesh: Any, radius: float) -> Any:
 def _far(x: Array) -> Any:
     """Tell which midpoints of boundary facets lie neither on the axis nor on the surface."""
     return (x[0] != 0.0) & (x[1] != 0.0)
-
-
-def _require_positive(name: str, value: float) -> None:
-    if not (np.isfinite(value) and value > 0.0):
-        raise InputError(f"{name} = {value} must be positive and finite; give a length in beta")

@@ -22,7 +22,7 @@ from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.far_field import FarField, clamped, point_load
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.assembly import assemble
-from fem_adhesion.mesh.block import block_grid, graded_breaks, graded_size, quarter_disc
+from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 from fem_adhesion.scene import Scene
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
@@ -173,7 +173,8 @@ def adaptive(trace: Callable[..., EquilibriumPath], digits: Iterable[int]) -> li
 
 def _graded(tabor: float, f: float, U: float, growth: float, fine_radius: float | None = None) -> Array:
     fine = widest(tabor) if fine_radius is None else fine_radius
-    return _affordable(graded_breaks(f * Scales(tabor).spike_width, fine, fine + U * unit(tabor), growth=growth))
+    finest, extent = f * Scales(tabor).spike_width, fine + U * unit(tabor)
+    return _affordable(grid.graded(0.0, finest, extent, growth=growth, until=fine))
 
 
 def _affordable(nodes: Array) -> Array:

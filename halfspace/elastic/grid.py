@@ -34,15 +34,17 @@ def graded(
     another one, if it is given. InputError if one is out of range.
     """
     _require_positive(finest=finest, extent=extent)
-    if not 0 <= radius < extent:
-        raise InputError(f"radius {radius:g} lies outside 0 <= radius < extent = {extent:g}; move it inside the grid")
+    until = radius if until is None else until
+    if not 0 <= radius <= until < extent:
+        told = f"radius {radius:g}" if until == radius else f"what is fine, from {radius:g} to {until:g},"
+        raise InputError(f"{told} lies outside 0 <= radius < extent = {extent:g}; move it inside the grid")
     if growth <= 1:
         raise InputError(f"growth {growth:g} is not above 1; take about 2")
     inner = radius - geometric(radius, finest, growth)[::-1] if radius else np.zeros(1)
-    inner[0] = 0.0  # not what rounding leaves of it
-    until = radius if until is None else until
     even = np.linspace(radius, until, int(np.ceil((until - radius) / finest - 1e-9)) + 1)
-    return np.concatenate([inner, even[1:], (until + geometric(extent - until, finest, growth, last))[1:]])
+    lines = np.concatenate([inner, even[1:], (until + geometric(extent - until, finest, growth, last))[1:]])
+    lines[[0, -1]] = 0.0, extent  # not what rounding leaves of them
+    return lines
 
 
 def towards_axis(lines: Array, first: float, growth: float) -> Array:

@@ -18,7 +18,6 @@ from fem_adhesion.elasticity.incompressible import projected_stiffness
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh.block import (
     block_grid,
-    graded_breaks,
     graded_size,
     quarter_disc,
     tensor_grid,
@@ -27,6 +26,7 @@ from fem_adhesion.mesh.block import (
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Charts, Rung
+from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium.charts import COMPRESSION, Chart, trace_charts
 from halfspace.equilibrium.contact import ContactProblem
@@ -57,8 +57,8 @@ def stretched(aspect: float, *, tabor: float = 1.0) -> Measured:
 
     def mesh(length: float) -> Any:
         fine = 0.15
-        depths = graded_breaks(fine / aspect, fine / aspect, length)
-        return tensor_grid(graded_breaks(fine, 2.5, length), depths)
+        depths = grid.graded(0.0, fine / aspect, length, until=fine / aspect)
+        return tensor_grid(grid.graded(0.0, fine, length, until=2.5), depths)
 
     return _on_meshes(mesh, (ElementQuadP(3), ElementQuadP(4)), tabor)
 
@@ -120,7 +120,9 @@ def too_coarse(factor: float, *, tabor: float = 2.0) -> Measured:
     """Trace a curve on a mesh coarser by a factor than the spike of tension at the contact edge allows."""
     element, limit = ElementQuadP(3), 0.1 * tabor**-2
     fine = factor * limit * (element.facet_dofs + 2)
-    space = Space(tensor_grid(graded_breaks(fine, 2.5, 20.0), graded_breaks(fine, fine, 20.0)), element)
+    space = Space(
+        tensor_grid(grid.graded(0.0, fine, 20.0, until=2.5), grid.graded(0.0, fine, 20.0, until=fine)), element
+    )
     trace_charts((_chart(space, tabor),))
     return Measured("spacing", factor, 1.0, "resolution guard")
 
