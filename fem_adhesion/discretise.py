@@ -187,15 +187,13 @@ def with_rigid_rim(operator: ElasticOperator, lines: Array, coordinate: SurfaceC
     Lines (m + 1,) are the ends of m more cells in the surface's coordinate, the first where the operator's end.
     """
     k = operator.cell_nodes.shape[1]
-    t, w = grid.gauss_legendre(k)
-    half = np.diff(lines)[:, None] / 2
-    x = (lines[:-1, None] + half * (1 + t)).ravel()
+    x, w = (part.ravel() for part in grid.gauss_points(lines, k))
     q, more = operator.radii.size, x.size
     compliance = np.zeros((q + more, q + more))
     compliance[:q, :q] = operator.compliance
     return ElasticOperator(
         np.concatenate([operator.radii, coordinate.radius(x)[0]]),
-        np.concatenate([operator.weights, 2 * np.pi * coordinate.ring(x)[0] * (half * w).ravel()]),
+        np.concatenate([operator.weights, 2 * np.pi * coordinate.ring(x)[0] * w]),
         compliance,
         np.concatenate([operator.cells, coordinate.radius(lines[1:])[0]]),
         np.arange(q + more).reshape(-1, k),

@@ -105,15 +105,13 @@ class Cells(Valued):
     @property
     def places(self) -> Array:
         """Radii of the nodes, (m, nodes)."""
-        t, _ = grid.gauss_legendre(self.nodes)
-        return np.asarray(self.lines[:-1, None] + np.diff(self.lines)[:, None] / 2 * (1 + t))
+        return grid.gauss_points(self.lines, self.nodes)[0]
 
     def operator(self, compliance: Array) -> ElasticOperator:
         """Operator with a compliance (q, q)."""
-        (_, w), radii = grid.gauss_legendre(self.nodes), self.places
-        weights = np.pi * radii * np.diff(self.lines)[:, None] * w
+        radii, w = grid.gauss_points(self.lines, self.nodes)
         number = np.arange(radii.size).reshape(radii.shape)
-        return ElasticOperator(radii.ravel(), weights.ravel(), compliance, self.lines, number)
+        return ElasticOperator(radii.ravel(), (2 * np.pi * radii * w).ravel(), compliance, self.lines, number)
 
     def coefficients(self, R: float, harmonics: int) -> Array:
         """Integrals by dx = d cos(theta) of the nodes' polynomials by the even P_n on a sphere of radius R.
@@ -142,9 +140,9 @@ BLOCK = 256  # harmonics at a time
 def _gauss(a: float, b: float, nodes: int, harmonics: int) -> tuple[Array, Array]:
     """Gauss's points and weights from a to b, for polynomials of so many nodes times the harmonics."""
     pieces = 1 + int(harmonics * (b - a) / PIECE)
-    half, middles = (b - a) / pieces / 2, a + (b - a) * (np.arange(pieces) + 0.5) / pieces
-    t, w = grid.gauss_legendre(nodes + MORE + math.ceil(2 * harmonics * half))
-    return (middles[:, None] + half * t).ravel(), np.tile(half * w, pieces)
+    count = nodes + MORE + math.ceil(harmonics * (b - a) / pieces)
+    points, weights = grid.gauss_points(np.linspace(a, b, pieces + 1), count)
+    return points.ravel(), weights.ravel()
 
 
 PIECE, MORE = 30.0, 8  # largest phase of the last harmonic over a rule, in 2 rad, and points that make it converge

@@ -224,11 +224,10 @@ def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
     """
     if not 1 <= nodes_per_panel <= 16:
         raise InputError(f"nodes_per_panel {nodes_per_panel} is outside 1 to 16; use more panels instead")
-    x, w = grid.gauss_legendre(nodes_per_panel)
-    half = np.diff(breakpoints)[:, None] / 2
-    radii = breakpoints[:-1, None] + half * (1 + x)
+    radii, w = grid.gauss_points(breakpoints, nodes_per_panel)
+    x, _ = grid.gauss_legendre(nodes_per_panel)
     compliance = panel_integrals(radii.ravel(), breakpoints, x).reshape(radii.size, radii.size)
-    weights = 2 * np.pi * radii * half * w
+    weights = 2 * np.pi * radii * w
     return ElasticOperator(
         radii.ravel(), weights.ravel(), compliance, breakpoints, np.arange(radii.size).reshape(radii.shape)
     )
@@ -247,13 +246,12 @@ def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> El
     reaches to infinity already, the cells beyond its extent are made anew, of 1 to 16 nodes each. The infinite cell
     begins at `reach`, in extents; up to there the cells grow threefold at most.
     """
-    x, w = grid.gauss_legendre(nodes)
     ends = np.append(0.0, grid.equal_ratios(1 / reach, 1.0, most=3.0))
-    half = np.diff(ends)[:, None] / 2
-    t, U, inner = (ends[:-1, None] + half * (1 + x)).ravel(), operator.extent, operator.finite
-    radii, weights = U / t, 2 * np.pi * U**2 * (half * w).ravel() / t**3
+    t, w = (part.ravel() for part in grid.gauss_points(ends, nodes))
+    U, inner = operator.extent, operator.finite
+    radii, weights = U / t, 2 * np.pi * U**2 * w / t**3
     tau = U / np.append(inner.radii, radii)
-    integrals = panel_integrals(tau, ends, x).reshape(tau.size, t.size)
+    integrals = panel_integrals(tau, ends, grid.gauss_legendre(nodes)[0]).reshape(tau.size, t.size)
     order = np.argsort(radii)
     deflection = (U * tau[:, None] * integrals / t**3)[:, order]
     radii, weights = radii[order], weights[order]

@@ -16,7 +16,7 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 
 from halfspace.elastic.compliance import ElasticOperator, lagrange
-from halfspace.elastic.grid import gauss_legendre
+from halfspace.elastic.grid import gauss_points
 from halfspace.values import Array, Index, Valued
 
 
@@ -308,9 +308,8 @@ class Interpolated(Valued):
 
     def _gauss_points(self, lines: Array) -> tuple[Array, Array]:
         """Places of Gauss's points between lines and 2 pi times their weights."""
-        t, w = gauss_legendre(self.operators[0].cell_nodes.shape[1])
-        half = np.diff(lines)[:, None] / 2
-        return (lines[:-1, None] + half * (1 + t)).ravel(), (2 * np.pi * half * w).ravel()
+        places, weights = gauss_points(lines, self.operators[0].cell_nodes.shape[1])
+        return places.ravel(), 2 * np.pi * weights.ravel()
 
     def _rows(self, scale: float) -> tuple[Array, Array]:
         """Weights of the operators at a scale, and their derivatives by the scale."""

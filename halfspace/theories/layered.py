@@ -77,17 +77,16 @@ class OnLayers:
     def _nodes(self, a: float) -> tuple[Array, Array]:
         """Gauss's points within the contact."""
         thin = self.body.strata[0].thickness
-        t, w = grid.gauss_legendre(math.ceil(self.fineness * (NODES + NODES_A_THICKNESS * a / thin)))
-        return a * (1 + t) / 2, a * w / 2
+        count = math.ceil(self.fineness * (NODES + NODES_A_THICKNESS * a / thin))
+        (points,), (weights,) = grid.gauss_points(np.array([0.0, a]), count)
+        return points, weights
 
     def _wave_numbers(self, a: float) -> tuple[Array, Array]:
         """Wave numbers, and S - 1 times their weights."""
         first, last = LONGEST / total_thickness(self.body), DECAYED / self.body.strata[0].thickness
         lines = grid.towards_axis(grid.uniform(last, min(PHASE / (2 * a * self.fineness), last)), first, 2.0)
-        t, w = grid.gauss_legendre(POINTS)
-        half = np.diff(lines)[:, None] / 2
-        k = (lines[:-1, None] + half * (1 + t)).ravel()
-        return k, (half * w).ravel() * (surface_compliance(self.body, k) - 1)
+        k, w = (part.ravel() for part in grid.gauss_points(lines, POINTS))
+        return k, w * (surface_compliance(self.body, k) - 1)
 
     def hertz_at(self, approach: float) -> ContactState:
         """State at an approach in beta^2/R without attraction."""
