@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+import itertools
 import pickle
 import pkgutil
 import re
@@ -275,3 +276,22 @@ def test_estimates_agree_within_both_errors_and_a_number_that_is_none_with_nothi
     assert not near.agrees(Estimate(1.75, 0.25))
     assert not near.agrees(Estimate(float("nan"), 1.0))
     assert Estimate.refined(2.0, 1.5) == Estimate(1.5, 0.5)
+
+
+@pytest.mark.parametrize("signs", [*itertools.product((-1, 1), repeat=2)], ids=str)
+def test_bounds_of_sums_hold_and_those_of_products_to_the_first_order(signs):
+    """At the ends of both intervals; what products leave out is the product of both errors."""
+    a, b = Estimate(3.0, 1e-4), Estimate(-0.5, 2e-5)
+    x, y = (number.value + sign * number.error for number, sign in zip((a, b), signs, strict=True))
+    left_out = 10 * a.error * b.error
+    for found, exact, more in (
+        (a + b, x + y, 1e-15),
+        (a - b, x - y, 1e-15),
+        (a - 2.0, x - 2.0, 1e-15),
+        (abs(b), abs(y), 1e-15),
+        (a * b, x * y, left_out),
+        (b * -4.0, -4.0 * y, 1e-15),
+        (a / b, x / y, 100 * left_out),
+    ):
+        assert abs(found.value - exact) <= found.error + more
+    assert max(abs((a + b).error - (a.error + b.error)), abs((a * b).error - 1.1e-4)) < 1e-16
