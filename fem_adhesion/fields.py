@@ -26,12 +26,12 @@ from fem_adhesion.scene import Scene
 from halfspace.elastic import compliance
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import metric_for, transfer
-from halfspace.equilibrium.conditions import Located
+from halfspace.equilibrium.conditions import Located, same_place
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import EVENTS
-from halfspace.equilibrium.newton import Control, Traceable
-from halfspace.equilibrium.path import Metric, Point, make_point
+from halfspace.equilibrium.newton import Traceable
+from halfspace.equilibrium.path import Point
 from halfspace.errors import InputError
 from halfspace.values import Array, Valued
 
@@ -194,20 +194,11 @@ def _spread(path: EquilibriumPath, count: int | None) -> list[tuple[Traceable, P
 
 def _solved(made: Discretised, source: Traceable, point: Point, name: str) -> State:
     scene, problem, body = made.scene, made.problem, made.first
-    new = _same_place(source, point, problem, metric_for(problem))
+    new = same_place(point, problem, transfer(source, point.x, problem), metric_for(problem))
     problem.require_resolution(new.x)
     u = body.displacement(problem.pressure(new.x)[: body.surface.radii.size])
     space, u, stress = recovered_stresses(body.space, scene.body.regions, u)
     return State(scene, name, space, scene.shares[0] * u, stress, body.surface, problem, new)
-
-
-def _same_place(source: Traceable, point: Point, problem: ContactProblem, metric: Metric) -> Point:
-    """Solve on another discretisation in the plane across the path at a given point."""
-    weights = metric.weights * point.rates
-    used = weights != 0
-    control = Control(weights, float(weights[used] @ point.observables[used]))
-    solution = newton.solve(problem, transfer(source, point.x, problem), control)
-    return make_point(problem, solution, metric, weights, point.arclength)
 
 
 MOST_NODES = 16  # of a ring of the half-space

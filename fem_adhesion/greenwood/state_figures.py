@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Any
 
@@ -39,20 +39,21 @@ PROFILE_STYLES = (
 )
 
 
-def _figure_3a(study: Greenwood1997) -> Figure:
+def _gaps(study: Greenwood1997, along: str, places: Sequence[tuple[float, float]]) -> tuple[Figure, Any]:
+    """Central gaps along the curves, each curve named in its colour at a place."""
     figure, (axes,) = panels()
-    for mu, place in zip(GAPS_AT, ((-0.75, 0.6), (-2.45, 0.4), (-3.45, 0.9), (-5.3, 1.2)), strict=True):
+    for mu, place in zip(GAPS_AT, places, strict=True):
         path = study.curves[mu]
-        branches(axes, path, path.approach, path.central_gap)
-        _name(axes, mu, place)
+        branches(axes, path, getattr(path, along), path.central_gap)
+        axes.text(*place, rf"$\mu = {mu:g}$", color=style.OF_TABOR[mu], fontsize=11, weight="bold")
+    return figure, axes
+
+
+def _figure_3a(study: Greenwood1997) -> Figure:
+    figure, axes = _gaps(study, "approach", ((-0.75, 0.6), (-2.45, 0.4), (-3.45, 0.9), (-5.3, 1.2)))
     style.stability_key(axes)
     dress(axes, style.APPROACH, style.CENTRAL_GAP, legend="upper right", xlim=(-9, 2), ylim=(-0.4, 6))
     return figure
-
-
-def _name(axes: Any, tabor: float, at: tuple[float, float]) -> None:
-    """Name a curve in its colour."""
-    axes.text(*at, rf"$\mu = {tabor:g}$", color=style.OF_TABOR[tabor], fontsize=11, weight="bold")
 
 
 def _see_3a(study: Greenwood1997) -> Iterator[str]:
@@ -65,11 +66,8 @@ def _see_3a(study: Greenwood1997) -> Iterator[str]:
 
 
 def _figure_3b(study: Greenwood1997) -> Figure:
-    figure, (axes,) = panels()
-    for mu, place in zip(GAPS_AT, ((-3.9, 0.45), (-2.15, 0.33), (-1.3, 0.55), (-0.5, 1.5)), strict=True):
-        path = study.curves[mu]
-        branches(axes, path, path.load, path.central_gap)
-        _name(axes, mu, place)
+    figure, axes = _gaps(study, "load", ((-3.9, 0.45), (-2.15, 0.33), (-1.3, 0.55), (-0.5, 1.5)))
+    for mu in GAPS_AT:
         if fe := study.elements.get(mu):
             style.elements(axes, fe, fe.load, fe.central_gap, rf"finite elements, $\mu = {mu:g}$")
     style.stability_key(axes)
