@@ -39,8 +39,8 @@ from fem_adhesion.mesh.block import (
     tensor_grid,
     with_named_boundaries,
 )
+from fem_adhesion.mesh.file import refined
 from fem_adhesion.mesh.held_sphere import held_sphere
-from fem_adhesion.mesh.refinement import refined
 from halfspace.elastic import grid
 
 NU = 0.3

@@ -12,9 +12,9 @@ from fem_adhesion.elasticity.condensation import condense, contact_surface, elim
 from fem_adhesion.elasticity.far_field import Exterior, clamped, sliding
 from fem_adhesion.elasticity.space import Space, cell_stiffness, cell_strains, ring_measure
 from fem_adhesion.mesh import held_sphere as module
+from fem_adhesion.mesh.curved import refined_towards
 from fem_adhesion.mesh.file import read_body
 from fem_adhesion.mesh.held_sphere import held_sphere, rings_at_equator
-from fem_adhesion.mesh.refinement import refined_towards
 from fem_adhesion.mesh.spheres import CORE, DEPTH, Stereographic, contact_ends, hemisphere
 from halfspace.elastic import grid
 

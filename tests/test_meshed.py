@@ -10,8 +10,7 @@ from skfem import CellBasis, ElementQuad2, MeshQuad, MeshQuad2
 
 import fem_adhesion
 from fem_adhesion import Hemisphere, Meshed, Scene
-from fem_adhesion.mesh.file import read_body
-from fem_adhesion.mesh.refinement import refined
+from fem_adhesion.mesh.file import read_body, refined
 from halfspace.errors import GridTooCoarse
 from halfspace.scales import Scales
 

@@ -47,8 +47,7 @@ class Meshed(Held):
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
         """Mesh of the file, every cell cut into four until the contact has as many as there are between the lines."""
-        from fem_adhesion.mesh.file import read_body
-        from fem_adhesion.mesh.refinement import refined
+        from fem_adhesion.mesh.file import read_body, refined
 
         mesh = read_body(self.file).scaled(R)
         while len(mesh.boundaries["contact"]) < len(lines) - 1:

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from skfem import MeshQuad, MeshQuad2, MeshTri, MeshTri2
 
 from fem_adhesion.mesh.checks import GROUPS, TOLERANCE, facet_nodes, pole, pole_radius, require_body
 from halfspace.errors import InputError
@@ -208,3 +209,27 @@ def _listed(names: Any) -> str:
 def _one_line(text: str) -> str:
     words = " ".join(text.split())
     return words if len(words) <= 150 else f"{words[:150]}..."
+
+
+# Finer: new nodes are placed by the shape of the cells, which scikit-fem's are not
+
+CURVED = {MeshTri: MeshTri2, MeshTri2: MeshTri2, MeshQuad: MeshQuad2, MeshQuad2: MeshQuad2}
+STRAIGHT = {MeshTri: MeshTri, MeshTri2: MeshTri, MeshQuad: MeshQuad, MeshQuad2: MeshQuad}
+
+
+def refined(mesh: Any) -> Any:
+    """Cut each cell of a mesh of straight or curved sides into four of the same shape together.
+
+    A MeshTri or MeshTri2 becomes a MeshTri2, a MeshQuad or MeshQuad2 a MeshQuad2, with the same named boundaries.
+    """
+    kind = type(mesh)
+    sorting = {"sort_t": False} if STRAIGHT[kind] is MeshTri else {}
+    straight = STRAIGHT[kind](mesh.p[:, : mesh.nvertices], mesh.t, mesh.boundaries, **sorting)
+    finer = straight.refined()
+    fine = CURVED[kind].from_mesh(finer)
+    cells = fine.dofs.element_dofs
+    parents = np.tile(np.arange(mesh.nelements), 4)
+    X = straight.mapping().invF(fine.doflocs[:, cells].transpose(0, 2, 1), tind=parents)
+    points = fine.doflocs.copy()
+    points[:, cells.T] = mesh.mapping().F(X, tind=parents)
+    return CURVED[kind](points, fine.t, finer.boundaries)

@@ -12,8 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fem_adhesion.mesh.curved import CurvedQuads, joined
-from fem_adhesion.mesh.refinement import refined_towards
+from fem_adhesion.mesh.curved import CurvedQuads, joined, refined_towards
 from fem_adhesion.mesh.spheres import (
     CORE,
     DEPTH,

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 
 from fem_adhesion.mesh.block import with_named_boundaries
-from fem_adhesion.mesh.curved import CurvedQuads, Patch, joined
-from fem_adhesion.mesh.refinement import refined_towards
+from fem_adhesion.mesh.curved import CurvedQuads, Patch, joined, refined_towards
 from halfspace.elastic import grid
 from halfspace.values import Array, Index, Valued
 
@@ -95,7 +94,7 @@ def hemisphere(
 
     Lines (m + 1,) and depths (n + 1,) are those of the core, a tensor grid on the flat plane, from 0 to CORE R and
     DEPTH R, in beta; `along` is the coordinate x as a function of another one in which the lines and the cells between
-    them are given instead. Rings (k,) have sizes as `fem_adhesion.mesh.refinement.refined_towards` takes them, around
+    them are given instead. Rings (k,) have sizes as `fem_adhesion.mesh.curved.refined_towards` takes them, around
     the equator: where a bonded mid-plane meets the free surface the stress is singular. The cells that are cut are as
     long as deep then; without rings they are as thin as the contact's. The boundaries are "axis", "contact" (the
     sphere) and "far" (the mid-plane).
