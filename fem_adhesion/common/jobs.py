@@ -20,6 +20,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from itertools import count, islice
 from multiprocessing import active_children
 from typing import Any, Generic, TypeVar
@@ -277,8 +278,9 @@ def solve_all(
     items: Sequence[Item],
     store: Store | None,
     *,
-    work: Callable[[Item], Result],
+    work: Callable[..., Any],
     kept: Kept[Item, Result],
+    parts: Callable[[Sequence[Item]], Sequence[tuple[Item, ...]]] | None = None,
     fresh: bool = False,
     jobs: int | None = None,
     dask: str | None = None,
@@ -287,14 +289,16 @@ def solve_all(
     """Results of all items in their order: what the store holds, and the others, computed and stored at once.
 
     The work, a function of a module, computes the result of an item, each of which is given once, and `kept` says how
-    results are kept; if `fresh`, all are computed, whatever the store holds. What a worker died of is not stored: it is
-    tried again when the study is resumed. `jobs` and `dask` are those of `stream`; `progress`
-    is called with the last item's name, how many are done, and of how many. InputError before any work, if jobs is not
-    positive or the cluster does not answer.
+    results are kept. Where items are best worked on together, `parts` says which, and the work turns such a part into a
+    list. If `fresh`, all are computed, whatever the store holds. What a worker died of is not stored: it is tried again
+    when the study is resumed. `jobs` and `dask` are those of `stream`; `progress` is called with the last item's name,
+    how many are done, and of how many. InputError before any work, if jobs is not positive or the cluster does not
+    answer.
     """
     found = dict(_stored(items, store, kept)) if store and not fresh else {}
     todo = [item for item in items if item not in found]
-    with closing(stream(work, todo, jobs=jobs, dask=dask)) as results:
+    where = partial(stream, work, jobs=jobs, dask=dask)
+    with closing(_one_by_one(where, parts(todo)) if parts else where(todo)) as results:
         progress("starting", len(found), len(items))
         for item, result in results:
             if isinstance(result, WorkerDied):
@@ -305,6 +309,23 @@ def solve_all(
                     store.put(kept.inputs(item), kept.write(result))
             progress(kept.name(item), len(found), len(items))
     return tuple(found[item] for item in items)
+
+
+def _one_by_one(
+    where: Callable[..., Generator[tuple[tuple[Item, ...], Any], None, None]], parts: Sequence[tuple[Item, ...]]
+) -> Generator[tuple[Item, Any], None, None]:
+    """Items of parts with their results, as these come; each by itself of what a worker died of."""
+    died: list[tuple[Item, ...]] = []
+    with closing(where(parts)) as done:
+        for part, results in done:
+            if not isinstance(results, WorkerDied):
+                yield from zip(part, results, strict=True)
+            elif len(part) > 1:
+                died += [(item,) for item in part]
+            else:
+                yield part[0], results
+    if died:
+        yield from _one_by_one(where, died)
 
 
 def _stored(items: Sequence[Item], store: Store, kept: Kept[Item, Result]) -> Iterator[tuple[Item, Result]]:

@@ -15,7 +15,7 @@ from halfspace.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from halfspace.accuracy.sweep import Summary
+    from halfspace.accuracy.following import Summary
 
 
 def add_options(command: Parser) -> None:
@@ -30,7 +30,9 @@ def add_options(command: Parser) -> None:
     command.add_argument(
         "--csv", type=Path, required=True, help="write the table; - for standard output", metavar="FILE"
     )
-    resume = "keep each curve in the directory as soon as it is there, and go on with those that it holds"
+    resume = (
+        "keep curves in the directory as soon as they are there, neighbours together, and go on with those it holds"
+    )
     command.add_argument("--resume", type=Path, help=resume, metavar="DIR")
     add_workers(command)
 

@@ -13,7 +13,8 @@ from fem_adhesion.common.facts import code_digest, plain
 from fem_adhesion.common.files import Plain, Store
 from fem_adhesion.common.jobs import Kept, solve_all
 from fem_adhesion.registry import record_of
-from halfspace.accuracy.sweep import UNKNOWN, Summary, summary
+from halfspace.accuracy.following import UNKNOWN, Summary, families
+from halfspace.accuracy.sweep import summaries
 from halfspace.equilibrium.events import EVENTS, Event
 from halfspace.errors import InputError
 from halfspace.profiles import PARABOLOID
@@ -33,25 +34,24 @@ def run(
     asked: Mapping[str, Any],
     store: Store | None = None,
     *,
-    work: Callable[..., Summary] = summary,
+    work: Callable[..., list[Summary]] = summaries,
     **how: Any,
 ) -> tuple[Summary, ...]:
     """Trace the curves at Tabor parameters, each once, that the store does not hold, and store each at once.
 
     What is asked of every curve are the relative accuracy `rtol`, the load `to_load` in R dgamma at which it ends, and
     the `law`. What could not be traced says why; where a worker died it is not stored. The work, a function of a
-    module, traces a curve; `how` are further keywords of `fem_adhesion.common.jobs.solve_all`: jobs, dask, progress.
+    module, solves for neighbouring curves; `how` are further keywords of `fem_adhesion.common.jobs.solve_all`: jobs,
+    dask, progress.
     """
-    kept = Kept(partial(_inputs, asked=asked), "tabor {:g}".format, _to_plain, _from_plain, _died)
-    return solve_all(tabors, store, work=partial(work, profile=PARABOLOID, body=None, **asked), kept=kept, **how)
+    kept = Kept(partial(_inputs, asked=asked), "tabor {:g}".format, _to_plain, _from_plain, Summary.failed)
+    parts = partial(families, law=asked["law"], profile=PARABOLOID, body=None)
+    work = partial(work, profile=PARABOLOID, body=None, **asked)
+    return solve_all(tabors, store, work=work, kept=kept, parts=parts, **how)
 
 
 def _inputs(tabor: float, asked: Mapping[str, Any]) -> Plain:
     return {"tabor": tabor, **{name: record_of(value) for name, value in asked.items()}}
-
-
-def _died(tabor: float, reason: str) -> Summary:
-    return Summary(tabor, {}, UNKNOWN, UNKNOWN, {}, reason)
 
 
 def _to_plain(curve: Summary) -> Plain:
@@ -80,7 +80,7 @@ def write_csv(curves: Sequence[Summary], file: IO[str]) -> None:
     accurate than was asked for, ``reason`` tells why a curve could not be traced.
     """
     rows = [_row(curve) for curve in curves]
-    writer = csv.DictWriter(file, _row(Summary(1.0, {}, UNKNOWN, UNKNOWN, {})).keys(), lineterminator="\n")
+    writer = csv.DictWriter(file, _row(Summary.failed(1.0, "")).keys(), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
 

@@ -76,13 +76,14 @@ def _climb_from(
         segments[0].problem.tabor,
         segments,
         Completed(events, further.events),
-        _energy(chains, higher),
+        energy_along(chains, higher),
         tuple(Completed(state, partial(further.stage, number)) for number, state in enumerate(chains[0])),
         higher.stages[-1],
         time.perf_counter() - began,
         {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
         below.stages[-1] if below.stages else None,
         higher.twin or (higher.stages[-2] if len(higher.stages) > 1 else None),
+        chains[1][0] if higher.twin else {},
         higher.rule.remaining,
         _ways(below.stages[-1] if below.stages else Charted(tuple(charts)), higher),
         margin,
@@ -126,7 +127,8 @@ def _margin(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate | None:
     return Estimate(values[0][-1], rung.rule.error(values) + FLAT)
 
 
-def _energy(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate:
+def energy_along(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate:
+    """Energy released from separation to zero approach, with the error that the changes along the chains leave."""
     values = [[energy_released(state) for state in chain] for chain in chains]
     best = values[0][-1]
     return Estimate(best, rung.rule.error(values) + ROUND_OFF * (1 + abs(best)))

@@ -10,55 +10,24 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from halfspace.accuracy.following import Summary, curves, families, family_of
 from halfspace.accuracy.trace import trace
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.charts import COMPRESSION
-from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import EVENTS, Event, usual
+from halfspace.equilibrium.devices import staged_jumps
+from halfspace.equilibrium.events import EVENTS, Event
 from halfspace.equilibrium.states import States
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.limits import require_load, require_rtol, require_tabor
 from halfspace.profiles import PARABOLOID, Profile
-from halfspace.values import Array, Estimate, Valued
+from halfspace.values import Array, Valued
 
-Map = Callable[[Callable[[float], "Summary"], Sequence[float]], Iterable["Summary"]]
+Tabors = tuple[float, ...]
+Map = Callable[[Callable[[Tabors], list[Summary]], Sequence[Tabors]], Iterable[list[Summary]]]
 """Does the same work on many items and gives the results in their order, as the built-in `map` does."""
 
 NUMBERS = tuple(field.name for field in fields(States))
-
-
-@dataclass(frozen=True)
-class Summary:
-    """What a sweep keeps of one curve, or why it could not be traced, then without events and with energies of nan.
-
-    The energies, in R dgamma eps, are released from separation to zero approach in contact, and lost in a cycle under
-    fixed grips: zero if the curve does not fold, nan if that cannot be told. `missed` are, by event, the numbers whose
-    estimated errors exceed what was asked for.
-    """
-
-    tabor: float
-    events: Mapping[str, Event]
-    energy: Estimate
-    energy_lost: Estimate
-    missed: Mapping[str, tuple[str, ...]]
-    reason: str = ""
-
-    @classmethod
-    def of(cls, path: EquilibriumPath) -> Summary:
-        """Keep the numbers of a curve."""
-        return cls(path.tabor, usual(path.events), path.energy, _lost(path), path.missed)
-
-
-UNKNOWN = Estimate(math.nan, math.nan)
-
-
-def _lost(path: EquilibriumPath) -> Estimate:
-    found = cycle(path)
-    if found:
-        return found.energy_lost
-    return Estimate(0.0, 0.0) if path.jumps is False else UNKNOWN
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -102,9 +71,11 @@ def sweep(
     to_load: float = COMPRESSION,
     map: Map = map,  # noqa: A002 (the very same, unless another is given)
 ) -> Sweep:
-    """Trace the curves at many Tabor parameters, and keep their events, energies and losses with their errors.
+    """Solve for the curves at many Tabor parameters, and keep their events, energies and losses with their errors.
 
-    A curve that cannot be traced leaves nan, and its reason; the others are not lost.
+    Of neighbours some are traced, and those between followed from them, see `halfspace.accuracy.following`: numbers
+    differ from those of `halfspace.trace` by less than the errors estimated. A curve that cannot be traced leaves nan,
+    and its reason; the others are not lost.
 
     Parameters
     ----------
@@ -113,8 +84,8 @@ def sweep(
     law, profile, body, rtol, to_load
         As of `halfspace.trace`, the same for all curves.
     map : callable
-        Does the work on all Tabor parameters and gives the results in their order: the built-in one, curve after curve,
-        or that of a pool of processes, as ``concurrent.futures.ProcessPoolExecutor().map``.
+        Does the work on all groups of neighbours and gives the results in their order: the built-in one, group after
+        group, or that of a pool of processes, as ``concurrent.futures.ProcessPoolExecutor().map``.
 
     Raises
     ------
@@ -122,18 +93,24 @@ def sweep(
         If an input is out of range, before any work.
     """
     asked = [require_tabor(value) for value in np.atleast_1d(np.asarray(tabors)).ravel().tolist()]
-    work = partial(summary, law=law, profile=profile, body=body, rtol=require_rtol(rtol), to_load=require_load(to_load))
-    return collected(list(map(work, asked)))
+    rtol, to_load = require_rtol(rtol), require_load(to_load)
+    work = partial(summaries, law=law, profile=profile, body=body, rtol=rtol, to_load=to_load)
+    found = {curve.tabor: curve for part in map(work, families(asked, law, profile, body)) for curve in part}
+    return collected([found[tabor] for tabor in asked])
 
 
-def summary(
-    tabor: float, *, law: Law, profile: Profile, body: LayeredBody | None, rtol: float, to_load: float
-) -> Summary:
-    """Trace one curve of a sweep; what cannot be traced says why."""
+def summaries(
+    tabors: Tabors, *, law: Law, profile: Profile, body: LayeredBody | None, rtol: float, to_load: float
+) -> list[Summary]:
+    """Curves of one of the `families` of a sweep; what cannot be traced says why."""
+    if len(tabors) > 1:
+        return curves(tabors, family_of(tabors, law=law, profile=profile, rtol=rtol, to_load=to_load))
+    (tabor,) = tabors
     try:
-        return Summary.of(trace(tabor, law=law, profile=profile, body=body, rtol=rtol, to_load=to_load))
+        path = trace(tabor, law=law, profile=profile, body=body, rtol=rtol, to_load=to_load)
+        return [Summary.of(path, staged_jumps(path))]
     except NotConverged as error:
-        return Summary(tabor, {}, UNKNOWN, UNKNOWN, {}, str(error))
+        return [Summary.failed(tabor, str(error))]
 
 
 def collected(summaries: Sequence[Summary]) -> Sweep:

@@ -139,14 +139,31 @@ def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float,
     return grid.graded(0.0, spacing, max(outer, reach + spacing), growth=growth, until=reach)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class Grids(Valued):
+    """The half-space on two grids: one centred on the axis, up to a contact radius in beta, and one that follows it."""
+
+    centred: compliance.ElasticOperator
+    edge: Homogeneous
+    until: float
+
+    @classmethod
+    def of(cls, scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> Grids:
+        """Panels as fine as a contact of these scales needs them, up to a load."""
+        lines, half_space = _to_infinity(scales, resolution, to_load)
+        return cls(half_space(lines.centred), Homogeneous(half_space(lines.edge)), lines.until)
+
+    def charts(self, scales: Scales) -> tuple[Chart, Chart]:
+        """Both grids under a contact of these scales, or of stiffer ones that need no finer cells."""
+        return (
+            Chart(contact_of(scales, self.centred), self.centred.radii.size, self.until),
+            Chart(contact_of(scales, self.edge), self.edge.unit.radii.size),
+        )
+
+
 def half_space_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:
     """Panel grids centred on the axis and following the contact edge."""
-    lines, half_space = _to_infinity(scales, resolution, to_load)
-    centred, edge = half_space(lines.centred), half_space(lines.edge)
-    return (
-        Chart(contact_of(scales, centred), centred.radii.size, lines.until),
-        Chart(contact_of(scales, Homogeneous(edge)), edge.radii.size),
-    )
+    return Grids.of(scales, resolution, to_load).charts(scales)
 
 
 def _to_infinity(
@@ -271,15 +288,20 @@ def trace(
         images = [images_of(body, spacing) if body is not None else None for spacing in IMAGES]
         return climb(rtol, partial(_sized_rung, scales, images, rtol, to_load), to_load=to_load)
 
-    def rung(level: int) -> Rung:
-        resolution, below = (resolution_for(scales, rtol, max(n, 0)) for n in (level, level - 1))
-        curve = partial(half_space_charts, scales, resolution, to_load)
-        if not level:
-            return Rung(curve, (), asdict(resolution))
-        fine, twin = (Charted(half_space_charts(scales, r, to_load)) for r in (resolution, _twin(below)))
-        return Rung(curve, (fine,), asdict(resolution), twin, _rule(level))
+    charts = partial(half_space_charts, scales, to_load=to_load)
+    return climb(rtol, partial(half_space_rung, scales, rtol, charts), to_load=to_load)
 
-    return climb(rtol, rung, to_load=to_load)
+
+def half_space_rung(
+    scales: Scales, rtol: float, charts: Callable[[Resolution], tuple[Chart, Chart]], level: int
+) -> Rung:
+    """Rung of a level for a half-space under an endless surface, whose charts are made of a resolution."""
+    resolution, below = (resolution_for(scales, rtol, max(n, 0)) for n in (level, level - 1))
+    curve = partial(charts, resolution)
+    if not level:
+        return Rung(curve, (), asdict(resolution))
+    fine, twin = (Charted(charts(r)) for r in (resolution, _twin(below)))
+    return Rung(curve, (fine,), asdict(resolution), twin, _rule(level))
 
 
 def _rule(level: int, doubt: int = 1) -> ErrorRule:

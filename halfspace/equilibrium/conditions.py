@@ -184,12 +184,16 @@ def _solved(
         turn = newton.turning_point(problem, start, condition.weights, direction, reach)
         solution, slope = turn.solution, turn.slope
     else:
-        solution, slope = newton.solve(problem, start, Control(condition.weights, condition.value)), None
+        control = Control(condition.weights, condition.value)
+        solution, slope = newton.solve(problem, start, control, tolerance=SOLVED), None
     used = direction != 0
     step = float(direction[used] @ (solution.observables - near.observables)[used])
     point = make_point(problem, solution, metric, direction, near.arclength + step)
     far = metric.distance(point, near) > reach or metric.along(near, point) <= 0
     return None if far else Located(condition, problem, point, condition.rate(point) if slope is None else slope)
+
+
+SOLVED = 3e-9  # relative size of the last step: after 1e-8, loads that should be zero were up to 3e-11
 
 
 def bracketed(problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric) -> Located:

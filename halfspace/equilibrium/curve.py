@@ -62,6 +62,8 @@ class EquilibriumPath(Valued):
     twin : callable, optional
         A discretisation as fine as the last but one, with other cells, or one that differs from the finest in one
         respect only where that differs from the curve's in two; for the errors of what is solved for later.
+    on_twin : mapping of str to Located
+        The events, and the two states of `energy`, on the twin.
     remaining : float
         Part of the change from either to the finest that may be left.
     ways : chains of callables
@@ -86,6 +88,7 @@ class EquilibriumPath(Valued):
     settings: Mapping[str, Any] = field(default_factory=dict)
     below: Stage | None = None
     twin: Stage | None = None
+    on_twin: Mapping[str, Located] = field(default_factory=dict)
     remaining: float = REMAINING
     ways: Ways = ()
     margin: Estimate | None = None

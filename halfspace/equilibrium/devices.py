@@ -92,7 +92,7 @@ class Cycle:
 
 
 @dataclass(frozen=True)
-class _States:
+class JumpStates:
     """Take-off and landing of one jump, on or off, on one discretisation; the take-off on others, where it is known."""
 
     take_off: Located
@@ -105,6 +105,20 @@ class _States:
         return _energy(self.take_off, compliance) - _energy(self.landing, compliance)
 
 
+@dataclass(frozen=True)
+class StagedJump:
+    """A jump on the finest discretisation, and on those from which it changes by what errors are told from."""
+
+    fine: JumpStates
+    others: tuple[JumpStates, ...]
+
+    def energy(self, remaining: float, compliance: float = 0.0) -> Estimate:
+        """Energy set free, of whose change so much may be left, with an apparatus of a compliance 1/k."""
+        energies = [states.energy(compliance) for states in (*self.others, self.fine)]
+        change = max(abs(energy - energies[-1]) for energy in energies)
+        return Estimate(energies[-1], max(remaining, 1.0) * change + ROUND_OFF * (1 + abs(energies[-1])))
+
+
 def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     """All jumps of a cycle with an apparatus of given stiffness, or None where the contact follows it smoothly.
 
@@ -115,19 +129,23 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     stiffness = require_number(stiffness, "stiffness")
     if not stiffness > 0:
         raise InputError(f"stiffness = {stiffness:g} is outside 0 < stiffness; a dead load jumps off at pull_off")
-    if math.isinf(stiffness) and not path.jumps:
+    staged = staged_jumps(path, stiffness)
+    if not staged:
         return None
-    stages = path.stages if math.isinf(stiffness) else ()  # only fixed grips jump at the curve's own folds
+    on, off = (tuple(_jump(s, path, 1 / stiffness) for s in staged if s.fine.on is way) for way in (True, False))
+    return Cycle(stiffness, on, off, sum((jump.energy for jump in (*on, *off)), Estimate(0.0, 0.0)), path.tolerance)
+
+
+def staged_jumps(path: EquilibriumPath, stiffness: float = math.inf) -> list[StagedJump]:
+    """Jumps of a `cycle`, those on and then those off, on all the discretisations that their errors are told from."""
+    if math.isinf(stiffness) and not path.jumps:
+        return []
+    stages = (
+        (*path.stages, path.on_twin) if math.isinf(stiffness) else ()
+    )  # only fixed grips jump at the curve's own folds
     known = {name: tuple(stage[name] for stage in stages if name in stage) for name in FOLDS}
     rough = jumps(reaching(path, stiffness).segments, 1 / stiffness, known)
-    if rough is None:
-        return None
-    on, off = (
-        tuple(_jump(states, path, 1 / stiffness) for states in rough if states.on is way) for way in (True, False)
-    )
-    energies = [jump.energy for jump in (*on, *off)]
-    lost = Estimate(sum(energy.value for energy in energies), sum(energy.error for energy in energies))
-    return Cycle(stiffness, on, off, lost, path.tolerance)
+    return [_staged(states, path, 1 / stiffness) for states in rough or ()]
 
 
 def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> float | None:
@@ -143,7 +161,7 @@ def energy_lost(segments: Sequence[Segment], found: Mapping[str, Located]) -> fl
 
 def jumps(
     segments: Sequence[Segment], compliance: float, known: Mapping[str, tuple[Located, ...]] = MappingProxyType({})
-) -> tuple[_States, ...] | None:
+) -> tuple[JumpStates, ...] | None:
     """Jumps on in their order, then jumps off, with compliance 1/k, on the discretisation of the curve itself.
 
     The outermost folds of the base may be known by name, on this discretisation and others.
@@ -189,7 +207,7 @@ def _at_base_of(fold: _Placed, segments: Sequence[Segment], compliance: float) -
     return _in_order(segments, Condition(APPROACH, value=_base(fold.state, compliance), compliance=compliance))
 
 
-def _on(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: float) -> Iterator[_States]:
+def _on(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: float) -> Iterator[JumpStates]:
     """Jumps on: from the first fold, and from that at the end of each stable stretch that is landed on."""
     passed = 0
     while passed < len(folds):
@@ -202,11 +220,11 @@ def _on(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: float
                 "a larger to_load"
             )
         landing = next((state for state in beyond[:-1] if state.stable), beyond[-1])
-        yield _States(fold.state, landing.state, on=True)
+        yield JumpStates(fold.state, landing.state, on=True)
         passed = sum(fold.place < landing.place for fold in folds)
 
 
-def _off(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: float) -> Iterator[_States]:
+def _off(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: float) -> Iterator[JumpStates]:
     """Jumps off: from the last fold, and from that at the other end of each stable stretch that is landed on."""
     left = len(folds)
     while left:
@@ -217,15 +235,16 @@ def _off(segments: Sequence[Segment], folds: Sequence[_Placed], compliance: floa
             if before and before[0].place < s.place < before[-1].place
         ]
         landing = next((state for state in reversed(between) if state.stable), None)
-        yield _States(fold.state, landing.state if landing else _apart(segments, fold.state, compliance), on=False)
+        landed = landing.state if landing else apart(segments[0].problem, fold.state, compliance)
+        yield JumpStates(fold.state, landed, on=False)
         left = sum(fold.place < landing.place for fold in folds) if landing else 0
 
 
-def _apart(segments: Sequence[Segment], off: Located, compliance: float) -> Located:
+def apart(problem: Traceable, off: Located, compliance: float = 0.0) -> Located:
     """State of the separated branch at the base of a jump off, which may be beyond the beginning of the curve."""
     base = _base(off, compliance)
-    separated = widened(segments[0].problem, base)
-    return _landing(separated, separated.undeformed(base), off, compliance)
+    separated = widened(problem, base)
+    return landing_of(off, separated, separated.undeformed(base), compliance)
 
 
 def _base(state: Located, compliance: float) -> float:
@@ -233,7 +252,7 @@ def _base(state: Located, compliance: float) -> float:
     return float(state.point.observables[APPROACH] + compliance * state.point.observables[LOAD])
 
 
-def _landing(problem: Traceable, start: Array, take_off: Located, compliance: float) -> Located:
+def landing_of(take_off: Located, problem: Traceable, start: Array, compliance: float = 0.0) -> Located:
     """State on a discretisation at the base of a take-off."""
     base, weights = _base(take_off, compliance), np.array([1.0, compliance, 0.0, 0.0])
     solution = newton.solve(problem, start, Control(weights, base))
@@ -241,7 +260,7 @@ def _landing(problem: Traceable, start: Array, take_off: Located, compliance: fl
     return Located(Condition(APPROACH, value=base, compliance=compliance), problem, point, 1.0)
 
 
-def _refined(states: _States, stage: Stage, compliance: float) -> _States:
+def _refined(states: JumpStates, stage: Stage, compliance: float) -> JumpStates:
     """Both states of a jump on another discretisation."""
 
     def leave(state: Located, problem: Traceable) -> Located:
@@ -251,24 +270,26 @@ def _refined(states: _States, stage: Stage, compliance: float) -> _States:
 
     def land(state: Located, problem: Traceable) -> Located:
         wide = _wide_enough(state, problem)
-        return _landing(wide, transfer(state.problem, state.point.x, wide), fold, compliance)
+        return landing_of(fold, wide, transfer(state.problem, state.point.x, wide), compliance)
 
     fold = settled(states.take_off, stage, leave)
-    return _States(fold, settled(states.landing, stage, land), states.on, states.known)
+    return JumpStates(fold, settled(states.landing, stage, land), states.on, states.known)
 
 
 def _wide_enough(state: Located, problem: Traceable) -> Traceable:
     return widened(problem, float(state.point.observables[APPROACH]))
 
 
-def _jump(rough: _States, path: EquilibriumPath, compliance: float) -> Jump:
-    """Jump on the finest discretisation, its errors by the change from the rung below and, if there is one, a twin."""
+def _staged(rough: JumpStates, path: EquilibriumPath, compliance: float) -> StagedJump:
+    """Jump on the finest discretisation, the rung below and, if there is one, a twin of that."""
     below = _refined(rough, path.below, compliance) if path.below else rough
     fine = _refined(below, path.finest, compliance)
-    others = (below, _refined(fine, path.twin, compliance)) if path.twin else (below,)
-    alone = len(path.ways) < 2  # no chain from a twin guards against chance
-    energies = [states.energy(compliance) for states in (*others, fine)]
-    change = max(abs(energy - energies[-1]) for energy in energies)
+    return StagedJump(fine, (below, _refined(fine, path.twin, compliance)) if path.twin else (below,))
+
+
+def _jump(staged: StagedJump, path: EquilibriumPath, compliance: float) -> Jump:
+    """Jump as numbers, their errors by the changes from one discretisation to another."""
+    fine, others, alone = staged.fine, staged.others, len(path.ways) < 2  # no chain from a twin guards against chance
     return Jump(
         estimate_event("take_off", [[s.take_off, fine.take_off] for s in others], ErrorRule(path.remaining, alone)),
         estimate_event(
@@ -277,11 +298,11 @@ def _jump(rough: _States, path: EquilibriumPath, compliance: float) -> Jump:
             ErrorRule(path.remaining),
             least=_by_base(others, fine, compliance),
         ),
-        Estimate(energies[-1], max(path.remaining, 1.0) * change + ROUND_OFF * (1 + abs(energies[-1]))),
+        staged.energy(path.remaining, compliance),
     )
 
 
-def _by_base(others: Sequence[_States], fine: _States, compliance: float) -> Array:
+def _by_base(others: Sequence[JumpStates], fine: JumpStates, compliance: float) -> Array:
     """Changes of the observables at a landing by that of the base, which those of the landing itself may cancel."""
     base = _base(fine.take_off, compliance)
     change = max(abs(_base(states.take_off, compliance) - base) for states in others)

@@ -49,7 +49,7 @@ def with_edge(problem: Traceable, trail: Sequence[Passed], near: Array, arclengt
     known = [state for state in trail if state.radius > 0][-KNOWN:]  # nor nan
     if len(known) < 2 or not trail[-1].radius > 0:
         return None
-    weights = _extrapolating(np.array([state.arclength for state in known]), arclength)
+    weights = polynomial(np.array([state.arclength for state in known]), arclength)
     radius = float(weights @ [state.radius for state in known])
     surface = problem.interface
     body = surface.operator_at(problem.surface_state(near))
@@ -62,7 +62,7 @@ def with_edge(problem: Traceable, trail: Sequence[Passed], near: Array, arclengt
     return problem.state_from_surface(np.append(gaps, [ahead[-1], 1.0]), near)
 
 
-def _extrapolating(places: Array, place: float) -> Array:
+def polynomial(places: Array, place: float) -> Array:
     """Weights of values at several places in that of the polynomial through all at another place."""
     apart = places[:, None] - places + np.eye(places.size)
     ahead = np.where(np.eye(places.size, dtype=bool), 1.0, place - places)

@@ -35,7 +35,7 @@ def states(segments: Sequence[Segment], condition: Condition, known: Iterable[Lo
     """Every state of a traced curve that meets a condition, in order; those known are not solved for again."""
     return [
         state
-        for bracket in _brackets(segments, condition)
+        for bracket in brackets_of(segments, condition)
         for state in _within(bracket, known) or with_care(bracket, condition)
     ]
 
@@ -45,7 +45,7 @@ def _within(bracket: Bracket, known: Iterable[Located]) -> list[Located]:
     return [s for s in known if s.problem is problem and a.arclength <= s.point.arclength <= b.arclength]
 
 
-def _brackets(segments: Sequence[Segment], condition: Condition) -> list[Bracket]:
+def brackets_of(segments: Sequence[Segment], condition: Condition) -> list[Bracket]:
     """Discretisation and pair of points for every state that meets a condition, in order."""
     metric = metric_for(segments[0].problem)
     return [(s.problem, a, b) for s in segments for a, b in brackets(s.problem, s.points, metric, condition)]
@@ -86,9 +86,9 @@ def find_events(segments: Sequence[Segment]) -> dict[str, Located]:
     separated = segments[0].problem.interface.scales.separated_approach
 
     def required(name: str, condition: Condition) -> list[Bracket]:
-        return _brackets(segments, condition) or _missing(segments[-1], name)
+        return brackets_of(segments, condition) or _missing(segments[-1], name)
 
-    folds = _brackets(segments, FOLD)
+    folds = brackets_of(segments, FOLD)
     found = {"pull_off": _deepest(required("pull_off", EXTREMUM))}
     if folds:
         found |= {"jump_on": _state(folds[0], FOLD), "jump_off": _state(folds[-1], FOLD)}
@@ -111,7 +111,7 @@ def _require_touching(segments: Sequence[Segment]) -> None:
 
 def between_jumps(segments: Sequence[Segment]) -> list[Bracket]:
     """Discretisation and pair of points for every fold but the outermost, in order along a traced curve."""
-    return _brackets(segments, FOLD)[1:-1] if segments else []
+    return brackets_of(segments, FOLD)[1:-1] if segments else []
 
 
 def with_care(bracket: Bracket, condition: Condition) -> list[Located]:
