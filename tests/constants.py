@@ -16,6 +16,9 @@ What it found, at half, as they are, and at double, in parts within and within a
 | EXTENT | 98.1, 95.0 | 99.4, 95.6 | 100, 95.0 |
 | at_equator | 100, 89.1 | 100, 84.8 | 100, 78.3 |
 | WINDOW; APART, by its logarithm | the same | 100, 84.8 | 100, 87.0; the same |
+| EVENTS_LEAVE | the same | 100, 84.8 | the same |
+| TIP, by its logarithm; SUDDEN | the same; 98.3, 95.0 | 100, 93.3 | the same |
+| ACROSS; BESIDE | the same | 100, 93.3 of 15 | the same |
 | EQUAL; LEAVE; LEAST, operators for a sphere's curve at tabor 5 | 13; 13; 13 | 11 | 10; 10; not solved |
 | the same, folds at the birth of contact there | the same, but the second known to 1e-8 | 1e-9 | the same |
 | WIDE, WIDELY, ASTRAY, MOVES; OUTSIDE, by its logarithm | the same | 0.1 of the estimates | the same |
