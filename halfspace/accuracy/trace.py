@@ -172,11 +172,12 @@ def _to_infinity(
     """Breakpoints, and what makes the half-space's operator of those of either chart."""
     nodes, reach = resolution.nodes, scales.tail_reach
     lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, nodes)
-    return lines, partial(_endless, nodes, reach)  # no function of its own, as what is pickled holds it
+    even = scales.body is not None  # cells on the axis of a layer are long beside its thickness
+    return lines, partial(_endless, nodes, reach, even)  # no function of its own, as what is pickled holds it
 
 
-def _endless(nodes: int, reach: float, breaks: Array) -> compliance.ElasticOperator:
-    return compliance.to_infinity(compliance.panels(breaks, nodes), nodes, reach)
+def _endless(nodes: int, reach: float, even: bool, breaks: Array) -> compliance.ElasticOperator:
+    return compliance.to_infinity(replace(compliance.panels(breaks, nodes), even=even), nodes, reach)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
