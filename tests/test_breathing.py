@@ -10,7 +10,14 @@ from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.operators import FlatCoordinate, Homogeneous, Interpolated, MovingGrid, chebyshev_radii
+from halfspace.elastic.operators import (
+    FlatCoordinate,
+    Homogeneous,
+    Interpolated,
+    MovingGrid,
+    Stereographic,
+    chebyshev_radii,
+)
 from halfspace.equilibrium.charts import Chart, trace_charts
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.search import find_events
@@ -36,7 +43,7 @@ def hemisphere_grid(area):
     inner, beyond = np.array([0.0, 0.6, 1.0]), np.array([0.1, 0.25, 0.5, 1.0])
     fixed = np.concatenate([0 * inner, core * beyond, outer])
     moving = np.concatenate([inner, 1 - beyond, 0 * outer])
-    return MovingGrid(fixed, moving, spheres.Stereographic(R, area))
+    return MovingGrid(fixed, moving, Stereographic(R, area))
 
 
 def hemisphere(area):

@@ -15,8 +15,9 @@ from fem_adhesion.mesh import held_sphere as module
 from fem_adhesion.mesh.curved import refined_towards
 from fem_adhesion.mesh.file import read_body
 from fem_adhesion.mesh.held_sphere import held_sphere, rings_at_equator
-from fem_adhesion.mesh.spheres import CORE, DEPTH, Stereographic, contact_ends, hemisphere
+from fem_adhesion.mesh.spheres import CORE, DEPTH, contact_ends, hemisphere
 from halfspace.elastic import grid
+from halfspace.elastic.operators import Stereographic
 
 NU, R = 0.3, 30.0
 CAPS = (1.0, 30.0, 75.0, 88.0, 90.0)  # by lines, in the core, beside it, by rings about the equator, at the equator

@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 from scipy.integrate import quad
+from scipy.special import ellipkm1
 
+from halfspace.elastic import compliance
 from halfspace.elastic.kernel import band_deflection, panel_integrals, ring_kernel
 
 
@@ -94,3 +96,24 @@ def test_a_triangle_is_the_integral_of_the_bands_it_is_stacked_from():
         stacked = quad(band, 0, 1, points=kinks or None, epsabs=1e-13, limit=200)[0]
         halves = panel_integrals(np.array([r]), np.array([a, b, c]), np.array([-1.0, 1.0]))[0]
         assert halves[0, 1] + halves[1, 0] == pytest.approx(stacked, abs=1e-11)
+
+
+@pytest.mark.parametrize("count", [7, 9, 16])
+def test_panels_under_a_sphere_deflect_as_rings_do_up_to_the_equator(count):
+    """The pressure jumps there, and a node's image beyond it is near: by rules of 80 points from all of them."""
+    R, power = 2.0, 3
+    operator = compliance.panels_under_sphere(R * np.array([0, 0.3, 0.7, 1.2, 2.0]), count, R)
+    x, w = leggauss(80)
+    t, w = ((1 + x) / 2) ** 5, w / 2 * 5 * ((1 + x) / 2) ** 4
+    for r, found in zip(operator.radii, operator.compliance @ (operator.radii / R) ** power, strict=True):
+        theta, expected = np.arcsin(r / R), 0.0
+        for end in (0.0, np.pi / 2):
+            middle = (theta + end) / 2
+            for first in (theta, end):
+                way = (middle - first) * t
+                s = R * np.sin(first + way)
+                apart = 2 * R * np.sin((first - theta + way) / 2) * np.cos((first + theta + way) / 2)
+                kernel = 4 / np.pi / (r + s) * ellipkm1((apart / (r + s)) ** 2)
+                expected += w @ (kernel * (s / R) ** power * s * R * np.cos(first + way)) * abs(middle - first)
+        assert found == pytest.approx(expected, rel=0, abs=3 * 5.0**-count + 1e-11)
+    assert operator.weights.sum() == pytest.approx(np.pi * R**2, rel=1e-12)

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from fem_adhesion.bodies.body import Discretisation, Held, Layout
 from halfspace.elastic import grid
+from halfspace.elastic.operators import Stereographic
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, keep
 
@@ -43,7 +44,7 @@ class HeldSphere(Held):
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (rings are the cap's)
         """Layers and rings beyond the core."""
         from fem_adhesion.mesh.held_sphere import rings_at_equator
-        from fem_adhesion.mesh.spheres import Stereographic, contact_ends
+        from fem_adhesion.mesh.spheres import contact_ends
 
         return contact_ends(R, rings_at_equator(R, self.cap_angle)), Stereographic(R, self.material.area)
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation, Held, Layout, SolverName
 from halfspace.elastic import grid
+from halfspace.elastic.operators import Stereographic
 from halfspace.values import Array
 
 RINGS = 0.2  # ratio of the rings around a singular corner
@@ -46,7 +47,7 @@ class Hemisphere(Held):
 
     def layout(self, R: float, how: Discretisation) -> Layout:
         """Layers and rings beyond the core."""
-        from fem_adhesion.mesh.spheres import Stereographic, contact_ends
+        from fem_adhesion.mesh.spheres import contact_ends
 
         return contact_ends(R, self.rings(how)), Stereographic(R, self.material.area)
 

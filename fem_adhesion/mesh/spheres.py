@@ -18,6 +18,7 @@ import numpy as np
 from fem_adhesion.mesh.block import with_named_boundaries
 from fem_adhesion.mesh.curved import CurvedQuads, Patch, joined, refined_towards
 from halfspace.elastic import grid
+from halfspace.elastic.operators import Stereographic
 from halfspace.values import Array, Index, Valued
 
 CORE, DEPTH = 1.7, 0.9
@@ -27,35 +28,6 @@ LAYERS = 2
 """Cells between the tensor grid and the mid-plane."""
 
 NO_RINGS = np.empty(0)
-
-
-@dataclass(frozen=True)
-class Stereographic:
-    """Coordinate x along a sphere's surface, the radius on the flat plane: r = x/(1 + k x^2), k = 1/4R^2, R in beta.
-
-    The area is that which the density of a ring's is: "projected" on the plane of the contact, or the sphere's
-    "surface".
-    """
-
-    R: float
-    area: str = "projected"
-
-    def of(self, radius: float) -> float:
-        """Coordinate 2 R tan(theta/2) at the radius R sin(theta)."""
-        s = radius / self.R
-        return float(2 * self.R * s / (1 + np.sqrt((1 - s) * (1 + s))))
-
-    def radius(self, x: Array) -> tuple[Array, Array]:
-        """Radius r at x and dr/dx."""
-        t = (x / (2 * self.R)) ** 2
-        return np.asarray(x / (1 + t)), np.asarray((1 - t) / (1 + t) ** 2)
-
-    def ring(self, x: Array) -> tuple[Array, Array]:
-        """Density r dr/dx of a ring's area, or r ds/dx with ds/dx = 1/(1 + t), and its derivative by x."""
-        t = (x / (2 * self.R)) ** 2
-        if self.area == "surface":
-            return np.asarray(x / (1 + t) ** 2), np.asarray((1 - 3 * t) / (1 + t) ** 3)
-        return np.asarray(x * (1 - t) / (1 + t) ** 3), np.asarray((1 - 8 * t + 3 * t**2) / (1 + t) ** 4)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

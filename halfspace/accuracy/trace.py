@@ -33,7 +33,7 @@ from halfspace.accuracy.stages import Charted, Rung
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.layered import Images, image_compliance, images_of, layered, layered_panels
 from halfspace.elastic.layers import LayeredBody
-from halfspace.elastic.operators import FlatCoordinate, Homogeneous, NearlyHomogeneous
+from halfspace.elastic.operators import FlatCoordinate, Homogeneous, NearlyHomogeneous, Stereographic
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -61,8 +61,6 @@ ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less
 MOST_CELLS = 100  # of one length
 TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same
 IMAGES = (1.14, 1.17)  # ratios of the depths of a layered body's images, and of its twin's
-
-Panels = Callable[[Array, int], compliance.ElasticOperator]
 
 
 @dataclass(frozen=True)
@@ -344,21 +342,21 @@ def _sized_body(
     ends = math.isfinite(scales.profile.end)
     if images and not ends and not scales.law.outermost:  # by such a law the half-space's grid does not scale
         return layered_half_space(scales, images, resolution, to_load)
-    make = partial(layered_panels, images) if images else compliance.panels
+    first = at_tip(scales.profile, resolution.nodes)
+    how = resolution.finest, resolution.growth
+    if images is None:
+        R = scales.profile.end
+        make, outer = partial(_made_under_sphere, R, resolution.nodes), np.array([2 * R])
+        return SizedBody(scales, make, *how, outer, Stereographic(R), to_load=to_load, first=first)
     last = at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf
-    outer = scales.profile.end if ends else scales.whole_radius((FAR * resolution.extent) ** 2 / 2)
-    return SizedBody(
-        scales,
-        partial(_made, make, resolution.nodes),
-        resolution.finest,
-        resolution.growth,
-        np.array([outer]),
-        FlatCoordinate(),
-        last,
-        to_load,
-        at_tip(scales.profile, resolution.nodes),
-    )
+    outer = np.array([scales.profile.end if ends else scales.whole_radius((FAR * resolution.extent) ** 2 / 2)])
+    made = partial(_made, images, resolution.nodes)
+    return SizedBody(scales, made, *how, outer, FlatCoordinate(), last, to_load, first)
 
 
-def _made(make: Panels, nodes: int, lines: Array) -> Made:
-    return replace(make(lines, nodes), even=True), nodes * (lines.size - 1)
+def _made_under_sphere(R: float, nodes: int, lines: Array) -> Made:
+    return replace(compliance.panels_under_sphere(lines, nodes, R), even=True), nodes * (lines.size - 1)
+
+
+def _made(images: Images, nodes: int, lines: Array) -> Made:
+    return replace(layered_panels(images, lines, nodes), even=True), nodes * (lines.size - 1)

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from halfspace.elastic import grid
-from halfspace.elastic.kernel import band_deflection, panel_integrals
+from halfspace.elastic.kernel import band_deflection, before_equator, panel_integrals, stereographic_ring
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
@@ -231,6 +231,23 @@ def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
     return ElasticOperator(
         radii.ravel(), weights.ravel(), compliance, breakpoints, np.arange(radii.size).reshape(radii.shape)
     )
+
+
+def panels_under_sphere(lines: Array, nodes_per_panel: int, R: float) -> ElasticOperator:
+    """Half-space under pressures that are polynomials of a sphere's coordinate, up to its equator, the radius R.
+
+    There the gap rises as the root of the distance, but smoothly by x = 2 R tan(theta/2), in which the panels end at
+    the lines (m + 1,) from 0 to 2 R; see `halfspace.elastic.kernel.stereographic_ring`. Otherwise as `panels`.
+    """
+    points, w = grid.gauss_legendre(nodes_per_panel)
+    half = np.diff(lines)[:, None] / 2
+    x = lines[:-1, None] + half * (1 + points)
+    compliance = panel_integrals(x.ravel(), lines, points, stereographic_ring(R))
+    compliance[-points.size :, -1] = before_equator(x[-1], lines, points, R)
+    p, k = 1 + (x / (2 * R)) ** 2, np.arange(x.size).reshape(x.shape)
+    weights = 2 * np.pi * x * (2 - p) / p**3 * half * w
+    cells = lines / (1 + (lines / (2 * R)) ** 2)
+    return ElasticOperator((x / p).ravel(), weights.ravel(), compliance.reshape(x.size, -1), cells, k)
 
 
 def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> ElasticOperator:

@@ -8,8 +8,9 @@ point nearest to the target: the powers of t smother the logarithm, on the panel
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -23,9 +24,12 @@ NEAR_POINTS = 48
 # From so many panel lengths away Gauss's rule serves with so many points, and half as many as a panel has nodes: they
 # leave 3e-14 of polynomials; the other rule, next to the target, is then a decade worse.
 FAR = ((0.25, 16), (1.0, 8))
+ROUNDED = 1e-10  # of a panel, by which a target may be off its node
 BATCH = 2_000_000  # points at which the kernel is evaluated at a time: 16 MB an array
 
-Ring = Callable[[Array, Array, Array], Array]  # of r, s and |s - r|, which are broadcast
+# Deflection at x by unit pressure on a ring at y, by y: of x, y and |y - x|, which are broadcast. Both are radii, or in
+# the coordinate in which the pressure of a panel is a polynomial.
+Ring = Callable[[Array, Array, Array], Array]
 
 
 def ring_kernel(r: Array, s: Array) -> Array:
@@ -37,6 +41,26 @@ def _kernel(r: Array, s: Array, distance: Array) -> Array:
     """G(r, s) by Landen's K(2 sqrt(r s)/(r + s)), given |s - r|: 1 - k^2 must not be formed by cancellation."""
     both = r + s
     return np.asarray(4 / np.pi / both * ellipkm1((distance / both) ** 2))
+
+
+def flat_ring(r: Array, s: Array, distance: Array) -> Array:
+    """Deflection at r by unit pressure on a ring at s, by s: G(r, s) s."""
+    return np.asarray(_kernel(r, s, distance) * s)
+
+
+def stereographic_ring(R: float) -> Ring:
+    """Return the same under a sphere of radius R by the coordinate x = 2 R tan(theta/2), r = x/(1 + x^2/4R^2).
+
+    Its gap is smooth in it, and s - r = (y - x)(1 - x y/4R^2)/[(1 + x^2/4R^2)(1 + y^2/4R^2)].
+    """
+    k = 1 / (4 * R**2)
+
+    def ring(x: Array, y: Array, distance: Array) -> Array:
+        p, q = 1 + k * x**2, 1 + k * y**2
+        s = y / q
+        return np.asarray(_kernel(x / p, s, distance * (1 - k * x * y) / (p * q)) * (s * (2 - q) / q**2))
+
+    return ring
 
 
 def band_deflection(r: Array, c: Array) -> Array:
@@ -70,22 +94,51 @@ def graded_rule(points: int, q: int = GRADING) -> tuple[Array, Array]:
     return t**q, w / 2 * q * t ** (q - 1)
 
 
-def panel_integrals(targets: Array, breakpoints: Array, nodes: Array) -> Array:
+def panel_integrals(targets: Array, breakpoints: Array, nodes: Array, ring: Ring = flat_ring) -> Array:
     """Integrate G(r_i, s) s l(s) over each panel for each Lagrange polynomial l of the panel's nodes.
 
     The targets (n,) are the radii r_i >= 0 at which the deflection is wanted, anywhere on or off the panels, whose
     ends, the breakpoints (m + 1,), ascend from at least 0; the nodes (k,) are those of a panel on [-1, 1]. The
     deflection (n, m, k) at r_i (E* = 1) is by the pressure l_k on panel j, to an absolute accuracy of 1e-12 of the
-    panel's scale.
+    panel's scale. By another ring all radii are in its coordinate.
     """
     targets = np.asarray(targets, float)
     batches = -(-targets.size * (breakpoints.size - 1) * _points(FAR[-1][1], nodes.size) // BATCH)
-    moments = np.concatenate([_moments(some, breakpoints, nodes.size) for some in np.array_split(targets, batches)])
-    integrals = moments @ np.linalg.inv(legvander(nodes, nodes.size - 1))
-    return np.asarray(integrals.reshape(targets.size, -1, nodes.size))
+    moments = np.concatenate(
+        [_moments(ring, some, breakpoints, nodes.size) for some in np.array_split(targets, batches)]
+    )
+    return _of_lagrange(moments, nodes).reshape(targets.size, -1, nodes.size)
 
 
-def _moments(targets: Array, breakpoints: Array, k: int) -> Array:
+def before_equator(targets: Array, lines: Array, nodes: Array, R: float) -> Array:
+    """Integrals as of `panel_integrals` by the stereographic ring over the last panel, at its own nodes.
+
+    A target and its mirror image beyond the equator have the same radius: what is between is cut into halves, the rule
+    of the one from the target on, of the other from the equator.
+    """
+    ring, k, rule = stereographic_ring(R), nodes.size, (NEAR_POINTS, GRADING)
+    t, polynomials = _graded_polynomials(*rule, k)
+    left, right = (np.full_like(targets, line) for line in lines[-2:])
+    middle = (targets + right) / 2
+    y = right[:, None] - (right - middle)[:, None] * t
+    last = ring(targets[:, None], y, y - targets[:, None]) @ polynomials * (right - middle)[:, None]
+    last[:, 1::2] *= -1  # odd polynomials, seen from the right end
+    first = (beside(ring, targets, *ends, k, rule) for ends in ((left, targets), (targets, middle)))
+    return _of_lagrange(_of_parts([*first, last], _at_nodes(k, mirrored=True)), nodes)
+
+
+def _of_lagrange(moments: Array, nodes: Array) -> Array:
+    """Integrals against Lagrange's polynomials of some nodes from those against Legendre's, (n, k)."""
+    return np.asarray(moments @ _to_lagrange(nodes.tobytes()))
+
+
+@cache
+def _to_lagrange(nodes: bytes) -> Array:
+    x = np.frombuffer(nodes)
+    return np.asarray(np.linalg.inv(legvander(x, x.size - 1)))
+
+
+def _moments(ring: Ring, targets: Array, breakpoints: Array, k: int) -> Array:
     """Integrals of G(r_i, s) s against the first k Legendre polynomials of each panel, (n m, k)."""
     left, right = breakpoints[:-1], breakpoints[1:]
     r, left, right = (v.ravel() for v in np.broadcast_arrays(targets[:, None], left, right))
@@ -94,7 +147,7 @@ def _moments(targets: Array, breakpoints: Array, k: int) -> Array:
     for i in range(len(FAR) + 1):
         some = np.flatnonzero(distance == i)
         integrals, rule = (beside, (_points(FAR[i - 1][1], k), 1)) if i else (near_moments, (NEAR_POINTS, GRADING))
-        moments[some] = integrals(_kernel, r[some], left[some], right[some], k, rule)
+        moments[some] = integrals(ring, r[some], left[some], right[some], k, rule)
     return moments
 
 
@@ -103,7 +156,7 @@ def _points(least: int, nodes: int) -> int:
 
 
 def near_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: tuple[int, int]) -> Array:
-    """Integrate G(r, s) s against the first k Legendre polynomials of a panel for each target, on the panel or off it.
+    """Integrate a ring against the first k Legendre polynomials of a panel for each target, on the panel or off it.
 
     A panel with the target r (n,) on it is cut in two there. The rule is as of `graded_rule`, from the target on, or
     the end of the panel next to it. Return (n, k).
@@ -112,11 +165,31 @@ def near_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: 
     on = (left < r) & (r < right)
     moments[~on] = beside(ring, r[~on], left[~on], right[~on], k, rule)
     r, left, right = r[on], left[on], right[on]
-    before, after = beside(ring, r, left, r, k, rule), beside(ring, r, r, right, k, rule)
-    cut = (r - left) / (right - left)
-    moments[on] = np.einsum("nk,nkl->nl", before, _of_a_part(0 * cut, cut, k))
-    moments[on] += np.einsum("nk,nkl->nl", after, _of_a_part(cut, 1 + 0 * cut, k))
+    parts = [beside(ring, r, left, r, k, rule), beside(ring, r, r, right, k, rule)]
+    moments[on] = _of_parts(parts, _halves(np.asarray((r - left) / (right - left)), k))
     return moments
+
+
+def _of_parts(moments: Sequence[Array], polynomials: Sequence[Array]) -> Array:
+    """Moments of a panel (n, k) from those of its parts, by its polynomials in theirs, (n, k, k) each."""
+    return np.asarray(sum(np.einsum("nk,nkl->nl", *part) for part in zip(moments, polynomials, strict=True)))
+
+
+def _halves(cuts: Array, k: int) -> Sequence[Array]:
+    """Polynomials of the parts before and after cuts (n,); mostly these are a panel's own nodes, but for rounding."""
+    own = (1 + gauss_legendre(k)[0]) / 2
+    nearest = np.abs(cuts[:, None] - own).argmin(axis=1)
+    if np.all(np.abs(cuts - own[nearest]) < ROUNDED):
+        return [part[nearest] for part in _at_nodes(k, mirrored=False)]
+    return _of_a_part(0 * cuts, cuts, k), _of_a_part(cuts, 1 + 0 * cuts, k)
+
+
+@cache
+def _at_nodes(k: int, *, mirrored: bool) -> list[Array]:
+    """Polynomials of the parts before and after each node of a panel, the latter cut in halves if it is mirrored."""
+    cut = (1 + gauss_legendre(k)[0]) / 2
+    ends = [0 * cut, cut, *([(1 + cut) / 2] if mirrored else []), 1 + 0 * cut]
+    return [_of_a_part(*between, k) for between in pairwise(ends)]
 
 
 def beside(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: tuple[int, int]) -> Array:
@@ -126,7 +199,7 @@ def beside(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: tuple[
     end, inwards = np.where(above, left, right), np.where(above, right - left, left - right)
     s = end[:, None] + inwards[:, None] * t
     values = ring(r[:, None], s, np.abs(end - r)[:, None] + np.abs(inwards)[:, None] * t)
-    moments = (values * s) @ polynomials * np.abs(inwards)[:, None]
+    moments = values @ polynomials * np.abs(inwards)[:, None]
     moments[~above, 1::2] *= -1  # odd polynomials, seen from the right end
     return np.asarray(moments)
 

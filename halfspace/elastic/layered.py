@@ -59,8 +59,8 @@ class Images(Valued):
     smooth: float
 
     def ring(self, r: Array, s: Array, _: Array) -> Array:
-        """Kernel as of `halfspace.elastic.kernel.near_moments`: the distance does not matter, all is smooth."""
-        return self.kernel(r, s)
+        """Ring as of `halfspace.elastic.kernel.near_moments`: the distance does not matter, all is smooth."""
+        return self.kernel(r, s) * s
 
     def kernel(self, r: Array, s: Array) -> Array:
         """Deflection at radius r by all images of a ring of unit pressure times radius at s; arrays broadcast."""

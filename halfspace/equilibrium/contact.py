@@ -85,6 +85,10 @@ class _Acting(Valued):
     def rates(self) -> tuple[Array, Array, Array]:
         return self.operator.rates(float(self.x[-1]), self.pressure)
 
+    @cached_property
+    def contact_radius(self) -> float:
+        return _contact_radius(self.operator.at(float(self.x[-1])), self.x[:-2], self.law.edge_gap)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ContactProblem(Valued):
@@ -243,19 +247,7 @@ class ContactProblem(Valued):
         """
         if self.follows_contact:
             return float(x[-1])
-        H, edge, body = x[:-2], self.law.edge_gap, self.operator_at(x)
-        inside = np.flatnonzero(edge > H)
-        if inside.size == 0 and not body.interpolation(0.0)[0] @ H <= edge:
-            return float("nan")
-        if inside.size and inside[-1] == H.size - 1 and body.continuous(body.extent)[0] @ H <= edge:
-            return body.extent
-        radii = np.append(body.radii, body.extent)
-        below, above = (radii[inside[-1]], radii[inside[-1] + 1]) if inside.size else (0.0, radii[0])
-
-        def beyond(r: float) -> float:
-            return float(body.continuous(r)[0] @ H - edge)
-
-        return root(beyond, below, above, "the contact edge; refine the grid", xtol=1e-14)
+        return self._acting(x).contact_radius
 
     def ripples(self, x: Array) -> Array:
         """What the deflection's polynomials end with on the axis, in eps, and at the contact edge, in beta, (2,).
@@ -366,6 +358,22 @@ class ContactProblem(Valued):
         L = self.operator.root(float(x[-1]))
         hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * self._acting(x).slope)[:, None])
         return count_negative(hessian)
+
+
+def _contact_radius(body: ElasticOperator, H: Array, edge: float) -> float:
+    """Largest radius at which the gaps H are those of the edge, on a grid that stands still."""
+    inside = np.flatnonzero(edge > H)
+    if inside.size == 0 and not body.interpolation(0.0)[0] @ H <= edge:
+        return float("nan")
+    if inside.size and inside[-1] == H.size - 1 and body.continuous(body.extent)[0] @ H <= edge:
+        return body.extent
+    radii = np.append(body.radii, body.extent)
+    below, above = (radii[inside[-1]], radii[inside[-1] + 1]) if inside.size else (0.0, radii[0])
+
+    def beyond(r: float) -> float:
+        return float(body.continuous(r)[0] @ H - edge)
+
+    return root(beyond, below, above, "the contact edge; refine the grid", xtol=1e-14)
 
 
 def _left_out(coefficients: Array) -> float:
