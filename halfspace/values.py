@@ -172,22 +172,35 @@ def appended(values: Array, last: float) -> Array:
 def read_columns(path: Path, fewest: int) -> tuple[Array, Array]:
     """Two columns of a CSV file, the first ascending; lines that are no numbers may come before."""
     try:
-        lines = [line.split(",") for line in path.read_text().splitlines() if line.strip()]
-        while lines and not _are_numbers(lines[0]):
-            lines.pop(0)
-        rows = np.array([[float(word) for word in line[:2]] for line in lines])
-    except (OSError, UnicodeDecodeError, ValueError) as error:
-        why = " ".join(str(error).split())
-        raise InputError(f"{path} cannot be read: {why}, limit: two columns of numbers; give a CSV file") from error
-    if not (rows.ndim == 2 and rows.shape[1:] == (2,) and len(rows) >= fewest):
-        raise InputError(f"{path} has {len(rows)} rows, limit: {fewest} of two numbers or more; give more points")
-    if not (np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0).all()):
-        raise InputError(f"{path}: the first column does not rise, limit: finite, ascending numbers; sort it")
+        text = path.read_text(encoding="utf-8-sig", errors="replace")  # letters stand in the header alone
+    except OSError as error:
+        why = f"{error.strerror}, limit: a file of two columns of numbers; give a CSV file"
+        raise InputError(f"{path} cannot be read: {why}") from error
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+    while lines and _numbers(lines[0][1]) is None:
+        lines.pop(0)
+    if len(lines) < fewest:
+        limit = f"{fewest}, of two numbers with a comma between"
+        raise InputError(f"{path} has {len(lines)} rows, limit: {limit}; give more points")
+    rows = np.array([_row(path, *line) for line in lines])
+    for i in np.flatnonzero(np.diff(rows[:, 0]) <= 0):
+        where, (before, here) = f"{path}, line {lines[i + 1][0]}", rows[i : i + 2, 0]
+        raise InputError(f"{where}: the first column goes from {before:g} to {here:g}, limit: ascending; sort it")
     return rows[:, 0], rows[:, 1]
 
 
-def _are_numbers(words: list[str]) -> bool:
+def _row(path: Path, number: int, line: str) -> list[float]:
+    """Two numbers of a line; raise InputError where they are not."""
+    numbers = _numbers(line)
+    if numbers is None or not np.isfinite(numbers).all():
+        raise InputError(f"{path}, line {number}: {shown(line)}, limit: two finite numbers; mend it or leave it out")
+    return numbers
+
+
+def _numbers(line: str) -> list[float] | None:
+    """First two numbers of a line of a CSV file; None if it has fewer."""
     try:
-        return bool([float(word) for word in words])
+        first, second = map(float, line.split(",")[:2])
     except ValueError:
-        return False
+        return None
+    return [first, second]

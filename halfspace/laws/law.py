@@ -125,7 +125,7 @@ def _found(law: Law) -> list[tuple[str, bool, str, str]]:
     ]
 
 
-MEND = "mend either"
+MEND = "mend either, or smooth the table"
 
 
 def _apart(derivative: Callable[[Array, float], Array], of: Callable[[Array], Array]) -> float:

@@ -27,6 +27,9 @@ CHECKED = 1000  # radii at which it must rise
 class Tabulated:
     """Smooth spline through a table of radii and heights, even in the radius; it ends where the table does.
 
+    Estimates of a curve's error are those of this spline: what the table leaves open is told by `radius_error`, in
+    which units of load go, and by `residual`.
+
     Parameters
     ----------
     path : Path
@@ -37,7 +40,7 @@ class Tabulated:
     Raises
     ------
     InputError
-        If it cannot be read, or turns back.
+        If it cannot be read, turns back, or does not tell the radius of its apex.
     """
 
     path: Path
@@ -50,6 +53,9 @@ class Tabulated:
         if falls.size:
             where = f"{self.path} turns back at radius {falls[0]:.4g}"
             raise InputError(f"{where}, limit: a height that rises; cut it there")
+        if not self.radius_error < self.radius:
+            value = f"the apex radius is {self.radius:.3g} +- {self.radius_error:.1g}"
+            raise InputError(f"{self.path}: {value}, limit: an error below it; give more points near the axis")
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
@@ -59,11 +65,24 @@ class Tabulated:
         return r, z
 
     @cached_property
-    def _spline(self) -> BSpline:
-        """Height by the square of the radius, so that it is even; generalised cross-validation chooses the knots."""
+    def _fits(self) -> tuple[BSpline, BSpline]:
+        """Height by the square of the radius, so that it is even, and the same by one piece more.
+
+        Bayes's criterion chooses the pieces: cross-validation follows the noise in one table of ten, and its slope at
+        the axis, where two squares of radii are closest, then gives any radius.
+        """
         r, z = self._table
-        splines = [_fitted(r**2, z, pieces) for pieces in range(1, min(r.size // FEWEST, MOST) + 1)]
-        return min(splines, key=lambda s: float(np.mean((s(r**2) - z) ** 2)) / (1 - len(s.c) / r.size) ** 2)
+        splines = [_fitted(r**2, z, pieces) for pieces in range(1, min(r.size // FEWEST, MOST) + 2)]
+        squares = [float(np.mean((s(r**2) - z) ** 2)) + np.finfo(float).tiny for s in splines[:-1]]
+        told = [
+            math.log(left) + len(s.c) * math.log(r.size) / r.size for left, s in zip(squares, splines, strict=False)
+        ]
+        best = int(np.argmin(told))
+        return splines[best], splines[best + 1]
+
+    @property
+    def _spline(self) -> BSpline:
+        return self._fits[0]
 
     @property
     def end(self) -> float:
@@ -73,7 +92,19 @@ class Tabulated:
     @cached_property
     def radius(self) -> float:
         """R at the apex, in the table's unit."""
-        return float(0.5 / self._spline(0.0, 1))
+        return _radius(self._spline)
+
+    @cached_property
+    def radius_error(self) -> float:
+        """Two standard deviations of it, rows being off by the residual each, and its change by one piece."""
+        from scipy.interpolate import BSpline  # it takes as long to load as all else, and few need it
+
+        r, _ = self._table
+        t, count = self._spline.t, len(self._spline.c)
+        by_coefficient = BSpline(t, np.eye(count), DEGREE)
+        weights = by_coefficient(0.0, 1) @ np.linalg.pinv(by_coefficient(r**2))  # of the heights in the slope at 0
+        deviation = self.residual * math.sqrt(r.size / (r.size - count)) * float(np.linalg.norm(weights))
+        return 2 * deviation * 2 * self.radius**2 + abs(_radius(self._fits[1]) - self.radius)
 
     @cached_property
     def residual(self) -> float:
@@ -84,11 +115,17 @@ class Tabulated:
     @property
     def told(self) -> tuple[str, ...]:
         """What it has found."""
-        return f"apex radius {self.radius:.6g}", f"residual {self.residual:.2g} in the table's unit"
+        apex = f"apex radius {self.radius:.6g} +- {self.radius_error:.1g} in the table's unit"
+        return apex, f"residual {self.residual * self.radius_ratio / self.radius:.2g} eps"
 
     def surface(self, tabor: float) -> Surface:
         """Heights in beta^2/R; raise InputError where the tip is as small as its contact."""
         return Tip(self, self.radius / math.sqrt(require_radius_ratio(self.radius_ratio, tabor) / tabor))
+
+
+def _radius(spline: BSpline) -> float:
+    """Radius at the apex of a height by the square of the radius."""
+    return float(0.5 / spline(0.0, 1))
 
 
 def _fitted(x: Array, z: Array, pieces: int) -> BSpline:
