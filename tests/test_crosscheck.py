@@ -13,7 +13,7 @@ from fem_adhesion import Block, HalfSpace, Scene, cli, convergence, discretise
 from fem_adhesion.common.jobs import WorkerDied
 from fem_adhesion.crosscheck import comparison, references
 from fem_adhesion.crosscheck import study as crosscheck
-from fem_adhesion.crosscheck.comparison import Case, Failure, Part, Row, crosscheck_tables
+from fem_adhesion.crosscheck.comparison import Case, Failure, Row, crosscheck_tables
 from fem_adhesion.elasticity import space
 from halfspace import limits
 from halfspace.equilibrium.contact import ContactProblem
@@ -417,7 +417,10 @@ def test_scenes_come_in_their_order_whatever_ends_first(monkeypatch):
         asked.extend(parts)
         for part in reversed(parts):
             told = _made_up("agree") if part.solved else _made_up("inconclusive")
-            yield part, WorkerDied("on purpose") if part == Part(scenes[1], True) else Case(part.scene, {}, (told,))
+            yield (
+                part,
+                WorkerDied("on purpose") if part == crosscheck.Part(scenes[1], True) else Case(part.scene, {}, (told,)),
+            )
 
     monkeypatch.setattr(crosscheck, "stream", backwards)
     first, died, last = crosscheck.run(scenes)

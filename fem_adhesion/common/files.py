@@ -25,7 +25,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from fem_adhesion.common.numbers import counted
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -186,6 +185,8 @@ class Store:
     @property
     def notes(self) -> Sequence[str]:
         """What was found and not used, in lines."""
+        from fem_adhesion.common.numbers import counted  # loads NumPy, which no help needs
+
         outdated = (
             f"{counted(count, 'case')} computed by {what}: computed again" for what, count in self.outdated.items()
         )
