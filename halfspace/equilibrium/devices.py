@@ -25,7 +25,7 @@ from halfspace.equilibrium.charts import Stage, metric_for, settled, transfer
 from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import FOLDS, ErrorRule, Event, Tolerance, estimate_event
+from halfspace.equilibrium.events import FOLDS, ErrorRule, Event, Tolerance, approach_scale, estimate_event
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Segment, make_point
 from halfspace.equilibrium.reach import reaching, widened
@@ -50,7 +50,8 @@ class Cycle:
 
     Jumps `on` are from separation into contact, A to B in [G97] Fig. 2a, and `off` back, C to D, each in its order:
     more than one where the curve has stable states between two of its folds. The energy lost is in the whole cycle, in
-    R dgamma eps; the tolerance is what was asked of the curve, and so of these states.
+    R dgamma eps; the tolerance is what was asked of the curve, and so of these states, by the range of their approaches
+    too: a soft apparatus lands far away.
     """
 
     stiffness: float
@@ -85,10 +86,15 @@ class Cycle:
 
     @property
     def missed(self) -> dict[str, tuple[str, ...]]:
-        """By state, as ``jump_on landing``, the numbers that have not."""
-        return self.tolerance.missed(
-            {f"{name} {s.name}": s for name, jump in self.jumps.items() for s in (jump.take_off, jump.landing)}
-        )
+        """By state, as ``jump_on landing``, the numbers that have not.
+
+        The load at a landing counts by the larger one of its jump: of a contact that has parted nearly none is left.
+        """
+        states: dict[str, tuple[str, ...]] = {}
+        for name, jump in self.jumps.items():
+            states[f"{name} take_off"] = self.tolerance.missed_by(jump.take_off)
+            states[f"{name} landing"] = self.tolerance.missed_by(jump.landing, load=abs(jump.take_off.load))
+        return {name: numbers for name, numbers in states.items() if numbers}
 
 
 @dataclass(frozen=True)
@@ -133,7 +139,10 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
     if not staged:
         return None
     on, off = (tuple(_jump(s, path, 1 / stiffness) for s in staged if s.fine.on is way) for way in (True, False))
-    return Cycle(stiffness, on, off, sum((jump.energy for jump in (*on, *off)), Estimate(0.0, 0.0)), path.tolerance)
+    lost = sum((jump.energy for jump in (*on, *off)), Estimate(0.0, 0.0))
+    states = [state for jump in (*on, *off) for state in (jump.take_off, jump.landing)]
+    scale = approach_scale(state.approach for state in (*path.events.values(), *states))
+    return Cycle(stiffness, on, off, lost, Tolerance(path.tolerance.rtol, scale))
 
 
 def staged_jumps(path: EquilibriumPath, stiffness: float = math.inf) -> list[StagedJump]:

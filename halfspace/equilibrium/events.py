@@ -115,9 +115,13 @@ class Tolerance:
         """Tolerance on the path of these events."""
         return cls(rtol, approach_scale(event.approach for event in events.values()))
 
-    def missed_by(self, event: Event) -> tuple[str, ...]:
-        """``approach`` and ``load`` of an event if their estimated errors exceed it, but no load that is zero."""
-        sizes = {"approach": self.approach, "load": math.inf if event.name == "zero_load" else abs(event.load)}
+    def missed_by(self, event: Event, load: float = 0.0) -> tuple[str, ...]:
+        """``approach`` and ``load`` of an event if their estimated errors exceed it, but no load that is zero.
+
+        A load counts by its own size, or by that of a greater `load` in R dgamma which it is a remainder of.
+        """
+        size = math.inf if event.name == "zero_load" else max(load, abs(event.load))
+        sizes = {"approach": self.approach, "load": size}
         return tuple(name for name, size in sizes.items() if not getattr(event, f"{name}_error") <= self.rtol * size)
 
     def missed(self, events: Mapping[str, Event]) -> dict[str, tuple[str, ...]]:
