@@ -837,13 +837,15 @@ def test_the_axes_of_the_figure_say_what_is_drawn_along_them(axes, silica):
 
 
 def test_the_arrows_of_the_figure_are_the_two_jumps(axes, silica):
-    arrows = axes.texts
+    arrows, notes = ([t for t in axes.texts if bool(t.arrow_patch) is drawn] for drawn in (True, False))
     on = silica.half_space.values["jump_on_separation"].value * 1e9
     off = silica.half_space.values["jump_off_separation"].value * 1e9
-    assert [arrow.arrow_patch is not None for arrow in arrows] == [True, True]
     assert [arrow.xyann[0] for arrow in arrows] == pytest.approx([on, off])
-    off_force = next(e for e in (cycle(silica.half_space.curve, silica.contact.reduced_stiffness),)).jump_off.take_off
-    assert arrows[1].xyann[1] == pytest.approx(off_force.load * silica.contact.units.load * 1e9, rel=1e-6)
+    jump_off = cycle(silica.half_space.curve, silica.contact.reduced_stiffness).jump_off
+    assert arrows[1].xyann[1] == pytest.approx(jump_off.take_off.load * silica.contact.units.load * 1e9, rel=1e-6)
+    (note,) = notes  # it lands far beyond the frame
+    lands = (1 - jump_off.landing.approach) * silica.contact.units.approach * 1e9
+    assert note.get_text() == f"lands at {lands:.4g} nm"
 
 
 def test_the_title_of_the_figure_has_radius_tabor_parameter_and_device(axes):

@@ -122,6 +122,9 @@ def _arrow(axes: Any, frame: _Frame, tail: Ends, head: Ends) -> None:
     part = min(1.0, (frame.x[1] - x) / (x_end - x)) if x_end > x else 1.0
     end = (x + part * (x_end - x), y + part * (y_end - y))
     style.arrow(axes, (x, y), end, clipped=False, linewidth=1.5, color=style.RED)
+    if part < 1:
+        lands = f"lands at {engineering(x_end * 10.0**frame.metres, 'm')}"
+        style.note(axes, lands, end, offset=(-6, 5), ha="right", color=style.RED)
 
 
 def _title(assessment: Assessment) -> str:
