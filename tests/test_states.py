@@ -241,8 +241,8 @@ def test_a_curve_takes_any_number_of_points(paths):
     )
 
 
-@pytest.mark.parametrize("count", [1, 0, -3, 2.5, True])
-def test_no_curve_has_less_than_two_ends(paths, count):
+@pytest.mark.parametrize("count", [1, 0, -3, 2.5, True, 10_001])
+def test_no_curve_has_less_than_two_ends_or_more_points_than_are_waited_for(paths, count):
     with pytest.raises(InputError, match=f"points = {count} is outside 2 <= points"):
         paths[2.0].resampled(count)
 

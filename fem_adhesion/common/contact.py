@@ -17,7 +17,7 @@ from halfspace.elastic.layers import Foundation, Layer
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
-from halfspace.limits import require_poisson
+from halfspace.limits import LAYER_THICKNESS, require_poisson
 from halfspace.scaling import Units, contact_modulus, equivalent_radius
 
 RIGID = 1e-9  # part of the pair's compliance that stands for none: a rigid sphere is a counter-body all the same
@@ -81,7 +81,14 @@ class Contact:
         """The thin sample, or None."""
         if self.thickness is None:
             return None
-        return Layer(self.thickness / self.units.length, self.poisson, self.foundation)
+        beta, (least, most) = self.units.length, LAYER_THICKNESS
+        if not least <= self.thickness / beta <= most:
+            remedy = "give metres or a unit, as 500nm" if self.thickness < beta else "leave it out: it is a half-space"
+            raise InputError(
+                f"thickness = {self.thickness:g} m is outside {least * beta:.3g} m to {most * beta:.3g} m, "
+                f"{least:g} to {most:g} beta; {remedy}"
+            )
+        return Layer(self.thickness / beta, self.poisson, self.foundation)
 
     @property
     def reduced_stiffness(self) -> float:
