@@ -95,7 +95,7 @@ def test_other_blocks_are_python_and_run_as_doctests():
         assert text.startswith(">>> ")
     settings = (ROOT / "pyproject.toml").read_text()
     assert "--doctest-glob=README.md" in settings
-    assert 'testpaths = ["tests", "README.md"]' in settings
+    assert 'testpaths = ["tests", "README.md", "meshes/README.md"]' in settings
 
 
 # --- what the commands leave ---

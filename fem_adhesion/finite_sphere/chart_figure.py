@@ -171,7 +171,7 @@ def _caption(results: Results) -> Iterator[str]:
     if any(np.isfinite(contour(field, level)).any() for field in fields for level in LEVELS):
         yield (
             "A line is where the half-space under a paraboloid errs by as much as it says, between the points solved; "
-            "at the points above it, it errs by less."
+            "at the points above it, it errs by less; what is below it is grey."
         )
     else:
         yield f"No deviation passes {', '.join(f'{100 * level:g}' for level in LEVELS)} % between the points solved."
