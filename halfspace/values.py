@@ -53,7 +53,8 @@ class Estimate:
 
     def __truediv__(self, other: Estimate | float) -> Estimate:
         by, value = _exact(other), self.value / _exact(other).value
-        return Estimate(value, (self.error + abs(value) * by.error) / abs(by.value))
+        least = abs(by.value) - by.error  # zero may be by what is divided then, and the quotient anything
+        return Estimate(value, (self.error + abs(value) * by.error) / least if least > 0 else math.inf)
 
     def __abs__(self) -> Estimate:
         return Estimate(abs(self.value), self.error)
@@ -177,8 +178,12 @@ def read_columns(path: Path, fewest: int) -> tuple[Array, Array]:
         why = f"{error.strerror}, limit: a file of two columns of numbers; give a CSV file"
         raise InputError(f"{path} cannot be read: {why}") from error
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    while lines and _numbers(lines[0][1]) is None:
-        lines.pop(0)
+    first = next((at for at, (_, line) in enumerate(lines) if _numbers(line) is not None), None)
+    if lines and first is None:
+        number, line = lines[-1]
+        limit = "two numbers with a comma between, points in them"
+        raise InputError(f"{path}, line {number}: {shown(line)}, limit: {limit}; save it as CSV in UTF-8")
+    lines = lines[first:]
     if len(lines) < fewest:
         limit = f"{fewest}, of two numbers with a comma between"
         raise InputError(f"{path} has {len(lines)} rows, limit: {limit}; give more points")

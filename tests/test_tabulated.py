@@ -147,8 +147,8 @@ ROWS = "".join(f"{r},{r**2}\n" for r in range(20))
     [
         (None, r"tip\.csv cannot be read: No such file or directory, limit: a file"),
         ("a,b\n1,2,3\n2\n", r"tip\.csv has 2 rows, limit: 12, of two numbers"),
-        ("no numbers\n", r"tip\.csv has 0 rows"),
-        (ROWS.replace(",", ";"), r"tip\.csv has 0 rows, limit: 12, of two numbers with a comma between"),
+        ("no numbers\n", r"tip\.csv, line 1: 'no numbers', limit: two numbers with a comma between"),
+        (ROWS.replace(",", ";"), r"tip\.csv, line 20: '19;361', limit: two numbers with a comma .*; save it as CSV"),
         (ROWS + "# 20\n", r"tip\.csv, line 21: '# 20', limit: two finite numbers; mend it or leave it out"),
         (ROWS + "20,\n", r"tip\.csv, line 21: '20,', limit"),
     ],

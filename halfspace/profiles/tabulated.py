@@ -96,7 +96,10 @@ class Tabulated:
 
     @cached_property
     def radius_error(self) -> float:
-        """Two standard deviations of it, rows being off by the residual each, and its change by one piece."""
+        """Two standard deviations of it, rows being off by the residual each, and its change by one piece.
+
+        Each row is taken to be off by itself; where neighbours err alike, as of a tip reconstructed blind, it is more.
+        """
         from scipy.interpolate import BSpline  # it takes as long to load as all else, and few need it
 
         r, _ = self._table
