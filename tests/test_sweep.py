@@ -3,6 +3,7 @@
 import csv
 import io
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -22,6 +23,22 @@ from halfspace.laws import LENNARD_JONES, Dlvo, Morse
 
 TABORS = (2.0, 0.3, 1.0)  # of which the second does not fold
 RTOL = 1e-3
+
+
+@dataclass(frozen=True)
+class _Doubled(halfspace.laws.PowerLaw):
+    """A law of twice the work of adhesion that it is told to have."""
+
+    def pressure(self, gap, tabor):
+        return 2 * super().pressure(gap, tabor)
+
+    def slope(self, gap, tabor):
+        return 2 * super().slope(gap, tabor)
+
+    def energy(self, gap, tabor):
+        return 2 * super().energy(gap, tabor)
+
+
 ASKED = {"rtol": RTOL, "to_load": 5.0, "law": LENNARD_JONES}
 
 
@@ -84,11 +101,18 @@ def test_a_curve_that_cannot_be_traced_leaves_the_others(monkeypatch, found):
 
 
 @pytest.mark.parametrize(
-    "asked", [{"tabors": [1.0, 400.0]}, {"tabors": [1.0], "rtol": 1.0}, {"tabors": [1.0], "to_load": -1}]
+    ("asked", "why"),
+    [
+        ({"tabors": [1.0, 400.0]}, "outside"),
+        ({"tabors": [1.0], "rtol": 1.0}, "outside"),
+        ({"tabors": [1.0], "to_load": -1}, "outside"),
+        ({"tabors": [1.6, 1.7, 1.8, 1.9], "law": _Doubled()}, "the energy at H = 0 is -2"),
+    ],
 )
-def test_what_is_out_of_range_is_refused_before_any_work(monkeypatch, asked):
-    monkeypatch.setattr(sweeping, "trace", lambda *_, **__: pytest.fail("it has begun"))
-    with pytest.raises(InputError, match="outside"):
+def test_what_is_out_of_range_is_refused_before_any_work(monkeypatch, asked, why):
+    for name in ("trace", "curves"):
+        monkeypatch.setattr(sweeping, name, lambda *_, **__: pytest.fail("it has begun"))
+    with pytest.raises(InputError, match=why):
         halfspace.sweep(**asked)
 
 
@@ -129,11 +153,11 @@ def traced(monkeypatch):
 @pytest.mark.parametrize(
     ("between", "expected"),
     [
-        pytest.param((1.55, 2.2), 2, id="nothing but the ends"),
+        pytest.param((1.55, 2.2), 3, id="nothing but the ends and the middle"),
         pytest.param((0.675, 0.9), 7, id="around the birth of the jumps, and where the landing changes its grid"),
         pytest.param((3.5, 5.0), 5, id="around the birth of the next folds"),
-        pytest.param((0.06, 0.08), 2, id="nearly rigid"),
-        pytest.param((26.0, 38.0), 2, id="soft"),
+        pytest.param((0.06, 0.08), 3, id="nearly rigid"),
+        pytest.param((26.0, 38.0), 3, id="soft"),
     ],
 )
 def test_what_is_followed_is_what_would_be_traced(between, expected, traced):
@@ -161,7 +185,7 @@ def test_what_is_followed_is_what_would_be_traced(between, expected, traced):
 def test_numbers_do_not_depend_on_which_neighbours_they_are_followed_from(traced):
     many = family(1.55, 2.2, 9)
     whole, part = halfspace.sweep(many, rtol=1e-5), halfspace.sweep(many[2:7], rtol=1e-5)
-    assert traced == [many[0], many[8], many[2], many[6]]
+    assert traced == [many[0], many[4], many[8], many[2], many[4], many[6]]
     for i in range(5):
         for name, (value, error) in numbers_of(part, i).items():
             other, other_error = numbers_of(whole, i + 2)[name]
@@ -172,10 +196,10 @@ def test_numbers_do_not_depend_on_which_neighbours_they_are_followed_from(traced
 def test_what_is_not_where_it_is_expected_is_traced(monkeypatch, traced):
     tabors = family(1.55, 2.2, 5)
     followed = halfspace.sweep(tabors, rtol=RTOL)
-    assert len(traced) == 2
+    assert len(traced) == 3
     monkeypatch.setattr(following, "OFF", 0.0)
     again = halfspace.sweep(tabors, rtol=RTOL)
-    assert sorted(traced[2:]) == list(tabors)
+    assert sorted(traced[3:]) == list(tabors)
     for name, series in again.events.items():
         np.testing.assert_allclose(series.approach, followed.events[name].approach, rtol=1e-9, atol=1e-9)
 
@@ -205,6 +229,16 @@ def test_families_are_near_neighbours_on_the_same_grids_the_largest_first():
     assert max(map(len, found)) > 10
 
 
+def test_many_of_a_family_are_cut_for_many_cores_and_keep_its_grids():
+    tabors = np.geomspace(1.55, 2.2, 40).tolist()
+    parts = families(tabors, LENNARD_JONES, halfspace.profiles.PARABOLOID, None)
+    assert [len(part) for part in parts] == [14, 13, 13]
+    assert sorted(tabor for part in parts for tabor in part) == tabors
+    settings = {"law": LENNARD_JONES, "profile": halfspace.profiles.PARABOLOID, "rtol": 1e-6, "to_load": 10.0}
+    (grids,) = {(one.least, one.largest) for part in parts for one in [following.family_of(part, **settings)]}
+    assert grids[0] < tabors[0] < tabors[-1] < grids[1]
+
+
 @pytest.mark.parametrize(
     "parts",
     [
@@ -231,7 +265,7 @@ def test_the_table_has_the_numbers_of_the_sweep(capsys, found):
     assert cli.main(["sweep", "--tabor", *map(str, TABORS), "--rtol", str(RTOL), "--csv", "-", "--jobs", "1"]) == 0
     out = capsys.readouterr()
     rows = rows_of(out.out)
-    assert "3 of 3 curves traced, 2 fold, 3 as accurate as asked, rtol 0.001; written: -" in out.err
+    assert "3 of 3 curves solved, 2 fold, 3 as accurate as asked, rtol 0.001; written: -" in out.err
     for i, row in enumerate(rows):
         assert float(row["tabor"]) == TABORS[i]
         assert float(row["energy_R_dgamma_eps"]) == found.energy[i]
@@ -322,7 +356,7 @@ def test_of_neighbours_whose_worker_died_each_is_tried_alone(monkeypatch):
             yield part, WorkerDied("killed") if len(part) > 1 else work(part)
 
     monkeypatch.setattr("fem_adhesion.common.jobs.stream", dying)
-    tabors = (1.6, 1.8, 2.0)
+    tabors = (1.6, 1.8, 2.0, 2.2)
     curves = study.run(tabors, ASKED)
     assert asked == [tabors, *((tabor,) for tabor in tabors)]
     assert [curve.tabor for curve in curves] == list(tabors)
@@ -336,6 +370,6 @@ def test_the_exit_code_says_that_a_curve_is_missing(monkeypatch, capsys, tmp_pat
     assert cli.main(["sweep", "--tabor", "2", "--csv", str(table)]) == 1
     out = capsys.readouterr()
     assert out.err == "fem-adhesion: tabor 2: it ends here\n"
-    assert out.out.startswith("0 of 1 curves traced")
+    assert out.out.startswith("0 of 1 curves solved")
     (row,) = rows_of(table.read_text())
     assert (row["tabor"], row["reason"], row["pull_off_load_R_dgamma"]) == ("2.0", "it ends here", "")

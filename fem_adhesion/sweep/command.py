@@ -101,7 +101,7 @@ def _told(curves: Sequence[Summary], rtol: float) -> str:
     solved = [curve for curve in curves if not curve.reason]
     folding = sum("jump_on" in curve.events for curve in solved)
     met = sum(not curve.missed for curve in solved)
-    return f"{len(solved)} of {len(curves)} curves traced, {folding} fold, {met} as accurate as asked, rtol {rtol:g}"
+    return f"{len(solved)} of {len(curves)} curves solved, {folding} fold, {met} as accurate as asked, rtol {rtol:g}"
 
 
 COMMAND = Command(

@@ -6,6 +6,9 @@ method. What folds a curve has cannot be told without tracing it; but they come 
 curves near to each other that fold equally often none is taken to fold more or less often, and between any two others
 the one in the middle is traced as well. Nor does one event take the place of another unseen, as the deepest of two
 minima of the load may: what is found would lie far from where neighbours on both sides have it, and is traced then.
+
+That folds do not come and go again between two Tabor parameters so near is an assumption. A curve in the middle is a
+witness of it, and what has a law with a second minimum, where folds may do so, is not followed.
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -38,7 +42,7 @@ from halfspace.scales import Scales
 from halfspace.values import Array, Estimate, Valued
 
 RATIO = 1.5  # of the largest Tabor parameter to the least on the same grids
-FEWEST = 3  # curves on the same grids: of two none lies between
+FEWEST, MOST = 4, 16  # curves on the same grids: of three all are traced; what more there are is work for other cores
 THROUGH = 4  # curves from which one is followed
 # Of the distance between the neighbours, by which a state may be off where it is expected: between two curves of the
 # same grids it was up to 0.08, from three on 0.003; it is about a half where one of two events is taken for the other.
@@ -215,7 +219,7 @@ def _jumps(below: State, fine: State, twin: State) -> list[StagedJump]:
 def families(tabors: Sequence[float], law: Law, profile: Profile, body: LayeredBody | None) -> list[tuple[float, ...]]:
     """Tabor parameters whose curves are best computed together, in order, the largest, which take longest, first.
 
-    Those of a surface that scales as the half-space does are so many that one lies between others, or one.
+    Those of a surface that scales as the half-space does are so many that some lie between others, or one.
     """
     found: dict[int, list[float]] = {}
     for tabor in sorted(set(tabors)):
@@ -223,9 +227,15 @@ def families(tabors: Sequence[float], law: Law, profile: Profile, body: LayeredB
     parts = [
         part
         for family in found.values()
-        for part in ([tuple(family)] if len(family) >= FEWEST and _alike(family, law, profile, body) else zip(family))
+        for part in (_cut(family) if len(family) >= FEWEST and _alike(family, law, profile, body) else zip(family))
     ]
     return sorted(parts, reverse=True)
+
+
+def _cut(family: Sequence[float]) -> list[tuple[float, ...]]:
+    """Parts of a family, equally long but for one: their grids are the family's all the same."""
+    ends = np.linspace(0, len(family), math.ceil(len(family) / MOST) + 1).astype(int)
+    return [tuple(family[first:last]) for first, last in pairwise(ends)]
 
 
 def _rank(tabor: float) -> int:
@@ -245,26 +255,28 @@ def family_of(tabors: Sequence[float], **settings: Any) -> Family:
 
 
 def curves(tabors: Sequence[float], family: Family) -> list[Summary]:
-    """Curves at Tabor parameters of a family, in order."""
-    found: dict[int, Known] = {}
+    """Curves at Tabor parameters of a family, in order: its ends and its middle are traced."""
+    last = len(tabors) - 1
+    found = {number: family.traced(tabors[number]) for number in sorted({0, last // 2, last})}
 
     def fill(first: int, last: int) -> None:
-        """Find the ends, if need be, then what is between."""
-        for end in {first, last} - set(found):
-            found[end] = family.traced(tabors[end])
+        """Find what is between two curves that are known."""
         if last - first > 1:
             middle = (first + last) // 2
             if found[first].turns and found[first].turns == found[last].turns:
                 with suppress(NotConverged):
-                    found[middle] = family.followed(tabors[middle], _nearest(found, middle, found[first].turns))
+                    found[middle] = family.followed(tabors[middle], _nearest(found, tabors[middle], found[first].turns))
+            if middle not in found:
+                found[middle] = family.traced(tabors[middle])
             fill(first, middle)
             fill(middle, last)
 
-    fill(0, len(tabors) - 1)
+    fill(0, last // 2)
+    fill(last // 2, last)
     return [found[number].summary for number in range(len(tabors))]
 
 
-def _nearest(found: Mapping[int, Known], middle: int, turns: object) -> list[Known]:
+def _nearest(found: Mapping[int, Known], tabor: float, turns: object) -> list[Known]:
     """Curves that turn alike, the nearest first."""
-    alike = sorted((number for number in found if found[number].turns == turns), key=lambda n: abs(n - middle))
-    return [found[number] for number in alike[:THROUGH]]
+    alike = (known for known in found.values() if known.turns == turns)
+    return sorted(alike, key=lambda known: abs(math.log(known.summary.tabor / tabor)))[:THROUGH]

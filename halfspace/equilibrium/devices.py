@@ -149,9 +149,8 @@ def staged_jumps(path: EquilibriumPath, stiffness: float = math.inf) -> list[Sta
     """Jumps of a `cycle`, those on and then those off, on all the discretisations that their errors are told from."""
     if math.isinf(stiffness) and not path.jumps:
         return []
-    stages = (
-        (*path.stages, path.on_twin) if math.isinf(stiffness) else ()
-    )  # only fixed grips jump at the curve's own folds
+    # Only fixed grips jump at the curve's own folds.
+    stages = (*path.stages, path.on_twin) if math.isinf(stiffness) else ()
     known = {name: tuple(stage[name] for stage in stages if name in stage) for name in FOLDS}
     rough = jumps(reaching(path, stiffness).segments, 1 / stiffness, known)
     return [_staged(states, path, 1 / stiffness) for states in rough or ()]

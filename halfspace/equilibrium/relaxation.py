@@ -122,7 +122,7 @@ def _gaps_under(problem: ContactProblem, control: Control) -> _Gaps:
         return _Gaps(undeformed - control.target, C)
     if np.array_equal(control.weights, np.eye(4)[CENTRAL_GAP]):
         axis = body.axis_row
-        return _Gaps(undeformed - axis @ undeformed + control.target, C - axis @ C)
+        return _Gaps(undeformed + control.target, C - axis @ C)  # on the axis the undeformed one is zero
     raise InputError("the 1997 iterations work under newton.approach or newton.central_gap only; take newton.solve")
 
 
