@@ -15,7 +15,7 @@ from fem_adhesion.common.jobs import WorkerDied
 from fem_adhesion.sweep import study
 from halfspace.accuracy import following
 from halfspace.accuracy import sweep as sweeping
-from halfspace.accuracy.following import RATIO, UNKNOWN, Summary, families
+from halfspace.accuracy.following import RATIO, UNKNOWN, Known, Summary, families
 from halfspace.accuracy.sweep import NUMBERS, summaries
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError, NotConverged
@@ -204,7 +204,7 @@ def test_what_is_not_where_it_is_expected_is_traced(monkeypatch, traced):
         np.testing.assert_allclose(series.approach, followed.events[name].approach, rtol=1e-9, atol=1e-9)
 
 
-def test_between_curves_of_which_one_cannot_be_traced_all_are(monkeypatch, traced):
+def test_between_curves_of_which_one_cannot_be_traced_all_are_and_it_is_by_itself(monkeypatch, traced):
     tabors = family(1.55, 2.2, 5)
     climb = following.climb
 
@@ -215,9 +215,16 @@ def test_between_curves_of_which_one_cannot_be_traced_all_are(monkeypatch, trace
 
     monkeypatch.setattr(following, "climb", failing)
     swept = halfspace.sweep(tabors, rtol=RTOL)
-    assert list(swept.reasons.values()) == ["it ends here; take another"]
-    assert np.isfinite(swept.energy).sum() == 4
     assert len(traced) == 4  # the last is followed
+    assert not swept.reasons
+    assert swept.energy[0] == halfspace.trace(tabors[0], rtol=RTOL).energy.value
+
+    def ending(*_, **__):
+        raise NotConverged("it ends here; take another")
+
+    monkeypatch.setattr(sweeping, "trace", ending)
+    monkeypatch.setattr(following.Family, "traced", lambda _, tabor: Known(Summary.failed(tabor, "on these grids")))
+    assert halfspace.sweep(tabors, rtol=RTOL).reasons == dict.fromkeys(tabors, "it ends here; take another")
 
 
 def test_families_are_near_neighbours_on_the_same_grids_the_largest_first():

@@ -104,15 +104,19 @@ def sweep(
 def summaries(
     tabors: Tabors, *, law: Law, profile: Profile, body: LayeredBody | None, rtol: float, to_load: float
 ) -> list[Summary]:
-    """Curves of one of the `families` of a sweep; what cannot be traced says why."""
-    if len(tabors) > 1:
-        return curves(tabors, family_of(tabors, law=law, profile=profile, rtol=rtol, to_load=to_load))
-    (tabor,) = tabors
-    try:
-        path = trace(tabor, law=law, profile=profile, body=body, rtol=rtol, to_load=to_load)
-        return [Summary.of(path, staged_jumps(path))]
-    except NotConverged as error:
-        return [Summary.failed(tabor, str(error))]
+    """Curves of one of the `families` of a sweep; what cannot be traced, also on grids of its own, says why."""
+
+    def by_itself(tabor: float) -> Summary:
+        try:
+            path = trace(tabor, law=law, profile=profile, body=body, rtol=rtol, to_load=to_load)
+            return Summary.of(path, staged_jumps(path))
+        except NotConverged as error:
+            return Summary.failed(tabor, str(error))
+
+    if len(tabors) == 1:
+        return [by_itself(tabors[0])]
+    together = curves(tabors, family_of(tabors, law=law, profile=profile, rtol=rtol, to_load=to_load))
+    return [by_itself(curve.tabor) if curve.reason else curve for curve in together]
 
 
 def collected(summaries: Sequence[Summary]) -> Sweep:
