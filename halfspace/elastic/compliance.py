@@ -239,13 +239,12 @@ def panels_under_sphere(lines: Array, nodes_per_panel: int, R: float) -> Elastic
     There the gap rises as the root of the distance, but smoothly by x = 2 R tan(theta/2), in which the panels end at
     the lines (m + 1,) from 0 to 2 R; see `halfspace.elastic.kernel.stereographic_ring`. Otherwise as `panels`.
     """
-    points, w = grid.gauss_legendre(nodes_per_panel)
-    half = np.diff(lines)[:, None] / 2
-    x = lines[:-1, None] + half * (1 + points)
+    points, _ = grid.gauss_legendre(nodes_per_panel)
+    x, w = grid.gauss_points(lines, nodes_per_panel)
     compliance = panel_integrals(x.ravel(), lines, points, stereographic_ring(R))
     compliance[-points.size :, -1] = before_equator(x[-1], lines, points, R)
     p, k = 1 + (x / (2 * R)) ** 2, np.arange(x.size).reshape(x.shape)
-    weights = 2 * np.pi * x * (2 - p) / p**3 * half * w
+    weights = 2 * np.pi * x * (2 - p) / p**3 * w
     cells = lines / (1 + (lines / (2 * R)) ** 2)
     return ElasticOperator((x / p).ravel(), weights.ravel(), compliance.reshape(x.size, -1), cells, k)
 
