@@ -297,7 +297,7 @@ def test_thickness_and_foundation_are_heeded(monkeypatch):
     with pytest.raises(AttributeError):
         cli.main([*ARGUMENTS, "--foundation", "sliding"])
     layer = asked[0].layer
-    assert (layer.poisson, layer.foundation) == (0.3, "sliding")
+    assert (layer.strata[0].poisson, layer.base) == (0.3, "sliding")
     assert layer.thickness == pytest.approx(30e-9 / asked[0].units.length, rel=1e-12)
 
 

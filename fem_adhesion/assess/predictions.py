@@ -10,7 +10,7 @@ from functools import partial
 from fem_adhesion.assess import theories
 from fem_adhesion.assess.theories import Curve, estimated, loop
 from fem_adhesion.common.numbers import Quantity
-from halfspace.elastic.layers import Layer
+from halfspace.elastic.layers import Layers
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import approach_scale
@@ -140,7 +140,7 @@ def large_tabor(tabor: float, stiffness: float, units: Units) -> Prediction:
     return _widened(read, {name: 1.0 if "jump_on" in name else part for name in QUANTITIES})
 
 
-def large_tabor_on(layer: Layer, tabor: float, stiffness: float, units: Units) -> Prediction:
+def large_tabor_on(layer: Layers, tabor: float, stiffness: float, units: Units) -> Prediction:
     """JKR's theory on a thin sample, tabor >= 300: the contact's values and the jump off, as `large_tabor` else.
 
     What is left of the attraction's reach grows where the spike at the edge is no longer narrow beside the thickness.

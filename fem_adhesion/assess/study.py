@@ -38,7 +38,7 @@ from fem_adhesion.bodies.hemisphere import Hemisphere
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.scene import Scene
-from halfspace.elastic.layers import Layer
+from halfspace.elastic.layers import Layers
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import tolerance_told
 from halfspace.errors import InputError, NotConverged
@@ -229,7 +229,7 @@ def _soft(contact: Contact) -> bool:
     return contact.units.tabor > REFERENCE_TABOR
 
 
-def _on_layer(contact: Contact, layer: Layer, profile: Profile, rtol: float = FINITE_RTOL) -> Prediction:
+def _on_layer(contact: Contact, layer: Layers, profile: Profile, rtol: float = FINITE_RTOL) -> Prediction:
     """A profile on a thin sample; of a large Tabor parameter the paraboloid."""
     units, stiffness = contact.units, contact.reduced_stiffness
     if _soft(contact):

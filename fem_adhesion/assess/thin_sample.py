@@ -13,7 +13,7 @@ from functools import cache, partial
 from fem_adhesion.assess.predictions import QUANTITIES, Prediction, relative
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.numbers import Quantity
-from halfspace.elastic.layers import Layer
+from halfspace.elastic.layers import Layer, Layers
 from halfspace.errors import NotConverged
 from halfspace.limits import LAYER_THICKNESS
 from halfspace.roots import root
@@ -100,11 +100,11 @@ def hertz_until(contact: Contact) -> Quantity:
     return Quantity.ratio(Estimate(chi, 2 * NARROW))
 
 
-def _of_unit_thickness(contact: Contact) -> Layer:
+def _of_unit_thickness(contact: Contact) -> Layers:
     return Layer(1.0, contact.poisson, contact.foundation)
 
 
-def enough(contact: Contact, half_space: Prediction, on_layer: Callable[[Layer], Prediction]) -> Iterator[Enough]:
+def enough(contact: Contact, half_space: Prediction, on_layer: Callable[[Layers], Prediction]) -> Iterator[Enough]:
     """Thicknesses from which on the half-space is right, in the pull-off force and in all quantities.
 
     Given are what a paraboloid does on a half-space, and what tells the same of it on a layer.

@@ -15,7 +15,7 @@ from fem_adhesion.materials import Elastic
 from halfspace.elastic import grid, layers
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.errors import InputError
-from halfspace.limits import require_thickness
+from halfspace.limits import require_film, require_poisson, require_thickness
 from halfspace.scales import Scales
 from halfspace.values import Array, keep
 
@@ -35,7 +35,7 @@ class Stratified(Body):
     looks: ClassVar[str] = "elastic layer"
 
     @property
-    def layered(self) -> layers.LayeredBody:
+    def layered(self) -> layers.Layers:
         """What the integral equation knows it as."""
         raise NotImplementedError
 
@@ -149,7 +149,7 @@ class Layer(Stratified):
         layers.require_foundation(self.foundation)
 
     @property
-    def layered(self) -> layers.Layer:
+    def layered(self) -> layers.Layers:
         """What the integral equation knows it as."""
         return layers.Layer(self.thickness, self.material.poisson, self.foundation)
 
@@ -181,11 +181,11 @@ class Coated(Stratified):
 
     def __post_init__(self, poisson: float | None) -> None:
         super().__post_init__(poisson)
-        made = self.layered
-        keep(self, thickness=made.thickness, modulus_ratio=made.modulus_ratio, substrate_poisson=made.substrate_poisson)
+        sizes = {"thickness": require_thickness(self.thickness), "modulus_ratio": require_film(self.modulus_ratio)}
+        keep(self, **sizes, substrate_poisson=require_poisson(self.substrate_poisson))
 
     @property
-    def layered(self) -> layers.Coated:
+    def layered(self) -> layers.Layers:
         """What the integral equation knows it as."""
         return layers.Coated(self.thickness, self.modulus_ratio, self.material.poisson, self.substrate_poisson)
 
@@ -243,10 +243,10 @@ class Layers(Stratified):
 def as_body(part: object) -> object:
     """A body of finite elements in the place of layers as the integral equation has them; anything else as it is."""
     match part:
-        case layers.Layer():
-            return Layer(part.thickness, part.foundation, poisson=part.poisson)
-        case layers.Coated():
-            return Coated(part.thickness, part.modulus_ratio, part.substrate_poisson, poisson=part.poisson)
-        case layers.Layers():
-            return Layers(part.strata, part.base)
+        case layers.Layers((only,), layers.Substrate(modulus, poisson)):
+            return Coated(only.thickness, 1 / modulus, poisson, poisson=only.poisson)
+        case layers.Layers((only,), str(foundation)):
+            return Layer(only.thickness, foundation, poisson=only.poisson)
+        case layers.Layers(strata, base):
+            return Layers(strata, base)
     return part

@@ -13,7 +13,7 @@ from fem_adhesion.bodies.body import Body, GripName
 from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.bodies.hemisphere import Hemisphere
 from fem_adhesion.scene import facing_pair
-from halfspace.elastic.layers import Foundation, Layer
+from halfspace.elastic.layers import Foundation, Layer, Layers
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
@@ -77,7 +77,7 @@ class Contact:
         return Units(equivalent_radius(self.radius, self.counter_radius), modulus, self.work_of_adhesion, self.spacing)
 
     @cached_property
-    def layer(self) -> Layer | None:
+    def layer(self) -> Layers | None:
         """The thin sample, or None."""
         if self.thickness is None:
             return None

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact
     from fem_adhesion.common.options import Parser
     from fem_adhesion.scene import Scene
-    from halfspace.elastic.layers import Foundation, Layer, Stratum, Substrate
+    from halfspace.elastic.layers import Foundation, Layers, Stratum, Substrate
     from halfspace.laws import Law
 
     Group = argparse._ArgumentGroup
@@ -139,7 +139,7 @@ def scene_of(
     radius_ratio: float | None,
     counter: Body | None,
     share: float | None,
-    layer: Layer | None = None,
+    layer: Layers | None = None,
 ) -> Scene:
     """Scene of the body given; `radius_ratio` is its own, or the profile's, `layer` a thin sample given in SI."""
     from fem_adhesion.scene import Scene

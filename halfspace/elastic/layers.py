@@ -125,79 +125,24 @@ class Layers:
             first = f"modulus = {self.strata[0].modulus:g} of the first stratum" if self.strata else "strata = []"
             raise InputError(f"{first} does not serve, limit: one stratum or more, the first of modulus 1; see Stratum")
 
+    @property
+    def thickness(self) -> float:
+        """Of all strata, in beta."""
+        return total_thickness(self)
 
-@dataclass(frozen=True)
-class Layer:
-    """A layer on a rigid base; InputError if a value is out of range.
 
-    Parameters
-    ----------
-    thickness : float
-        In beta, 0.01 to 1000.
-    poisson : float
-        Poisson's ratio, 0 to 0.499999.
-    foundation : {"bonded", "sliding"}
-        Whether the base holds the layer, or carries it without friction.
+def Layer(thickness: float, poisson: float = 0.3, foundation: Foundation = "bonded") -> Layers:
+    """Return a layer on a rigid base, which it is bonded to, or slides on; values and errors as of `Stratum`."""
+    return Layers([Stratum(thickness, poisson)], foundation)
+
+
+def Coated(thickness: float, modulus_ratio: float, poisson: float = 0.3, substrate_poisson: float = 0.3) -> Layers:
+    """Return a half-space under a coating that is bonded to it; E*, in the Tabor parameter and beta, is the coating's.
+
+    The ratio is of Young's modulus of the coating to that of the half-space, 0.001 to 100 or InputError; the rest is as
+    of `Stratum` and `Substrate`.
     """
-
-    thickness: float
-    poisson: float = 0.3
-    foundation: Foundation = "bonded"
-
-    def __post_init__(self) -> None:
-        keep(self, thickness=require_thickness(self.thickness), poisson=require_poisson(self.poisson))
-        require_foundation(self.foundation)
-
-    @property
-    def strata(self) -> tuple[Stratum, ...]:
-        """The layer."""
-        return (Stratum(self.thickness, self.poisson),)
-
-    @property
-    def base(self) -> Foundation:
-        """The rigid base."""
-        return self.foundation
-
-
-@dataclass(frozen=True)
-class Coated:
-    """A half-space under a coating that is bonded to it; E*, in the Tabor parameter and beta, is the coating's.
-
-    InputError if a value is out of range.
-
-    Parameters
-    ----------
-    thickness : float
-        Of the coating, in beta, 0.01 to 1000.
-    modulus_ratio : float
-        Young's modulus of the coating over that of the half-space, 0.001 to 100.
-    poisson, substrate_poisson : float
-        Poisson's ratios of the coating and of the half-space, 0 to 0.499999.
-    """
-
-    thickness: float
-    modulus_ratio: float
-    poisson: float = 0.3
-    substrate_poisson: float = 0.3
-
-    def __post_init__(self) -> None:
-        keep(
-            self,
-            thickness=require_thickness(self.thickness),
-            poisson=require_poisson(self.poisson),
-            modulus_ratio=require_film(self.modulus_ratio),
-            substrate_poisson=require_poisson(self.substrate_poisson),
-        )
-
-    @property
-    def strata(self) -> tuple[Stratum, ...]:
-        """The coating."""
-        return (Stratum(self.thickness, self.poisson),)
-
-    @property
-    def base(self) -> Substrate:
-        """The half-space below."""
-        return Substrate(1 / self.modulus_ratio, self.substrate_poisson)
+    return Layers([Stratum(thickness, poisson)], Substrate(1 / require_film(modulus_ratio), substrate_poisson))
 
 
 def total_thickness(body: LayeredBody) -> float:
