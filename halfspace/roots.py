@@ -36,6 +36,27 @@ def root(function: Callable[[float], float], first: float, last: float, what: st
     return _brent(number, (first, last), at, what=sought, remedy=remedy, **tolerances)
 
 
+def rising_root(
+    function: Callable[[float], float], what: str, *, start: float = 1.0, end: float = math.inf, farthest: float = 1e150
+) -> float:
+    """Root of a function that rises from below zero with a length, or the end where it is below zero still.
+
+    It is looked for from a start on, and what is sought as of `root`; NotConverged where it is beyond the farthest.
+    """
+    last = min(start, end)
+    while function(last) < 0:
+        if last >= end:
+            return end
+        if last > farthest:
+            sought, _, remedy = what.partition("; ")
+            raise NotConverged(f"{sought} is beyond {farthest:g}; {remedy}")
+        last = min(2 * last, end)
+    first = last
+    while function(first) > 0:
+        first /= 2
+    return root(function, first, last, what, xtol=1e-300, rtol=1e-15)
+
+
 def _brent(
     function: Callable[[float], float],
     places: tuple[float, float],

@@ -15,12 +15,12 @@ from functools import cached_property
 import numpy as np
 
 from halfspace.elastic.layers import LayeredBody, softest, stiff_as
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import NEAR
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.profiles.indentation import hertz_radius, jkr_fold, jkr_least_load, jkr_radius
-from halfspace.roots import root
+from halfspace.roots import rising_root, root
 from halfspace.values import Array
 
 RISE = 0.245  # eps, over which the tension of the 3-9 law rises: a rigid paraboloid does so in 0.7 beta/sqrt(mu)
@@ -214,18 +214,6 @@ class Scales:
 
     def radius_at(self, height: float) -> float:
         """Radius at which the undeformed gap has opened by a height in eps, or where the surface ends."""
-        z, most = height / self.tabor, min(1.0, self.profile.end)
-
-        def left(r: float) -> float:
-            return float(self.profile.height(np.array(r))) - z
-
-        while left(most) < 0:
-            if most >= self.profile.end:
-                return self.profile.end
-            most = min(2 * most, self.profile.end)
-            if most > 1e150:
-                raise NotConverged(f"the profile does not rise to {z:.3g} beta^2/R; let it grow outwards")
-        least = most
-        while left(least) > 0:
-            least /= 2
-        return root(left, least, most, "the profile's height; let it rise outwards", xtol=1e-300, rtol=1e-15)
+        z = height / self.tabor
+        what = f"the radius at which the profile rises to {z:.3g} beta^2/R; let it grow outwards"
+        return rising_root(lambda r: float(self.profile.height(np.array(r))) - z, what, end=self.profile.end)

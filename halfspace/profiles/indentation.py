@@ -18,9 +18,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from halfspace.errors import NotConverged
 from halfspace.profiles.profile import Surface
-from halfspace.roots import root
+from halfspace.roots import rising_root
 from halfspace.values import Array
 
 POINTS = 64
@@ -75,24 +74,15 @@ def _radii(surface: Surface) -> Array:
 
 def hertz_radius(surface: Surface, load: float, softness: float = 1.0) -> float:
     """Contact radius under a load without adhesion, or the end of the surface if it is wider."""
-    return _widest(lambda a: float(hertz_load(surface, a)) / softness, surface, load)
+    return _bearing(lambda a: float(hertz_load(surface, a)) / softness, surface, load)
 
 
 def jkr_radius(surface: Surface, load: float, softness: float = 1.0) -> float:
     """Contact radius under a load of zero or more by JKR's theory, or the end of the surface if it is wider."""
-    return _widest(lambda a: float(jkr_load(surface, a, softness)), surface, load)
+    return _bearing(lambda a: float(jkr_load(surface, a, softness)), surface, load)
 
 
-def _widest(load_at: Callable[[float], float], surface: Surface, load: float) -> float:
-    """Widest contact that bears no more than a load, or the end of the surface."""
-    most = min(1.0, surface.end)
-    while load_at(most) <= load:
-        if most >= surface.end:
-            return surface.end
-        most = min(2 * most, surface.end)
-        if most > 1e12:
-            raise NotConverged(f"no contact of this profile bears {load:g} R dgamma; let it grow more steeply outwards")
-    least = most
-    while load_at(least) > load:
-        least /= 2
-    return root(lambda a: load_at(a) - load, least, most, "the contact radius under a load", xtol=1e-300, rtol=1e-15)
+def _bearing(load_at: Callable[[float], float], surface: Surface, load: float) -> float:
+    """Radius of the widest contact that bears no more than a load, or the end of the surface."""
+    what = f"the contact of this profile that bears {load:g} R dgamma; let it grow more steeply outwards"
+    return rising_root(lambda a: load_at(a) - load, what, end=surface.end, farthest=1e12)

@@ -26,7 +26,7 @@ import numpy as np
 
 from halfspace.elastic import grid
 from halfspace.elastic.layers import Foundation, LayeredBody, surface_compliance, total_thickness
-from halfspace.roots import root
+from halfspace.roots import rising_root
 from halfspace.theories.closed_forms import ContactState, hertz_load
 from halfspace.values import Array, Estimate
 
@@ -90,16 +90,8 @@ class OnLayers:
 
     def hertz_at(self, approach: float) -> ContactState:
         """State at an approach in beta^2/R without attraction."""
-
-        def beyond(a: float) -> float:
-            return self.hertz(a).approach - approach
-
-        low, high = math.sqrt(approach / 2), math.sqrt(2 * approach)
-        while beyond(low) > 0:
-            low /= 2
-        while beyond(high) < 0:
-            high *= 2
-        return self.hertz(root(beyond, low, high, "the contact radius; take a thicker sample", rtol=1e-14, xtol=1e-300))
+        what, start = "the contact radius; take a thicker sample", math.sqrt(2 * approach)
+        return self.hertz(rising_root(lambda a: self.hertz(a).approach - approach, what, start=start))
 
 
 def hertz_ratio(body: LayeredBody, approach: float) -> Estimate:
