@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import reprlib
 from numbers import Integral, Real
 
@@ -25,6 +26,27 @@ def require_number(value: object, name: str) -> float:
         return float(value)
     except OverflowError as error:
         raise InputError(f"{name} has {len(str(value))} digits, limit: 1.8e308; give a float") from error
+
+
+def require_between(value: object, name: str, least: float, most: float, remedy: str, of: str = "") -> float:
+    """Return a real number of any type as a float, or raise InputError unless it is finite and in a range.
+
+    The least and the most are in it; what it is a number `of` is told behind it.
+    """
+    number = require_number(value, name)
+    limit = f"{_short(least)} <= {name} {f'<= {_short(most)}' if math.isfinite(most) else '< inf'}"
+    return _require(number, name, least <= number <= most, limit, remedy, of)
+
+
+def _short(limit: float) -> str:
+    """Number without the zeros and the plus of its exponent."""
+    return re.sub(r"e\+?(-?)0*", r"e\1", f"{limit:g}")
+
+
+def require_positive(value: object, name: str, remedy: str, unit: str = "") -> float:
+    """Return a real number of any type as a float, or raise InputError unless it is positive and finite."""
+    number = require_number(value, name)
+    return _require(number, name, number > 0, f"0 < {name} < inf", remedy, unit and f" {unit}")
 
 
 def require_one_of(value: object, name: str, names: tuple[str, ...]) -> None:
@@ -62,8 +84,7 @@ def require_poisson(poisson: float) -> float:
 
 def require_rtol(rtol: float) -> float:
     """Return the relative tolerance, or raise InputError unless 1e-9 <= rtol <= 1e-1."""
-    rtol = require_number(rtol, "rtol")
-    return _require(rtol, "rtol", 1e-9 <= rtol <= 1e-1, "1e-9 <= rtol <= 1e-1", "take 1e-5 if in doubt")
+    return require_between(rtol, "rtol", 1e-9, 1e-1, "take 1e-5 if in doubt")
 
 
 def require_load(to_load: float) -> float:
@@ -109,8 +130,7 @@ def require_radius_ratio(radius_ratio: float, tabor: float = 0.0) -> float:
 
     A contact is 1 to 2 beta wide where it is lost: a smaller sphere is deformed as a whole, and past its equator.
     """
-    radius_ratio = require_number(radius_ratio, "radius_ratio")
-    _require(radius_ratio, "radius_ratio", 2 <= radius_ratio <= 1e12, "2 <= radius_ratio <= 1e12", "give R/eps")
+    radius_ratio = require_between(radius_ratio, "radius_ratio", 2, 1e12, "give R/eps")
     least = SMALLEST_SPHERE * tabor
     remedy = "the sphere is as small as its contact, R < 1.5 beta: take a stiffer or larger one"
     limit = f"{SMALLEST_SPHERE:g} tabor = {least:.3g} or more"
@@ -139,10 +159,7 @@ def require_cap_angle(cap_angle: float) -> float:
 
 def require_modulus(modulus: float) -> float:
     """Return a Young's modulus, or raise InputError unless it is positive and finite."""
-    modulus = require_number(modulus, "modulus")
-    return _require(
-        modulus, "modulus", modulus > 0, "0 < modulus < inf", "a rigid body is no counter-body: leave it out"
-    )
+    return require_positive(modulus, "modulus", "a rigid body is no counter-body: leave it out")
 
 
 def require_thickness(thickness: float) -> float:
@@ -150,10 +167,8 @@ def require_thickness(thickness: float) -> float:
 
     A thinner one is a mattress, a thicker one a half-space, of which contacts of some beta do not see the end.
     """
-    thickness = require_number(thickness, "thickness")
     remedy = "it is in beta = (R^2 dgamma/E*)^(1/3); a thicker one is a half-space"
-    least, most = LAYER_THICKNESS
-    return _require(thickness, "thickness", least <= thickness <= most, f"{least:g} <= thickness <= {most:g}", remedy)
+    return require_between(thickness, "thickness", *LAYER_THICKNESS, remedy)
 
 
 def require_stiffness(modulus: float) -> float:
@@ -161,17 +176,14 @@ def require_stiffness(modulus: float) -> float:
 
     Under a film that is stiffer still rounding hides the contact's edge; what is 1000 times as stiff is rigid.
     """
-    name = "modulus, in units of the first stratum's,"
-    modulus = require_number(modulus, name)
     remedy = "what is stiffer is rigid: a bonded base; over what is softer the first stratum is a plate"
-    return _require(modulus, name, 0.01 <= modulus <= 1000, "0.01 <= modulus <= 1000", remedy)
+    return require_between(modulus, "modulus", 0.01, 1000, remedy, ", in units of the first stratum's,")
 
 
 def require_film(ratio: float) -> float:
     """Return a coating's Young's modulus over that of what is below, or raise InputError unless it is 0.001 to 100."""
-    ratio = require_number(ratio, "modulus_ratio")
     remedy = "a softer coating is a layer on a rigid base; a stiffer one is a plate"
-    return _require(ratio, "modulus_ratio", 0.001 <= ratio <= 100, "0.001 <= modulus_ratio <= 100", remedy)
+    return require_between(ratio, "modulus_ratio", 0.001, 100, remedy)
 
 
 def require_share(share: float | None) -> float:
@@ -180,7 +192,7 @@ def require_share(share: float | None) -> float:
     return _require(share, "share", 0 < share < 1, "0 < share < 1", "a rigid one is no counter-body: leave it out")
 
 
-def _require(value: float, name: str, holds: bool, limit: str, remedy: str) -> float:
+def _require(value: float, name: str, holds: bool, limit: str, remedy: str, of: str = "") -> float:
     if not holds or not math.isfinite(value):
-        raise InputError(f"{name} = {value:.9g} is outside {limit}; {remedy}")
+        raise InputError(f"{name} = {value:.9g}{of} is outside {limit}; {remedy}")
     return value

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.errors import InputError
+from halfspace.limits import require_positive
 from halfspace.values import Array
 
 HAMAKER = 16 * math.pi  # A/(dgamma eps^2) of the 3-9 law
@@ -47,7 +48,7 @@ class Units:
     def __post_init__(self) -> None:
         """Refuse what is not finite and positive."""
         for field, unit in zip(fields(self), ("m", "Pa", "J/m^2", "m"), strict=True):
-            _require_positive(getattr(self, field.name), field.name, unit)
+            require_positive(getattr(self, field.name), field.name, f"give it in {unit}", unit)
 
     @property
     def tabor(self) -> float:
@@ -131,8 +132,8 @@ IN_SI: Mapping[str, tuple[str, str]] = {
 
 def spacing_of(hamaker: float, work_of_adhesion: float) -> float:
     """Equilibrium spacing eps in m of the surface law with a Hamaker constant in J and a work of adhesion in J/m^2."""
-    _require_positive(hamaker, "hamaker", "J")
-    _require_positive(work_of_adhesion, "work_of_adhesion", "J/m^2")
+    require_positive(hamaker, "hamaker", "give it in J", "J")
+    require_positive(work_of_adhesion, "work_of_adhesion", "give it in J/m^2", "J/m^2")
     return math.sqrt(hamaker / work_of_adhesion / HAMAKER)
 
 
@@ -157,15 +158,10 @@ def equivalent_radius(radius: float, other_radius: float = math.inf) -> float:
 
 def _plane_strain_compliance(young: float, poisson: float) -> float:
     if young != math.inf:
-        _require_positive(young, "young", "Pa")
+        require_positive(young, "young", "give it in Pa", "Pa")
     if not -1 < poisson <= 0.5:
         raise InputError(f"poisson = {poisson:g} is outside -1 < poisson <= 0.5; take 0.5 for rubber")
     return (1 - poisson**2) / young
-
-
-def _require_positive(value: float, name: str, unit: str) -> None:
-    if not 0 < value < math.inf:
-        raise InputError(f"{name} = {value:g} {unit} is outside 0 < {name} < inf; give it in {unit}")
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ def test_nothing_else_is_left_beside_the_record(compared):
         (["--tabor", "soft"], "invalid float value: 'soft'"),
         (["--poisson", "0.5"], "poisson = 0.5 is outside 0 <= poisson < 0.5"),
         (["--poisson", "-0.1"], "poisson = -0.1"),
-        (["--rtol", "1e-10"], "rtol = 1e-10 is outside 1e-9 <= rtol <= 1e-1"),
+        (["--rtol", "1e-10"], "rtol = 1e-10 is outside 1e-9 <= rtol <= 0.1"),
         (["--rtol", "nan"], "rtol = nan"),
         (["--json", "/no/such/folder/record.json"], "cannot be written"),
         (["--json", "."], "is a directory; give the name of a file"),

@@ -207,7 +207,7 @@ def test_jkr_on_a_layer(poisson, thickness, pull_off):
         (lambda: Coated(1.0, 0.0), "modulus_ratio = 0 is outside 0.001 <= modulus_ratio <= 100"),
         (lambda: Layers([]), "limit: one stratum or more"),
         (lambda: Layers([Stratum(1.0, 0.3, 2.0)]), "modulus = 2 of the first stratum"),
-        (lambda: Substrate(1e4), "modulus, in units of the first stratum's, = 10000 is outside"),
+        (lambda: Substrate(1e4), "modulus = 10000, in units of the first stratum's, is outside"),
     ],
 )
 def test_what_is_no_layer_is_refused_when_it_is_made(make, words):

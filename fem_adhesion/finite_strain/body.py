@@ -36,6 +36,7 @@ from fem_adhesion.elasticity.space import (
 from fem_adhesion.elasticity.tensor import integrated
 from fem_adhesion.finite_strain import material
 from halfspace.errors import InputError
+from halfspace.limits import require_between
 from halfspace.values import Array, Index, Valued
 
 RECENT = 3  # states whose deformation is kept: the last, its trial, and the one before
@@ -263,6 +264,4 @@ def mixed_body(space: Space, poisson: float, stretch: float, pressure: Any) -> B
 
 def require_stretch(stretch: float) -> float:
     """Return delta = beta/R, or raise InputError unless 0 <= stretch <= 2: a sphere smaller than its own contact."""
-    if not 0.0 <= stretch <= 2.0:
-        raise InputError(f"stretch = {stretch} is outside 0 <= stretch <= 2; give beta/R = sqrt(tabor/radius_ratio)")
-    return stretch
+    return require_between(stretch, "stretch", 0.0, 2.0, "give beta/R = sqrt(tabor/radius_ratio)")

@@ -40,6 +40,7 @@ from fem_adhesion.speed.methods import (
 from fem_adhesion.speed.result import Earlier, Growth, SpeedStudy, Status, Timing, Truth
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
+from halfspace.limits import require_between
 
 TABOR_RANGE = (0.05, 2.0)  # beyond it fixed grids need too many nodes, or rigid surfaces leave nothing to compare
 TIGHTEST = 1e-9  # relative tolerance of the truths
@@ -82,10 +83,7 @@ def measure(
 
 def require_tabor(tabor: float) -> float:
     """Return the Tabor parameter, or raise InputError unless the study is meant for it."""
-    low, high = TABOR_RANGE
-    if not low <= tabor <= high:
-        raise InputError(f"tabor = {tabor:g} is outside {low:g} <= tabor <= {high:g} for the speed study; take 1")
-    return tabor
+    return require_between(tabor, "tabor", *TABOR_RANGE, "the speed study takes 1")
 
 
 def find_truths(tabor: float) -> dict[Family, Truth]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from halfspace.errors import InputError
 from halfspace.laws.law import Law
-from halfspace.limits import require_number
+from halfspace.limits import require_between, require_number
 from halfspace.values import Array, keep
 
 LEAST, MOST = 0.02, 50.0
@@ -27,9 +27,8 @@ class Dlvo(Law):
     screening: float
 
     def __post_init__(self) -> None:
-        q, kappa = require_number(self.charge, "charge"), require_number(self.screening, "screening")
-        if not LEAST <= kappa <= MOST:
-            raise InputError(f"screening = {kappa:g} is outside {LEAST:g} <= screening <= {MOST:g}; take 1")
+        q = require_number(self.charge, "charge")
+        kappa = require_between(self.screening, "screening", LEAST, MOST, "take 1")
         if not (q < 1 and 9 * (1 - q) + kappa * q > 3):
             limit = "charge < 1 and 9 (1 - charge) + screening charge > 3"
             raise InputError(f"charge = {q:g} leaves no core at screening = {kappa:g}, limit: {limit}; take 0.3")

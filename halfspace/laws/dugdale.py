@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from halfspace.errors import InputError
 from halfspace.laws.law import Law
-from halfspace.limits import require_number
+from halfspace.limits import require_between
 from halfspace.values import Array, keep
 
 NARROWEST, WIDEST = 0.07, 0.5
@@ -28,13 +27,8 @@ class Dugdale(Law):
     width: float
 
     def __post_init__(self) -> None:
-        w = require_number(self.width, "width")
-        if not NARROWEST <= w <= WIDEST:
-            remedy = "extrapolate from 0.16, 0.11 and 0.08" if w < NARROWEST else "take 0.1"
-            raise InputError(
-                f"width = {w:g} of Dugdale's law is outside {NARROWEST:g} <= width <= {WIDEST:g}; {remedy}"
-            )
-        keep(self, width=w)
+        remedy = "extrapolate from 0.16, 0.11 and 0.08, or take 0.1"
+        keep(self, width=require_between(self.width, "width", NARROWEST, WIDEST, remedy, " of Dugdale's law"))
 
     @property
     def amplitude(self) -> float:

@@ -10,11 +10,12 @@ from scipy.special import expn
 
 from halfspace.errors import InputError
 from halfspace.laws.law import Law
-from halfspace.limits import require_number
+from halfspace.limits import require_between, require_number
 from halfspace.values import Array, keep
 
 LEAST, MOST = 0.1, 50.0
 SOFTEST, HARDEST = 2, 60
+OF = " of the exponential law"
 
 
 @dataclass(frozen=True)
@@ -28,12 +29,10 @@ class Exponential(Law):
     core: int = 9
 
     def __post_init__(self) -> None:
-        k, m = require_number(self.k, "k"), require_number(self.core, "core")
-        if not LEAST <= k <= MOST:
-            raise InputError(f"k = {k:g} of the exponential law is outside {LEAST:g} <= k <= {MOST:g}; take 3")
+        k, m = require_between(self.k, "k", LEAST, MOST, "take 3", OF), require_number(self.core, "core")
         if not (SOFTEST <= m <= HARDEST and m.is_integer()):
             limit = f"a whole number, {SOFTEST} <= core <= {HARDEST}"
-            raise InputError(f"core = {m:g} of the exponential law is outside {limit}; take 9")
+            raise InputError(f"core = {m:g}{OF} is outside {limit}; take 9")
         keep(self, k=k, core=int(m))
 
     @property

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from halfspace.errors import InputError
 from halfspace.laws.law import Law
-from halfspace.limits import require_number
+from halfspace.limits import require_between
 from halfspace.values import Array, keep
 
 LEAST, MOST = 0.1, 50.0
@@ -26,10 +25,7 @@ class Morse(Law):
     k: float
 
     def __post_init__(self) -> None:
-        k = require_number(self.k, "k")
-        if not LEAST <= k <= MOST:
-            raise InputError(f"k = {k:g} of Morse's law is outside {LEAST:g} <= k <= {MOST:g}; take 3")
-        keep(self, k=k)
+        keep(self, k=require_between(self.k, "k", LEAST, MOST, "take 3", " of Morse's law"))
 
     @property
     def edge_gap(self) -> float:

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from halfspace.errors import InputError
-from halfspace.limits import require_number
+from halfspace.limits import require_between
 from halfspace.profiles.profile import Endless
 from halfspace.values import Array, keep
 
@@ -24,10 +23,7 @@ class Hyperboloid(Endless):
     b: float
 
     def __post_init__(self) -> None:
-        b = require_number(self.b, "b")
-        if not SHARPEST <= b < np.inf:
-            raise InputError(f"b = {b:g} of the hyperboloid is outside {SHARPEST:g} <= b < inf; take a blunter tip")
-        keep(self, b=b)
+        keep(self, b=require_between(self.b, "b", SHARPEST, np.inf, "take a blunter tip", " of the hyperboloid"))
 
     def height(self, radii: Array) -> Array:
         """Return u^2/(1 + sqrt(1 + u^2/b^2)), without cancellation."""

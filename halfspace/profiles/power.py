@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from halfspace.errors import InputError
-from halfspace.limits import require_number
+from halfspace.limits import require_between
 from halfspace.profiles.profile import Endless
 from halfspace.values import Array, keep
 
@@ -27,11 +26,8 @@ class Power(Endless):
     k: float
 
     def __post_init__(self) -> None:
-        k = require_number(self.k, "k")
-        if not SHARPEST <= k <= BLUNTEST:
-            remedy = "round a cone's tip: profiles.Hyperboloid" if k < SHARPEST else "it is a flat punch, take 10"
-            raise InputError(f"k = {k:g} of the profile is outside {SHARPEST:g} <= k <= {BLUNTEST:g}; {remedy}")
-        keep(self, k=k)
+        remedy = "round a cone's tip: profiles.Hyperboloid; or take 10 for a flat punch"
+        keep(self, k=require_between(self.k, "k", SHARPEST, BLUNTEST, remedy, " of the profile"))
 
     def height(self, radii: Array) -> Array:
         """Return u^k/k."""

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from halfspace.errors import InputError
-from halfspace.limits import require_number
+from halfspace.limits import require_between
 from halfspace.profiles.profile import Endless
 from halfspace.values import Array, keep
 
@@ -24,11 +23,8 @@ class RoundedPunch(Endless):
     flat: float
 
     def __post_init__(self) -> None:
-        a = require_number(self.flat, "flat")
-        if not NARROWEST <= a <= WIDEST:
-            remedy = "a narrower one is a paraboloid, of a wider one each edge is straight"
-            raise InputError(f"flat = {a:g} of the punch is outside {NARROWEST:g} <= flat <= {WIDEST:g}; {remedy}")
-        keep(self, flat=a)
+        remedy = "a narrower one is a paraboloid, of a wider one each edge is straight"
+        keep(self, flat=require_between(self.flat, "flat", NARROWEST, WIDEST, remedy, " of the punch"))
 
     def _rise(self, radii: Array) -> Array:
         """Return sqrt(a^2 + u^2) - a, without cancellation."""

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
+from halfspace.limits import require_between, require_positive
 from halfspace.roots import root
 from halfspace.theories.closed_forms import ContactState
 from halfspace.values import Array
@@ -115,8 +115,7 @@ class JKRSphere:
     radius_ratio: float
 
     def __post_init__(self) -> None:
-        if not 0 < self.tabor < math.inf:
-            raise InputError(f"tabor = {self.tabor:g} is outside 0 < tabor < inf; give the Tabor parameter")
+        require_positive(self.tabor, "tabor", "give the Tabor parameter")
         _require_ratio(self.radius_ratio, self.tabor)
 
     @property
@@ -186,8 +185,5 @@ def _relative_excess(x: Array) -> Array:
 
 
 def _require_ratio(radius_ratio: float, least: float) -> None:
-    if not least <= radius_ratio < math.inf:
-        raise InputError(
-            f"radius_ratio = {radius_ratio:g} is outside {least:g} <= radius_ratio < inf; "
-            "give R/eps, or take halfspace.theories.closed_forms for the paraboloid"
-        )
+    remedy = "give R/eps, or take halfspace.theories.closed_forms for the paraboloid"
+    require_between(radius_ratio, "radius_ratio", least, math.inf, remedy)

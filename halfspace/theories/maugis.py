@@ -23,8 +23,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
+from halfspace.limits import require_between, require_positive
 from halfspace.roots import root
 from halfspace.theories.closed_forms import ContactState, gap_shape
 from halfspace.values import Array
@@ -59,10 +59,8 @@ class MaugisDugdale:
 
     def __post_init__(self) -> None:
         """Refuse what is out of range."""
-        if not 1e-6 <= self.maugis <= 1e6:
-            raise InputError(f"maugis = {self.maugis:g} is outside 1e-6 <= maugis <= 1e6; take DMT-M below, JKR above")
-        if not 0 < self.tabor < np.inf:
-            raise InputError(f"tabor = {self.tabor:g} is outside 0 < tabor < inf; give the Tabor parameter")
+        require_between(self.maugis, "maugis", 1e-6, 1e6, "take DMT-M below, JKR above")
+        require_positive(self.tabor, "tabor", "give the Tabor parameter")
 
     @classmethod
     def matched(cls, tabor: float) -> MaugisDugdale:
