@@ -28,7 +28,7 @@ from halfspace.accuracy.finite_bodies import Made, SizedBody, standing
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.compliance import ElasticOperator
+from halfspace.elastic.compliance import ElasticOperator, collocated
 from halfspace.elastic.operators import FlatCoordinate
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -109,9 +109,7 @@ class Cells(Valued):
 
     def operator(self, compliance: Array) -> ElasticOperator:
         """Operator with a compliance (q, q)."""
-        radii, w = grid.gauss_points(self.lines, self.nodes)
-        number = np.arange(radii.size).reshape(radii.shape)
-        return ElasticOperator(radii.ravel(), (2 * np.pi * radii * w).ravel(), compliance, self.lines, number)
+        return collocated(*grid.gauss_points(self.lines, self.nodes), compliance, self.lines)
 
     def coefficients(self, R: float, harmonics: int) -> Array:
         """Integrals by dx = d cos(theta) of the nodes' polynomials by the even P_n on a sphere of radius R.

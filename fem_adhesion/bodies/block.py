@@ -35,16 +35,12 @@ class Block(Body):
     far_field: BlockFarField = "point_load"
 
     looks: ClassVar[str] = "elastic block"
+    checked_by: ClassVar[SolverName] = "half-space"
 
     def __post_init__(self, poisson: float | None) -> None:
         super().__post_init__(poisson)
         keep(self, radius=require_radius(self.radius))
         require_one_of(self.far_field, "far_field", get_args(BlockFarField))
-
-    @property
-    def checked_by(self) -> SolverName | None:
-        """By the integral equation."""
-        return "half-space"
 
     @property
     def held(self) -> FarFieldName:

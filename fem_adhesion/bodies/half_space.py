@@ -22,16 +22,8 @@ class HalfSpace(Body):
 
     faces: ClassVar[bool] = True
     looks: ClassVar[str] = "elastic half-space"
-
-    @property
-    def checked_by(self) -> SolverName | None:
-        """By the integral equation."""
-        return "half-space"
-
-    @property
-    def held(self) -> FarFieldName:
-        """By what goes on beyond."""
-        return "point_load"
+    checked_by: ClassVar[SolverName] = "half-space"
+    held: ClassVar[FarFieldName] = "point_load"
 
     @property
     def told(self) -> list[str]:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from fem_adhesion.bodies.body import Discretisation, Held, Layout
-from halfspace.elastic import grid
 from halfspace.elastic.operators import Stereographic
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, keep
@@ -26,6 +25,7 @@ class HeldSphere(Held):
 
     curved: ClassVar[bool] = True
     has_fields: ClassVar[bool] = False
+    singular: ClassVar[bool] = True
 
     def __post_init__(self, poisson: float | None) -> None:
         super().__post_init__(poisson)
@@ -35,11 +35,6 @@ class HeldSphere(Held):
     def told(self) -> list[str]:
         """Its cap too."""
         return [*super().told, f"cap of {self.cap_angle:g} degrees"]
-
-    @property
-    def singular(self) -> bool:
-        """At the rim of the cap."""
-        return True
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (rings are the cap's)
         """Layers and rings beyond the core."""
@@ -51,6 +46,6 @@ class HeldSphere(Held):
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Graded from the contact, and towards the rim of the cap."""
         from fem_adhesion.mesh.held_sphere import held_sphere
-        from fem_adhesion.mesh.spheres import DEPTH
+        from fem_adhesion.mesh.spheres import graded_depths
 
-        return held_sphere(R, lines, grid.graded(0.0, length, DEPTH * R, growth=how.growth), self.cap_angle)
+        return held_sphere(R, lines, graded_depths(R, length, how.growth), self.cap_angle)

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation, Held, Layout, SolverName
-from halfspace.elastic import grid
 from halfspace.elastic.operators import Stereographic
 from halfspace.values import Array
 
@@ -53,14 +52,12 @@ class Hemisphere(Held):
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Graded from the contact."""
-        from fem_adhesion.mesh.spheres import DEPTH, hemisphere
+        from fem_adhesion.mesh.spheres import graded_depths, hemisphere
 
-        depths = grid.graded(0.0, length, DEPTH * R, growth=how.growth)
-        return hemisphere(R, lines, depths, rings=self.rings(how))
+        return hemisphere(R, lines, graded_depths(R, length, how.growth), rings=self.rings(how))
 
     def facing(self, R: float, lines: Array, length: float, smaller: float, how: Discretisation) -> Any:
         """Its cells end where those of the smaller one do, and beyond at its own core's end."""
-        from fem_adhesion.mesh.spheres import DEPTH, hemisphere_over
+        from fem_adhesion.mesh.spheres import graded_depths, hemisphere_over
 
-        depths = grid.graded(0.0, length, DEPTH * R, growth=how.growth)
-        return hemisphere_over(lines, depths, smaller, R, self.rings(how))
+        return hemisphere_over(lines, graded_depths(R, length, how.growth), smaller, R, self.rings(how))

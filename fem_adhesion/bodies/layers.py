@@ -33,6 +33,9 @@ class Stratified(Body):
     """Strata on a rigid base or on a half-space; E* is that of the first."""
 
     looks: ClassVar[str] = "elastic layer"
+    checked_by: ClassVar[SolverName] = "half-space"
+    doubt: ClassVar[Doubt] = Doubt(other_cells=True, times=2.0)
+    """Cells that suit the edge of the contact may be long for the rest; twice a usual change may be left."""
 
     @property
     def layered(self) -> layers.Layers:
@@ -55,16 +58,6 @@ class Stratified(Body):
         if isinstance(self.base, layers.Substrate):
             return "substrate"
         return "clamped" if self.base == "bonded" else "sheet"
-
-    @property
-    def checked_by(self) -> SolverName | None:
-        """By the integral equation."""
-        return "half-space"
-
-    @property
-    def doubt(self) -> Doubt:
-        """Cells that suit the edge of the contact may be long for the rest; twice a usual change may be left."""
-        return Doubt(other_cells=True, times=2.0)
 
     @property
     def regions(self) -> tuple[Elastic, ...]:

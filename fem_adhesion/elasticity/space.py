@@ -156,6 +156,16 @@ def cell_quadrature(space: Space) -> tuple[Array, Array]:
     return points, weights
 
 
+def cell_points(space: Space) -> tuple[Array, Array, Array]:
+    """Radii (cells, q) of these points, the reference cell's coordinates by r and z, and 2 pi r dr dz, (cells, q).
+
+    The derivatives (2, 2, cells, q) are the inverse of the Jacobian.
+    """
+    (points, weights), mapping = cell_quadrature(space), space.mesh.mapping()
+    r, (inverse, area) = np.asarray(mapping.F(points)[0]), inverted(mapping.DF(points))
+    return r, inverse, ring_measure(r) * area * weights
+
+
 def cell_products(space: Space) -> Products:
     """Products of the functions of a space of ElementQuadP at these points."""
     return products(space.element, _order(space))
@@ -175,12 +185,9 @@ def cell_stiffness(space: Space, poisson: float) -> Array:
 
 def _product_stiffness(space: Space, D: Array) -> Array:
     """Return the same of quadrilaterals, where a sum over points is one of products."""
-    functions, (points, weights) = cell_products(space), cell_quadrature(space)
-    mapping = space.mesh.mapping()
-    r, (inverse, area) = np.asarray(mapping.F(points)[0]), inverted(mapping.DF(points))
-    dA = ring_measure(r) * area * weights
+    functions, (r, inverse, dA) = cell_products(space), cell_points(space)
     K = np.empty((space.mesh.nelements, *functions.places.shape))
-    for cells in _batches(space, len(weights)):
+    for cells in _batches(space, r.shape[1]):
         # Of a function whose value or one of whose slopes is 1.
         value, grad = np.zeros((3, *dA[cells].shape)), np.zeros((3, 2, *dA[cells].shape))
         value[0], grad[1:] = 1.0, inverse[:, :, cells]
@@ -203,15 +210,12 @@ def strain_products(D: Array, B: Array, dA: Array) -> Array:
 
 def cell_strains(space: Space) -> Iterator[tuple[slice, Array, Array]]:
     """Cut the cells into batches: their numbers, their strains B, (cells, 4, q, 2 n), and 2 pi r dr dz, (cells, q)."""
-    points, weights = cell_quadrature(space)
-    value, slopes = reference_functions(space.element, points)
-    mapping = space.mesh.mapping()
-    radii, (inverse, area) = np.asarray(mapping.F(points)[0]), inverted(mapping.DF(points))
-    for cells in _batches(space, len(weights)):
+    value, slopes = reference_functions(space.element, cell_quadrature(space)[0])
+    radii, inverse, dA = cell_points(space)
+    for cells in _batches(space, radii.shape[1]):
         r = radii[cells]
         grad = np.einsum("ijcq,niq->njcq", inverse[:, :, cells], slopes, optimize=True)
-        dA = ring_measure(r) * area[cells] * weights
-        yield cells, strain_displacement(np.broadcast_to(value[:, None], (len(value), *r.shape)), grad, r), dA
+        yield cells, strain_displacement(np.broadcast_to(value[:, None], (len(value), *r.shape)), grad, r), dA[cells]
 
 
 def inverted(jacobian: Array) -> tuple[Array, Array]:

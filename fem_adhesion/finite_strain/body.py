@@ -26,11 +26,11 @@ from skfem import Dofs, ElementQuadP
 from fem_adhesion.elasticity.incompressible import REMEDY_FROM
 from fem_adhesion.elasticity.space import (
     Space,
+    cell_points,
     cell_products,
     cell_quadrature,
     lame_parameters,
     reference_functions,
-    ring_measure,
     scatter,
 )
 from fem_adhesion.elasticity.tensor import integrated
@@ -236,14 +236,10 @@ def material_body(space: Space, poisson: float, stretch: float) -> Body:
 def displacement_body(space: Space, poisson: float, stretch: float) -> Body:
     """Prepare a body of displacements; raise InputError if poisson or stretch is out of range."""
     lame_parameters(poisson)
-    points, weights = cell_quadrature(space)
-    value, slopes = reference_functions(space.element, points)
-    mapping = space.mesh.mapping()
-    radii = np.asarray(mapping.F(points)[0])
-    measure = ring_measure(radii) * np.abs(mapping.detDF(points)) * weights
+    value, slopes = reference_functions(space.element, cell_quadrature(space)[0])
     functions = np.ascontiguousarray(np.concatenate([value[None], slopes.transpose(1, 0, 2)]))
-    inverse, radii, measure = (np.ascontiguousarray(part) for part in (mapping.invDF(points), radii, measure))
-    none = np.zeros((0, len(weights))), np.zeros((len(radii), 0), dtype=np.intp), sparse.csc_array((0, 0))
+    radii, inverse, measure = map(np.ascontiguousarray, cell_points(space))
+    none = np.zeros((0, radii.shape[1])), np.zeros((len(radii), 0), dtype=np.intp), sparse.csc_array((0, 0))
     return Body(space, poisson, require_stretch(stretch), functions, inverse, radii, measure, *none)
 
 

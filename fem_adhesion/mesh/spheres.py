@@ -50,6 +50,11 @@ class Lines(Valued):
         return np.asarray(self.along(x) - 1j * depths)
 
 
+def graded_depths(R: float, length: float, growth: float) -> Array:
+    """Depths of the lines of a core, the first cell of a length in beta, the others the deeper the longer."""
+    return grid.graded(0.0, length, DEPTH * R, growth=growth)
+
+
 def even(R: float, m: int, n: int) -> Lines:
     """Evenly spaced lines, m + 1 and n + 1 of them in the core."""
     return Lines(np.linspace(0, CORE * R, m + 1), np.linspace(0, DEPTH * R, n + 1))
@@ -172,13 +177,8 @@ def _beyond(lines: Array, length: float) -> Array:
 
 def _coordinate_on(R1: float, R2: float) -> Callable[[Array], Array]:
     """Coordinate on the second surface, flat if R2 is infinite, of points at the first one's coordinate s."""
-
-    def coordinate(s: Array) -> Array:
-        r = Stereographic(R1).radius(s)[0]
-        sine = r / R2
-        return np.asarray(2 * r / (1 + np.sqrt((1 - sine) * (1 + sine))))
-
-    return coordinate
+    first, second = Stereographic(R1), Stereographic(R2)
+    return lambda s: second.along(first.radius(s)[0])
 
 
 def _along(s: Array, *, coordinate: Callable[[Array], Array], last: float) -> Array:

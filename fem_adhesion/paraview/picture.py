@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from fem_adhesion.fields import State
 from fem_adhesion.paraview.cells import cut_for
-from fem_adhesion.paraview.write import in_plane, require_pyvista
+from fem_adhesion.paraview.write import in_plane, line_through, require_pyvista
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -213,7 +213,7 @@ def _add_body(pyvista: Any, plotter: Any, state: State, view: View) -> None:
         plotter.add_mesh(plane.rotate_z(angle), lighting=False, **colours)
         plotter.add_mesh(outline.rotate_z(angle), color=OUTLINE, line_width=2)
         for line in shown.interfaces:
-            seen = _in_view(_line(pyvista, line), view)
+            seen = _in_view(line_through(pyvista, in_plane(*line)), view)
             plotter.add_mesh(seen.rotate_z(angle), color=OUTLINE, line_width=3, lighting=False)
     light = {"ambient": 0.55, "diffuse": 0.5, "specular": 0.0, "smooth_shading": True, "split_sharp_edges": True}
     plotter.add_mesh(_turned(plane), **colours, **light)
@@ -234,7 +234,7 @@ def _in_view(plane: Any, view: View) -> Any:
 def _add_surfaces(pyvista: Any, plotter: Any, state: State, view: View) -> None:
     """The wall, translucent, and along the cut the lines of wall, body and undeformed body."""
     shown = surfaces(state, view.reach, view.heights)
-    wall = _turned(_line(pyvista, shown.wall))
+    wall = _turned(line_through(pyvista, in_plane(*shown.wall)))
     plotter.add_mesh(wall, color="#a0a0a0", opacity=0.3, smooth_shading=True)
     for line, look in (
         (shown.undeformed, {"color": UNDEFORMED, "line_width": 4}),
@@ -242,12 +242,7 @@ def _add_surfaces(pyvista: Any, plotter: Any, state: State, view: View) -> None:
         (shown.wall, {"color": WALL, "line_width": 6}),
     ):
         for angle in (0.0, OPEN):
-            plotter.add_mesh(_line(pyvista, line).rotate_z(angle), lighting=False, **look)
-
-
-def _line(pyvista: Any, line: Array) -> Any:
-    points = in_plane(*line)
-    return pyvista.PolyData(points, lines=np.append(len(points), np.arange(len(points))))
+            plotter.add_mesh(line_through(pyvista, in_plane(*line)).rotate_z(angle), lighting=False, **look)
 
 
 def _turned(plane: Any) -> Any:

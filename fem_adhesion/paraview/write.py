@@ -136,9 +136,14 @@ def _grid(
 def _surface(pyvista: Any, state: State, scale: float, units: Units | None) -> Any:
     """Contact surface as one line through its nodes."""
     points, beside = in_plane(state.surface.radii, -state.surface.depths), half_space_beside(state)
-    grid = pyvista.PolyData(_placed(points, units), lines=np.append(len(points), np.arange(len(points))))
+    grid = line_through(pyvista, _placed(points, units))
     _annotate(grid, half_space_numbers(beside, units))
     return _with_arrays(grid, on_surface(state, beside, scale), units)
+
+
+def line_through(pyvista: Any, points: Array) -> Any:
+    """One line through points (n, 3)."""
+    return pyvista.PolyData(points, lines=np.append(len(points), np.arange(len(points))))
 
 
 def in_plane(r: Array, z: Array) -> Array:

@@ -172,7 +172,7 @@ class ElasticOperator(Valued):
             return self.interpolation(0.0)[0]
         nodes, row = self.cell_nodes[0], np.zeros(self.radii.size)
         squares = self.radii[nodes] ** 2
-        row[nodes] = lagrange(squares, _barycentric(squares), 0.0)[0]
+        row[nodes] = lagrange(squares, barycentric(squares), 0.0)[0]
         return row
 
     @cached_property
@@ -183,10 +183,10 @@ class ElasticOperator(Valued):
     @cached_property
     def _barycentric(self) -> Array:
         """Weights 1/prod (u_j - u_m) of the nodes of each cell, (m, k)."""
-        return _barycentric(self.radii[self.cell_nodes])
+        return barycentric(self.radii[self.cell_nodes])
 
 
-def _barycentric(nodes: Array) -> Array:
+def barycentric(nodes: Array) -> Array:
     """Weights 1/prod (x_j - x_m), (..., k), of nodes (..., k)."""
     differences = nodes[..., :, None] - nodes[..., None, :] + np.eye(nodes.shape[-1])
     return np.asarray(1 / differences.prod(axis=-1))
@@ -226,10 +226,14 @@ def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
         raise InputError(f"nodes_per_panel {nodes_per_panel} is outside 1 to 16; use more panels instead")
     radii, w = grid.gauss_points(breakpoints, nodes_per_panel)
     x, _ = grid.gauss_legendre(nodes_per_panel)
-    compliance = panel_integrals(radii.ravel(), breakpoints, x).reshape(radii.size, radii.size)
-    weights = 2 * np.pi * radii * w
+    return collocated(radii, w, panel_integrals(radii.ravel(), breakpoints, x), breakpoints)
+
+
+def collocated(radii: Array, lengths: Array, compliance: Array, cells: Array) -> ElasticOperator:
+    """Operator on Gauss's points of cells (m + 1,): radii and weights (m, k), and a compliance of their numbers."""
+    q, number = radii.size, np.arange(radii.size).reshape(radii.shape)
     return ElasticOperator(
-        radii.ravel(), weights.ravel(), compliance, breakpoints, np.arange(radii.size).reshape(radii.shape)
+        radii.ravel(), (2 * np.pi * radii * lengths).ravel(), compliance.reshape(q, q), cells, number
     )
 
 

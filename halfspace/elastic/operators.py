@@ -15,7 +15,7 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
-from halfspace.elastic.compliance import ElasticOperator, lagrange
+from halfspace.elastic.compliance import ElasticOperator, barycentric, lagrange
 from halfspace.elastic.grid import gauss_points
 from halfspace.values import Array, Index, Valued
 
@@ -168,8 +168,7 @@ class _Logarithmic(Valued):
 
     @cached_property
     def _barycentric(self) -> Array:
-        t = self.nodes
-        return np.asarray(1 / (t[:, None] - t + np.eye(t.size)).prod(axis=1))
+        return barycentric(self.nodes)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -228,8 +227,12 @@ class Stereographic:
 
     def of(self, radius: float) -> float:
         """Coordinate 2 R tan(theta/2) at the radius R sin(theta)."""
-        s = radius / self.R
-        return float(2 * self.R * s / (1 + np.sqrt((1 - s) * (1 + s))))
+        return float(self.along(np.array(radius)))
+
+    def along(self, radii: Array) -> Array:
+        """Coordinates at radii."""
+        s = radii / self.R
+        return np.asarray(2 * radii / (1 + np.sqrt((1 - s) * (1 + s))))
 
     def radius(self, x: Array) -> tuple[Array, Array]:
         """Radius r at x and dr/dx."""

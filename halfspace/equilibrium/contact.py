@@ -16,7 +16,7 @@ import math
 from collections import deque
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -34,7 +34,6 @@ from halfspace.values import Array, Valued, appended
 APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
 
 LARGEST = 0.75  # part of a gap h by which it may shrink in a step
-NEAR = 1e-3
 WIDEST = 0.95  # of the radius of a body, that a contact may reach
 
 
@@ -103,10 +102,8 @@ class ContactProblem(Valued):
     law: Law = LENNARD_JONES
     profile: Surface = PARABOLOID
 
-    @property
-    def reuse(self) -> float:
-        """Relative size of a step after which the factors from before it serve once more."""
-        return NEAR
+    reuse: ClassVar[float] = 1e-3
+    """Relative size of a step after which the factors from before it serve once more."""
 
     @cached_property
     def scales(self) -> Scales:
