@@ -142,7 +142,7 @@ def _draw_jumps(axes: Any, curves: Curves, frame: Frame) -> None:
     """Arrows of the jumps, under fixed grips and along the load lines of an apparatus."""
     for cycle, look in ((curves.grips, GRIPS), (curves.apparatus, APPARATUS)):
         jumps = cycle.jumps if cycle else {}
-        ends = [[(state.approach, state.load) for state in (jump.take_off, jump.landing)] for jump in jumps.values()]
+        ends = [[(state.approach, state.load) for state in jump.ends] for jump in jumps.values()]
         seen = list(filter(None, (_clipped(tail, head, frame) for tail, head in ends)))
         for both in seen:
             tail, head = ((*curves.shown(approach=approach, load=load),) for approach, load in both)

@@ -180,8 +180,7 @@ def _largest(curves: Curves) -> Mapping[str, float]:
     """Largest size of what a table of events shows, in dimensionless units; what is not known is left out."""
     states = [event for path in curves.paths.values() for event in path.events.values()]
     cycles = [cycle for cycle in (curves.grips, curves.apparatus) if cycle]
-    jumps = [jump for cycle in cycles for jump in cycle.jumps.values()]
-    states += [state for jump in jumps for state in (jump.take_off, jump.landing)]
+    states += [state for cycle in cycles for jump in cycle.jumps.values() for state in jump.ends]
     sizes = {name: [abs(getattr(state, name)) for state in states] for name in EVENT_QUANTITIES}
     sizes["energy"] = [abs(cycle.energy_lost.value) for cycle in cycles]
     known = {name: [size for size in found if math.isfinite(size) and size] for name, found in sizes.items()}

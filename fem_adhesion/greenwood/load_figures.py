@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -79,15 +79,21 @@ def _dmt_loads(approach: float, tabor: float) -> Array:
     return np.array([float(load(approach, tabor)) for load in DMT.values()])
 
 
-def _figure_1b(study: Greenwood1997) -> Figure:
+def _scaled_curves(study: Greenwood1997, tabors: Sequence[float]) -> tuple[Figure, Any]:
+    """Loads against approaches in units of beta^2/R, in which JKR's theory is one curve."""
     figure, (axes,) = panels()
-    for mu in SCALED:
+    for mu in tabors:
         curve(axes, mu, study.curves[mu].approach / mu, study.curves[mu].load)
+    radius = np.linspace(0, 3, 300)
+    theory(axes, "JKR", jkr_approach(radius, 1.0), jkr_load(radius))
+    return figure, axes
+
+
+def _figure_1b(study: Greenwood1997) -> Figure:
+    figure, axes = _scaled_curves(study, SCALED)
     scaled = np.linspace(0, 4, 200)
     theory(axes, "DMT-M", scaled, dmt.maugis_load(scaled, 1.0))
     theory(axes, "Hertz", scaled, hertz_load(hertz_radius_at(scaled, 1.0)))
-    radius = np.linspace(0, 3, 300)
-    theory(axes, "JKR", jkr_approach(radius, 1.0), jkr_load(radius))
     dress(axes, style.SCALED_APPROACH, style.LOAD, legend="upper left", xlim=(-5, 3.5), ylim=(-6.6, 3))
     return figure
 
@@ -139,7 +145,7 @@ def _figure_2a(study: Greenwood1997) -> Figure:
     if fe := study.elements.get(JUMPS_AT):
         style.elements(axes, fe, fe.approach, fe.load)
     for letters, jump in study.jumps.items():
-        ends = [(jump.take_off.approach, state.load) for state in (jump.take_off, jump.landing)]
+        ends = [(jump.take_off.approach, state.load) for state in jump.ends]
         style.arrow(axes, *ends, color=style.RED, linewidth=1.6, zorder=1)
         for letter, end in zip(letters, ends, strict=True):
             note(axes, letter, end, (-14, -4) if letters == "CD" else (7, 2), weight="bold")
@@ -162,11 +168,7 @@ def _see_2a(study: Greenwood1997) -> Iterator[str]:
 
 
 def _figure_2b(study: Greenwood1997) -> Figure:
-    figure, (axes,) = panels()
-    for mu in SOFT:
-        curve(axes, mu, study.curves[mu].approach / mu, study.curves[mu].load)
-    radius = np.linspace(0, 3, 300)
-    theory(axes, "JKR", jkr_approach(radius, 1.0), jkr_load(radius))
+    figure, axes = _scaled_curves(study, SOFT)
     dress(axes, style.SCALED_APPROACH, style.LOAD, legend="upper left", xlim=(-3.5, 3.5), ylim=(-5.6, 3))
     return figure
 

@@ -181,7 +181,7 @@ def _cycles(devices: DeviceStudy) -> Table:
 
 def _cycle_cells(cycle: Cycle) -> list[str]:
     """Approach and load of the four ends of both jumps."""
-    states = [state for jump in (cycle.jump_on, cycle.jump_off) for state in (jump.take_off, jump.landing)]
+    states = [state for jump in (cycle.jump_on, cycle.jump_off) for state in jump.ends]
     return [cell for state in states for name in ("approach", "load") for cell in _cells(state.estimate(name))]
 
 

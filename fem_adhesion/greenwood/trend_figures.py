@@ -179,7 +179,7 @@ def _arrows(axes: Any, cycle: Cycle) -> None:
     colour, dashes = STIFFNESS_STYLES[cycle.stiffness]
     look: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 1.7}
     for jump in (cycle.jump_on, cycle.jump_off):
-        tail, head = ((state.approach, state.load) for state in (jump.take_off, jump.landing))
+        tail, head = ((state.approach, state.load) for state in jump.ends)
         style.arrow(axes, tail, head, **look)
     name = "fixed grips" if np.isinf(cycle.stiffness) else rf"$k = {cycle.stiffness:g}\,R\Delta\gamma/\epsilon$"
     axes.plot([], [], label=name, **look)

@@ -43,6 +43,11 @@ class Jump:
     landing: Event
     energy: Estimate
 
+    @property
+    def ends(self) -> tuple[Event, Event]:
+        """Both states."""
+        return self.take_off, self.landing
+
 
 @dataclass(frozen=True)
 class Cycle:
@@ -140,7 +145,7 @@ def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
         return None
     on, off = (tuple(_jump(s, path, 1 / stiffness) for s in staged if s.fine.on is way) for way in (True, False))
     lost = sum((jump.energy for jump in (*on, *off)), Estimate(0.0, 0.0))
-    states = [state for jump in (*on, *off) for state in (jump.take_off, jump.landing)]
+    states = [state for jump in (*on, *off) for state in jump.ends]
     scale = approach_scale(state.approach for state in (*path.events.values(), *states))
     return Cycle(stiffness, on, off, lost, Tolerance(path.tolerance.rtol, scale))
 
