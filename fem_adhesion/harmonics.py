@@ -120,7 +120,7 @@ class Cells(Valued):
         rules = [_gauss(a, b, self.nodes, harmonics) for a, b in pairwise(ends)]
         theta = np.concatenate([points for points, _ in rules])
         parts = [
-            (np.sin(points) * weights)[:, None] * _lagrange(nodes, R * np.sin(points))
+            (np.sin(points) * weights)[:, None] * grid.polynomial(nodes, R * np.sin(points))
             for (points, weights), nodes in zip(rules, self.places, strict=True)
         ]
         cuts = np.cumsum([len(points) for points, _ in rules])[:-1]
@@ -144,13 +144,6 @@ def _gauss(a: float, b: float, nodes: int, harmonics: int) -> tuple[Array, Array
 
 
 PIECE, MORE = 30.0, 8  # largest phase of the last harmonic over a rule, in 2 rad, and points that make it converge
-
-
-def _lagrange(places: Array, x: Array) -> Array:
-    """Values (p, k) at x (p,) of the Lagrange polynomials through places (k,)."""
-    others = (np.delete(places, k) for k in range(places.size))
-    ratios = ((x[:, None] - rest) / (place - rest) for place, rest in zip(places, others, strict=True))
-    return np.stack([ratio.prod(axis=1) for ratio in ratios], axis=1)
 
 
 def sphere_compliance(R: float, poisson: float, cells: Cells, harmonics: int, radii: Array | None = None) -> Array:

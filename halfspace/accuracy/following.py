@@ -26,6 +26,7 @@ import numpy as np
 from halfspace.accuracy.refinement import climb, energy_along
 from halfspace.accuracy.stages import Charted, Rung, State
 from halfspace.accuracy.trace import Grids, Resolution, half_space_rung
+from halfspace.elastic.grid import polynomial
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.charts import Chart, Stage, metric_for
 from halfspace.equilibrium.conditions import FOLD, Located, relocate
@@ -33,7 +34,6 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import JumpStates, StagedJump, apart, landing_of, staged_jumps
 from halfspace.equilibrium.events import EVENTS, Event, Tolerance, usual
 from halfspace.equilibrium.path import Point
-from halfspace.equilibrium.prediction import polynomial
 from halfspace.equilibrium.search import brackets_of
 from halfspace.errors import NotConverged
 from halfspace.laws import Law

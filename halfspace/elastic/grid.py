@@ -98,3 +98,10 @@ def _require_positive(**lengths: float) -> None:
     for name, value in lengths.items():
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{name} {value:g} is not a positive length; give it in beta")
+
+
+def polynomial(places: Array, x: Array | float) -> Array:
+    """Weights (..., k) of values at places (k,) in that of the polynomial through all at others x (...)."""
+    own = np.eye(places.size, dtype=bool)
+    ahead = np.where(own, 1.0, (np.asarray(x)[..., None] - places)[..., None, :])
+    return np.asarray(np.prod(ahead / (places[:, None] - places + own), axis=-1))

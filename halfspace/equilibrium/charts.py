@@ -77,7 +77,8 @@ def trace_charts(
     segments: list[Segment] = []
     for chart in charts:
         problem, metric = chart.problem, metric_for(chart.problem)
-        point = _hand_over(segments[-1], problem, metric) if segments else _far_separation(problem, metric)
+        first = problem.interface.scales.separated_approach - 10
+        point = _hand_over(segments[-1], problem, metric) if segments else separated(problem, first, metric)
         body = problem.interface.profile.end
         radius, ended = WIDEST * body if np.isinf(chart.until) else chart.until, _ended(to_load, body)
         stop, pace = _left(problem, radius, ended), steps or _pace(problem, segments)
@@ -114,10 +115,10 @@ def undeformed_radius(problem: Traceable, point: Point) -> float:
     return problem.interface.contact_radius(problem.surface_state(point.x))
 
 
-def _far_separation(problem: Traceable, metric: Metric) -> Point:
-    """First point of the path, heading towards contact."""
-    control = newton.approach(problem.interface.scales.separated_approach - 10)
-    solution = newton.solve(problem, problem.undeformed(control.target), control)
+def separated(problem: Traceable, approach: float, metric: Metric) -> Point:
+    """Point on the separated branch at an approach, heading towards contact."""
+    control = newton.approach(approach)
+    solution = newton.solve(problem, problem.undeformed(approach), control)
     return make_point(problem, solution, metric, control.weights, 0.0)
 
 

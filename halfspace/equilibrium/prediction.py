@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
+from halfspace.elastic.grid import polynomial
 from halfspace.equilibrium.contact import LARGEST, ContactProblem
 from halfspace.equilibrium.newton import Traceable
 from halfspace.values import Array, Valued
@@ -60,10 +61,3 @@ def with_edge(problem: Traceable, trail: Sequence[Passed], near: Array, arclengt
     ahead, last_gaps = weights @ views, views[-1, :-1]
     gaps = np.maximum(ahead[:-1], last_gaps - LARGEST * surface.law.room(last_gaps))
     return problem.state_from_surface(np.append(gaps, [ahead[-1], 1.0]), near)
-
-
-def polynomial(places: Array, place: float) -> Array:
-    """Weights of values at several places in that of the polynomial through all at another place."""
-    apart = places[:, None] - places + np.eye(places.size)
-    ahead = np.where(np.eye(places.size, dtype=bool), 1.0, place - places)
-    return np.asarray(np.prod(ahead / apart, axis=1))

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import metric_for
+from halfspace.equilibrium.charts import metric_for, separated
 from halfspace.equilibrium.contact import APPROACH, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.newton import Traceable
-from halfspace.equilibrium.path import Metric, Point, Segment, make_point
+from halfspace.equilibrium.path import Segment
+from halfspace.equilibrium.states import measured
 
 FARTHER, NEARER = 1.5, 1.1  # margins by which the points added to a curve reach past the jump and past its beginning
 POINTS = 12  # so added
@@ -48,19 +48,5 @@ def _far_segment(first: Segment, jump: float) -> Segment:
     far, near = 1 - FARTHER * jump, 1 - float(first.points[0].observables[APPROACH]) / NEARER
     problem = widened(first.problem, 1 - far)
     metric = metric_for(problem)
-    points: list[Point] = []
-    for approach in 1 - np.geomspace(far, near, POINTS):
-        points.append(_separated(problem, float(approach), metric, points[-1] if points else None))
-    return Segment(problem, tuple(points))
-
-
-def _separated(problem: Traceable, approach: float, metric: Metric, before: Point | None) -> Point:
-    """State on the separated branch; its arclength goes along the tangent of the point before, as a step's does."""
-    control = newton.approach(approach)
-    solution = newton.solve(problem, problem.undeformed(approach), control)
-    point = make_point(problem, solution, metric, control.weights, 0.0)
-    if before is None:
-        return point
-    used = metric.weights != 0
-    change = (point.observables - before.observables)[used]
-    return replace(point, arclength=before.arclength + float((metric.weights * before.rates)[used] @ change))
+    points = [separated(problem, approach, metric) for approach in (1 - np.geomspace(far, near, POINTS)).tolist()]
+    return measured(problem, points, metric)
