@@ -99,9 +99,19 @@ class Scales:
         A gap beyond the edge by H has opened over some distance d, so that a tension which falls within a part of H
         does within that part of d.
         """
+        return float(min(1.0, SUDDEN / self._steepness[1].max()) ** SLOWER)
+
+    @cached_property
+    def _steepness(self) -> tuple[Array, Array]:
+        """Gaps beyond the edge, and how fast the tension falls there, in parts of the largest in such a distance."""
         beyond = NEAR[self.law.edge_gap < NEAR]
-        steepness = (beyond - self.law.edge_gap) * np.abs(self.law.slope(beyond, 1.0)) / self.law.strength
-        return float(min(1.0, SUDDEN / steepness.max()) ** SLOWER)
+        return beyond, (beyond - self.law.edge_gap) * np.abs(self.law.slope(beyond, 1.0)) / self.law.strength
+
+    @cached_property
+    def step_gap(self) -> float:
+        """Gap at which a tension that ends by a step does so; 0 for one that falls gradually."""
+        gaps, steepness = self._steepness
+        return float(gaps[np.argmax(steepness)]) if self.gradual < 1 else 0.0
 
     @property
     def _rigid_width(self) -> float:

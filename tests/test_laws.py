@@ -18,9 +18,12 @@ from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck.references import elements_of
 from fem_adhesion.scene import Scene
 from halfspace import Coated
-from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.accuracy.stages import Charted
+from halfspace.accuracy.trace import Resolution, half_space_charts, resolution_for
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import transfer
+from halfspace.equilibrium.charts import moved, transfer
+from halfspace.equilibrium.contact import CONTACT_RADIUS
+from halfspace.equilibrium.events import usual
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
 from halfspace.laws.law import require_law
@@ -344,6 +347,33 @@ def test_a_sharp_step_is_resolved():
     assert rough.met
     assert fine.met
     assert_same(rough, fine)
+
+
+@pytest.mark.parametrize("tabor", [0.3, 3.0])
+def test_a_sharp_step_has_short_cells_where_it_stands_alone(tabor):
+    """Events are those of a chart fine wherever it may stand, on other cells, of two to four times the unknowns."""
+    law = Dugdale(0.1)
+    scales, path = Scales(tabor, law), halfspace.trace(tabor, law=law)
+    throughout = Charted(half_space_charts(scales, Resolution(12, 0.45, 2.5, 9.0)))
+    assert path.unknowns < throughout.unknowns / 2
+    for name, event in usual(path.events).items():
+        found = moved(path.stages[-1][name], throughout(path.stages[-1][name]).problem).point.observables
+        told = [(event.approach, event.approach_error), (event.load, event.load_error)]
+        told += [(event.central_gap, event.central_gap_error), (event.contact_radius, event.contact_radius_error)]
+        for (value, error), other in zip(told, found, strict=True):
+            assert np.isnan(other) or abs(value - other) < error + 1e-8
+
+
+def test_a_curve_goes_on_where_the_step_leaves_a_chart():
+    path = halfspace.trace(1.0, law=Dugdale(0.1), rtol=1e-4)
+    assert len(path.segments) > 4
+    for before, after in pairwise(path.segments):
+        np.testing.assert_allclose(before.points[-1].observables, after.points[0].observables, rtol=1e-4, atol=1e-5)
+    followed = [segment for segment in path.segments if segment.problem.follows_contact]
+    for surface, point in ((segment.problem, point) for segment in followed for point in segment.points[:-1]):
+        radius, edge = surface.radius_at_gap(point.x, surface.scales.step_gap), point.observables[CONTACT_RADIUS]
+        cell = np.searchsorted(ends := surface.operator_at(point.x).cells, radius)
+        assert ends[cell] - ends[cell - 1] < 0.25 * (radius - edge)  # 1 by other laws
 
 
 def test_a_tip_takes_a_hundred_unknowns_more_than_a_paraboloid():

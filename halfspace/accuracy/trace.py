@@ -30,6 +30,7 @@ from halfspace.accuracy.finite_bodies import (
 )
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Charted, Rung
+from halfspace.accuracy.windows import Windows
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.layered import Images, image_compliance, images_of, layered, layered_panels
 from halfspace.elastic.layers import LayeredBody
@@ -287,6 +288,8 @@ def trace(
         images = [images_of(body, spacing) if body is not None else None for spacing in IMAGES]
         return climb(rtol, partial(_sized_rung, scales, images, rtol, to_load), to_load=to_load)
 
+    if scales.step_gap and not scales.law.outermost:
+        return climb(rtol, partial(_stepped_rung, scales, rtol, to_load), to_load=to_load)
     charts = partial(half_space_charts, scales, to_load=to_load)
     return climb(rtol, partial(half_space_rung, scales, rtol, charts), to_load=to_load)
 
@@ -301,6 +304,19 @@ def half_space_rung(
         return Rung(curve, (), asdict(resolution))
     fine, twin = (Charted(charts(r)) for r in (resolution, _twin(below)))
     return Rung(curve, (fine,), asdict(resolution), twin, _rule(level))
+
+
+def _stepped_rung(scales: Scales, rtol: float, to_load: float, level: int) -> Rung:
+    """Rung of a level for a half-space under a law that ends by a step."""
+    resolutions = resolution_for(scales, rtol, level), _twin(resolution_for(scales, rtol, max(level - 1, 0)))
+    fine, twin = (_windows(scales, resolution, to_load) for resolution in resolutions)
+    return Rung(fine.curve, (fine,), asdict(resolutions[0]), twin if level else None, _rule(level))
+
+
+def _windows(scales: Scales, resolution: Resolution, to_load: float) -> Windows:
+    outer = scales.outer_radius(resolution.extent**2 / 2)
+    half_space = partial(_endless, resolution.nodes, scales.tail_reach, True)
+    return Windows(scales, resolution.finest, resolution.growth, outer, half_space, to_load)
 
 
 def _rule(level: int, doubt: int = 1) -> ErrorRule:

@@ -33,6 +33,15 @@ class Chart(Valued):
     unknowns: int
     until: float = np.inf
 
+    def left(self, problem: Traceable, point: Point) -> bool:
+        """Whether the contact at a point has left what the chart serves, or fills the body as allowed."""
+        body = self.problem.interface.profile.end
+        return undeformed_radius(problem, point) > (WIDEST * body if np.isinf(self.until) else self.until)
+
+    def onward(self, problem: Traceable, point: Point) -> Chart | None:  # noqa: ARG002 (of those that know of others)
+        """Chart on which the curve goes on from a point at which this one is left; None for the next in order."""
+        return None
+
 
 class Stage(Valued, ABC):
     """A discretisation by charts on which events and points of a path, found on another, are solved for again."""
@@ -75,13 +84,14 @@ def trace_charts(
     NotConverged if the continuation gets stuck.
     """
     segments: list[Segment] = []
-    for chart in charts:
+    in_order = iter(charts)
+    chart: Chart | None = None
+    while chart := (chart and chart.onward(segments[-1].problem, segments[-1].points[-1])) or next(in_order, None):
         problem, metric = chart.problem, metric_for(chart.problem)
         first = problem.interface.scales.separated_approach - 10
         point = _hand_over(segments[-1], problem, metric) if segments else separated(problem, first, metric)
-        body = problem.interface.profile.end
-        radius, ended = WIDEST * body if np.isinf(chart.until) else chart.until, _ended(to_load, body)
-        stop, pace = _left(problem, radius, ended), steps or _pace(problem, segments)
+        ended = _ended(to_load, problem.interface.profile.end)
+        stop, pace = _left(chart, ended), steps or _pace(problem, segments)
         trail = [passed(s.problem, p.x, p.arclength) for s in segments[-1:] for p in s.points[-KNOWN:-1]]
         segments.append(Segment(problem, tuple(follow(problem, point, metric, stop, steps=pace, trail=trail))))
         if ended(segments[-1].points[-1]):
@@ -95,17 +105,24 @@ def _ended(to_load: float, body: float) -> Callable[[Point], bool]:
     return lambda p: loaded(p) or bool(p.observables[CONTACT_RADIUS] > body and p.rates[LOAD] < 0)
 
 
-def _left(problem: Traceable, radius: float, ended: Callable[[Point], bool]) -> Callable[[Point], bool]:
-    """Stop there, or where the contact leaves what a chart serves or fills the body as allowed."""
-    return lambda point: ended(point) or undeformed_radius(problem, point) > radius
+def _left(chart: Chart, ended: Callable[[Point], bool]) -> Callable[[Point], bool]:
+    """Stop there, or where a chart is left."""
+    return lambda point: ended(point) or chart.left(chart.problem, point)
 
 
 def _pace(problem: Traceable, before: Sequence[Segment]) -> Steps | None:
-    """Steps to begin with on a body of whose unknowns the surface is but a part: half as long as the last."""
-    if problem.interface is problem or not before:
+    """Steps to begin with: as long as the last on a grid of the same kind.
+
+    On a body of whose unknowns the surface is but a part, half as long.
+    """
+    if not before:
         return None
-    last = [point.arclength for point in before[-1].points[-2:]]
-    return replace(WHOLE_BODY, first=(last[-1] - last[0]) / 2 or WHOLE_BODY.first)
+    last = before[-1].points[-2:]
+    step = last[-1].arclength - last[0].arclength
+    if problem.interface is not problem:
+        return replace(WHOLE_BODY, first=step / 2 or WHOLE_BODY.first)
+    alike = problem.follows_contact == before[-1].problem.interface.follows_contact
+    return Steps(first=step) if alike and step else None
 
 
 def undeformed_radius(problem: Traceable, point: Point) -> float:
@@ -123,10 +140,12 @@ def separated(problem: Traceable, approach: float, metric: Metric) -> Point:
 
 
 def _hand_over(segment: Segment, problem: Traceable, metric: Metric) -> Point:
-    """Solve the last state of a segment again on the next chart, at the same contact radius."""
+    """Solve the last state of a segment again on the next chart, at the same contact radius if there is one."""
     last = segment.points[-1]
     radius = float(last.observables[CONTACT_RADIUS])
     start = transfer(segment.problem, last.x, problem)
+    if np.isnan(radius):
+        return same_place(last, problem, start, metric)
     solution = newton.solve(problem, start, newton.contact_radius(radius))
     return make_point(problem, solution, metric, metric.weights * last.rates, last.arclength)
 

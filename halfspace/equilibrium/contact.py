@@ -246,6 +246,12 @@ class ContactProblem(Valued):
             return float(x[-1])
         return self._acting(x).contact_radius
 
+    def radius_at_gap(self, x: Array, gap: float) -> float:
+        """Largest radius in beta at which the gap is about that, by straight lines between nodes; 0 if it is wider."""
+        H, radii = x[:-2], self.radii(x)
+        closer = np.flatnonzero(gap > H)
+        return float(np.interp(gap, H[closer[-1] :][:2], radii[closer[-1] :][:2])) if closer.size else 0.0
+
     def ripples(self, x: Array) -> Array:
         """What the deflection's polynomials end with on the axis, in eps, and at the contact edge, in beta, (2,).
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -30,7 +31,7 @@ class Dugdale(Law):
         remedy = "extrapolate from 0.16, 0.11 and 0.08, or take 0.1"
         keep(self, width=require_between(self.width, "width", NARROWEST, WIDEST, remedy, " of Dugdale's law"))
 
-    @property
+    @cached_property
     def amplitude(self) -> float:
         """Factor c by which the work of adhesion is dgamma."""
         return -1 / float(self._work(np.array(0.0)))
@@ -41,7 +42,12 @@ class Dugdale(Law):
 
     def _core(self, gap: Array) -> Array:
         """S(0) e^(-H/w^2)."""
-        return np.asarray(self._step(np.array(0.0)) * np.exp(-gap / self.width**2))
+        return np.asarray(self._step_at_rest * np.exp(-gap / self.width**2))
+
+    @cached_property
+    def _step_at_rest(self) -> float:
+        """S(0)."""
+        return float(self._step(np.array(0.0)))
 
     def _work(self, gap: Array) -> Array:
         """Integral of the tension, without c, from infinity to a gap."""
