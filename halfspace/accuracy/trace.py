@@ -176,7 +176,11 @@ def _to_infinity(
 
 
 def _endless(nodes: int, reach: float, even: bool, breaks: Array) -> compliance.ElasticOperator:
-    return compliance.to_infinity(replace(compliance.panels(breaks, nodes), even=even), nodes, reach)
+    return compliance.to_infinity(_cut(nodes, even, breaks), nodes, reach)
+
+
+def _cut(nodes: int, even: bool, breaks: Array) -> compliance.ElasticOperator:
+    return replace(compliance.panels(breaks, nodes), even=even)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -315,7 +319,8 @@ def _stepped_rung(scales: Scales, rtol: float, to_load: float, level: int) -> Ru
 
 def _windows(scales: Scales, resolution: Resolution, to_load: float) -> Windows:
     outer = scales.outer_radius(resolution.extent**2 / 2)
-    half_space = partial(_endless, resolution.nodes, scales.tail_reach, True)
+    tail = (scales.tail_reach,) if math.isfinite(scales.law.decay) else ()  # others act no farther than the cells
+    half_space = partial(_endless if tail else _cut, resolution.nodes, *tail, True)
     return Windows(scales, resolution.finest, resolution.growth, outer, half_space, to_load)
 
 
