@@ -2,9 +2,9 @@
 
 In the order of reading: `trace` (the half-space, from a tolerance to a curve), `stages` (events from one grid to the
 next, and what their changes say of the error), `refinement` (the ladder of ever finer stages), `further_folds` (those
-between the jumps, when they are asked for), `finite_bodies` (the same for bodies with a length, whose operator
-changes with the contact), `windows` (and for laws that end by a step, which moves beside the contact), `sweep` (many curves as arrays), `fold_birth` (the Tabor parameter at which a pair of folds
-is born).
+between the jumps, when they are asked for), `finite_bodies` (the same for bodies with a length, whose operator changes
+with the contact), `windows` (and for laws that end by a step, which moves beside the contact), `sweep` (many curves as
+arrays), `fold_birth` (the Tabor parameter at which a pair of folds is born).
 
 An elastic body without a length of its own is homogeneous, so one compliance matrix serves every contact radius: the
 grid breathes with the contact, the radius joins the unknowns, and the spike of tension at the contact edge, whose width
