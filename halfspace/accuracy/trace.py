@@ -319,8 +319,8 @@ def _stepped_rung(scales: Scales, rtol: float, to_load: float, level: int) -> Ru
 
 def _windows(scales: Scales, resolution: Resolution, to_load: float) -> Windows:
     outer = scales.outer_radius(resolution.extent**2 / 2)
-    tail = (scales.tail_reach,) if math.isfinite(scales.law.decay) else ()  # others act no farther than the cells
-    half_space = partial(_endless if tail else _cut, resolution.nodes, *tail, True)
+    nodes, cut = resolution.nodes, math.isinf(scales.law.decay)  # it acts no farther than the cells
+    half_space = partial(_cut, nodes, True) if cut else partial(_endless, nodes, scales.tail_reach, True)
     return Windows(scales, resolution.finest, resolution.growth, outer, half_space, to_load)
 
 
