@@ -376,6 +376,13 @@ def test_a_curve_goes_on_where_the_step_leaves_a_chart():
         assert ends[cell] - ends[cell - 1] < 0.25 * (radius - edge)  # 1 by other laws
 
 
+@pytest.mark.parametrize("profile", [Hyperboloid(0.3), RoundedPunch(1.0)], ids=str)
+def test_a_sharp_step_is_resolved_under_any_tip(profile):
+    """Without short cells on the axis the central gap erred by 14 times its estimate, and by half the range."""
+    contact = {"tabor": 3.0, "law": Dugdale(0.2), "profile": profile}
+    assert_same(*(halfspace.trace(**contact, rtol=rtol) for rtol in (1e-5, 1e-7)))
+
+
 def test_a_tip_takes_a_hundred_unknowns_more_than_a_paraboloid():
     """With cells of one ratio towards it it took 160, and had the same digits."""
     tip, finer = (halfspace.trace(1.0, profile=Power(1.5), rtol=rtol) for rtol in (1e-6, 1e-8))

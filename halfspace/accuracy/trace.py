@@ -120,8 +120,13 @@ def rings(
     if scales.law.outermost:
         return Rings(_fine_throughout(scales, finest, growth, outer, to_load), centred, math.inf)
     edge = grid.graded(1.0, 2 * length / widest, outer / until, growth=growth)  # as wide from the first
-    inwards = TIP * growth if scales.profile.pointed else growth
+    inwards = _inwards(scales, growth)
     return Rings(grid.towards_axis(centred, first, inwards), grid.towards_axis(edge, first / widest, inwards), until)
+
+
+def _inwards(scales: Scales, growth: float) -> float:
+    """Ratio of neighbouring cells towards the axis."""
+    return TIP * growth if scales.profile.pointed else growth
 
 
 def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float, to_load: float) -> Array:
@@ -321,7 +326,8 @@ def _windows(scales: Scales, resolution: Resolution, to_load: float) -> Windows:
     outer = scales.outer_radius(resolution.extent**2 / 2)
     nodes, cut = resolution.nodes, math.isinf(scales.law.decay)  # it acts no farther than the cells
     half_space = partial(_cut, nodes, True) if cut else partial(_endless, nodes, scales.tail_reach, True)
-    return Windows(scales, resolution.finest, resolution.growth, outer, half_space, to_load)
+    tip, inwards = at_tip(scales.profile, nodes), _inwards(scales, resolution.growth)
+    return Windows(scales, resolution.finest, resolution.growth, outer, half_space, tip, inwards, to_load)
 
 
 def _rule(level: int, doubt: int = 1) -> ErrorRule:

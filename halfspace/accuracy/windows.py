@@ -68,6 +68,8 @@ class Windows(Stage):
         Radius in beta at which the finite cells of grids that are centred on the axis end.
     half_space : callable
         Operator on cells of given ends.
+    tip, inwards : float
+        Length in beta of no more than which the cell on the axis is, and ratio of neighbours towards it.
     to_load : float
         Compressive load in R dgamma up to which the contact may grow.
     """
@@ -77,6 +79,8 @@ class Windows(Stage):
     growth: float
     outer: float
     half_space: Callable[[Array], ElasticOperator]
+    tip: float
+    inwards: float
     to_load: float = COMPRESSION
     made: dict[tuple[bool, int], Window] = field(default_factory=dict, compare=False, repr=False)
 
@@ -138,7 +142,8 @@ class Windows(Stage):
             least, most = min(least - self._reach, extent / 2), min(most - self._reach, extent / 2)
             outside = grid.about(first, (least, most), extent, growth=growth, within=steep, beyond=growth)
         inside[0] = 0.0
-        return np.append(inside, inside[-1] + outside[1:])
+        lines = np.append(inside, inside[-1] + outside[1:])
+        return grid.towards_axis(lines, self.tip / (self._widest if follows else 1.0), self.inwards)
 
     @cached_property
     def _length(self) -> float:
