@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from fem_adhesion.elasticity.condensation import CondensedBody, condense
 from fem_adhesion.elasticity.far_field import FarField
 from fem_adhesion.elasticity.incompressible import stiffness_of
 from fem_adhesion.elasticity.space import Space, cell_stiffness
+from fem_adhesion.materials import LinearElastic
 from fem_adhesion.mesh.spheres import with_contact_to
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator, at_tip
@@ -44,6 +45,8 @@ FAR_FIELDS: Mapping[FarFieldName, FarField] = {
 
 
 TRIANGLE, quadrilateral = ElementTriP2(), cache(ElementQuadP)  # one of each, lest they be evaluated for every mesh
+LENGTHS = 50  # of the cells at the contact edge, to a factor of e
+KEPT = 40  # operators, as many as a curve with its events takes; of some 100 nodes each
 CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated to some 1e-4
 
 
@@ -89,8 +92,9 @@ def mesh_of(scene: Scene, core: Array, how: Discretisation) -> Any:
 
 
 def finest_length(scene: Scene, how: Discretisation) -> float:
-    """Length of the cells at the contact edge in beta."""
-    return scene.scales.edge_cell(how.finest)
+    """Length of the cells at the contact edge in beta; of bodies with a length the nearest of a sequence, to share."""
+    length = scene.scales.edge_cell(how.finest)
+    return float(np.exp(np.round(LENGTHS * np.log(length)) / LENGTHS)) if scene.sized else length
 
 
 def layout_of(scene: Scene, how: Discretisation) -> Layout:
@@ -105,7 +109,8 @@ def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) 
     last = at_equator(scene.tabor, scene.surface, how.degree + 2) if flat else np.inf
     first = at_tip(scene.surface, how.degree + 2)
     make = partial(_made, scene, how)
-    return SizedBody(scene.scales, make, how.finest, how.growth, outer, coordinate, last, to_load, first)
+    finest = finest_length(scene, how) / scene.scales.edge_cell(1.0)
+    return SizedBody(scene.scales, make, finest, how.growth, outer, coordinate, last, to_load, first)
 
 
 def discretised_about(scene: Scene, contact_radius: float, how: Discretisation, source: ContactProblem) -> Discretised:
@@ -142,8 +147,24 @@ def size_for(scales: Scales, rtol: float) -> float:
 
 
 def _made(scene: Scene, how: Discretisation, lines: Array) -> Made:
-    found = discretise(scene, lines, how)
-    return found.operator, found.unknowns
+    if scene.counter:
+        found = discretise(scene, lines, how)
+        return found.operator, found.unknowns
+    outer, _ = layout_of(scene, how)
+    core = lines[: len(lines) - len(outer) + 1].tobytes()
+    if not scene.body.curved or scene.material.area == "projected":
+        return _alone(scene.body, scene.radii[0], core, finest_length(scene, how), how)[:2]
+    body = scene.made_of(LinearElastic(scene.poisson)).body
+    a, unknowns, slopes = _alone(body, scene.radii[0], core, finest_length(scene, how), how)
+    wider = np.hypot(1.0, slopes)
+    return ElasticOperator(a.radii, a.weights * wider, a.compliance * wider, a.cells, a.cell_nodes), unknowns
+
+
+@lru_cache(maxsize=KEPT)
+def _alone(body: Body, R: float, core: bytes, length: float, how: Discretisation) -> tuple[ElasticOperator, int, Array]:
+    """Operator of a body, its unknowns and the slopes of its surface; kept, whatever profile and law act on it."""
+    found = _condensed(body, body.mesh(R, np.frombuffer(core), length, how), how)
+    return found.operator, found.unknowns, found.surface.slopes
 
 
 def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:

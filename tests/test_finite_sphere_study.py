@@ -19,7 +19,7 @@ from processes import alive, wait_until
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene
+from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene, discretise
 from fem_adhesion.common import files
 from fem_adhesion.common.files import NotWritten, open_store
 from fem_adhesion.finite_sphere import cases as finite_sphere_cases
@@ -197,6 +197,20 @@ def test_a_study_killed_under_way_goes_on_without_computing_anything_twice(tmp_p
     assert all(record.status == "solved" for record in records)
     assert len(list(log.iterdir())) - begun == len(CASES) - len(kept)
     assert {tabor: stored_cases(directory)[tabor].stat().st_mtime_ns for tabor in times} == times
+
+
+def test_cases_of_one_body_share_its_operators_and_are_what_they_are_alone():
+    """Whatever is in the store of operators, a case has the same numbers, to the last digit."""
+    models = ("finite_body", "sphere", "surface_traction")
+    cases = [case_of(name, 1.0, 1e4, 0.3, 1e-3) for name in models]
+    alone, made = [], []
+    for case in cases:
+        discretise._alone.cache_clear()
+        alone.append(finite_sphere_cases.compute(case).values)
+        made.append(discretise._alone.cache_info().misses)
+    discretise._alone.cache_clear()
+    assert [record.values for record in run(cases, None, jobs=1)] == alone
+    assert discretise._alone.cache_info().misses < 0.7 * sum(made)
 
 
 def test_a_study_that_is_complete_computes_nothing(tmp_path):

@@ -261,7 +261,7 @@ def test_meshes_for_one_chart_have_the_same_cells(tabor, ratio):
 
 
 def test_an_event_that_moves_out_of_a_window_is_solved_for_on_an_operator_of_its_own():
-    path = halfspace.trace(1.0, profile=Sphere(30.0), rtol=1e-2)
+    path = halfspace.trace(1.0, profile=Sphere(100.0), rtol=1e-2)
     coarse, stage = path.stages[0]["pull_off"], replace(path.finest, window=1e-7, made=[])
     (found,) = on_all({"pull_off": coarse}, stage).values()
     before, after = (float(event.point.observables[CONTACT_RADIUS]) for event in (coarse, found))

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine
 
-from fem_adhesion.elasticity.space import Space, reference_functions
+from fem_adhesion.elasticity.space import Space, quadrature, reference_functions
 from halfspace.values import Array, Index, Valued
 
 
@@ -35,7 +34,7 @@ def trace_on(space: Space, name: str, points: int) -> Trace:
     """Evaluate a space at so many Gauss points on each facet of a named boundary."""
     mesh, functions = space.mesh, space.boundary_functions(name)
     facets = mesh.boundaries[name]
-    cells, (X, weights) = mesh.f2t[0, facets], get_quadrature(RefLine, 2 * points - 1)
+    cells, (X, weights) = mesh.f2t[0, facets], quadrature(RefLine, 2 * points - 1)
     ends = [np.argmax(mesh.t[:, cells] == vertex, axis=0) for vertex in mesh.facets[:, facets]]
     places, normals = np.empty((2, 2, cells.size, points))
     lengths = np.empty((cells.size, points))

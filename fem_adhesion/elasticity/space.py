@@ -49,12 +49,8 @@ class Space(Valued):
 
     @cached_property
     def components(self) -> Index:
-        """Unknowns u_r (row 0) and u_z (row 1) that belong to each scalar function, (2, functions)."""
-        by_turns = np.asarray(self.dofs.element_dofs, dtype=np.intp)
-        pairs = np.empty((2, self.scalar_dofs.N), dtype=np.intp)
-        pairs[0, self.scalar_dofs.element_dofs] = by_turns[0::2]
-        pairs[1, self.scalar_dofs.element_dofs] = by_turns[1::2]
-        return pairs
+        """Unknowns u_r (row 0) and u_z (row 1) that belong to each scalar function, (2, functions): by turns."""
+        return np.arange(2 * int(self.scalar_dofs.N)).reshape(-1, 2).T
 
     @cached_property
     def cell_dofs(self) -> Index:
@@ -68,12 +64,15 @@ class Space(Valued):
 
     def boundary_functions(self, name: str) -> Index:
         """Return the numbers of the scalar functions that do not vanish on the named boundary, ascending."""
-        return np.asarray(self.scalar_dofs.get_facet_dofs(self.mesh.boundaries[name]).all(), dtype=np.intp)
+        dofs, facets = self.scalar_dofs, self.mesh.boundaries[name]
+        corners = np.unique(self.mesh.facets[:, facets])
+        along = dofs.facet_dofs[:, facets] if self.element.facet_dofs else dofs.facet_dofs
+        return np.sort(np.concatenate([dofs.nodal_dofs[:, corners].ravel(), along.ravel()]).astype(np.intp))
 
     @cached_property
     def constant(self) -> Array:
         """Coefficients of the field 1, (functions,): which functions those are differs between elements."""
-        X, _ = get_quadrature(self.element, 2 * self.degree)
+        X, _ = quadrature(self.element, 2 * self.degree)
         n = len(self.scalar_dofs.element_dofs)
         values = np.array([self.element.lbasis(X, i)[0] for i in range(n)])
         coefficients = np.empty(self.scalar_dofs.N)
@@ -89,7 +88,7 @@ class Space(Valued):
     @property
     def unknowns(self) -> int:
         """Number of unknowns before any is constrained."""
-        return int(self.dofs.N)
+        return 2 * int(self.scalar_dofs.N)
 
     @property
     def degree(self) -> int:
@@ -152,8 +151,16 @@ def cell_quadrature(space: Space) -> tuple[Array, Array]:
     where u_r = 0, and rational elsewhere. Its error is below a thousandth of the element's own: six more points in each
     direction change the deflection by quadrilaterals of degree 6 by 2e-12, which is in error by 1e-7.
     """
-    points, weights = get_quadrature(space.element, _order(space))
-    return points, weights
+    return quadrature(space.element, _order(space))
+
+
+@lru_cache(maxsize=100)
+def quadrature(domain: Any, order: int) -> tuple[Array, Array]:
+    """Points and weights on an element's reference cell, or on a reference side; kept, and not to be written to."""
+    rule = get_quadrature(domain, order)
+    for numbers in rule:
+        numbers.flags.writeable = False
+    return rule[0], rule[1]
 
 
 def cell_points(space: Space) -> tuple[Array, Array, Array]:

@@ -7,12 +7,14 @@ each result stored as it comes; `fem_adhesion.finite_sphere.table` sets them bes
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from itertools import product
+from typing import Any
 
 from fem_adhesion.common.facts import code_digest
+from fem_adhesion.common.files import Store
 from fem_adhesion.common.jobs import Kept, solve_all
 from fem_adhesion.common.numbers import counted
 from fem_adhesion.finite_sphere.cases import MODELS, Record, SphereCase, case_of, compute, from_plain, to_plain
@@ -25,6 +27,7 @@ POISSON = 0.3
 POISSONS = (0.0, 0.17, 0.45, 0.499)  # besides, at fewer points
 FINITE_STRAIN = ("finite_strain", "finite_strain_normal", "finite_strain_reference")
 SPARSE = ("surface_traction", *FINITE_STRAIN)  # models solved at fewer points
+ONE_BODY = ("finite_body", "sphere", "surface_traction")  # models that differ by what acts on the same body
 QUICK_SPARSE = ("finite_body", "bonded")  # and in a quick study, which has none of the others
 RTOL, QUICK_RTOL = 1e-5, 1e-4
 
@@ -104,7 +107,7 @@ def plan(
 
 
 def _usual_grids(main: Combinations, quick: bool) -> list[Combinations]:
-    """All of a study that nothing particular is asked of: some 700 s of work on two cores, or 20 s if quick."""
+    """All of a study that nothing particular is asked of: some 450 s of work on two cores, or 20 s if quick."""
     dense = tuple(name for name in MODELS if name not in SPARSE)
     if quick:
         few = tuple(name for name in dense if name not in QUICK_SPARSE)
@@ -150,5 +153,26 @@ def code() -> str:
 
 
 KEPT = Kept(asdict, lambda case: case.name, to_plain, from_plain, lambda case, why: Record(case, "died", {}, why))
-run = partial(solve_all, work=compute, kept=KEPT)
-"""Records of cases of a plan: `fem_adhesion.common.jobs.solve_all`."""
+
+
+def run(
+    cases: Sequence[SphereCase], store: Store | None, *, work: Callable[[SphereCase], Record] = compute, **how: Any
+) -> tuple[Record, ...]:
+    """Records of cases of a plan, of each by the work: `fem_adhesion.common.jobs.solve_all`, whose keywords are `how`.
+
+    Cases of one body are worked on one after the other by one process: their operators are mostly the same.
+    """
+    return solve_all(cases, store, work=partial(_in_turn, work=work), kept=KEPT, parts=_of_one_body, **how)
+
+
+def _in_turn(part: Sequence[SphereCase], work: Callable[[SphereCase], Record]) -> list[Record]:
+    return [work(case) for case in part]
+
+
+def _of_one_body(cases: Sequence[SphereCase]) -> list[tuple[SphereCase, ...]]:
+    """Cases in parts of one body each, in the order of their first ones."""
+    parts: dict[object, tuple[SphereCase, ...]] = {}
+    for case in cases:
+        key = (case.tabor, case.radius_ratio, case.poisson, case.rtol) if case.model in ONE_BODY else case
+        parts[key] = (*parts.get(key, ()), case)
+    return list(parts.values())

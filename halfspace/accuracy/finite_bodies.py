@@ -35,7 +35,8 @@ LEAVE = 0.8  # of these cells: the radius at which the chart centred on the axis
 WINDOW, AROUND = 2e-3, 3  # half the logarithmic width of the radii around an event on the lowest rung, operators in it
 WIDE, WIDELY = 0.4, 7  # the same farther around: an event that lies off by a fifth is then told to 1e-6 of its radius
 ACROSS = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
-BESIDE = 0.02  # logarithmic width by which a chart for all events reaches past them: they move from grid to grid
+BESIDE = 0.01  # logarithmic width by which a chart for all events reaches past them: they move from grid to grid
+STEPS = 25  # per unit of the logarithm: where charts begin and end, so that those of like contacts are the same
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
@@ -106,7 +107,7 @@ class SizedBody(Valued):
 
     def curve(self, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
-        widest = min(self.scales.widest_radius(self.to_load), WIDEST * self.scales.profile.end)
+        widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * self.scales.profile.end)
         end, edge = float(self.outer[0]), self.coordinate.of(widest)
         inner = self._inner(2 * self.length / edge, widest)
         outside = grid.geometric(end, self.length, self._growth, self.last)
@@ -173,6 +174,11 @@ def at_tip(profile: Surface, nodes: int) -> float:
     return profile.first_cell(10.0**-nodes) * (nodes**2 if profile.pointed else 1)
 
 
+def step_above(length: float) -> float:
+    """The next length of a geometric sequence that has 1, `STEPS` to a factor of e."""
+    return float(np.exp(np.ceil(STEPS * np.log(length)) / STEPS))
+
+
 def surroundings(rtol: float, level: int) -> tuple[float, int]:
     """Half the logarithmic width of the radii around an event on a rung, halved on each above it, and operators in it.
 
@@ -223,7 +229,8 @@ class AroundEvents(WhereAsked):
         if not self.across or not radii:
             return
         alone = 1 + sum(b > a * (1 + self.window) for a, b in pairwise(radii))
-        middle, window = float(np.sqrt(radii[0] * radii[-1])), float(np.log(radii[-1] / radii[0])) / 2 + BESIDE
+        least, most = 1 / step_above(np.exp(BESIDE) / radii[0]), step_above(np.exp(BESIDE) * radii[-1])
+        middle, window = float(np.sqrt(least * most)), float(np.log(most / least)) / 2
         if (count := self.across(middle, window)) < alone * self.count:
             self._made_around(middle, window, count)
 
