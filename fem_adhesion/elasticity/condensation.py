@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -12,7 +13,6 @@ from scipy.linalg.blas import dtrsm
 from fem_adhesion.elasticity.boundaries import trace_on
 from fem_adhesion.elasticity.elimination import (
     Factors,
-    Front,
     Region,
     dissected,
     eliminate,
@@ -20,8 +20,9 @@ from fem_adhesion.elasticity.elimination import (
     factor,
     mirrored,
     reduced_cells,
+    reduced_unknowns,
 )
-from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load
+from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import CellStiffness, Space, cell_stiffness, ring_measure, scatter
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
@@ -33,8 +34,8 @@ class Skeleton(Valued):
     """Stiffness of the unknowns shared between cells; those interior to one cell are eliminated.
 
     `cells` (cells, n_o, n_o) is the stiffness of each cell without its interior unknowns, `whole` (cells, 2 n, 2 n) the
-    same with them. `dofs` (2 n, cells) are the numbers of a cell's unknowns among all N, the size; `inner` (n_i,) and
-    `outer` (n_o,) the positions of the interior and of the shared ones among those of a cell.
+    same with them. `dofs` (2 n, cells) are the numbers of a cell's unknowns among all N, `inner` (n_i,) and `outer`
+    (n_o,) the positions of the interior and of the shared ones among those of a cell.
     """
 
     cells: Array
@@ -42,25 +43,50 @@ class Skeleton(Valued):
     dofs: Index
     inner: Index
     outer: Index
-    size: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Dissection(Valued):
+    """How all unknowns of a body are eliminated but those of a surface, whatever the stiffness of its cells.
+
+    The cells of the mesh have the unknowns dofs (k, cells), of which those at the positions `inside` are no other
+    cell's. The exterior leads from all of them to the n reduced ones, interior ones included, see `with_interiors`; the
+    surface (m,) are those that are left.
+    """
+
+    mesh: Any
+    dofs: Index
+    inside: Index
+    exterior: Exterior
+    surface: Index
+
+    def factorised(self, cells: Array) -> Factors:
+        """Eliminate the interior unknowns of all cells, (cells, k, k), then all others but those of the surface."""
+        (regions, beside), outside = self._regions, self._outside
+        cells, unknowns = reduced_cells(cells, self.dofs, self.exterior.reduction)
+        order = np.append(self.inside, outside)
+        interiors, cells = eliminated_by(cells[:, order[:, None], order], unknowns[self.inside].T, unknowns[outside].T)
+        fronts, K = regions.factorised(cells)
+        places = np.searchsorted(regions.unknowns, np.append(beside, self.surface))
+        held = with_exterior(regions, K, self.exterior)[places][:, places]
+        last, stiffness = eliminated_by(held, beside, self.surface)
+        return Factors([interiors, *fronts, last], self.surface, stiffness)
 
     @cached_property
-    def stiffness(self) -> sparse.csc_array:
-        """Of the whole body, numbered as all N unknowns; rows and columns of interior unknowns are empty."""
-        return scatter(self.cells, self.dofs[self.outer], self.size)
-
-    def recovered(self, u: Array) -> Array:
-        """Return the displacement u, (N,), with its interior unknowns filled in."""
-        full = u.copy()
-        full[self._interiors.done] = 0.0
-        self._interiors.recover(full)
-        return full
+    def _regions(self) -> tuple[Region, Index]:
+        """In which the shared unknowns are eliminated, but for the surface's and others that the exterior holds."""
+        kept = np.diff(self.exterior.stiffness.indptr) > 0
+        beside = np.setdiff1d(np.flatnonzero(kept), self.surface)
+        kept[self.surface] = True
+        return dissected(self.mesh, self._unknowns[self._outside], kept), beside
 
     @cached_property
-    def _interiors(self) -> Front:
-        order = np.append(self.inner, self.outer)
-        whole = self.whole[:, order[:, None], order]
-        return eliminated_by(whole, self.dofs[self.inner].T, self.dofs[self.outer].T)[0]
+    def _unknowns(self) -> Index:
+        return reduced_unknowns(self.dofs, self.exterior.reduction)[0]
+
+    @property
+    def _outside(self) -> Index:
+        return np.setdiff1d(np.arange(len(self._unknowns)), self.inside)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -105,8 +131,14 @@ class CondensedBody(Valued):
 
     @cached_property
     def factors(self) -> Factors:
-        """The (n, n) reduced stiffness, factorised for fields inside."""
-        return factorise(self.space, self.skeleton, self.exterior)
+        """The reduced stiffness, factorised for fields inside."""
+        none = np.zeros(0, dtype=np.intp)
+        whole = Dissection(self.space.mesh, self.space.cell_dofs, self.skeleton.inner, self._whole, none)
+        return whole.factorised(self.skeleton.whole)
+
+    @cached_property
+    def _whole(self) -> Exterior:
+        return with_interiors(self.exterior, self.space)
 
     @property
     def unknowns(self) -> int:
@@ -127,19 +159,18 @@ class CondensedBody(Valued):
         return forces
 
     def reduced_displacement(self, pressure: Array) -> Array:
-        """Return the (n,) reduced unknowns; the last one is the point load c if the far field is `point_load`."""
-        x: Array = self.factors.solve(self.exterior.reduction.T @ self.nodal_forces(pressure))
-        return x
+        """Return the reduced unknowns, interior ones first; the last is the point load c if the far field is one."""
+        return self.factors.solve(self._whole.reduction.T @ self.nodal_forces(pressure))
 
     def displacement(self, pressure: Array) -> Array:
         """Return all (N,) displacement unknowns, in beta, interior ones included."""
-        u = self.exterior.reduction @ self.reduced_displacement(pressure)
-        u += self.exterior.rigid_compliance * (self.operator.weights @ pressure) * self.translation
-        return self.skeleton.recovered(u)
+        sunk = self.exterior.rigid_compliance * (self.operator.weights @ pressure)
+        return np.asarray(self._whole.reduction @ self.reduced_displacement(pressure) + sunk * self.translation)
 
     def far_reaction(self, pressure: Array) -> float:
         """Return the upward force with which the exterior holds the far boundary, in E* beta^2: equal to the load."""
-        forces = self.skeleton.stiffness @ self.displacement(pressure) - self.nodal_forces(pressure)
+        K = scatter(self.skeleton.whole, self.space.cell_dofs, self.unknowns)
+        forces = K @ self.displacement(pressure) - self.nodal_forces(pressure)
         far = self.space.components[1, self.space.boundary_functions("far")]
         return float(self.translation[far] @ forces[far])
 
@@ -199,34 +230,22 @@ def eliminate_interiors(space: Space, K: Array) -> Skeleton:
     left = parts[:, :, shared, :, shared].reshape(len(K), outer.size, outer.size)
     for blocks in zip(done, beside, left, strict=True):
         eliminate(*blocks)
-    return Skeleton(mirrored(left), K, space.cell_dofs, inner, outer, space.unknowns)
-
-
-def factorise(space: Space, skeleton: Skeleton, exterior: Exterior) -> Factors:
-    """Return the factorised T' K T + S of the n reduced unknowns."""
-    region, cells = _regions(space, skeleton, exterior, np.zeros(0, dtype=np.intp))
-    fronts, stiffness = region.factorised(cells)
-    return Factors(fronts, region.unknowns, with_exterior(region, stiffness, exterior))
+    return Skeleton(mirrored(left), K, space.cell_dofs, inner, outer)
 
 
 def flexibility(space: Space, skeleton: Skeleton, exterior: Exterior, surface: Index) -> Array:
-    """Displacements (m, m) of the m unknowns on the surface under unit forces on each of them."""
+    """Displacements (m, m) of the m unknowns on the surface under unit forces on each of them.
+
+    Unknowns that the exterior couples, or that move more than one of the body's, are kept to the last with these.
+    """
     rows = exterior.reduction.tocsr()[surface]
-    region, cells = _regions(space, skeleton, exterior, rows.indices.astype(np.intp))
+    cells, unknowns = reduced_cells(skeleton.cells, skeleton.dofs[skeleton.outer], exterior.reduction)
+    last = np.diff(exterior.stiffness.indptr) > 0
+    last[rows.indices] = True
+    region = dissected(space.mesh, unknowns, last)
     lower = factor(with_exterior(region, region.stiffness(cells), exterior))
     half = dtrsm(1.0, lower, rows[:, region.unknowns].T.toarray(), lower=1)
     return np.asarray(half.T @ half)
-
-
-def _regions(space: Space, skeleton: Skeleton, exterior: Exterior, kept: Index) -> tuple[Region, Array]:
-    """Regions in which all reduced unknowns are eliminated but those kept, and the stiffness of their cells.
-
-    Unknowns that the exterior couples, or that move more than one of the body's, are kept to the last with them.
-    """
-    cells, unknowns = reduced_cells(skeleton.cells, skeleton.dofs[skeleton.outer], exterior.reduction)
-    last = np.diff(exterior.stiffness.indptr) > 0
-    last[kept] = True
-    return dissected(space.mesh, unknowns, last), cells
 
 
 def with_exterior(region: Region, stiffness: Array, exterior: Exterior) -> Array:

@@ -22,15 +22,8 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg.lapack import dgetrf, dgetrs
 
-from fem_adhesion.elasticity.condensation import with_exterior
-from fem_adhesion.elasticity.elimination import (
-    Factors,
-    Region,
-    dissected,
-    eliminated_by,
-    reduced_cells,
-    reduced_unknowns,
-)
+from fem_adhesion.elasticity.condensation import Dissection
+from fem_adhesion.elasticity.elimination import Factors
 from fem_adhesion.elasticity.far_field import Exterior
 from fem_adhesion.finite_strain.body import Body
 from halfspace.equilibrium.contact import Solver, count_negative
@@ -164,33 +157,17 @@ class HeldBody(Valued):
         return not self.body.stretch or np.array_equal(tangent.y, y)
 
     def _factorised(self, y: Array) -> Tangent:
-        """Eliminate the interior unknowns of every cell, then all others but those of the surface."""
-        body, reduction, (regions, beside) = self.body, self.exterior.reduction, self._regions
-        cells, unknowns = reduced_cells(body.cell_tangents(self.unknowns(y)), body.cell_dofs.T, reduction)
-        outside = self._outside(unknowns)
-        order = np.append(body.inside, outside)
-        interiors, cells = eliminated_by(cells[:, order[:, None], order], unknowns[body.inside].T, unknowns[outside].T)
-        fronts, K = regions.factorised(cells)
-        places = np.searchsorted(regions.unknowns, np.append(beside, self.surface))
-        held = with_exterior(regions, K, self.exterior)[places][:, places]
-        last, stiffness = eliminated_by(held, beside, self.surface)
-        return Tangent([interiors, *fronts, last], self.surface, stiffness, y.copy())
+        factors = self._dissection.factorised(self.body.cell_tangents(self.unknowns(y)))
+        return Tangent(factors.fronts, factors.left, factors.stiffness, y.copy())
+
+    @cached_property
+    def _dissection(self) -> Dissection:
+        body = self.body
+        return Dissection(body.space.mesh, body.cell_dofs.T, body.inside, self.exterior, self.surface)
 
     @cached_property
     def _transposed(self) -> sparse.csr_array:
         return sparse.csr_array(self.exterior.reduction.T)
-
-    @cached_property
-    def _regions(self) -> tuple[Region, Index]:
-        """In which the shared unknowns are eliminated, but for the surface's and others that the exterior holds."""
-        unknowns, _ = reduced_unknowns(self.body.cell_dofs.T, self.exterior.reduction)
-        kept = np.diff(self.exterior.stiffness.indptr) > 0
-        beside = np.setdiff1d(np.flatnonzero(kept), self.surface)
-        kept[self.surface] = True
-        return dissected(self.body.space.mesh, unknowns[self._outside(unknowns)], kept), beside
-
-    def _outside(self, unknowns: Index) -> Index:
-        return np.setdiff1d(np.arange(len(unknowns)), self.body.inside)
 
 
 def _iterated(product: Callable[[Array], Array], rhs: Array, accuracy: float) -> Array | None:
