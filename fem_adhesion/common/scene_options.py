@@ -114,21 +114,8 @@ def _add_part(group: Group, kind: str, what: str) -> None:
 
 
 MATERIALS = {"small": "linear-elastic", "finite": "neo-hookean"}  # by the strain
-FIELDS = {
-    "radius_ratio": "radius_ratio",
-    "grip": "grip",
-    "cap_angle": "cap_angle",
-    "path": "mesh",
-    "radius": "block_radius",
-    "far_field": "far_field",
-    "thickness": "thickness",
-    "foundation": "foundation",
-    "modulus_ratio": "modulus_ratio",
-    "substrate_poisson": "substrate_poisson",
-    "strata": "strata",
-    "base": "substrate",
-}
-"""Options that say what the fields of a body are."""
+ALIASES = {"path": "mesh", "radius": "block_radius", "base": "substrate"}
+"""Options that say what fields of a body are whose names they do not have."""
 GIVEN_OTHERWISE = ("radius_ratio", "counter_radius", "end")  # of a profile: by options of a body, or by the body
 
 
@@ -248,10 +235,12 @@ def _body(options: argparse.Namespace, values: Mapping[str, Any], material: obje
     """Body of the fields given, none of which it lacks; its lengths are dimensionless."""
     name = _name(options)
     own = _fields(name)
-    for field, option in FIELDS.items():
-        if option != "radius_ratio" and name not in _having(field):
+    for field in dict.fromkeys(field for other in PARTS["body"] for field in _fields(other)):
+        if field not in ("material", "radius_ratio") and name not in _having(field):
+            option = ALIASES.get(field, field)
             refuse(options, (option,), "with " + " or ".join(f"--body {other}" for other in _having(field)))
-    values = {field: values.get(field, getattr(options, option)) for field, option in FIELDS.items() if field in own}
+    asked = [field for field in own if field != "material"]
+    values = {field: values.get(field, getattr(options, ALIASES.get(field, field))) for field in asked}
     for field, value in values.items():
         if value is None and own[field].default is MISSING:
             raise InputError(f'{field} = None for body = "{name}", limit: {LACKED.get(field, "a number; give R/eps")}')

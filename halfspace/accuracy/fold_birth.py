@@ -70,14 +70,18 @@ def born(birth: Birth, problem_at: Callable[[float], Traceable]) -> float:
 
 def _least_slope(birth: Birth, problem: Traceable) -> float:
     """Least slope of the approach over the gap, positive before the birth and negative after it."""
-    x = approached(problem, birth.gaps[1])
     sign = -1 if birth.falling else 1
+    return _least(problem, birth.gaps, lambda rates: sign * rates[APPROACH] / rates[CENTRAL_GAP], 1e-5)
 
-    def slope(gap: float) -> float:
-        rates = at_gap(problem, x, gap).rates
-        return float(sign * rates[APPROACH] / rates[CENTRAL_GAP])
 
-    return float(minimize_scalar(slope, bounds=birth.gaps, method="bounded", options={"xatol": 1e-5}).fun)
+def _least(problem: Traceable, gaps: tuple[float, float], slope: Callable[[Array], float], xtol: float) -> float:
+    """Least slope, of the rates along the curve, between two central gaps, at a gap known to a tolerance."""
+    x = approached(problem, gaps[1])
+
+    def at(gap: float) -> float:
+        return float(slope(at_gap(problem, x, gap).rates))
+
+    return float(minimize_scalar(at, bounds=gaps, method="bounded", options={"xatol": xtol}).fun)
 
 
 def critical_stiffness(tabor: float, *, rtol: float = 1e-7) -> float:
@@ -86,14 +90,7 @@ def critical_stiffness(tabor: float, *, rtol: float = 1e-7) -> float:
     It grows from 32 pi/(9 sqrt 3) * 2/sqrt 3 = 6.45 for a rigid contact ([G97] 1.3) to infinity at the critical Tabor
     parameter, `tabor_of` (FIRST), where fixed grips begin to jump as well.
     """
-    problem = _centred(tabor, rtol)
-    x = approached(problem, STEEPEST[1])
-
-    def slope(gap: float) -> float:
-        rates = at_gap(problem, x, gap).rates
-        return float(rates[LOAD] / rates[APPROACH])
-
-    return -float(minimize_scalar(slope, bounds=STEEPEST, method="bounded", options={"xatol": 1e-7}).fun)
+    return -_least(_centred(tabor, rtol), STEEPEST, lambda rates: rates[LOAD] / rates[APPROACH], 1e-7)
 
 
 def _centred(tabor: float, rtol: float) -> Traceable:
