@@ -15,8 +15,7 @@ from halfspace.accuracy.fold_birth import critical_stiffness
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import moved
 from halfspace.equilibrium.contact import LOAD
-from halfspace.equilibrium.devices import cycle, energy_lost, jumps
-from halfspace.equilibrium.reach import reaching
+from halfspace.equilibrium.devices import cycle, energy_lost, jumps, reaching
 from halfspace.equilibrium.search import find_events
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms

@@ -15,8 +15,7 @@ from fem_adhesion.common import style
 from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.reach import reaching
+from halfspace.equilibrium.devices import cycle, reaching
 from halfspace.scaling import Units
 from halfspace.values import Array
 

@@ -16,7 +16,7 @@ from fem_adhesion.curve.lines import Frame
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.fields import is_same_contact
 from fem_adhesion.scene import Scene
-from halfspace.equilibrium.reach import reaching
+from halfspace.equilibrium.devices import reaching
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Paraboloid, Sphere
 from halfspace.profiles.indentation import jkr_approach, jkr_load

@@ -15,9 +15,8 @@ from fem_adhesion.common.numbers import engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.curve import lines
 from fem_adhesion.curve.solve import EVENT_QUANTITIES, Curves, Scale
-from halfspace.equilibrium.devices import Cycle
+from halfspace.equilibrium.devices import Cycle, reaching
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
-from halfspace.equilibrium.reach import reaching
 from halfspace.laws import LENNARD_JONES
 from halfspace.values import Array, Estimate
 

@@ -20,16 +20,17 @@ from types import MappingProxyType
 
 import numpy as np
 
+from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import Stage, metric_for, settled, transfer
+from halfspace.equilibrium.charts import Stage, metric_for, separated, settled, transfer
 from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located
-from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import FOLDS, ErrorRule, Event, Tolerance, approach_scale, estimate_event
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Segment, make_point
-from halfspace.equilibrium.reach import reaching, widened
 from halfspace.equilibrium.search import states
+from halfspace.equilibrium.states import measured
 from halfspace.errors import InputError, NotConverged
 from halfspace.limits import require_number
 from halfspace.values import Array, Estimate
@@ -326,3 +327,43 @@ def _by_base(others: Sequence[JumpStates], fine: JumpStates, compliance: float) 
 def _energy(state: Located, compliance: float) -> float:
     """E + W^2/(2k)."""
     return state.problem.energy(state.point.x) + float(compliance * state.point.observables[LOAD] ** 2 / 2)
+
+
+# How far the grids must go: a soft apparatus jumps on from beyond the curve's first point
+
+FARTHER, NEARER = 1.5, 1.1  # margins by which the points added to a curve reach past the jump and past its beginning
+POINTS = 12  # so added
+WIDTHS = 1.7  # of the attraction, where the undeformed gap has doubled: what cells should cover but the infinite one
+
+
+def reaching(path: EquilibriumPath, stiffness: float) -> EquilibriumPath:
+    """Extend a curve to the separation from which an apparatus of the given stiffness jumps on, if it has to be."""
+    first = path.segments[0]
+    jump = first.problem.interface.scales.rigid_jump_on(stiffness)
+    if jump > float(first.points[0].observables[APPROACH]) / NEARER:
+        return path
+    return replace(path, segments=(_far_segment(first, jump), *path.segments))
+
+
+def widened(problem: Traceable, approach: float) -> Traceable:
+    """Problem whose cells cover the attraction at a separation, which widens as its root: the same if they do already.
+
+    So are those whose grid follows the contact, or whose surface law does not act to infinity.
+    """
+    if not isinstance(problem, ContactProblem) or not isinstance(problem.operator, ElasticOperator):
+        return problem
+    body, h, scales = problem.operator, 1 - approach, problem.scales
+    reach = max(scales.radius_at(WIDTHS**2 * max(h, 0.0)) / body.extent, scales.tail_reach)
+    if not body.beyond.size or reach <= scales.tail_reach:
+        return problem
+    nodes = min(body.beyond.size, body.cell_nodes.shape[1])
+    return replace(problem, operator=body.widened(nodes, reach))
+
+
+def _far_segment(first: Segment, jump: float) -> Segment:
+    """Points of the separated branch from beyond a jump to past the first point of a curve."""
+    far, near = 1 - FARTHER * jump, 1 - float(first.points[0].observables[APPROACH]) / NEARER
+    problem = widened(first.problem, 1 - far)
+    metric = metric_for(problem)
+    points = [separated(problem, approach, metric) for approach in (1 - np.geomspace(far, near, POINTS)).tolist()]
+    return measured(problem, points, metric)
