@@ -26,7 +26,7 @@ from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator, at_tip
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.elastic.operators import FlatCoordinate, SurfaceCoordinate
+from halfspace.elastic.operators import FLAT, SurfaceCoordinate
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.profiles import Surface
@@ -105,7 +105,7 @@ def layout_of(scene: Scene, how: Discretisation) -> Layout:
 def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) -> SizedBody:
     """Bodies of a scene with a length, to be discretised on any grid of their surface, see `SizedBody`."""
     outer, coordinate = layout_of(scene, how)
-    flat = isinstance(coordinate, FlatCoordinate)
+    flat = coordinate == FLAT
     last = at_equator(scene.tabor, scene.surface, how.degree + 2) if flat else np.inf
     first = at_tip(scene.surface, how.degree + 2)
     make = partial(_made, scene, how)

@@ -29,7 +29,7 @@ from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator, collocated
-from halfspace.elastic.operators import FlatCoordinate
+from halfspace.elastic.operators import FLAT
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
@@ -242,7 +242,7 @@ def sized_body(scene: Scene, how: Fineness, to_load: float = COMPRESSION) -> Siz
     """Body of a scene, to be discretised on any cells of its surface."""
     outer = scene.radii[0] * np.append(1 - (1 - (RIM if scene.counter else 0.98)) * CROWDED, 1.0)
     make = partial(_made, scene, how.nodes, counts(scene, how))
-    return SizedBody(scene.scales, make, how.finest, how.growth, outer, FlatCoordinate(), to_load=to_load)
+    return SizedBody(scene.scales, make, how.finest, how.growth, outer, FLAT, to_load=to_load)
 
 
 def _made(scene: Scene, nodes: int, harmonics: list[int], lines: Array) -> Made:

@@ -14,7 +14,7 @@ from fem_adhesion.elasticity.space import Space, cell_quadrature, cell_stiffness
 from fem_adhesion.harmonics import legendre
 from fem_adhesion.mesh import curved, spheres
 from halfspace.elastic import grid
-from halfspace.elastic.operators import Stereographic
+from halfspace.elastic.operators import SurfaceCoordinate
 from halfspace.profiles.sphere import SphereSurface
 
 R = 2.5
@@ -86,17 +86,17 @@ def test_the_meridian_map_is_that_of_the_sphere():
     x = np.linspace(0.01, 2 * R, 50)
     r, z = spheres.stereographic(x + 0j, R)
     np.testing.assert_allclose(np.hypot(r, z + R), R, rtol=1e-14)
-    radius, slope = Stereographic(R).radius(x)
+    radius, slope = SurfaceCoordinate(R).radius(x)
     np.testing.assert_allclose(radius, r, rtol=1e-14)
     h = 1e-5
-    ahead, behind = (Stereographic(R).radius(x + s)[0] for s in (h, -h))
+    ahead, behind = (SurfaceCoordinate(R).radius(x + s)[0] for s in (h, -h))
     np.testing.assert_allclose(slope, (ahead - behind) / (2 * h), atol=1e-9)
 
 
 @pytest.mark.parametrize("area", ["projected", "surface"])
 def test_the_density_of_a_ring_and_its_derivative(area):
     x, h = np.linspace(0.01, 2 * R, 50), 1e-5
-    coordinate = Stereographic(R, area)
+    coordinate = SurfaceCoordinate(R, area)
     (r, slope), (ring, bend) = coordinate.radius(x), coordinate.ring(x)
     arc = slope if area == "projected" else 1 / (1 + (x / (2 * R)) ** 2)  # dr/dx or ds/dx
     np.testing.assert_allclose(ring, r * arc, rtol=1e-12, atol=1e-14)

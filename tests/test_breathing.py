@@ -11,11 +11,11 @@ from fem_adhesion.mesh import spheres
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import (
-    FlatCoordinate,
+    FLAT,
     Homogeneous,
     Interpolated,
     MovingGrid,
-    Stereographic,
+    SurfaceCoordinate,
     chebyshev_radii,
 )
 from halfspace.equilibrium.charts import Chart, trace_charts
@@ -31,7 +31,7 @@ EDGE = 1.5  # contact radius at which operators are compared, between those that
 def half_space_grid():
     """Cells that follow the edge and end at R, fixed: so that the kernel on them is not homogeneous."""
     inner, outer = np.array([0.0, 0.6, 0.9, 1.0]), np.array([0.1, 0.3, 1.0])
-    return MovingGrid(np.concatenate([0 * inner, R * outer]), np.concatenate([inner, 1 - outer]), FlatCoordinate())
+    return MovingGrid(np.concatenate([0 * inner, R * outer]), np.concatenate([inner, 1 - outer]), FLAT)
 
 
 def half_space(lines):
@@ -43,7 +43,7 @@ def hemisphere_grid(area):
     inner, beyond = np.array([0.0, 0.6, 1.0]), np.array([0.1, 0.25, 0.5, 1.0])
     fixed = np.concatenate([0 * inner, core * beyond, outer])
     moving = np.concatenate([inner, 1 - beyond, 0 * outer])
-    return MovingGrid(fixed, moving, Stereographic(R, area))
+    return MovingGrid(fixed, moving, SurfaceCoordinate(R, area))
 
 
 def hemisphere(area):
@@ -173,7 +173,7 @@ def test_a_half_space_has_the_same_events_whether_homogeneous_or_interpolated():
     operator = charts[1].problem.operator
     inner = operator.unit.finite
     lines = inner.cells
-    moving = MovingGrid(0 * lines, lines, FlatCoordinate())
+    moving = MovingGrid(0 * lines, lines, FLAT)
     scales = np.array([3.0, 0.5])
     made = [compliance.panels(a * lines, operator.unit.cell_nodes.shape[1]) for a in scales]
     other = Chart(ContactProblem(Interpolated(scales, made, moving), 1.0), charts[1].unknowns)

@@ -15,7 +15,7 @@ from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
 from fem_adhesion.crosscheck.weak_bodies import contacts
 from fem_adhesion.elasticity import space
 from fem_adhesion.weak_form.contact import LENNARD_JONES
-from halfspace.elastic.operators import Stereographic
+from halfspace.elastic.operators import SurfaceCoordinate
 from halfspace.errors import InputError
 from halfspace.profiles import Paraboloid, Sphere
 
@@ -173,7 +173,7 @@ def test_a_defect_of_the_finite_elements_is_rejected(defect, grip, monkeypatch):
 def test_harmonics_take_the_rim_of_a_pair_as_the_finite_elements_do():
     from fem_adhesion.mesh.spheres import CORE
 
-    assert Stereographic(3.0).radius(np.array(3.0 * CORE))[0] == pytest.approx(3.0 * harmonics.RIM, rel=1e-12)
+    assert SurfaceCoordinate(3.0).radius(np.array(3.0 * CORE))[0] == pytest.approx(3.0 * harmonics.RIM, rel=1e-12)
 
 
 def test_harmonics_refuse_a_spike_that_takes_too_many():

@@ -17,7 +17,7 @@ from fem_adhesion.mesh.file import read_body
 from fem_adhesion.mesh.held_sphere import held_sphere, rings_at_equator
 from fem_adhesion.mesh.spheres import CORE, DEPTH, contact_ends, hemisphere
 from halfspace.elastic import grid
-from halfspace.elastic.operators import Stereographic
+from halfspace.elastic.operators import SurfaceCoordinate
 
 NU, R = 0.3, 30.0
 CAPS = (1.0, 30.0, 75.0, 88.0, 90.0)  # by lines, in the core, beside it, by rings about the equator, at the equator
@@ -92,7 +92,7 @@ def test_rim_of_the_cap_is_where_its_facets_end(cap_angle):
 def test_contact_ends_are_those_of_the_cells(cap_angle):
     surface = contact_surface(Space(sphere(cap_angle), ElementQuadP(3)), 5)
     x = np.concatenate([lines()[0], contact_ends(R, rings_at_equator(R, cap_angle))[1:]])
-    assert surface.cells == pytest.approx(Stereographic(R).radius(x)[0], rel=1e-12, abs=1e-12)
+    assert surface.cells == pytest.approx(SurfaceCoordinate(R).radius(x)[0], rel=1e-12, abs=1e-12)
     assert np.all(surface.weights > 0)
 
 

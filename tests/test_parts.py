@@ -15,7 +15,7 @@ from fem_adhesion.mesh.block import tensor_grid
 from fem_adhesion.registry import name_of, part_from, record_of
 from halfspace import Stratum, Substrate
 from halfspace.elastic import grid
-from halfspace.elastic.operators import FlatCoordinate
+from halfspace.elastic.operators import FLAT
 from halfspace.profiles import Paraboloid, Sphere
 
 
@@ -25,7 +25,7 @@ class Drum(Held):
 
     def layout(self, R, how):  # noqa: ARG002
         """Flat, up to its rim."""
-        return np.array([R]), FlatCoordinate()
+        return np.array([R]), FLAT
 
     def mesh(self, R, lines, length, how):
         """Free at its side."""

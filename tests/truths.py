@@ -20,7 +20,7 @@ from halfspace.accuracy.stages import Charted, Standing
 from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.elastic import compliance
 from halfspace.elastic.layered import images_of, layered_panels
-from halfspace.elastic.operators import FlatCoordinate
+from halfspace.elastic.operators import FLAT
 from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.events import numbered
@@ -71,7 +71,7 @@ def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
     gap = between_spheres(float(np.sqrt(radius_ratio / tabor)), counter_radius)
     scales, outer = Scales(tabor, profile=gap), np.array([gap.end])
     return [
-        standing(SizedBody(scales, partial(_panels, nodes), *how, outer, FlatCoordinate(), last * gap.end))
+        standing(SizedBody(scales, partial(_panels, nodes), *how, outer, FLAT, last * gap.end))
         for nodes, *how, last in ((14, 0.45, 2.5, 1e-7), (16, 0.35, 2.2, 1e-8))
     ]
 
@@ -83,7 +83,7 @@ def layered(tabor, body):
     for nodes, finest, growth, far, spacing in hows:
         images = images_of(body, spacing)
         make, outer = partial(_layered_panels, images, nodes), np.array([far / np.sqrt(tabor)])
-        stages.append(standing(SizedBody(Scales(tabor, body=body), make, finest, growth, outer, FlatCoordinate())))
+        stages.append(standing(SizedBody(Scales(tabor, body=body), make, finest, growth, outer, FLAT)))
     return stages
 
 

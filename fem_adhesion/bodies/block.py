@@ -10,7 +10,7 @@ import numpy as np
 
 from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout, SolverName
 from halfspace.elastic import grid
-from halfspace.elastic.operators import FlatCoordinate
+from halfspace.elastic.operators import FLAT
 from halfspace.errors import InputError
 from halfspace.limits import require_fixed_mesh, require_one_of, require_radius
 from halfspace.values import Array, keep
@@ -62,7 +62,7 @@ class Block(Body):
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
         """Its surface ends where it does."""
-        return np.array([self.radius]), FlatCoordinate()
+        return np.array([self.radius]), FLAT
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
         """Block as large as the lines."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout, SolverName
 from halfspace.elastic import grid
-from halfspace.elastic.operators import FlatCoordinate
+from halfspace.elastic.operators import FLAT
 from halfspace.values import Array
 
 BEYOND = 1e3  # size of the mesh in radii of a sphere that meets it
@@ -32,7 +32,7 @@ class HalfSpace(Body):
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
         """Cells up to the end of the surface over it."""
-        return np.array([R]), FlatCoordinate()
+        return np.array([R]), FLAT
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Block as large as the lines or, where the law acts only as far as a surface reaches, larger than that."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from fem_adhesion.bodies.body import Discretisation, Held, Layout
-from halfspace.elastic.operators import Stereographic
+from halfspace.elastic.operators import SurfaceCoordinate
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, keep
 
@@ -41,7 +41,7 @@ class HeldSphere(Held):
         from fem_adhesion.mesh.held_sphere import rings_at_equator
         from fem_adhesion.mesh.spheres import contact_ends
 
-        return contact_ends(R, rings_at_equator(R, self.cap_angle)), Stereographic(R, self.material.area)
+        return contact_ends(R, rings_at_equator(R, self.cap_angle)), SurfaceCoordinate(R, self.material.area)
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Graded from the contact, and towards the rim of the cap."""

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation, Held, Layout, SolverName
-from halfspace.elastic.operators import Stereographic
+from halfspace.elastic.operators import SurfaceCoordinate
 from halfspace.values import Array
 
 RINGS = 0.2  # ratio of the rings around a singular corner
@@ -48,7 +48,7 @@ class Hemisphere(Held):
         """Layers and rings beyond the core."""
         from fem_adhesion.mesh.spheres import contact_ends
 
-        return contact_ends(R, self.rings(how)), Stereographic(R, self.material.area)
+        return contact_ends(R, self.rings(how)), SurfaceCoordinate(R, self.material.area)
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Graded from the contact."""

@@ -13,7 +13,7 @@ import numpy as np
 from fem_adhesion.bodies.body import USUAL, Body, Discretisation, Doubt, FarFieldName, Layout, SolverName
 from fem_adhesion.materials import Elastic
 from halfspace.elastic import grid, layers
-from halfspace.elastic.operators import FlatCoordinate
+from halfspace.elastic.operators import FLAT
 from halfspace.errors import InputError
 from halfspace.limits import require_film, require_poisson, require_thickness
 from halfspace.scales import Scales
@@ -87,7 +87,7 @@ class Stratified(Body):
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
         """Cells up to the end of what attracts, or of the surface over it."""
-        return np.array([R]), FlatCoordinate()
+        return np.array([R]), FLAT
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Cells as deep as the strata are thick, and far beyond if what carries them is a half-space."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation, Held, Layout
-from halfspace.elastic.operators import FlatCoordinate
+from halfspace.elastic.operators import FLAT
 from halfspace.values import Array, keep
 
 
@@ -43,7 +43,7 @@ class Meshed(Held):
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (it is as it is)
         """None: every cell stands still."""
-        return np.array([R]), FlatCoordinate()
+        return np.array([R]), FLAT
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
         """Mesh of the file, every cell cut into four until the contact has as many as there are between the lines."""

@@ -18,7 +18,7 @@ import numpy as np
 from fem_adhesion.mesh.block import with_named_boundaries
 from fem_adhesion.mesh.curved import CurvedQuads, Patch, joined, refined_towards
 from halfspace.elastic import grid
-from halfspace.elastic.operators import Stereographic
+from halfspace.elastic.operators import SurfaceCoordinate
 from halfspace.values import Array, Index, Valued
 
 CORE, DEPTH = 1.7, 0.9
@@ -177,7 +177,7 @@ def _beyond(lines: Array, length: float) -> Array:
 
 def _coordinate_on(R1: float, R2: float) -> Callable[[Array], Array]:
     """Coordinate on the second surface, flat if R2 is infinite, of points at the first one's coordinate s."""
-    first, second = Stereographic(R1), Stereographic(R2)
+    first, second = SurfaceCoordinate(R1), SurfaceCoordinate(R2)
     return lambda s: second.along(first.radius(s)[0])
 
 

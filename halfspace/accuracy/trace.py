@@ -34,7 +34,7 @@ from halfspace.accuracy.windows import Windows
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.layered import Images, image_compliance, images_of, layered, layered_panels
 from halfspace.elastic.layers import LayeredBody
-from halfspace.elastic.operators import FlatCoordinate, Homogeneous, NearlyHomogeneous, Stereographic
+from halfspace.elastic.operators import FLAT, Homogeneous, NearlyHomogeneous, SurfaceCoordinate
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -236,7 +236,7 @@ def layered_half_space(
         how.finest,
         how.growth,
         np.array([outer]),
-        FlatCoordinate(),
+        FLAT,
         to_load=to_load,
         images=images,
         rings=lines,
@@ -374,11 +374,11 @@ def _sized_body(
     if images is None:
         R = scales.profile.end
         make, outer = partial(_made_under_sphere, R, resolution.nodes), np.array([2 * R])
-        return SizedBody(scales, make, *how, outer, Stereographic(R), to_load=to_load, first=first)
+        return SizedBody(scales, make, *how, outer, SurfaceCoordinate(R), to_load=to_load, first=first)
     last = at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf
     outer = np.array([scales.profile.end if ends else scales.whole_radius((FAR * resolution.extent) ** 2 / 2)])
     made = partial(_made, images, resolution.nodes)
-    return SizedBody(scales, made, *how, outer, FlatCoordinate(), last, to_load, first)
+    return SizedBody(scales, made, *how, outer, FLAT, last, to_load, first)
 
 
 def _made_under_sphere(R: float, nodes: int, lines: Array) -> Made:

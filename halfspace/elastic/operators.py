@@ -181,48 +181,15 @@ class _Nodes(Valued):
     d_weights: Array
 
 
-class SurfaceCoordinate(Protocol):
-    """A coordinate x along a surface that ascends with the radius r."""
-
-    def of(self, radius: float) -> float:
-        """Coordinate at a radius."""
-        ...
-
-    def radius(self, x: Array) -> tuple[Array, Array]:
-        """Radius r at x and dr/dx."""
-        ...
-
-    def ring(self, x: Array) -> tuple[Array, Array]:
-        """Density r dr/dx of a ring's area, but for 2 pi, and its derivative by x."""
-        ...
-
-
 @dataclass(frozen=True)
-class FlatCoordinate:
-    """On a flat surface: the radius itself."""
+class SurfaceCoordinate:
+    """Coordinate x along the surface of a sphere, stereographic: r = x/(1 + k x^2), k = 1/4R^2, R in beta.
 
-    def of(self, radius: float) -> float:
-        """Coordinate at a radius."""
-        return radius
-
-    def radius(self, x: Array) -> tuple[Array, Array]:
-        """Radius r at x and dr/dx."""
-        return x, np.ones_like(x)
-
-    def ring(self, x: Array) -> tuple[Array, Array]:
-        """Density r dr/dx and its derivative by x."""
-        return x, np.ones_like(x)
-
-
-@dataclass(frozen=True)
-class Stereographic:
-    """Coordinate x along a sphere's surface, the radius on the flat plane: r = x/(1 + k x^2), k = 1/4R^2, R in beta.
-
-    The area is that which the density of a ring's is: "projected" on the plane of the contact, or the sphere's
-    "surface".
+    On a flat one, of infinite R, it is the radius itself. The area is that which the density of a ring's is:
+    "projected" on the plane of the contact, or the sphere's "surface".
     """
 
-    R: float
+    R: float = np.inf
     area: str = "projected"
 
     def of(self, radius: float) -> float:
@@ -245,6 +212,9 @@ class Stereographic:
         if self.area == "surface":
             return np.asarray(x / (1 + t) ** 2), np.asarray((1 - 3 * t) / (1 + t) ** 3)
         return np.asarray(x * (1 - t) / (1 + t) ** 3), np.asarray((1 - 8 * t + 3 * t**2) / (1 + t) ** 4)
+
+
+FLAT = SurfaceCoordinate()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
