@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from scipy.linalg import eigh
@@ -14,8 +16,45 @@ from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
 
+class Operator(ABC):
+    """What a contact problem needs to know of a body."""
+
+    follows_contact: ClassVar[bool] = False
+    """Whether the scale is the contact radius in beta; if not, it is 1."""
+
+    alike: ClassVar[bool] = True
+    """Whether the cells on both sides of the contact edge are, as on a grid that stands still or is scaled."""
+
+    @property
+    def least_radius(self) -> float:
+        """Least contact radius that it serves, in beta."""
+        return 0.0
+
+    @property
+    @abstractmethod
+    def axis_row(self) -> Array:
+        """Row (q,) that interpolates nodal values on the axis."""
+
+    @property
+    @abstractmethod
+    def edge_row(self) -> Array:
+        """Row (q,) that interpolates nodal values at the contact edge of a grid that follows it."""
+
+    @abstractmethod
+    def at(self, scale: float) -> ElasticOperator:
+        """Operator at a contact radius in beta."""
+
+    @abstractmethod
+    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
+        """Derivatives by the scale of radii, weights and the deflection under a pressure, each (q,)."""
+
+    def root(self, scale: float) -> Array:
+        """L, (q, m), with L L^T the symmetric part of w^(1/2) C w^(-1/2)."""
+        return self.at(scale).compliance_root
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class ElasticOperator(Valued):
+class ElasticOperator(Valued, Operator):
     """Elastic half of a contact problem, whatever body or method it comes from.
 
     The surface is cut into rings, the `cells`; inside each, pressure, deflection and gap are
@@ -69,9 +108,6 @@ class ElasticOperator(Valued):
         """Return the body with other cells beyond its extent, see `to_infinity`."""
         return to_infinity(self, nodes, reach)
 
-    # This grid stands still, and serves any contact radius, as far as its cells are fine enough.
-    follows_contact, alike, least_radius = False, True, 0.0
-
     @property
     def edge_row(self) -> Array:
         """Row that interpolates at the contact edge, which a grid that stands still has nowhere in particular."""
@@ -85,10 +121,6 @@ class ElasticOperator(Valued):
         """Derivatives by the scale of radii, weights and deflection: zero."""
         zero = np.zeros(self.radii.size)
         return zero, zero, zero
-
-    def root(self, scale: float) -> Array:  # noqa: ARG002
-        """L, (q, m), with L L^T the symmetric part of w^(1/2) C w^(-1/2)."""
-        return self.compliance_root
 
     @cached_property
     def compliance_root(self) -> Array:

@@ -11,55 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 
-from halfspace.elastic.compliance import ElasticOperator, barycentric, lagrange
+from halfspace.elastic.compliance import ElasticOperator, Operator, barycentric, lagrange
 from halfspace.elastic.grid import gauss_points
 from halfspace.values import Array, Index, Valued
-
-
-class Operator(Protocol):
-    """What a contact problem needs to know of a body; an `ElasticOperator` is one on a grid that stands still."""
-
-    @property
-    def follows_contact(self) -> bool:
-        """Whether the scale is the contact radius in beta; if not, it is 1."""
-        ...
-
-    @property
-    def alike(self) -> bool:
-        """Whether the cells on both sides of the contact edge are, as on a grid that stands still or is scaled."""
-        ...
-
-    @property
-    def least_radius(self) -> float:
-        """Least contact radius that it serves, in beta."""
-        ...
-
-    @property
-    def axis_row(self) -> Array:
-        """Row (q,) that interpolates nodal values on the axis."""
-        ...
-
-    @property
-    def edge_row(self) -> Array:
-        """Row (q,) that interpolates nodal values at the contact edge of a grid that follows it."""
-        ...
-
-    def at(self, scale: float) -> ElasticOperator:
-        """Operator at a contact radius in beta."""
-        ...
-
-    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
-        """Derivatives by the scale of radii, weights and the deflection under a pressure, each (q,)."""
-        ...
-
-    def root(self, scale: float) -> Array:
-        """L, (q, m), with L L^T the symmetric part of w^(1/2) C w^(-1/2)."""
-        ...
-
 
 Made = TypeVar("Made")
 
@@ -78,17 +36,12 @@ class _Latest(Generic[Made]):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Homogeneous(Valued):
+class Homogeneous(Valued, Operator):
     """A body without a length of its own, by its operator at the contact radius 1."""
 
     unit: ElasticOperator
     _latest: _Latest[ElasticOperator] = field(default_factory=_Latest, compare=False, repr=False, kw_only=True)
-    follows_contact = alike = True
-
-    @property
-    def least_radius(self) -> float:
-        """Least contact radius that it serves: any."""
-        return 0.0
+    follows_contact = True
 
     @property
     def axis_row(self) -> Array:
@@ -243,7 +196,7 @@ class MovingGrid(Valued):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Interpolated(Valued):
+class Interpolated(Valued, Operator):
     """A body with a length, or any other, between the contact radii at which its operator is known.
 
     With C = A w the compliance, the symmetric kernel max(r_i, r_j) A_ij, of order one at every radius and exact for a
@@ -295,10 +248,6 @@ class Interpolated(Valued):
         """Which of two nodes is farther out, (q, q)."""
         order = np.arange(self.operators[0].radii.size)
         return np.maximum.outer(order, order)
-
-    def root(self, scale: float) -> Array:
-        """Square root of the balanced compliance."""
-        return self.at(scale).compliance_root
 
     def _nodes(self, scale: float) -> _Nodes:
         """Gauss's points of the cells at a scale: w = 2 pi r dr/dx dx."""

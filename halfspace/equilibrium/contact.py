@@ -22,8 +22,7 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
-from halfspace.elastic.compliance import ElasticOperator
-from halfspace.elastic.operators import Operator
+from halfspace.elastic.compliance import ElasticOperator, Operator
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
