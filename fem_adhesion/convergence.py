@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -88,29 +89,23 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
 # A half-space without a length, as a block
 
 
-@dataclass(frozen=True)
-class BlockResolution:
+class BlockResolution(NamedTuple):
     """How finely a half-space is discretised, and how far: the size of the block in beta."""
 
     how: Discretisation
     radius: float
 
-    @property
-    def settings(self) -> dict[str, float]:
-        """What was chosen, for a record."""
-        how = self.how
-        return {"degree": how.degree, "finest": how.finest, "growth": how.growth, "radius": self.radius}
-
 
 def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: first the degree of the rung below on a larger block, then one degree more."""
     above, below = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
-    stages = (replace(below, radius=above.radius), above) if level else ()
+    stages = (below._replace(radius=above.radius), above) if level else ()
     charted = tuple(Charted(block_charts(scene, stage, to_load)) for stage in stages)
     curve = partial(block_charts, scene, above, to_load)
     # A block of given size is compared with one other size only, and if both are small most of the error is left.
     rule = ErrorRule(1.0 if block_size(scene) is None else 2.0)
-    return Rung(curve, charted, above.settings, rule=rule)
+    settings = {name: getattr(above.how, name) for name in ("degree", "finest", "growth")}
+    return Rung(curve, charted, settings | {"radius": above.radius}, rule=rule)
 
 
 def resolution_for(scene: Scene, rtol: float, level: int) -> BlockResolution:

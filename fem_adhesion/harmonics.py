@@ -28,13 +28,13 @@ from halfspace.accuracy.finite_bodies import Made, SizedBody, standing
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.compliance import ElasticOperator, collocated
+from halfspace.elastic.compliance import collocated
 from halfspace.elastic.operators import FLAT
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_rtol
-from halfspace.values import Array, Valued
+from halfspace.values import Array
 
 # The sphere
 
@@ -92,44 +92,29 @@ def _deflections(R: float, poisson: float, radii: Array, p: Array) -> Array:
     return np.asarray(R * ((D * sine).T @ polar - (P * x).T @ radial))
 
 
-# Its surface in cells
+# Its surface in cells, in each of which a pressure is a polynomial by Gauss's nodes
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Cells(Valued):
-    """Cells of a surface between lines (m + 1,) in beta from 0; a pressure in each is a polynomial by Gauss's nodes."""
+def coefficients(lines: Array, nodes: int, R: float, harmonics: int) -> Array:
+    """Integrals by dx = d cos(theta) of the nodes' polynomials by the even P_n on a sphere of radius R.
 
-    lines: Array
-    nodes: int
-
-    @property
-    def places(self) -> Array:
-        """Radii of the nodes, (m, nodes)."""
-        return grid.gauss_points(self.lines, self.nodes)[0]
-
-    def operator(self, compliance: Array) -> ElasticOperator:
-        """Operator with a compliance (q, q)."""
-        return collocated(*grid.gauss_points(self.lines, self.nodes), compliance, self.lines)
-
-    def coefficients(self, R: float, harmonics: int) -> Array:
-        """Integrals by dx = d cos(theta) of the nodes' polynomials by the even P_n on a sphere of radius R.
-
-        One more than asked for, (harmonics + 1, q). Each cell has Gauss's points enough for the last.
-        """
-        ends = np.arcsin(np.minimum(self.lines / R, 1.0))
-        rules = [_gauss(a, b, self.nodes, harmonics) for a, b in pairwise(ends)]
-        theta = np.concatenate([points for points, _ in rules])
-        parts = [
-            (np.sin(points) * weights)[:, None] * grid.polynomial(nodes, R * np.sin(points))
-            for (points, weights), nodes in zip(rules, self.places, strict=True)
-        ]
-        cuts = np.cumsum([len(points) for points, _ in rules])[:-1]
-        rows, found = _even(np.cos(theta)), []
-        for first in range(0, harmonics + 1, BLOCK):
-            block = np.array([P for P, _ in islice(rows, min(BLOCK, harmonics + 1 - first))])
-            of_cells = np.split(block, cuts, axis=1)
-            found.append(np.hstack([values @ part for values, part in zip(of_cells, parts, strict=True)]))
-        return np.concatenate(found)
+    The lines (m + 1,), from 0, are the cells' ends in beta. One more than asked for, (harmonics + 1, q). Each cell has
+    Gauss's points enough for the last.
+    """
+    ends = np.arcsin(np.minimum(lines / R, 1.0))
+    rules = [_gauss(a, b, nodes, harmonics) for a, b in pairwise(ends)]
+    theta = np.concatenate([points for points, _ in rules])
+    parts = [
+        (np.sin(points) * weights)[:, None] * grid.polynomial(places, R * np.sin(points))
+        for (points, weights), places in zip(rules, grid.gauss_points(lines, nodes)[0], strict=True)
+    ]
+    cuts = np.cumsum([len(points) for points, _ in rules])[:-1]
+    rows, found = _even(np.cos(theta)), []
+    for first in range(0, harmonics + 1, BLOCK):
+        block = np.array([P for P, _ in islice(rows, min(BLOCK, harmonics + 1 - first))])
+        of_cells = np.split(block, cuts, axis=1)
+        found.append(np.hstack([values @ part for values, part in zip(of_cells, parts, strict=True)]))
+    return np.concatenate(found)
 
 
 BLOCK = 256  # harmonics at a time
@@ -146,14 +131,16 @@ def _gauss(a: float, b: float, nodes: int, harmonics: int) -> tuple[Array, Array
 PIECE, MORE = 30.0, 8  # largest phase of the last harmonic over a rule, in 2 rad, and points that make it converge
 
 
-def sphere_compliance(R: float, poisson: float, cells: Cells, harmonics: int, radii: Array | None = None) -> Array:
+def sphere_compliance(
+    R: float, poisson: float, lines: Array, nodes: int, harmonics: int, radii: Array | None = None
+) -> Array:
     """Compliance of a sphere, E* = 1: deflections at some radii by pressures on the projected area at the nodes.
 
-    The sphere has a radius R in beta and so many even n; the cells are of its surface, or of another sphere's under
-    which it lies. Radii (k,) are those of the nodes unless given.
+    The sphere has a radius R in beta and so many even n; the cells between the lines, with so many nodes each, are of
+    its surface, or of another sphere's under which it lies. Radii (k,) are those of the nodes unless given.
     """
-    at = cells.places.ravel() if radii is None else radii
-    return _deflections(R, poisson, at, cells.coefficients(R, harmonics))
+    at = grid.gauss_points(lines, nodes)[0].ravel() if radii is None else radii
+    return _deflections(R, poisson, at, coefficients(lines, nodes, R, harmonics))
 
 
 # The solver
@@ -247,14 +234,15 @@ def sized_body(scene: Scene, how: Fineness, to_load: float = COMPRESSION) -> Siz
 
 def _made(scene: Scene, nodes: int, harmonics: list[int], lines: Array) -> Made:
     """Sphere, or two bodies whose compliances add."""
-    (R, *others), cells, counter = scene.radii, Cells(lines, nodes), scene.counter
-    found = sphere_compliance(R, scene.poisson, cells, harmonics[0])
+    (R, *others), counter = scene.radii, scene.counter
+    radii, lengths = grid.gauss_points(lines, nodes)
+    found = sphere_compliance(R, scene.poisson, lines, nodes, harmonics[0])
     if counter:
         if math.isinf(others[0]):
             other = compliance.panels(lines, nodes).compliance
         else:
-            other = sphere_compliance(others[0], counter.material.poisson, cells, harmonics[1])
-        yields = cells.places.ravel() < RIM * R
+            other = sphere_compliance(others[0], counter.material.poisson, lines, nodes, harmonics[1])
+        yields = radii.ravel() < RIM * R
         part, rest = scene.shares
         found = (part * found + rest * other) * np.outer(yields, yields)
-    return cells.operator(found), found.shape[0]
+    return collocated(radii, lengths, found, lines), radii.size
