@@ -49,7 +49,8 @@ def test_the_record_has_all_it_promises(compared):
         assert folded[side]["missed"] == {}
         assert set(folded[side]["events"]) == {"pull_off", "jump_on", "jump_off"}
         for event in folded[side]["events"].values():
-            assert set(event) == {"approach", "load", "central_gap", "contact_radius", "approach_error", "load_error"}
+            numbers = ("approach", "load", "central_gap", "contact_radius")
+            assert set(event) == {"name", *numbers, *(f"{number}_error" for number in numbers)}
     assert folded["halfspace"]["events"]["jump_on"]["contact_radius"] is None
     keys = {"quantity", "between", "first", "second", "difference", "error", "budget", "verdict"}
     assert all(keys <= set(row) for row in folded["comparison"])

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from fem_adhesion.common.facts import plain, versions
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import Event, is_fold, tolerance_told
+from halfspace.equilibrium.events import is_fold, tolerance_told
 from halfspace.values import Estimate
 
 if TYPE_CHECKING:
@@ -104,7 +104,6 @@ class Case:
 # What is told of it: a record for machines, tables for the terminal
 
 VERDICTS = ("failed", "disagree", "inconclusive", "agree")  # worst first
-EVENT_KEYS = ("approach", "load", "central_gap", "contact_radius", "approach_error", "load_error")
 EVENT_NAMES = ("pull_off", "jump_on", "jump_off")
 
 
@@ -142,7 +141,7 @@ KEYS = {"half-space": "halfspace", "harmonics": "harmonics", "finite elements": 
 
 def _solution(path: EquilibriumPath) -> dict[str, Any]:
     return {
-        "events": {name: _event(event) for name, event in path.events.items() if name in EVENT_NAMES or is_fold(name)},
+        "events": {name: event for name, event in path.events.items() if name in EVENT_NAMES or is_fold(name)},
         "jumps": path.jumps,
         "rtol": path.rtol,
         "missed": path.missed,
@@ -150,10 +149,6 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
         "seconds": path.seconds,
         "settings": path.settings,
     }
-
-
-def _event(event: Event) -> dict[str, float]:
-    return {key: getattr(event, key) for key in EVENT_KEYS}
 
 
 def _row(row: Row) -> dict[str, Any]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 from scipy import sparse
@@ -38,11 +37,8 @@ class Exterior(Valued):
     rigid_compliance: float = 0.0
 
 
-class FarField(Protocol):
-    """A kind of far boundary: `clamped`, `sliding`, `sheet`, `point_load` or `free`."""
-
-    def __call__(self, space: Space, poisson: float) -> Exterior:
-        """Return the condition for the far boundary of this space's mesh."""
+FarField = Callable[[Space, float], Exterior]
+"""A kind of far boundary, at a Poisson's ratio: `clamped`, `sliding`, `sheet`, `point_load` or `free`."""
 
 
 def made_of(far_field: FarField, material: Elastic) -> FarField:
