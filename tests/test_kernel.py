@@ -102,7 +102,7 @@ def test_a_triangle_is_the_integral_of_the_bands_it_is_stacked_from():
 def test_panels_under_a_sphere_deflect_as_rings_do_up_to_the_equator(count):
     """The pressure jumps there, and a node's image beyond it is near: by rules of 80 points from all of them."""
     R, power = 2.0, 3
-    operator = compliance.panels_under_sphere(R * np.array([0, 0.3, 0.7, 1.2, 2.0]), count, R)
+    operator = compliance.panels(R * np.array([0, 0.3, 0.7, 1.2, 2.0]), count, R)
     x, w = leggauss(80)
     t, w = ((1 + x) / 2) ** 5, w / 2 * 5 * ((1 + x) / 2) ** 4
     for r, found in zip(operator.radii, operator.compliance @ (operator.radii / R) ** power, strict=True):

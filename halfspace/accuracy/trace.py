@@ -382,7 +382,7 @@ def _sized_body(
 
 
 def _made_under_sphere(R: float, nodes: int, lines: Array) -> Made:
-    return replace(compliance.panels_under_sphere(lines, nodes, R), even=True), nodes * (lines.size - 1)
+    return replace(compliance.panels(lines, nodes, R), even=True), nodes * (lines.size - 1)
 
 
 def _made(images: Images, nodes: int, lines: Array) -> Made:

@@ -248,17 +248,23 @@ def _running_products(factors: list[float]) -> list[tuple[float, float]]:
     return running
 
 
-def panels(breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
-    """Half-space under pressures that are polynomials between the breakpoints, collocated at Gauss's points.
+def panels(lines: Array, nodes_per_panel: int, R: float = np.inf) -> ElasticOperator:
+    """Half-space under pressures that are polynomials between lines, collocated at Gauss's points.
 
-    The breakpoints (m + 1,) are the panels' ends from 0 outwards, in beta. With k nodes in a panel, 1 to 16 or
-    InputError, the pressure has degree k - 1 there and may jump from panel to panel.
+    The lines (m + 1,) are the panels' ends from 0 outwards, in beta. With k nodes in a panel, 1 to 16 or InputError,
+    the pressure has degree k - 1 there and may jump from panel to panel. Under a sphere of radius R, up to its equator,
+    it is a polynomial of the coordinate x = 2 R tan(theta/2), and the lines are in that, from 0 to 2 R: at the equator
+    the gap rises as the root of the distance, but smoothly by x; see `halfspace.elastic.kernel.stereographic_ring`.
     """
     if not 1 <= nodes_per_panel <= 16:
         raise InputError(f"nodes_per_panel {nodes_per_panel} is outside 1 to 16; use more panels instead")
-    radii, w = grid.gauss_points(breakpoints, nodes_per_panel)
-    x, _ = grid.gauss_legendre(nodes_per_panel)
-    return collocated(radii, w, panel_integrals(radii.ravel(), breakpoints, x), breakpoints)
+    points, _ = grid.gauss_legendre(nodes_per_panel)
+    x, w = grid.gauss_points(lines, nodes_per_panel)
+    compliance = panel_integrals(x.ravel(), lines, points, stereographic_ring(R))
+    if np.isfinite(R):
+        compliance[-points.size :, -1] = before_equator(x[-1], lines, points, R)
+    p = 1 + (x / (2 * R)) ** 2
+    return collocated(x / p, (2 - p) / p**2 * w, compliance, lines / (1 + (lines / (2 * R)) ** 2))
 
 
 def collocated(radii: Array, lengths: Array, compliance: Array, cells: Array) -> ElasticOperator:
@@ -267,22 +273,6 @@ def collocated(radii: Array, lengths: Array, compliance: Array, cells: Array) ->
     return ElasticOperator(
         radii.ravel(), (2 * np.pi * radii * lengths).ravel(), compliance.reshape(q, q), cells, number
     )
-
-
-def panels_under_sphere(lines: Array, nodes_per_panel: int, R: float) -> ElasticOperator:
-    """Half-space under pressures that are polynomials of a sphere's coordinate, up to its equator, the radius R.
-
-    There the gap rises as the root of the distance, but smoothly by x = 2 R tan(theta/2), in which the panels end at
-    the lines (m + 1,) from 0 to 2 R; see `halfspace.elastic.kernel.stereographic_ring`. Otherwise as `panels`.
-    """
-    points, _ = grid.gauss_legendre(nodes_per_panel)
-    x, w = grid.gauss_points(lines, nodes_per_panel)
-    compliance = panel_integrals(x.ravel(), lines, points, stereographic_ring(R))
-    compliance[-points.size :, -1] = before_equator(x[-1], lines, points, R)
-    p, k = 1 + (x / (2 * R)) ** 2, np.arange(x.size).reshape(x.shape)
-    weights = 2 * np.pi * x * (2 - p) / p**3 * w
-    cells = lines / (1 + (lines / (2 * R)) ** 2)
-    return ElasticOperator((x / p).ravel(), weights.ravel(), compliance.reshape(x.size, -1), cells, k)
 
 
 def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> ElasticOperator:

@@ -53,6 +53,8 @@ def stereographic_ring(R: float) -> Ring:
 
     Its gap is smooth in it, and s - r = (y - x)(1 - x y/4R^2)/[(1 + x^2/4R^2)(1 + y^2/4R^2)].
     """
+    if np.isinf(R):
+        return flat_ring
     k = 1 / (4 * R**2)
 
     def ring(x: Array, y: Array, distance: Array) -> Array:
