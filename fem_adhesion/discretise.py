@@ -6,7 +6,9 @@ The nodes of a pair are those of the first, smaller sphere. Beyond its core, 0.9
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
 from typing import Any
@@ -153,18 +155,30 @@ def _made(scene: Scene, how: Discretisation, lines: Array) -> Made:
     outer, _ = layout_of(scene, how)
     core = lines[: len(lines) - len(outer) + 1].tobytes()
     if not scene.body.curved or scene.material.area == "projected":
-        return _alone(scene.body, scene.radii[0], core, finest_length(scene, how), how)[:2]
+        return _maker.get()(scene.body, scene.radii[0], core, finest_length(scene, how), how)[:2]
     body = scene.made_of(LinearElastic(scene.poisson)).body
-    a, unknowns, slopes = _alone(body, scene.radii[0], core, finest_length(scene, how), how)
+    a, unknowns, slopes = _maker.get()(body, scene.radii[0], core, finest_length(scene, how), how)
     wider = np.hypot(1.0, slopes)
     return ElasticOperator(a.radii, a.weights * wider, a.compliance * wider, a.cells, a.cell_nodes), unknowns
 
 
-@lru_cache(maxsize=KEPT)
 def _alone(body: Body, R: float, core: bytes, length: float, how: Discretisation) -> tuple[ElasticOperator, int, Array]:
-    """Operator of a body, its unknowns and the slopes of its surface; kept, whatever profile and law act on it."""
+    """Operator of a body, its unknowns and the slopes of its surface, whatever profile and law act on it."""
     found = _condensed(body, body.mesh(R, np.frombuffer(core), length, how), how)
     return found.operator, found.unknowns, found.surface.slopes
+
+
+_maker: ContextVar[Callable[..., tuple[ElasticOperator, int, Array]]] = ContextVar("_maker", default=_alone)
+
+
+@contextmanager
+def operators_shared() -> Iterator[None]:
+    """Let all that is solved within make the operator of a body on the same cells once."""
+    token = _maker.set(lru_cache(maxsize=KEPT)(_alone))
+    try:
+        yield
+    finally:
+        _maker.reset(token)
 
 
 def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:
