@@ -29,12 +29,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fem_adhesion.bodies.block import Block
-    from fem_adhesion.bodies.half_space import HalfSpace
-    from fem_adhesion.bodies.held_sphere import HeldSphere
-    from fem_adhesion.bodies.hemisphere import Hemisphere
+    from fem_adhesion.bodies.half_space import Block, HalfSpace
     from fem_adhesion.bodies.layers import Coated, Layer, Layers
     from fem_adhesion.bodies.meshed import Meshed
+    from fem_adhesion.bodies.spheres import HeldSphere, Hemisphere
     from fem_adhesion.convergence import trace
     from fem_adhesion.crosscheck.study import compare
     from fem_adhesion.materials import LinearElastic, NeoHookean
@@ -58,8 +56,8 @@ __all__ = [
 ]
 
 _HOMES = {
-    **{name: f"bodies.{home}" for name, home in (("Block", "block"), ("HalfSpace", "half_space"))},
-    **{name: f"bodies.{home}" for name, home in (("Hemisphere", "hemisphere"), ("HeldSphere", "held_sphere"))},
+    **dict.fromkeys(("Block", "HalfSpace"), "bodies.half_space"),
+    **dict.fromkeys(("HeldSphere", "Hemisphere"), "bodies.spheres"),
     "Meshed": "bodies.meshed",
     **dict.fromkeys(("Coated", "Layer", "Layers"), "bodies.layers"),
     **dict.fromkeys(("LinearElastic", "NeoHookean"), "materials"),

@@ -1,6 +1,6 @@
 """Names of the parts of a scene, as the command line and files have them, and their classes: one table, both ways.
 
-A class is imported when it is first asked for. A new part is a class in a file of its own and a line here.
+A class is imported when it is first asked for. A new part is a class and a line here.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from typing import Any
 PARTS: dict[str, dict[str, Any]] = {
     "body": {
         "half-space": "fem_adhesion.bodies.half_space:HalfSpace",
-        "block": "fem_adhesion.bodies.block:Block",
-        "hemisphere": "fem_adhesion.bodies.hemisphere:Hemisphere",
-        "held-sphere": "fem_adhesion.bodies.held_sphere:HeldSphere",
+        "block": "fem_adhesion.bodies.half_space:Block",
+        "hemisphere": "fem_adhesion.bodies.spheres:Hemisphere",
+        "held-sphere": "fem_adhesion.bodies.spheres:HeldSphere",
         "layer": "fem_adhesion.bodies.layers:Layer",
         "coated": "fem_adhesion.bodies.layers:Coated",
         "layers": "fem_adhesion.bodies.layers:Layers",
@@ -38,11 +38,11 @@ PARTS: dict[str, dict[str, Any]] = {
         "tabulated": "halfspace.laws.tabulated:Tabulated(path)",
     },
     "profile": {
-        "paraboloid": "halfspace.profiles.paraboloid:Paraboloid",
+        "paraboloid": "halfspace.profiles.formulas:Paraboloid",
         "sphere": "halfspace.profiles.sphere:Sphere",
-        "power": "halfspace.profiles.power:Power(k)",
-        "hyperboloid": "halfspace.profiles.hyperboloid:Hyperboloid(b)",
-        "rounded-punch": "halfspace.profiles.rounded_punch:RoundedPunch(flat)",
+        "power": "halfspace.profiles.formulas:Power(k)",
+        "hyperboloid": "halfspace.profiles.formulas:Hyperboloid(b)",
+        "rounded-punch": "halfspace.profiles.formulas:RoundedPunch(flat)",
         "tabulated": "halfspace.profiles.tabulated:Tabulated(path)",
     },
 }

@@ -1,6 +1,6 @@
-"""Elastic bodies, one a file: what each is, and how it becomes a mesh. Nothing else asks which body it is.
+"""Elastic bodies: what each is, and how it becomes a mesh. Nothing else asks which body it is.
 
-`body` says what there is to know of one; `half_space` and `block` are endless or cut off, `layers` lie on a rigid base
-or a half-space, `hemisphere` and `held_sphere` have a length of their own, `meshed` comes from a file. scikit-fem takes
-as long to load as all else, so that it is imported where a mesh is made, not where a body is named.
+`body` says what there is to know of one; a `half_space` is endless or cut off, `layers` lie on a rigid base or a
+half-space, `spheres` have a length of their own, `meshed` comes from a file. scikit-fem takes as long to load as all
+else, so that it is imported where a mesh is made, not where a body is named.
 """

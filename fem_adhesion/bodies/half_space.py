@@ -1,16 +1,21 @@
-"""The elastic half-space."""
+"""The elastic half-space, and the block, which is one that is cut off."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
 from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout, SolverName
 from halfspace.elastic import grid
 from halfspace.elastic.operators import FLAT
-from halfspace.values import Array
+from halfspace.errors import InputError
+from halfspace.limits import require_fixed_mesh, require_one_of, require_radius
+from halfspace.values import Array, keep
+
+BlockFarField = Literal["point_load", "clamped", "free"]
 
 BEYOND = 1e3  # size of the mesh in radii of a sphere that meets it
 PAST_END = 0.02  # length of the first cell beyond the end of the surface over it, in the radius there
@@ -40,7 +45,7 @@ class HalfSpace(Body):
         from fem_adhesion.mesh.spheres import with_contact_to
 
         if np.isinf(R):
-            return tensor_grid(lines, grid.graded(0.0, np.diff(lines).min(), float(lines[-1]), growth=how.growth))
+            return _as_deep_as_wide(lines, how)
         past = grid.geometric((how.beyond - 1) * R, PAST_END * R, how.growth)[1:]
         depths = grid.graded(0.0, length, how.beyond * R, growth=how.growth)
         return with_contact_to(tensor_grid(np.concatenate([lines, R + past]), depths), R)
@@ -58,3 +63,60 @@ class HalfSpace(Body):
 
         depths = grid.graded(0.0, length, BEYOND * smaller, growth=how.growth)
         return block_under(lines, depths, smaller, BEYOND * smaller)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Block(Body):
+    """Block of fixed size under a paraboloid.
+
+    Parameters
+    ----------
+    radius : float
+        Its size L in beta.
+    far_field : {"point_load", "clamped", "free"}
+        What holds it at its far boundary: a half-space beyond it that moves as under a point load, a clamp, or nothing
+        but the uniform traction that balances the load. The last two need a fixed mesh, up to a Tabor parameter of 3.
+    """
+
+    radius: float
+    far_field: BlockFarField = "point_load"
+
+    looks: ClassVar[str] = "elastic block"
+    checked_by: ClassVar[SolverName] = "half-space"
+
+    def __post_init__(self, poisson: float | None) -> None:
+        super().__post_init__(poisson)
+        keep(self, radius=require_radius(self.radius))
+        require_one_of(self.far_field, "far_field", get_args(BlockFarField))
+
+    @property
+    def held(self) -> FarFieldName:
+        """Its far field."""
+        return self.far_field
+
+    @property
+    def told(self) -> list[str]:
+        """Its size, and what holds it."""
+        return [*super().told, f"size {self.radius:g} beta", *([] if self.endless else [self.far_field])]
+
+    def check(self, tabor: float, end: float) -> None:
+        """Refuse a block smaller than its contact, one that needs a mesh too fine, or one under a sphere."""
+        if math.isfinite(end):
+            raise InputError(f"profile that ends at {end:.4g} beta does not go with {self.name}; take a half-space")
+        require_radius(self.radius, tabor)
+        if not self.endless:
+            require_fixed_mesh(tabor)
+
+    def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
+        """Its surface ends where it does."""
+        return np.array([self.radius]), FLAT
+
+    def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
+        """Block as large as the lines."""
+        return _as_deep_as_wide(lines, how)
+
+
+def _as_deep_as_wide(lines: Array, how: Discretisation) -> Any:
+    from fem_adhesion.mesh.block import tensor_grid
+
+    return tensor_grid(lines, grid.graded(0.0, np.diff(lines).min(), float(lines[-1]), growth=how.growth))
