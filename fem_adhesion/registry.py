@@ -30,11 +30,11 @@ PARTS: dict[str, dict[str, Any]] = {
         "neo-hookean": "fem_adhesion.materials:NeoHookean",
     },
     "law": {
-        "power-law": "halfspace.laws.power_law:PowerLaw(attraction, repulsion)",
-        "morse": "halfspace.laws.morse:Morse(k)",
-        "exponential": "halfspace.laws.exponential:Exponential(k, core)",
-        "dlvo": "halfspace.laws.dlvo:Dlvo(charge, screening)",
-        "dugdale": "halfspace.laws.dugdale:Dugdale(width)",
+        "power-law": "halfspace.laws.formulas:PowerLaw(attraction, repulsion)",
+        "morse": "halfspace.laws.formulas:Morse(k)",
+        "exponential": "halfspace.laws.formulas:Exponential(k, core)",
+        "dlvo": "halfspace.laws.formulas:Dlvo(charge, screening)",
+        "dugdale": "halfspace.laws.formulas:Dugdale(width)",
         "tabulated": "halfspace.laws.tabulated:Tabulated(path)",
     },
     "profile": {
