@@ -10,7 +10,7 @@ from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2
 
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.far_field import clamped, free, point_load, sliding, with_interiors
+from fem_adhesion.elasticity.far_field import clamped, free, point_load, sliding
 from fem_adhesion.elasticity.space import Space, cell_stiffness, lame_parameters, scatter
 from fem_adhesion.finite_strain import material
 from fem_adhesion.finite_strain.assembly import finite_strain_problem
@@ -37,9 +37,8 @@ def block(degree=3, fine=0.4):
 
 
 def problem_of(space, stretch, poisson=0.3, convention=VERTICAL, pressure=None, tabor=1.0, far_field=clamped):
-    exterior = with_interiors(far_field(space, poisson), space)
     body = mixed_body(space, poisson, stretch, pressure) if pressure else displacement_body(space, poisson, stretch)
-    return finite_strain_problem(body, exterior, tabor, convention=convention)
+    return finite_strain_problem(body, far_field(space, poisson), tabor, convention=convention)
 
 
 def hemisphere(R, fine=0.6, flat=2.4):
@@ -326,7 +325,7 @@ def sphere():
     space = Space(hemisphere(R), ElementQuadP(3))
     condensed = condense(space, nu, far_field=sliding)
     events = events_of(ContactProblem(condensed.operator, tabor, profile=SphereSurface(R)), condensed.unknowns)
-    body, exterior = displacement_body(space, nu, 1 / R), with_interiors(sliding(space, nu), space)
+    body, exterior = displacement_body(space, nu, 1 / R), sliding(space, nu)
     return finite_strain_problem(body, exterior, tabor, profile=SphereSurface(R), convention=BLEND), events
 
 

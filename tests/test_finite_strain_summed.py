@@ -10,7 +10,7 @@ from scipy.sparse.linalg import splu
 from skfem import ElementQuadP
 
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.far_field import sliding, with_interiors
+from fem_adhesion.elasticity.far_field import sliding
 from fem_adhesion.elasticity.space import Space, cell_quadrature, reference_functions, scatter
 from fem_adhesion.finite_strain.assembly import finite_strain_problem
 from fem_adhesion.finite_strain.body import displacement_body
@@ -44,7 +44,7 @@ def hemisphere(ratio):
     condensed = condense(space, POISSON, far_field=sliding)
     linear = ContactProblem(condensed.operator, TABOR, profile=SphereSurface(R))
     event = find_events(trace_charts((Chart(linear, condensed.unknowns),), 0.5))["pull_off"]
-    exterior, body = with_interiors(sliding(space, POISSON), space), displacement_body(space, POISSON, 1 / R)
+    exterior, body = sliding(space, POISSON), displacement_body(space, POISSON, 1 / R)
     convention = convention_of("projected", POISSON)
     problem = finite_strain_problem(body, exterior, TABOR, profile=SphereSurface(R), convention=convention)
     return SimpleNamespace(problem=problem, event=event, stretch=1 / R)

@@ -51,12 +51,15 @@ def made_of(far_field: FarField, material: Elastic) -> FarField:
     return condition
 
 
-def with_interiors(exterior: Exterior, space: Space) -> Exterior:
-    """Return the condition for a body whose interior unknowns are not eliminated: they lead the reduced ones."""
-    inner = space.interior_dofs
-    T = sparse.csc_array(sparse.hstack([_unit_columns(space, inner), exterior.reduction]))
-    S = sparse.block_diag([sparse.csc_array((len(inner), len(inner))), exterior.stiffness])
-    return Exterior(T, sparse.csc_array(S), exterior.rigid_compliance)
+def with_interiors(exterior: Exterior, space: Space, more: int = 0) -> Exterior:
+    """Return the condition for a body whose interior unknowns are not eliminated: they lead the reduced ones.
+
+    Of the unknowns beyond the displacements, such as pressures, each is a reduced one: so many `more`, the last.
+    """
+    inner, none = space.interior_dofs, sparse.csc_array((more, more))
+    T = sparse.block_diag([sparse.hstack([_unit_columns(space, inner), exterior.reduction]), sparse.eye_array(more)])
+    S = sparse.block_diag([sparse.csc_array((len(inner), len(inner))), exterior.stiffness, none])
+    return Exterior(sparse.csc_array(T), sparse.csc_array(S), exterior.rigid_compliance)
 
 
 def clamped(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (a clamp is one for every material)

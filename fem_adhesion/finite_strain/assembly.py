@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import sparse
 from skfem import ElementQuadP
 
 from fem_adhesion.bodies.body import Discretisation
@@ -54,18 +53,18 @@ def finite_strain_problem(
 ) -> FiniteStrainProblem:
     """Put a body under a rigid flat wall that attracts it.
 
-    The body is a `displacement_body` or `mixed_body` of `fem_adhesion.finite_strain.body`; the exterior is of all
-    displacement unknowns of its space, interior ones included: see `fem_adhesion.elasticity.far_field.with_interiors`.
-    tabor and law are as in `halfspace.equilibrium.contact.ContactProblem`. The profile is the height of the body's
-    undeformed surface over its pole, carried along by its points; that of a block is a perturbation of its flat
-    surface, as in the linear body. The convention says what the law's traction is counted per, and its direction. Of
-    Gauss's points there are p + 2 on each contact facet unless given. InputError if the exterior holds the body by a
-    spring that has to be taken off again (`free`).
+    The body is a `displacement_body` or `mixed_body` of `fem_adhesion.finite_strain.body`, the exterior one of
+    `fem_adhesion.elasticity.far_field` on its space; tabor and law are as in
+    `halfspace.equilibrium.contact.ContactProblem`. The profile is the height of the body's undeformed surface over its
+    pole, carried along by its points; that of a block is a perturbation of its flat surface, as in the linear body. The
+    convention says what the law's traction is counted per, and its direction. Of Gauss's points there are p + 2 on each
+    contact facet unless given. InputError if the exterior holds the body by a spring that has to be taken off again
+    (`free`).
     """
     if exterior.rigid_compliance:
         raise InputError("a far field with a rigid_compliance is known to `condense` only; use point_load or clamped")
-    whole = _with_pressures(exterior, body)
     space = body.space
+    whole = with_interiors(exterior, space, body.unknowns - space.unknowns)
     surface = contact_surface(space, whole, space.degree + 2 if points is None else points)
     interface = ContactProblem(surface.rigid, tabor, law, profile)
     return FiniteStrainProblem(HeldBody(body, whole, surface.unknowns), surface, interface, convention)
@@ -85,16 +84,8 @@ def assemble(
     solutions, the rest and the errors as of `finite_strain_problem`; the far field is `point_load` or `clamped`.
     InputError, too, if poisson is out of range.
     """
-    body, exterior = displacement_body(space, poisson, 0.0), with_interiors(far_field(space, poisson), space)
+    body, exterior = displacement_body(space, poisson, 0.0), far_field(space, poisson)
     return finite_strain_problem(body, exterior, tabor, convention=Convention(0.0, 0.0), points=points)
-
-
-def _with_pressures(exterior: Exterior, body: Body) -> Exterior:
-    """Let the unknowns beyond the displacements be reduced unknowns themselves."""
-    more = body.unknowns - body.space.unknowns
-    T = sparse.block_diag([exterior.reduction, sparse.eye_array(more)])
-    S = sparse.block_diag([exterior.stiffness, sparse.csc_array((more, more))])
-    return Exterior(sparse.csc_array(T), sparse.csc_array(S))
 
 
 # Of a scene
@@ -128,10 +119,9 @@ class ScenesBody(Valued):
         first, last = (coordinate.of(min(radius, self.farthest)) for radius in (inner, outer))
         lines = grid.graded(first, self.length, float(ends[0]), growth=how.growth, until=last)
         space = Space(mesh_of(scene, lines, how), ElementQuadP(how.degree))
-        exterior = with_interiors(FAR_FIELDS[scene.body.held](space, scene.poisson), space)
         return finite_strain_problem(
             material_body(space, scene.poisson, 1 / R),
-            exterior,
+            FAR_FIELDS[scene.body.held](space, scene.poisson),
             scene.tabor,
             profile=scene.surface,
             convention=convention_of(scene.material.traction, scene.poisson),
