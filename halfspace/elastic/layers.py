@@ -26,7 +26,7 @@ from typing import Literal, Protocol, get_args, runtime_checkable
 import numpy as np
 
 from halfspace.errors import InputError
-from halfspace.limits import require_film, require_poisson, require_stiffness, require_thickness
+from halfspace.limits import require_film, require_one_of, require_poisson, require_stiffness, require_thickness
 from halfspace.values import Array, keep
 
 Foundation = Literal["bonded", "sliding"]
@@ -222,6 +222,5 @@ def _require_base(base: Foundation | Substrate) -> Foundation | Substrate:
 
 def require_foundation(foundation: Foundation) -> Foundation:
     """Return how a layer stands on its base, or raise InputError for no such way."""
-    if foundation not in get_args(Foundation):
-        raise InputError(f"foundation = {foundation!r} is not one of {', '.join(get_args(Foundation))}; take bonded")
+    require_one_of(foundation, "foundation", get_args(Foundation))
     return foundation
