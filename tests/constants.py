@@ -17,6 +17,8 @@ What it found, at half, as they are, and at double, in parts within and within a
 | WINDOW; APART, by its logarithm | the same | 100, 91.3 | the same; 100, 93.5 |
 | EVENTS_LEAVE | the same | 100, 91.3 | the same |
 | TIP, by its logarithm; SUDDEN | the same; 98.3, 95.0 | 100, 93.3 | the same |
+| STRETCH, by its logarithm: unknowns, points at tabor 3 | 153, 141 | 171, 90 | 207, 85 |
+| STEEP; MARGIN, BEYOND, by their logarithms: unknowns | 225; 162, 189 | 171 | 176, a rung more; 180, 162 |
 | ACROSS; BESIDE | the same | 100, 93.3 of 15 | the same |
 | EQUAL; LEAVE; LEAST, operators for a sphere's curve at tabor 5 | 13; 13; 13 | 11 | 10; 10; not solved |
 | the same, folds at the birth of contact there | the same, but the second known to 1e-8 | 1e-9 | the same |
@@ -57,6 +59,7 @@ import fem_adhesion.bodies.spheres
 import fem_adhesion.convergence
 import halfspace.accuracy.finite_bodies
 import halfspace.accuracy.trace
+import halfspace.accuracy.windows
 import halfspace.elastic.operators
 import halfspace.equilibrium.charts
 import halfspace.equilibrium.contact
@@ -68,7 +71,9 @@ from fem_adhesion.weak_form import newton
 from halfspace.elastic import compliance, grid
 from halfspace.equilibrium.charts import moved
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.equilibrium.events import usual
 from halfspace.errors import NotConverged
+from halfspace.laws import Dugdale
 from halfspace.profiles import Sphere
 from halfspace.scales import Scales
 
@@ -148,6 +153,18 @@ def _solved(tabor):
     return fem_adhesion.trace(Scene(tabor), rtol=1e-4)
 
 
+def on_a_step():
+    """What a law that ends by one costs, and whether its estimates hold."""
+    for tabor in (1.0, 3.0):
+        path, true = (halfspace.trace(tabor, law=Dugdale(0.1), rtol=rtol) for rtol in (1e-6, 1e-8))
+        off = max(
+            abs(getattr(event, q) - getattr(true.events[name], q)) / getattr(event, f"{q}_error")
+            for name, event in usual(path.events).items()
+            for q in ("approach", "load", "central_gap")
+        )
+        yield f"tabor {tabor:g}: off by {off:.2f} of an estimate, {path.unknowns} unknowns, {path.count} points"
+
+
 def pull_off_on_wide_cells():
     """By how much the load is off on cells as wide as is allowed."""
     for nodes in (4, 6, 9, 13):
@@ -219,6 +236,10 @@ CONSTANTS = (
     Constant(halfspace.accuracy.trace, "EVENTS_LEAVE", estimates("sphere's profile")),
     Constant(halfspace.accuracy.trace, "TIP", estimates("laws and profiles"), to_the_power),
     Constant(halfspace.scales, "SUDDEN", estimates("laws and profiles")),
+    Constant(halfspace.accuracy.windows, "STRETCH", on_a_step, to_the_power),
+    Constant(halfspace.accuracy.windows, "MARGIN", on_a_step, to_the_power),
+    Constant(halfspace.accuracy.windows, "STEEP", on_a_step),
+    Constant(halfspace.accuracy.windows, "BEYOND", on_a_step, to_the_power),
     Constant(halfspace.accuracy.finite_bodies, "ACROSS", estimates("hemisphere, sliding")),
     Constant(halfspace.accuracy.finite_bodies, "BESIDE", estimates("hemisphere, sliding")),
     Constant(

@@ -19,7 +19,7 @@ from halfspace.accuracy.following import RATIO, UNKNOWN, Known, Summary, familie
 from halfspace.accuracy.sweep import NUMBERS, summaries
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES, Dlvo, Morse
+from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Morse
 
 TABORS = (2.0, 0.3, 1.0)  # of which the second does not fold
 RTOL = 1e-3
@@ -252,9 +252,10 @@ def test_many_of_a_family_are_cut_for_many_cores_and_keep_its_grids():
         {"profile": halfspace.profiles.Sphere(100.0)},
         {"body": halfspace.Layer(1.0)},
         {"law": Dlvo(0.6, 1.5)},
+        {"law": Dugdale(0.1)},
         {"tabors": (1.6, 1.9)},
     ],
-    ids=["a sphere", "a layer", "a second minimum", "two alone"],
+    ids=["a sphere", "a layer", "a second minimum", "a step", "two alone"],
 )
 def test_what_is_not_alike_is_traced_by_itself(parts):
     usual = {"tabors": (1.6, 1.8, 2.0), "law": LENNARD_JONES, "profile": halfspace.profiles.PARABOLOID, "body": None}

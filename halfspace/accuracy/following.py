@@ -8,7 +8,8 @@ the one in the middle is traced as well. Nor does one event take the place of an
 minima of the load may: what is found would lie far from where neighbours on both sides have it, and is traced then.
 
 That folds do not come and go again between two Tabor parameters so near is an assumption. A curve in the middle is a
-witness of it, and what has a law with a second minimum, where folds may do so, is not followed.
+witness of it, and what has a law with a second minimum, where folds may do so, is not followed. Nor is what has one
+that ends by a step: each of its states is on a grid of its own.
 """
 
 from __future__ import annotations
@@ -245,7 +246,9 @@ def _rank(tabor: float) -> int:
 def _alike(family: Sequence[float], law: Law, profile: Profile, body: LayeredBody | None) -> bool:
     """Whether contacts differ by nothing but the Tabor parameter, and their cells by its scales alone."""
     first, last = (profile.surface(tabor) for tabor in (family[0], family[-1]))
-    return body is None and first == last and math.isinf(first.end) and not law.outermost
+    scales = Scales(family[0], law, first)
+    smooth = not law.outermost and not scales.step_gap
+    return body is None and first == last and math.isinf(first.end) and smooth
 
 
 def family_of(tabors: Sequence[float], **settings: Any) -> Family:
