@@ -1,18 +1,23 @@
-"""Laws, profiles and bodies that are hard together, each through `compare`: all must agree.
+"""Laws, profiles and bodies that are hard together, each through `compare`, and others on layers drawn at random.
 
 Long and short ranges, soft and hard cores, tips from nearly a cone to nearly a punch, layers from 0.05 to 100 beta.
 """
 
 import time
+from collections import Counter
+
+from drawn_layers import drawn
 
 from fem_adhesion import Coated, HalfSpace, Layer, Layers, Scene
 from fem_adhesion.common.jobs import progress_bar, stream
 from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.crosscheck.comparison import VERDICTS, verdict_of
 from halfspace import Stratum
-from halfspace.laws import Dlvo, Exponential, Morse, PowerLaw
+from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
 
 RTOL = 1e-4
+DRAWN = 12
 RUBBER, SLIDING = HalfSpace(poisson=0.4999), Layer(0.5, "sliding")
 PLIES = Stratum(2.3, 0.2), Stratum(0.9, 0.37, 0.5), Stratum(0.36, 0.47, 0.24)
 SCENES = (
@@ -53,25 +58,39 @@ SCENES = (
     Scene(7.0, Layer(0.9, "sliding", poisson=0.0), law=Morse(0.9), profile=Hyperboloid(0.7)),
     Scene(4.6, HalfSpace(poisson=0.0), law=Exponential(3.5, 12), profile=Hyperboloid(2.5)),
     Scene(1.0, Coated(thickness=1.0, modulus_ratio=5.0), profile=Hyperboloid(5.0)),
+    Scene(1.7, Coated(3.6, 36.0, 0.45, poisson=0.0), profile=RoundedPunch(1.0), law=PowerLaw(4.1, 10.4)),
+    Scene(0.97, Coated(72.6, 55.6, poisson=0.0), law=Dugdale(0.36)),
 )
 
 
 def verdict(scene):
-    """Whether a comparison agrees, or the rows that do not and why it failed."""
+    """Verdict of a comparison, and the rows that do not agree, or why it failed."""
     (case,) = crosscheck.run([scene], rtol=RTOL)
     rows = [f"{row.quantity} {row.verdict}" for row in case.rows if row.verdict != "agree"]
-    return ", ".join([*rows, *([case.reason] if isinstance(case, crosscheck.Failure) else [])]) or "agree"
+    return verdict_of(case), ", ".join([*rows, *([case.reason] if isinstance(case, crosscheck.Failure) else [])])
 
 
-def compared(scenes=SCENES):
-    """Compare all scenes and print what does not agree; whether all do."""
-    began, wrong = time.perf_counter(), 0
+def compared(seed):
+    """Compare all scenes, and some drawn on layers, and print what does not agree.
+
+    Of those chosen all must agree; of those drawn a comparison may be left open, but none may disagree or fail.
+    """
+    kinds = {
+        "of law, profile and body": (SCENES, {"agree"}),
+        "drawn on layers": (drawn(seed, DRAWN), {"agree", "inconclusive"}),
+    }
+    held = [_compared(kind, *of_kind) for kind, of_kind in kinds.items()]
+    return all(held)
+
+
+def _compared(kind, scenes, allowed):
+    began, found = time.perf_counter(), Counter()
     with progress_bar() as told:
-        for k, (scene, found) in enumerate(stream(verdict, scenes), start=1):
+        for k, (scene, (one, why)) in enumerate(stream(verdict, scenes), start=1):
             told("combinations", k, len(scenes))
-            if found != "agree":
-                wrong += 1
-                print(f"    {', '.join(scene.told)}: {found}", flush=True)
-    print(f"combinations of law, profile and body: {len(scenes) - wrong} of {len(scenes)} agree", end=" ")
-    print(f"in {time.perf_counter() - began:.0f} s", flush=True)
-    return not wrong
+            found[one] += 1
+            if one != "agree":
+                print(f"    {one}: {scene}: {why}", flush=True)
+    counts = ", ".join(f"{found[one]} {one}" for one in VERDICTS if found[one])
+    print(f"combinations {kind}: {counts} of {len(scenes)} in {time.perf_counter() - began:.0f} s", flush=True)
+    return found.keys() <= allowed

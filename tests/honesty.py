@@ -8,6 +8,7 @@ of what lies outside. `side_by_side` makes a second table, `combinations` compar
 
 import argparse
 import math
+import secrets
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -18,6 +19,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import combinations
+import drawn_layers
 import side_by_side
 import truths
 from scenes import pair
@@ -51,10 +53,14 @@ Values = Mapping[str, float]
 
 
 class Net(NamedTuple):
-    """Scenes of a family and the tolerances at which each is solved."""
+    """Scenes of a family, or what draws those of a seed, and the tolerances at which each is solved."""
 
-    scenes: Sequence[Any]
+    scenes: Sequence[Any] | Callable[[int], Sequence[Any]]
     rtols: Sequence[float]
+
+    def of(self, seed):
+        """Scenes."""
+        return self.scenes(seed) if callable(self.scenes) else self.scenes
 
 
 @dataclass(frozen=True)
@@ -364,16 +370,7 @@ def _stages_under_sphere(size):
 
 
 def _on_layers(scene, rtol):
-    tabor, body = scene
-    return halfspace.trace(tabor, body=body, rtol=rtol)
-
-
-def _stages_on_layers(scene):
-    return truths.layered(*scene)
-
-
-def _layers_of(scene):
-    return truths.layered(scene.tabor, scene.body)
+    return halfspace.trace(scene.tabor, law=scene.law, profile=scene.shape, body=scene.body.layered, rtol=rtol)
 
 
 def _half_space_under(scene):
@@ -406,21 +403,22 @@ def _assess(contact, _):
 
 SLIDING = _sphere(1, 30, poisson=0.3), _sphere(0.3, 30), _sphere(2, 100, poisson=0.45)
 BLOCKS = tuple(map(_block, (*USUAL[:12:2], 0.1, 0.69, 0.7, 0.8, 3, 4, 7, 10, 20)))
+PLIES = Stratum(0.3, 0.3), Stratum(1.0, 0.45, 0.2), Stratum(0.5, 0.3, 3.0)
 LAYERED = (
-    (1.0, Layer(2.0, 0.3)),
-    (5.0, Coated(1.0, 10.0, 0.4, 0.3)),
-    (0.1, Layer(0.1, 0.4999)),
-    (0.75, Layer(20.0, 0.3, "sliding")),
-    (2.0, Coated(0.2, 0.05, 0.3, 0.2)),
-    (2.0, Layers([Stratum(0.3, 0.3), Stratum(1.0, 0.45, 0.2), Stratum(0.5, 0.3, 3.0)])),
-    (20.0, Layer(3.0, 0.45)),
+    Scene(1.0, Layer(2.0, 0.3)),
+    Scene(5.0, Coated(1.0, 10.0, 0.4, 0.3)),
+    Scene(0.1, Layer(0.1, 0.4999)),
+    Scene(0.75, Layer(20.0, 0.3, "sliding")),
+    Scene(2.0, Coated(0.2, 0.05, 0.3, 0.2)),
+    Scene(2.0, Layers(PLIES)),
+    Scene(20.0, Layer(3.0, 0.45)),
 )
 COATED = (
     Scene(1.0, fem_adhesion.Coated(2.0, 10.0)),
     Scene(1.0, fem_adhesion.Coated(0.5, 100.0)),
     Scene(2.0, fem_adhesion.Coated(0.5, 0.01, 0.0, poisson=0.499)),
-    Scene(1.0, fem_adhesion.Layers(LAYERED[5][1].strata)),
-    Scene(0.5, fem_adhesion.Layers(LAYERED[5][1].strata, "sliding")),
+    Scene(1.0, Layers(PLIES)),
+    Scene(0.5, Layers(PLIES, "sliding")),
 )
 LAWS_AND_PROFILES = (
     Scene(1.0, law=Morse(3)),
@@ -474,14 +472,21 @@ FAMILIES = {
         Net(LAYERED[:2], _decades(3, 6)),
         _on_layers,
         of_path,
-        partial(relocated, _stages_on_layers),
+        partial(relocated, truths.layered),
+    ),
+    "layers, drawn": Family(
+        Net(partial(drawn_layers.drawn, count=12), _decades(2, 4, 6)),
+        Net(partial(drawn_layers.drawn, count=1), _decades(4)),
+        _on_layers,
+        of_path,
+        partial(relocated, truths.layered),
     ),
     "layers by elements": Family(
         Net(COATED, _decades(2, 3, 4, 5)),
         Net(COATED[:1], _decades(3)),
         _by(fem_adhesion.trace),
         of_path,
-        partial(relocated, _layers_of),
+        partial(relocated, truths.layered),
     ),
     "hemisphere, sliding": _sized(
         (0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (2, 30), truth=truths.harmonics, few=3
@@ -651,16 +656,17 @@ class Row:
         return few and self.shares[1] >= CLOSE[net]
 
 
-def rows_of(net, names=tuple(FAMILIES), jobs=None):
+def rows_of(net, names=tuple(FAMILIES), jobs=None, seed=0):
     """Rows of the families as each is done, in the order in which they end."""
     nets = {name: getattr(FAMILIES[name], net) for name in names}
-    items = [(name, scene, nets[name].rtols) for name in names for scene in nets[name].scenes]
+    scenes = {name: nets[name].of(seed) for name in names}
+    items = [(name, scene, nets[name].rtols) for name in names for scene in scenes[name]]
     done = {name: [] for name in names}
     with progress_bar() as told:
         for k, (item, result) in enumerate(stream(judged, items, jobs=jobs), start=1):
             told(item[0], k, len(items))
             done[item[0]].append(result)
-            if len(done[item[0]]) == len(nets[item[0]].scenes):
+            if len(done[item[0]]) == len(scenes[item[0]]):
                 numbers, seconds = zip(*done[item[0]], strict=True)
                 yield Row(item[0], list(chain(*numbers)), sum(seconds))
 
@@ -682,15 +688,16 @@ def main(arguments=None):
     """Run both tables; 1 if a family is not honest or two solvers contradict each other."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="half a minute's part")
-    parser.add_argument("--seed", type=int, help="of the scenes side by side; a new one unless given")
+    parser.add_argument("--seed", type=int, help="of the scenes that are drawn; a new one unless given")
     parser.add_argument("--families", nargs="+", metavar="FAMILY", default=list(FAMILIES), choices=list(FAMILIES))
     asked = parser.parse_args(arguments)
     net = "quick" if asked.quick else "full"
-    print(HEAD, flush=True)
-    dishonest = [row.name for row in rows_of(net, asked.families) if not printed(row).honest(net)]
-    agreed = side_by_side.searched(net, asked.seed)
+    seed = secrets.randbelow(10**6) if asked.seed is None else asked.seed
+    print(f"{HEAD}    seed {seed}", flush=True)
+    dishonest = [row.name for row in rows_of(net, asked.families, seed=seed) if not printed(row).honest(net)]
+    agreed = side_by_side.searched(net, seed)
     if net == "full":
-        agreed &= combinations.compared()
+        agreed &= combinations.compared(seed)
     print(
         f"not honest: {', '.join(dishonest) or 'none'}; both solvers {'agree' if agreed else 'contradict each other'}"
     )

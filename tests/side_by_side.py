@@ -1,10 +1,9 @@
 """The same contact by both solvers, in scenes drawn at random: no two numbers may differ by more than both estimates.
 
-A new seed is drawn each time and printed; given again it draws the same scenes.
+A seed given again draws the same scenes.
 """
 
 import math
-import secrets
 import time
 from collections import Counter
 from typing import NamedTuple
@@ -68,9 +67,8 @@ def _part(a, b, quantity):
     return abs(getattr(a, quantity) - getattr(b, quantity)) / (getattr(a, error) + getattr(b, error))
 
 
-def searched(net, seed=None):
+def searched(net, seed):
     """Draw scenes, print the table and every number outside; whether the shares inside are what they should be."""
-    seed = secrets.randbelow(10**6) if seed is None else seed
     began, numbers = time.perf_counter(), []
     print(f"\nboth solvers side by side, {SCENES[net]} scenes of seed {seed}", flush=True)
     with progress_bar() as told:

@@ -15,7 +15,7 @@ from fem_adhesion.finite_strain import assembly
 from fem_adhesion.finite_strain.scene import softening
 from fem_adhesion.harmonics import Fineness as Series
 from fem_adhesion.harmonics import sized_body as series
-from halfspace.accuracy.finite_bodies import SizedBody, standing
+from halfspace.accuracy.finite_bodies import SizedBody, at_tip, standing
 from halfspace.accuracy.stages import Charted, Standing
 from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.elastic import compliance
@@ -76,19 +76,32 @@ def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
     ]
 
 
-def layered(tabor, body):
-    """A layered body with other images, on finer grids that go further."""
-    hows = ((13, 0.45, 2.5, 2000.0, 1.15), (15, 0.35, 2.2, 3000.0, 1.13))
-    stages = []
-    for nodes, finest, growth, far, spacing in hows:
-        images = images_of(body, spacing)
-        make, outer = partial(_layered_panels, images, nodes), np.array([far / np.sqrt(tabor)])
-        stages.append(standing(SizedBody(Scales(tabor, body=body), make, finest, growth, outer, FLAT)))
-    return stages
+def layered(scene):
+    """A layered body with other images, on finer grids that go further, and beyond them as if it were rigid."""
+    hows = ((13, 0.45, 2.5, 2000.0, 1.15, 1e-7), (15, 0.35, 2.2, 3000.0, 1.13, 1e-8))
+    return [_layered(scene, *how) for how in hows]
 
 
-def _layered_panels(images, nodes, lines):
-    return layered_panels(images, lines, nodes), nodes * (lines.size - 1)
+def _layered(scene, nodes, finest, growth, far, spacing, last):
+    body, profile = scene.body.layered, scene.shape.surface(scene.tabor)
+    scales = Scales(scene.tabor, scene.law, profile, body)
+    outer = min(profile.end, scales.outer_radius((far * scales.widened) ** 2 / 2))
+    rim = np.geomspace(outer, FARTHEST * outer, 18) if np.isinf(profile.end) and np.isfinite(scene.law.decay) else None
+    make = partial(_layered_panels, images_of(body, spacing), nodes, rim)
+    last = last * outer if outer == profile.end else np.inf
+    first = at_tip(profile, nodes)
+    how = finest, growth, np.array([outer]), FLAT, last
+    return standing(SizedBody(scales, make, *how, first=first))
+
+
+FARTHEST = 1e8  # times, to which a tail goes on
+
+
+def _layered_panels(images, nodes, rim, lines):
+    operator = replace(layered_panels(images, lines, nodes), even=True)
+    if rim is not None:
+        operator = replace(discretise.with_rigid_rim(operator, rim, FLAT), even=True)
+    return operator, operator.radii.size
 
 
 def _panels(nodes, lines):

@@ -109,10 +109,13 @@ class Stratified(Body):
         moduli = [modulus for _, modulus in self.regions]
         if self.held != "substrate":
             return R + DIED_OUT * math.sqrt(max(moduli) / min(moduli)) * self.interfaces[-1]
-        stiffness = [
-            max(1.0, modulus / moduli[-1]) * part.thickness for modulus, part in zip(moduli, self.strata, strict=False)
-        ]
-        return max(2 * R, how.beyond * max(SPREAD * R, sum(stiffness)))
+        return max(2 * R, how.beyond * self.spread(R))
+
+    def spread(self, R: float) -> float:
+        """Length along a half-space below over which the strata spread what pulls at them within R, in beta."""
+        moduli = [modulus / self.beyond.modulus for _, modulus in self.regions]
+        stiffness = sum(max(1.0, E) * part.thickness for E, part in zip(moduli, self.strata, strict=False))
+        return max(SPREAD * R, stiffness)
 
 
 def _slab(begin: float, end: float, finest: float, growth: float) -> Array:

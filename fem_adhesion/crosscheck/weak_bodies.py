@@ -16,12 +16,13 @@ from skfem import MeshTri
 
 from fem_adhesion.bodies.body import Body as ElasticBody
 from fem_adhesion.bodies.body import Discretisation
-from fem_adhesion.bodies.layers import WIDTH
+from fem_adhesion.bodies.layers import Stratified
 from fem_adhesion.discretise import finest_length, layout_of, mesh_of, pair_meshes
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.body import TRIANGLES, Body, discretise, fine_within, half_space, on_ground, opposed
 from fem_adhesion.weak_form.contact import Contact, Heights, Law, lennard_jones, paraboloid, sphere
 from halfspace.elastic import grid
+from halfspace.elastic.layers import surface_compliance
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Paraboloid, Sphere
 from halfspace.values import Array
@@ -109,7 +110,7 @@ def _half_space(finest: float, size: float, degree: int, poisson: float, tip: fl
 # Bodies with a length
 
 GROWTH, WIDEST = 2.5, 0.95  # ratio of neighbouring cells; the place in R beyond which they are finest nowhere
-CLAMPED = 1e6  # of a half-space under strata in `Discretisation.beyond`: what a clamp there leaves out is 1e-4 eps
+CLAMPED = 1e-5  # of eps and a deflection, what a clamp under a half-space that carries strata may leave out
 RINGS = 4  # of cells around a corner where the stress is singular
 
 
@@ -131,7 +132,7 @@ def _sized(scene: Scene, degree: int, radius: float, reach: float) -> Contact:
     R = scene.radii[0]
     radius, reach = (min(r, WIDEST * R) for r in (radius, reach))  # what attracts from afar may be wider
     how = Discretisation(degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, GROWTH, RINGS)
-    how = replace(how, beyond=_clamped(scene, R)) if scene.body.held == "substrate" else how
+    how = replace(how, beyond=_clamped(scene, scene.body, R, radius)) if isinstance(scene.body, Stratified) else how
     outer, coordinate = layout_of(scene, how)
     lines = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=GROWTH)
     core = fine_within(coordinate.of(reach), lines)
@@ -144,10 +145,16 @@ def _sized(scene: Scene, degree: int, radius: float, reach: float) -> Contact:
     return Contact(body, scene.tabor, _heights(scene), False, _rim(first.rim, R), law_of(scene))
 
 
-def _clamped(scene: Scene, R: float) -> float:
-    """Size of a half-space under strata in R: as large under a cone, whose load is farther out, as under a sphere."""
-    width = scene.scales.widened * scene.scales.radius_at(0.5)
-    return CLAMPED * min(1.0, WIDTH * width / R)
+def _clamped(scene: Scene, strata: Stratified, R: float, radius: float) -> float:
+    """Size of a half-space under strata, as of `Discretisation.beyond`: W/(pi E L) at its end L is what a clamp omits.
+
+    That is little beside eps and what W deflects within the contact. In one much larger the cells near its surface are
+    so flat that rounding hides the force that the clamp bears.
+    """
+    W, mu = scene.scales.largest_load, scene.tabor
+    deflected = W * float(surface_compliance(strata, np.array([1 / radius]))[0]) / (2 * radius)
+    far = mu * W / (np.pi * strata.beyond.modulus * CLAMPED * (1 + mu * deflected))
+    return max(1.0, far / strata.spread(R))
 
 
 def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:

@@ -119,6 +119,7 @@ class Turn:
 
 
 FLAT, NEARBY = 1e-2, 2e-3  # first steps, of approach and load
+FOLLOWED = 0.25  # of the grain of a law, what a gap may change by in one, or Newton's method may not follow
 FARTHEST, TRIES = 50.0, 6  # the farthest in such steps, how many are tried
 
 
@@ -136,6 +137,9 @@ def turning_point(
     step = FLAT * min(1.0, contact.law.grain / LENNARD_JONES.grain) if under_load else NEARBY
     step *= (1 + abs(approach if under_load else load)) * min(1.0, 9 / contact.sharpness**2) / finer
     middle = newton(contact, h, approach, load=None if under_load else load)
+    if under_load:  # past the edge of a contact that turns early gaps open much faster than the rest
+        fastest = float(np.max(np.abs(middle.nearby.gap_rate) / contact.law.size(middle.gap)))
+        step = min(step, FOLLOWED * contact.law.grain / fastest)
     a, b = (_past(middle, d, under_load=under_load) for d in (-step, step))
     step = 2 * step
     for _ in range(TRIES):
