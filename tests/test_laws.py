@@ -376,6 +376,19 @@ def test_a_curve_goes_on_where_the_step_leaves_a_chart():
         assert ends[cell] - ends[cell - 1] < 0.25 * (radius - edge)  # 1 by other laws
 
 
+def test_states_are_known_along_a_curve_of_many_charts():
+    """A stretch that was traced on one chart is solved for on one: a fold on it is not lost between two."""
+    path, fine = (halfspace.trace(1.0, law=Dugdale(0.1), rtol=rtol) for rtol in (1e-4, 1e-7))
+    assert list(path.branches("approach")) == ["separated", "unstable", "contact"]
+    assert len(path.finest_curve.segments) == len(path.segments)
+    for asked in ({"approach": -1.5, "branch": "contact"}, {"approach": -1.4, "branch": "unstable"}, {"load": 2.0}):
+        ours, truth = path.at(**asked), fine.at(**asked)
+        for name in ("approach", "load", "central_gap"):
+            budget = getattr(ours, f"{name}_error") + getattr(truth, f"{name}_error")
+            assert abs(getattr(ours, name) - getattr(truth, name)) <= budget
+            assert budget < 1e-3
+
+
 @pytest.mark.parametrize("profile", [Hyperboloid(0.3), RoundedPunch(1.0)], ids=str)
 def test_a_sharp_step_is_resolved_under_any_tip(profile):
     """Without short cells on the axis the central gap erred by 14 times its estimate, and by half the range."""

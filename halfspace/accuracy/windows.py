@@ -32,6 +32,7 @@ from halfspace.values import Array
 STRETCH = 2.0  # ratio of the places of a step between which a chart serves
 MARGIN = 1.15  # times as far beyond either end of them cells are as short
 STEEP = 0.6  # of the growth of cells by the law: at a step, where as many nodes are to leave as little as elsewhere
+PASSED = 2  # windows by which the last point on a chart may lie beyond its own
 BEYOND = 5.0  # most ratio of neighbouring cells outside the step, where a law that ends by one has little tension left
 
 
@@ -97,12 +98,28 @@ class Windows(Stage):
         """Chart on which a curve begins, with the surfaces far apart."""
         return (self._window(False, 0),)
 
+    @property
+    def everywhere(self) -> AlongCurve:
+        """The same for the points of a curve, each on the cells on which it was traced."""
+        return AlongCurve(self)
+
     def at(self, follows: bool, problem: Traceable, point: Point) -> Window:
         """Chart of either kind for a point of a path."""
+        return self._window(follows, self._number(follows, problem, point))
+
+    def _number(self, follows: bool, problem: Traceable, point: Point) -> int:
         place, first = self.place(follows, problem, point), self._first(follows)
-        if follows or place > first:
-            return self._window(follows, math.floor(math.log(place / first) / math.log(STRETCH)))
-        return self._window(follows, 0)
+        return math.floor(math.log(place / first) / math.log(STRETCH)) if follows or place > first else 0
+
+    def of_same_cells(self, event: Located) -> Window:
+        """Chart of the cells on which a point was found, which may be past the end of its window; or else its own."""
+        surface, point = event.problem.interface, event.point
+        follows, cells = surface.follows_contact, surface.operator.at(1.0).cells
+        own = self._number(follows, surface, point)
+        for number in range(own - PASSED if follows else max(own - PASSED, 0), own + PASSED + 1):
+            if np.array_equal(self._cells(follows, number), cells):
+                return self._window(follows, number)
+        return self._window(follows, own)
 
     def place(self, follows: bool, problem: Traceable, point: Point) -> float:
         """Where the step stands on a grid of either kind: d/a, or r in beta, 0 where the surfaces are farther apart."""
@@ -115,9 +132,8 @@ class Windows(Stage):
 
     def _window(self, follows: bool, number: int) -> Window:
         if (follows, number) not in self.made:
-            least, most = (self._first(follows) * STRETCH**n for n in (number, number + 1))
-            least = least if follows or number else 0.0
-            operator = self.half_space(self._lines(follows, (least or most) / MARGIN, most * MARGIN))
+            least, most = self._between(follows, number)
+            operator = self.half_space(self._cells(follows, number))
             self.made[follows, number] = Window(
                 contact_of(self.scales, Homogeneous(operator) if follows else operator),
                 operator.radii.size,
@@ -127,6 +143,15 @@ class Windows(Stage):
                 windows=self,
             )
         return self.made[follows, number]
+
+    def _between(self, follows: bool, number: int) -> tuple[float, float]:
+        """Places of the step between which a window serves."""
+        least, most = (self._first(follows) * STRETCH**n for n in (number, number + 1))
+        return least if follows or number else 0.0, most
+
+    def _cells(self, follows: bool, number: int) -> Array:
+        least, most = self._between(follows, number)
+        return self._lines(follows, (least or most) / MARGIN, most * MARGIN)
 
     def _lines(self, follows: bool, least: float, most: float) -> Array:
         """Ends of the cells of a chart that is fine for a step between two places."""
@@ -166,3 +191,19 @@ class Windows(Stage):
         """
         law = self.scales.law
         return math.inf if math.isfinite(law.decay) else (law.range(NOTHING) / self.scales.step_gap) ** 2
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AlongCurve(Stage):
+    """Stage for the points of a curve: those of a stretch traced on one chart stay on one, to be joined to a curve."""
+
+    windows: Windows
+
+    def __call__(self, event: Located) -> Window:
+        """Chart for a point of a curve."""
+        return self.windows.of_same_cells(event)
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a chart made so far."""
+        return self.windows.unknowns
