@@ -8,7 +8,7 @@ from scipy import sparse
 from skfem import Basis, ElementQuadP, ElementTriP2
 
 from fem_adhesion.elasticity.boundaries import trace_on
-from fem_adhesion.elasticity.condensation import Dissection, condense, contact_surface, eliminate_interiors
+from fem_adhesion.elasticity.condensation import Dissection, condense, contact_surface
 from fem_adhesion.elasticity.far_field import Exterior, clamped, sliding, with_interiors
 from fem_adhesion.elasticity.space import Space, cell_stiffness, cell_strains, ring_measure
 from fem_adhesion.mesh import held_sphere as module
@@ -153,8 +153,7 @@ def between_two_walls(degree):
     T = sparse.csc_array((np.ones(kept.size), (kept, np.arange(kept.size))), shape=(space.unknowns, kept.size))
     exterior = with_interiors(Exterior(T, sparse.csc_array(2 * T.shape[1:])), space)
     K, T = cell_stiffness(space, NU), exterior.reduction
-    inside = eliminate_interiors(space, K).inner
-    factors = Dissection(space.mesh, space.cell_dofs, inside, exterior, np.zeros(0, dtype=np.intp)).factorised(K)
+    factors = Dissection(space, space.cell_dofs, exterior, np.zeros(0, dtype=np.intp)).factorised(K)
 
     load = surface.weights @ gaussian(surface.radii)
     forces = np.zeros(space.unknowns)

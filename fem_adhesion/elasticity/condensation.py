@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -30,42 +29,24 @@ from halfspace.values import Array, Index, Valued
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Skeleton(Valued):
-    """Stiffness of the unknowns shared between cells; those interior to one cell are eliminated.
-
-    `cells` (cells, n_o, n_o) is the stiffness of each cell without its interior unknowns, `whole` (cells, 2 n, 2 n) the
-    same with them. `dofs` (2 n, cells) are the numbers of a cell's unknowns among all N, `inner` (n_i,) and `outer`
-    (n_o,) the positions of the interior and of the shared ones among those of a cell.
-    """
-
-    cells: Array
-    whole: Array
-    dofs: Index
-    inner: Index
-    outer: Index
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class Dissection(Valued):
     """How all unknowns of a body are eliminated but those of a surface, whatever the stiffness of its cells.
 
-    The cells of the mesh have the unknowns dofs (k, cells), of which those at the positions `inside` are no other
-    cell's. The exterior leads from all of them to the n reduced ones, interior ones included, see `with_interiors`; the
-    surface (m,) are those that are left.
+    The cells have the unknowns dofs (k, cells), first those of the space. The exterior leads from all of them to the n
+    reduced ones, interior ones included, see `with_interiors`; the surface (m,) are those that are left.
     """
 
-    mesh: Any
+    space: Space
     dofs: Index
-    inside: Index
     exterior: Exterior
     surface: Index
 
     def factorised(self, cells: Array) -> Factors:
         """Eliminate the interior unknowns of all cells, (cells, k, k), then all others but those of the surface."""
-        (regions, beside), outside = self._regions, self._outside
+        (regions, beside), inside, outside = self._regions, self.space.inside, self._outside
         cells, unknowns = reduced_cells(cells, self.dofs, self.exterior.reduction)
-        order = np.append(self.inside, outside)
-        interiors, cells = eliminated_by(cells[:, order[:, None], order], unknowns[self.inside].T, unknowns[outside].T)
+        order = np.append(inside, outside)
+        interiors, cells = eliminated_by(cells[:, order[:, None], order], unknowns[inside].T, unknowns[outside].T)
         fronts, K = regions.factorised(cells)
         places = np.searchsorted(regions.unknowns, np.append(beside, self.surface))
         held = with_exterior(regions, K, self.exterior)[places][:, places]
@@ -78,7 +59,7 @@ class Dissection(Valued):
         kept = np.diff(self.exterior.stiffness.indptr) > 0
         beside = np.setdiff1d(np.flatnonzero(kept), self.surface)
         kept[self.surface] = True
-        return dissected(self.mesh, self._unknowns[self._outside], kept), beside
+        return dissected(self.space.mesh, self._unknowns[self._outside], kept), beside
 
     @cached_property
     def _unknowns(self) -> Index:
@@ -86,7 +67,7 @@ class Dissection(Valued):
 
     @property
     def _outside(self) -> Index:
-        return np.setdiff1d(np.arange(len(self._unknowns)), self.inside)
+        return np.setdiff1d(np.arange(len(self._unknowns)), self.space.inside)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -118,14 +99,14 @@ class CondensedBody(Valued):
     """A block factorised once: its surface compliance, and the fields inside for a given surface pressure.
 
     Pressures are (q,) arrays at ``operator.radii``, positive in compression; all is dimensionless, E* = 1. The operator
-    gives the deflection of the surface from the pressure on it; the stiffness is that of the cells.
+    gives the deflection of the surface from the pressure on it; the stiffness makes `cells` (cells, 2 n, 2 n).
     """
 
     operator: ElasticOperator
     space: Space
     poisson: float
     stiffness: CellStiffness
-    skeleton: Skeleton
+    cells: Array
     exterior: Exterior
     surface: Surface
 
@@ -133,8 +114,7 @@ class CondensedBody(Valued):
     def factors(self) -> Factors:
         """The reduced stiffness, factorised for fields inside."""
         none = np.zeros(0, dtype=np.intp)
-        whole = Dissection(self.space.mesh, self.space.cell_dofs, self.skeleton.inner, self._whole, none)
-        return whole.factorised(self.skeleton.whole)
+        return Dissection(self.space, self.space.cell_dofs, self._whole, none).factorised(self.cells)
 
     @cached_property
     def _whole(self) -> Exterior:
@@ -169,7 +149,7 @@ class CondensedBody(Valued):
 
     def far_reaction(self, pressure: Array) -> float:
         """Return the upward force with which the exterior holds the far boundary, in E* beta^2: equal to the load."""
-        K = scatter(self.skeleton.whole, self.space.cell_dofs, self.unknowns)
+        K = scatter(self.cells, self.space.cell_dofs, self.unknowns)
         forces = K @ self.displacement(pressure) - self.nodal_forces(pressure)
         far = self.space.components[1, self.space.boundary_functions("far")]
         return float(self.translation[far] @ forces[far])
@@ -200,9 +180,9 @@ def condense(
         raise InputError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
     surface = contact_surface(space, points, traction)
     exterior = far_field(space, poisson)
-    skeleton = eliminate_interiors(space, stiffness(space, poisson))
-    operator = surface_operator(surface, exterior, flexibility(space, skeleton, exterior, surface.unknowns))
-    return CondensedBody(operator, space, poisson, stiffness, skeleton, exterior, surface)
+    cells = stiffness(space, poisson)
+    operator = surface_operator(surface, exterior, flexibility(space, cells, exterior, surface.unknowns))
+    return CondensedBody(operator, space, poisson, stiffness, cells, exterior, surface)
 
 
 def contact_surface(space: Space, points: int, traction: str = "projected") -> Surface:
@@ -218,28 +198,28 @@ def contact_surface(space: Space, points: int, traction: str = "projected") -> S
     return Surface(radii[order], weights, vertical, trace.values[order], np.sort(ends), -heights[order], slopes)
 
 
-def eliminate_interiors(space: Space, K: Array) -> Skeleton:
-    """Eliminate the interior unknowns from the (cells, 2 n, 2 n) cell matrices."""
+def eliminate_interiors(space: Space, K: Array) -> Array:
+    """Eliminate the interior unknowns from the (cells, 2 n, 2 n) cell matrices, which leaves those that cells share."""
     n, interior = len(K[0]) // 2, space.element.interior_dofs
-    functions = np.arange(2 * n).reshape(2, n)
     shared, own = slice(n - interior), slice(n - interior, n)
-    outer, inner = functions[:, shared].ravel(), functions[:, own].ravel()
+    inner, outer = 2 * interior, 2 * (n - interior)
     parts = K.reshape(-1, 2, n, 2, n)
-    done = parts[:, :, own, :, own].reshape(len(K), inner.size, inner.size)
-    beside = parts[:, :, own, :, shared].reshape(len(K), inner.size, outer.size)
-    left = parts[:, :, shared, :, shared].reshape(len(K), outer.size, outer.size)
+    done = parts[:, :, own, :, own].reshape(len(K), inner, inner)
+    beside = parts[:, :, own, :, shared].reshape(len(K), inner, outer)
+    left = parts[:, :, shared, :, shared].reshape(len(K), outer, outer)
     for blocks in zip(done, beside, left, strict=True):
         eliminate(*blocks)
-    return Skeleton(mirrored(left), K, space.cell_dofs, inner, outer)
+    return mirrored(left)
 
 
-def flexibility(space: Space, skeleton: Skeleton, exterior: Exterior, surface: Index) -> Array:
-    """Displacements (m, m) of the m unknowns on the surface under unit forces on each of them.
+def flexibility(space: Space, K: Array, exterior: Exterior, surface: Index) -> Array:
+    """Displacements (m, m) of the m unknowns on the surface of cells K under unit forces on each of them.
 
     Unknowns that the exterior couples, or that move more than one of the body's, are kept to the last with these.
     """
     rows = exterior.reduction.tocsr()[surface]
-    cells, unknowns = reduced_cells(skeleton.cells, skeleton.dofs[skeleton.outer], exterior.reduction)
+    shared = np.delete(space.cell_dofs, space.inside, axis=0)
+    cells, unknowns = reduced_cells(eliminate_interiors(space, K), shared, exterior.reduction)
     last = np.diff(exterior.stiffness.indptr) > 0
     last[rows.indices] = True
     region = dissected(space.mesh, unknowns, last)

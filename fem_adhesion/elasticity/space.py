@@ -62,6 +62,12 @@ class Space(Valued):
         """Unknowns that belong to one cell only: both components of the n_i last functions of each."""
         return self.components[:, self.scalar_dofs.interior_dofs].ravel()
 
+    @property
+    def inside(self) -> Index:
+        """Positions of these among the 2 n of each cell, ascending."""
+        positions = np.arange(len(self.cell_dofs)).reshape(2, -1)
+        return positions[:, positions.shape[1] - self.element.interior_dofs :].ravel()
+
     def boundary_functions(self, name: str) -> Index:
         """Return the numbers of the scalar functions that do not vanish on the named boundary, ascending."""
         dofs, facets = self.scalar_dofs, self.mesh.boundaries[name]

@@ -84,12 +84,6 @@ class Body(Valued):
         """Unknowns of each cell, (cells, k): displacements, then pressures."""
         return np.concatenate([self.displacements, self.space.unknowns + self.pressures], axis=1)
 
-    @property
-    def inside(self) -> Index:
-        """Positions among the k of displacements that no other cell shares, as in the space's `interior_dofs`."""
-        n, own = self.functions.shape[1], self.space.element.interior_dofs
-        return np.concatenate([np.arange(n - own, n), np.arange(2 * n - own, 2 * n)])
-
     def gradient(self, u: Array) -> Array:
         """Components of grad u at the points, (5, cells, q), in the order of `fem_adhesion.finite_strain.material`."""
         cells = u[self.displacements].reshape(len(self.displacements), 2, -1)

@@ -162,8 +162,7 @@ class HeldBody(Valued):
 
     @cached_property
     def _dissection(self) -> Dissection:
-        body = self.body
-        return Dissection(body.space.mesh, body.cell_dofs.T, body.inside, self.exterior, self.surface)
+        return Dissection(self.body.space, self.body.cell_dofs.T, self.exterior, self.surface)
 
     @cached_property
     def _transposed(self) -> sparse.csr_array:

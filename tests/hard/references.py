@@ -36,7 +36,7 @@ def strain_energy(body: CondensedBody, pressure: Array) -> float:
     """Elastic energy of block and exterior under a pressure, in E* beta^3, summed over the cells."""
     x, u = body.reduced_displacement(pressure), body.displacement(pressure)
     cells = u[body.space.cell_dofs].T
-    inside = np.einsum("ci,cij,cj->", cells, body.skeleton.whole, cells, optimize=True)
+    inside = np.einsum("ci,cij,cj->", cells, body.cells, cells, optimize=True)
     outside = x[-body.exterior.stiffness.shape[0] :]
     spring = body.exterior.rigid_compliance * (body.operator.weights @ pressure) ** 2
     return 0.5 * float(inside + outside @ (body.exterior.stiffness @ outside) - spring)
