@@ -14,6 +14,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg.blas import dsyrk, dtrsm
 from scipy.linalg.lapack import dpotrf
@@ -22,9 +23,12 @@ from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
 LEAST = 8  # cells of the smallest regions: with fewer there are more steps, with more they are longer
-FAR = 2**40  # a place beyond all, where a zero is read
+FAR = 2**29  # a place beyond all, where a zero is read; twice as far is a place, too
 SINGULAR = "the stiffness is singular; hold the body, and mesh it without empty cells"
 
+
+Places = NDArray[np.int32]
+"""As many as a region's stiffness has entries, so that they are kept in half of the memory."""
 
 Elimination = Callable[["Region", Array, Array, Array], None]
 """Takes the complete unknowns of a region out of the stiffness of those left, in place; see `Region.blocks`."""
@@ -44,7 +48,7 @@ class Region(Valued):
     cells: Index
     unknowns: Index
     complete: Index
-    places: tuple[Index, ...]
+    places: tuple[Places, ...]
 
     def stiffness(self, K: Array) -> Array:
         """Stiffness (k, k) of the unknowns that are left, from that of all cells, positive definite."""
@@ -284,7 +288,7 @@ def _owners(numbers: Index, regions: list[slice], kept: Mask) -> Index:
     return owners
 
 
-def _places(parts: list[Region], rank: Index, own: Index, ranks: Index, c: int) -> tuple[Index, ...]:
+def _places(parts: list[Region], rank: Index, own: Index, ranks: Index, c: int) -> tuple[Places, ...]:
     """Where a region's entries are in its parts, or where those of its cells go, see `Region`.
 
     The c unknowns that are complete are the first in the ranks, which ascend, as they do in the parts.
@@ -294,15 +298,22 @@ def _places(parts: list[Region], rank: Index, own: Index, ranks: Index, c: int) 
         at = np.where(own < 0, size, np.searchsorted(ranks, own))
         row, column = at[:, :, None], at[:, None, :]
         places = np.where(column < c, row * c, c * c - c + row * k) + column
-        return (np.where((row <= column) & (column < size), places, c * c + size * k).ravel(),)
-    found = []
-    for part in parts:
-        at, left = np.full(size, FAR), part.unknowns.size
-        at[np.searchsorted(ranks, rank[part.unknowns])] = np.arange(left)
-        rows = left * at + part.complete.size * (part.complete.size + left)
-        blocks = np.add.outer(rows[:c], at[:c]), np.add.outer(rows, at[c:])
-        found.append(np.concatenate([*(block.ravel() for block in blocks), [FAR]]))
-    return tuple(found)
+        return (np.where((row <= column) & (column < size), places, c * c + size * k).ravel().astype(np.int32),)
+    return tuple(_places_in(part, np.searchsorted(ranks, rank[part.unknowns]), size, c) for part in parts)
+
+
+def _places_in(part: Region, ranks: Index, size: int, c: int) -> Places:
+    """Where the entries of a region of some size are in a part, whose unknowns have these ranks among the region's."""
+    at, rows = np.full((2, size), FAR, dtype=np.int32)
+    at[ranks] = np.arange(ranks.size)
+    rows[ranks] = ranks.size * at[ranks] + part.complete.size * (part.complete.size + ranks.size)
+    places: Places = np.empty(c * size + (size - c) ** 2 + 1, dtype=np.int32)
+    done, beside, left = np.split(places[:-1], [c * c, c * size])
+    np.add.outer(rows[:c], at[:c], out=done.reshape(c, c))
+    np.add.outer(rows[:c], at[c:], out=beside.reshape(c, size - c))
+    np.add.outer(rows[c:], at[c:], out=left.reshape(size - c, size - c))
+    places[-1] = FAR
+    return places
 
 
 def _half(steps: Index) -> Mask:
