@@ -18,8 +18,9 @@ class Trace(Valued):
 
     Places and normals (2, facets, k) are r and z of the points, and of the outward normal there; lengths (facets, k)
     are the weights of the length along the boundary. Of the functions (m,), those that do not vanish on it, ascending,
-    the values (facets k, m) are at the points, the rates (facets k, m) their derivatives by the arclength along
-    (n_z, -n_r): on the contact surface, whose normal is upwards at the pole, that is outwards from it.
+    the values (facets k, m) are at the points. Of the n functions of each facet's cell, whose numbers are `cells`
+    (n, facets), the slopes (n, facets, k) are their derivatives by the arclength along (n_z, -n_r): on the contact
+    surface, whose normal is upwards at the pole, that is outwards from it.
     """
 
     places: Array
@@ -27,7 +28,13 @@ class Trace(Valued):
     lengths: Array
     functions: Index
     values: sparse.csr_array
-    rates: sparse.csr_array
+    cells: Index
+    slopes: Array
+
+    @property
+    def rates(self) -> sparse.csr_array:
+        """Slopes of the functions at the points, (facets k, m)."""
+        return _rows(self.slopes, self.cells, self.functions)
 
 
 def trace_on(space: Space, name: str, points: int) -> Trace:
@@ -52,8 +59,7 @@ def trace_on(space: Space, name: str, points: int) -> Trace:
         values[:, alike] = value[:, None]
         rates[:, alike] = np.einsum("nik,i->nk", slopes, along)[:, None] * -turned / lengths[alike]
     dofs = np.asarray(space.scalar_dofs.element_dofs)[:, cells]
-    rows = (_rows(amounts, dofs, functions) for amounts in (values, rates))
-    return Trace(places, normals, lengths * weights, functions, *rows)
+    return Trace(places, normals, lengths * weights, functions, _rows(values, dofs, functions), dofs, rates)
 
 
 def _side(corners: Array, first: int, second: int, X: Array) -> tuple[Array, Array, float]:

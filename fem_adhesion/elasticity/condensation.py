@@ -217,20 +217,31 @@ def flexibility(space: Space, K: Array, exterior: Exterior, surface: Index) -> A
 
     Unknowns that the exterior couples, or that move more than one of the body's, are kept to the last with these.
     """
-    rows = exterior.reduction.tocsr()[surface]
+    T = exterior.reduction
+    column = np.repeat(np.arange(T.shape[1]), np.diff(T.indptr))
+    number = np.full(T.shape[0], -1)
+    number[surface] = np.arange(surface.size)
+    row = number[T.indices]
+    moving = row >= 0
     shared = np.delete(space.cell_dofs, space.inside, axis=0)
-    cells, unknowns = reduced_cells(eliminate_interiors(space, K), shared, exterior.reduction)
+    cells, unknowns = reduced_cells(eliminate_interiors(space, K), shared, T)
     last = np.diff(exterior.stiffness.indptr) > 0
-    last[rows.indices] = True
+    last[column[moving]] = True
     region = dissected(space.mesh, unknowns, last)
     lower = factor(with_exterior(region, region.stiffness(cells), exterior))
-    half = dtrsm(1.0, lower, rows[:, region.unknowns].T.toarray(), lower=1)
+    place = np.full(T.shape[1], -1)
+    place[region.unknowns] = np.arange(region.unknowns.size)
+    motion = np.zeros((region.unknowns.size, surface.size), order="F")
+    motion[place[column[moving]], row[moving]] = T.data[moving]
+    half = dtrsm(1.0, lower, motion, lower=1, overwrite_b=1)
     return np.asarray(half.T @ half)
 
 
 def with_exterior(region: Region, stiffness: Array, exterior: Exterior) -> Array:
     """Stiffness of the unknowns that are left of a body, with that of its exterior."""
     left = region.unknowns
+    if not exterior.stiffness.nnz:
+        return stiffness
     return np.asarray(stiffness + exterior.stiffness[left][:, left].toarray())
 
 

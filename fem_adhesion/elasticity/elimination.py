@@ -71,8 +71,8 @@ class Region(Valued):
         Of the two that are square the upper triangle alone has a meaning.
         """
         c, k = self.complete.size, self.unknowns.size
-        done, beside, left = np.split(joined[:-1], [c * c, c * (c + k)])
-        return done.reshape(c, c), beside.reshape(c, k), left.reshape(k, k)
+        beside, left = c * c, c * (c + k)
+        return joined[:beside].reshape(c, c), joined[beside:left].reshape(c, k), joined[left:-1].reshape(k, k)
 
     def _reduced(self, K: Array, elimination: Elimination) -> Array:
         return mirrored(self.blocks(self._eliminated(K, elimination))[2])

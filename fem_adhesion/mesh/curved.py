@@ -121,6 +121,10 @@ class CurvedQuads(MeshQuad):  # type: ignore[misc]
             self._cached_mapping = CurvedMapping(self, self.points)
         return self._cached_mapping
 
+    def name_boundaries(self, facets: dict[str, Index]) -> None:
+        """Name boundaries of a mesh just made, by facets: a copy would number its facets again."""
+        self._boundaries = facets
+
 
 def joined(patches: list[Patch], corners: list[Index]) -> CurvedQuads:
     """Mesh of patches of (m, n) cells that share vertices.

@@ -136,11 +136,11 @@ def with_contact_to(mesh: Any, radius: float) -> Any:
 
 
 def named(mesh: CurvedQuads, where: Callable[[Array, Array], dict[str, Any]]) -> CurvedQuads:
-    """Name the boundary facets for which the masks, by name, hold at the places r and z of their chords' middles."""
+    """Name the boundary facets of a mesh just made for which the masks, by name, hold at r and z of their middles."""
     facets = mesh.boundary_facets()
     masks = where(*mesh.p[:, mesh.facets[:, facets]].mean(axis=1))
-    found: CurvedQuads = mesh.with_boundaries({name: facets[mask] for name, mask in masks.items()})
-    return found
+    mesh.name_boundaries({name: facets[mask] for name, mask in masks.items()})
+    return mesh
 
 
 def vertex_at(mesh: CurvedQuads, r: float, z: float) -> int:
