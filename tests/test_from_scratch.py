@@ -90,6 +90,15 @@ def test_an_equilibrium_balances_and_its_energy_falls_by_the_load(in_contact):
     assert newton(contact, found.gap, 1.0, load=beside[1].load).approach == pytest.approx(1.0 + d, rel=1e-7)
 
 
+def test_ripples_of_gaps_do_not_spoil_the_energy_of_a_state(in_contact):
+    contact, found = in_contact
+    rippled = found.gap * (1 + 0.05 * np.cos(40 * contact.body.radii))
+    wanted, u = contact.energy(contact.displacement(found.gap), 1.0), contact.displacement(rippled)
+    state = from_scratch.StateInWeakForm(contact, rippled, 1.0, found.load, u, 0.0)
+    assert from_scratch._energy(state) == pytest.approx(wanted, rel=1e-8)
+    assert contact.energy(u, 1.0) != pytest.approx(wanted, rel=from_scratch.BUDGET)
+
+
 def test_newton_says_when_it_ends_without_an_equilibrium(box):
     with pytest.raises(NotConverged, match="no equilibrium in 20 Newton steps"):
         newton(Contact(box, 1.0), 1 + box.radii**2, 0.0, load=-50.0)
