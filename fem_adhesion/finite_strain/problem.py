@@ -255,6 +255,11 @@ class FiniteStrainProblem(Valued):
         row[-1] = weights[APPROACH] - by_gap.sum()
         return row
 
+    def rates(self, x: Array, v: Array) -> Array:
+        """Derivatives of the observables along a direction, 0 of a contact radius that there is not, shape (4,)."""
+        exists = np.isfinite(self.observables(x))
+        return np.array([self.gradient(x, row) @ v if e else 0.0 for row, e in zip(np.eye(4), exists, strict=True)])
+
     def _edge_rows(self, x: Array) -> tuple[Array, Array]:
         """Rows that interpolate at the contact edge, and their derivatives by its undeformed radius."""
         return self.interface.operator.at(1.0).continuous(self.interface.contact_radius(self.surface_state(x)))

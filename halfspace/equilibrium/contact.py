@@ -56,16 +56,21 @@ class Solver(Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class _Acting(Valued):
-    """Pressure and its slope, the room of the gaps, and rates by the scale, at the nodes in a state x, each (q,)."""
+    """All that acts in a state x at the nodes, each (q,), when it is first asked for."""
 
     state: bytes
     law: Law
     tabor: float
+    profile: Surface
     operator: Operator
 
-    @property
+    @cached_property
     def x(self) -> Array:
         return np.frombuffer(self.state)
+
+    @cached_property
+    def body(self) -> ElasticOperator:
+        return self.operator.at(float(self.x[-1]))
 
     @cached_property
     def pressure(self) -> Array:
@@ -80,12 +85,47 @@ class _Acting(Valued):
         return self.law.room(self.x[:-2])
 
     @cached_property
+    def deflection(self) -> Array:
+        """Of the nodes in eps, H + alpha* - mu z(u)."""
+        return np.asarray(self.x[:-2] + self.x[-2] - self.tabor * self.profile.height(self.body.radii))
+
+    @cached_property
     def rates(self) -> tuple[Array, Array, Array]:
-        return self.operator.rates(float(self.x[-1]), self.pressure)
+        """By the scale: of the undeformed gaps in eps, the weights, and the equations."""
+        d_radii, d_weights, d_deflection = self.operator.rates(float(self.x[-1]), self.pressure)
+        rising = self.tabor * self.profile.slope(self.body.radii) * d_radii
+        return rising, d_weights, -rising - self.tabor * d_deflection
 
     @cached_property
     def contact_radius(self) -> float:
-        return _contact_radius(self.operator.at(float(self.x[-1])), self.x[:-2], self.law.edge_gap)
+        """Largest radius at which the gap is that of the edge."""
+        if self.operator.follows_contact:
+            return float(self.x[-1])
+        return _contact_radius(self.body, self.x[:-2], self.law.edge_gap)
+
+    @cached_property
+    def gradients(self) -> Array:
+        """Derivatives by x of approach, load and central gap, (3, q + 2)."""
+        rows, axis = np.zeros((3, self.x.size)), self.operator.axis_row
+        rows[APPROACH, -2] = 1
+        np.multiply(self.body.weights, self.slope, out=rows[LOAD, :-2])
+        rows[CENTRAL_GAP, :-2] = axis
+        if self.operator.follows_contact:
+            rising, d_weights, _ = self.rates
+            rows[LOAD, -1] = d_weights @ self.pressure
+            rows[CENTRAL_GAP, -1] = -(axis @ rising)
+        return rows
+
+    @cached_property
+    def radius_gradient(self) -> Array:
+        """Derivative by x of the contact radius, (q + 2,)."""
+        row = np.zeros(self.x.size)
+        if self.operator.follows_contact:
+            row[-1] = 1
+        else:
+            value, slope = self.body.continuous(self.contact_radius)
+            row[:-2] = -value / (slope @ self.x[:-2])
+        return row
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -119,7 +159,7 @@ class ContactProblem(Valued):
         for known in self._latest:
             if known.state == state:
                 return known
-        self._latest.append(_Acting(state, self.law, self.tabor, self.operator))
+        self._latest.append(_Acting(state, self.law, self.tabor, self.profile, self.operator))
         return self._latest[-1]
 
     @property
@@ -142,7 +182,7 @@ class ContactProblem(Valued):
 
     def operator_at(self, x: Array) -> ElasticOperator:
         """Operator of a state."""
-        return self.operator.at(float(x[-1]))
+        return self._acting(x).body
 
     def undeformed(self, approach: float, scale: float = 1.0) -> Array:
         """State with the gaps of the undeformed surfaces, H = -alpha* + mu z(u), as a start for Newton's method."""
@@ -154,13 +194,11 @@ class ContactProblem(Valued):
 
     def residual(self, x: Array) -> Array:
         """Left-hand sides of the equilibrium (in eps) and scale equations, shape (q + 1,)."""
-        H, alpha, s = x[:-2], x[-2], x[-1]
-        mu, body = self.tabor, self.operator_at(x)
-        w = body.compliance @ self._acting(x).pressure
-        return appended(H + alpha - mu * (self.profile.height(body.radii) + w), self._scale_equation(H, s))
-
-    def _scale_equation(self, H: Array, s: float) -> float:
-        return float(self.operator.edge_row @ H - self.law.edge_gap) if self.follows_contact else s - 1
+        here = self._acting(x)
+        return appended(
+            here.deflection - self.tabor * (here.body.compliance @ here.pressure),
+            float(self.operator.edge_row @ x[:-2]) - self.law.edge_gap if self.follows_contact else float(x[-1]) - 1,
+        )
 
     def jacobian(self, x: Array) -> Array:
         """Derivative of the residual, shape (q + 1, q + 2)."""
@@ -168,28 +206,24 @@ class ContactProblem(Valued):
 
     def _bordered(self, x: Array, row: Array) -> Array:
         """Jacobian with a row below it, as Fortran has it: what is factorised need not be copied."""
-        J = np.zeros((x.size, x.size), order="F")
-        np.multiply(self.operator_at(x).compliance, -self.tabor * self._acting(x).slope, out=J[:-2, :-2])
+        here, J = self._acting(x), np.zeros((x.size, x.size), order="F")
+        np.multiply(here.body.compliance, -self.tabor * here.slope, out=J[:-2, :-2])
         np.einsum("ii->i", J)[:-2] += 1
         J[:-2, -2] = 1
         if self.follows_contact:
-            J[:-2, -1] = self._by_scale(x)
+            J[:-2, -1] = here.rates[2]
             J[-2, :-2] = self.operator.edge_row
         else:
             J[-2, -1] = 1
         J[-1] = row
         return J
 
-    def _by_scale(self, x: Array) -> Array:
-        d_radii, _, d_deflection = self._acting(x).rates
-        return np.asarray(-self.tabor * (self.profile.slope(self.radii(x)) * d_radii + d_deflection))
-
     def along(self, x: Array, v: Array) -> Array:
         """Derivative of the residual along a direction of the state, without its matrix, shape (q + 1,)."""
-        dH, d_alpha, ds = v[:-2], v[-2], v[-1]
-        change = dH + d_alpha - self.tabor * (self.operator_at(x).compliance @ (self._acting(x).slope * dH))
+        here, dH, ds = self._acting(x), v[:-2], v[-1]
+        change = dH + v[-2] - self.tabor * (here.body.compliance @ (here.slope * dH))
         if self.follows_contact:
-            return appended(change + self._by_scale(x) * ds, float(self.operator.edge_row @ dH))
+            return appended(change + here.rates[2] * ds, float(self.operator.edge_row @ dH))
         return appended(change, ds)
 
     def bordered_solver(self, x: Array, row: Array) -> Solver:
@@ -218,11 +252,12 @@ class ContactProblem(Valued):
 
     def load(self, x: Array) -> float:
         """W in R dgamma, positive in compression."""
-        return float(self.operator_at(x).weights @ self._acting(x).pressure)
+        here = self._acting(x)
+        return float(here.body.weights @ here.pressure)
 
     def central_gap(self, x: Array) -> float:
         """H(0) in eps: the deflection is smooth across the axis, as the profile need not be."""
-        return float(self.operator.axis_row @ self.deflection(x) - x[-2])
+        return float(self.operator.axis_row @ self._acting(x).deflection - x[-2])
 
     def pressure(self, x: Array) -> Array:
         """Nodal pressures P, shape (q,)."""
@@ -234,15 +269,13 @@ class ContactProblem(Valued):
 
     def deflection(self, x: Array) -> Array:
         """Of the nodes in eps, mu w = H + alpha* - mu z(u), shape (q,)."""
-        return np.asarray(x[:-2] + x[-2] - self.tabor * self.profile.height(self.radii(x)))
+        return self._acting(x).deflection.copy()
 
     def contact_radius(self, x: Array) -> float:
         """Largest radius in beta at which the gap is 3^(1/6) eps, or nan where the surfaces are further apart.
 
         Where they are nowhere so far apart it is the extent of the surface.
         """
-        if self.follows_contact:
-            return float(x[-1])
         return self._acting(x).contact_radius
 
     def radius_at_gap(self, x: Array, gap: float) -> float:
@@ -284,25 +317,14 @@ class ContactProblem(Valued):
 
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative by x of the weighted sum of the observables, shape (q + 2,)."""
-        row = np.zeros(x.size)
-        row[-2] = weights[APPROACH]
-        if weights[LOAD]:
-            row[:-2] += weights[LOAD] * self.operator_at(x).weights * self._acting(x).slope
-            row[-1] += weights[LOAD] * float(self._acting(x).rates[1] @ self._acting(x).pressure)
-        if weights[CENTRAL_GAP]:
-            axis = self.operator.axis_row
-            by_scale = self.tabor * float(axis @ (self.profile.slope(self.radii(x)) * self._acting(x).rates[0]))
-            row[:-2] += weights[CENTRAL_GAP] * axis
-            row[-1] -= weights[CENTRAL_GAP] * by_scale
-        if weights[CONTACT_RADIUS]:
-            row += weights[CONTACT_RADIUS] * self._radius_gradient(x)
-        return row
+        here = self._acting(x)
+        row = weights[:CONTACT_RADIUS] @ here.gradients
+        return row + weights[CONTACT_RADIUS] * here.radius_gradient if weights[CONTACT_RADIUS] else row
 
-    def _radius_gradient(self, x: Array) -> Array:
-        if self.follows_contact:
-            return np.asarray(np.eye(1, x.size, x.size - 1)[0])
-        value, slope = self.operator_at(x).continuous(self.contact_radius(x))
-        return np.append(-value / (slope @ x[:-2]), [0.0, 0.0])
+    def rates(self, x: Array, v: Array) -> Array:
+        """Derivatives of the observables along a direction, 0 of a contact radius that there is not, shape (4,)."""
+        here = self._acting(x)
+        return appended(here.gradients @ v, 0.0 if np.isnan(here.contact_radius) else float(here.radius_gradient @ v))
 
     def require_resolution(self, x: Array) -> None:
         """Refuse a state whose contact edge stands where the grid is too coarse for the spike of tension there.
@@ -327,13 +349,13 @@ class ContactProblem(Valued):
 
     def longest_step(self, x: Array, dx: Array) -> float:
         """Fraction of the step dx that leaves a quarter of each gap h, of the scale and of its room on the profile."""
-        shrinks = np.append(-dx[:-2] / self._acting(x).room, [-dx[-1] / x[-1], dx[-1] / (self.profile.end - x[-1])])
-        return min(1.0, LARGEST / max(float(shrinks.max()), LARGEST))
+        least, scale, change = float((dx[:-2] / self._acting(x).room).min()), float(x[-1]), float(dx[-1])
+        return min(1.0, LARGEST / max(LARGEST, -least, -change / scale, change / (self.profile.end - scale)))
 
     def size(self, x: Array, dx: Array) -> float:
         """Relative size of the change dx of the state x."""
-        gaps = float(np.max(np.abs(dx[:-2]) / self._acting(x).room))
-        return max(gaps, float(abs(dx[-2]) / (1 + abs(x[-2]))), float(abs(dx[-1] / x[-1])))
+        gaps = float(np.abs(dx[:-2] / self._acting(x).room).max())
+        return max(gaps, abs(float(dx[-2])) / (1 + abs(float(x[-2]))), abs(float(dx[-1]) / float(x[-1])))
 
     def misfit(self, x: Array, residual: Array) -> float:
         """Norm of the residual relative to the gaps, lest the far field of a scaled grid drown the contact."""

@@ -58,6 +58,10 @@ class Equilibrium(Protocol):
         """Derivative of a weighted sum of the observables."""
         ...
 
+    def rates(self, x: Array, v: Array) -> Array:
+        """Derivatives of the observables along a direction, 0 of one that is nan."""
+        ...
+
     def longest_step(self, x: Array, dx: Array) -> float:
         """Fraction of a step that keeps gaps positive."""
         ...

@@ -109,19 +109,9 @@ def make_point(
     That (4,) is a covector on the observables: the arclength's gradient at a point nearby.
     """
     tangent = newton.tangent(problem, solution)
-    rates = _rates(problem, solution, tangent)
+    rates = problem.rates(solution.x, tangent)
     length = np.copysign(np.sqrt(metric.weights @ rates**2), direction @ rates)
     return Point(solution.x, solution.observables, tangent / length, rates / length, arclength, solution.iterations)
-
-
-def _rates(problem: Equilibrium, solution: newton.Solution, tangent: Array) -> Array:
-    exists = np.isfinite(solution.observables)
-    return np.array(
-        [problem.gradient(solution.x, row) @ tangent if e else 0.0 for row, e in zip(EACH, exists, strict=True)]
-    )
-
-
-EACH = np.eye(4)  # weights of each observable alone
 
 
 def correct(
