@@ -110,19 +110,21 @@ def _left(chart: Chart, ended: Callable[[Point], bool]) -> Callable[[Point], boo
     return lambda point: ended(point) or chart.left(chart.problem, point)
 
 
-def _pace(problem: Traceable, before: Sequence[Segment]) -> Steps | None:
-    """Steps to begin with: as long as the last on a grid of the same kind.
+def _pace(problem: Traceable, before: Sequence[Segment]) -> Steps:
+    """Steps to begin with: far apart, where the path is straight, the longest; else as the last on a grid of its kind.
 
     On a body of whose unknowns the surface is but a part, half as long.
     """
+    whole = problem.interface is not problem
+    usual = WHOLE_BODY if whole else Steps()
     if not before:
-        return None
+        return replace(usual, first=usual.longest)
     last = before[-1].points[-2:]
     step = last[-1].arclength - last[0].arclength
-    if problem.interface is not problem:
-        return replace(WHOLE_BODY, first=step / 2 or WHOLE_BODY.first)
+    if whole:
+        return replace(usual, first=step / 2 or usual.first)
     alike = problem.follows_contact == before[-1].problem.interface.follows_contact
-    return Steps(first=step) if alike and step else None
+    return replace(usual, first=step) if alike and step else usual
 
 
 def undeformed_radius(problem: Traceable, point: Point) -> float:

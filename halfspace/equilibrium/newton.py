@@ -168,8 +168,8 @@ class Solution(Valued):
     """A converged state x, its observables (4,), approach, load, central gap and contact radius, and its control.
 
     The update is the relative size of the last Newton step; the error left is of the order of its square, or less than
-    `LEFT` of the tolerance. The solver is for the linearised equations, bordered by the control, at the state or very
-    near to it.
+    `LEFT` of the tolerance. Astray is that of the first, by how much the start was off. The solver is for the
+    linearised equations, bordered by the control, at the state or very near to it.
     """
 
     x: Array
@@ -178,6 +178,7 @@ class Solution(Valued):
     update: float
     control: Control
     solver: Solver
+    astray: float = 0.0
 
 
 def solve(
@@ -202,16 +203,18 @@ def solve(
         raise NotConverged("the start has no contact radius to be prescribed; start from a state in contact")
     before = last = 1.0 if contraction < 1 else math.inf
     solver: Solver | None = None
+    astray = 0.0
     for iteration in range(1, max_iterations + 1):
         fresh = solver is None
         solver = solver or problem.bordered_solver(x, problem.gradient(x, control.weights))
         accuracy = LEFT if problem.reuse else min(max(before**2, LEFT), ROUGH)
         dx = -solver(F, accuracy)
         update = problem.size(x, dx)
+        astray = astray or update
         x, F, damping = _damped(problem, x, F, dx, control)
         left = update * min(1.0, max(update, accuracy) if fresh else update / before)
         if damping == 1 and update < tolerance and left < LEFT * tolerance:
-            return Solution(x, problem.observables(x), iteration, update, control, solver)
+            return Solution(x, problem.observables(x), iteration, update, control, solver, astray)
         if damping < 1 or update > problem.reuse or (not fresh and update > SLOW * before):
             solver = None
         if update > contraction * last:

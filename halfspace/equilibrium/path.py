@@ -47,7 +47,8 @@ class Point(Valued):
     """A converged point x of the path, its observables, unit tangent dx/ds and arclength s from the start of the path.
 
     The observables (4,) are approach, load, central gap and contact radius, the rates their derivatives by s, that of
-    the contact radius 0 where there is none; the iterations are the Newton steps that the point took.
+    the contact radius 0 where there is none; the iterations are the Newton steps that the point took, and astray is the
+    relative size of the first of them.
     """
 
     x: Array
@@ -56,6 +57,7 @@ class Point(Valued):
     rates: Array
     arclength: float
     iterations: int
+    astray: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -86,7 +88,8 @@ class Steps:
 
     A step below `shortest` ends the path with an error. `turn` is the largest angle between the tangents at a step's
     two ends, in radians. `iterations` are the Newton steps allowed for one continuation step, `usual` those that one of
-    the right length takes, and `contraction` is the part of the Newton step two before that one may have.
+    the right length takes, `astray` is the relative size of the first of them then, and `contraction` the part of the
+    Newton step two before that one may have.
     """
 
     first: float = 0.05
@@ -94,11 +97,13 @@ class Steps:
     shortest: float = 1e-7
     turn: float = 0.35
     iterations: int = 8
-    usual: int = 4
+    usual: float = np.inf
+    astray: float = 0.02
     contraction: float = np.inf
 
 
-WHOLE_BODY = Steps(iterations=10, usual=6, contraction=0.5)  # where a Newton step is worth many of the surface's alone
+# Where a Newton step is worth many of the surface's alone.
+WHOLE_BODY = Steps(iterations=10, usual=6, astray=np.inf, contraction=0.5)
 
 
 def make_point(
@@ -111,7 +116,8 @@ def make_point(
     tangent = newton.tangent(problem, solution)
     rates = problem.rates(solution.x, tangent)
     length = np.copysign(np.sqrt(metric.weights @ rates**2), direction @ rates)
-    return Point(solution.x, solution.observables, tangent / length, rates / length, arclength, solution.iterations)
+    along, rates = tangent / length, rates / length
+    return Point(solution.x, solution.observables, along, rates, arclength, solution.iterations, solution.astray)
 
 
 def correct(
@@ -134,29 +140,40 @@ def correct(
     return make_point(problem, solution, metric, weights, point.arclength + step)
 
 
-def predict(problem: Traceable, point: Point, step: float, before: Point | None = None) -> Array:
-    """Extrapolate along the tangent, to second order where the point before is known (Adams and Bashforth)."""
-    slope = point.tangent
-    if before is not None:
-        slope = slope + (point.tangent - before.tangent) * (step / (2 * (point.arclength - before.arclength)))
+def predict(problem: Traceable, point: Point, step: float, bend: Array | float = 0.0) -> Array:
+    """Extrapolate along the tangent, or a slope that has so much more than it."""
+    slope = point.tangent + bend
     return np.asarray(point.x + problem.longest_step(point.x, step * slope) * step * slope)
+
+
+def _bend(before: Point, point: Point, step: float, metric: Metric) -> Array:
+    """What the slope up to a step ahead has more than the tangent, by the cubic through the point before with its own.
+
+    It is a cubic in the arclength as the step is measured, along the tangent of the point.
+    """
+    length = float((metric.weights * point.rates)[:3] @ (point.observables - before.observables)[:3])
+    mean, ahead = (point.x - before.x) / length, step / length
+    first, last = before.tangent / metric.along(before, point), point.tangent
+    return np.asarray(ahead * (first + 2 * last - 3 * mean + ahead * (first + last - 2 * mean)))
 
 
 NUDGE = 1e-3  # of arclength: a step too short for the contact edge to leave its place
 
 
-def _starts(problem: Traceable, points: list[Point], step: float, trail: Sequence[Passed]) -> Iterator[Array]:
+def _starts(
+    problem: Traceable, points: list[Point], step: float, metric: Metric, trail: Sequence[Passed]
+) -> Iterator[Array]:
     """Predictions in the order in which they are tried.
 
     Where a body's grid stands still see `with_edge` first, which is worse, however, where the surface is steep. The
     trail is of the states passed, on whatever grid, down to that of the last point.
     """
-    point, before = points[-1], points[-2] if len(points) > 1 else None
+    point = points[-1]
     if problem.interface is not problem and step > NUDGE:
         moved = with_edge(problem, trail, point.x, point.arclength + step)
         if moved is not None:
             yield moved
-    yield predict(problem, point, step, before)
+    yield predict(problem, point, step, _bend(points[-2], point, step, metric) if len(points) > 1 else 0.0)
 
 
 def follow(
@@ -217,7 +234,7 @@ def _advance(
 ) -> Point:
     """One step, refused if it leaves what the operator knows, or if the path turns too far for its folds to be seen."""
     point = points[-1]
-    new = _corrected(problem, point, step, _starts(problem, points, step, trail), metric, steps)
+    new = _corrected(problem, point, step, _starts(problem, points, step, metric, trail), metric, steps)
     least, radius = problem.interface.operator.least_radius, new.observables[CONTACT_RADIUS]
     if radius < least:
         raise NotConverged(f"contact radius {radius:.3g} beta is below {least:.3g} beta, the chart's least")
@@ -288,9 +305,12 @@ def _turn(a: Point, b: Point, metric: Metric) -> float:
 
 
 def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -> float:
-    """Lengthen the step while Newton's method and the curvature allow, shorten it where they do not."""
+    """Lengthen the step while Newton's method and the curvature allow, shorten it where they do not.
+
+    By how much a state predicted by a cubic is astray goes as the fourth power of the step.
+    """
     by_turn = steps.turn / max(_turn(points[-2], points[-1], metric), 1e-6)
-    by_effort = steps.usual / points[-1].iterations
+    by_effort = min(steps.usual / points[-1].iterations, (steps.astray / max(points[-1].astray, 1e-12)) ** 0.25)
     wide = (1 + points[-1].observables[CENTRAL_GAP]) * np.sqrt(metric.weights[CENTRAL_GAP]) / RATIO
     return float(min(step * np.clip(min(by_turn, by_effort), 0.3, 2.0), steps.longest * max(1.0, wide)))
 
