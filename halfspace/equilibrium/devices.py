@@ -184,6 +184,7 @@ def jumps(
     folds = _in_order(segments, base, [state for states in known.values() for state in states])
     if not folds:
         return None
+    segments, folds = _cut(segments, folds)
     ways = _on(segments, folds, compliance), _off(segments, folds, compliance)
     named = zip(ways, (known.get(name, ()) for name in FOLDS), strict=True)
     return tuple(
@@ -214,6 +215,19 @@ def _in_order(segments: Sequence[Segment], condition: Condition, known: Sequence
         for number, segment in enumerate(segments)
         for state in states([segment], condition, known)
     ]
+
+
+def _cut(segments: Sequence[Segment], folds: Sequence[_Placed]) -> tuple[list[Segment], list[_Placed]]:
+    """Curve with its folds among its points, lest a landing hide with one between two of them; and these on it."""
+    whole: list[Segment] = []
+    placed: list[_Placed] = []
+    for number, segment in enumerate(segments):
+        own = [fold.state for fold in folds if fold.place[0] == number]
+        points = sorted([*segment.points, *(fold.point for fold in own)], key=lambda point: point.arclength)
+        whole.append(measured(segment.problem, points, metric_for(segment.problem)))
+        places = {id(point): anew.arclength for point, anew in zip(points, whole[-1].points, strict=True)}
+        placed += [_Placed((number, places[id(fold.point)]), fold) for fold in own]
+    return whole, placed
 
 
 def _at_base_of(fold: _Placed, segments: Sequence[Segment], compliance: float) -> list[_Placed]:
