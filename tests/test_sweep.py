@@ -154,7 +154,7 @@ def traced(monkeypatch):
     ("between", "expected"),
     [
         pytest.param((1.55, 2.2), 3, id="nothing but the ends and the middle"),
-        pytest.param((0.675, 0.9), 7, id="around the birth of the jumps, and where the landing changes its grid"),
+        pytest.param((0.675, 0.9), 5, id="around the birth of the jumps"),
         pytest.param((3.5, 5.0), 5, id="around the birth of the next folds"),
         pytest.param((0.06, 0.08), 3, id="nearly rigid"),
         pytest.param((26.0, 38.0), 3, id="soft"),

@@ -123,7 +123,7 @@ def _pace(problem: Traceable, before: Sequence[Segment]) -> Steps:
     step = last[-1].arclength - last[0].arclength
     if whole:
         return replace(usual, first=step / 2 or usual.first)
-    alike = problem.follows_contact == before[-1].problem.interface.follows_contact
+    alike = problem.interface.follows_contact == before[-1].problem.interface.follows_contact
     return replace(usual, first=step) if alike and step else usual
 
 
