@@ -404,3 +404,12 @@ def test_a_contact_that_grows_wider_than_was_guessed_is_traced():
     """A soft law on a layer: its radius comes to 1.3 times the widest that the operator was made for."""
     layer = Layer(6.51, poisson=0.413)
     assert halfspace.trace(0.0434, law=Morse(0.63), body=layer, rtol=1e-3).met
+
+
+def test_the_radius_of_a_fold_at_the_birth_of_contact_is_within_its_error_by_elements():
+    """It was off by four times its estimate, alike on two degrees of the elements."""
+    path = fem_adhesion.trace(Scene(7.41963935414074, fem_adhesion.HalfSpace(poisson=0.0)), rtol=8.301120954255128e-06)
+    known, fold = halfspace.trace(7.41963935414074, rtol=1e-8).event("fold_3"), path.event("fold_3")
+    off = abs(fold.contact_radius - known.contact_radius)
+    assert known.contact_radius_error < 1e-9
+    assert off < fold.contact_radius_error < 100 * off

@@ -4,7 +4,6 @@ An event is taken from where it was found and solved for again. Bodies with a le
 around each, on a grid that stands still: neither the window of contact radii nor the interpolation in it is shared.
 """
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -105,7 +104,7 @@ def _layered_panels(images, nodes, rim, lines):
 
 
 def _panels(nodes, lines):
-    return replace(compliance.panels(lines, nodes), even=True), nodes * (lines.size - 1)
+    return compliance.panels(lines, nodes), nodes * (lines.size - 1)
 
 
 def elements(scene):

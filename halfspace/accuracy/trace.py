@@ -176,16 +176,15 @@ def _to_infinity(
     """Breakpoints, and what makes the half-space's operator of those of either chart."""
     nodes, reach = resolution.nodes, scales.tail_reach
     lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, nodes)
-    even = scales.body is not None  # cells on the axis of a layer are long beside its thickness
-    return lines, partial(_endless, nodes, reach, even)  # no function of its own, as what is pickled holds it
+    return lines, partial(_endless, nodes, reach)  # no function of its own, as what is pickled holds it
 
 
-def _endless(nodes: int, reach: float, even: bool, breaks: Array) -> compliance.ElasticOperator:
-    return compliance.to_infinity(_cut(nodes, even, breaks), nodes, reach)
+def _endless(nodes: int, reach: float, breaks: Array) -> compliance.ElasticOperator:
+    return compliance.to_infinity(_cut(nodes, breaks), nodes, reach)
 
 
-def _cut(nodes: int, even: bool, breaks: Array) -> compliance.ElasticOperator:
-    return replace(compliance.panels(breaks, nodes), even=even)
+def _cut(nodes: int, breaks: Array) -> compliance.ElasticOperator:
+    return compliance.panels(breaks, nodes)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -325,7 +324,7 @@ def _stepped_rung(scales: Scales, rtol: float, to_load: float, level: int) -> Ru
 def _windows(scales: Scales, resolution: Resolution, to_load: float) -> Windows:
     outer = scales.outer_radius(resolution.extent**2 / 2)
     nodes, cut = resolution.nodes, math.isinf(scales.law.decay)  # it acts no farther than the cells
-    half_space = partial(_cut, nodes, True) if cut else partial(_endless, nodes, scales.tail_reach, True)
+    half_space = partial(_cut, nodes) if cut else partial(_endless, nodes, scales.tail_reach)
     tip, inwards = at_tip(scales.profile, nodes), _inwards(scales, resolution.growth)
     return Windows(scales, resolution.finest, resolution.growth, outer, half_space, tip, inwards, to_load)
 
@@ -382,8 +381,8 @@ def _sized_body(
 
 
 def _made_under_sphere(R: float, nodes: int, lines: Array) -> Made:
-    return replace(compliance.panels(lines, nodes, R), even=True), nodes * (lines.size - 1)
+    return compliance.panels(lines, nodes, R), nodes * (lines.size - 1)
 
 
 def _made(images: Images, nodes: int, lines: Array) -> Made:
-    return replace(layered_panels(images, lines, nodes), even=True), nodes * (lines.size - 1)
+    return layered_panels(images, lines, nodes), nodes * (lines.size - 1)

@@ -74,9 +74,6 @@ class ElasticOperator(Valued, Operator):
         Radii between which one interpolation polynomial holds, from 0 outwards.
     cell_nodes : (m, k) int array
         The k nodes whose values define the polynomial in each cell.
-    even : bool
-        Whether values on the axis are those of a polynomial in the square of the radius, as befits where the cell there
-        is long; elements have one in the radius itself.
     """
 
     radii: Array
@@ -84,7 +81,6 @@ class ElasticOperator(Valued, Operator):
     compliance: Array
     cells: Array
     cell_nodes: Index
-    even: bool = False
 
     @property
     def extent(self) -> float:
@@ -102,7 +98,7 @@ class ElasticOperator(Valued, Operator):
         inside = self.radii <= self.extent
         compliance = self.compliance[np.ix_(inside, inside)]
         of_these = self.radii[inside], self.weights[inside], compliance
-        return ElasticOperator(*of_these, self.cells, self.cell_nodes, self.even)
+        return ElasticOperator(*of_these, self.cells, self.cell_nodes)
 
     def widened(self, nodes: int, reach: float) -> ElasticOperator:
         """Return the body with other cells beyond its extent, see `to_infinity`."""
@@ -139,7 +135,6 @@ class ElasticOperator(Valued, Operator):
             self.compliance * factor,
             self.cells * factor,
             self.cell_nodes,
-            self.even,
         )
 
     def cell_of(self, radius: float) -> int:
@@ -200,8 +195,6 @@ class ElasticOperator(Valued, Operator):
         In the squares of the radii the nodes lie near to it. A polynomial in the radius, which is not even, misses the
         value there by the same on grids that differ in all else.
         """
-        if not self.even:
-            return self.interpolation(0.0)[0]
         nodes, row = self.cell_nodes[0], np.zeros(self.radii.size)
         squares = self.radii[nodes] ** 2
         row[nodes] = lagrange(squares, barycentric(squares), 0.0)[0]
@@ -305,7 +298,6 @@ def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> El
         np.block([[inner.compliance, inward], [outward, own]]),
         inner.cells,
         inner.cell_nodes,
-        inner.even,
     )
 
 

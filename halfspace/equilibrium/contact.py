@@ -289,9 +289,9 @@ class ContactProblem(Valued):
 
         No better are values at a point known: the central gap by the last Legendre coefficients in the first cell, see
         `_left_out`; the contact radius, nan without contact, by the last but one in the cells on both sides of the
-        edge, in the geometric mean: they have it from either. On a grid whose cells inside the contact alone
-        grow with it they are not alike, and that outside counts, of whose polynomial the radius is a root. On finite
-        elements of degree p, with p + 2 nodes, the last is none of theirs.
+        edge, see `_last_but_one`, in the geometric mean: they have it from either. On a grid whose cells inside the
+        contact alone grow with it they are not alike, and that outside counts, of whose polynomial the radius is a
+        root. On finite elements of degree p, with p + 2 nodes, the last is none of theirs.
         """
         body, radius = self.operator_at(x), self.contact_radius(x)
         gap = _left_out(self._coefficients(x, 0))
@@ -300,7 +300,7 @@ class ContactProblem(Valued):
         sides = (-1e-9, 1e-9) if self.operator.alike else (1e-9,)
         cells = {body.cell_of(radius * (1 + side)) for side in sides}
         slope = abs(body.continuous(radius)[1] @ x[:-2])
-        left = np.prod([self._coefficients(x, cell)[-2:][0] for cell in cells]) ** (1 / len(cells))
+        left = np.prod([_last_but_one(self._coefficients(x, cell)) for cell in cells]) ** (1 / len(cells))
         return np.array([gap, left / slope])
 
     def untold(self, x: Array) -> Array:
@@ -412,6 +412,19 @@ def _left_out(coefficients: Array) -> float:
         return float(last.max())
     before, after = coefficients[-5:-3].max(), coefficients[-3:-1].max()  # two orders apart
     return float(max(last[0] * min(1.0, (after / before) ** 0.25 if before else 1.0), *last[1:]))
+
+
+def _last_but_one(coefficients: Array) -> float:
+    """Of the sizes of a polynomial's Legendre coefficients that before the last, or what the one after it is to be.
+
+    It may be small by accident, where the deflection is nearly even or odd in the cell; every second one falls alike,
+    so that the third last, carried on by the fall over the two orders before it, tells the size of the next.
+    """
+    known = float(coefficients[-2:][0])
+    if coefficients.size < 5:
+        return known
+    before, last = coefficients[-5], coefficients[-3]
+    return max(known, float(last * min(1.0, last / before)) if before else 0.0)
 
 
 def contact_of(scales: Scales, operator: Operator) -> ContactProblem:
