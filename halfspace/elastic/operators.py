@@ -192,7 +192,8 @@ class MovingGrid(Valued):
 
     def edge_rate(self, contact_radius: float) -> float:
         """Derivative of x_a by the contact radius."""
-        return 1 / float(self.coordinate.radius(np.array(self.edge(contact_radius)))[1])
+        rate = float(self.coordinate.radius(np.array(self.edge(contact_radius)))[1])
+        return 1 / rate if rate else np.nan  # on the equator: a trial that ends there is refused for it
 
 
 @dataclass(frozen=True, eq=False, repr=False)
