@@ -107,6 +107,21 @@ def test_what_a_chart_for_farther_off_tells_is_solved_for_again_on_that_made_for
     assert asked == ["near", "wide", "near"]
 
 
+def test_no_state_is_handed_out_on_the_chart_for_farther_off(monkeypatch):
+    """The wide chart has the event in the window of another chart than that which led astray: it is solved for there."""
+    interface = SimpleNamespace(follows_contact=True)
+    found_on, near, other, wide = (SimpleNamespace(interface=interface) for _ in range(4))
+    stage = AroundEvents(SimpleNamespace(around=lambda *_: Chart(wide, 1)))
+    stage.keep(0.9, 1.1, Chart(near, 1))
+    stage.keep(1.1, 1.3, Chart(other, 1))
+
+    def lying(radius, problem):
+        return SimpleNamespace(point=SimpleNamespace(observables=np.array([0, 0, 0, radius])), problem=problem)
+
+    monkeypatch.setattr(finite_bodies, "moved", lambda _, p: lying(1.5 if p is near else 1.2, p))
+    assert stage.moved(lying(1.0, found_on), near).problem is other
+
+
 def point(arclength, approach):
     return SimpleNamespace(arclength=arclength, observables=np.array([approach, 0.0, 0.0, np.nan]), rates=np.zeros(4))
 

@@ -259,7 +259,8 @@ class AroundEvents(WhereAsked):
             if abs(found.point.observables[CONTACT_RADIUS] - before) <= ASTRAY * before:
                 return found
         found = moved(event, self.body.around(before, WIDE, WIDELY).problem)
-        return moved(found, problem) if self(found).problem is self(event).problem else found  # from nearer
+        there = self(found).problem  # from nearer; the wide chart, which errs more, is none of this stage's
+        return moved(found, problem if there is self(event).problem else there)
 
     @property
     def everywhere(self) -> AlongCurve:
