@@ -108,7 +108,7 @@ def test_what_a_chart_for_farther_off_tells_is_solved_for_again_on_that_made_for
 
 
 def test_no_state_is_handed_out_on_the_chart_for_farther_off(monkeypatch):
-    """The wide chart has the event in the window of another chart than that which led astray: it is solved for there."""
+    """The wide chart has the event in the window of another chart than that which led astray: it is solved there."""
     interface = SimpleNamespace(follows_contact=True)
     found_on, near, other, wide = (SimpleNamespace(interface=interface) for _ in range(4))
     stage = AroundEvents(SimpleNamespace(around=lambda *_: Chart(wide, 1)))
