@@ -97,6 +97,18 @@ def test_a_tip_whose_apex_the_table_does_not_tell_is_refused(tmp_path):
         profiles.Tabulated(written(tmp_path / "tip.csv", r, z), 100.0)
 
 
+@pytest.mark.parametrize("count", [50, 200, 1000])
+def test_a_tip_with_its_columns_exchanged_is_refused(count, tmp_path):
+    """A root of the radius rises with a vertical tangent: of what the spline takes for its apex few rows are told."""
+    r = np.linspace(0, 15e-9, count)
+    for z in (r**2 / (2 * R), R - np.sqrt(R**2 - r**2), R / 4 * (np.sqrt(1 + 4 * (r / R) ** 2) - 1)):
+        assert profiles.Tabulated(written(tmp_path / "tip.csv", r, z), 100.0).radius == pytest.approx(R, rel=1e-3)
+        with pytest.raises(
+            InputError, match=r"[12] rows lie within the apex radius, .* limit: 3 .* in the first column"
+        ):
+            profiles.Tabulated(written(tmp_path / "tip.csv", z, r), 100.0)
+
+
 @pytest.mark.parametrize("count", [100, 200, 300])
 def test_what_a_table_leaves_open_is_told(count, tmp_path):
     """Between its rows the spline is off from the law that it was made of by about that; a hole is found."""
@@ -139,7 +151,7 @@ def test_what_is_no_law_is_refused_in_one_line(x, y, message, tmp_path, capsys):
     assert err.count("\n") == 1
 
 
-ROWS = "".join(f"{r},{r**2}\n" for r in range(20))
+ROWS = "".join(f"{r},{r**2 / 8}\n" for r in range(20))
 
 
 @pytest.mark.parametrize(
@@ -148,7 +160,7 @@ ROWS = "".join(f"{r},{r**2}\n" for r in range(20))
         (None, r"tip\.csv cannot be read: No such file or directory, limit: a file"),
         ("a,b\n1,2,3\n2\n", r"tip\.csv has 2 rows, limit: 12, of two numbers"),
         ("no numbers\n", r"tip\.csv, line 1: 'no numbers', limit: two numbers with a comma between"),
-        (ROWS.replace(",", ";"), r"tip\.csv, line 20: '19;361', limit: two numbers with a comma .*; save it as CSV"),
+        (ROWS.replace(",", ";"), r"tip\.csv, line 20: '19;45.125', limit: two numbers with a comma .*; save it as CSV"),
         (ROWS + "# 20\n", r"tip\.csv, line 21: '# 20', limit: two finite numbers; mend it or leave it out"),
         (ROWS + "20,\n", r"tip\.csv, line 21: '20,', limit"),
     ],
@@ -163,7 +175,7 @@ def test_what_is_no_table_is_refused(text, message, tmp_path):
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1"])
 def test_a_header_may_be_of_any_letters(encoding, tmp_path):
     (tmp_path / "tip.csv").write_bytes(("Radius (µm),Höhe (µm)\n" + ROWS).encode(encoding))
-    assert profiles.Tabulated(tmp_path / "tip.csv", 100.0).radius == pytest.approx(0.5)
+    assert profiles.Tabulated(tmp_path / "tip.csv", 100.0).radius == pytest.approx(4.0)
 
 
 def test_a_material_with_another_radius_than_its_tip_is_refused_in_one_line(tmp_path, capsys):

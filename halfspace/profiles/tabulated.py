@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 
 FEWEST, MOST, DEGREE = 12, 30, 5  # points of a piece; pieces, and their degree in the square of the radius
+CURVED = 3  # rows within the apex radius of the axis, that its curvature is told by
 CHECKED = 1000  # radii at which it must rise
 
 
@@ -56,6 +57,12 @@ class Tabulated:
         if not self.radius_error < self.radius:
             value = f"the apex radius is {self.radius:.3g} +- {self.radius_error:.1g}"
             raise InputError(f"{self.path}: {value}, limit: an error below it; give more points near the axis")
+        rows = np.count_nonzero(self._table[0] <= self.radius)
+        if rows < CURVED:
+            raise InputError(
+                f"{self.path}: {rows} rows lie within the apex radius, {self.radius:.3g}, of the axis, limit: {CURVED} "
+                "or more; give more points there, and the radius in the first column, the height in the second"
+            )
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
