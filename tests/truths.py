@@ -97,9 +97,9 @@ FARTHEST = 1e8  # times, to which a tail goes on
 
 
 def _layered_panels(images, nodes, rim, lines):
-    operator = replace(layered_panels(images, lines, nodes), even=True)
+    operator = layered_panels(images, lines, nodes)
     if rim is not None:
-        operator = replace(discretise.with_rigid_rim(operator, rim, FLAT), even=True)
+        operator = discretise.with_rigid_rim(operator, rim, FLAT)
     return operator, operator.radii.size
 
 
