@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from fem_adhesion.assess.command import COMMAND as ASSESS
 from fem_adhesion.common.files import NotWritten
+from fem_adhesion.common.jobs import keep_to_one_thread
 from fem_adhesion.common.options import BAD_INPUT, DISAGREE, NOT_WRITTEN, Parser, Version, ended, ended_by_signal
 from fem_adhesion.crosscheck.command import COMMAND as COMPARE
 from fem_adhesion.curve.command import COMMAND as CURVE
@@ -33,6 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if interrupted by Ctrl-C, 143 if terminated by SIGTERM.
     """
     options = make_parser().parse_args(arguments)
+    keep_to_one_thread()
     try:
         with ended_by_signal():
             return int(options.run(options))

@@ -5,12 +5,14 @@ import subprocess
 import sys
 from dataclasses import fields
 from importlib.metadata import version
+from pathlib import Path
 
 import pytest
 from whole_runs import COMPARE
 
 from fem_adhesion import cli
 from fem_adhesion.common.files import written_aside
+from fem_adhesion.common.jobs import ONE_THREAD
 from fem_adhesion.crosscheck import study as crosscheck
 from halfspace.errors import NotConverged
 from halfspace.laws import Morse
@@ -198,6 +200,26 @@ def test_help_does_not_load_the_solvers(command):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "usage: fem-adhesion" in done.stdout
     assert done.stderr.strip() == "[]"
+
+
+def _threads_of_a_command(**settings):
+    """How many threads a command leaves in its process, and whether it has set how many BLAS may start."""
+    code = """
+import os
+from fem_adhesion.cli import main
+main(["curve", "--tabor", "0.1", "--rtol", "1e-2"])
+print(len(os.listdir("/proc/self/task")), "OPENBLAS_NUM_THREADS" in os.environ)
+"""
+    free = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=free | settings)
+    number, is_set = done.stdout.split()[-2:]
+    return int(number), is_set == "True"
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted by Linux")
+def test_a_command_keeps_blas_to_one_thread_unless_told_otherwise():
+    assert _threads_of_a_command() == (1, True)
+    assert not _threads_of_a_command(OMP_NUM_THREADS="2")[1]
 
 
 def _option_lines(command, capsys):

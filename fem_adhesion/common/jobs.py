@@ -38,7 +38,13 @@ WATCH_SECONDS = 1  # between two looks of a local worker at whether its study is
 IDLE_SECONDS = 300  # after which a local worker without work ends
 BLAS = ("OPENBLAS", "OMP", "MKL", "BLIS")
 ONE_THREAD = {**{f"{name}_NUM_THREADS": "1" for name in BLAS}, "VECLIB_MAXIMUM_THREADS": "1"}
-"""Each local worker keeps to one thread of BLAS: the cores are taken by the others."""
+"""Each process keeps to one thread of BLAS: on systems as small as ours others cost up to seven times what one does."""
+
+
+def keep_to_one_thread() -> None:
+    """Have BLAS use one thread in this process unless its environment says how many; it is read as NumPy is loaded."""
+    if "numpy" not in sys.modules and not ONE_THREAD.keys() & os.environ.keys():
+        os.environ.update(ONE_THREAD)
 
 
 # How far it is
