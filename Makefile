@@ -8,6 +8,9 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .PHONY: help compare test check bench hard honesty docs clean
 
+# Targets share the environment that they install.
+.NOTPARALLEL:
+
 help: ## show this list
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 10
 
@@ -35,7 +38,7 @@ docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, int
 	$(BIN)/python tests/docs.py $(or $(OUT),build/docs) $(if $(QUICK),--quick)
 
 clean: ## remove the environment and all caches
-	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache
 
 # One call installs all that a target needs. What is compiled is what is imported, and that by Python, when it is.
 define install

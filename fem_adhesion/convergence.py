@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -55,7 +54,7 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     scene : Scene
         The contact.
     rtol : float
-        Relative accuracy asked of loads and approaches, 1e-9 to 1e-1; of approaches, which have no natural zero, in
+        Relative accuracy asked of loads and approaches, 1e-9 to 0.1; of approaches, which have no natural zero, in
         parts of eps and the range of those of all events.
     to_load : float
         Compressive load at which the curve ends, in R dgamma.
@@ -89,7 +88,8 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
 # A half-space without a length, as a block
 
 
-class BlockResolution(NamedTuple):
+@dataclass(frozen=True)
+class BlockResolution:
     """How finely a half-space is discretised, and how far: the size of the block in beta."""
 
     how: Discretisation
@@ -99,7 +99,7 @@ class BlockResolution(NamedTuple):
 def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: first the degree of the rung below on a larger block, then one degree more."""
     above, below = (resolution_for(scene, rtol, max(n, 0)) for n in (level, level - 1))
-    stages = (below._replace(radius=above.radius), above) if level else ()
+    stages = (replace(below, radius=above.radius), above) if level else ()
     charted = tuple(Charted(block_charts(scene, stage, to_load)) for stage in stages)
     curve = partial(block_charts, scene, above, to_load)
     # A block of given size is compared with one other size only, and if both are small most of the error is left.

@@ -48,7 +48,7 @@ FAR_FIELDS: Mapping[FarFieldName, FarField] = {
 
 TRIANGLE, quadrilateral = ElementTriP2(), cache(ElementQuadP)  # one of each, lest they be evaluated for every mesh
 LENGTHS = 50  # of the cells at the contact edge, to a factor of e
-KEPT = 40  # operators, as many as a curve with its events takes; of some 100 nodes each
+KEPT = 60  # operators, more than a curve with its events takes, some 40 at most; of some 100 nodes each
 CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated to some 1e-4
 
 
@@ -164,7 +164,7 @@ def _made(scene: Scene, how: Discretisation, lines: Array) -> Made:
 
 def _alone(body: Body, R: float, core: bytes, length: float, how: Discretisation) -> tuple[ElasticOperator, int, Array]:
     """Operator of a body, its unknowns and the slopes of its surface, whatever profile and law act on it."""
-    found = _condensed(body, body.mesh(R, np.frombuffer(core), length, how), how)
+    found = _condensed(body, body.mesh(R, np.frombuffer(core).copy(), length, how), how)
     return found.operator, found.unknowns, found.surface.slopes
 
 

@@ -83,7 +83,7 @@ def require_poisson(poisson: float) -> float:
 
 
 def require_rtol(rtol: float) -> float:
-    """Return the relative tolerance, or raise InputError unless 1e-9 <= rtol <= 1e-1."""
+    """Return the relative tolerance, or raise InputError unless 1e-9 <= rtol <= 0.1."""
     return require_between(rtol, "rtol", 1e-9, 1e-1, "take 1e-5 if in doubt")
 
 

@@ -14,13 +14,13 @@ TABORS, THICKNESSES, MODULI = (0.3, 10.0), (0.05, 100.0), (0.01, 100.0)
 
 
 def drawn(seed, count):
-    """Scenes of a seed; those that are refused when they are made, as tails too heavy are, do not count."""
+    """Scenes of a seed; what is refused when it is made, as a law that repels on the whole, does not count."""
     random = np.random.default_rng(seed)
     scenes = []
     while len(scenes) < count:
-        parts = _between(random, *TABORS), _body(random), _profile(random), _law(random)
         try:
-            scenes.append(Scene(*parts[:3], law=parts[3]))
+            tabor, body, profile = _between(random, *TABORS), _body(random), _profile(random)
+            scenes.append(Scene(tabor, body, profile, law=_law(random)))
         except InputError:
             continue
     return scenes

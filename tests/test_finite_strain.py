@@ -468,7 +468,7 @@ def test_mixed_form_agrees_with_displacements_at_small_poisson(triangles):
 
 
 def test_mixed_form_does_not_lock():
-    nu, stretch, gaps = 0.4999, 0.2, (2.0, 1.0)
+    nu, stretch, gaps = 0.49999, 0.2, (2.0, 1.0)
     reference = pull_of(block(4, 0.5), nu, stretch, ElementQuadP(3), gaps)
     space = block(2)
     locked = abs(pull_of(space, nu, stretch, None, gaps) / reference - 1)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 
+import drawn_layers
 import honesty
 import numpy as np
 import pytest
@@ -89,6 +90,14 @@ def test_a_family_whose_estimates_are_too_small_or_too_large_is_not_honest(part,
 def test_scenes_side_by_side_are_those_of_the_seed():
     assert side_by_side.drawn(7, 3) == side_by_side.drawn(7, 3)
     assert side_by_side.drawn(7, 3) != side_by_side.drawn(8, 3)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_contacts_on_layers_are_drawn_for_any_seed(seed):
+    """What is refused when it is made, law or body, is drawn again."""
+    scenes = drawn_layers.drawn(seed, 12)
+    assert len(scenes) == 12
+    assert drawn_layers.drawn(seed, 12) == scenes != drawn_layers.drawn(seed + 1, 12)
 
 
 @pytest.mark.parametrize(

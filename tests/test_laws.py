@@ -530,7 +530,7 @@ def test_both_solvers_agree_on_any_law_and_profile(tabor, parts):
 
 @pytest.mark.parametrize("number", [1, 26])
 def test_hard_combinations_agree(number):
-    """Two of the thirty that `make honesty` compares: short in range with a hard core, a thin layer under a tip."""
+    """Two of those that `make honesty` compares: short in range with a hard core, a thin layer under a tip."""
     assert combinations.verdict(combinations.SCENES[number]) == ("agree", "")
 
 

@@ -226,6 +226,11 @@ def test_compare_on_the_command_line_agrees_with_all_that_it_has(body, tmp_path)
     assert all(row["verdict"] == "agree" for row in rows)
 
 
+@pytest.mark.parametrize("ratio", [0.3, 7, 49, 93, 98.7])
+def test_a_coating_of_either_package_is_the_same_body(ratio):
+    assert Scene(1.0, halfspace.Coated(1.0, ratio)) == Scene(1.0, Coated(1.0, ratio))
+
+
 @pytest.mark.usefixtures("two_solvers")
 @pytest.mark.parametrize(
     ("asked", "wrong"),

@@ -306,8 +306,9 @@ def test_each_number_of_a_station_stands_under_its_name(contents, html):
         for name in ("arclength", "approach", "load", "central_gap"):
             assert one[name] == pytest.approx(getattr(station, name), rel=1e-4)
         assert (one["contact_radius"] is None) == np.isnan(station.contact_radius)
+    told = walked.path.central_gap_error.max()  # gaps are drawn by polynomials in the radius, the central one is not
     for station in walked.stations:  # the gap on the axis, and the contact radius where the tension is largest
-        assert station.gap[0][0] == pytest.approx(station.central_gap, abs=1e-6)
+        assert station.gap[0][0] == pytest.approx(station.central_gap, abs=told)
         if not np.isnan(station.contact_radius):
             inside = station.gap[0] < LENNARD_JONES.edge_gap
             assert walked.radii[inside].max() == pytest.approx(station.contact_radius, abs=2 * walked.radii[1])

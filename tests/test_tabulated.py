@@ -99,14 +99,21 @@ def test_a_tip_whose_apex_the_table_does_not_tell_is_refused(tmp_path):
 
 @pytest.mark.parametrize("count", [50, 200, 1000])
 def test_a_tip_with_its_columns_exchanged_is_refused(count, tmp_path):
-    """A root of the radius rises with a vertical tangent: of what the spline takes for its apex few rows are told."""
-    r = np.linspace(0, 15e-9, count)
+    """A root of the radius rises with a vertical tangent, and falls behind it; noise changes nothing of that."""
+    r, noise = np.linspace(0, 15e-9, count), np.random.default_rng(5).normal(0, 1e-11, count)
     for z in (r**2 / (2 * R), R - np.sqrt(R**2 - r**2), R / 4 * (np.sqrt(1 + 4 * (r / R) ** 2) - 1)):
         assert profiles.Tabulated(written(tmp_path / "tip.csv", r, z), 100.0).radius == pytest.approx(R, rel=1e-3)
-        with pytest.raises(
-            InputError, match=r"[12] rows lie within the apex radius, .* limit: 3 .* in the first column"
-        ):
-            profiles.Tabulated(written(tmp_path / "tip.csv", z, r), 100.0)
+        profiles.Tabulated(written(tmp_path / "tip.csv", r, z + noise), 100.0)
+        for rows in (z, np.sort(np.abs(z + noise))):
+            with pytest.raises(InputError, match=r"it rises by .* near the axis, .*limit: .* in the first column"):
+                profiles.Tabulated(written(tmp_path / "tip.csv", rows, r), 100.0)
+
+
+@pytest.mark.parametrize(("rows", "first"), [(10e-9, 0.0), (10e-9, 5e-9), (12e-9, 0.0)])
+def test_few_rows_within_the_apex_radius_are_enough_for_a_paraboloid(rows, first, tmp_path):
+    r = first + rows * np.arange(40)
+    tip = profiles.Tabulated(written(tmp_path / "tip.csv", r, r**2 / (2 * R)), 100.0)
+    assert abs(tip.radius - R) <= max(tip.radius_error, 1e-12 * R)
 
 
 @pytest.mark.parametrize("count", [100, 200, 300])

@@ -240,9 +240,15 @@ def as_body(part: object) -> object:
     """A body of finite elements in the place of layers as the integral equation has them; anything else as it is."""
     match part:
         case layers.Layers((only,), layers.Substrate(modulus, poisson)):
-            return Coated(only.thickness, 1 / modulus, poisson, poisson=only.poisson)
+            return Coated(only.thickness, _inverse(modulus), poisson, poisson=only.poisson)
         case layers.Layers((only,), str(foundation)):
             return Layer(only.thickness, foundation, poisson=only.poisson)
         case layers.Layers(strata, base):
             return Layers(strata, base)
     return part
+
+
+def _inverse(ratio: float) -> float:
+    """Shortest number of which a ratio of moduli is the inverse, as it was typed."""
+    short = float(f"{1 / ratio:.12g}")
+    return short if 1 / short == ratio else 1 / ratio

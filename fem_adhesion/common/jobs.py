@@ -294,12 +294,12 @@ def solve_all(
 ) -> tuple[Result, ...]:
     """Results of all items in their order: what the store holds, and the others, computed and stored at once.
 
-    The work, a function of a module, computes the result of an item, each of which is given once, and `kept` says how
-    results are kept. Where items are best worked on together, `parts` says which, and the work turns such a part into a
-    list. If `fresh`, all are computed, whatever the store holds. What a worker died of is not stored: it is tried again
-    when the study is resumed. `jobs` and `dask` are those of `stream`; `progress` is called with the last item's name,
-    how many are done, and of how many. InputError before any work, if jobs is not positive or the cluster does not
-    answer.
+    The work, a function of a module, computes the result of an item, each of which is given once, and `kept` says
+    how results are kept. Where items are best worked on together, `parts` says which, and the work turns such a
+    part into a list; its results are stored together. If `fresh`, all are computed, whatever the store holds. What
+    a worker died of is not stored: it is tried again when the study is resumed. `jobs` and `dask` are those of
+    `stream`; `progress` is called with the last item's name, how many are done, and of how many. InputError before
+    any work, if jobs is not positive or the cluster does not answer.
     """
     found = dict(_stored(items, store, kept)) if store and not fresh else {}
     todo = [item for item in items if item not in found]

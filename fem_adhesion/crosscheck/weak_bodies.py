@@ -132,7 +132,8 @@ def _sized(scene: Scene, degree: int, radius: float, reach: float) -> Contact:
     R = scene.radii[0]
     radius, reach = (min(r, WIDEST * R) for r in (radius, reach))  # what attracts from afar may be wider
     how = Discretisation(degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, GROWTH, RINGS)
-    how = replace(how, beyond=_clamped(scene, scene.body, R, radius)) if isinstance(scene.body, Stratified) else how
+    if isinstance(scene.body, Stratified) and scene.body.held == "substrate":
+        how = replace(how, beyond=_clamped(scene, scene.body, R, radius))
     outer, coordinate = layout_of(scene, how)
     lines = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=GROWTH)
     core = fine_within(coordinate.of(reach), lines)

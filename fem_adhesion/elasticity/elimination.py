@@ -304,6 +304,8 @@ def _places(parts: list[Region], rank: Index, own: Index, ranks: Index, c: int) 
 
 def _places_in(part: Region, ranks: Index, size: int, c: int) -> Places:
     """Where the entries of a region of some size are in a part, whose unknowns have these ranks among the region's."""
+    if size**2 >= FAR:
+        raise NotConverged(f"{size} unknowns meet between parts of the body, with more products than are numbered")
     at, rows = np.full((2, size), FAR, dtype=np.int32)
     at[ranks] = np.arange(ranks.size)
     rows[ranks] = ranks.size * at[ranks] + part.complete.size * (part.complete.size + ranks.size)

@@ -1,7 +1,7 @@
 """The finite sphere: how far the half-space under a paraboloid is from it, and which assumption makes the difference.
 
 Every point of the plan is solved under several sets of assumptions (`fem_adhesion.finite_sphere.cases`), in parallel,
-each result stored as it comes; `fem_adhesion.finite_sphere.table` sets them beside each other.
+the results of a body stored as they come; `fem_adhesion.finite_sphere.table` sets them beside each other.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def plan(
 
 
 def _usual_grids(main: Combinations, quick: bool) -> list[Combinations]:
-    """All of a study that nothing particular is asked of: some 450 s of work on two cores, or 20 s if quick."""
+    """All of a study that nothing particular is asked of: some five minutes on two cores, or 20 s if quick."""
     dense = tuple(name for name in MODELS if name not in SPARSE)
     if quick:
         few = tuple(name for name in dense if name not in QUICK_SPARSE)

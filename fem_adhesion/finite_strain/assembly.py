@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from skfem import ElementQuadP
 
 from fem_adhesion.bodies.body import Discretisation
-from fem_adhesion.discretise import FAR_FIELDS, finest_length, layout_of, mesh_of
+from fem_adhesion.discretise import FAR_FIELDS, finest_length, layout_of, mesh_of, quadrilateral
 from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.body import Body, displacement_body, material_body
@@ -118,7 +117,7 @@ class ScenesBody(Valued):
         ends, coordinate = layout_of(scene, how)
         first, last = (coordinate.of(min(radius, self.farthest)) for radius in (inner, outer))
         lines = grid.graded(first, self.length, float(ends[0]), growth=how.growth, until=last)
-        space = Space(mesh_of(scene, lines, how), ElementQuadP(how.degree))
+        space = Space(mesh_of(scene, lines, how), quadrilateral(how.degree))
         return finite_strain_problem(
             material_body(space, scene.poisson, 1 / R),
             FAR_FIELDS[scene.body.held](space, scene.poisson),

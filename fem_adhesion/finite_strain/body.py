@@ -23,6 +23,7 @@ import numpy as np
 from scipy import sparse
 from skfem import Dofs, ElementQuadP
 
+from fem_adhesion.discretise import quadrilateral
 from fem_adhesion.elasticity.incompressible import REMEDY_FROM
 from fem_adhesion.elasticity.space import (
     Space,
@@ -224,7 +225,7 @@ def material_body(space: Space, poisson: float, stretch: float) -> Body:
     """Body of displacements alone, or with a pressure where these would lock."""
     if poisson < REMEDY_FROM:
         return displacement_body(space, poisson, stretch)
-    return mixed_body(space, poisson, stretch, ElementQuadP(space.degree - 1))
+    return mixed_body(space, poisson, stretch, quadrilateral(space.degree - 1))
 
 
 def displacement_body(space: Space, poisson: float, stretch: float) -> Body:

@@ -136,7 +136,7 @@ def with_contact_to(mesh: Any, radius: float) -> Any:
 
 
 def named(mesh: CurvedQuads, where: Callable[[Array, Array], dict[str, Any]]) -> CurvedQuads:
-    """Name the boundary facets of a mesh just made for which the masks, by name, hold at r and z of their middles."""
+    """Name in place the boundary facets for which the masks, by name, hold at r and z of their middles."""
     facets = mesh.boundary_facets()
     masks = where(*mesh.p[:, mesh.facets[:, facets]].mean(axis=1))
     mesh.name_boundaries({name: facets[mask] for name, mask in masks.items()})

@@ -83,7 +83,7 @@ def measure(
 
 def require_tabor(tabor: float) -> float:
     """Return the Tabor parameter, or raise InputError unless the study is meant for it."""
-    return require_between(tabor, "tabor", *TABOR_RANGE, "the speed study takes 1")
+    return require_between(tabor, "tabor", *TABOR_RANGE, "take 1, as all methods of the study solve")
 
 
 def find_truths(tabor: float) -> dict[Family, Truth]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 FEWEST, MOST, DEGREE = 12, 30, 5  # points of a piece; pieces, and their degree in the square of the radius
-CURVED = 3  # rows within the apex radius of the axis, that its curvature is told by
+INNER = 0.25  # of the radii, within which no rounded tip is steeper than 45 degrees and than on the whole
 CHECKED = 1000  # radii at which it must rise
 
 
@@ -49,6 +49,11 @@ class Tabulated:
 
     def __post_init__(self) -> None:
         keep(self, path=Path(self.path), radius_ratio=require_radius_ratio(self.radius_ratio))
+        near, whole = self._steepness
+        if near > max(whole, 1.0):
+            value = f"it rises by {near:.3g} for each unit of radius near the axis, {whole:.3g} on the whole"
+            remedy = "give the radius in the first column, the height in the second"
+            raise InputError(f"{self.path}: {value}, limit: less near a rounded apex; {remedy}")
         r = np.linspace(0, 1, CHECKED) * self.end
         falls = r[self._spline(r**2, 1) <= 0]
         if falls.size:
@@ -57,12 +62,6 @@ class Tabulated:
         if not self.radius_error < self.radius:
             value = f"the apex radius is {self.radius:.3g} +- {self.radius_error:.1g}"
             raise InputError(f"{self.path}: {value}, limit: an error below it; give more points near the axis")
-        rows = np.count_nonzero(self._table[0] <= self.radius)
-        if rows < CURVED:
-            raise InputError(
-                f"{self.path}: {rows} rows lie within the apex radius, {self.radius:.3g}, of the axis, limit: {CURVED} "
-                "or more; give more points there, and the radius in the first column, the height in the second"
-            )
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
@@ -70,6 +69,13 @@ class Tabulated:
         if not r[0] >= 0:
             raise InputError(f"{self.path}: the first radius is {r[0]:g}, limit: 0 or more; measure it from the axis")
         return r, z
+
+    @property
+    def _steepness(self) -> tuple[float, float]:
+        """Mean slope near the axis and of all; a table whose columns are exchanged is a root, steepest on the axis."""
+        r, z = self._table
+        near = max(int(np.searchsorted(r, r[0] + INNER * (r[-1] - r[0]), side="right")), 3)
+        return float(np.polyfit(r[:near], z[:near], 1)[0]), float(np.polyfit(r, z, 1)[0])
 
     @cached_property
     def _fits(self) -> tuple[BSpline, BSpline]:
