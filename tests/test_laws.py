@@ -22,7 +22,8 @@ from halfspace.accuracy.stages import Charted
 from halfspace.accuracy.trace import Resolution, half_space_charts, resolution_for
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import moved, transfer
-from halfspace.equilibrium.contact import CONTACT_RADIUS
+from halfspace.equilibrium.conditions import FOLD, Located
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.events import usual
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
@@ -382,11 +383,56 @@ def test_states_are_known_along_a_curve_of_many_charts():
     assert list(path.branches("approach")) == ["separated", "unstable", "contact"]
     assert len(path.finest_curve.segments) == len(path.segments)
     for asked in ({"approach": -1.5, "branch": "contact"}, {"approach": -1.4, "branch": "unstable"}, {"load": 2.0}):
-        ours, truth = path.at(**asked), fine.at(**asked)
-        for name in ("approach", "load", "central_gap"):
-            budget = getattr(ours, f"{name}_error") + getattr(truth, f"{name}_error")
-            assert abs(getattr(ours, name) - getattr(truth, name)) <= budget
-            assert budget < 1e-3
+        assert_same_state(path.at(**asked), fine.at(**asked))
+
+
+def assert_same_state(ours, truth):
+    for name in ("approach", "load", "central_gap"):
+        budget = getattr(ours, f"{name}_error") + getattr(truth, f"{name}_error")
+        assert abs(getattr(ours, name) - getattr(truth, name)) <= budget
+        assert budget < 1e-3
+
+
+def folds_of(path):
+    return [name for name in path.events if name.startswith(("jump", "fold"))]
+
+
+@pytest.mark.parametrize("tabor", [0.3, 1.0, 3.0])
+@pytest.mark.parametrize("profile", [Power(1.5), Power(3.0)], ids=str)
+def test_states_are_known_along_the_curve_of_a_tip(profile, tabor):
+    """Cells towards a tip depend on the nodes in each: by them no chart of the finer rung was that of the curve."""
+    path, fine = (halfspace.trace(tabor, law=Dugdale(0.1), profile=profile, rtol=rtol) for rtol in (1e-4, 1e-6))
+    assert [len(part.points) for part in path.finest_curve.segments] == [len(part.points) for part in path.segments]
+    assert len(path.branches("approach")) == len(folds_of(path)) + 1
+    for gap in (0.1, 0.7, 2.0):
+        assert_same_state(path.at(central_gap=gap), fine.at(central_gap=gap))
+
+
+def test_a_gap_that_opens_slowly_is_pulled_as_far_as_the_law_acts():
+    """A gap nearly flat opens as no root of the distance: cells that ended where one would lost 3 % of the load."""
+    contact = {"tabor": 20.0, "law": Dugdale(0.2)}
+    rough, fine = (halfspace.trace(**contact, rtol=rtol) for rtol in (1e-4, 1e-6))
+    throughout = Charted(half_space_charts(Scales(**contact), Resolution(10, 0.45, 2.5, 9.0)))
+    for gap in (0.09491, 0.12, 0.3):
+        state = rough.at(central_gap=gap)
+        assert_same_state(state, fine.at(central_gap=gap))
+        points = [(segment.problem, point) for segment in rough.segments for point in segment.points]
+        source, point = min(points, key=lambda one: abs(one[1].observables[CENTRAL_GAP] - gap))
+        problem = throughout(Located(FOLD, source, point, 1.0)).problem
+        found = newton.solve(problem, transfer(source, point.x, problem), newton.central_gap(gap)).observables
+        assert abs(state.approach - found[APPROACH]) < state.approach_error + 1e-8
+        assert abs(state.load - found[LOAD]) < state.load_error + 1e-8
+
+
+def test_no_fold_of_a_soft_punch_is_lost():
+    """Of six, four were found on cells that ended nearer than the law."""
+    contact = {"tabor": 50.0, "law": Dugdale(0.2), "profile": RoundedPunch(2.0)}
+    rough, fine = (halfspace.trace(**contact, rtol=rtol) for rtol in (1e-4, 1e-6))
+    for path in (rough, fine):
+        assert len(folds_of(path)) == 6
+        assert not path.unconfirmed
+    for name, event in rough.events.items():
+        assert event.approach == pytest.approx(fine.events[name].approach, abs=1e-4)
 
 
 @pytest.mark.parametrize("profile", [Hyperboloid(0.3), RoundedPunch(1.0)], ids=str)

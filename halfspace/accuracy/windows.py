@@ -25,7 +25,8 @@ from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS, contact_of
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Point
-from halfspace.scales import NOTHING, Scales
+from halfspace.errors import NotConverged
+from halfspace.scales import Scales
 from halfspace.values import Array
 
 # Found by trial, on errors of events and the time of curves.
@@ -109,15 +110,21 @@ class Windows(Stage):
 
     def _number(self, follows: bool, problem: Traceable, point: Point) -> int:
         place, first = self.place(follows, problem, point), self._first(follows)
+        if follows and not place > 0:
+            raise NotConverged("the tension ends inside the contact; take a smaller rtol")
         return math.floor(math.log(place / first) / math.log(STRETCH)) if follows or place > first else 0
 
     def of_same_cells(self, event: Located) -> Window:
-        """Chart of the cells on which a point was found, which may be past the end of its window; or else its own."""
+        """Chart of the cells on which a point was found, which may be past the end of its window; or else its own.
+
+        Those towards a tip are not compared: they are the longer the more nodes there are in each.
+        """
         surface, point = event.problem.interface, event.point
         follows, cells = surface.follows_contact, surface.operator.at(1.0).cells
         own = self._number(follows, surface, point)
         for number in range(own - PASSED if follows else max(own - PASSED, 0), own + PASSED + 1):
-            if np.array_equal(self._cells(follows, number), cells):
+            lines = self._lines(follows, number)[2:]
+            if np.array_equal(lines, cells[-lines.size :]):
                 return self._window(follows, number)
         return self._window(follows, own)
 
@@ -150,16 +157,18 @@ class Windows(Stage):
         return least if follows or number else 0.0, most
 
     def _cells(self, follows: bool, number: int) -> Array:
-        least, most = self._between(follows, number)
-        return self._lines(follows, (least or most) / MARGIN, most * MARGIN)
+        tip = self.tip / (self._widest if follows else 1.0)
+        return grid.towards_axis(self._lines(follows, number), tip, self.inwards)
 
-    def _lines(self, follows: bool, least: float, most: float) -> Array:
-        """Ends of the cells of a chart that is fine for a step between two places."""
+    def _lines(self, follows: bool, number: int) -> Array:
+        """Ends of the cells of a window, without those towards a tip."""
+        least, most = self._between(follows, number)
+        least, most = (least or most) / MARGIN, most * MARGIN
         growth, steep = self.growth, 1 + STEEP * (self.scales.growth(self.growth) - 1)
         if follows:
             first = 2 * self._length / self._widest  # as wide as it may become
             inside = 1 - grid.geometric(1.0, first, growth)[::-1]
-            extent = min(self.outer / (LEAVE * self._reach) - 1, most * self._farthest)
+            extent = self.outer / (LEAVE * self._reach) - 1
             outside = grid.about(first, (least, most), extent, growth=growth, within=steep, beyond=BEYOND)
         else:
             first, extent = self._length, self.outer - self._reach
@@ -167,8 +176,7 @@ class Windows(Stage):
             least, most = min(least - self._reach, extent / 2), min(most - self._reach, extent / 2)
             outside = grid.about(first, (least, most), extent, growth=growth, within=steep, beyond=growth)
         inside[0] = 0.0
-        lines = np.append(inside, inside[-1] + outside[1:])
-        return grid.towards_axis(lines, self.tip / (self._widest if follows else 1.0), self.inwards)
+        return np.append(inside, inside[-1] + outside[1:])
 
     @cached_property
     def _length(self) -> float:
@@ -182,15 +190,6 @@ class Windows(Stage):
     @cached_property
     def _widest(self) -> float:
         return self.scales.widest_radius(self.to_load)
-
-    @cached_property
-    def _farthest(self) -> float:
-        """Distance from the edge beyond which nothing acts, in those of the step: a gap opens as a root of it, or more.
-
-        Infinite for laws with a tail.
-        """
-        law = self.scales.law
-        return math.inf if math.isfinite(law.decay) else (law.range(NOTHING) / self.scales.step_gap) ** 2
 
 
 @dataclass(frozen=True, eq=False, repr=False)
