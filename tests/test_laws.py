@@ -435,6 +435,18 @@ def test_no_fold_of_a_soft_punch_is_lost():
         assert event.approach == pytest.approx(fine.events[name].approach, abs=1e-4)
 
 
+def test_branches_are_told_where_the_finest_curve_winds_between_two_of_its_points():
+    """Halfway between two Newton's method does not end, where it does by shorter steps."""
+    contact = {"tabor": 20.0, "law": Dugdale(0.3), "profile": Power(4.0)}
+    rough, fine = (halfspace.trace(**contact, rtol=rtol) for rtol in (1e-4, 1e-6))
+    for coordinate in ("approach", "load"):
+        ours, truth = rough.branches(coordinate), fine.branches(coordinate)
+        assert ours.keys() == truth.keys()
+        assert len(ours) > 4
+        for name in list(truth)[1:-1]:  # the outermost end where the curves do
+            np.testing.assert_allclose(ours[name], truth[name], rtol=1e-4, atol=1e-5)
+
+
 @pytest.mark.parametrize("profile", [Hyperboloid(0.3), RoundedPunch(1.0)], ids=str)
 def test_a_sharp_step_is_resolved_under_any_tip(profile):
     """Without short cells on the axis the central gap erred by 14 times its estimate, and by half the range."""

@@ -15,7 +15,18 @@ import numpy as np
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.newton import Control, Traceable
-from halfspace.equilibrium.path import NEARLY, UNFELT, Metric, Point, correct, least_slope, make_point, predict
+from halfspace.equilibrium.path import (
+    NEARLY,
+    UNFELT,
+    Metric,
+    Point,
+    Steps,
+    correct,
+    follow,
+    least_slope,
+    make_point,
+    predict,
+)
 from halfspace.errors import NotConverged
 from halfspace.roots import root
 from halfspace.values import Array, Valued
@@ -120,11 +131,26 @@ def _watched(
     if not depth or not _may_hide(a, b, condition):
         return [(a, b)]
     length = b.arclength - a.arclength
-    middle = correct(problem, a, length / 2, hermite(problem, a, b, 0.5, metric), metric, iterations=20)
-    rest = float((metric.weights * middle.rates)[:3] @ (b.observables - middle.observables)[:3])
-    onward = replace(b, arclength=middle.arclength + rest)  # as `correct` measures it, along the first point's tangent
-    halves = ((a, middle), (middle, onward))
-    return [pair for c, d in halves for pair in _watched(problem, c, d, condition, metric, depth - 1)]
+    try:
+        points = [a, correct(problem, a, length / 2, hermite(problem, a, b, 0.5, metric), metric, iterations=20)]
+    except NotConverged:
+        points = wound(problem, a, b, metric)[:-1]
+    rest = float((metric.weights * points[-1].rates)[:3] @ (b.observables - points[-1].observables)[:3])
+    points.append(replace(b, arclength=points[-1].arclength + rest))  # as `correct` measures it, along the tangent
+    return [pair for c, d in pairwise(points) for pair in _watched(problem, c, d, condition, metric, depth - 1)]
+
+
+def wound(problem: Traceable, a: Point, b: Point, metric: Metric) -> list[Point]:
+    """Points from one to the first past another, by shorter steps, where the curve winds too much for one."""
+    step, past = (b.arclength - a.arclength) / SHORTER, metric.weights * b.rates
+
+    def beyond(point: Point) -> bool:
+        return bool(past[:3] @ (point.observables - b.observables)[:3] >= 0)
+
+    return follow(problem, a, metric, beyond, steps=Steps(first=step, longest=step))
+
+
+SHORTER = 4  # steps in the place of one
 
 
 def _may_hide(a: Point, b: Point, condition: Condition) -> bool:

@@ -21,10 +21,11 @@ from halfspace.equilibrium.conditions import (
     hermite,
     locate,
     steepest_from,
+    wound,
 )
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST
 from halfspace.equilibrium.newton import Traceable
-from halfspace.equilibrium.path import Point, Segment, Steps, correct, follow
+from halfspace.equilibrium.path import Point, Segment, correct
 from halfspace.errors import ContactTooWide, NotConverged
 from halfspace.scales import BRADLEY
 
@@ -118,19 +119,10 @@ def with_care(bracket: Bracket, condition: Condition) -> list[Located]:
     """State between two points, or those that shorter steps between them find where its own search does not end."""
     problem, a, b = bracket
     metric = metric_for(problem)
-    step, past = (b.arclength - a.arclength) / SHORTER, metric.weights * b.rates
-
-    def beyond(point: Point) -> bool:
-        return bool(past[:3] @ (point.observables - b.observables)[:3] >= 0)
-
     try:
         return [between(problem, a, b, condition, metric)]
     except NotConverged:
-        points = follow(problem, a, metric, beyond, steps=Steps(first=step, longest=step))
-        return locate(problem, points, metric, condition)
-
-
-SHORTER = 4  # steps in the place of one where the curve winds too much for it
+        return locate(problem, wound(problem, a, b, metric), metric, condition)
 
 
 def _missing(segment: Segment, event: str) -> NoReturn:

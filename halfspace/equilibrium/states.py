@@ -20,10 +20,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.conditions import ROUND_OFF, Condition, between, hermite, locate
+from halfspace.equilibrium.conditions import ROUND_OFF, Condition, between, hermite
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
+from halfspace.equilibrium.search import states
 from halfspace.errors import InputError
 from halfspace.values import Array, Valued
 
@@ -141,7 +142,7 @@ class FinestCurve(Valued):
         """Cut the curve where an observable turns."""
         branches: list[list[Segment]] = [[]]
         for part in self.segments:
-            turns = locate(part.problem, part.points, self.metric, Condition(k, stationary=True))
+            turns = states([part], Condition(k, stationary=True))
             points = list(part.points)
             for turn in turns:
                 before = [p for p in points if p.arclength < turn.point.arclength]
