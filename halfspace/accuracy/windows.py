@@ -34,6 +34,7 @@ STRETCH = 2.0  # ratio of the places of a step between which a chart serves
 MARGIN = 1.15  # times as far beyond either end of them cells are as short
 STEEP = 0.6  # of the growth of cells by the law: at a step, where as many nodes are to leave as little as elsewhere
 PASSED = 2  # windows by which the last point on a chart may lie beyond its own
+AHEAD = 0.5  # power of `Scales.gradual` in the growth of cells on the axis: on a flat tip the tension's end is wide
 BEYOND = 5.0  # most ratio of neighbouring cells outside the step, where a law that ends by one has little tension left
 
 
@@ -171,6 +172,7 @@ class Windows(Stage):
             extent = self.outer / (LEAVE * self._reach) - 1
             outside = grid.about(first, (least, most), extent, growth=growth, within=steep, beyond=BEYOND)
         else:
+            growth = 1 + (growth - 1) * self.scales.gradual**AHEAD
             first, extent = self._length, self.outer - self._reach
             inside = np.linspace(0.0, self._reach, EQUAL + 1)
             least, most = min(least - self._reach, extent / 2), min(most - self._reach, extent / 2)
