@@ -37,6 +37,7 @@ from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import is_event
 from halfspace.equilibrium.search import energy_released
 from halfspace.equilibrium.states import COORDINATES
+from halfspace.errors import NotConverged
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Power
 from halfspace.values import Estimate
@@ -596,17 +597,26 @@ FAMILIES = {
 
 
 def judged(item):
-    """All numbers of one scene of a family, at all tolerances, and the seconds that took."""
+    """All numbers of one scene of a family, at all tolerances, the seconds that took, and what was refused.
+
+    Scenes that are drawn may be such as no grid carries; of others none may be refused.
+    """
     began = time.process_time()
     name, scene, rtols = item
-    family = FAMILIES[name]
-    answers = {rtol: family.solve(scene, rtol) for rtol in rtols}
-    shared = None if family.anew else family.truth(scene, answers[min(rtols)])
+    family, answers, refused = FAMILIES[name], {}, []
+    for rtol in rtols:
+        try:
+            answers[rtol] = family.solve(scene, rtol)
+        except NotConverged as why:
+            if not callable(family.full.scenes):
+                raise
+            refused.append(f"{_briefly(scene)} at rtol {rtol:g}: {why}")
+    shared = None if family.anew or not answers else family.truth(scene, answers[min(answers)])
     numbers = []
     for rtol, answer in answers.items():
         rough, best = shared or family.truth(scene, answer)
         numbers += _judged(family.numbers(answer), rough, best, scene, rtol)
-    return numbers, time.process_time() - began
+    return numbers, time.process_time() - began, refused
 
 
 def _judged(numbers, rough, best, scene, rtol):
@@ -635,6 +645,7 @@ class Row:
     name: str
     numbers: Sequence[Judged]
     seconds: float
+    refused: Sequence[str] = ()
 
     @property
     def outside(self):
@@ -643,8 +654,8 @@ class Row:
 
     @property
     def shares(self):
-        """Parts of the numbers that are held, and close."""
-        return tuple(sum(getattr(n, k) for n in self.numbers) / len(self.numbers) for k in ("held", "close"))
+        """Parts of the numbers that are held, and close; none of no numbers."""
+        return tuple(sum(getattr(n, k) for n in self.numbers) / max(len(self.numbers), 1) for k in ("held", "close"))
 
     def honest(self, net):
         """Whether both shares are what they should be; of a few numbers one may lie outside.
@@ -667,8 +678,8 @@ def rows_of(net, names=tuple(FAMILIES), jobs=None, seed=0):
             told(item[0], k, len(items))
             done[item[0]].append(result)
             if len(done[item[0]]) == len(scenes[item[0]]):
-                numbers, seconds = zip(*done[item[0]], strict=True)
-                yield Row(item[0], list(chain(*numbers)), sum(seconds))
+                numbers, seconds, refused = zip(*done[item[0]], strict=True)
+                yield Row(item[0], list(chain(*numbers)), sum(seconds), list(chain(*refused)))
 
 
 HEAD = f"{'family':22}{'numbers':>8}{'within':>9}{'within 100 times':>18}{'CPU s':>8}"
@@ -681,6 +692,8 @@ def printed(row):
     print(f"{row.name:22}{len(row.numbers):8}{held:9.1%}{close:18.1%}{row.seconds:8.0f}", flush=True)
     for n in row.outside[:MOST_SHOWN]:
         print(f"    {n.error:.1e}, estimated as {n.estimate:.1e}: {n.what}", flush=True)
+    for why in row.refused:
+        print(f"    refused: {why}", flush=True)
     return row
 
 

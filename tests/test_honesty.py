@@ -22,6 +22,7 @@ from fem_adhesion import Scene
 from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.search import energy_released, find_events
+from halfspace.errors import NotConverged
 from halfspace.scales import Scales
 from halfspace.values import Estimate
 
@@ -90,6 +91,20 @@ def test_a_family_whose_estimates_are_too_small_or_too_large_is_not_honest(part,
 def test_scenes_side_by_side_are_those_of_the_seed():
     assert side_by_side.drawn(7, 3) == side_by_side.drawn(7, 3)
     assert side_by_side.drawn(7, 3) != side_by_side.drawn(8, 3)
+
+
+def test_what_is_refused_of_drawn_scenes_is_told_and_of_others_ends_the_run(monkeypatch):
+    def refuse(_scene, rtol):
+        raise NotConverged(f"no grid at {rtol}")
+
+    drawn = replace(FAMILIES["layers, drawn"], solve=refuse)
+    monkeypatch.setitem(FAMILIES, "layers, drawn", drawn)
+    (row,) = honesty.rows_of("quick", ["layers, drawn"], jobs=1)
+    assert [why.endswith("at rtol 0.0001: no grid at 0.0001") for why in row.refused] == [True]
+    assert not row.honest("quick")
+    monkeypatch.setitem(FAMILIES, "layers", replace(FAMILIES["layers"], solve=refuse))
+    with pytest.raises(NotConverged, match="no grid"):
+        list(honesty.rows_of("quick", ["layers"], jobs=1))
 
 
 @pytest.mark.parametrize("seed", range(30))
