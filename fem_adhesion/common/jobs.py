@@ -243,14 +243,28 @@ def _cluster(address: str, width: int) -> Pool:
         raise InputError(
             f"dask = {address} does not answer within {CONNECTION_SECONDS} s; give the scheduler's, as tcp://host:8786"
         ) from error
-    executor = client.get_executor(pure=False)
+
+    def submit(*call: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        client.submit(*call, pure=False).add_done_callback(partial(_hand_on, future))
+        return future
 
     def stop(at_work: bool) -> None:  # noqa: ARG001 (the client goes in any case)
-        executor.shutdown(wait=False)
         client.close()
 
     # The scheduler gives up what died with a worker too often, also what only waited there: that runs alone, once.
-    return Pool(executor.submit, stop, width, distributed.KilledWorker, 1, "its worker died")
+    return Pool(submit, stop, width, distributed.KilledWorker, 1, "its worker died")
+
+
+def _hand_on(future: Future[Any], done: Any) -> None:
+    """Give a future what one of the cluster's has come to.
+
+    The client's own executor asks for the status after the result, and fails if the worker has died in between.
+    """
+    try:
+        future.set_result(done.result())
+    except BaseException as error:
+        future.set_exception(error)
 
 
 def _knock(address: str) -> None:
