@@ -7,8 +7,10 @@ import socket
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fem_adhesion.common import jobs as parallel
@@ -54,6 +56,23 @@ def threads(_):
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_every_item_comes_once_with_its_result(jobs):
     assert sorted(stream(square, range(20), jobs=jobs)) == [(x, x * x) for x in range(20)]
+
+
+KEPT = []
+
+
+def grown(x):
+    """Keep more than loky lets a worker grow by after its first item; it looks once a second."""
+    KEPT.append(np.ones(int(4e8 / 8)))
+    time.sleep(1.1)
+    return x
+
+
+def test_a_worker_that_has_grown_is_made_anew_without_a_word_to_the_user():
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        assert sorted(x for x, _ in stream(grown, range(6), jobs=2)) == list(range(6))
+    assert [str(warning.message) for warning in seen] == []
 
 
 def loaded(module):

@@ -190,7 +190,8 @@ def _processes(number: int) -> Pool:
     from loky.process_executor import TerminatedWorkerError
 
     # A worker is made anew when it has grown by 300 MB, which large bodies make it do: no trouble of the user's.
-    warnings.filterwarnings("ignore", message="A worker stopped while some jobs were given", category=UserWarning)
+    of_workers = "A worker (stopped|was restarted) while some jobs were given"
+    warnings.filterwarnings("ignore", message=of_workers, category=UserWarning)
 
     def executor() -> Any:
         settings = {"timeout": IDLE_SECONDS, "initializer": _watch, "initargs": (os.getpid(),), "env": ONE_THREAD}
