@@ -108,7 +108,7 @@ def plan(
 
 
 def _usual_grids(main: Combinations, quick: bool) -> list[Combinations]:
-    """All of a study that nothing particular is asked of: some five minutes on two cores, or 20 s if quick."""
+    """All of a study that nothing particular is asked of: some four minutes on two cores, or 20 s if quick."""
     dense = tuple(name for name in MODELS if name not in SPARSE)
     if quick:
         few = tuple(name for name in dense if name not in QUICK_SPARSE)
