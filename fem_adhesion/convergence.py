@@ -21,7 +21,7 @@ from fem_adhesion.discretise import (
 )
 from fem_adhesion.finite_strain import scene as finite_strain_scene
 from fem_adhesion.mesh.file import read_scaled
-from fem_adhesion.scene import Scene
+from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy.finite_bodies import AroundEvents, operators_across, surroundings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung
@@ -75,6 +75,7 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     halfspace.errors.NotConverged
         If the curve cannot be traced.
     """
+    require_scene(scene)
     rtol, to_load = require_rtol(rtol), require_load(to_load)
     if scene.material.finite:
         return finite_strain_scene.trace(scene, rtol, to_load)

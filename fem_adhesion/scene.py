@@ -16,12 +16,13 @@ from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
 from halfspace.limits import (
     require_modulus,
+    require_part,
     require_poisson,
     require_radius_ratio,
     require_share,
     require_tabor,
 )
-from halfspace.profiles import Profile, Sphere, Surface
+from halfspace.profiles import Profile, Sphere, Surface, require_profile
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued, keep
 
@@ -67,10 +68,12 @@ class Scene:
         for name, part, kind in (("body", self.body, Body), ("counter", self.counter, Body | None)):
             if not isinstance(part, kind):
                 raise InputError(f"{name} = {part!r} is no body; take fem_adhesion.Hemisphere(radius_ratio=100), say")
-        if self.profile is not None and self.body.file:
-            raise InputError(
-                f"profile = {self.profile} does not go with {self.body.name}; the mesh has its own surface"
-            )
+        if self.profile is not None:
+            require_profile(self.profile)
+            if self.body.file:
+                raise InputError(
+                    f"profile = {self.profile} does not go with {self.body.name}; the mesh has its own surface"
+                )
         self._require_pair()
         if math.isfinite(self.body.size):
             require_radius_ratio(self.body.size / (1 + self._smaller), self.tabor)
@@ -222,6 +225,11 @@ class UpTo(Valued):
     def first_cell(self, tolerance: float) -> float:
         """Length of the cell on the axis."""
         return self.surface.first_cell(tolerance)
+
+
+def require_scene(scene: Scene) -> None:
+    """Raise InputError for what is no scene."""
+    require_part(scene, "scene", "counter", "fem_adhesion.Scene(tabor=1.0)")
 
 
 def share_of(modulus: float, poisson: float, counter_modulus: float, counter_poisson: float) -> float:

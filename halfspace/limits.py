@@ -55,6 +55,13 @@ def require_one_of(value: object, name: str, names: tuple[str, ...]) -> None:
         raise InputError(f"{name} = {value!r} is not one of {', '.join(names)}; take {names[0]}")
 
 
+def require_part(value: object, name: str, trait: str, example: str) -> None:
+    """Raise InputError unless a part of a scene is an object with the attribute by which it is known."""
+    if isinstance(value, type) or not hasattr(value, trait):
+        shown = " ".join(reprlib.repr(value).split())
+        raise InputError(f"{name} = {shown} of type {type(value).__name__} is no {name}; take {example}, say")
+
+
 def require_tabor(tabor: float) -> float:
     """Return the Tabor parameter, or raise InputError unless 1e-12 <= tabor <= 300: beyond, a closed form will do."""
     tabor = require_number(tabor, "tabor")

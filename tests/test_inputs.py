@@ -74,6 +74,31 @@ def test_what_is_no_number_is_refused_in_one_line(name, call, wrong):
     assert len(str(refusal.value)) < 200
 
 
+@pytest.mark.parametrize(
+    ("name", "call"),
+    [
+        ("law", lambda wrong: halfspace.trace(1.0, law=wrong)),
+        ("law", lambda wrong: Scene(1.0, law=wrong)),
+        ("law", lambda wrong: halfspace.sweep([1.0], law=wrong)),
+        ("profile", lambda wrong: halfspace.trace(1.0, profile=wrong)),
+        ("profile", lambda wrong: Scene(1.0, profile=wrong)),
+        ("profile", lambda wrong: halfspace.sweep([1.0], profile=wrong)),
+        ("scene", fem_adhesion.trace),
+        ("scene", fem_adhesion.compare),
+    ],
+)
+@pytest.mark.parametrize("wrong", ["morse", 1.0, halfspace.laws.Morse, halfspace.profiles.Sphere, Scene])
+def test_what_is_no_part_is_refused_in_one_line(name, call, wrong):
+    with pytest.raises(InputError, match=rf"^{name} = .* of type \w+ is no {name}; take .*, say$") as refusal:
+        call(wrong)
+    assert len(str(refusal.value)) < 200
+
+
+def test_a_sweep_of_nothing_is_refused():
+    with pytest.raises(InputError, match="tabors is empty, limit: at least one"):
+        halfspace.sweep([])
+
+
 def test_an_integer_beyond_all_floats_is_refused():
     with pytest.raises(InputError, match=r"tabor has 401 digits, limit: 1\.8e308; give a float"):
         halfspace.trace(10**400)

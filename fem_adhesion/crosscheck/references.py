@@ -15,7 +15,7 @@ from fem_adhesion.bodies.body import Discretisation, SolverName
 from fem_adhesion.convergence import on_given_mesh
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, Pair
 from fem_adhesion.discretise import block_size
-from fem_adhesion.scene import Scene
+from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy.finite_bodies import SizedBody, at_equator
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
@@ -64,6 +64,7 @@ def tighter(rtol: float) -> float:
 
 def require_comparable(scene: Scene, rtol: float) -> None:
     """Refuse a scene for which there is one solver only, or none in reach of a tolerance; raise InputError."""
+    require_scene(scene)
     if scene.material.finite:
         raise InputError(
             f"material = {scene.material} is compared with nothing, limit: small strain; no other solver of the house "

@@ -66,7 +66,7 @@ def compare(
     Parameters
     ----------
     scene : Scene
-        The contact, at small strain; the half-space solver knows its Tabor parameter and profile only.
+        The contact, at small strain.
     rtol : float
         Accuracy of the comparison: budgets are this relative to each quantity.
     before : sequence of Row, optional

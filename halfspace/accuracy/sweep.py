@@ -17,11 +17,11 @@ from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.devices import staged_jumps
 from halfspace.equilibrium.events import EVENTS, Event
 from halfspace.equilibrium.states import States
-from halfspace.errors import NotConverged
+from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
 from halfspace.limits import require_load, require_rtol, require_tabor
-from halfspace.profiles import PARABOLOID, Profile
+from halfspace.profiles import PARABOLOID, Profile, require_profile
 from halfspace.values import Array, Valued
 
 Tabors = tuple[float, ...]
@@ -95,7 +95,10 @@ def sweep(
         If an input is out of range, before any work.
     """
     asked = [require_tabor(value) for value in np.atleast_1d(np.asarray(tabors)).ravel().tolist()]
+    if not asked:
+        raise InputError("tabors is empty, limit: at least one; give a list of Tabor parameters")
     rtol, to_load, law = require_rtol(rtol), require_load(to_load), require_law(law)
+    profile = require_profile(profile)
     work = partial(summaries, law=law, profile=profile, body=body, rtol=rtol, to_load=to_load)
     found = {curve.tabor: curve for part in map(work, families(asked, law, profile, body)) for curve in part}
     return collected([found[tabor] for tabor in asked])

@@ -43,7 +43,7 @@ from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
 from halfspace.limits import require_load, require_rtol, require_tabor
-from halfspace.profiles import PARABOLOID, Profile
+from halfspace.profiles import PARABOLOID, Profile, require_profile
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued
 
@@ -291,7 +291,7 @@ def trace(
         If the curve cannot be traced.
     """
     tabor, rtol, to_load = require_tabor(tabor), require_rtol(rtol), require_load(to_load)
-    scales = Scales(tabor, require_law(law), profile.surface(tabor), body)
+    scales = Scales(tabor, require_law(law), require_profile(profile).surface(tabor), body)
     if body is not None or math.isfinite(scales.profile.end):
         images = [images_of(body, spacing) if body is not None else None for spacing in IMAGES]
         return climb(rtol, partial(_sized_rung, scales, images, rtol, to_load), to_load=to_load)

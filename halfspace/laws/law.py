@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from halfspace.errors import InputError
+from halfspace.limits import require_part
 from halfspace.roots import root
 from halfspace.values import Array
 
@@ -100,6 +101,7 @@ REACH = 1e-2  # of the largest tension: what may be left of it at the largest of
 
 def require_law(law: Law) -> Law:
     """Return a law, or raise InputError unless it adheres with dgamma, repels closer by and lets go farther away."""
+    require_part(law, "law", "pressure", "halfspace.laws.Morse(3)")
     for value, holds, limit, remedy in _found(law):
         if not holds:
             raise InputError(f"{law}: {value}, limit: {limit}; {remedy}")

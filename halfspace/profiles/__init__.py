@@ -6,7 +6,7 @@ as a mesh.
 """
 
 from halfspace.profiles.formulas import PARABOLOID, Hyperboloid, Paraboloid, Power, RoundedPunch
-from halfspace.profiles.profile import Endless, Profile, Surface
+from halfspace.profiles.profile import Endless, Profile, Surface, require_profile
 from halfspace.profiles.sphere import Sphere
 from halfspace.profiles.tabulated import Tabulated
 
@@ -21,4 +21,5 @@ __all__ = [
     "Sphere",
     "Surface",
     "Tabulated",
+    "require_profile",
 ]

@@ -10,6 +10,7 @@ from typing import Protocol, Self
 
 import numpy as np
 
+from halfspace.limits import require_part
 from halfspace.values import Array
 
 
@@ -45,6 +46,12 @@ class Profile(Protocol):
     def surface(self, tabor: float) -> Surface:
         """Heights in beta^2/R against radii in beta at a Tabor parameter."""
         ...
+
+
+def require_profile(profile: Profile) -> Profile:
+    """Return a profile, or raise InputError for what is none."""
+    require_part(profile, "profile", "surface", "halfspace.profiles.Sphere(100)")
+    return profile
 
 
 class Dimensionless:
