@@ -30,9 +30,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fem_adhesion.bodies.half_space import Block, HalfSpace
+    from fem_adhesion.bodies.held import HeldSphere, Hemisphere, Meshed
     from fem_adhesion.bodies.layers import Coated, Layer, Layers
-    from fem_adhesion.bodies.meshed import Meshed
-    from fem_adhesion.bodies.spheres import HeldSphere, Hemisphere
     from fem_adhesion.convergence import trace
     from fem_adhesion.crosscheck.study import compare
     from fem_adhesion.materials import LinearElastic, NeoHookean
@@ -57,8 +56,7 @@ __all__ = [
 
 _HOMES = {
     **dict.fromkeys(("Block", "HalfSpace"), "bodies.half_space"),
-    **dict.fromkeys(("HeldSphere", "Hemisphere"), "bodies.spheres"),
-    "Meshed": "bodies.meshed",
+    **dict.fromkeys(("HeldSphere", "Hemisphere", "Meshed"), "bodies.held"),
     **dict.fromkeys(("Coated", "Layer", "Layers"), "bodies.layers"),
     **dict.fromkeys(("LinearElastic", "NeoHookean"), "materials"),
     **dict.fromkeys(("Scene", "share_of"), "scene"),

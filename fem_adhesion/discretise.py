@@ -17,9 +17,9 @@ import numpy as np
 from skfem import ElementQuadP, ElementTriP2, MeshTri
 
 from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout
-from fem_adhesion.elasticity import far_field
+from fem_adhesion.elasticity import boundaries
+from fem_adhesion.elasticity.boundaries import FarField
 from fem_adhesion.elasticity.condensation import CondensedBody, condense
-from fem_adhesion.elasticity.far_field import FarField
 from fem_adhesion.elasticity.incompressible import stiffness_of
 from fem_adhesion.elasticity.space import Space, cell_stiffness
 from fem_adhesion.materials import LinearElastic
@@ -37,12 +37,12 @@ from halfspace.scales import Scales
 from halfspace.values import Array, Valued
 
 FAR_FIELDS: Mapping[FarFieldName, FarField] = {
-    "point_load": far_field.point_load,
-    "substrate": far_field.point_load,
-    "clamped": far_field.clamped,
-    "free": far_field.free,
-    "sliding": far_field.sliding,
-    "sheet": far_field.sheet,
+    "point_load": boundaries.point_load,
+    "substrate": boundaries.point_load,
+    "clamped": boundaries.clamped,
+    "free": boundaries.free,
+    "sliding": boundaries.sliding,
+    "sheet": boundaries.sheet,
 }
 
 
@@ -186,7 +186,7 @@ def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:
     triangles, material = isinstance(mesh, MeshTri), body.material
     space = Space(mesh, TRIANGLE if triangles else quadrilateral(how.degree))
     stiffness = cell_stiffness if triangles else stiffness_of(body.regions)
-    held = far_field.made_of(FAR_FIELDS[body.held], body.beyond)
+    held = boundaries.made_of(FAR_FIELDS[body.held], body.beyond)
     return condense(space, material.poisson, far_field=held, stiffness=stiffness, traction=material.area)
 
 

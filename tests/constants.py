@@ -55,7 +55,7 @@ import numpy as np
 
 import fem_adhesion.bodies.body
 import fem_adhesion.bodies.half_space
-import fem_adhesion.bodies.spheres
+import fem_adhesion.bodies.held
 import fem_adhesion.convergence
 import halfspace.accuracy.finite_bodies
 import halfspace.accuracy.trace
@@ -264,7 +264,7 @@ CONSTANTS = (
     Constant(body, "GROWTH", estimates("hemisphere, sliding"), of_a_default(1, to_the_power), DEFAULTS),
     Constant(fem_adhesion.convergence, "FOURTH", estimates("hemisphere, sliding")),
     Constant(fem_adhesion.convergence, "PER_DEGREE", estimates("hemisphere, sliding"), to_the_power),
-    Constant(fem_adhesion.bodies.spheres, "RINGS", estimates("hemisphere, bonded")),
+    Constant(fem_adhesion.bodies.held, "RINGS", estimates("hemisphere, bonded")),
     Constant(fem_adhesion.bodies.half_space, "PAST_END", estimates("block under a sphere")),
     Constant(weak_bodies, "FINENESS", fourth_level(0.5, 2.0), larger_boxes),
     Constant(weak_bodies, "FINENESS", fourth_level(0.5, 2.0), higher_degrees),

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from skfem import ElementQuadP
 
+from fem_adhesion.elasticity.boundaries import sliding
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.far_field import sliding
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
 from halfspace.accuracy.trace import half_space_charts, resolution_for
@@ -21,7 +21,7 @@ from halfspace.elastic.operators import (
 from halfspace.equilibrium.charts import Chart, trace_charts
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.search import find_events
-from halfspace.profiles.sphere import SphereSurface
+from halfspace.profiles.formulas import SphereSurface
 from halfspace.scales import Scales
 
 R = 4.0

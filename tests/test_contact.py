@@ -14,11 +14,11 @@ from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem, count_negative
-from halfspace.equilibrium.prediction import passed, with_edge
+from halfspace.equilibrium.path import passed, with_edge
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, PowerLaw
 from halfspace.profiles import PARABOLOID, Power, Sphere
-from halfspace.profiles.sphere import SphereSurface
+from halfspace.profiles.formulas import SphereSurface
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 

@@ -8,9 +8,8 @@ from scipy.special import ellipe, ellipk, j0, kv
 from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
 from fem_adhesion.elasticity import space as elasticity
-from fem_adhesion.elasticity.boundaries import trace_on
+from fem_adhesion.elasticity.boundaries import boussinesq_displacement, clamped, free, point_load, trace_on
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.far_field import boussinesq_displacement, clamped, free, point_load
 from fem_adhesion.elasticity.space import Space, cell_stiffness, ring_measure, scatter
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
 from halfspace.elastic import grid

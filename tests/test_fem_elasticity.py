@@ -20,8 +20,7 @@ from skfem import (
 )
 from skfem.helpers import ddot, div, sym_grad
 
-from fem_adhesion.elasticity.boundaries import trace_on
-from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress, trace_projection
+from fem_adhesion.elasticity.boundaries import boussinesq_displacement, boussinesq_stress, trace_on, trace_projection
 from fem_adhesion.elasticity.space import (
     Space,
     cell_quadrature,
@@ -40,7 +39,7 @@ from fem_adhesion.mesh.block import (
     with_named_boundaries,
 )
 from fem_adhesion.mesh.file import refined
-from fem_adhesion.mesh.held_sphere import held_sphere
+from fem_adhesion.mesh.spheres import held_sphere
 from halfspace.elastic import grid
 
 NU = 0.3

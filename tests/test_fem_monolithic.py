@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
+from fem_adhesion.elasticity.boundaries import clamped, free, point_load
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.far_field import clamped, free, point_load
 from fem_adhesion.elasticity.space import Space, cell_stiffness, scatter
 from fem_adhesion.finite_strain.assembly import assemble
 from fem_adhesion.finite_strain.body import displacement_body

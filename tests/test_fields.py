@@ -9,9 +9,14 @@ from skfem import CellBasis, ElementQuad2, ElementQuadP
 import fem_adhesion
 from fem_adhesion import HeldSphere, Hemisphere, NeoHookean, fields
 from fem_adhesion.elasticity import stress
-from fem_adhesion.elasticity.boundaries import trace_on
+from fem_adhesion.elasticity.boundaries import (
+    boussinesq_displacement,
+    boussinesq_stress,
+    point_load,
+    trace_on,
+    trace_projection,
+)
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress, point_load, trace_projection
 from fem_adhesion.elasticity.incompressible import projected_stiffness
 from fem_adhesion.elasticity.space import Space, cell_quadrature, cell_stiffness, elastic_matrix, ring_measure, scatter
 from fem_adhesion.fields import half_space_beside

@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2
 
+from fem_adhesion.elasticity.boundaries import clamped, free, point_load, sliding
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.far_field import clamped, free, point_load, sliding
 from fem_adhesion.elasticity.space import Space, cell_stiffness, lame_parameters, scatter
 from fem_adhesion.finite_strain import material
 from fem_adhesion.finite_strain.assembly import finite_strain_problem
@@ -23,7 +23,7 @@ from halfspace.equilibrium.charts import Chart, moved, trace_charts, transfer
 from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem
 from halfspace.equilibrium.search import find_events
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Morse, PowerLaw
-from halfspace.profiles.sphere import SphereSurface
+from halfspace.profiles.formulas import SphereSurface
 
 LAM, G = 0.7, 0.4
 VERTICAL, NORMAL, REFERENCE = Convention(1.0, 0.0), Convention(1.0, 1.0), Convention(0.0, 0.0)

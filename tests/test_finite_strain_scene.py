@@ -13,7 +13,7 @@ from scenes import hemisphere
 
 from fem_adhesion import LinearElastic, NeoHookean, convergence
 from fem_adhesion.bodies.body import Discretisation
-from fem_adhesion.bodies.spheres import Hemisphere
+from fem_adhesion.bodies.held import Hemisphere
 from fem_adhesion.curve import record as curve_record
 from fem_adhesion.curve import terminal as curve_terminal
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves, Question

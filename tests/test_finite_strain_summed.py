@@ -9,8 +9,8 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 from skfem import ElementQuadP
 
+from fem_adhesion.elasticity.boundaries import sliding
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.far_field import sliding
 from fem_adhesion.elasticity.space import Space, cell_quadrature, reference_functions, scatter
 from fem_adhesion.finite_strain.assembly import finite_strain_problem
 from fem_adhesion.finite_strain.body import displacement_body
@@ -20,7 +20,7 @@ from halfspace.elastic import grid
 from halfspace.equilibrium.charts import Chart, moved, trace_charts
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.search import find_events
-from halfspace.profiles.sphere import SphereSurface
+from halfspace.profiles.formulas import SphereSurface
 
 TABOR, POISSON = 1.0, 0.3
 

@@ -7,15 +7,13 @@ import pytest
 from scipy import sparse
 from skfem import Basis, ElementQuadP, ElementTriP2
 
-from fem_adhesion.elasticity.boundaries import trace_on
+from fem_adhesion.elasticity.boundaries import Exterior, clamped, sliding, trace_on, with_interiors
 from fem_adhesion.elasticity.condensation import Dissection, condense, contact_surface
-from fem_adhesion.elasticity.far_field import Exterior, clamped, sliding, with_interiors
 from fem_adhesion.elasticity.space import Space, cell_stiffness, cell_strains, ring_measure
-from fem_adhesion.mesh import held_sphere as module
+from fem_adhesion.mesh import spheres as module
 from fem_adhesion.mesh.curved import refined_towards
 from fem_adhesion.mesh.file import read_body
-from fem_adhesion.mesh.held_sphere import held_sphere, rings_at_equator
-from fem_adhesion.mesh.spheres import CORE, DEPTH, contact_ends, hemisphere
+from fem_adhesion.mesh.spheres import CORE, DEPTH, contact_ends, held_sphere, hemisphere, rings_at_equator
 from halfspace.elastic import grid
 from halfspace.elastic.operators import SurfaceCoordinate
 

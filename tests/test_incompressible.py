@@ -10,8 +10,8 @@ from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 import fem_adhesion
 import halfspace
 from fem_adhesion import HalfSpace, Scene
+from fem_adhesion.elasticity.boundaries import clamped, free, point_load, with_interiors
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.far_field import clamped, free, point_load, with_interiors
 from fem_adhesion.elasticity.incompressible import (
     REMEDY_FROM,
     dilatation,

@@ -14,7 +14,7 @@ from fem_adhesion import HalfSpace, Hemisphere, Scene
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common.files import directory_written_aside
 from fem_adhesion.elasticity import stress
-from fem_adhesion.elasticity.far_field import boussinesq_displacement, boussinesq_stress
+from fem_adhesion.elasticity.boundaries import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.space import cell_quadrature
 from fem_adhesion.elasticity.stress import sampled
 from fem_adhesion.fields import states_along

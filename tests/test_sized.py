@@ -26,7 +26,7 @@ from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 from halfspace.profiles import PARABOLOID, Paraboloid, Sphere
-from halfspace.profiles.sphere import between_spheres
+from halfspace.profiles.formulas import between_spheres
 from halfspace.scales import Scales
 
 HEMISPHERE = Scene(1.0, Hemisphere(radius_ratio=30.0))

@@ -24,7 +24,7 @@ from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.events import numbered
 from halfspace.equilibrium.search import between_jumps, find_events, with_care
-from halfspace.profiles.sphere import between_spheres
+from halfspace.profiles.formulas import between_spheres
 from halfspace.scales import Scales
 
 

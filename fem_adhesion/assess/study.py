@@ -34,7 +34,7 @@ from fem_adhesion.assess.verdict import (
     verdict,
     yielding,
 )
-from fem_adhesion.bodies.spheres import Hemisphere
+from fem_adhesion.bodies.held import Hemisphere
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
 from fem_adhesion.scene import Scene

@@ -11,7 +11,7 @@ from functools import cached_property
 
 from fem_adhesion.bodies.body import Body, GripName
 from fem_adhesion.bodies.half_space import HalfSpace
-from fem_adhesion.bodies.spheres import Hemisphere
+from fem_adhesion.bodies.held import Hemisphere
 from fem_adhesion.scene import facing_pair
 from halfspace.elastic.layers import Foundation, Layer, Layers
 from halfspace.errors import InputError

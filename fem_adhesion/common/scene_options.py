@@ -348,7 +348,7 @@ def material_of(options: argparse.Namespace) -> Contact:
 def counter_of(options: argparse.Namespace) -> tuple[float | None, Body | None, float | None]:
     """First body's R/eps, counter-body and its share as given with a Tabor parameter; both None for a rigid wall."""
     from fem_adhesion.bodies.half_space import HalfSpace
-    from fem_adhesion.bodies.spheres import Hemisphere
+    from fem_adhesion.bodies.held import Hemisphere
     from fem_adhesion.scene import facing_pair
     from halfspace.limits import require_counter_radius
 

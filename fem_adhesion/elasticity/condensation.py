@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg.blas import dtrsm
 
-from fem_adhesion.elasticity.boundaries import trace_on
+from fem_adhesion.elasticity.boundaries import Exterior, FarField, point_load, trace_on, with_interiors
 from fem_adhesion.elasticity.elimination import (
     Factors,
     Region,
@@ -21,7 +21,6 @@ from fem_adhesion.elasticity.elimination import (
     reduced_cells,
     reduced_unknowns,
 )
-from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import CellStiffness, Space, cell_stiffness, ring_measure, scatter
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
@@ -169,8 +168,8 @@ def condense(
     The compliance is N K^-1 N' diag(w): N evaluates the surface deflection -u_z at the Gauss points of the contact
     facets and w are the weights of 2 pi r dr, so a surface law assembled by quadrature at them is condensed exactly.
 
-    The far field is `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.far_field`. Of Gauss's points there
-    are more than the degree p of the element on a contact facet, p + 2 unless given. Of the stiffnesses of the cells
+    The far field is `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.boundaries`. Gauss's points are
+    more than the degree p of the element on a contact facet, p + 2 unless given. Of the stiffnesses of the cells
     `fem_adhesion.elasticity.incompressible.projected_stiffness` does not lock. With the traction "projected" the
     pressure, which is vertical, acts on the area projected on the plane of the contact, with "surface" on that of the
     surface. InputError unless 0 <= poisson < 0.5 and the points are enough.

@@ -15,7 +15,7 @@ from typing import Literal
 
 import halfspace
 from fem_adhesion.bodies.body import Discretisation, GripName
-from fem_adhesion.bodies.spheres import Hemisphere
+from fem_adhesion.bodies.held import Hemisphere
 from fem_adhesion.convergence import trace
 from fem_adhesion.discretise import sized_body
 from fem_adhesion.finite_strain.scene import find_jumps, require_well_posed

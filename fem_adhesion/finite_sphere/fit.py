@@ -22,7 +22,7 @@ from math import log, pi
 import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation, GripName
-from fem_adhesion.bodies.spheres import Hemisphere
+from fem_adhesion.bodies.held import Hemisphere
 from fem_adhesion.discretise import sized_body
 from fem_adhesion.finite_sphere.table import DeviationRow, Samples, samples
 from fem_adhesion.scene import Scene

@@ -9,7 +9,7 @@ import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import FAR_FIELDS, finest_length, layout_of, mesh_of, quadrilateral
-from fem_adhesion.elasticity.far_field import Exterior, FarField, point_load, with_interiors
+from fem_adhesion.elasticity.boundaries import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.body import Body, displacement_body, material_body
 from fem_adhesion.finite_strain.held import HeldBody
@@ -53,7 +53,7 @@ def finite_strain_problem(
     """Put a body under a rigid flat wall that attracts it.
 
     The body is a `displacement_body` or `mixed_body` of `fem_adhesion.finite_strain.body`, the exterior one of
-    `fem_adhesion.elasticity.far_field` on its space; tabor and law are as in
+    `fem_adhesion.elasticity.boundaries` on its space; tabor and law are as in
     `halfspace.equilibrium.contact.ContactProblem`. The profile is the height of the body's undeformed surface over its
     pole, carried along by its points; that of a block is a perturbation of its flat surface, as in the linear body. The
     convention says what the law's traction is counted per, and its direction. Of Gauss's points there are p + 2 on each

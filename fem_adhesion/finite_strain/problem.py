@@ -1,6 +1,6 @@
 """The contact problem at finite strain: Newton's method on every unknown of a neo-Hookean body at once.
 
-Unknowns x = (y, alpha*): reduced unknowns y with u = T y, see `fem_adhesion.elasticity.far_field`, and the approach in
+Unknowns x = (y, alpha*): reduced unknowns y with u = T y, see `fem_adhesion.elasticity.boundaries`, and the approach in
 eps. Displacements are in mu eps = beta^2/R, so that a point X moves to X + delta u, delta = beta/R = sqrt(mu/rho). The
 surface law, of pressure P and energy Phi, acts on the deformed surface: at its height and on its area. With z the
 height of the undeformed surface in beta^2/R and r_d = r + delta u_r, the work it does in a displacement v is

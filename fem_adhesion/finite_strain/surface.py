@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_adhesion.elasticity.boundaries import trace_on
-from fem_adhesion.elasticity.far_field import Exterior
+from fem_adhesion.elasticity.boundaries import Exterior, trace_on
 from fem_adhesion.elasticity.space import Space
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.values import Array, Index, Valued

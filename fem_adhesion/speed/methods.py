@@ -18,8 +18,8 @@ from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, Elemen
 import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.bodies.half_space import HalfSpace
+from fem_adhesion.elasticity.boundaries import FarField, clamped, point_load
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.far_field import FarField, clamped, point_load
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.assembly import assemble
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc

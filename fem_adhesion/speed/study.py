@@ -23,7 +23,7 @@ from scipy.linalg.lapack import dgesv
 
 import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.bodies.spheres import Hemisphere
+from fem_adhesion.bodies.held import Hemisphere
 from fem_adhesion.common.facts import with_peak_memory
 from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.scene import Scene

@@ -17,8 +17,18 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.conditions import FOLD, Located, relocate, same_place
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
 from halfspace.equilibrium.newton import Traceable
-from halfspace.equilibrium.path import WHOLE_BODY, Metric, Point, Segment, Steps, follow, loaded_to, make_point
-from halfspace.equilibrium.prediction import KNOWN, passed
+from halfspace.equilibrium.path import (
+    KNOWN,
+    WHOLE_BODY,
+    Metric,
+    Point,
+    Segment,
+    Steps,
+    follow,
+    loaded_to,
+    make_point,
+    passed,
+)
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued
 

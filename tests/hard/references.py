@@ -7,8 +7,8 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 from skfem import Dofs
 
+from fem_adhesion.elasticity.boundaries import FarField, point_load, with_interiors
 from fem_adhesion.elasticity.condensation import CondensedBody, contact_surface, surface_operator
-from fem_adhesion.elasticity.far_field import FarField, point_load, with_interiors
 from fem_adhesion.elasticity.incompressible import dilatation
 from fem_adhesion.elasticity.space import (
     Space,

@@ -1,14 +1,15 @@
-"""Elastic spheres: the half held at its mid-plane, and the whole held over a cap."""
+"""Bodies held at their far side: the half of a sphere, the whole held over a cap, and one that is given as a mesh."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation, Held, Layout, SolverName
-from halfspace.elastic.operators import SurfaceCoordinate
+from halfspace.elastic.operators import FLAT, SurfaceCoordinate
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, keep
 
@@ -91,14 +92,54 @@ class HeldSphere(Held):
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (rings are the cap's)
         """Layers and rings beyond the core."""
-        from fem_adhesion.mesh.held_sphere import rings_at_equator
-        from fem_adhesion.mesh.spheres import contact_ends
+        from fem_adhesion.mesh.spheres import contact_ends, rings_at_equator
 
         return contact_ends(R, rings_at_equator(R, self.cap_angle)), SurfaceCoordinate(R, self.material.area)
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Graded from the contact, and towards the rim of the cap."""
-        from fem_adhesion.mesh.held_sphere import held_sphere
-        from fem_adhesion.mesh.spheres import graded_depths
+        from fem_adhesion.mesh.spheres import graded_depths, held_sphere
 
         return held_sphere(R, lines, graded_depths(R, length, how.growth), self.cap_angle)
+
+
+@dataclass(frozen=True)
+class Meshed(Held):
+    """Body from a file, with the profile of its own surface; beside it a half-space is under the sphere's.
+
+    Parameters
+    ----------
+    path : str or Path
+        Of the mesh, see `fem_adhesion.mesh.file`; R is the radius of curvature at its pole.
+    """
+
+    path: str | Path
+
+    looks: ClassVar[str] = "elastic body of a mesh"
+
+    def __post_init__(self, poisson: float | None) -> None:
+        super().__post_init__(poisson)
+        keep(self, path=Path(self.path))
+
+    @property
+    def file(self) -> Path:
+        """The mesh."""
+        return Path(self.path)
+
+    @property
+    def told(self) -> list[str]:
+        """The file, and its grip."""
+        return [str(self.path), *super().told[1:]]
+
+    def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (it is as it is)
+        """None: every cell stands still."""
+        return np.array([R]), FLAT
+
+    def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
+        """Mesh of the file, every cell cut into four until the contact has as many as there are between the lines."""
+        from fem_adhesion.mesh.file import read_body, refined
+
+        mesh = read_body(self.file).scaled(R)
+        while len(mesh.boundaries["contact"]) < len(lines) - 1:
+            mesh = refined(mesh)
+        return mesh
