@@ -87,7 +87,7 @@ def equations(scene: Scene, problems: Sequence[ContactProblem], radius: float) -
     are means over a contact of the radius given; what is off counts relative to what in them is elastic under
     tensions of one sign.
     """
-    apart = np.array([_apart(contact(radius, radius), radius) for contact in contacts(scene)[:2]])
+    apart = np.array([_apart(contact(radius, radius), radius) for contact in contacts(scene, np.inf)[:2]])
     shared = np.array([_shared(problem, radius) for problem in problems])
     sizes = np.abs(apart[1, 4:])
     # Of each the largest, lest both bodies agree by chance on one.

@@ -59,14 +59,19 @@ def law_of(scene: Scene) -> Law:
     return Law(lambda h: law.energy(h - 1, 1.0), law.stiffness**-0.5, room)
 
 
-def contacts(scene: Scene) -> list[FineAt]:
-    """Contact of a scene on bodies each of which is finer than the one before."""
+def contacts(scene: Scene, load: float | None = None) -> list[FineAt]:
+    """Contact of a scene on bodies each of which is finer than the one before.
+
+    The load, in R dgamma, is the largest that is to act, that of its events unless given; if it is infinite, what they
+    leave out is little beside what they deflect, however little that is.
+    """
     if not scene.sized:
         return [partial(_on_half_space, scene, fineness) for fineness in FINENESS]
     if scene.body.file:
         return [partial(_on_given_mesh, scene, degree) for degree in DEGREES if degree in TRIANGLES]
     more = int(scene.body.checked_by is None or scene.poisson > NEARLY or scene.body.layered is not None)
-    return [partial(_sized, scene, degree + more) for degree in DEGREES]
+    load = load or scene.scales.largest_load
+    return [partial(_sized, scene, degree + more, load) for degree in DEGREES]
 
 
 # Half-spaces
@@ -127,13 +132,13 @@ def _given_mesh(scene: Scene) -> Any:
     return type(mesh)(mesh.doflocs, np.sort(mesh.t, axis=0), mesh.boundaries) if isinstance(mesh, MeshTri) else mesh
 
 
-def _sized(scene: Scene, degree: int, radius: float, reach: float) -> Contact:
+def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) -> Contact:
     """Contact of one body or two, whose cells are finest at a radius."""
     R = scene.radii[0]
     radius, reach = (min(r, WIDEST * R) for r in (radius, reach))  # what attracts from afar may be wider
     how = Discretisation(degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, GROWTH, RINGS)
     if isinstance(scene.body, Stratified) and scene.body.held == "substrate":
-        how = replace(how, beyond=_clamped(scene, scene.body, R, radius))
+        how = replace(how, beyond=_clamped(scene, scene.body, load, R, radius))
     outer, coordinate = layout_of(scene, how)
     lines = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=GROWTH)
     core = fine_within(coordinate.of(reach), lines)
@@ -146,15 +151,14 @@ def _sized(scene: Scene, degree: int, radius: float, reach: float) -> Contact:
     return Contact(body, scene.tabor, _heights(scene), False, _rim(first.rim, R), law_of(scene))
 
 
-def _clamped(scene: Scene, strata: Stratified, R: float, radius: float) -> float:
+def _clamped(scene: Scene, strata: Stratified, W: float, R: float, radius: float) -> float:
     """Size of a half-space under strata, as of `Discretisation.beyond`: W/(pi E L) at its end L is what a clamp omits.
 
     That is little beside eps and what W deflects within the contact. In one much larger the cells near its surface are
     so flat that rounding hides the force that the clamp bears.
     """
-    W, mu = scene.scales.largest_load, scene.tabor
-    deflected = W * float(surface_compliance(strata, np.array([1 / radius]))[0]) / (2 * radius)
-    far = mu * W / (np.pi * strata.beyond.modulus * CLAMPED * (1 + mu * deflected))
+    yielding = float(surface_compliance(strata, np.array([1 / radius]))[0]) / (2 * radius)
+    far = 1 / (np.pi * strata.beyond.modulus * CLAMPED * (1 / (scene.tabor * W) + yielding))
     return max(1.0, far / strata.spread(R))
 
 
