@@ -85,7 +85,8 @@ def discretise(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
         return _pair(scene, scene.counter, core, lines[len(core) - 1 :], coordinate, how)
     first = _condensed(scene.body, mesh_of(scene, core, how), how)
     surface = _own_surface(first, scene.sphere_radius) if scene.body.file else scene.surface
-    return Discretised(first, first.operator, surface, scene, first.unknowns)
+    operator = _with_strata_beyond(scene, first.operator, lines[len(core) - 1 :])
+    return Discretised(first, operator, surface, scene, first.unknowns)
 
 
 def mesh_of(scene: Scene, core: Array, how: Discretisation) -> Any:
@@ -153,13 +154,20 @@ def _made(scene: Scene, how: Discretisation, lines: Array) -> Made:
         found = discretise(scene, lines, how)
         return found.operator, found.unknowns
     outer, _ = layout_of(scene, how)
-    core = lines[: len(lines) - len(outer) + 1].tobytes()
+    cells = len(lines) - len(outer)
+    core = lines[: cells + 1].tobytes()
     if not scene.body.curved or scene.material.area == "projected":
-        return _maker.get()(scene.body, scene.radii[0], core, finest_length(scene, how), how)[:2]
+        operator, unknowns, _ = _maker.get()(scene.body, scene.radii[0], core, finest_length(scene, how), how)
+        return _with_strata_beyond(scene, operator, lines[cells:]), unknowns
     body = scene.made_of(LinearElastic(scene.poisson)).body
     a, unknowns, slopes = _maker.get()(body, scene.radii[0], core, finest_length(scene, how), how)
     wider = np.hypot(1.0, slopes)
     return ElasticOperator(a.radii, a.weights * wider, a.compliance * wider, a.cells, a.cell_nodes), unknowns
+
+
+def _with_strata_beyond(scene: Scene, operator: ElasticOperator, lines: Array) -> ElasticOperator:
+    """Extend the operator of strata by those that are far out and rigid, if there are any."""
+    return with_rigid_rim(operator, lines, FLAT) if scene.body.layered and len(lines) > 1 else operator
 
 
 def _alone(body: Body, R: float, core: bytes, length: float, how: Discretisation) -> tuple[ElasticOperator, int, Array]:

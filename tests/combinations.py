@@ -60,6 +60,8 @@ SCENES = (
     Scene(1.0, Coated(thickness=1.0, modulus_ratio=5.0), profile=Hyperboloid(5.0)),
     Scene(1.7, Coated(3.6, 36.0, 0.45, poisson=0.0), profile=RoundedPunch(1.0), law=PowerLaw(4.1, 10.4)),
     Scene(0.97, Coated(72.6, 55.6, poisson=0.0), law=Dugdale(0.36)),
+    Scene(0.377, Coated(1.45, 0.088, 0.0, poisson=0.4999), Sphere(755), law=Dlvo(0.16, 4.12)),
+    Scene(0.562, Layer(3.76, "sliding", poisson=0.47), Hyperboloid(1.79), law=Dlvo(-0.03, 4.73)),
 )
 
 

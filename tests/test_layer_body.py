@@ -27,7 +27,7 @@ from halfspace.elastic import grid
 from halfspace.elastic.compliance import panels
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.errors import InputError
-from halfspace.laws import PowerLaw
+from halfspace.laws import Dlvo, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
 
 QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
@@ -73,6 +73,7 @@ def test_cells_under_a_tip_are_no_longer_than_what_is_round_of_it(profile):
         (Scene(1.0, Layer(0.5, poisson=0.499)), 1e-5),
         (Scene(1.0, STACK), 1e-3),
         (Scene(1.0, Layers(PLIES, "sliding")), 1e-3),
+        (Scene(0.562, Layer(3.76, "sliding", poisson=0.47), Hyperboloid(1.79), law=Dlvo(-0.03, 4.73)), 1e-4),  # to 1e9
         (Scene(1.0, Layers([Stratum(0.2, 0.3), Stratum(0.2, 0.4999, 0.02)], "sliding")), 1e-3),  # complex images
     ],
     ids=str,

@@ -26,6 +26,9 @@ WIDTH = 800.0  # of the mesh, in widths of a rigid attraction: the load left out
 # Thicknesses that it is wider: what dies out falls by e^(-0.74 r/t) at least, there and back again to 1e-13. From the
 # roots of what its yield is divided by, (3 - 4 nu) cosh 2x + 2 x^2 + 5 - 12 nu + 8 nu^2, the first at nu = 1/2.
 DIED_OUT = 20.0
+# Thicknesses up to which strata on a rigid base yield to an attraction that reaches farther: its gap is wide there, and
+# they move by a part of their thickness; the stiffness along them falls short of that across by the square of this.
+SLENDER = 1e5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,15 +88,17 @@ class Stratified(Body):
         """Radius up to which its surface attracts."""
         return scales.whole_radius((WIDTH * scales.widened) ** 2 / 2)
 
-    def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
-        """Cells up to the end of what attracts, or of the surface over it."""
-        return np.array([R]), FLAT
+    def layout(self, R: float, how: Discretisation) -> Layout:
+        """Cells up to the end of what attracts, or of the surface over it; on a rigid base those far out are rigid."""
+        slender = math.inf if self.held == "substrate" else SLENDER * self.interfaces[-1]
+        return grid.equal_ratios(min(R, slender), R, most=how.growth), FLAT
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Cells as deep as the strata are thick, and far beyond if what carries them is a half-space."""
         from fem_adhesion.mesh.block import tensor_grid
         from fem_adhesion.mesh.spheres import with_contact_to
 
+        R = min(R, float(lines[-1]))  # without what is rigid
         size, interfaces = self._size(R, how), self.interfaces
         depths = [0.0, *interfaces, size] if self.held == "substrate" else [0.0, *interfaces]
         # Neither the depths nor what is beyond depends on the contact radius, by which operators are interpolated.

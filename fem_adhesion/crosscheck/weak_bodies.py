@@ -144,7 +144,8 @@ def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) 
     core = fine_within(coordinate.of(reach), lines)
     if scene.counter is None:
         body = _standing(scene.body, mesh_of(scene, core, how), degree)
-        return Contact(body, scene.tabor, _heights(scene), False, law=law_of(scene))
+        contact = Contact(body, scene.tabor, _heights(scene), False, law=law_of(scene))
+        return replace(contact, rim=_flat_rim(body.rim, R)) if scene.body.layered else contact
     meshes = pair_meshes(scene, scene.counter, core, how)
     first, second = (_standing(*one, degree) for one in zip((scene.body, scene.counter), meshes, strict=True))
     body = opposed(first, second, scene.shares[1])
@@ -193,6 +194,17 @@ def _ground(block: Body) -> Body:
     e = block.rim
     pressure = np.maximum(1 - (block.radii / e) ** 2, 0) ** 1.5
     return on_ground(block, pressure, 2 * np.pi * e**2 / 5, 4 * np.pi**2 * e**3 / 35)
+
+
+def _flat_rim(begin: float, end: float, points: int = 40) -> tuple[Array, Array]:
+    """Radii and parts of dA between two radii on a plane, by Gauss's rule in log(r); if they are the same, of no area.
+
+    There are strata beyond those that yield, see `Stratified.layout`.
+    """
+    t, w = np.polynomial.legendre.leggauss(points)
+    half = float(np.log(end / begin)) / 2
+    r = begin * np.exp(half * (1 + t))
+    return r, 2 * np.pi * r**2 * half * w
 
 
 def _rim(begin: float, end: float, points: int = 12) -> tuple[Array, Array]:
