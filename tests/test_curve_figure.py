@@ -388,7 +388,7 @@ def test_axes_have_the_same_places_in_every_format_and_nothing_is_cut_off():
     figure, panels = style.panels(2)
     for axes in panels:
         axes.plot([0.0, 1.0], [0.0, 1e-3], label="a line")
-        style.dress(axes, style.APPROACH, style.LOAD, legend="below")
+        style.dress(axes, "approach", "load", legend="below")
     before = [axes.get_position().bounds for axes in panels]
     assert style.laid_out(figure) is figure
     places = [axes.get_position().bounds for axes in panels]

@@ -18,7 +18,7 @@ from fem_adhesion.common import style
 from fem_adhesion.common.facts import plain
 from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.curve import lines
-from fem_adhesion.curve.solve import Curves, trace
+from fem_adhesion.curve.solve import PAPER, Curves, trace
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
@@ -135,7 +135,7 @@ def draw(beside: EquallyStrong) -> Figure:
         frames.append((*(value / path.tabor for value in frame.approach), *frame.load))
     low, high = np.min(frames, axis=0), np.max(frames, axis=0)
     approaches, loads = (low[0], high[1]), (low[2], high[3])
-    style.dress(left, r"approach $\delta R/\beta^2$", style.LOAD, legend=None, xlim=approaches, ylim=loads)
+    style.dress(left, r"approach $\delta R/\beta^2$", PAPER["load"].label, legend=None, xlim=approaches, ylim=loads)
     left.plot([], [], color="0.3", linewidth=1.1, linestyle=style.DOTTED, label="unstable")
     style.dress(
         right, r"gap less its equilibrium, $\Delta\gamma/\sigma_\mathrm{max}$", "tension over the largest", legend=None

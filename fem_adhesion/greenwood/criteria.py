@@ -15,6 +15,7 @@ from halfspace.theories import criteria
 from halfspace.values import Array, Estimate, Valued
 
 CLOSED = ("Attard & Parker", "Pethica & Sutton", "App. C")
+RTOL = 1e-6  # of the jumps
 REPULSION_GONE = 10.0  # Tabor parameter above which the exponent is fitted
 
 
@@ -72,9 +73,9 @@ class CriteriaStudy:
         return np.array([jump.approach.value for jump in self.jumps])
 
 
-def jump_on(tabor: float, *, rtol: float = 1e-6) -> JumpOn:
+def jump_on(tabor: float) -> JumpOn:
     """Solve for a true jump; above the critical Tabor parameter."""
-    event = halfspace.trace(tabor, rtol=rtol).events["jump_on"]
+    event = halfspace.trace(tabor, rtol=RTOL).events["jump_on"]
     return JumpOn(tabor, event.estimate("approach"), event.estimate("central_gap"))
 
 

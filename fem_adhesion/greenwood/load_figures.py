@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -11,10 +10,10 @@ from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import listed, rises, told
-from fem_adhesion.common.style import curve, dress, note, panels, theory
+from fem_adhesion.common.style import dress, note, panels
+from fem_adhesion.greenwood import drawing
+from fem_adhesion.greenwood.drawing import curve, elements_beside, theory
 from fem_adhesion.greenwood.study import JUMPS_AT, Greenwood1997
-from halfspace.equilibrium.contact import CENTRAL_GAP
-from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.theories import dmt
 from halfspace.theories.closed_forms import (
     BRADLEY_PULL_OFF,
@@ -46,7 +45,7 @@ def _figure_1a(study: Greenwood1997) -> Figure:
     apart = np.linspace(-2, 0.2, 300)
     theory(axes, "Bradley", apart, bradley_load(apart), "Bradley, $\\mu = 0$")
     _dmt(axes, DMT_TABOR, np.linspace(0, 0.6, 200), f", $\\mu = {DMT_TABOR:g}$")
-    dress(axes, style.APPROACH, style.LOAD, legend="below", xlim=(-1.8, 0.6), ylim=(-6.8, 1.5))
+    dress(axes, drawing.APPROACH, drawing.LOAD, legend="below", xlim=(-1.8, 0.6), ylim=(-6.8, 1.5))
     return figure
 
 
@@ -94,7 +93,7 @@ def _figure_1b(study: Greenwood1997) -> Figure:
     scaled = np.linspace(0, 4, 200)
     theory(axes, "DMT-M", scaled, dmt.maugis_load(scaled, 1.0))
     theory(axes, "Hertz", scaled, hertz_load(hertz_radius_at(scaled, 1.0)))
-    dress(axes, style.SCALED_APPROACH, style.LOAD, legend="upper left", xlim=(-5, 3.5), ylim=(-6.6, 3))
+    dress(axes, drawing.SCALED_APPROACH, drawing.LOAD, legend="upper left", xlim=(-5, 3.5), ylim=(-6.6, 3))
     return figure
 
 
@@ -119,7 +118,7 @@ def _figure_1c(study: Greenwood1997) -> Figure:
     apart = np.linspace(-2, 0.32, 300)
     theory(axes, "Bradley", apart, bradley_load(apart), "Bradley, $\\mu = 0$")
     _dmt(axes, mu, np.linspace(0, 0.2, 200), "")
-    dress(axes, style.APPROACH, style.LOAD, legend="upper left", xlim=(-0.6, 0.42), ylim=(-8, 20))
+    dress(axes, drawing.APPROACH, drawing.LOAD, legend="upper left", xlim=(-0.6, 0.42), ylim=(-8, 20))
     return figure
 
 
@@ -140,16 +139,16 @@ def _see_1c(study: Greenwood1997) -> Iterator[str]:
 def _figure_2a(study: Greenwood1997) -> Figure:
     path = study.curves[JUMPS_AT]
     figure, (axes,) = panels()
-    style.branches(axes, path, path.approach, path.load)
-    style.stability_key(axes)
+    drawing.branches(axes, path, path.approach, path.load)
+    drawing.stability_key(axes)
     if fe := study.elements.get(JUMPS_AT):
-        style.elements(axes, fe, fe.approach, fe.load)
+        drawing.elements(axes, fe, fe.approach, fe.load)
     for letters, jump in study.jumps.items():
         ends = [(jump.take_off.approach, state.load) for state in jump.ends]
         style.arrow(axes, *ends, color=style.RED, linewidth=1.6, zorder=1)
         for letter, end in zip(letters, ends, strict=True):
             note(axes, letter, end, (-14, -4) if letters == "CD" else (7, 2), weight="bold")
-    dress(axes, style.APPROACH, style.LOAD, legend="upper left", xlim=(-7, 4), ylim=(-5.6, 1.5))
+    dress(axes, drawing.APPROACH, drawing.LOAD, legend="upper left", xlim=(-7, 4), ylim=(-5.6, 1.5))
     axes.set_title(rf"$\mu = {JUMPS_AT:g}$")
     return figure
 
@@ -169,7 +168,7 @@ def _see_2a(study: Greenwood1997) -> Iterator[str]:
 
 def _figure_2b(study: Greenwood1997) -> Figure:
     figure, axes = _scaled_curves(study, SOFT)
-    dress(axes, style.SCALED_APPROACH, style.LOAD, legend="upper left", xlim=(-3.5, 3.5), ylim=(-5.6, 3))
+    dress(axes, drawing.SCALED_APPROACH, drawing.LOAD, legend="upper left", xlim=(-3.5, 3.5), ylim=(-5.6, 3))
     return figure
 
 
@@ -189,40 +188,6 @@ def _see_2b(study: Greenwood1997) -> Iterator[str]:
 def _scaled(study: Greenwood1997, tabor: float, name: str) -> float:
     event = study.curves[tabor].event(name)
     return event.approach / tabor if event else float("nan")
-
-
-def gap_falls(path: EquilibriumPath) -> bool:
-    """Whether the central gap falls at every point of a curve, by the tangents: grids hand over with a small step."""
-    return all(point.rates[CENTRAL_GAP] < 0 for point in path.points)
-
-
-def elements_beside(fe: EquilibriumPath | None, path: EquilibriumPath, x: str, y: str) -> str:
-    """How far finite-element points lie from the half-space's curve."""
-    if fe is None:
-        return ""
-    seen = (fe.load <= path.load.max(initial=-np.inf)) & (fe.approach >= path.approach.min(initial=np.inf))
-    if x == "contact_radius" or y == "contact_radius":
-        seen &= np.isfinite(fe.contact_radius)
-    line = np.isfinite(getattr(path, x)) & np.isfinite(getattr(path, y))
-    off = _farthest((getattr(fe, x)[seen], getattr(fe, y)[seen]), (getattr(path, x)[line], getattr(path, y)[line]))
-    text = (
-        f"At mu = {path.tabor:g} the finite-element points are within {off:.1e} of the line, in units of their extent."
-    )
-    return told(text, off)
-
-
-def _farthest(points: tuple[Array, Array], line: tuple[Array, Array]) -> float:
-    """Largest distance of points from a polygon, in units of its width and height where the points are."""
-    at, corners = np.stack(points), np.stack(line)
-    if at.size == 0 or corners.shape[1] < 2:
-        return math.nan
-    size = np.maximum(np.ptp(at, axis=1), 1e-12)[:, None]
-    at, corners = at / size, corners / size
-    start, step = corners[:, :-1], np.diff(corners)
-    length = np.maximum(np.sum(step**2, axis=0), 1e-30)
-    offsets = at[:, :, None] - start[:, None]
-    t = np.clip(np.sum(offsets * step[:, None], axis=0) / length, 0, 1)
-    return float(np.hypot(*(offsets - t * step[:, None])).min(axis=1).max())
 
 
 SMALL = "Load against approach around pull-off, small Tabor parameters"

@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import listed, plus_minus, rises, told
-from fem_adhesion.common.style import branches, curve, dress, note, panels, theory
-from fem_adhesion.greenwood.load_figures import elements_beside, gap_falls
+from fem_adhesion.common.style import dress, note, panels
+from fem_adhesion.greenwood import drawing
+from fem_adhesion.greenwood.drawing import branches, curve, elements_beside, gap_falls, theory
 from fem_adhesion.greenwood.study import WINDING_AT, Greenwood1997
 from halfspace.accuracy.fold_birth import count_folds
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -45,14 +46,14 @@ def _gaps(study: Greenwood1997, along: str, places: Sequence[tuple[float, float]
     for mu, place in zip(GAPS_AT, places, strict=True):
         path = study.curves[mu]
         branches(axes, path, getattr(path, along), path.central_gap)
-        axes.text(*place, rf"$\mu = {mu:g}$", color=style.OF_TABOR[mu], fontsize=11, weight="bold")
+        axes.text(*place, rf"$\mu = {mu:g}$", color=drawing.OF_TABOR[mu], fontsize=11, weight="bold")
     return figure, axes
 
 
 def _figure_3a(study: Greenwood1997) -> Figure:
     figure, axes = _gaps(study, "approach", ((-0.75, 0.6), (-2.45, 0.4), (-3.45, 0.9), (-5.3, 1.2)))
-    style.stability_key(axes)
-    dress(axes, style.APPROACH, style.CENTRAL_GAP, legend="upper right", xlim=(-9, 2), ylim=(-0.4, 6))
+    drawing.stability_key(axes)
+    dress(axes, drawing.APPROACH, drawing.CENTRAL_GAP, legend="upper right", xlim=(-9, 2), ylim=(-0.4, 6))
     return figure
 
 
@@ -69,9 +70,9 @@ def _figure_3b(study: Greenwood1997) -> Figure:
     figure, axes = _gaps(study, "load", ((-3.9, 0.45), (-2.15, 0.33), (-1.3, 0.55), (-0.5, 1.5)))
     for mu in GAPS_AT:
         if fe := study.elements.get(mu):
-            style.elements(axes, fe, fe.load, fe.central_gap, rf"finite elements, $\mu = {mu:g}$")
-    style.stability_key(axes)
-    dress(axes, style.LOAD, style.CENTRAL_GAP, legend="upper left", xlim=(-6, 1), ylim=(-0.2, 4.5))
+            drawing.elements(axes, fe, fe.load, fe.central_gap, rf"finite elements, $\mu = {mu:g}$")
+    drawing.stability_key(axes)
+    dress(axes, drawing.LOAD, drawing.CENTRAL_GAP, legend="upper left", xlim=(-6, 1), ylim=(-0.2, 4.5))
     return figure
 
 
@@ -92,12 +93,12 @@ def _figure_3c(study: Greenwood1997) -> Figure:
     for axes in (whole, close):
         branches(axes, path, path.approach, path.central_gap)
         axes.plot(folds[:, 0], folds[:, 2], "o", color="black", markersize=5, label="folds")
-    style.stability_key(whole)
+    drawing.stability_key(whole)
     for number, fold in enumerate(folds):
         axes, offset = FOLD_NUMBERS[min(number, len(FOLD_NUMBERS) - 1)]
         note((whole, close)[axes], str(number + 1), (fold[0], fold[2]), offset)
-    dress(whole, style.APPROACH, style.CENTRAL_GAP, legend="upper right", xlim=(-9, 0), ylim=(-0.3, 6))
-    dress(close, style.APPROACH, style.CENTRAL_GAP, legend=None, xlim=(-4.56, -4.42), ylim=(-0.05, 1.3))
+    dress(whole, drawing.APPROACH, drawing.CENTRAL_GAP, legend="upper right", xlim=(-9, 0), ylim=(-0.3, 6))
+    dress(close, drawing.APPROACH, drawing.CENTRAL_GAP, legend=None, xlim=(-4.56, -4.42), ylim=(-0.05, 1.3))
     whole.set_title(rf"$\mu = {WINDING_AT:g}$")
     close.set_title("enlarged around the inner folds")
     return figure
@@ -118,7 +119,7 @@ def _figure_4(study: Greenwood1997, quantity: str, label: str, ylim: tuple[float
         values = getattr(profile, quantity)
         text = f"$H(0) = {profile.central_gap:.4g}$" if abs(profile.central_gap) > 1e-9 else "$H(0) = 0$"
         axes.plot(profile.radii, values, color=colour, linestyle=dashes, linewidth=1.8, label=text)
-    dress(axes, style.RADIUS, label, legend="below", xlim=(0, 3), ylim=ylim)
+    dress(axes, drawing.RADIUS, label, legend="below", xlim=(0, 3), ylim=ylim)
     axes.set_title(rf"$\mu = {WINDING_AT:g}$")
     return figure
 
@@ -164,12 +165,12 @@ def _figure_5(study: Greenwood1997) -> Figure:
         path = study.curves[mu]
         curve(axes, mu, path.load, path.contact_radius)
         if fe := study.elements.get(mu):
-            style.elements(axes, fe, fe.load, fe.contact_radius, rf"finite elements, $\mu = {mu:g}$")
+            drawing.elements(axes, fe, fe.load, fe.contact_radius, rf"finite elements, $\mu = {mu:g}$")
     theory(axes, "JKR", jkr_load(radius), radius)
     theory(axes, "Hertz", hertz_load(radius), radius)
     for mu in THEORIES_AT:
         _maugis(axes, mu, radius)
-    dress(axes, style.LOAD, r"contact radius $a^* = a/\beta$", legend="below", xlim=(-6.5, 5), ylim=(0, 2.8))
+    dress(axes, drawing.LOAD, r"contact radius $a^* = a/\beta$", legend="below", xlim=(-6.5, 5), ylim=(0, 2.8))
     return figure
 
 
@@ -177,7 +178,7 @@ def _maugis(axes: Any, tabor: float, radius: Array) -> None:
     """Maugis-Dugdale of the same largest tension, and the interpolation of it by Carpick and others, as thin lines."""
     theory = MaugisDugdale.matched(tabor)
     load = np.linspace(theory.pull_off().load, 5, 400)
-    thin = {"color": style.OF_TABOR[tabor], "linewidth": 1.0}
+    thin = {"color": drawing.OF_TABOR[tabor], "linewidth": 1.0}
     axes.plot(theory.load(radius), radius, label=rf"Maugis-Dugdale, $\mu = {tabor:g}$", **thin)
     label = rf"Carpick et al., $\mu = {tabor:g}$"
     axes.plot(load, carpick_radius(load, MAUGIS.of(tabor)), linestyle=style.DOTTED, label=label, **thin)

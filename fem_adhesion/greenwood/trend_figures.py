@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import digits, listed, plus_minus, rises, told
 from fem_adhesion.common.style import dress, note, panels, plain_ticks
+from fem_adhesion.greenwood import drawing
 from fem_adhesion.greenwood.criteria import Criterion, words_on
 from fem_adhesion.greenwood.numerics_1997 import Ripple
 from fem_adhesion.greenwood.study import RIPPLE_AT, Greenwood1997
@@ -99,7 +100,7 @@ def _figure_7(study: Greenwood1997) -> Figure:
     force = [-p.half_space.value for p in study.pull_offs]
     trend.semilogx(tabor, force, color=style.BLUE, linewidth=2, marker=".", label="half-space")
     elements = [(p.tabor, -p.finite_element.value) for p in study.pull_offs if p.finite_element]
-    trend.semilogx(*np.reshape(elements, (-1, 2)).T, color=style.BLUE, label="finite elements", **style.ELEMENTS)
+    trend.semilogx(*np.reshape(elements, (-1, 2)).T, color=style.BLUE, label="finite elements", **drawing.ELEMENTS)
     maugis = [-MaugisDugdale.matched(mu).pull_off().load for mu in tabor]
     trend.semilogx(tabor, maugis, color=style.GREEN, linestyle=style.CHAIN, label="Maugis-Dugdale")
     carpick = -carpick_pull_off(MAUGIS.of(tabor))
@@ -132,7 +133,7 @@ def _ripples(axes: Any, study: Greenwood1997) -> None:
     for r in study.ripples:
         _spacing(axes, r.spacing, r.approach, r.load)
     axes.plot(path.approach, path.load, color=style.BLUE, linewidth=2, label="half-space, resolved")
-    dress(axes, style.APPROACH, style.LOAD, legend="below", columns=2, xlim=(-3.2, 1.2), ylim=(-6.3, -2.6))
+    dress(axes, drawing.APPROACH, drawing.LOAD, legend="below", columns=2, xlim=(-3.2, 1.2), ylim=(-6.3, -2.6))
     axes.set_title(rf"through pull-off at $\mu = {RIPPLE_AT:g}$")
 
 
@@ -163,12 +164,12 @@ def _figure_8(study: Greenwood1997) -> Figure:
     figure, (jumps, border) = panels(2)
     devices = study.devices
     path = study.curves[devices.tabor]
-    style.branches(jumps, path, path.approach, path.load)
+    drawing.branches(jumps, path, path.approach, path.load)
     for cycle in devices.cycles:
         if cycle.stiffness in STIFFNESS_STYLES:
             _arrows(jumps, cycle)
-    style.stability_key(jumps)
-    dress(jumps, style.APPROACH, style.LOAD, legend="below", xlim=(-8, 3), ylim=(-5.6, 0.5))
+    drawing.stability_key(jumps)
+    dress(jumps, drawing.APPROACH, drawing.LOAD, legend="below", xlim=(-8, 3), ylim=(-5.6, 0.5))
     jumps.set_title(rf"jumps at $\mu = {devices.tabor:g}$")
     _border(border, study)
     return figure
