@@ -57,11 +57,11 @@ class State(Valued):
         Coefficients of the recovered stress (rr, zz, hoop, rz), in E* beta/R, tension positive; for
         `fem_adhesion.elasticity.stress.sampled`.
     surface : Surface
-        Quadrature points of the contact surface.
+        Quadrature points of the contact surface, by their radii, ascending, as arrays (q,).
     problem : ContactProblem
         The surface law on this body.
     point : Point
-        The state's gaps, observables, and its place on the curve.
+        The state's gaps, observables, and its place on the curve, see `halfspace.equilibrium.path`.
     """
 
     scene: Scene
@@ -79,24 +79,14 @@ class State(Valued):
         return self.point.observables
 
     @property
-    def arclength(self) -> float:
-        """Along the curve, in the units of `halfspace.equilibrium.path.Metric`."""
-        return self.point.arclength
-
-    @property
-    def radii(self) -> Array:
-        """Radii of the surface's nodes in beta, ascending, shape (q,)."""
-        return self.surface.radii
-
-    @property
     def gap(self) -> Array:
         """H = h/eps - 1 at the nodes, shape (q,)."""
-        return np.asarray(self.point.x[: self.radii.size])
+        return np.asarray(self.point.x[: self.surface.radii.size])
 
     @property
     def pressure(self) -> Array:
         """P at the nodes in E* beta/R, positive in compression, shape (q,)."""
-        return np.asarray(self.problem.pressure(self.point.x)[: self.radii.size])
+        return np.asarray(self.problem.pressure(self.point.x)[: self.surface.radii.size])
 
     @property
     def share(self) -> float:
@@ -230,7 +220,8 @@ def half_space_beside(state: State) -> Beside:
     start = np.append(source.values_at(operator.radii, state.gap), state.point.x[-2:])
     solution = newton.solve(problem, start, _same(state.observables))
     P, H = problem.pressure(solution.x), solution.x[:-2]
-    return Beside(operator.values_at(state.radii, P), operator.values_at(state.radii, H), solution.observables)
+    radii = state.surface.radii
+    return Beside(operator.values_at(radii, P), operator.values_at(radii, H), solution.observables)
 
 
 def _clear_of(cells: Array, radius: float) -> Array:

@@ -106,7 +106,7 @@ def test_the_section_meets_the_surface_with_the_stress_of_the_law(states):
     assert len(highest) > 30
     line = CubicSpline(*surfaces(state, view.reach, view.heights).deformed[:, 1:])
     assert z[highest] == pytest.approx(line(r[highest]), abs=1e-4)
-    pressure = CubicSpline(state.radii, state.pressure)(r[highest])
+    pressure = CubicSpline(state.surface.radii, state.pressure)(r[highest])
     assert shown.stress[highest] == pytest.approx(-pressure, abs=0.02)
     assert shown.stress.max() == pytest.approx(16 / (9 * np.sqrt(3)) * 2.0, rel=0.02)
 

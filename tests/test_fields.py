@@ -130,13 +130,13 @@ def states(winding):
 def test_states_are_those_of_the_curve_through_its_folds(winding, states):
     _, path = winding
     assert [s.name for s in states if s.name] == ["jump_on", "jump_off", "pull_off", "zero_load"]
-    assert np.all(np.diff([s.arclength for s in states]) > 0)
+    assert np.all(np.diff([s.point.arclength for s in states]) > 0)
     for state in states:
         if state.name:
             wanted = path.stages[-1][state.name].point.observables
             np.testing.assert_allclose(state.observables, wanted, atol=2e-3)
         else:
-            nearest = np.abs(path.arclength - state.arclength).argmin()
+            nearest = np.abs(path.arclength - state.point.arclength).argmin()
             assert state.observables[:2] == pytest.approx([path.approach[nearest], path.load[nearest]], abs=5e-3)
             assert state.stable == path.stable[nearest]
             assert state.stable_under_dead_load == path.stable_under_dead_load[nearest]
@@ -180,7 +180,7 @@ def test_two_bodies_share_the_energy_by_their_compliance():
     state = fields.state_at(scene, zero_load.problem, zero_load.point)
     functions = state.space.boundary_functions("contact")
     own = -(state.surface.values @ state.components[1, functions])
-    both = (state.gap + state.observables[0]) / scene.tabor - state.problem.profile.height(state.radii)
+    both = (state.gap + state.observables[0]) / scene.tabor - state.problem.profile.height(state.surface.radii)
     weighted = state.surface.weights * state.pressure / 2
     assert energy_inside(state) == pytest.approx(weighted @ own, rel=1e-4)
     assert weighted @ own == pytest.approx(0.75 * (weighted @ both), rel=0.01)  # but for the shapes of the bodies

@@ -85,9 +85,9 @@ def test_an_equilibrium_balances_and_its_energy_falls_by_the_load(in_contact):
     beside = [newton(contact, found.gap, 1.0 + step) for step in (-d, d)]
     energies = [contact.energy(contact.displacement(state.gap), state.approach) for state in beside]
     assert (energies[1] - energies[0]) / (2 * d) == pytest.approx(found.load, rel=1e-5)
-    assert (beside[1].load - beside[0].load) / (2 * d) == pytest.approx(found.stiffness, rel=1e-4)
+    assert (beside[1].load - beside[0].load) / (2 * d) == pytest.approx(found.tangent.stiffness, rel=1e-4)
     rate = (beside[1].gap - beside[0].gap) / (2 * d)
-    np.testing.assert_allclose(rate, found.gap_rate, rtol=0, atol=1e-4)
+    np.testing.assert_allclose(rate, found.tangent.gap_rate, rtol=0, atol=1e-4)
     assert newton(contact, found.gap, 1.0, load=beside[1].load).approach == pytest.approx(1.0 + d, rel=1e-7)
 
 

@@ -140,7 +140,7 @@ def test_the_collections_name_their_files_relatively_and_by_arclength(folder, st
     for kind, suffix in (("body", "vtu"), ("contact", "vtp"), ("solid", "vtu")):
         entries = list(ElementTree.parse(folder / f"{kind}.pvd").getroot().iter("DataSet"))
         assert [entry.get("file") for entry in entries] == [f"{kind}_{k:04d}.{suffix}" for k in range(len(states))]
-        assert [float(entry.get("timestep")) for entry in entries] == [state.arclength for state in states]
+        assert [float(entry.get("timestep")) for entry in entries] == [state.point.arclength for state in states]
         assert all((folder / entry.get("file")).is_file() for entry in entries)
 
 
@@ -282,7 +282,7 @@ def test_the_contact_line_satisfies_surface_law_and_geometry(folder, states):
         line = read(folder / f"contact_{number:04d}.vtp")
         assert line.GetNumberOfLines() == 1
         u = points(line)[:, 0]
-        np.testing.assert_allclose(u, state.radii, rtol=1e-12)
+        np.testing.assert_allclose(u, state.surface.radii, rtol=1e-12)
         near = u < 8
         H, w = array(line, "H"), array(line, "deflection")
         np.testing.assert_array_equal(array(line, "gap"), H + 1)
@@ -306,7 +306,11 @@ def test_the_field_data_are_the_state(folder, states):
             grid = read(folder / f"{kind}_{number:04d}.{suffix}")
             found = [note(grid, name) for name in ("approach", "load", "central_gap", "contact_radius")]
             np.testing.assert_array_equal(found, state.observables)
-            assert (note(grid, "tabor"), note(grid, "poisson"), note(grid, "arclength")) == (1.0, 0.3, state.arclength)
+            assert (note(grid, "tabor"), note(grid, "poisson"), note(grid, "arclength")) == (
+                1.0,
+                0.3,
+                state.point.arclength,
+            )
             flags = {name: note(grid, f"is_{name}") for name in ("pull_off", "jump_on", "jump_off", "zero_load")}
             assert flags == {name: float(name == state.name) for name in flags}
             assert note(grid, "stable_under_fixed_grips") == state.stable

@@ -17,9 +17,9 @@ from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields import Beside, state_at
 from fem_adhesion.report import page as report_page
-from fem_adhesion.report.page import WORDS, Contents, page, walk_data
+from fem_adhesion.report.page import WORDS, Contents, page
 from fem_adhesion.report.sections import MOST_ROWS, cell, read_table
-from fem_adhesion.report.walk import SEEN, _station, walk
+from fem_adhesion.report.walk import SEEN, _station, walk, walk_data
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES
 
@@ -318,7 +318,7 @@ def test_the_first_profile_is_of_the_elements_and_the_second_of_the_half_space(c
     path = contents.walk.path
     found = path.stages[-1]["pull_off"]
     state = state_at(Scene(2.0), found.problem, found.point, how=SEEN)
-    other = Beside(np.full(state.radii.size, 7.0), np.full(state.radii.size, 9.0), np.zeros(4))
+    other = Beside(np.full(state.surface.radii.size, 7.0), np.full(state.surface.radii.size, 9.0), np.zeros(4))
     monkeypatch.setattr("fem_adhesion.report.walk.half_space_beside", lambda _: other)
     radii = np.array([0.0, 0.5, 1.0])
     station = _station(state, radii, radii)

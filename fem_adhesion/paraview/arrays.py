@@ -202,7 +202,7 @@ def numbers(state: State, scale: float, units: Units | None) -> dict[str, float]
         found["radius_ratio"] = scene.radius_ratio
     found |= observed | (in_si(observed, units) if units else {})
     found |= {f"is_{name}": float(state.name == name) for name in EVENTS}
-    found |= {"arclength": state.arclength, "stable_under_fixed_grips": float(state.stable)}
+    found |= {"arclength": state.point.arclength, "stable_under_fixed_grips": float(state.stable)}
     found |= {"stable_under_dead_load": float(state.stable_under_dead_load)}
     found["magnified_beta_per_displacement_unit"] = scale
     R = units.radius / units.length if units else scene.sphere_radius

@@ -78,7 +78,7 @@ def view_of(states: Sequence[State]) -> View:
     """View in which all states of one scene are seen: given all, or those that bound them with the widest contact."""
     first = states[0]
     widest = np.nanmax([first.scene.tabor**-0.5, *(state.observables[CONTACT_RADIUS] for state in states)])
-    end, R = float(first.radii[-1]), first.scene.sphere_radius
+    end, R = float(first.surface.radii[-1]), first.scene.sphere_radius
     reach = min(WIDER * float(widest), end)
     heights = STEEPEST * reach / float(first.problem.profile.height(np.array([reach]))[0])
     to_scale = heights * R < TO_SCALE
@@ -112,7 +112,8 @@ def section(state: State, view: View) -> MeridianSection:
 def surfaces(state: State, reach: float, heights: float) -> Surfaces:
     """Lines of the surfaces out to a radius in beta, with beta^2/R of height drawn as `heights` in beta."""
     u_r, u_z = state.surface_displacement
-    r, own = state.radii, _own_height(state, state.radii)
+    r = state.surface.radii
+    own = _own_height(state, r)
     levels = np.array([-own, u_z - own, u_z - own + (state.gap + 1) / state.scene.tabor])
     shown = np.concatenate([[0.0], r[r < reach], [reach]])
     undeformed, deformed, wall = (np.stack([shown, heights * np.interp(shown, r, level)]) for level in levels)

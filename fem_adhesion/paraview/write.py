@@ -175,7 +175,7 @@ def _write_series(folder: Path, kind: str, files: Sequence[dict[str, str]], stat
     root = ElementTree.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
     collection = ElementTree.SubElement(root, "Collection")
     for names, state in zip(files, states, strict=True):
-        time = repr(float(state.arclength))
+        time = repr(float(state.point.arclength))
         ElementTree.SubElement(collection, "DataSet", timestep=time, group="", part="0", file=names[kind])
     ElementTree.indent(root)
     ElementTree.ElementTree(root).write(folder / f"{kind}.pvd", encoding="utf-8", xml_declaration=True)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 from matplotlib import rc_context
 
 from fem_adhesion.common.facts import machine
@@ -18,11 +14,10 @@ from fem_adhesion.common.page import Section, inlined, render, template_text
 from fem_adhesion.common.style import laid_out
 from fem_adhesion.crosscheck.comparison import Case, Failure, overall_verdict, verdict_of
 from fem_adhesion.curve import figure as curve_figure
-from fem_adhesion.curve.lines import UNSTABLE, Line, smooth
+from fem_adhesion.curve.lines import UNSTABLE, smooth
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.report.sections import SOURCES, crosscheck_section, section_of, settings_section
-from fem_adhesion.report.walk import LINES, Station, Walk
-from halfspace.values import Array
+from fem_adhesion.report.walk import Walk, walk_data, walk_words
 
 WORDS = {
     "failed": "A solver failed",
@@ -31,9 +26,6 @@ WORDS = {
     "agree": "The two solvers agree",
 }
 """What each verdict is called, worst first."""
-
-BETWEEN = 2.2  # heights in eps per beta of depth at which the lines inside the body are drawn in the moving figure
-DIGITS = 5  # of the numbers in the moving figure
 
 
 @dataclass(frozen=True)
@@ -89,20 +81,6 @@ def _counts(cases: Sequence[Case | Failure]) -> dict[str, int]:
     return {verdict: verdicts.count(verdict) for verdict in WORDS if verdict in verdicts}
 
 
-def walk_words(walk: Walk) -> list[str]:
-    """What is said of the moving figure: how many of its states are unstable, and what is missing."""
-    total, unstable = len(walk.stations), sum(not station.stable for station in walk.stations)
-    missing = sum(bool(np.isnan(station.pressure[1]).all()) for station in walk.stations)
-    words = [
-        f"Of {total} states {unstable} are unstable under fixed grips: hollow points."
-        if unstable
-        else f"All {total} states are stable under fixed grips.",
-        f"Thin lines lie inside the body, {LINES[1]:g} to {LINES[-1]:g}\u00a0β deep; they are drawn {BETWEEN:g}\u00a0ε "
-        "apart for each β, so that what the surface does can be seen.",
-    ]
-    return words + [f"At {missing} of them the half-space has no such state."] * bool(missing)
-
-
 def _curves_section(curves: Curves) -> Section:
     stream = BytesIO()
     with rc_context(curve_figure.LOOK):
@@ -116,39 +94,3 @@ def _curves_section(curves: Curves) -> Section:
         f"spike of tension at the contact edge with the nodes of the grid; {last}."
     )
     return Section("curves", f"The curve by {solvers}", figures=(inlined(stream.getvalue(), "curves", text),))
-
-
-def walk_data(walk: Walk, curves: Curves) -> str:
-    """The walk, and the curve by both solvers, as JSON that is safe inside a script element."""
-    data = {
-        "tabor": walk.scene.tabor,
-        "radii": _rounded(walk.radii),
-        "places": _rounded(walk.places),
-        "depths": list(LINES),
-        "between": BETWEEN,
-        "curves": [_curve(smooth(path)) for path in curves.paths.values()],
-        "stations": [_station(station) for station in walk.stations],
-    }
-    return json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-
-
-def _curve(line: Line) -> dict[str, Any]:
-    unstable = (line.kind == UNSTABLE).tolist()
-    return {"approach": _rounded(line.approach), "load": _rounded(line.load), "unstable": unstable}
-
-
-def _station(station: Station) -> dict[str, Any]:
-    numbers = ("arclength", "approach", "load", "central_gap", "contact_radius")
-    return {
-        "name": station.name.replace("_", " "),
-        "stable": station.stable,
-        **{name: _rounded(np.array([getattr(station, name)]))[0] for name in numbers},
-        "pressure": [_rounded(row) for row in station.pressure],
-        "gap": [_rounded(row) for row in station.gap],
-        "lines": [_rounded(row) for row in station.lines],
-    }
-
-
-def _rounded(values: Array) -> list[float | None]:
-    """Numbers of a few digits; what does not exist is null."""
-    return [float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None for value in values.tolist()]

@@ -1,12 +1,15 @@
 """A walk along one load-approach curve: at each of its states the surface and the body, by finite elements and beside.
 
-Made for looking: profiles and lines inside the body on fixed grids, small enough to go into a page.
+Made for looking: profiles and lines inside the body on fixed grids, small enough to go into a page, where it moves.
 """
 
 from __future__ import annotations
 
+import json
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
@@ -14,6 +17,8 @@ from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 from fem_adhesion import convergence
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common.jobs import Progress, unheard
+from fem_adhesion.curve.lines import UNSTABLE, Line, smooth
+from fem_adhesion.curve.solve import Curves
 from fem_adhesion.elasticity.stress import positions, sampled
 from fem_adhesion.fields import State, half_space_beside, states_along
 from fem_adhesion.scene import Scene
@@ -87,7 +92,7 @@ def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progres
 def _station(state: State, radii: Array, places: Array) -> Station:
     approach, load, central_gap, contact_radius = (float(value) for value in state.observables)
     pressure, gap = (np.array(list(both)) for both in zip(*_profiles(state, radii), strict=True))
-    point = state.name, state.arclength, approach, load, central_gap, contact_radius, state.stable
+    point = state.name, state.point.arclength, approach, load, central_gap, contact_radius, state.stable
     return Station(*point, pressure, gap, _lines(state, places))
 
 
@@ -113,3 +118,50 @@ def _lines(state: State, places: Array) -> Array:
     outside = np.isnan(found)  # by rounding, on the surface and the axis
     found[outside] = NearestNDInterpolator(points, values)(wanted[outside])
     return np.asarray(found.reshape(len(LINES), places.size))
+
+
+# What the page has of it
+
+BETWEEN = 2.2  # heights in eps per beta of depth at which the lines inside the body are drawn in the moving figure
+DIGITS = 5  # of the numbers in the moving figure
+
+
+def walk_words(walk: Walk) -> list[str]:
+    """What is said of the moving figure: how many of its states are unstable, and what is missing."""
+    total, unstable = len(walk.stations), sum(not station.stable for station in walk.stations)
+    missing = sum(bool(np.isnan(station.pressure[1]).all()) for station in walk.stations)
+    words = [
+        f"Of {total} states {unstable} are unstable under fixed grips: hollow points."
+        if unstable
+        else f"All {total} states are stable under fixed grips.",
+        f"Thin lines lie inside the body, {LINES[1]:g} to {LINES[-1]:g}\u00a0β deep; they are drawn {BETWEEN:g}\u00a0ε "
+        "apart for each β, so that what the surface does can be seen.",
+    ]
+    return words + [f"At {missing} of them the half-space has no such state."] * bool(missing)
+
+
+def walk_data(walk: Walk, curves: Curves) -> str:
+    """The walk, and the curve by both solvers, as JSON that is safe inside a script element."""
+    drawn = {
+        "radii": walk.radii,
+        "places": walk.places,
+        "curves": [_curve(smooth(path)) for path in curves.paths.values()],
+        "stations": [asdict(station) | {"name": station.name.replace("_", " ")} for station in walk.stations],
+    }
+    data = {"tabor": walk.scene.tabor, "depths": LINES, "between": BETWEEN, **_rounded(drawn)}
+    return json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _curve(line: Line) -> dict[str, Any]:
+    return {"approach": line.approach, "load": line.load, "unstable": (line.kind == UNSTABLE).tolist()}
+
+
+def _rounded(value: Any) -> Any:
+    """Numbers of a few digits; what does not exist is null."""
+    if isinstance(value, dict):
+        return {name: _rounded(part) for name, part in value.items()}
+    if isinstance(value, list | np.ndarray):
+        return [_rounded(part) for part in value]
+    if isinstance(value, float):
+        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
+    return value

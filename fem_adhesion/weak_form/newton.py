@@ -52,16 +52,6 @@ class Equilibrium(Valued):
         """The tangent at the state itself; steps from state to state are too short for one nearby."""
         return Tangent.at(self.contact, self.gap, self.approach)
 
-    @property
-    def gap_rate(self) -> Array:
-        """dh/dalpha along the equilibria."""
-        return self.tangent.gap_rate
-
-    @property
-    def stiffness(self) -> float:
-        """dW/dalpha in R dgamma/eps."""
-        return self.tangent.stiffness
-
     @cached_property
     def determinant(self) -> tuple[float, float]:
         """Sign of that of the tangent, and the logarithm of its magnitude."""
@@ -144,10 +134,11 @@ def turning_point(
     step = 2 * step
     for _ in range(TRIES):
         signs, logs = np.transpose([a.determinant, b.determinant])
-        values = signs * np.exp(logs - logs[0]) * ([a.stiffness, b.stiffness] if under_load else 1.0)
+        values = signs * np.exp(logs - logs[0]) * ([a.tangent.stiffness, b.tangent.stiffness] if under_load else 1.0)
         part = float(values[0] / (values[0] - values[1]))
         if 0 <= part <= 1:
-            ends = [(s.load, s.stiffness) if under_load else (s.approach, 1 / s.stiffness) for s in (a, b)]
+            slopes = [(s, s.tangent.stiffness) for s in (a, b)]
+            ends = [(s.load, k) if under_load else (s.approach, 1 / k) for s, k in slopes]
             part, turned = _extremum(step, *ends)
             place = (a.approach if under_load else a.load) + part * step
             return Turn(turned, place) if under_load else Turn(place, turned)

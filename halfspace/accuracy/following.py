@@ -88,6 +88,10 @@ def _lost(jumps: Sequence[StagedJump], remaining: float) -> Estimate:
     return sum((jump.energy(remaining) for jump in jumps), Estimate(0.0, 0.0))
 
 
+Turns = tuple[int, dict[str, tuple[bool, ...]]]
+"""How often a curve folds, and of its states by name, whether they are on the chart of each stage that follows."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Known(Valued):
     """A curve as its neighbours need it: how it `turns`, None if none is followed from it, and its states.
@@ -96,7 +100,7 @@ class Known(Valued):
     """
 
     summary: Summary
-    turns: object = None
+    turns: Turns | None = None
     stages: tuple[State, ...] = ()
 
 
@@ -166,9 +170,9 @@ class Family(Valued):
         return Known(Summary(tabor, events, energy_along(chains, rung), lost, {}), known[0].turns, tuple(states))
 
 
-def _turns(path: EquilibriumPath, states: Sequence[State]) -> object:
-    """How often a curve folds, and on which of a stage's charts each of its states is."""
-    charts = tuple((name, *(state[name].problem.interface.follows_contact for state in states)) for name in states[0])
+def _turns(path: EquilibriumPath, states: Sequence[State]) -> Turns:
+    """How a curve turns, with its states on several stages."""
+    charts = {name: tuple(state[name].problem.interface.follows_contact for state in states) for name in states[0]}
     return len(brackets_of(path.segments, FOLD)), charts
 
 
@@ -279,7 +283,7 @@ def curves(tabors: Sequence[float], family: Family) -> list[Summary]:
     return [found[number].summary for number in range(len(tabors))]
 
 
-def _nearest(found: Mapping[int, Known], tabor: float, turns: object) -> list[Known]:
+def _nearest(found: Mapping[int, Known], tabor: float, turns: Turns | None) -> list[Known]:
     """Curves that turn alike, the nearest first."""
     alike = (known for known in found.values() if known.turns == turns)
     return sorted(alike, key=lambda known: abs(math.log(known.summary.tabor / tabor)))[:THROUGH]
