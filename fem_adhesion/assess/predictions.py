@@ -18,35 +18,27 @@ from halfspace.scaling import Units
 from halfspace.theories.exact_sphere import JKRSphere, RigidSphere
 from halfspace.values import Estimate
 
-# Relative distance of JKR's theory with the reach of the attraction from the half-space at the Tabor parameter 300, the
-# last that is computed; it falls beyond, the contact's as mu^-1.7.
 REFERENCE_TABOR, DECAY = 300.0, 1.5
-DISTANCE = {
-    "pull_off_force": 3e-5,
-    "pull_off_radius": 1e-4,
-    "zero_load_radius": 1e-4,
-    "jump_on_separation": 1e-2,
-    "jump_on_base": 1e-2,
-    "jump_off_separation": 3e-4,
-    "jump_off_base": 3e-4,
-    "energy_lost": 5e-4,
+MEASURES: Mapping[str, tuple[str, float]] = {
+    "pull_off_force": ("pull-off force", 3e-5),
+    "pull_off_radius": ("contact radius at pull-off", 1e-4),
+    "zero_load_radius": ("contact radius, no load", 1e-4),
+    "jump_on_separation": ("separation, jump on", 1e-2),
+    "jump_on_base": ("base, jump on", 1e-2),
+    "jump_off_separation": ("separation, jump off", 3e-4),
+    "jump_off_base": ("base, jump off", 3e-4),
+    "energy_lost": ("energy lost per cycle", 5e-4),
 }
-QUANTITIES = tuple(DISTANCE)
+"""Quantities in words, and the relative distance there of JKR's theory with the reach of the attraction from the
+half-space at the Tabor parameter 300, the last that is computed; it falls beyond, the contact's as mu^-1.7."""
+
+QUANTITIES = tuple(MEASURES)
+WORDS = {name: words for name, (words, _) in MEASURES.items()}
 IN_CONTACT = ("pull_off_force", "pull_off_radius", "zero_load_radius", "jump_off_separation", "jump_off_base")
 ON_LAYER = "thin sample"
 THIN = 0.12  # beta: on a layer so thick the distance at the Tabor parameter 300 is at most twice the half-space's
 RADII = ("pull_off_radius", "zero_load_radius")
 POSITIONS = (("jump_on_separation", "jump_off_separation"), ("jump_on_base", "jump_off_base"))  # along two axes
-WORDS = {
-    "pull_off_force": "pull-off force",
-    "pull_off_radius": "contact radius at pull-off",
-    "zero_load_radius": "contact radius, no load",
-    "jump_on_separation": "separation, jump on",
-    "jump_on_base": "base, jump on",
-    "jump_off_separation": "separation, jump off",
-    "jump_off_base": "base, jump off",
-    "energy_lost": "energy lost per cycle",
-}
 
 
 @dataclass(frozen=True)
@@ -155,9 +147,9 @@ def _part(tabor: float) -> float:
 
 
 def _widened(read: Prediction, parts: Mapping[str, float]) -> Prediction:
-    """Prediction of some quantities, its errors raised by parts of `DISTANCE`."""
+    """Prediction of some quantities, its errors raised by parts of the distances of `MEASURES`."""
     values = {
-        name: Quantity.of(q * Estimate(1.0, DISTANCE[name] * parts[name]), 1.0, q.unit)
+        name: Quantity.of(q * Estimate(1.0, MEASURES[name][1] * parts[name]), 1.0, q.unit)
         for name, q in read.values.items()
         if name in parts
     }

@@ -124,10 +124,10 @@ def digits(estimate: Estimate) -> str:
     return f"{estimate.value:.{min(max(decimals, 1), 10)}f}"
 
 
-def engineering(value: float, unit: str, digits: int = 4) -> str:
+def engineering(value: float, unit: str) -> str:
     """Number with an engineering prefix: 57.1 GPa."""
     exponent = exponent_of(value)
-    return f"{value / 10.0**exponent:.{digits}g} {PREFIXES[exponent]}{unit}"
+    return f"{value / 10.0**exponent:.4g} {PREFIXES[exponent]}{unit}"
 
 
 def exponent_of(value: float) -> int:

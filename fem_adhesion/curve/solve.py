@@ -140,36 +140,25 @@ def trace(question: Question, solver: str) -> EquilibriumPath:
 class Scale:
     """Unit in which a quantity is shown, and the size by which the dimensionless one is multiplied in it.
 
-    The label is that of an axis, with symbol and unit.
+    The label is that of an axis, with symbol and unit; of the paper's also that `in_si`, without one.
     """
 
     label: str
     unit: str
+    in_si: str = ""
     size: float = 1.0
 
 
 PAPER: Mapping[str, Scale] = {
-    "approach": Scale(r"approach $\alpha^* = \alpha/\epsilon$", "eps"),
-    "load": Scale(r"load $W/R\Delta\gamma$", "R dgamma"),
-    "central_gap": Scale(r"central gap $H(0)$", "eps"),
-    "gap": Scale(r"gap $H = h/\epsilon - 1$", "eps"),
-    "contact_radius": Scale(r"contact radius $a/\beta$", "beta"),
-    "radius": Scale(r"radius $u = r/\beta$", "beta"),
-    "pressure": Scale(r"pressure $P = \mu\epsilon p/\Delta\gamma$", "dgamma/(mu eps)"),
-    "energy": Scale(r"energy $E/R\Delta\gamma\epsilon$", "R dgamma eps"),
-    "stiffness": Scale(r"stiffness $k\epsilon/R\Delta\gamma$", "R dgamma/eps"),
-}
-
-SYMBOLS_IN_SI: Mapping[str, str] = {
-    "approach": r"approach $\alpha$",
-    "load": "load $W$",
-    "central_gap": r"central gap $h(0) - \epsilon$",
-    "gap": r"gap $h - \epsilon$",
-    "contact_radius": "contact radius $a$",
-    "radius": "radius $r$",
-    "pressure": "pressure $p$",
-    "energy": "energy $E$",
-    "stiffness": "stiffness $k$",
+    "approach": Scale(r"approach $\alpha^* = \alpha/\epsilon$", "eps", r"approach $\alpha$"),
+    "load": Scale(r"load $W/R\Delta\gamma$", "R dgamma", "load $W$"),
+    "central_gap": Scale(r"central gap $H(0)$", "eps", r"central gap $h(0) - \epsilon$"),
+    "gap": Scale(r"gap $H = h/\epsilon - 1$", "eps", r"gap $h - \epsilon$"),
+    "contact_radius": Scale(r"contact radius $a/\beta$", "beta", "contact radius $a$"),
+    "radius": Scale(r"radius $u = r/\beta$", "beta", "radius $r$"),
+    "pressure": Scale(r"pressure $P = \mu\epsilon p/\Delta\gamma$", "dgamma/(mu eps)", "pressure $p$"),
+    "energy": Scale(r"energy $E/R\Delta\gamma\epsilon$", "R dgamma eps", "energy $E$"),
+    "stiffness": Scale(r"stiffness $k\epsilon/R\Delta\gamma$", "R dgamma/eps", "stiffness $k$"),
 }
 
 EVENT_QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
@@ -190,4 +179,4 @@ def _largest(curves: Curves) -> Mapping[str, float]:
 def _si_scale(name: str, size: float, unit: str, largest: float) -> Scale:
     exponent = exponent_of(size * largest)
     shown = PREFIXES[exponent] + unit
-    return Scale(f"{SYMBOLS_IN_SI[name]}, {shown}", shown, size * 10.0**-exponent)
+    return Scale(f"{PAPER[name].in_si}, {shown}", shown, size=size * 10.0**-exponent)

@@ -63,9 +63,9 @@ class Rule:
     tabor: tuple[float, float]
 
 
-def field_of(rows: Sequence[DeviationRow], quantity: str, poisson: float | None, cause: str = "all") -> Field:
-    """Deviation of a quantity at a Poisson's ratio, for a cause, from the table."""
-    chosen = [r for r in rows if (r.cause, r.quantity, r.poisson) == (cause, quantity, poisson) and r.radius_ratio]
+def field_of(rows: Sequence[DeviationRow], quantity: str, poisson: float | None) -> Field:
+    """Whole deviation of a quantity at a Poisson's ratio, from the table."""
+    chosen = [r for r in rows if (r.cause, r.quantity, r.poisson) == ("all", quantity, poisson) and r.radius_ratio]
     tabor = np.unique([row.tabor for row in chosen])
     ratio = np.unique([float(row.radius_ratio or 0) for row in chosen])
     deviation, error = np.full((2, tabor.size, ratio.size), np.nan)
