@@ -304,8 +304,12 @@ class ContactProblem(Valued):
         return np.array([gap, left / slope])
 
     def untold(self, x: Array) -> Array:
-        """Errors of the observables that the changes along a single chain of discretisations may not tell, (4,)."""
-        return np.append(np.zeros(2), self.ripples(x))
+        """Errors of the observables that the changes along a single chain of discretisations may not tell, (4,).
+
+        They are for points of a curve: what is small at one by accident is not at those beside it. So the gap's is what
+        its polynomial lacks, no more.
+        """
+        return np.array([0.0, 0.0, _lacking(self._coefficients(x, 0)), self.ripples(x)[1]])
 
     def _coefficients(self, x: Array, cell: int) -> Array:
         """Sizes of the Legendre coefficients of the deflection in a cell, whereas the profile is exact, in eps."""
@@ -406,12 +410,26 @@ def _left_out(coefficients: Array) -> float:
     Since one may be small by accident, the third last counts as well, carried on by how fast they fall: half way to the
     next, in their logarithms, since they fall unevenly.
     """
+    return _carried_on(coefficients, np.array([0.5, 0.0, 0.0]))
+
+
+def _lacking(coefficients: Array) -> float:
+    """Size of the Legendre coefficient after an element's own, by those: carried on to it by how fast they fall.
+
+    Elements have two nodes more than their degree, so that it is the last, which is none of theirs.
+    """
+    return _carried_on(coefficients, np.array([2.0, 1.0, 0.0]))
+
+
+def _carried_on(coefficients: Array, orders: Array) -> float:
+    """Largest of the last three coefficients, each carried on by so many orders, if there are enough to tell how."""
     count = coefficients.size
     last = coefficients[max(min(2, count - 1), count - 3) :]  # but no displacement, and no slope
     if count < 6:
         return float(last.max())
     before, after = coefficients[-5:-3].max(), coefficients[-3:-1].max()  # two orders apart
-    return float(max(last[0] * min(1.0, (after / before) ** 0.25 if before else 1.0), *last[1:]))
+    fall = min(1.0, after / before) if before else 1.0
+    return float((last * fall ** (orders / 2)).max())
 
 
 def _last_but_one(coefficients: Array) -> float:
