@@ -155,7 +155,7 @@ def _judge(numbers, within=0.99, close=0.9):
 
 
 def test_estimates_hold_the_truth_between_points_and_at_them():
-    """Against solutions a hundred times tighter; in the far field estimates hold by far, so that they need but hold."""
+    """Against solutions a hundred times tighter; in the far field no estimate may fail to hold."""
     rng, at_points, between = np.random.default_rng(7), [], []
     for tabor in (0.3, 1.0, 2.0, 5.0):
         for rtol in (1e-2, 1e-5):
@@ -166,7 +166,7 @@ def test_estimates_hold_the_truth_between_points_and_at_them():
             assert path.approach_error.max() <= rtol * path.approach_scale
     _judge(between)
     _judge(number for far, number in at_points if not far)
-    _judge((number for far, number in at_points if far), within=1.0, close=0.75)
+    _judge((number for far, number in at_points if far), within=1.0, close=0.85)
 
 
 def test_the_error_of_a_point_is_the_part_of_the_changes_that_may_be_left_and_no_less_than_they():

@@ -38,7 +38,7 @@ from halfspace.elastic.operators import FLAT, Homogeneous, NearlyHomogeneous, Su
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import REMAINING, ErrorRule
+from halfspace.equilibrium.events import NO_EDGE, REMAINING, ErrorRule
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
@@ -331,7 +331,7 @@ def _windows(scales: Scales, resolution: Resolution, to_load: float) -> Windows:
 
 def _rule(level: int, doubt: int = 1) -> ErrorRule:
     """How errors are told from the change by one node more, or by two and more, and so many times as large."""
-    return ErrorRule(doubt * (ONE_NODE if level == 1 else REMAINING))
+    return ErrorRule(doubt * (ONE_NODE if level == 1 else REMAINING), apart=NO_EDGE)
 
 
 def _twin(resolution: Resolution) -> Resolution:

@@ -66,6 +66,8 @@ class EquilibriumPath(Valued):
         The events, and the two states of `energy`, on the twin.
     remaining : float
         Part of the change from either to the finest that may be left.
+    apart : float
+        Part of that at points of the curve without a contact.
     ways : chains of callables
         To the finest discretisation that serves the whole curve, see `halfspace.equilibrium.states.Ways`.
     margin : Estimate, optional
@@ -90,6 +92,7 @@ class EquilibriumPath(Valued):
     twin: Stage | None = None
     on_twin: Mapping[str, Located] = field(default_factory=dict)
     remaining: float = REMAINING
+    apart: float = 1.0
     ways: Ways = ()
     margin: Estimate | None = None
     spread: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
@@ -226,7 +229,7 @@ class EquilibriumPath(Valued):
     @cached_property
     def finest_curve(self) -> FinestCurve:
         """The points solved for on the finest discretisation, when they are first asked for."""
-        return finest_curve(self.segments, self.ways, self.remaining, self.metric)
+        return finest_curve(self.segments, self.ways, self.metric, self.remaining, self.apart)
 
     def at(
         self,
