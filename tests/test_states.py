@@ -177,6 +177,14 @@ def test_the_error_of_a_point_is_the_part_of_the_changes_that_may_be_left_and_no
     np.testing.assert_array_equal(less, once)
 
 
+def test_points_without_a_contact_are_held_to_half_of_what_others_are():
+    path = halfspace.trace(0.5, rtol=1e-2)
+    told, whole = path.finest_curve.errors, replace(path.finest_curve, apart=1.0).errors
+    apart, rounding = np.isnan(path.contact_radius), 1e-9  # the last point has a contact beside it
+    np.testing.assert_allclose(told[apart, :3][:-1], whole[apart, :3][:-1] / 2, rtol=1e-3, atol=rounding)
+    np.testing.assert_array_equal(told[~apart][1:], whole[~apart][1:])
+
+
 def test_next_to_a_fold_the_load_errs_by_the_root_of_what_the_approach_does():
     path, truth = halfspace.trace(2.0, rtol=1e-2), halfspace.trace(2.0, rtol=1e-6)
     fold = min(p.branches("approach")["separated"][1] for p in (path, truth))

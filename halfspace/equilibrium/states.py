@@ -210,11 +210,8 @@ class FinestCurve(Valued):
 
         They are a part of the largest change along a chain of discretisations.
         """
-        return self._in_plane(problem, point, self._part(point) * _largest(self._steps(problem, point)))
-
-    def _part(self, point: Point) -> float:
-        """Part of the changes along a chain that may be left at a point, all of them where it has a contact."""
-        return max(self.remaining, 1.0) * (self.apart if np.isnan(point.observables[CONTACT_RADIUS]) else 1.0)
+        part = max(self.remaining, 1.0) * (self.apart if np.isnan(point.observables[CONTACT_RADIUS]) else 1.0)
+        return self._in_plane(problem, point, part * _largest(self._steps(problem, point)))
 
     def _steps(self, problem: Traceable, point: Point) -> Sequence[Array]:
         """Changes of the observables from each discretisation of a chain to the next, (steps, 4) for every chain."""
@@ -241,7 +238,7 @@ class FinestCurve(Valued):
         errs most, a shift takes back; but for what the path's bend, or the gap's ripple, adds to it. On a single chain,
         where one change may be small by accident, both count in full.
         """
-        steps, part, rates = self._steps(problem, point), self._part(point), point.rates
+        steps, part, rates = self._steps(problem, point), max(self.remaining, 1.0), point.rates
         change = part * _largest(steps)
         errors = self._in_plane(problem, point, change)
         whole, straight = shift(errors[k], abs(rates[k]), bend), change[k] / abs(rates[k])
