@@ -16,11 +16,12 @@ from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.trace import Resolution, half_space_charts, resolution_for
 from halfspace.equilibrium.charts import metric_for, trace_charts
 from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets, locate
-from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
+from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.path import Steps, correct
+from halfspace.equilibrium.path import Metric, Point, Steps, _hides_turning_points, correct
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import InputError, NotConverged
+from halfspace.laws import LENNARD_JONES, Dugdale
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 
@@ -264,16 +265,46 @@ def test_a_pair_of_folds_between_two_points_is_found_though_their_tangents_do_no
 
 
 @pytest.mark.parametrize(
-    ("tabor", "points", "factorisations"), [(0.05, 40, 90), (1, 40, 130), (50, 80, 240), (300, 110, 300)]
+    ("tabor", "law", "points", "factorisations"),
+    [
+        (0.05, LENNARD_JONES, 35, 80),
+        (1, LENNARD_JONES, 35, 105),
+        (50, LENNARD_JONES, 75, 210),
+        (300, LENNARD_JONES, 95, 240),
+        (1, Dugdale(0.1), 55, 155),
+    ],
 )
-def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, points, factorisations):
+def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, points, factorisations):
     """A fold is found in three or four, a state in two: the last step and the tangent use the factors at hand."""
     made = []
     factorise = ContactProblem.bordered_solver
     monkeypatch.setattr(ContactProblem, "bordered_solver", lambda *args: made.append(1) or factorise(*args))
-    path = halfspace.trace(tabor)
+    path = halfspace.trace(tabor, law=law)
     assert path.count <= points
     assert len(made) <= factorisations
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("growth", [3.0, 1e3, 1e-2])
+def test_a_faint_load_that_grows_as_an_exponential_hides_no_extremum(sign, growth):
+    """Nor is one told from a load that grows by less than that, or one that counts: there a step may leap over it."""
+    metric, length = Metric(1.0, 1.0, 1.0), 0.5
+
+    def point(load, rate, arclength):
+        rates = sign * np.array([1.0, rate, -1.0, 0.0])
+        return Point(
+            np.zeros(3), np.array([arclength, sign * load, 0.0, np.nan]), np.zeros(3), rates, arclength, 1, 0.0
+        )
+
+    def hidden(largest, of_mean):
+        first, last = (largest * rate / max(1.0, growth) for rate in (1.0, growth))
+        mean = (last - first) / np.log(growth)
+        return _hides_turning_points(point(0.0, first, 0.0), point(of_mean * mean * length, last, length), LOAD, metric)
+
+    assert not hidden(0.05, 1.0)
+    assert not hidden(0.05, 0.9)
+    assert hidden(0.05, 0.3)
+    assert hidden(0.5, 1.0) == (growth != 3.0)
 
 
 def test_factors_that_serve_twice_leave_points_and_tangents_exact():

@@ -6,6 +6,7 @@ numbers that every discretisation has, so its value does not depend on the grid,
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -29,14 +30,14 @@ class Metric:
     load: float = 2 * np.pi
     central_gap: float = 2.0
 
-    @property
+    @cached_property
     def weights(self) -> Array:
         """Inverse squares of the units; the contact radius, which need not exist, has none."""
         return np.array([self.approach**-2, self.load**-2, self.central_gap**-2, 0.0])
 
     def distance(self, a: Point, b: Point) -> float:
         """Length of the straight line between two points."""
-        return float(np.sqrt(self.weights[:3] @ (b.observables - a.observables)[:3] ** 2))
+        return math.sqrt(self.weights[:3] @ (b.observables - a.observables)[:3] ** 2)
 
     def along(self, a: Point, b: Point) -> float:
         """Cosine of the angle between the path at two points."""
@@ -100,11 +101,11 @@ class Steps:
     iterations: int = 8
     usual: float = np.inf
     astray: float = 0.02
-    contraction: float = np.inf
+    contraction: float = 0.5
 
 
 # Where a Newton step is worth many of the surface's alone.
-WHOLE_BODY = Steps(iterations=10, usual=6, astray=np.inf, contraction=0.5)
+WHOLE_BODY = Steps(iterations=10, usual=6, astray=np.inf)
 
 
 def make_point(
@@ -116,7 +117,7 @@ def make_point(
     """
     tangent = newton.tangent(problem, solution)
     rates = problem.rates(solution.x, tangent)
-    length = np.copysign(np.sqrt(metric.weights @ rates**2), direction @ rates)
+    length = math.copysign(math.sqrt(metric.weights @ rates**2), direction @ rates)
     along, rates = tangent / length, rates / length
     return Point(solution.x, solution.observables, along, rates, arclength, solution.iterations, solution.astray)
 
@@ -264,20 +265,30 @@ def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
 
     Its least slope between them, in the metric's units, must clear zero by a margin that shrinks with the step, and as
     its square where it is short: so a curve that all but folds is passed, and folds are where its slope changes sign.
-    No more than a part of the larger slope at the ends is asked for, since curves of soft bodies wind in little.
+    No more than a part of the larger slope at the ends is asked for, since curves of soft bodies wind in little; and
+    nothing where it is faint and grows as an exponential, as a load from afar: a cubic dips there, which it does not.
     """
     if max(abs(a.rates[k]), abs(b.rates[k])) < UNFELT:
         return False
-    length, unit = b.arclength - a.arclength, float(np.sqrt(metric.weights[k]))
+    length, unit = b.arclength - a.arclength, math.sqrt(metric.weights[k])
     first, last = unit * float(a.rates[k]), unit * float(b.rates[k])
     mean = unit * float(b.observables[k] - a.observables[k]) / length
+    if max(abs(first), abs(last)) < FAINT and _exponential(first, last, mean):
+        return False
     margin = TURNING_MARGIN * length * min(1.0, length / SHORT)
     return least_slope(first, last, mean) < min(margin, NEARLY * max(abs(first), abs(last)))
 
 
 UNFELT = 1e-8  # eps or R dgamma in the arclength 1: surfaces so far apart that an exponential law is all but nothing
 NEARLY = 0.2  # of the larger of two slopes: one that nearly vanishes
+FAINT = 0.1  # slope in the metric's units, of which the observable is but a tenth of the path
+LIKE = 0.8  # of the mean slope of an exponential: that of a power law is 0.9 of it where the slope grows eightfold
 TURNING_MARGIN, SHORT = 0.3, 0.1  # of the step's length; a step below which the cubic errs by far less than that
+
+
+def _exponential(first: float, last: float, mean: float) -> bool:
+    """Whether the mean of a slope is about that of an exponential between its ends, their logarithmic mean."""
+    return first * last > 0 and first != last and mean * math.log(last / first) / (last - first) > LIKE
 
 
 STRAIGHT = 1e-10  # of the slopes: a bend that is rounding
@@ -302,7 +313,7 @@ def least_slope(first: float, last: float, mean: float) -> float:
 
 def _turn(a: Point, b: Point, metric: Metric) -> float:
     """Angle between two tangents in radians."""
-    return float(np.arccos(np.clip(metric.along(a, b), -1, 1)))
+    return math.acos(min(1.0, max(-1.0, metric.along(a, b))))
 
 
 def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -> float:
@@ -311,9 +322,10 @@ def _next_step(step: float, points: list[Point], metric: Metric, steps: Steps) -
     By how much a state predicted by a cubic is astray goes as the fourth power of the step.
     """
     by_turn = steps.turn / max(_turn(points[-2], points[-1], metric), 1e-6)
-    by_effort = min(steps.usual / points[-1].iterations, (steps.astray / max(points[-1].astray, 1e-12)) ** 0.25)
-    wide = (1 + points[-1].observables[CENTRAL_GAP]) * np.sqrt(metric.weights[CENTRAL_GAP]) / RATIO
-    return float(min(step * np.clip(min(by_turn, by_effort), 0.3, 2.0), steps.longest * max(1.0, wide)))
+    by_astray = math.sqrt(math.sqrt(steps.astray / max(points[-1].astray, 1e-12)))
+    by_effort = min(steps.usual / points[-1].iterations, by_astray)
+    wide = (1 + float(points[-1].observables[CENTRAL_GAP])) / (RATIO * metric.central_gap)
+    return min(step * min(max(by_turn, 0.3), max(by_effort, 0.3), 2.0), steps.longest * max(1.0, wide))
 
 
 RATIO = 4.0  # of a gap to the step by which it closes at most, where that is longer than the longest
