@@ -135,6 +135,26 @@ def test_a_contact_edge_is_prescribed_where_two_cells_meet(tabor, nodes, finest)
         assert solution.observables[3] == pytest.approx(end, rel=1e-9, abs=0)
 
 
+@pytest.mark.parametrize("radius", [1e-6, 1e-3, 0.04, 0.3, 0.31, 2.0, 40.0])
+def test_a_contact_edge_is_pinned_down_to_the_rounding(problem, radius):
+    """As steep as a gap is where contact begins, to no less of a radius near the axis than of another."""
+    gaps = LENNARD_JONES.edge_gap + 1e3 * (CENTRED.radii - radius)
+    found = problem.contact_radius(np.concatenate([gaps, [0.0, 1.0]]))
+    assert found == pytest.approx(radius, rel=1e-11, abs=0)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_contact_edge_is_found_between_any_gaps(problem, seed):
+    """Where they go up and down from node to node Newton's method leaves the two between which the edge is."""
+    u, edge = CENTRED.radii, LENNARD_JONES.edge_gap
+    last = 3 + seed
+    gaps = edge + np.random.default_rng(seed).normal(size=u.size) * np.where(u > u[last], 0.0, 1.0)
+    gaps[last], gaps[last + 1 :] = edge - 1e-3, edge + 1.0
+    found = problem.contact_radius(np.concatenate([gaps, [0.0, 1.0]]))
+    assert u[last] < found < u[last + 1]
+    assert CENTRED.continuous(found)[0] @ gaps == pytest.approx(edge, abs=1e-9)
+
+
 def test_a_contact_wider_than_its_surface_reaches_to_the_end_of_it(problem):
     x = problem.undeformed(1e6)
     assert problem.contact_radius(np.append(np.zeros(x.size - 2), x[-2:])) == CENTRED.extent

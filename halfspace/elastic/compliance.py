@@ -148,10 +148,8 @@ class ElasticOperator(Valued, Operator):
 
     def interpolation(self, radius: float) -> tuple[Array, Array]:
         """Row (q,) that interpolates nodal values at `radius`, and the row of its derivative by the radius."""
-        cell = self.cell_of(radius)
-        nodes = self.cell_nodes[cell]
         row, derivative = np.zeros((2, self.radii.size))
-        row[nodes], derivative[nodes] = lagrange(self.radii[nodes], self._barycentric[cell], radius)
+        nodes, row[nodes], derivative[nodes] = self._lagrange(self.cell_of(radius), radius)
         return row, derivative
 
     def continuous(self, radius: float) -> tuple[Array, Array]:
@@ -160,18 +158,39 @@ class ElasticOperator(Valued, Operator):
         Polynomials through nodes inside their cells leap there by their error; so between the last node of a cell and
         the first of the next, the one goes over into the other in proportion.
         """
+        rows = np.zeros((2, self.radii.size))
+        for nodes, value, slope in self._meeting(radius):
+            rows[:, nodes] = value, slope
+        return rows[0], rows[1]
+
+    def continuous_value(self, radius: float, values: Array) -> tuple[float, float]:
+        """Value and slope at a radius of that function through nodal values."""
+        at = slope = 0.0
+        for nodes, row, derivative in self._meeting(radius):
+            these = values[nodes]
+            at, slope = at + float(these.dot(row)), slope + float(these.dot(derivative))
+        return at, slope
+
+    def _meeting(self, radius: float) -> list[tuple[Index, Array, Array]]:
+        """Nodes of the cell, or the two, that `continuous` is of at a radius, with their part of its rows."""
         cell = self.cell_of(radius)
         cell -= cell > 0 and radius < self.radii[self.cell_nodes[cell, 0]]
-        if cell + 1 == len(self.cell_nodes) or radius <= self.radii[self.cell_nodes[cell, -1]]:
-            return self.interpolation(radius)
-        before, after = self.radii[self.cell_nodes[cell, -1]], self.radii[self.cell_nodes[cell + 1, 0]]
-        part, rows = (radius - before) / (after - before), np.zeros((2, 2, self.radii.size))
-        for k in (0, 1):
-            nodes = self.cell_nodes[cell + k]
-            rows[:, k, nodes] = lagrange(self.radii[nodes], self._barycentric[cell + k], radius)
-        (left, right), (left_slope, right_slope) = rows
-        value = (1 - part) * left + part * right
-        return value, (1 - part) * left_slope + part * right_slope + (right - left) / (after - before)
+        left, value, slope = self._lagrange(cell, radius)
+        if cell + 1 == len(self.cell_nodes) or radius <= self.radii[left[-1]]:
+            return [(left, value, slope)]
+        right, other, other_slope = self._lagrange(cell + 1, radius)
+        width = float(self.radii[right[0]] - self.radii[left[-1]])
+        part = float(radius - self.radii[left[-1]]) / width
+        return [
+            (left, (1 - part) * value, (1 - part) * slope - value / width),
+            (right, part * other, part * other_slope + other / width),
+        ]
+
+    def _lagrange(self, cell: int, radius: float) -> tuple[Index, Array, Array]:
+        """Nodes of a cell, and the values and slopes at a radius of the Lagrange polynomials through them."""
+        nodes = self.cell_nodes[cell]
+        values, slopes = lagrange(self.radii[nodes], self._barycentric[cell], radius)
+        return nodes, np.array(values), np.array(slopes)
 
     def values_at(self, radii: Array, values: Array) -> Array:
         """Interpolate nodal values (q,) at many radii (n,) within the extent."""
@@ -199,6 +218,11 @@ class ElasticOperator(Valued, Operator):
         squares = self.radii[nodes] ** 2
         row[nodes] = lagrange(squares, barycentric(squares), 0.0)[0]
         return row
+
+    @cached_property
+    def centre_row(self) -> Array:
+        """Row (q,) of `continuous` on the axis, where the polynomial in the radius begins."""
+        return self.interpolation(0.0)[0]
 
     @cached_property
     def unit_row(self) -> Array:

@@ -31,6 +31,7 @@ from halfspace.scales import Scales
 from halfspace.values import Array, Valued, appended
 
 APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
+OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
 
 LARGEST = 0.75  # part of a gap h by which it may shrink in a step
 WIDEST = 0.95  # of the radius of a body, that a contact may reach
@@ -95,6 +96,18 @@ class _Acting(Valued):
         d_radii, d_weights, d_deflection = self.operator.rates(float(self.x[-1]), self.pressure)
         rising = self.tabor * self.profile.slope(self.body.radii) * d_radii
         return rising, d_weights, -rising - self.tabor * d_deflection
+
+    @property
+    def approach(self) -> float:
+        return float(self.x[-2])
+
+    @cached_property
+    def load(self) -> float:
+        return float(self.body.weights @ self.pressure)
+
+    @cached_property
+    def central_gap(self) -> float:
+        return float(self.operator.axis_row @ self.deflection - self.x[-2])
 
     @cached_property
     def contact_radius(self) -> float:
@@ -235,29 +248,22 @@ class ContactProblem(Valued):
 
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap and contact radius (nan without contact), shape (4,)."""
-        return np.array([self._observable(x, index) for index in range(4)])
+        here = self._acting(x)
+        return np.array([float(getattr(here, name)) for name in OBSERVABLES])
 
     def weighted_observables(self, x: Array, weights: Array) -> float:
         """Sum of the observables by the given weights; one of weight zero is not computed and need not exist."""
-        return float(sum(weights[index] * self._observable(x, index) for index in range(4) if weights[index]))
-
-    def _observable(self, x: Array, index: int) -> float:
-        if index == APPROACH:
-            return float(x[-2])
-        if index == LOAD:
-            return self.load(x)
-        if index == CENTRAL_GAP:
-            return self.central_gap(x)
-        return self.contact_radius(x)
+        here = self._acting(x)
+        pairs = zip(OBSERVABLES, weights.tolist(), strict=True)
+        return sum((weight * getattr(here, name) for name, weight in pairs if weight), 0.0)
 
     def load(self, x: Array) -> float:
         """W in R dgamma, positive in compression."""
-        here = self._acting(x)
-        return float(here.body.weights @ here.pressure)
+        return self._acting(x).load
 
     def central_gap(self, x: Array) -> float:
         """H(0) in eps: the deflection is smooth across the axis, as the profile need not be."""
-        return float(self.operator.axis_row @ self._acting(x).deflection - x[-2])
+        return self._acting(x).central_gap
 
     def pressure(self, x: Array) -> Array:
         """Nodal pressures P, shape (q,)."""
@@ -280,9 +286,7 @@ class ContactProblem(Valued):
 
     def radius_at_gap(self, x: Array, gap: float) -> float:
         """Largest radius in beta at which the gap is about that, by straight lines between nodes; 0 if it is wider."""
-        H, radii = x[:-2], self.radii(x)
-        closer = np.flatnonzero(gap > H)
-        return float(np.interp(gap, H[closer[-1] :][:2], radii[closer[-1] :][:2])) if closer.size else 0.0
+        return _by_straight_lines(self.radii(x), x[:-2], gap)
 
     def ripples(self, x: Array) -> Array:
         """What the deflection's polynomials end with on the axis, in eps, and at the contact edge, in beta, (2,).
@@ -391,17 +395,35 @@ class ContactProblem(Valued):
 def _contact_radius(body: ElasticOperator, H: Array, edge: float) -> float:
     """Largest radius at which the gaps H are those of the edge, on a grid that stands still."""
     inside = np.flatnonzero(edge > H)
-    if inside.size == 0 and not body.interpolation(0.0)[0] @ H <= edge:
+    if inside.size == 0 and not body.centre_row @ H <= edge:
         return float("nan")
-    if inside.size and inside[-1] == H.size - 1 and body.continuous(body.extent)[0] @ H <= edge:
+    if inside.size and inside[-1] == H.size - 1 and body.continuous_value(body.extent, H)[0] <= edge:
         return body.extent
-    radii = np.append(body.radii, body.extent)
-    below, above = (radii[inside[-1]], radii[inside[-1] + 1]) if inside.size else (0.0, radii[0])
+    radii = [0.0, *body.radii.tolist(), body.extent]
+    below, above = radii[inside[-1] + 1 :][:2] if inside.size else radii[:2]
+    radius = _by_straight_lines(body.radii, H, edge) or above
+    for _ in range(TRIES):
+        gap, slope = body.continuous_value(radius, H)
+        step = (edge - gap) / slope if slope else math.inf
+        radius += step
+        if not below <= radius <= above:
+            break
+        if abs(step) < PINNED * (above - below):
+            return radius
 
     def beyond(r: float) -> float:
-        return float(body.continuous(r)[0] @ H - edge)
+        return body.continuous_value(r, H)[0] - edge
 
     return root(beyond, below, above, "the contact edge; refine the grid", xtol=1e-14)
+
+
+TRIES, PINNED = 6, 1e-8  # Newton's steps towards a contact edge; part of the nodes' distance: the next is its square
+
+
+def _by_straight_lines(radii: Array, H: Array, gap: float) -> float:
+    """Largest radius at which the gap is about that, between two nodes; 0 if it is wider at all."""
+    closer = np.flatnonzero(gap > H)
+    return float(np.interp(gap, H[closer[-1] :][:2], radii[closer[-1] :][:2])) if closer.size else 0.0
 
 
 def _left_out(coefficients: Array) -> float:
