@@ -14,6 +14,7 @@ from halfspace.accuracy.finite_bodies import AroundEvents
 from halfspace.equilibrium import conditions, events
 from halfspace.equilibrium.charts import Chart, settled
 from halfspace.equilibrium.conditions import Condition
+from halfspace.equilibrium.contact import APPROACH
 from halfspace.errors import NotConverged
 from halfspace.laws import Dlvo, PowerLaw
 from halfspace.profiles import Power
@@ -143,11 +144,19 @@ def test_a_sign_that_changes_where_states_leap_is_no_event(monkeypatch, leap, fo
             conditions.bracketed(None, a, b, Condition(0), None)
 
 
-@pytest.mark.parametrize(("own", "other"), [(conditions.FOLD, 1), (conditions.EXTREMUM, 0)])
-def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, other):
-    """A radius that stands still by accident, while the approach or the load that is not stationary says otherwise."""
-    rates = np.array([2.0, 2.0, 1.0, 0.5])
-    rates[own.observable] = 0.0
+SOFT = Condition(APPROACH, stationary=True, compliance=1e6)
+
+
+@pytest.mark.parametrize(
+    ("own", "still", "rate"), [(conditions.FOLD, 0, 0), (conditions.EXTREMUM, 1, 0), (SOFT, 1, 2e-6)]
+)
+def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, still, rate):
+    """A radius that stands still by accident, while the approach or the load that is not stationary says otherwise.
+
+    With a soft apparatus, as at the load's extremum, it is the approach: by the load, a jump's radius was told to 130.
+    """
+    rates, other = np.array([2.0, 2.0, 1.0, 0.5]), 1 - still
+    rates[still] = -rate
     values = np.array([[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
     values[0, other] = 4e-6
     interface = SimpleNamespace(ripples=lambda _: np.zeros(2))
@@ -159,4 +168,4 @@ def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, other):
     event = events.estimate_event("any", [chain], events.ErrorRule(along=True))
     assert event.contact_radius_error == pytest.approx(0.5 * 4e-6 / 2.0 * 0.5, rel=1e-4)
     assert event.central_gap_error == pytest.approx(0.5 * 4e-6 / 2.0 * 1.0, rel=1e-4)
-    assert (event.approach_error, event.load_error)[own.observable] < 1e-10
+    assert (event.approach_error, event.load_error)[still] < 1e-10

@@ -204,10 +204,11 @@ def _shifted(event: Located, change: Array) -> tuple[Array, Array]:
     """Changes of the observables by a shift along the path, to which an event is sensitive where a rate must vanish.
 
     For all of them the shift is read off the contact radius, or off the central gap where there is no contact; for
-    these two, which are at a point and may stand still by accident, also off the load or approach that has a rate.
+    these two, which are at a point and may stand still by accident, also off the load or approach that has a rate: at a
+    jump with a soft apparatus it is the approach, as at the load's own extremum.
     """
     rates, tell = event.point.rates, CONTACT_RADIUS if np.isfinite(change[CONTACT_RADIUS]) else CENTRAL_GAP
-    other = LOAD if event.condition.observable == APPROACH else APPROACH
+    other = LOAD if abs(rates[LOAD]) > abs(rates[APPROACH]) else APPROACH
     by_point, by_average = (np.abs(rates) * (change[k] / np.abs(rates[k])) for k in (tell, other))
     by_average[[APPROACH, LOAD]] = 0.0
     return by_point, by_average
