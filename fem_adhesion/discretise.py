@@ -28,7 +28,7 @@ from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator, at_tip
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.elastic.operators import FLAT, SurfaceCoordinate
+from halfspace.elastic.grid import FLAT, SurfaceCoordinate
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.profiles import Surface

@@ -29,7 +29,7 @@ from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import collocated
-from halfspace.elastic.operators import FLAT
+from halfspace.elastic.grid import FLAT
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError

@@ -10,8 +10,8 @@ from drawn_layers import drawn
 
 from fem_adhesion import Coated, HalfSpace, Layer, Layers, Scene
 from fem_adhesion.common.jobs import progress_bar, stream
-from fem_adhesion.crosscheck import study as crosscheck
-from fem_adhesion.crosscheck.comparison import VERDICTS, verdict_of
+from fem_adhesion.crosscheck import scenes as beside
+from fem_adhesion.crosscheck.comparison import VERDICTS, Failure, verdict_of
 from halfspace import Stratum
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
@@ -67,9 +67,9 @@ SCENES = (
 
 def verdict(scene):
     """Verdict of a comparison, and the rows that do not agree, or why it failed."""
-    (case,) = crosscheck.run([scene], rtol=RTOL)
+    (case,) = beside.run([scene], rtol=RTOL)
     rows = [f"{row.quantity} {row.verdict}" for row in case.rows if row.verdict != "agree"]
-    return verdict_of(case), ", ".join([*rows, *([case.reason] if isinstance(case, crosscheck.Failure) else [])])
+    return verdict_of(case), ", ".join([*rows, *([case.reason] if isinstance(case, Failure) else [])])
 
 
 def compared(seed):

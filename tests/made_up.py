@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 from fem_adhesion import Scene
-from fem_adhesion.crosscheck.comparison import SOLVERS, Case, Failure, Row
+from fem_adhesion.crosscheck.comparison import SOLVERS, Case, Failure, Row, solution_of
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Event
 from halfspace.values import Estimate
@@ -33,7 +33,7 @@ MISSING = Row("jump_off load", "R dgamma", Estimate(-2.25, 1e-5), None, float("n
 
 def case(*rows, tabor=2.0):
     paths = made_up_path(100.0, 7.5, 111), made_up_path(200.0, 9.25, 222)
-    return Case(Scene(tabor), dict(zip(SOLVERS, paths, strict=True)), rows)
+    return Case(Scene(tabor), dict(zip(SOLVERS, map(solution_of, paths), strict=True)), rows)
 
 
 FAILED = Failure(Scene(3.0), "no convergence in 40 steps; try a nearer start", (WIDE,))

@@ -14,7 +14,7 @@ from fem_adhesion.elasticity.space import Space, cell_quadrature, cell_stiffness
 from fem_adhesion.harmonics import legendre
 from fem_adhesion.mesh import curved, spheres
 from halfspace.elastic import grid
-from halfspace.elastic.operators import SurfaceCoordinate
+from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.profiles.formulas import SphereSurface
 
 R = 2.5

@@ -10,14 +10,8 @@ from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
 from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.operators import (
-    FLAT,
-    Homogeneous,
-    Interpolated,
-    MovingGrid,
-    SurfaceCoordinate,
-    chebyshev_radii,
-)
+from halfspace.elastic.grid import FLAT, SurfaceCoordinate
+from halfspace.elastic.operators import Homogeneous, Interpolated, MovingGrid, chebyshev_radii
 from halfspace.equilibrium.charts import Chart, trace_charts
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.search import find_events

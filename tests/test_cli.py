@@ -13,6 +13,7 @@ from whole_runs import COMPARE
 from fem_adhesion import cli
 from fem_adhesion.common.files import written_aside
 from fem_adhesion.common.jobs import ONE_THREAD
+from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck import study as crosscheck
 from halfspace.errors import NotConverged
 from halfspace.laws import Morse
@@ -81,7 +82,7 @@ def test_nothing_else_is_left_beside_the_record(compared):
     ],
 )
 def test_bad_input_is_refused_in_one_line_before_any_work(arguments, message, monkeypatch, capsys):
-    monkeypatch.setattr(crosscheck, "run", lambda *_, **__: pytest.fail("work was begun"))
+    monkeypatch.setattr(beside, "run", lambda *_, **__: pytest.fail("work was begun"))
     assert ended(["compare", *arguments]) == 2
     out, err = capsys.readouterr()
     assert message in err
@@ -161,7 +162,7 @@ def test_an_interrupt_leaves_no_file(monkeypatch, tmp_path, capsys):
     def interrupt(*_args, **_kwargs):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(crosscheck, "run", interrupt)
+    monkeypatch.setattr(beside, "run", interrupt)
     assert cli.main(["compare", "--tabor", "0.5", "--json", str(tmp_path / "record.json")]) == 130
     assert list(tmp_path.iterdir()) == []
     assert "interrupted; nothing was written" in capsys.readouterr().err

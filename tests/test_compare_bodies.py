@@ -15,7 +15,7 @@ from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
 from fem_adhesion.crosscheck.weak_bodies import contacts
 from fem_adhesion.elasticity import space
 from fem_adhesion.weak_form.contact import LENNARD_JONES
-from halfspace.elastic.operators import SurfaceCoordinate
+from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.errors import InputError
 from halfspace.profiles import Paraboloid, Sphere
 

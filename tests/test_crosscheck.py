@@ -12,6 +12,7 @@ import halfspace
 from fem_adhesion import Block, HalfSpace, Scene, cli, convergence, discretise
 from fem_adhesion.common.jobs import WorkerDied
 from fem_adhesion.crosscheck import comparison, references
+from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Case, Failure, Row, crosscheck_tables
 from fem_adhesion.elasticity import space
@@ -128,7 +129,7 @@ DEFECTS = {
 def test_a_defect_in_the_finite_elements_is_shown(defect, monkeypatch):
     inject, body, shown_by = DEFECTS[defect]
     inject(monkeypatch)
-    (case,) = crosscheck.run([Scene(1.0, body)], rtol=RTOL)
+    (case,) = beside.run([Scene(1.0, body)], rtol=RTOL)
     assert isinstance(case, Failure) or case.verdict != "agree"
     assert set(shown_by) <= set(_rejecting(case))
 
@@ -307,7 +308,7 @@ def test_the_worst_verdict_reaches_table_record_and_exit_code(verdicts, overall,
     rows = tuple(_made_up(verdict) for verdict in verdicts)
     paths = halfspace.trace(0.5, rtol=1e-1), solved
     case = Case(Scene(tabor=0.5), dict(zip(comparison.SOLVERS, paths, strict=True)), rows)
-    monkeypatch.setattr(crosscheck, "run", lambda *_, **__: iter([case]))
+    monkeypatch.setattr(beside, "run", lambda *_, **__: iter([case]))
     assert case.verdict == overall
     assert cli.main(["compare", "--tabor", "0.5", "--json", str(tmp_path / "made-up.json")]) == code
     out = capsys.readouterr().out
@@ -370,7 +371,7 @@ def test_a_failing_case_does_not_lose_the_others(monkeypatch):
 
     compare = crosscheck.compare
     monkeypatch.setattr(crosscheck, "compare", lambda *args, **kwargs: compare(*args, **kwargs, solve=solve))
-    results = list(crosscheck.run([Scene(tabor=1.0), Scene(tabor=0.5)], rtol=1e-2, jobs=1))
+    results = list(beside.run([Scene(tabor=1.0), Scene(tabor=0.5)], rtol=1e-2, jobs=1))
     assert isinstance(results[0], Failure)
     assert results[0].reason == "on purpose; try another day"
     assert [row.quantity for row in results[0].rows[:4]] == [f"operator: {name}" for name in references.PRESSURES]
@@ -419,11 +420,11 @@ def test_scenes_come_in_their_order_whatever_ends_first(monkeypatch):
             told = _made_up("agree") if part.solved else _made_up("inconclusive")
             yield (
                 part,
-                WorkerDied("on purpose") if part == crosscheck.Part(scenes[1], True) else Case(part.scene, {}, (told,)),
+                WorkerDied("on purpose") if part == beside.Part(scenes[1], True) else Case(part.scene, {}, (told,)),
             )
 
-    monkeypatch.setattr(crosscheck, "stream", backwards)
-    first, died, last = crosscheck.run(scenes)
+    monkeypatch.setattr(beside, "stream", backwards)
+    first, died, last = beside.run(scenes)
     assert [part.solved for part in asked] == [False, True, True, True]
     assert [part.scene.tabor for part in asked[1:]] == [2.0, 1.0, 0.5]  # those that take longest first
     assert [one.scene for one in (first, died, last)] == scenes

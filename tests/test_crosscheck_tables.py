@@ -10,11 +10,12 @@ from page_tables import tables
 from rich.console import Console
 
 from fem_adhesion import cli
-from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck.comparison import (
     EVENT_NAMES,
     STYLES,
     VERDICTS,
+    Failure,
     Row,
     columns,
     crosscheck_record,
@@ -22,7 +23,6 @@ from fem_adhesion.crosscheck.comparison import (
     crosscheck_tables,
     overall_verdict,
 )
-from fem_adhesion.crosscheck.study import Failure
 from fem_adhesion.report import sections
 from fem_adhesion.report.page import WORDS, verdict_words
 from halfspace.values import Estimate
@@ -184,7 +184,7 @@ def test_every_verdict_has_an_ending_and_a_name():
 @pytest.mark.parametrize("verdict", ENDINGS)
 def test_compare_tells_the_verdict_in_text_record_and_exit_code(verdict, tmp_path, monkeypatch, capsys):
     cases = ENDINGS[verdict]
-    monkeypatch.setattr(crosscheck, "run", lambda *_, **__: iter(cases))
+    monkeypatch.setattr(beside, "run", lambda *_, **__: iter(cases))
     tabors = [f"{case.scene.tabor:g}" for case in cases]
     assert cli.main(["compare", "--tabor", *tabors, "--json", str(tmp_path / "a.json")]) == CODES[verdict]
     shown = capsys.readouterr().out

@@ -51,14 +51,14 @@ WRITERS = {
 RUN = """
 import contextlib, io, json, os, sys
 from fem_adhesion import cli
-from fem_adhesion.crosscheck import study
-run, compared = study.run, {}
+from fem_adhesion.crosscheck import scenes as beside
+run, compared = beside.run, {}
 def once(scenes, rtol, **_):
     key = (*scenes, rtol)
     if key not in compared:
         compared[key] = list(run(scenes, rtol=rtol))
     return iter(compared[key])
-study.run = once
+beside.run = once
 done = {}
 for name, arguments in json.loads(sys.argv[1]).items():
     error = io.StringIO()

@@ -9,10 +9,9 @@ from scipy import sparse
 import fem_adhesion
 from fem_adhesion import Coated, HalfSpace, Scene, cli, scene
 from fem_adhesion.crosscheck import from_scratch
-from fem_adhesion.crosscheck import study as crosscheck
-from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM
+from fem_adhesion.crosscheck import scenes as beside
+from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Failure
 from fem_adhesion.crosscheck.references import elements_of, radius_of
-from fem_adhesion.crosscheck.study import Failure
 from fem_adhesion.crosscheck.weak_bodies import contacts, law_of
 from fem_adhesion.weak_form.body import fine_within, half_space, half_space_mesh
 from fem_adhesion.weak_form.contact import Contact, lennard_jones
@@ -286,13 +285,13 @@ SHARED = {
 def test_a_defect_that_both_solvers_share_is_rejected_by_the_row_that_should(defect, monkeypatch, capsys):
     inject, shown_by = SHARED[defect]
     inject(monkeypatch)
-    (case,) = crosscheck.run([Scene(1.0)], rtol=RTOL)
+    (case,) = beside.run([Scene(1.0)], rtol=RTOL)
     rejecting = {row.quantity for row in case.rows if row.verdict == "disagree"}
     assert shown_by <= rejecting
     assert isinstance(case, Failure) or case.verdict == "disagree"
     # Nothing but the fourth level sees it: the two solvers, which share it, agree.
     assert {name for name in rejecting if name.split(":")[0] not in ("limit", "equations", "apart")} == set()
-    monkeypatch.setattr(crosscheck, "run", lambda *_, **__: iter([case]))
+    monkeypatch.setattr(beside, "run", lambda *_, **__: iter([case]))
     assert cli.main(["compare", "--tabor", "1"]) == 1
     out = capsys.readouterr().out
     if isinstance(case, Failure):

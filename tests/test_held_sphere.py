@@ -15,7 +15,7 @@ from fem_adhesion.mesh.curved import refined_towards
 from fem_adhesion.mesh.file import read_body
 from fem_adhesion.mesh.spheres import CORE, DEPTH, contact_ends, held_sphere, hemisphere, rings_at_equator
 from halfspace.elastic import grid
-from halfspace.elastic.operators import SurfaceCoordinate
+from halfspace.elastic.grid import SurfaceCoordinate
 
 NU, R = 0.3, 30.0
 CAPS = (1.0, 30.0, 75.0, 88.0, 90.0)  # by lines, in the core, beside it, by rings about the equator, at the equator

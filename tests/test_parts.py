@@ -15,7 +15,7 @@ from fem_adhesion.mesh.block import tensor_grid
 from fem_adhesion.registry import name_of, part_from, record_of
 from halfspace import Stratum, Substrate
 from halfspace.elastic import grid
-from halfspace.elastic.operators import FLAT
+from halfspace.elastic.grid import FLAT
 from halfspace.profiles import Paraboloid, Sphere
 
 

@@ -13,7 +13,7 @@ from page_tables import tables
 
 from fem_adhesion import Scene, cli
 from fem_adhesion.common.page import inlined, symbols
-from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields import Beside, state_at
 from fem_adhesion.report import page as report_page
@@ -26,7 +26,7 @@ from halfspace.laws import LENNARD_JONES
 
 @pytest.fixture(scope="module")
 def contents():
-    cases = list(crosscheck.run([Scene(1.0)], rtol=1e-2))
+    cases = list(beside.run([Scene(1.0)], rtol=1e-2))
     curves = solve(Question(Scene(2.0), "both", 1e-3))
     return Contents(cases, curves, walk(2.0, rtol=1e-3), {})
 
@@ -174,7 +174,7 @@ def solved_before(monkeypatch, contents, cases):
         asked.append(question)
         return found
 
-    monkeypatch.setattr(crosscheck, "run", lambda scenes, rtol: told((scenes, rtol), iter(cases)))
+    monkeypatch.setattr(beside, "run", lambda scenes, rtol: told((scenes, rtol), iter(cases)))
     monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda question, _: told(question, contents.curves))
     monkeypatch.setattr("fem_adhesion.report.walk.walk", lambda tabor, rtol, **_: told((tabor, rtol), contents.walk))
     return asked
@@ -219,7 +219,7 @@ def test_a_curve_that_cannot_be_solved_is_said_to_be_missing(tmp_path, monkeypat
     def fail(*_):
         raise NotConverged("no convergence on purpose; try another day")
 
-    monkeypatch.setattr(crosscheck, "run", lambda scenes, rtol: iter(ENDINGS["agree"]))  # noqa: ARG005
+    monkeypatch.setattr(beside, "run", lambda scenes, rtol: iter(ENDINGS["agree"]))  # noqa: ARG005
     monkeypatch.setattr("fem_adhesion.curve.solve.solve", fail)
     assert cli.main(["report", "--out", str(tmp_path / "a.html"), "--tabor", "2"]) == 1
     assert "verdict: failed" in capsys.readouterr().out

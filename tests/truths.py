@@ -18,8 +18,8 @@ from halfspace.accuracy.finite_bodies import SizedBody, at_tip, standing
 from halfspace.accuracy.stages import Charted, Standing
 from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.elastic import compliance
+from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import images_of, layered_panels
-from halfspace.elastic.operators import FLAT
 from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.events import numbered

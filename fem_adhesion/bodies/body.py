@@ -9,8 +9,8 @@ from typing import Any, ClassVar, Literal, NamedTuple, get_args
 
 from fem_adhesion.materials import Elastic, LinearElastic, Material
 from fem_adhesion.registry import name_of
+from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.elastic.layers import LayeredBody
-from halfspace.elastic.operators import SurfaceCoordinate
 from halfspace.errors import InputError
 from halfspace.limits import require_one_of, require_poisson, require_radius_ratio
 from halfspace.profiles import PARABOLOID, Profile, Sphere

@@ -10,7 +10,7 @@ import numpy as np
 
 from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout, SolverName
 from halfspace.elastic import grid
-from halfspace.elastic.operators import FLAT
+from halfspace.elastic.grid import FLAT
 from halfspace.errors import InputError
 from halfspace.limits import require_fixed_mesh, require_one_of, require_radius
 from halfspace.values import Array, keep

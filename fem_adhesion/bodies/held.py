@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation, Held, Layout, SolverName
-from halfspace.elastic.operators import FLAT, SurfaceCoordinate
+from halfspace.elastic.grid import FLAT, SurfaceCoordinate
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, keep
 

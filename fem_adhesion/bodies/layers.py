@@ -13,7 +13,7 @@ import numpy as np
 from fem_adhesion.bodies.body import USUAL, Body, Discretisation, Doubt, FarFieldName, Layout, SolverName
 from fem_adhesion.materials import Elastic
 from halfspace.elastic import grid, layers
-from halfspace.elastic.operators import FLAT
+from halfspace.elastic.grid import FLAT
 from halfspace.errors import InputError
 from halfspace.limits import require_film, require_poisson, require_thickness
 from halfspace.scales import Scales

@@ -36,6 +36,7 @@ ATTEMPTS = 3  # at an item whose worker dies
 CONNECTION_SECONDS = 30  # a scheduler that is busy answers late; one that is not there is known at once
 WATCH_SECONDS = 1  # between two looks of a local worker at whether its study is still alive
 IDLE_SECONDS = 300  # after which a local worker without work ends
+GROWN = 1e9  # bytes, by which a local worker may grow before it is made anew; to load all again takes a second
 BLAS = ("OPENBLAS", "OMP", "MKL", "BLIS")
 ONE_THREAD = {**{f"{name}_NUM_THREADS": "1" for name in BLAS}, "VECLIB_MAXIMUM_THREADS": "1"}
 """Each process keeps to one thread of BLAS: on systems as small as ours others cost up to seven times what one does."""
@@ -189,12 +190,13 @@ def _processes(number: int) -> Pool:
     from loky.backend.process import LokyProcess
     from loky.process_executor import TerminatedWorkerError
 
-    # A worker is made anew when it has grown by 300 MB, which large bodies make it do: no trouble of the user's.
+    # That one is made anew where loky can tell how much it holds is no trouble of the user's.
     of_workers = "A worker (stopped|was restarted) while some jobs were given"
     warnings.filterwarnings("ignore", message=of_workers, category=UserWarning)
 
     def executor() -> Any:
-        settings = {"timeout": IDLE_SECONDS, "initializer": _watch, "initargs": (os.getpid(),), "env": ONE_THREAD}
+        env = {**ONE_THREAD, "LOKY_MAX_MEMORY_LEAK_SIZE": str(GROWN)}
+        settings = {"timeout": IDLE_SECONDS, "initializer": _watch, "initargs": (os.getpid(),), "env": env}
         return get_reusable_executor(number, **settings)
 
     def submit(*call: Any) -> Future[Any]:

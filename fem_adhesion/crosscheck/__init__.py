@@ -2,7 +2,7 @@
 
 In the order of reading: `comparison` (two numbers with errors, a budget, a verdict; what is told of them), `study`
 (operators, residuals, events; of spheres, `references`), `from_scratch` (what both share, against
-`fem_adhesion.weak_form`), `command`.
+`fem_adhesion.weak_form`), `scenes` (many of them beside each other), `command`.
 
 How independent the two solvers are:
 

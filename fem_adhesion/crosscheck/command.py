@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     require_rtol(options.rtol)
     jobs = options.jobs if len(options.tabor) > 1 else 1
     with loaded_ahead("fem_adhesion.crosscheck.study", jobs=jobs, dask=options.dask):
-        from fem_adhesion.crosscheck.references import require_comparable
+        from fem_adhesion.crosscheck.comparison import require_comparable
 
         parts = counter_of(options)
         scenes = [scene_of(options, mu, options.poisson, *parts) for mu in options.tabor]
@@ -65,10 +65,10 @@ def _compare_with_progress(
     scenes: Sequence[Scene], options: argparse.Namespace, console: Console
 ) -> list[Case | Failure]:
     """Run the cases with a bar on standard error and tables on the console."""
-    from fem_adhesion.crosscheck import study
+    from fem_adhesion.crosscheck import scenes as comparisons
 
     cases: list[Case | Failure] = []
-    solved = study.run(scenes, rtol=options.rtol, jobs=options.jobs, dask=options.dask)
+    solved = comparisons.run(scenes, rtol=options.rtol, jobs=options.jobs, dask=options.dask)
     for done, scene in enumerate(scenes):
         with progress_bar() as step:  # it is gone when a table is printed, which would break it
             step(f"tabor {scene.tabor:g}", done, len(scenes))

@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_adhesion.common.facts import plain, versions
-from fem_adhesion.scene import Scene
-from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import is_fold, tolerance_told
+from fem_adhesion.scene import Scene, require_scene
+from halfspace.errors import InputError
 from halfspace.values import Estimate
 
 if TYPE_CHECKING:
     from fem_adhesion.common.terminal import Fitted
+    from halfspace.equilibrium.curve import EquilibriumPath
 
 Verdict = Literal["agree", "disagree", "inconclusive"]
 Pair = tuple[str, str]
@@ -88,17 +88,72 @@ class Failure:
 
 
 @dataclass(frozen=True)
+class Solution:
+    """What is told of a solver's curve, in plain data: who reads it needs no solver.
+
+    Events are those told, by their names; `tolerance` says whether that was met, in words.
+    """
+
+    events: Mapping[str, Any]
+    jumps: bool | None
+    rtol: float
+    missed: Mapping[str, Sequence[str]]
+    unknowns: int
+    seconds: float
+    settings: Mapping[str, Any]
+    tolerance: str
+
+
+def solution_of(path: EquilibriumPath) -> Solution:
+    """What is told of a curve."""
+    from halfspace.equilibrium.events import is_fold, tolerance_told
+
+    return Solution(
+        {name: plain(event) for name, event in path.events.items() if name in EVENT_NAMES or is_fold(name)},
+        path.jumps,
+        path.rtol,
+        path.missed,
+        path.unknowns,
+        path.seconds,
+        path.settings,
+        tolerance_told(path.rtol, path.missed),
+    )
+
+
+@dataclass(frozen=True)
 class Case:
-    """Solutions of one scene, by the names of their solvers, and their comparison."""
+    """What is told of the solutions of one scene, by the names of their solvers, and their comparison."""
 
     scene: Scene
-    solutions: Mapping[str, EquilibriumPath]
+    solutions: Mapping[str, Solution]
     rows: tuple[Row, ...]
 
     @property
     def verdict(self) -> Verdict:
         """The worst of the rows' verdicts."""
         return worst([row.verdict for row in self.rows])
+
+
+# What can be compared
+
+
+def tighter(rtol: float) -> float:
+    """What is asked of the other solver in a comparison to a tolerance."""
+    return max(rtol / 10, 1e-9)
+
+
+def require_comparable(scene: Scene, rtol: float) -> None:
+    """Refuse a scene for which there is one solver only, or none in reach of a tolerance; raise InputError."""
+    require_scene(scene)
+    if scene.material.finite:
+        raise InputError(
+            f"material = {scene.material} is compared with nothing, limit: small strain; no other solver of the house "
+            "knows it"
+        )
+    if scene.body.checked_by == "harmonics":
+        from fem_adhesion import harmonics  # here, as other scenes are handed to processes by one that loads no solver
+
+        harmonics.require_few(scene, tighter(rtol))
 
 
 # What is told of it: a record for machines, tables for the terminal
@@ -132,23 +187,15 @@ def _case(case: Case | Failure) -> dict[str, Any]:
     scene = {"tabor": case.scene.tabor, "poisson": case.scene.poisson, "verdict": verdict_of(case)}
     if isinstance(case, Failure):
         return {**scene, "reason": told(case), "comparison": [_row(row) for row in case.rows]}
-    solutions = {KEYS[name]: _solution(path) for name, path in case.solutions.items()}
+    solutions = {KEYS[name]: _solution(solution) for name, solution in case.solutions.items()}
     return {**scene, **solutions, "comparison": [_row(row) for row in case.rows]}
 
 
 KEYS = {"half-space": "halfspace", "harmonics": "harmonics", "finite elements": "finite_element"}
 
 
-def _solution(path: EquilibriumPath) -> dict[str, Any]:
-    return {
-        "events": {name: event for name, event in path.events.items() if name in EVENT_NAMES or is_fold(name)},
-        "jumps": path.jumps,
-        "rtol": path.rtol,
-        "missed": path.missed,
-        "unknowns": path.unknowns,
-        "seconds": path.seconds,
-        "settings": path.settings,
-    }
+def _solution(solution: Solution) -> dict[str, Any]:
+    return {name: value for name, value in vars(solution).items() if name != "tolerance"}
 
 
 def _row(row: Row) -> dict[str, Any]:
@@ -192,7 +239,7 @@ def crosscheck_tables(case: Case) -> list[Fitted]:
     style = STYLES[case.verdict]
     *parts, last = scene_parts(case.scene)
     title = [*parts, f"{last}: [{style}]{case.verdict}[/]"]
-    cost = [f"{name} {cost_told(path)}" for name, path in case.solutions.items()]
+    cost = [f"{name} {cost_told(solution)}" for name, solution in case.solutions.items()]
     made = [crosscheck_table(case.rows, between) for between in dict.fromkeys(row.between for row in case.rows)]
     return [replace(made[0], title=title, caption=cost), *made[1:]]
 
@@ -247,6 +294,6 @@ def _small(value: float) -> str:
     return f"{value:.1e}" if math.isfinite(value) else "-"
 
 
-def cost_told(path: EquilibriumPath) -> str:
+def cost_told(solution: Solution) -> str:
     """Cost of a curve, and whether it has the accuracy that was asked of it."""
-    return f"{path.unknowns} unknowns, {path.seconds:.2f} s, {tolerance_told(path.rtol, path.missed)}"
+    return f"{solution.unknowns} unknowns, {solution.seconds:.2f} s, {solution.tolerance}"

@@ -15,14 +15,13 @@ from fem_adhesion.bodies.body import Discretisation, SolverName
 from fem_adhesion.convergence import on_given_mesh
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, Pair
 from fem_adhesion.discretise import block_size
-from fem_adhesion.scene import Scene, require_scene
+from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import SizedBody, at_equator
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.equilibrium.contact import ContactProblem, contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.errors import InputError
 from halfspace.values import Array
 
 Operators = list[ElasticOperator]
@@ -55,24 +54,6 @@ REFERENCES: Mapping[SolverName, Callable[[Scene], Reference]] = {
     "half-space": _by_integral_equation,
     "harmonics": lambda scene: Reference(HARMONICS, partial(harmonics.trace, scene), partial(_spheres, scene)),
 }
-
-
-def tighter(rtol: float) -> float:
-    """What is asked of it in a comparison to a tolerance."""
-    return max(rtol / 10, 1e-9)
-
-
-def require_comparable(scene: Scene, rtol: float) -> None:
-    """Refuse a scene for which there is one solver only, or none in reach of a tolerance; raise InputError."""
-    require_scene(scene)
-    if scene.material.finite:
-        raise InputError(
-            f"material = {scene.material} is compared with nothing, limit: small strain; no other solver of the house "
-            "knows it"
-        )
-    reference = reference_for(scene)
-    if reference and reference.between == HARMONICS:
-        harmonics.require_few(scene, tighter(rtol))
 
 
 # Pressures that all operators are compared under, of the radius in units of `radius_of`

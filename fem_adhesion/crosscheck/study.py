@@ -13,25 +13,25 @@ refinement and from the size of the block, never from a choice.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing, suppress
-from dataclasses import dataclass, replace
-from functools import partial
-from itertools import chain, pairwise
+from contextlib import suppress
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from fem_adhesion import convergence
-from fem_adhesion.common.jobs import WorkerDied, stream
 from fem_adhesion.crosscheck import from_scratch
-from fem_adhesion.crosscheck.comparison import SOLVERS, Case, Failure, Pair, Row, difference
-from fem_adhesion.crosscheck.references import (
-    elements_of,
-    pressures_for,
-    radius_of,
-    reference_for,
+from fem_adhesion.crosscheck.comparison import (
+    SOLVERS,
+    Case,
+    Pair,
+    Row,
+    difference,
     require_comparable,
+    solution_of,
     tighter,
 )
+from fem_adhesion.crosscheck.references import elements_of, pressures_for, radius_of, reference_for
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from halfspace.elastic.compliance import ElasticOperator
@@ -101,61 +101,12 @@ def _solved(scene: Scene, rtol: float, asked: float, solve: Solver) -> Case:
     other = reference.trace(rtol=tighter(asked)) if reference else None
     fe = solve(scene, rtol=max(0.9 * asked, TIGHTEST))
     rows: list[Row] = []
-    solutions = {"finite elements": fe}
+    solutions = {"finite elements": solution_of(fe)}
     if reference and other:
-        solutions = {reference.between[0]: other, **solutions}
+        solutions = {reference.between[0]: solution_of(other), **solutions}
         rows += [*_cross_residuals(other, fe, rtol, reference.between)]
         rows += [*_compare_events(other, fe, rtol, reference.between)]
     return Case(scene, solutions, (*rows, *from_scratch.events(scene, fe)))
-
-
-@dataclass(frozen=True)
-class Part:
-    """A scene's comparison, or what needs no solution: that is the same for all blocks of a material, of tabor 1."""
-
-    scene: Scene
-    solved: bool
-
-
-def run(
-    scenes: Sequence[Scene], *, rtol: float = 1e-5, jobs: int | None = None, dask: str | None = None
-) -> Iterator[Case | Failure]:
-    """Compare scenes beside each other and give them in their order, each as soon as it and those before it are there.
-
-    The comparison has the accuracy rtol; jobs are local processes and dask the address of a cluster, see
-    `fem_adhesion.common.jobs.stream`. One scene needs no other process.
-    """
-    of_scenes = [
-        (Part(scene if scene.sized else replace(scene, tabor=1.0), False), Part(scene, True)) for scene in scenes
-    ]
-    # Those that take longest first, of the sharpest contacts: the cores end together.
-    parts = sorted(dict.fromkeys(chain.from_iterable(of_scenes)), key=lambda part: (part.solved, -part.scene.tabor))
-    found: dict[Part, Case | Failure | WorkerDied] = {}
-    jobs = 1 if jobs is None and len(scenes) == 1 else jobs
-    with closing(stream(partial(_compared, rtol=rtol), parts, jobs=jobs, dask=dask)) as results:
-        for before, solved in of_scenes:
-            while not {before, solved} <= found.keys():
-                part, found[part] = next(results)
-            yield _whole(solved.scene, found[before], found[solved])
-
-
-def _compared(part: Part, *, rtol: float) -> Case | Failure:
-    """A part of a comparison, or why it failed."""
-    try:
-        if part.solved:
-            return compare(part.scene, rtol=rtol, before=())
-        return Case(part.scene, {}, tuple(unsolved(part.scene, rtol=rtol)))
-    except NotConverged as error:
-        return Failure(part.scene, str(error))
-
-
-def _whole(scene: Scene, before: Case | Failure | WorkerDied, solved: Case | Failure | WorkerDied) -> Case | Failure:
-    """Comparison of a scene by its parts."""
-    if not isinstance(before, Case):
-        return Failure(scene, before.reason)
-    if not isinstance(solved, Case):
-        return Failure(scene, solved.reason, before.rows)
-    return replace(solved, rows=(*before.rows, *solved.rows))
 
 
 def unsolved(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:

@@ -18,7 +18,7 @@ import numpy as np
 from fem_adhesion.mesh.block import with_named_boundaries
 from fem_adhesion.mesh.curved import CurvedQuads, Patch, joined, refined_towards
 from halfspace.elastic import grid
-from halfspace.elastic.operators import SurfaceCoordinate
+from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.errors import InputError
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, Index, Valued

@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _compute(scenes: list[Scene], rtol: float, question: Question, directories: dict[str, Path]) -> tuple[str, str]:
     """Verdict and page."""
-    from fem_adhesion.crosscheck import study as crosscheck
+    from fem_adhesion.crosscheck import scenes as crosscheck
     from fem_adhesion.crosscheck.comparison import overall_verdict
     from fem_adhesion.curve.solve import solve
     from fem_adhesion.report.page import Contents, page

@@ -19,13 +19,12 @@ from fem_adhesion.crosscheck.comparison import (
     Case,
     Failure,
     Row,
+    Solution,
     cells,
     columns,
     told,
     verdict_of,
 )
-from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import tolerance_told
 from halfspace.errors import InputError
 
 LEVELS = {
@@ -96,11 +95,11 @@ def _ratio(part: float, whole: float) -> float:
 
 def settings_section(cases: Cases, machine: dict[str, str]) -> Section:
     """Versions, machine and what the solvers chose."""
-    columns: Columns[tuple[Case, str, EquilibriumPath]] = {
+    columns: Columns[tuple[Case, str, Solution]] = {
         "Tabor parameter": lambda solved: f"{solved[0].scene.tabor:g}",
         "solver": lambda solved: solved[1],
         "settings": lambda solved: _settings(solved[2].settings),
-        "tolerance": lambda solved: tolerance_told(solved[2].rtol, solved[2].missed),
+        "tolerance": lambda solved: solved[2].tolerance,
         "unknowns": lambda solved: str(solved[2].unknowns),
         "seconds": lambda solved: f"{solved[2].seconds:.2f}",
     }

@@ -19,7 +19,8 @@ import numpy as np
 from halfspace.accuracy.stages import Charted, Standing, WhereAsked
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.elastic.operators import Interpolated, MovingGrid, SurfaceCoordinate, chebyshev_radii
+from halfspace.elastic.grid import SurfaceCoordinate
+from halfspace.elastic.operators import Interpolated, MovingGrid, chebyshev_radii
 from halfspace.equilibrium.charts import COMPRESSION, Chart, Stage, moved
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, contact_of

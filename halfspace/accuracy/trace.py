@@ -32,9 +32,10 @@ from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Charted, Rung
 from halfspace.accuracy.windows import Windows
 from halfspace.elastic import compliance, grid
+from halfspace.elastic.grid import FLAT, SurfaceCoordinate
 from halfspace.elastic.layered import Images, image_compliance, images_of, layered, layered_panels
 from halfspace.elastic.layers import LayeredBody
-from halfspace.elastic.operators import FLAT, Homogeneous, NearlyHomogeneous, SurfaceCoordinate
+from halfspace.elastic.operators import Homogeneous, NearlyHomogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
 from halfspace.equilibrium.curve import EquilibriumPath

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -126,3 +127,39 @@ def polynomial(places: Array, x: Array | float) -> Array:
     own = np.eye(places.size, dtype=bool)
     ahead = np.where(own, 1.0, (np.asarray(x)[..., None] - places)[..., None, :])
     return np.asarray(np.prod(ahead / (places[:, None] - places + own), axis=-1))
+
+
+@dataclass(frozen=True)
+class SurfaceCoordinate:
+    """Coordinate x along the surface of a sphere, stereographic: r = x/(1 + k x^2), k = 1/4R^2, R in beta.
+
+    On a flat one, of infinite R, it is the radius itself. The area is that which the density of a ring's is:
+    "projected" on the plane of the contact, or the sphere's "surface".
+    """
+
+    R: float = np.inf
+    area: str = "projected"
+
+    def of(self, radius: float) -> float:
+        """Coordinate 2 R tan(theta/2) at the radius R sin(theta)."""
+        return float(self.along(np.array(radius)))
+
+    def along(self, radii: Array) -> Array:
+        """Coordinates at radii."""
+        s = radii / self.R
+        return np.asarray(2 * radii / (1 + np.sqrt((1 - s) * (1 + s))))
+
+    def radius(self, x: Array) -> tuple[Array, Array]:
+        """Radius r at x and dr/dx."""
+        t = (x / (2 * self.R)) ** 2
+        return np.asarray(x / (1 + t)), np.asarray((1 - t) / (1 + t) ** 2)
+
+    def ring(self, x: Array) -> tuple[Array, Array]:
+        """Density r dr/dx of a ring's area, or r ds/dx with ds/dx = 1/(1 + t), and its derivative by x."""
+        t = (x / (2 * self.R)) ** 2
+        if self.area == "surface":
+            return np.asarray(x / (1 + t) ** 2), np.asarray((1 - 3 * t) / (1 + t) ** 3)
+        return np.asarray(x * (1 - t) / (1 + t) ** 3), np.asarray((1 - 8 * t + 3 * t**2) / (1 + t) ** 4)
+
+
+FLAT = SurfaceCoordinate()

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.special import expn
 
 from halfspace.errors import InputError
 from halfspace.laws.law import Law
@@ -142,6 +141,8 @@ class Exponential(Law):
     @property
     def amplitude(self) -> float:
         """Factor c by which the work of adhesion is dgamma."""
+        from scipy.special import expn  # it takes as long to load as all else, and few need it
+
         return 1 / (1 / self.k - math.exp(self.k) * float(expn(self.core, self.k)))
 
     def pressure(self, gap: Array, tabor: float) -> Array:
@@ -155,6 +156,8 @@ class Exponential(Law):
 
     def energy(self, gap: Array, tabor: float) -> Array:
         """Phi = c mu (e^k h^(1-m) E_m(k h) - e^(-k H)/k)."""
+        from scipy.special import expn  # as above
+
         h, k, m = gap + 1, self.k, self.core
         core = math.exp(k) * h ** (1 - float(m)) * expn(m, k * h)
         return np.asarray(self.amplitude * tabor * (core - np.exp(-k * gap) / k))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fem_adhesion import Scene
-from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.report.page import Contents, page
 from fem_adhesion.report.walk import walk
@@ -27,7 +27,7 @@ END = 600_000
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
     """A page whose half-space is another by far, so that its lines are told from those of the elements."""
-    cases = list(crosscheck.run([Scene(1.0)], rtol=1e-2))
+    cases = list(beside.run([Scene(1.0)], rtol=1e-2))
     walked = walk(2.0, rtol=1e-3, states=10)
     scaled = [
         replace(one, pressure=one.pressure * [[1.0], [0.5]], gap=one.gap * [[1.0], [0.7]]) for one in walked.stations
