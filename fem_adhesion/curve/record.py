@@ -8,9 +8,9 @@ from collections.abc import Iterator, Mapping
 from typing import IO, Any
 
 from fem_adhesion.common.facts import plain, versions
-from fem_adhesion.curve.solve import EVENT_QUANTITIES as OBSERVABLES
 from fem_adhesion.curve.solve import PAPER, Curves
 from fem_adhesion.registry import record_of
+from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event, Tolerance

@@ -16,6 +16,7 @@ from fem_adhesion import convergence
 from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.common.numbers import PREFIXES, exponent_of
 from fem_adhesion.scene import Scene
+from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
 from halfspace.errors import InputError
@@ -161,7 +162,6 @@ PAPER: Mapping[str, Scale] = {
     "stiffness": Scale(r"stiffness $k\epsilon/R\Delta\gamma$", "R dgamma/eps", "stiffness $k$"),
 }
 
-EVENT_QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
 ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}  # quantities with the prefix of another
 
 
@@ -170,7 +170,7 @@ def _largest(curves: Curves) -> Mapping[str, float]:
     states = [event for path in curves.paths.values() for event in path.events.values()]
     cycles = [cycle for cycle in (curves.grips, curves.apparatus) if cycle]
     states += [state for cycle in cycles for jump in cycle.jumps.values() for state in jump.ends]
-    sizes = {name: [abs(getattr(state, name)) for state in states] for name in EVENT_QUANTITIES}
+    sizes = {name: [abs(getattr(state, name)) for state in states] for name in OBSERVABLES}
     sizes["energy"] = [abs(cycle.energy_lost.value) for cycle in cycles]
     known = {name: [size for size in found if math.isfinite(size) and size] for name, found in sizes.items()}
     return {name: max(found) for name, found in known.items() if found}

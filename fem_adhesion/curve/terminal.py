@@ -14,7 +14,8 @@ from fem_adhesion.common.contact import edge_told
 from fem_adhesion.common.numbers import engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.curve import lines
-from fem_adhesion.curve.solve import EVENT_QUANTITIES, Curves, Scale
+from fem_adhesion.curve.solve import Curves, Scale
+from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.devices import Cycle, reaching
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
 from halfspace.laws import LENNARD_JONES
@@ -55,7 +56,7 @@ def table(curves: Curves) -> Fitted:
     numbers = zip(*(cells(event, units, curves.paths[name].tolerance) for _, name, event in rows), strict=True)
     columns = [
         Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts, RANKS[name])
-        for name, texts in zip(EVENT_QUANTITIES, numbers, strict=True)
+        for name, texts in zip(OBSERVABLES, numbers, strict=True)
     ]
     return Fitted([words, solver, *columns], list(_title(curves)))
 
@@ -82,7 +83,7 @@ def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str
 def cells(event: Event, units: Mapping[str, Scale], tolerance: Tolerance) -> Iterator[str]:
     """Numbers of an event, each with the error of its last digit in brackets, and a mark if that misses a tolerance."""
     missed = tolerance.missed_by(event)
-    for name in EVENT_QUANTITIES:
+    for name in OBSERVABLES:
         found = event.estimate(name)
         if np.isnan(found.value):
             yield "-"

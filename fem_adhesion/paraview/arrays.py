@@ -13,6 +13,7 @@ from fem_adhesion.elasticity import stress as stresses
 from fem_adhesion.fields import Beside, State, is_same_contact
 from fem_adhesion.paraview.cells import Cut, Solid
 from fem_adhesion.scene import Scene
+from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.events import EVENTS
 from halfspace.errors import InputError
 from halfspace.scaling import Units
@@ -79,8 +80,6 @@ UNITS: Mapping[str, Unit] = {
     "contact_radius": _LENGTH,
 }
 """Of the arrays, and of the numbers in the field data."""
-
-OBSERVED = ("approach", "load", "central_gap", "contact_radius")
 
 MEANINGS: Mapping[str, str] = {
     "displacement": "u_r, u_theta, u_z; in the solid u_x, u_y, u_z",
@@ -196,7 +195,7 @@ def numbers(state: State, scale: float, units: Units | None) -> dict[str, float]
 
     No words: not every reader of these files knows strings.
     """
-    scene, observed = state.scene, dict(zip(OBSERVED, map(float, state.observables), strict=True))
+    scene, observed = state.scene, dict(zip(OBSERVABLES, map(float, state.observables), strict=True))
     found = {"tabor": scene.tabor, "poisson": scene.poisson}
     if scene.radius_ratio is not None:
         found["radius_ratio"] = scene.radius_ratio

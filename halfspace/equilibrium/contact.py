@@ -23,10 +23,10 @@ from numpy.polynomial.legendre import legvander
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
 from halfspace.elastic.compliance import ElasticOperator, Operator
+from halfspace.equilibrium.acting import Acting, by_straight_lines
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
-from halfspace.roots import root
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued, appended
 
@@ -56,92 +56,6 @@ class Solver(Protocol):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class _Acting(Valued):
-    """All that acts in a state x at the nodes, each (q,), when it is first asked for."""
-
-    state: bytes
-    law: Law
-    tabor: float
-    profile: Surface
-    operator: Operator
-
-    @cached_property
-    def x(self) -> Array:
-        return np.frombuffer(self.state)
-
-    @cached_property
-    def body(self) -> ElasticOperator:
-        return self.operator.at(float(self.x[-1]))
-
-    @cached_property
-    def pressure(self) -> Array:
-        return self.law.pressure(self.x[:-2], self.tabor)
-
-    @cached_property
-    def slope(self) -> Array:
-        return self.law.slope(self.x[:-2], self.tabor)
-
-    @cached_property
-    def room(self) -> Array:
-        return self.law.room(self.x[:-2])
-
-    @cached_property
-    def deflection(self) -> Array:
-        """Of the nodes in eps, H + alpha* - mu z(u)."""
-        return np.asarray(self.x[:-2] + self.x[-2] - self.tabor * self.profile.height(self.body.radii))
-
-    @cached_property
-    def rates(self) -> tuple[Array, Array, Array]:
-        """By the scale: of the undeformed gaps in eps, the weights, and the equations."""
-        d_radii, d_weights, d_deflection = self.operator.rates(float(self.x[-1]), self.pressure)
-        rising = self.tabor * self.profile.slope(self.body.radii) * d_radii
-        return rising, d_weights, -rising - self.tabor * d_deflection
-
-    @property
-    def approach(self) -> float:
-        return float(self.x[-2])
-
-    @cached_property
-    def load(self) -> float:
-        return float(self.body.weights @ self.pressure)
-
-    @cached_property
-    def central_gap(self) -> float:
-        return float(self.operator.axis_row @ self.deflection - self.x[-2])
-
-    @cached_property
-    def contact_radius(self) -> float:
-        """Largest radius at which the gap is that of the edge."""
-        if self.operator.follows_contact:
-            return float(self.x[-1])
-        return _contact_radius(self.body, self.x[:-2], self.law.edge_gap)
-
-    @cached_property
-    def gradients(self) -> Array:
-        """Derivatives by x of approach, load and central gap, (3, q + 2)."""
-        rows, axis = np.zeros((3, self.x.size)), self.operator.axis_row
-        rows[APPROACH, -2] = 1
-        np.multiply(self.body.weights, self.slope, out=rows[LOAD, :-2])
-        rows[CENTRAL_GAP, :-2] = axis
-        if self.operator.follows_contact:
-            rising, d_weights, _ = self.rates
-            rows[LOAD, -1] = d_weights @ self.pressure
-            rows[CENTRAL_GAP, -1] = -(axis @ rising)
-        return rows
-
-    @cached_property
-    def radius_gradient(self) -> Array:
-        """Derivative by x of the contact radius, (q + 2,)."""
-        row = np.zeros(self.x.size)
-        if self.operator.follows_contact:
-            row[-1] = 1
-        else:
-            value, slope = self.body.continuous(self.contact_radius)
-            row[:-2] = -value / (slope @ self.x[:-2])
-        return row
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class ContactProblem(Valued):
     """Equilibrium of a surface law with an elastic operator.
 
@@ -163,16 +77,16 @@ class ContactProblem(Valued):
         return Scales(self.tabor, self.law, self.profile)
 
     @cached_property
-    def _latest(self) -> deque[_Acting]:
+    def _latest(self) -> deque[Acting]:
         """What acts in the last two states, that of a step and its trial: each is asked for several times."""
         return deque(maxlen=2)
 
-    def _acting(self, x: Array) -> _Acting:
+    def _acting(self, x: Array) -> Acting:
         state = np.asarray(x, float).tobytes()  # what it holds, since it may be written to
         for known in self._latest:
             if known.state == state:
                 return known
-        self._latest.append(_Acting(state, self.law, self.tabor, self.profile, self.operator))
+        self._latest.append(Acting(state, self.law, self.tabor, self.profile, self.operator))
         return self._latest[-1]
 
     @property
@@ -262,7 +176,7 @@ class ContactProblem(Valued):
         return self._acting(x).load
 
     def central_gap(self, x: Array) -> float:
-        """H(0) in eps: the deflection is smooth across the axis, as the profile need not be."""
+        """H(0) in eps."""
         return self._acting(x).central_gap
 
     def pressure(self, x: Array) -> Array:
@@ -286,7 +200,7 @@ class ContactProblem(Valued):
 
     def radius_at_gap(self, x: Array, gap: float) -> float:
         """Largest radius in beta at which the gap is about that, by straight lines between nodes; 0 if it is wider."""
-        return _by_straight_lines(self.radii(x), x[:-2], gap)
+        return by_straight_lines(self.radii(x), x[:-2], gap)
 
     def ripples(self, x: Array) -> Array:
         """What the deflection's polynomials end with on the axis, in eps, and at the contact edge, in beta, (2,).
@@ -390,40 +304,6 @@ class ContactProblem(Valued):
         L = self.operator.root(float(x[-1]))
         hessian = np.eye(L.shape[1]) - L.T @ (L * (self.tabor * self._acting(x).slope)[:, None])
         return count_negative(hessian)
-
-
-def _contact_radius(body: ElasticOperator, H: Array, edge: float) -> float:
-    """Largest radius at which the gaps H are those of the edge, on a grid that stands still."""
-    inside = np.flatnonzero(edge > H)
-    if inside.size == 0 and not body.centre_row @ H <= edge:
-        return float("nan")
-    if inside.size and inside[-1] == H.size - 1 and body.continuous_value(body.extent, H)[0] <= edge:
-        return body.extent
-    radii = [0.0, *body.radii.tolist(), body.extent]
-    below, above = radii[inside[-1] + 1 :][:2] if inside.size else radii[:2]
-    radius = _by_straight_lines(body.radii, H, edge) or above
-    for _ in range(TRIES):
-        gap, slope = body.continuous_value(radius, H)
-        step = (edge - gap) / slope if slope else math.inf
-        radius += step
-        if not below <= radius <= above:
-            break
-        if abs(step) < PINNED * (above - below):
-            return radius
-
-    def beyond(r: float) -> float:
-        return body.continuous_value(r, H)[0] - edge
-
-    return root(beyond, below, above, "the contact edge; refine the grid", xtol=1e-14)
-
-
-TRIES, PINNED = 6, 1e-8  # Newton's steps towards a contact edge; part of the nodes' distance: the next is its square
-
-
-def _by_straight_lines(radii: Array, H: Array, gap: float) -> float:
-    """Largest radius at which the gap is about that, between two nodes; 0 if it is wider at all."""
-    closer = np.flatnonzero(gap > H)
-    return float(np.interp(gap, H[closer[-1] :][:2], radii[closer[-1] :][:2])) if closer.size else 0.0
 
 
 def _left_out(coefficients: Array) -> float:

@@ -1,0 +1,144 @@
+"""What acts in a state of a contact: pressures, deflections, the contact's edge, and how all that changes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from halfspace.elastic.compliance import ElasticOperator, Operator
+from halfspace.laws import Law
+from halfspace.profiles import Surface
+from halfspace.roots import root
+from halfspace.values import Array, Valued
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Acting(Valued):
+    """All that acts in a state x at the nodes, each (q,), when it is first asked for."""
+
+    state: bytes
+    law: Law
+    tabor: float
+    profile: Surface
+    operator: Operator
+
+    @cached_property
+    def x(self) -> Array:
+        """The state: gaps, approach and scale, (q + 2,)."""
+        return np.frombuffer(self.state)
+
+    @cached_property
+    def body(self) -> ElasticOperator:
+        """Operator at its scale."""
+        return self.operator.at(float(self.x[-1]))
+
+    @cached_property
+    def pressure(self) -> Array:
+        """P at its gaps."""
+        return self.law.pressure(self.x[:-2], self.tabor)
+
+    @cached_property
+    def slope(self) -> Array:
+        """dP/dH."""
+        return self.law.slope(self.x[:-2], self.tabor)
+
+    @cached_property
+    def room(self) -> Array:
+        """Sizes by which changes of its gaps are measured."""
+        return self.law.room(self.x[:-2])
+
+    @cached_property
+    def deflection(self) -> Array:
+        """Of the nodes in eps, H + alpha* - mu z(u)."""
+        return np.asarray(self.x[:-2] + self.x[-2] - self.tabor * self.profile.height(self.body.radii))
+
+    @cached_property
+    def rates(self) -> tuple[Array, Array, Array]:
+        """By the scale: of the undeformed gaps in eps, the weights, and the equations."""
+        d_radii, d_weights, d_deflection = self.operator.rates(float(self.x[-1]), self.pressure)
+        rising = self.tabor * self.profile.slope(self.body.radii) * d_radii
+        return rising, d_weights, -rising - self.tabor * d_deflection
+
+    @property
+    def approach(self) -> float:
+        """Alpha* in eps."""
+        return float(self.x[-2])
+
+    @cached_property
+    def load(self) -> float:
+        """W in R dgamma, positive in compression."""
+        return float(self.body.weights @ self.pressure)
+
+    @cached_property
+    def central_gap(self) -> float:
+        """H(0) in eps: the deflection is smooth across the axis, as the profile need not be."""
+        return float(self.operator.axis_row @ self.deflection - self.x[-2])
+
+    @cached_property
+    def contact_radius(self) -> float:
+        """Largest radius in beta at which the gap is that of the edge, nan if there is none."""
+        if self.operator.follows_contact:
+            return float(self.x[-1])
+        return _edge(self.body, self.x[:-2], self.law.edge_gap)
+
+    @cached_property
+    def gradients(self) -> Array:
+        """Derivatives by x of approach, load and central gap, (3, q + 2)."""
+        rows, axis = np.zeros((3, self.x.size)), self.operator.axis_row
+        by_approach, by_load, by_gap = rows
+        by_approach[-2] = 1
+        np.multiply(self.body.weights, self.slope, out=by_load[:-2])
+        by_gap[:-2] = axis
+        if self.operator.follows_contact:
+            rising, d_weights, _ = self.rates
+            by_load[-1] = d_weights @ self.pressure
+            by_gap[-1] = -(axis @ rising)
+        return rows
+
+    @cached_property
+    def radius_gradient(self) -> Array:
+        """Derivative by x of the contact radius, (q + 2,)."""
+        row = np.zeros(self.x.size)
+        if self.operator.follows_contact:
+            row[-1] = 1
+        else:
+            value, slope = self.body.continuous(self.contact_radius)
+            row[:-2] = -value / (slope @ self.x[:-2])
+        return row
+
+
+def _edge(body: ElasticOperator, H: Array, edge: float) -> float:
+    """Largest radius at which the gaps H are those of the edge, on a grid that stands still."""
+    inside = np.flatnonzero(edge > H)
+    if inside.size == 0 and not body.centre_row @ H <= edge:
+        return float("nan")
+    if inside.size and inside[-1] == H.size - 1 and body.continuous_value(body.extent, H)[0] <= edge:
+        return body.extent
+    radii = [0.0, *body.radii.tolist(), body.extent]
+    below, above = radii[inside[-1] + 1 :][:2] if inside.size else radii[:2]
+    radius = by_straight_lines(body.radii, H, edge) or above
+    for _ in range(TRIES):
+        gap, slope = body.continuous_value(radius, H)
+        step = (edge - gap) / slope if slope else math.inf
+        radius += step
+        if not below <= radius <= above:
+            break
+        if abs(step) < PINNED * (above - below):
+            return radius
+
+    def beyond(r: float) -> float:
+        return body.continuous_value(r, H)[0] - edge
+
+    return root(beyond, below, above, "the contact edge; refine the grid", xtol=1e-14)
+
+
+TRIES, PINNED = 6, 1e-8  # Newton's steps towards a contact edge; part of the nodes' distance: the next is its square
+
+
+def by_straight_lines(radii: Array, H: Array, gap: float) -> float:
+    """Largest radius at which the gap is about that, between two nodes; 0 if it is wider at all."""
+    closer = np.flatnonzero(gap > H)
+    return float(np.interp(gap, H[closer[-1] :][:2], radii[closer[-1] :][:2])) if closer.size else 0.0
