@@ -23,8 +23,8 @@ from fem_adhesion.crosscheck.comparison import (
     crosscheck_tables,
     overall_verdict,
 )
-from fem_adhesion.report import sections
-from fem_adhesion.report.page import WORDS, verdict_words
+from fem_adhesion.report import page as report_page
+from fem_adhesion.report.page import WORDS, crosscheck_section, settings_section, verdict_words
 from halfspace.values import Estimate
 
 
@@ -134,7 +134,7 @@ def section_text(section):
 
 
 def test_the_levels_of_the_report_hold_each_value_under_its_header():
-    section = sections.crosscheck_section([case(AGREE, DISAGREE), FAILED])
+    section = crosscheck_section([case(AGREE, DISAGREE), FAILED])
     summary, lost, operators, residuals, equations, apart, limits, events = tables(section_text(section))
     assert residuals == equations == apart == limits == []
     assert lost == [{"Tabor parameter": "3", "reason": FAILED.reason}]
@@ -153,14 +153,14 @@ def test_the_levels_of_the_report_hold_each_value_under_its_header():
 
 def test_a_difference_without_an_error_is_not_left_out_of_the_summary():
     certain = replace(DISAGREE, first=Estimate(1.0, 0.0), second=Estimate(2.0, 0.0), difference=1.0)
-    summary = tables(section_text(sections.crosscheck_section([case(certain)])))[0]
+    summary = tables(section_text(crosscheck_section([case(certain)])))[0]
     assert summary[-1]["largest difference / error"] == "inf"
-    (missing,) = (line for line in tables(section_text(sections.crosscheck_section([case(MISSING)])))[0][-1:])
+    (missing,) = (line for line in tables(section_text(crosscheck_section([case(MISSING)])))[0][-1:])
     assert (missing["disagree"], missing["largest difference / error"]) == ("1", "none")
 
 
 def test_settings_and_costs_stand_beside_their_solver():
-    section = sections.settings_section([case(AGREE)], {"processor": "abacus"})
+    section = settings_section([case(AGREE)], {"processor": "abacus"})
     versions, settings = tables(section_text(section))
     assert {"what": "processor", "which": "abacus"} in versions
     halfspace, elements = settings
@@ -178,7 +178,7 @@ CODES = {"agree": 0, "inconclusive": 1, "disagree": 1, "failed": 1}
 
 def test_every_verdict_has_an_ending_and_a_name():
     assert set(VERDICTS) == set(WORDS) == set(ENDINGS)
-    assert set(STYLES) == {"agree", "inconclusive", "disagree"} == set(sections.VERDICTS)
+    assert set(STYLES) == {"agree", "inconclusive", "disagree"} == set(report_page.VERDICTS)
 
 
 @pytest.mark.parametrize("verdict", ENDINGS)

@@ -17,8 +17,7 @@ from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields import Beside, state_at
 from fem_adhesion.report import page as report_page
-from fem_adhesion.report.page import WORDS, Contents, page
-from fem_adhesion.report.sections import MOST_ROWS, cell, read_table
+from fem_adhesion.report.page import MOST_ROWS, WORDS, Contents, cell, page, read_table
 from fem_adhesion.report.walk import SEEN, _station, walk, walk_data
 from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES

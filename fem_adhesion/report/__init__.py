@@ -1,4 +1,4 @@
 """One page that a reviewer can be sent. The command ``report``.
 
-`walk` (the states of one curve), `sections` (the comparison, and what other commands left), `page`, `command`.
+`walk` (the states of one curve), `page` (with the comparison, and what other commands left), `command`.
 """

@@ -37,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
     """Compare, walk, and write the page."""
     from fem_adhesion.common.files import written_aside
     from fem_adhesion.curve.solve import Question
-    from fem_adhesion.report.sections import SOURCES, section_of
+    from fem_adhesion.report.page import SOURCES, section_of
     from fem_adhesion.scene import Scene
     from halfspace.limits import require_rtol
 

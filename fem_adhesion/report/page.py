@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import csv
+import math
+import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
@@ -9,15 +13,28 @@ from pathlib import Path
 
 from matplotlib import rc_context
 
-from fem_adhesion.common.facts import machine
-from fem_adhesion.common.page import Section, inlined, render, template_text
+from fem_adhesion.common.facts import machine, versions
+from fem_adhesion.common.page import Columns, Section, Table, inlined, render, template_text
 from fem_adhesion.common.style import laid_out
-from fem_adhesion.crosscheck.comparison import Case, Failure, overall_verdict, verdict_of
+from fem_adhesion.crosscheck.comparison import (
+    CLOSED_FORM,
+    SOLVERS,
+    WEAK_FORM,
+    Case,
+    Failure,
+    Row,
+    Solution,
+    cells,
+    columns,
+    overall_verdict,
+    told,
+    verdict_of,
+)
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve.lines import UNSTABLE, smooth
 from fem_adhesion.curve.solve import Curves
-from fem_adhesion.report.sections import SOURCES, crosscheck_section, section_of, settings_section
 from fem_adhesion.report.walk import Walk, walk_data, walk_words
+from halfspace.errors import InputError
 
 WORDS = {
     "failed": "A solver failed",
@@ -94,3 +111,217 @@ def _curves_section(curves: Curves) -> Section:
         f"spike of tension at the contact edge with the nodes of the grid; {last}."
     )
     return Section("curves", f"The curve by {solvers}", figures=(inlined(stream.getvalue(), "curves", text),))
+
+
+# Sections: the cross-check in its four levels, what the solvers chose, and what other commands left
+
+
+LEVELS = {
+    "operator:": ("Both elastic operators under the same pressures", SOLVERS),
+    "cross-residual:": ("The state found by one solver in the equations of the other", SOLVERS),
+    "equations:": ("What both share, at a state made up, and a weak form that shares nothing", WEAK_FORM),
+    "apart:": ("The events of the finite elements in that weak form", WEAK_FORM),
+    "limit:": ("What both share, in closed form", CLOSED_FORM),
+    "": ("The events", SOLVERS),
+}
+VERDICTS = ("agree", "inconclusive", "disagree")
+
+SUMMARY = ("level", "quantities", *VERDICTS, "largest difference / error", "largest error / budget")
+
+Cases = Sequence[Case | Failure]
+
+
+def crosscheck_section(cases: Cases) -> Section:
+    """The comparison: a summary, and tables of its levels."""
+    failures = [(f"{case.scene.tabor:g}", told(case)) for case in cases if isinstance(case, Failure)]
+    lost = (Table("", "Not solved", "", ("Tabor parameter", "reason"), failures, open=True),) if failures else ()
+    levels = [
+        Table(
+            "",
+            title,
+            "",
+            ("Tabor parameter", *columns(between)),
+            [(tabor, *cells(row)) for tabor, row in _rows(cases, level)],
+        )
+        for level, (title, between) in LEVELS.items()
+    ]
+    return Section(
+        "levels",
+        "The four levels",
+        paragraphs=(
+            "A quantity agrees only if the difference is within the sum of both error estimates and that sum within "
+            "the budget. Loads in R dgamma, approaches in eps, energies in R dgamma eps.",
+            f"Poisson's ratio {', '.join(sorted({f'{case.scene.poisson:g}' for case in cases}))}. "
+            + "; ".join(f"Tabor parameter {case.scene.tabor:g}: {verdict_of(case)}" for case in cases)
+            + ".",
+        ),
+        tables=(_summary(cases), *lost, *levels),
+    )
+
+
+def _rows(cases: Cases, level: str) -> list[tuple[str, Row]]:
+    """Tabor parameters and rows of a level."""
+    rows = [(f"{case.scene.tabor:g}", row) for case in cases for row in case.rows]
+    return [(at, row) for at, row in rows if level == next(filter(row.quantity.startswith, LEVELS))]
+
+
+def _summary(cases: Cases) -> Table:
+    lines = [_summary_line(LEVELS[level][0], [row for _, row in _rows(cases, level)]) for level in LEVELS]
+    return Table("", "Summary", "", SUMMARY, lines, open=True)
+
+
+def _summary_line(title: str, rows: Sequence[Row]) -> list[str]:
+    counts = [str(sum(row.verdict == verdict for row in rows)) for verdict in VERDICTS]
+    known = [row for row in rows if row.first and row.second]
+    ratios = [(_ratio(row.difference, row.error), _ratio(row.error, row.budget)) for row in known]
+    largest = [f"{max(column):.2g}" for column in zip(*ratios, strict=True)] or ["none", "none"]
+    return [title, str(len(rows)), *counts, *largest]
+
+
+def _ratio(part: float, whole: float) -> float:
+    return part / whole if whole else (math.inf if part else 0.0)
+
+
+def settings_section(cases: Cases, machine: dict[str, str]) -> Section:
+    """Versions, machine and what the solvers chose."""
+    columns: Columns[tuple[Case, str, Solution]] = {
+        "Tabor parameter": lambda solved: f"{solved[0].scene.tabor:g}",
+        "solver": lambda solved: solved[1],
+        "settings": lambda solved: _settings(solved[2].settings),
+        "tolerance": lambda solved: solved[2].tolerance,
+        "unknowns": lambda solved: str(solved[2].unknowns),
+        "seconds": lambda solved: f"{solved[2].seconds:.2f}",
+    }
+    every = [(case, *named) for case in cases if isinstance(case, Case) for named in case.solutions.items()]
+    facts = Table("", "Versions", "", ("what", "which"), list((versions() | machine).items()), open=True)
+    settings = Table.of("", "Settings", "", every, columns)
+    return Section("settings", "Versions and settings", tables=(facts, settings))
+
+
+def _settings(value: object) -> str:
+    """Settings in words; those of a part in brackets."""
+    if isinstance(value, Mapping):
+        parts = ((name, _settings(part), isinstance(part, Mapping)) for name, part in value.items())
+        return ", ".join(f"{name} ({text})" if nested else f"{name} {text}" for name, text, nested in parts)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+WELL = ("converged", "refused")  # how a hard case may end
+MOST_ROWS = 400  # of a table that is shown
+MOST_DIGITS = 12  # of a number that was written to be read; more are those of the machine
+DIGITS = 4  # that are shown of such
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a command line leaves in a directory that goes into the report.
+
+    The line is the command of the same name unless given. The name is that of the section and of the option that takes
+    the directory; the introduction is what to know before looking. Figures are SVG files by stem, whose captions, the
+    text alternatives too, stand in ``captions.csv``. Tables are CSV files by stem and title; of one, `counted` or "",
+    the column ``outcome`` is counted.
+    """
+
+    name: str
+    title: str
+    introduction: str
+    figures: Sequence[str]
+    tables: Sequence[tuple[str, str]]
+    counted: str = ""
+    line: str = ""
+
+    @property
+    def made_by(self) -> str:
+        """The command line."""
+        return self.line or f"fem-adhesion {self.name} --out {self.name}"
+
+
+SOURCES = (
+    Source(
+        "speed",
+        "Speed against error",
+        "Each line is a method at ever finer settings. The grey band is the least time for each error by any method, "
+        "the dotted line the uncertainty of the truth that errors are taken against: the other family's solution.",
+        ("pull_off", "jump_on", "hysteresis"),
+        (
+            ("speed", "Every method on every rung of its ladder"),
+            ("growth", "How the time of the solvers with error control grows"),
+        ),
+    ),
+    Source(
+        "hard",
+        "Hard cases",
+        "Each case has to end in a number whose error is within its estimate, or in a refusal that says why.",
+        (),
+        (("hard", "Cases"), ("locking", "Locking: largest error of the deflection under a smooth pressure")),
+        counted="hard",
+        line="make hard",
+    ),
+    Source(
+        "greenwood",
+        "Greenwood (1997), printed and computed",
+        "The paper's tables beside the same quantities computed here with their estimated errors, and figures after "
+        "the paper's and beyond.",
+        ("fig_3b", "fig_7", "fig_8"),
+        (("table_1", "Table 1"), ("table_2", "Table 2"), ("criteria_constants", "Criteria for jumping on")),
+    ),
+    Source(
+        "finite-sphere",
+        "Is the half-space good enough for my sphere?",
+        "An elastic sphere of finite radius R beside the half-space with a parabolic profile.",
+        ("chart", "causes"),
+        (("rules", "Rules of thumb"), ("theories", "Beside the theories of the rigid and of the soft sphere")),
+    ),
+)
+
+
+def section_of(source: Source, directory: Path | None) -> Section:
+    """Section from a command's directory, InputError if it lacks what that writes, or one that it was not computed."""
+    if directory is None:
+        return Section(source.name, source.title, missing=source.made_by)
+    captions = _captions(source, directory) if source.figures else {}
+    figures = tuple(
+        inlined(_require(directory / f"{stem}.svg", source).read_bytes(), f"{source.name}-{stem}", captions[stem])
+        for stem in source.figures
+        if captions.get(stem)  # those without were not drawn
+    )
+    tables = {stem: read_table(_require(directory / f"{stem}.csv", source), title) for stem, title in source.tables}
+    paragraphs, warning = [source.introduction], ""
+    if source.counted:
+        counted = tables[source.counted]
+        ended = Counter(dict(zip(counted.columns, row, strict=True))["outcome"] for row in counted.rows)
+        paragraphs.append(f"Of {ended.total()} cases: {', '.join(f'{n} {outcome}' for outcome, n in ended.items())}.")
+        wrong = {outcome: n for outcome, n in ended.items() if outcome not in WELL}
+        warning = f"{', '.join(f'{n} {outcome}' for outcome, n in wrong.items())}." if wrong else ""
+    shown = tuple(tables.values())
+    return Section(source.name, source.title, warning=warning, paragraphs=paragraphs, figures=figures, tables=shown)
+
+
+def _captions(source: Source, directory: Path) -> dict[str, str]:
+    """Captions that the command left beside its figures."""
+    with _require(directory / "captions.csv", source).open(newline="", encoding="utf-8") as file:
+        return {row["figure"]: row["caption"] for row in csv.DictReader(file)}
+
+
+def read_table(file: Path, title: str) -> Table:
+    """Contents of a CSV file, InputError if it is empty; the title says so where rows are left out."""
+    with file.open(newline="", encoding="utf-8") as stream:
+        columns, *rows = list(csv.reader(stream)) or [[]]
+    if not columns:
+        raise InputError(f"{file} is empty; run its command again")
+    left_out = f" (first {MOST_ROWS} of {len(rows)} lines; all are in {file.name})" if len(rows) > MOST_ROWS else ""
+    shown = [[cell(text) for text in row] for row in rows[:MOST_ROWS]]
+    return Table("", title + left_out, "", [name.replace("_", " ") for name in columns], shown)
+
+
+def cell(text: str) -> str:
+    """Text of a cell, numbers as the machine has them rounded."""
+    if re.fullmatch(r"[-+]?\d+\.?\d*(e[-+]?\d+)?", text) and len(re.sub(r"e.*|\D", "", text)) > MOST_DIGITS:
+        return f"{float(text):.{DIGITS}g}"
+    return text
+
+
+def _require(file: Path, source: Source) -> Path:
+    if not file.is_file():
+        raise InputError(f"{file} is not there; give the directory that {source.made_by} wrote")
+    return file
