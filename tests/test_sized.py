@@ -16,7 +16,14 @@ import halfspace
 from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic, Meshed, NeoHookean, Scene
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
-from halfspace.accuracy.finite_bodies import AroundEvents, operators_across, radii_around, surroundings
+from halfspace.accuracy.finite_bodies import (
+    AroundEvents,
+    AtRest,
+    SizedBody,
+    operators_across,
+    radii_around,
+    surroundings,
+)
 from halfspace.accuracy.stages import on_all
 from halfspace.accuracy.trace import _sized_body, resolution_for
 from halfspace.elastic import compliance, grid
@@ -24,7 +31,7 @@ from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.charts import Chart, moved
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.devices import cycle
-from halfspace.errors import InputError
+from halfspace.errors import InputError, NotConverged
 from halfspace.profiles import PARABOLOID, Paraboloid, Sphere
 from halfspace.profiles.formulas import between_spheres
 from halfspace.scales import Scales
@@ -333,3 +340,26 @@ def test_the_gap_between_two_spheres_ends_with_the_smaller_one(ratio):
     r = np.array([0.0, 0.3, 0.9]) * smaller
     heights = sum(R - np.sqrt(R**2 - r**2) for R in (smaller, 5.0 * (1 + ratio)))
     np.testing.assert_allclose(gap.height(r), 5.0 * heights, rtol=1e-12, atol=1e-12)
+
+
+def test_a_landing_has_one_operator_on_each_mesh_and_several_where_that_leads_nowhere(monkeypatch):
+    path = fem_adhesion.trace(Scene(1.0, Hemisphere(radius_ratio=100.0)), rtol=1e-4)
+    made = []
+    standing, following = SizedBody.standing, SizedBody.following
+    monkeypatch.setattr(SizedBody, "standing", lambda body, a: made.append(1) or standing(body, a))
+    monkeypatch.setattr(SizedBody, "following", lambda *of: made.append(len(of[-1])) or following(*of))
+    one, alone = cycle(path), list(made)
+    made.clear()
+    monkeypatch.setattr(AtRest, "__call__", lambda *_: refuse(NotConverged("on purpose")))
+    several = cycle(path)
+    assert set(alone) == {1}
+    assert made == [3] * len(alone)
+    for jump, other in zip(one.jumps.values(), several.jumps.values(), strict=True):
+        for name in ("approach", "load", "central_gap", "contact_radius"):
+            ours, theirs = (j.landing.estimate(name) for j in (jump, other))
+            assert np.isnan(ours.value) or abs(ours.value - theirs.value) <= 0.05 * (ours.error + theirs.error)
+        assert abs(jump.energy.value - other.energy.value) <= 0.05 * (jump.energy.error + other.energy.error)
+
+
+def refuse(error):
+    raise error

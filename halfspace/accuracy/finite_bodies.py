@@ -269,6 +269,34 @@ class AroundEvents(WhereAsked):
         apart = 1 + (CLOSER - 1) * self.window / WINDOW * 2.0 ** (AROUND - self.count)
         return AlongCurve(self.body, apart)
 
+    @cached_property
+    def at_rest(self) -> Stage:
+        """One operator for each state, where it is dear; a step of the law's tension would cross cells that stand."""
+        return AtRest(self) if self.across and not self.body.scales.step_gap else self
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class AtRest(WhereAsked):
+    """States that no derivative by the contact radius tells, on a stage for events: several operators tell that one.
+
+    Each has one, as good as exact for all radii, on cells that stand still, finest where its contact ends; those made
+    for events serve where there are some.
+    """
+
+    events: AroundEvents
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for a state, made unless one made before will do."""
+        own = next((chart for *_, chart in self.made if chart.problem is event.problem), None)
+        radius, body = float(event.point.observables[CONTACT_RADIUS]), self.events.body
+        if own or not radius > body.until:
+            return own or self.events(event)
+        near = NEAR * body.length
+        serving = self.events.serving(radius) or self.serving(radius)
+        return serving or self.keep(radius - near, radius + near, body.standing(radius))
+
+
+NEAR = 0.25  # of the finest cell, that a contact may end beside the place for which a grid was made
 
 ASTRAY = 0.05  # of a contact radius: a leap in which a chart made for the first tells nothing about the second
 

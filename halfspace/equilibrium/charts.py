@@ -70,6 +70,11 @@ class Stage(Valued, ABC):
         """The same for every point of a path: itself, unless its charts are for events."""
         return self
 
+    @property
+    def at_rest(self) -> Stage:
+        """The same for states that no derivative along the path tells: itself, unless these take fewer operators."""
+        return self
+
     def prepare(self, events: Iterable[Located]) -> None:
         """Make one chart for all these events, where that is less work than one for each; here they are made."""
 
