@@ -44,6 +44,7 @@ LARGER_ENDLESS, LARGER_HELD = 10**0.25, 3.2
 FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
 PER_DEGREE = 15.0  # what each degree divides it by
 REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
+BY_STEP = 2.0  # times as much by a law whose tension ends by a step: a degree may leave half of it
 
 
 def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> EquilibriumPath:
@@ -154,13 +155,13 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
     other = _around_events(scene, twin, rtol, level - 1, to_load)
-    doubt = scene.body.doubt
+    doubt, step = scene.body.doubt, BY_STEP if scene.scales.step_gap else 1.0
     return Rung(
         sized_body(scene, curve, to_load).curve,
         (_around_events(scene, how, rtol, level, to_load),),
         asdict(how) | {"curve_degree": curve.degree},
         other if level and doubt.other_cells else None,
-        ErrorRule(doubt.times * REMAINING, along=True, apart=NO_EDGE),
+        ErrorRule(doubt.times * step * REMAINING, along=True, apart=NO_EDGE),
     )
 
 

@@ -62,6 +62,11 @@ SCENES = (
     Scene(0.97, Coated(72.6, 55.6, poisson=0.0), law=Dugdale(0.36)),
     Scene(0.377, Coated(1.45, 0.088, 0.0, poisson=0.4999), Sphere(755), law=Dlvo(0.16, 4.12)),
     Scene(0.562, Layer(3.76, "sliding", poisson=0.47), Hyperboloid(1.79), law=Dlvo(-0.03, 4.73)),
+    Scene(1.53, Layer(0.0653, poisson=0.14), Power(5.31), law=Dugdale(0.338)),
+    Scene(0.441, Coated(19.3, 0.461, 0.4999, poisson=0.4999), Hyperboloid(0.526), law=Dugdale(0.169)),
+    Scene(0.898, Layer(0.199, poisson=0.42), RoundedPunch(0.246), law=Dlvo(0.05, 1.03)),
+    Scene(0.531, Coated(0.0861, 0.0122, 0.4999, poisson=0.0), Power(2.37), law=Exponential(1.44, 8)),
+    Scene(8.2, Layers([Stratum(1.86, 0.14), Stratum(3.5, 0.43, 0.443)], "sliding"), Hyperboloid(1.92), law=Morse(1.85)),
 )
 
 

@@ -130,6 +130,7 @@ def elements_of(scene: Scene, rtol: float) -> list[ContactProblem]:
         return _blocks(scene, rtol)
     degree = convergence.degree_for(rtol)
     finest = 2 * FINE * radius_of(scene) / scene.scales.spike_width
+    degree += scene.body.layered is not None  # thin films bend within their thickness
     hows = [replace(convergence.with_rings(d), finest=finest) for d in (degree, degree + 1)]
     made = [discretise.sized_body(scene, how) for how in hows]
     return [contact_of(body.scales, _made(body, scene)) for body in made]

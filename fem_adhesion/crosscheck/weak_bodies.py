@@ -115,7 +115,7 @@ def _half_space(finest: float, size: float, degree: int, poisson: float, tip: fl
 # Bodies with a length
 
 GROWTH, WIDEST = 2.5, 0.95  # ratio of neighbouring cells; the place in R beyond which they are finest nowhere
-CLAMPED = 1e-5  # of eps and a deflection, what a clamp under a half-space that carries strata may leave out
+CLAMPED = 2e-6  # of eps and a deflection, what a clamp under a half-space that carries strata may leave out
 RINGS = 4  # of cells around a corner where the stress is singular
 
 
