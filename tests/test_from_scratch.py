@@ -18,6 +18,7 @@ from fem_adhesion.weak_form.contact import Contact, lennard_jones
 from fem_adhesion.weak_form.newton import _extremum, newton, turning_point
 from halfspace.accuracy import trace
 from halfspace.equilibrium import conditions, search
+from halfspace.equilibrium.acting import Acting
 from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.errors import NotConverged
@@ -226,12 +227,12 @@ def _profile(monkeypatch):
 
 
 def _load(monkeypatch):
-    load, gradient = ContactProblem.load, ContactProblem.gradient
+    load, gradient = Acting.load.func, ContactProblem.gradient
 
     def scaled(self, x, weights):
         return gradient(self, x, weights * np.where(np.arange(4) == LOAD, 1.01, 1.0))
 
-    monkeypatch.setattr(ContactProblem, "load", lambda self, x: 1.01 * load(self, x))
+    monkeypatch.setattr(Acting, "load", property(lambda state: 1.01 * load(state)))
     monkeypatch.setattr(ContactProblem, "gradient", scaled)
 
 
