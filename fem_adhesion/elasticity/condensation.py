@@ -43,7 +43,8 @@ class Dissection(Valued):
     def factorised(self, cells: Array) -> Factors:
         """Eliminate the interior unknowns of all cells, (cells, k, k), then all others but those of the surface."""
         (regions, beside), inside, outside = self._regions, self.space.inside, self._outside
-        cells, unknowns = reduced_cells(cells, self.dofs, self.exterior.reduction)
+        unknowns, gathered = self._unknowns
+        cells = reduced_cells(cells, gathered)
         order = np.append(inside, outside)
         interiors, cells = eliminated_by(cells[:, order[:, None], order], unknowns[inside].T, unknowns[outside].T)
         fronts, K = regions.factorised(cells)
@@ -58,15 +59,15 @@ class Dissection(Valued):
         kept = np.diff(self.exterior.stiffness.indptr) > 0
         beside = np.setdiff1d(np.flatnonzero(kept), self.surface)
         kept[self.surface] = True
-        return dissected(self.space.mesh, self._unknowns[self._outside], kept), beside
+        return dissected(self.space.mesh, self._unknowns[0][self._outside], kept), beside
 
     @cached_property
-    def _unknowns(self) -> Index:
-        return reduced_unknowns(self.dofs, self.exterior.reduction)[0]
+    def _unknowns(self) -> tuple[Index, Array]:
+        return reduced_unknowns(self.dofs, self.exterior.reduction)
 
-    @property
+    @cached_property
     def _outside(self) -> Index:
-        return np.setdiff1d(np.arange(len(self._unknowns)), self.space.inside)
+        return np.setdiff1d(np.arange(len(self._unknowns[0])), self.space.inside)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -223,7 +224,8 @@ def flexibility(space: Space, K: Array, exterior: Exterior, surface: Index) -> A
     row = number[T.indices]
     moving = row >= 0
     shared = np.delete(space.cell_dofs, space.inside, axis=0)
-    cells, unknowns = reduced_cells(eliminate_interiors(space, K), shared, T)
+    unknowns, gathered = reduced_unknowns(shared, T)
+    cells = reduced_cells(eliminate_interiors(space, K), gathered)
     last = np.diff(exterior.stiffness.indptr) > 0
     last[column[moving]] = True
     region = dissected(space.mesh, unknowns, last)

@@ -94,21 +94,35 @@ class Region(Valued):
 class Front(Valued):
     """Unknowns `done` (c,) that are eliminated together, by their stiffness K_cc, and K_ck with those left, (k,).
 
-    `inverse` (c, c) is K_cc^-1, `recovery` (c, k) K_cc^-1 K_ck.
+    They are found again by `recovery` (c, c + k): K_cc^-1 on the forces on them, -K_cc^-1 K_ck on those left.
     """
 
     done: Index
     left: Index
-    inverse: Array
     recovery: Array
+
+    @property
+    def inverse(self) -> Array:
+        """K_cc^-1."""
+        return self.recovery[..., : self.done.shape[-1]]
+
+    @property
+    def carried(self) -> Array:
+        """What is left of a force, -K_cc^-1 K_ck."""
+        return self.recovery[..., self.done.shape[-1] :]
+
+    @cached_property
+    def both(self) -> Index:
+        """Its unknowns, and then those left."""
+        return np.concatenate([self.done, self.left], axis=-1)
 
     def carry(self, forces: Array) -> None:
         """Carry the forces on its unknowns over to those left, in place."""
-        forces[self.left] -= forces[self.done] @ self.recovery
+        forces[self.left] += forces[self.done] @ self.carried
 
     def recover(self, u: Array) -> None:
         """Turn the forces on its unknowns into their displacements, in place, where those left are known."""
-        u[self.done] = self.inverse @ u[self.done] - self.recovery @ u[self.left]
+        u[self.done] = (self.recovery @ u[self.both][..., None])[..., 0]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -117,11 +131,8 @@ class Interiors(Front):
 
     def carry(self, forces: Array) -> None:
         """Carry the forces on its unknowns over to those left, in place."""
-        np.subtract.at(forces, self.left, (forces[self.done][:, None] @ self.recovery)[:, 0])
-
-    def recover(self, u: Array) -> None:
-        """Turn the forces on its unknowns into their displacements, in place, where those left are known."""
-        u[self.done] = (self.inverse @ u[self.done][..., None] - self.recovery @ u[self.left][..., None])[..., 0]
+        carried = forces[self.done][:, None] @ self.carried
+        forces += np.bincount(self.left.ravel() % forces.size, carried.ravel(), forces.size)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -179,8 +190,9 @@ def eliminated_by(K: Array, done: Index, left: Index) -> tuple[Front, Array]:
     """
     count, kind = done.shape[-1], Interiors if done.ndim > 1 else Front
     inverse = inverses(K[..., :count, :count])
-    recovery = inverse @ K[..., :count, count:]
-    return kind(done, left, inverse, recovery), K[..., count:, count:] - K[..., count:, :count] @ recovery
+    recovery = np.concatenate([inverse, -inverse @ K[..., :count, count:]], axis=-1)
+    front = kind(done, left, recovery)
+    return front, K[..., count:, count:] + K[..., count:, :count] @ front.carried
 
 
 def inverses(blocks: Array) -> Array:
@@ -219,21 +231,20 @@ def factor(matrix: Array) -> Array:
     return np.asarray(lower)
 
 
-def reduced_cells(K: Array, dofs: Index, T: sparse.csc_array) -> tuple[Array, Index]:
-    """Cell matrices T' K T (cells, k + g, k + g) and the unknowns x (k + g, cells) they couple, where u = T x.
-
-    K (cells, k, k) is of the unknowns u of the numbers dofs (k, cells); the numbers of x are -1 where there is no
-    unknown. Most columns of T (N, n) select one unknown; any other becomes an unknown of all cells that it moves.
-    """
-    unknowns, t = reduced_unknowns(dofs, T)
+def reduced_cells(K: Array, t: Array) -> Array:
+    """Cell matrices T' K T (cells, k + g, k + g) of K (cells, k, k), t (cells, k, g) as of `reduced_unknowns`."""
     if not t.size:
-        return K, unknowns
+        return K
     Kt = K @ t
-    return np.block([[K, Kt], [Kt.transpose(0, 2, 1), t.transpose(0, 2, 1) @ Kt]]), unknowns
+    return np.block([[K, Kt], [Kt.transpose(0, 2, 1), t.transpose(0, 2, 1) @ Kt]])
 
 
 def reduced_unknowns(dofs: Index, T: sparse.csc_array) -> tuple[Index, Array]:
-    """Of these the numbers of x, (k + g, cells), and the columns of T that select none, cell by cell, (cells, k, g)."""
+    """Unknowns x (k + g, cells) that cells couple, u = T x, and the columns of T that select none, (cells, k, g).
+
+    The unknowns u have the numbers dofs (k, cells); those of x are -1 where there is none. Most columns of T (N, n)
+    select one unknown; any other becomes an unknown of all cells that it moves.
+    """
     selects = (np.diff(T.indptr) == 1) & (np.add.reduceat(T.data, T.indptr[:-1]) == 1)
     number, gathering = np.full(T.shape[0], -1), np.flatnonzero(~selects)
     number[T.indices[T.indptr[:-1][selects]]] = np.flatnonzero(selects)

@@ -31,7 +31,7 @@ from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Valued
 
 SLOW = 0.1  # part of the error that an iteration may leave; a state that leaves more gets a tangent of its own
-SOLVED = 1e-11  # relative accuracy of the linear equations where all digits are asked for
+SOLVED = 1e-10  # relative accuracy of the linear equations where none is asked for
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -100,10 +100,16 @@ class HeldBody(Valued):
             self._transposed @ self.body.forces(self.unknowns(y)) + self.exterior.stiffness @ y, dtype=np.float64
         )
 
-    def tangent_product(self, y: Array) -> Callable[[Array], Array]:
-        """Derivative of the forces along any change of y."""
+    def tangent_product(self, y: Array, change: Array) -> Callable[[Array], Array]:
+        """Derivative of the forces along any change of y and the approach, with the law's (m, m + 1) on the surface."""
         product = self.body.tangent_product(self.unknowns(y))
-        return lambda dy: np.asarray(self._transposed @ product(self.unknowns(dy)) + self.exterior.stiffness @ dy)
+
+        def along(v: Array) -> Array:
+            forces = self._transposed @ product(self.unknowns(v[:-1])) + self.exterior.stiffness @ v[:-1]
+            forces[self.surface] += change @ np.append(v[self.surface], v[-1])
+            return np.asarray(forces)
+
+        return along
 
     def energy(self, y: Array) -> float:
         """Elastic energy of body and exterior in R dgamma mu eps."""
@@ -115,21 +121,21 @@ class HeldBody(Valued):
 
     def solver(self, y: Array, change: Array, row: Array) -> Solver:
         """Solver of the bordered equations of a state, see `Tangent.bordered`, by the tangent at hand if it will do."""
-        product = cache(lambda: self.tangent_product(y))
+        tangent, product = self.near, cache(lambda: self.tangent_product(y, change))
+        nearly, known = tangent.bordered(change, row), list[tuple[Array, Array]]()
 
-        def bordered(x: Array) -> Array:
-            ends, forces = np.append(x[self.surface], x[-1]), product()(x[:-1])
-            forces[self.surface] += change @ ends
-            return np.append(forces, row @ ends)
+        def preconditioned(x: Array) -> Array:
+            return nearly(np.append(product()(x), row @ np.append(x[self.surface], x[-1])))
 
         def solve(rhs: Array, accuracy: float = 0.0) -> Array:
-            tangent = self.near
-            nearly = tangent.bordered(change, row)
-            x = nearly(rhs)
-            if self._exact(tangent, y):
-                return x
-            solution = _iterated(lambda v: nearly(bordered(v)), x, max(accuracy, SOLVED))
-            return self.tangent(y).bordered(change, row)(rhs) if solution is None else solution
+            nonlocal tangent, nearly
+            if not self._exact(tangent, y):
+                solution = _iterated(preconditioned, nearly(rhs), max(accuracy, SOLVED), known)
+                if solution is not None:
+                    return solution
+                tangent = self.tangent(y)
+                nearly = tangent.bordered(change, row)
+            return nearly(rhs)
 
         return solve
 
@@ -169,23 +175,29 @@ class HeldBody(Valued):
         return sparse.csr_array(self.exterior.reduction.T)
 
 
-def _iterated(product: Callable[[Array], Array], rhs: Array, accuracy: float) -> Array | None:
+def _iterated(
+    product: Callable[[Array], Array], rhs: Array, accuracy: float, known: list[tuple[Array, Array]]
+) -> Array | None:
     """Solution for a matrix near 1, of least residual in the space of its powers; None if it takes too many steps.
 
-    Conjugate residuals, S. C. Eisenstat, H. C. Elman and M. H. Schultz, SIAM J. Numer. Anal. 20 (1983) 345-357.
+    Conjugate residuals, S. C. Eisenstat, H. C. Elman and M. H. Schultz, SIAM J. Numer. Anal. 20 (1983) 345-357. The
+    steps known from other right-hand sides, with their effects, are taken first, and those made here join them.
     """
-    solution, residual, before = np.zeros_like(rhs), rhs, list[tuple[Array, Array]]()
+    solution, residual, enough = np.zeros_like(rhs), rhs, accuracy * np.linalg.norm(rhs)
+    for step, effect in known:
+        part = float(effect @ residual)
+        solution, residual = solution + part * step, residual - part * effect
     for _ in range(math.ceil(math.log(accuracy, SLOW))):
+        if np.linalg.norm(residual) <= enough:
+            return solution
         step, effect = residual, product(residual)
-        for s, e in before:
+        for s, e in known:
             part = float(e @ effect)
             step, effect = step - part * s, effect - part * e
         size = float(np.linalg.norm(effect))
         if not size:
             return None
-        before.append((step / size, effect / size))
-        part = float(before[-1][1] @ residual)
-        solution, residual = solution + part * before[-1][0], residual - part * before[-1][1]
-        if np.linalg.norm(residual) <= accuracy * np.linalg.norm(rhs):
-            return solution
-    return None
+        known.append((step / size, effect / size))
+        part = float(known[-1][1] @ residual)
+        solution, residual = solution + part * known[-1][0], residual - part * known[-1][1]
+    return solution if np.linalg.norm(residual) <= enough else None

@@ -18,6 +18,7 @@ The five components of A, and of the stress conjugate to it, are ordered
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,13 +39,13 @@ class Deformation(Valued):
     gradient: Array
     stretch: float
 
-    @property
+    @cached_property
     def plane_dilatation(self) -> Array:
         """Change of area in the r-z plane over delta."""
         _, rr, rz, zr, zz = self.gradient
         return np.asarray(rr + zz + self.stretch * (rr * zz - rz * zr))
 
-    @property
+    @cached_property
     def dilatation(self) -> Array:
         """(J - 1)/delta, without cancellation."""
         hoop, plane = self.gradient[0], self.plane_dilatation
@@ -55,14 +56,14 @@ class Deformation(Valued):
         """J; the material is turned inside out where it is not positive."""
         return np.asarray(1 + self.stretch * self.dilatation)
 
-    @property
+    @cached_property
     def log_volume(self) -> Array:
         """ln(J)/delta, which tends to the trace of A as delta -> 0; nan where the material is turned inside out."""
         v = self.dilatation
         with np.errstate(invalid="ignore", divide="ignore"):  # a trial of Newton's method, refused for being nan
             return np.asarray(np.log1p(self.stretch * v) / self.stretch if self.stretch else v)
 
-    @property
+    @cached_property
     def inverse_transpose(self) -> Array:
         """F^-T, (5, ...): the derivative of ln J by F."""
         delta, (hoop, rr, rz, zr, zz) = self.stretch, self.gradient

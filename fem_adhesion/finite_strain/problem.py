@@ -19,20 +19,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator
 
 from fem_adhesion.finite_strain.body import Body
 from fem_adhesion.finite_strain.held import HeldBody, Tangent
 from fem_adhesion.finite_strain.surface import ContactSurface
 from fem_adhesion.finite_strain.traction import Convention, Traction, columns
-from halfspace.equilibrium.contact import (
-    APPROACH,
-    CENTRAL_GAP,
-    CONTACT_RADIUS,
-    LOAD,
-    ContactProblem,
-    Solver,
-)
+from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem, Solver
 from halfspace.errors import IllPosed
 from halfspace.values import Array, Valued
 
@@ -109,7 +101,12 @@ class FiniteStrainProblem(Valued):
     def gaps(self, x: Array) -> Array:
         """H at the surface's points, (q,)."""
         deflected = self.tabor * (self.surface.vertical @ self.surface_unknowns(x))
-        return np.asarray(self.interface.undeformed(x[-1])[:-2] - deflected)
+        return np.asarray(self._undeformed - x[-1] - deflected)
+
+    @cached_property
+    def _undeformed(self) -> Array:
+        """Gaps over the undeformed surface that it touches, mu z, (q,)."""
+        return self.interface.undeformed(0.0)[:-2]
 
     def areas(self, x: Array) -> Array:
         """Weights of the horizontal area that the law's traction acts on, (q,), in beta^2."""
@@ -147,20 +144,13 @@ class FiniteStrainProblem(Valued):
         (P, Phi, slope), s = self._law(x), self.surface_unknowns(x)
         return np.column_stack([self.traction.tangent(s, P, Phi, slope), self.traction.forces(s, -slope, P)])
 
-    def jacobian(self, x: Array) -> LinearOperator:
-        """Derivative of the residual, (n, n + 1), as a product."""
-        change, product, n = self._surface_tangent(x), self.held.tangent_product(x[:-1]), x.size - 1
-
-        def along(dx: Array) -> Array:
-            forces = product(dx.ravel()[:-1])
-            forces[self.surface.unknowns] += change @ np.append(self.surface_unknowns(dx.ravel()), dx.ravel()[-1])
-            return forces
-
-        return LinearOperator((n, n + 1), matvec=along, dtype=np.float64)
+    def tangent_product(self, x: Array) -> Callable[[Array], Array]:
+        """Derivative of the residual, (n,), along any direction of the state."""
+        return self.held.tangent_product(x[:-1], self._surface_tangent(x))
 
     def along(self, x: Array, v: Array) -> Array:
         """Derivative of the residual along a direction of the state, (n,)."""
-        return np.asarray(self.jacobian(x) @ v)
+        return self.tangent_product(x)(v)
 
     def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Solve the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""
@@ -224,16 +214,13 @@ class FiniteStrainProblem(Valued):
     def observables(self, x: Array) -> Array:
         """Approach, load, central gap and contact radius as deformed (nan without contact), shape (4,)."""
         state = self.surface_state(x)
-        gap = self.interface.central_gap(state)
-        radius = self._deformed(x, self.interface.contact_radius(state))
-        return np.array([float(x[-1]), self.load(x), gap, radius])
+        radius = self.interface.contact_radius(state)
+        if not np.isnan(radius):
+            radius = float(self._edge_rows(state)[0] @ self._deformed_radii(x))
+        return np.array([float(x[-1]), self.load(x), self.interface.central_gap(state), radius])
 
-    def _deformed(self, x: Array, radius: float) -> float:
-        """r_d of the point of the surface at an undeformed radius."""
-        if np.isnan(radius):
-            return radius
-        row, _ = self.interface.operator.at(1.0).continuous(radius)
-        return float(row @ self.surface.deformed_radii(self.surface_unknowns(x), self.stretch))
+    def _deformed_radii(self, x: Array) -> Array:
+        return self.surface.deformed_radii(self.surface_unknowns(x), self.stretch)
 
     def weighted_observables(self, x: Array, weights: Array) -> float:
         """Sum of the observables by the given weights; one of weight zero need not exist."""
@@ -242,17 +229,19 @@ class FiniteStrainProblem(Valued):
 
     def gradient(self, x: Array, weights: Array) -> Array:
         """Derivative by x of the weighted sum of the observables, shape (n + 1,)."""
-        by_gap, s = weights[CENTRAL_GAP] * self.interface.operator.axis_row, self.surface_unknowns(x)
-        by_unknown, row = np.zeros(s.size), np.zeros(x.size)
-        if weights[LOAD]:
-            by_gap = by_gap + weights[LOAD] * self.areas(x) * self.interface.law.slope(self.gaps(x), self.tabor)
-            by_unknown += weights[LOAD] * self.traction.area_gradient(s, self.pressure(x))
+        s, state, row = self.surface_unknowns(x), self.surface_state(x), np.zeros(x.size)
+        undeformed, by_unknown = weights * (np.arange(4) != LOAD), np.zeros(s.size)
         if weights[CONTACT_RADIUS]:
-            by_gap = by_gap + weights[CONTACT_RADIUS] * self._radius_by_gap(x)
-            at_edge, _ = self._edge_rows(x)
-            by_unknown += weights[CONTACT_RADIUS] * self.stretch * (at_edge @ self.surface.radial)
+            value, slope = self._edge_rows(state)
+            undeformed[CONTACT_RADIUS] *= slope @ self._deformed_radii(x)
+            by_unknown += weights[CONTACT_RADIUS] * self.stretch * (value @ self.surface.radial)
+        by_state = self.interface.gradient(state, undeformed)
+        by_gap, by_approach = by_state[:-2].copy(), by_state[-2]
+        if weights[LOAD]:
+            by_gap += weights[LOAD] * self.areas(x) * self.interface.law.slope(state[:-2], self.tabor)
+            by_unknown += weights[LOAD] * self.traction.area_gradient(s, self.pressure(x))
         row[self.surface.unknowns] = by_unknown - self.tabor * (by_gap @ self.surface.vertical)
-        row[-1] = weights[APPROACH] - by_gap.sum()
+        row[-1] = by_approach - by_gap.sum()
         return row
 
     def rates(self, x: Array, v: Array) -> Array:
@@ -260,15 +249,9 @@ class FiniteStrainProblem(Valued):
         exists = np.isfinite(self.observables(x))
         return np.array([self.gradient(x, row) @ v if e else 0.0 for row, e in zip(np.eye(4), exists, strict=True)])
 
-    def _edge_rows(self, x: Array) -> tuple[Array, Array]:
-        """Rows that interpolate at the contact edge, and their derivatives by its undeformed radius."""
-        return self.interface.operator.at(1.0).continuous(self.interface.contact_radius(self.surface_state(x)))
-
-    def _radius_by_gap(self, x: Array) -> Array:
-        """Derivative of the deformed contact radius by the gaps, as the edge moves over the surface, (q,)."""
-        value, slope = self._edge_rows(x)
-        r_d = self.surface.deformed_radii(self.surface_unknowns(x), self.stretch)
-        return np.asarray(-value * (slope @ r_d) / (slope @ self.gaps(x)))
+    def _edge_rows(self, state: Array) -> tuple[Array, Array]:
+        """Rows that interpolate at the contact edge of a surface's state, and their derivatives by its radius."""
+        return self.interface.operator.at(1.0).continuous(self.interface.contact_radius(state))
 
     def longest_step(self, x: Array, dx: Array) -> float:
         """Fraction of the step dx that takes no gap h below a quarter of its value, nor any J below a tenth."""
@@ -298,7 +281,7 @@ class FiniteStrainProblem(Valued):
         GridTooCoarse and IllPosed tell what there is, and the limit.
         """
         self.interface.require_resolution(self.surface_state(x))
-        drawn = np.max(self.surface.deformed_radii(self.surface_unknowns(x), self.stretch) / self.surface.radii)
+        drawn = np.max(self._deformed_radii(x) / self.surface.radii)
         if drawn > MOST_DRAWN:
             raise IllPosed(
                 f"the surface is drawn out {drawn:.3g} times at approach {x[-1]:.6g} eps, load {self.load(x):.6g} "

@@ -44,12 +44,6 @@ class ContactSurface(Valued):
         change += self.deformed_radii(s, stretch)[:, None] * self.radial_rate
         return np.asarray(stretch * self.measure[:, None] * change)
 
-    def area_gradient(self, s: Array, stretch: float, amounts: Array) -> Array:
-        """Derivative by s of the areas, summed with the given amounts (q,), (m,)."""
-        amounts = stretch * self.measure * amounts
-        by_radius = (self._radii_rate(s, stretch) * amounts) @ self.radial
-        return np.asarray(by_radius + (self.deformed_radii(s, stretch) * amounts) @ self.radial_rate)
-
     def area_curvature(self, stretch: float, amounts: Array) -> Array:
         """Second derivative by s of the areas, summed with the given amounts (q,), (m, m)."""
         half = self.radial.T @ ((stretch**2 * self.measure * amounts)[:, None] * self.radial_rate)

@@ -125,14 +125,14 @@ class Traction(Valued):
 
     def area_gradient(self, s: Array, amounts: Array) -> Array:
         """Derivative by s of the areas, summed with the given amounts (q,), (m,)."""
-        return self.surface.area_gradient(s, self.stretch, self._deformed_area * amounts)
+        return np.asarray((self._deformed_area * amounts) @ self.surface.area_rates(s, self.stretch))
 
     def forces(self, s: Array, P: Array, Phi: Array) -> Array:
         """Less the forces on the surface's unknowns, (m,), in R dgamma: upwards where the pressure is downwards.
 
         s (m,) are the unknowns of the surface, P and Phi (q,) the pressure and energy of the law.
         """
-        spreading = self.surface.area_gradient(s, self.stretch, self._surface_stress / self.tabor * Phi)
+        spreading = (self._surface_stress / self.tabor * Phi) @ self.surface.area_rates(s, self.stretch)
         return np.asarray((P * self.areas(s)) @ self.surface.vertical + spreading)
 
     def tangent(self, s: Array, P: Array, Phi: Array, slope: Array) -> Array:

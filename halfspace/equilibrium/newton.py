@@ -234,7 +234,7 @@ def tangent(problem: Equilibrium, solution: Solution) -> Array:
     row = problem.gradient(solution.x, solution.control.weights)
     unit = _last(row.size)
     if not problem.reuse:
-        return problem.bordered_solver(solution.x, row)(unit)
+        return solution.solver(unit)
     t, before = solution.solver(unit), 1.0
     for _ in range(REFINEMENTS):
         change = solution.solver(unit - appended(problem.along(solution.x, t), float(row @ t)))
