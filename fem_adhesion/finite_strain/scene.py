@@ -18,13 +18,13 @@ from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.refinement import ascend, climb
-from halfspace.accuracy.stages import Rung, Standing
+from halfspace.accuracy.stages import Rung, Standing, State
 from halfspace.accuracy.trace import TWIN
 from halfspace.equilibrium.charts import COMPRESSION, metric_for, moved, trace_charts
 from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import REMAINING, ErrorRule, Event, usual
+from halfspace.equilibrium.events import REMAINING, ErrorRule, Event
 from halfspace.equilibrium.path import Segment
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
@@ -66,9 +66,9 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
     began = time.perf_counter()
     with _cause_told(scene):
         path = climb(rtol, partial(Stages(scene).rung, _lowest_degree(rtol)), to_load=to_load, most_rungs=MOST_RUNGS)
-    spread = {name: _spread(path.stages[-2][name], scene) for name in usual(path.events)}
     settings = {**path.settings, "traction": scene.material.traction}
-    return replace(path, spread=spread, settings=settings, seconds=time.perf_counter() - began)
+    apart = partial(_apart, scene, path.stages[-2])
+    return replace(path, apart=apart, settings=settings, seconds=time.perf_counter() - began)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -108,9 +108,10 @@ def _lowest_degree(rtol: float) -> int:
     return int(np.clip(np.ceil(-np.log10(rtol)), 4, 6))
 
 
-def _spread(event: Located, scene: Scene) -> dict[str, float]:
+def _apart(scene: Scene, events: State, name: str) -> dict[str, float]:
     """How far the conservative tractions lie apart in the numbers of an event; nan if one does not have it."""
-    found = [_counted(event, scene.made_of(NeoHookean(scene.poisson, name))) for name in CONSERVATIVE]
+    others = (scene.made_of(NeoHookean(scene.poisson, traction)) for traction in CONSERVATIVE)
+    found = [_counted(events[name], other) for other in others]
     return dict(zip(NUMBERS, np.ptp(found, axis=0).tolist(), strict=True))
 
 

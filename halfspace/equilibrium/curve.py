@@ -73,9 +73,8 @@ class EquilibriumPath(Valued):
     margin : Estimate, optional
         How far the curve is from folding where two folds are about to be born or to merge: its least -d(alpha*)/dW in
         eps/(R dgamma). Any apparatus of a greater compliance jumps; if it is negative, so do fixed grips.
-    spread : mapping of str to mapping of str to float
-        By event, how far apart its numbers are in models between which the assumptions leave a choice; of no event if
-        they leave none.
+    apart : callable, optional
+        How far apart the numbers of an event are in models between which the assumptions leave a choice, if they do.
     left_out : callable
         The folds of `unconfirmed`.
     """
@@ -95,13 +94,18 @@ class EquilibriumPath(Valued):
     apart: float = 1.0
     ways: Ways = ()
     margin: Estimate | None = None
-    spread: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    apart: Callable[[str], Mapping[str, float]] | None = field(default=None, compare=False)
     left_out: Callable[[], tuple[Unconfirmed, ...]] = field(default=tuple, compare=False)
 
     @property
     def unknowns(self) -> int:
         """Unknowns of the finest discretisation used, elastic ones included."""
         return self.finest.unknowns
+
+    @cached_property
+    def spread(self) -> dict[str, Mapping[str, float]]:
+        """By event, how far models lie apart in its numbers, see `apart`; solved for when first asked for."""
+        return {name: self.apart(name) for name in usual(self.events)} if self.apart else {}
 
     @property
     def rtol(self) -> float:
