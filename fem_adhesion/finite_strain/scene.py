@@ -68,7 +68,7 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
         path = climb(rtol, partial(Stages(scene).rung, _lowest_degree(rtol)), to_load=to_load, most_rungs=MOST_RUNGS)
     settings = {**path.settings, "traction": scene.material.traction}
     apart = partial(_apart, scene, path.stages[-2])
-    return replace(path, apart=apart, settings=settings, seconds=time.perf_counter() - began)
+    return replace(path, model_uncertainty=apart, settings=settings, seconds=time.perf_counter() - began)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

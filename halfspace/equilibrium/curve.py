@@ -73,7 +73,7 @@ class EquilibriumPath(Valued):
     margin : Estimate, optional
         How far the curve is from folding where two folds are about to be born or to merge: its least -d(alpha*)/dW in
         eps/(R dgamma). Any apparatus of a greater compliance jumps; if it is negative, so do fixed grips.
-    apart : callable, optional
+    model_uncertainty : callable, optional
         How far apart the numbers of an event are in models between which the assumptions leave a choice, if they do.
     left_out : callable
         The folds of `unconfirmed`.
@@ -94,7 +94,7 @@ class EquilibriumPath(Valued):
     apart: float = 1.0
     ways: Ways = ()
     margin: Estimate | None = None
-    apart: Callable[[str], Mapping[str, float]] | None = field(default=None, compare=False)
+    model_uncertainty: Callable[[str], Mapping[str, float]] | None = field(default=None, compare=False)
     left_out: Callable[[], tuple[Unconfirmed, ...]] = field(default=tuple, compare=False)
 
     @property
@@ -104,8 +104,8 @@ class EquilibriumPath(Valued):
 
     @cached_property
     def spread(self) -> dict[str, Mapping[str, float]]:
-        """By event, how far models lie apart in its numbers, see `apart`; solved for when first asked for."""
-        return {name: self.apart(name) for name in usual(self.events)} if self.apart else {}
+        """By event, how far models lie apart in its numbers, solved for when first asked for."""
+        return {name: self.model_uncertainty(name) for name in usual(self.events)} if self.model_uncertainty else {}
 
     @property
     def rtol(self) -> float:
