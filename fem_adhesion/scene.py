@@ -214,6 +214,11 @@ class UpTo(Valued):
         """Whether it rises from the axis as a power of the radius."""
         return self.surface.pointed
 
+    @property
+    def pieced(self) -> bool:
+        """Whether some derivative leaps between pieces of it."""
+        return self.surface.pieced
+
     def height(self, radii: Array) -> Array:
         """Height in beta^2/R."""
         return self.surface.height(radii)

@@ -16,10 +16,12 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import combinations
 import drawn_layers
+import numpy as np
 import side_by_side
 import truths
 from scenes import pair
@@ -370,6 +372,25 @@ def _stages_under_sphere(size):
     return truths.under_sphere(*size)
 
 
+def _tip(half_angle, rows, end, radius_ratio):
+    """Blunted cone by a table of so many rows, up to so many radii of its apex."""
+    r = np.linspace(0, end, rows)
+    table = np.stack([r, Hyperboloid(1 / math.tan(math.radians(half_angle))).height(r)], axis=1)
+    with TemporaryDirectory() as folder:
+        np.savetxt(Path(folder, "tip.csv"), table, delimiter=",", header="r,z", comments="")
+        return halfspace.profiles.Tabulated(Path(folder, "tip.csv"), radius_ratio)
+
+
+def _under_tip(scene, rtol):
+    tabor, *tip = scene
+    return halfspace.trace(tabor, profile=_tip(*tip), rtol=rtol)
+
+
+def _stages_under_tip(scene):
+    tabor, *tip = scene
+    return truths.under_surface(tabor, _tip(*tip).surface(tabor))
+
+
 def _on_layers(scene, rtol):
     return halfspace.trace(scene.tabor, law=scene.law, profile=scene.shape, body=scene.body.layered, rtol=rtol)
 
@@ -402,6 +423,14 @@ def _assess(contact, _):
     return assess(contact)
 
 
+TIPS = (
+    (1.0, 60, 100, 3, 100.0),
+    (0.3, 60, 100, 3, 30.0),
+    (0.3, 20, 300, 5, 30.0),
+    (2.0, 70, 200, 4, 100.0),
+    (1.0, 45, 60, 3, 30.0),
+    (5.0, 30, 150, 4, 300.0),
+)
 SLIDING = _sphere(1, 30, poisson=0.3), _sphere(0.3, 30), _sphere(2, 100, poisson=0.45)
 BLOCKS = tuple(map(_block, (*USUAL[:12:2], 0.1, 0.69, 0.7, 0.8, 3, 4, 7, 10, 20)))
 PLIES = Stratum(0.3, 0.3), Stratum(1.0, 0.45, 0.2), Stratum(0.5, 0.3, 3.0)
@@ -467,6 +496,13 @@ FAMILIES = {
         _by_law_and_profile,
         of_path,
         partial(traced, truths.half_space_of, _itself),
+    ),
+    "tips from tables": Family(
+        Net(TIPS, _decades(2, 3, 4, 5, 6, 7, 8, 9)),
+        Net(TIPS[:1], _decades(3, 6)),
+        _under_tip,
+        of_path,
+        partial(relocated, _stages_under_tip),
     ),
     "layers": Family(
         Net(LAYERED, _decades(2, 3, 4, 5, 6, 7)),

@@ -67,10 +67,14 @@ def on(stage, state):
 
 def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
     """The half-space under a sphere or two."""
-    gap = between_spheres(float(np.sqrt(radius_ratio / tabor)), counter_radius)
-    scales, outer = Scales(tabor, profile=gap), np.array([gap.end])
+    return under_surface(tabor, between_spheres(float(np.sqrt(radius_ratio / tabor)), counter_radius))
+
+
+def under_surface(tabor, surface):
+    """The half-space under a surface that ends."""
+    scales, outer = Scales(tabor, profile=surface), np.array([surface.end])
     return [
-        standing(SizedBody(scales, partial(_panels, nodes), *how, outer, FLAT, last * gap.end))
+        standing(SizedBody(scales, partial(_panels, nodes), *how, outer, FLAT, last * surface.end))
         for nodes, *how, last in ((14, 0.45, 2.5, 1e-7), (16, 0.35, 2.2, 1e-8))
     ]
 

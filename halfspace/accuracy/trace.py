@@ -331,7 +331,11 @@ def _windows(scales: Scales, resolution: Resolution, to_load: float) -> Windows:
 
 
 def _rule(level: int, doubt: int = 1) -> ErrorRule:
-    """How errors are told from the change by one node more, or by two and more, and so many times as large."""
+    """How errors are told from the change by one node more, or by two and more, and so many times as large.
+
+    Where a profile's derivatives leap inside a cell an error falls as a power of the nodes: a pair more leaves as much
+    there as elsewhere one.
+    """
     return ErrorRule(doubt * (ONE_NODE if level == 1 else REMAINING), apart=NO_EDGE)
 
 
@@ -358,7 +362,7 @@ def _sized_rung(scales: Scales, images: Sequence[Images | None], rtol: float, to
         (AroundEvents(fine, *surroundings(rtol, level), EVENTS_LEAVE),),
         settings,
         AroundEvents(other, *surroundings(rtol, level - 1), EVENTS_LEAVE) if level else None,
-        _rule(level, doubt),
+        _rule(1 if scales.profile.pieced else level, doubt),
     )
 
 

@@ -27,6 +27,11 @@ class Surface(Protocol):
         """Whether it rises from the axis as a power of the radius that is no polynomial in its square."""
         ...
 
+    @property
+    def pieced(self) -> bool:
+        """Whether some derivative leaps between pieces of it, as of a spline."""
+        ...
+
     def height(self, radii: Array) -> Array:
         """Height in beta^2/R at radii in beta."""
         ...
@@ -60,6 +65,11 @@ class Dimensionless:
     @property
     def pointed(self) -> bool:
         """False: smooth."""
+        return False
+
+    @property
+    def pieced(self) -> bool:
+        """False: one function."""
         return False
 
     def surface(self, tabor: float) -> Self:  # noqa: ARG002 (the same at all)

@@ -172,6 +172,11 @@ class Tip(Valued, Dimensionless):
         """Radius in beta at which it ends."""
         return self.table.end / self.beta
 
+    @property
+    def pieced(self) -> bool:
+        """True: the fifth derivative of its spline leaps."""
+        return True
+
     def height(self, radii: Array) -> Array:
         """Height over the apex."""
         spline = self.table._spline
