@@ -196,3 +196,17 @@ def test_the_continuous_interpolation_does_not_leap_where_cells_meet():
         assert slope @ values == pytest.approx(difference, rel=1e-6, abs=1e-7)
     for node in (0, 3, 4, 7, 11):
         np.testing.assert_allclose(operator.continuous(operator.radii[node])[0], np.eye(12)[node], atol=1e-12)
+
+
+@pytest.mark.parametrize("R", [10.0, np.inf])
+def test_operators_integrated_together_are_those_of_each_grid_alone(R):
+    lines = np.array([0.0, 0.3, 0.8, 1.0, 1.1, 1.6, 5.0, 20.0]) * np.array([[0.9], [1.0], [1.0]])
+    lines[:, -1] = 20.0
+    lines[2, 3] = 1.05
+    together = compliance.stacked_panels(lines, 8, R)
+    assert len(together) == 3
+    for ends, operator in zip(lines, together, strict=True):
+        alone = compliance.panels(ends, 8, R)
+        for name in ("radii", "weights", "cells", "cell_nodes"):
+            np.testing.assert_array_equal(getattr(operator, name), getattr(alone, name))
+        np.testing.assert_allclose(operator.compliance, alone.compliance, rtol=1e-12)

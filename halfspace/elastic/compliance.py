@@ -273,15 +273,21 @@ def panels(lines: Array, nodes_per_panel: int, R: float = np.inf) -> ElasticOper
     it is a polynomial of the coordinate x = 2 R tan(theta/2), and the lines are in that, from 0 to 2 R: at the equator
     the gap rises as the root of the distance, but smoothly by x; see `halfspace.elastic.kernel.stereographic_ring`.
     """
+    return stacked_panels(lines[None], nodes_per_panel, R)[0]
+
+
+def stacked_panels(lines: Array, nodes_per_panel: int, R: float = np.inf) -> list[ElasticOperator]:
+    """Half-spaces as of `panels`, integrated all at once, one for each row of lines (n, m + 1)."""
     if not 1 <= nodes_per_panel <= 16:
         raise InputError(f"nodes_per_panel {nodes_per_panel} is outside 1 to 16; use more panels instead")
     points, _ = grid.gauss_legendre(nodes_per_panel)
     x, w = grid.gauss_points(lines, nodes_per_panel)
-    compliance = panel_integrals(x.ravel(), lines, points, stereographic_ring(R))
+    compliance = panel_integrals(x.reshape(len(lines), -1), lines, points, stereographic_ring(R))
     if np.isfinite(R):
-        compliance[-points.size :, -1] = before_equator(x[-1], lines, points, R)
+        compliance[:, -points.size :, -1] = before_equator(x[:, -1], lines, points, R)
     p = 1 + (x / (2 * R)) ** 2
-    return collocated(x / p, (2 - p) / p**2 * w, compliance, lines / (1 + (lines / (2 * R)) ** 2))
+    parts = zip(x / p, (2 - p) / p**2 * w, compliance, lines / (1 + (lines / (2 * R)) ** 2), strict=True)
+    return [collocated(*part) for part in parts]
 
 
 def collocated(radii: Array, lengths: Array, compliance: Array, cells: Array) -> ElasticOperator:

@@ -110,10 +110,10 @@ def gauss_legendre(points: int) -> tuple[Array, Array]:
 
 
 def gauss_points(lines: Array, count: int) -> tuple[Array, Array]:
-    """Points of Gauss's rule, so many from each of the lines (m + 1,) to the next, and their weights, (m, count)."""
+    """Points of Gauss's rule, so many from each of the lines (..., m + 1) to the next, and weights, (..., m, count)."""
     x, w = gauss_legendre(count)
-    half = np.diff(lines)[:, None] / 2
-    return lines[:-1, None] + half * (1 + x), half * w
+    half = np.diff(lines)[..., None] / 2
+    return lines[..., :-1, None] + half * (1 + x), half * w
 
 
 def _require_positive(**lengths: float) -> None:

@@ -99,34 +99,38 @@ def graded_rule(points: int, q: int = GRADING) -> tuple[Array, Array]:
 def panel_integrals(targets: Array, breakpoints: Array, nodes: Array, ring: Ring = flat_ring) -> Array:
     """Integrate G(r_i, s) s l(s) over each panel for each Lagrange polynomial l of the panel's nodes.
 
-    The targets (n,) are the radii r_i >= 0 at which the deflection is wanted, anywhere on or off the panels, whose
-    ends, the breakpoints (m + 1,), ascend from at least 0; the nodes (k,) are those of a panel on [-1, 1]. The
-    deflection (n, m, k) at r_i (E* = 1) is by the pressure l_k on panel j, to an absolute accuracy of 1e-12 of the
+    The targets (..., n) are the radii r_i >= 0 at which the deflection is wanted, anywhere on or off the panels, whose
+    ends, the breakpoints (..., m + 1), ascend from at least 0; the nodes (k,) are those of a panel on [-1, 1]. The
+    deflection (..., n, m, k) at r_i (E* = 1) is by the pressure l_k on panel j, to an absolute accuracy of 1e-12 of the
     panel's scale. By another ring all radii are in its coordinate.
     """
     targets = np.asarray(targets, float)
-    batches = -(-targets.size * (breakpoints.size - 1) * _points(FAR[-1][1], nodes.size) // BATCH)
-    moments = np.concatenate(
-        [_moments(ring, some, breakpoints, nodes.size) for some in np.array_split(targets, batches)]
-    )
-    return _of_lagrange(moments, nodes).reshape(targets.size, -1, nodes.size)
+    ends = breakpoints[..., None, :-1], breakpoints[..., None, 1:]
+    pairs = np.broadcast_arrays(targets[..., None], *ends)
+    shape, batches = pairs[0].shape, -(-pairs[0].size * _points(FAR[-1][1], nodes.size) // BATCH)
+    some = zip(*(np.array_split(part.ravel(), batches) for part in pairs), strict=True)
+    moments = np.concatenate([_moments(ring, r, left, right, nodes.size) for r, left, right in some])
+    return _of_lagrange(moments, nodes).reshape(*shape, nodes.size)
 
 
 def before_equator(targets: Array, lines: Array, nodes: Array, R: float) -> Array:
-    """Integrals as of `panel_integrals` by the stereographic ring over the last panel, at its own nodes.
+    """Integrals (..., k, k) as of `panel_integrals` by the stereographic ring over the last panel, at its own nodes.
 
-    A target and its mirror image beyond the equator have the same radius: what is between is cut into halves, the rule
-    of the one from the target on, of the other from the equator.
+    The targets (..., k) are these, the lines (..., m + 1) the ends of all panels. A target and its mirror image beyond
+    the equator have the same radius: what is between is cut into halves, the rule of the one from the target on, of the
+    other from the equator.
     """
     ring, k, rule = stereographic_ring(R), nodes.size, (NEAR_POINTS, GRADING)
     t, polynomials = _graded_polynomials(*rule, k)
-    left, right = (np.full_like(targets, line) for line in lines[-2:])
+    shape, (left, right) = targets.shape, (np.repeat(lines[..., end], k) for end in (-2, -1))
+    targets = targets.ravel()
     middle = (targets + right) / 2
     y = right[:, None] - (right - middle)[:, None] * t
     last = ring(targets[:, None], y, y - targets[:, None]) @ polynomials * (right - middle)[:, None]
     last[:, 1::2] *= -1  # odd polynomials, seen from the right end
     first = (beside(ring, targets, *ends, k, rule) for ends in ((left, targets), (targets, middle)))
-    return _of_lagrange(_of_parts([*first, last], _at_nodes(k, mirrored=True)), nodes)
+    parts = [np.tile(part, (targets.size // k, 1, 1)) for part in _at_nodes(k, mirrored=True)]
+    return _of_lagrange(_of_parts([*first, last], parts), nodes).reshape(*shape, k)
 
 
 def _of_lagrange(moments: Array, nodes: Array) -> Array:
@@ -140,10 +144,8 @@ def _to_lagrange(nodes: bytes) -> Array:
     return np.asarray(np.linalg.inv(legvander(x, x.size - 1)))
 
 
-def _moments(ring: Ring, targets: Array, breakpoints: Array, k: int) -> Array:
-    """Integrals of G(r_i, s) s against the first k Legendre polynomials of each panel, (n m, k)."""
-    left, right = breakpoints[:-1], breakpoints[1:]
-    r, left, right = (v.ravel() for v in np.broadcast_arrays(targets[:, None], left, right))
+def _moments(ring: Ring, r: Array, left: Array, right: Array, k: int) -> Array:
+    """Integrals of G(r, s) s against the first k Legendre polynomials of a panel for each target, (n, k)."""
     distance = np.searchsorted([least for least, _ in FAR], np.maximum(left - r, r - right) / (right - left))
     moments = np.empty((r.size, k))
     for i in range(len(FAR) + 1):
