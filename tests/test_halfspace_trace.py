@@ -14,6 +14,7 @@ import halfspace
 from halfspace.accuracy.fold_birth import critical_stiffness
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.trace import Resolution, half_space_charts, resolution_for
+from halfspace.elastic import compliance
 from halfspace.equilibrium.charts import metric_for, trace_charts
 from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets, locate
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem
@@ -22,6 +23,7 @@ from halfspace.equilibrium.path import Metric, Point, Steps, _hides_turning_poin
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dugdale
+from halfspace.profiles import Sphere
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 
@@ -282,6 +284,27 @@ def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, po
     path = halfspace.trace(tabor, law=law)
     assert path.count <= points
     assert len(made) <= factorisations
+
+
+@pytest.mark.parametrize(("tabor", "ratio", "rtol"), [(1.0, 100.0, 1e-6), (0.3, 30.0, 1e-4), (5.0, 1000.0, 1e-8)])
+def test_events_under_a_sphere_are_found_first_on_the_operators_of_the_curve(monkeypatch, tabor, ratio, rtol):
+    """They err by less than rtol from those made for a radius between, and are all that the lowest rung takes."""
+    made = []
+    integrate = compliance.stacked_panels
+    monkeypatch.setattr(compliance, "stacked_panels", lambda *args: made.append(len(args[0])) or integrate(*args))
+    path = halfspace.trace(tabor, profile=Sphere(ratio), rtol=rtol)
+    assert path.met
+    traced = [segment.problem for segment in path.segments]
+    least = traced[1].operator.least_radius
+    on_curve = [e for e in path.stages[0].values() if not e.point.observables[CONTACT_RADIUS] < least]
+    assert all(any(event.problem is problem for problem in traced) for event in on_curve)
+    known = traced[1].operator
+    assert sum(made) <= 1 + known.scales.size + 2 * (1 + 4 * path.finest.count) + path.finest.count
+    for a in np.sqrt(known.scales[1:] * known.scales[:-1]):
+        (exact,) = integrate(known.grid.lines(a)[None], known.operators[0].cell_nodes.shape[1], known.grid.coordinate.R)
+        pressure = np.exp(-((exact.radii / a) ** 2))
+        w, near = exact.compliance @ pressure, known.at(a).compliance @ pressure
+        np.testing.assert_allclose(near, w, rtol=rtol)
 
 
 @pytest.mark.parametrize("sign", [1, -1])

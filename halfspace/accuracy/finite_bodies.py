@@ -8,6 +8,7 @@ where the interpolation is as good as exact: whichever takes fewer operators.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -41,6 +42,9 @@ STEPS = 25  # per unit of the logarithm: where charts begin and end, so that tho
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
+ON_CURVE = (
+    1.3  # the same where events are solved for on the operators of the curve as well, each to be as good as its grid
+)
 
 Made = tuple[ElasticOperator, int]
 
@@ -54,7 +58,8 @@ class SizedBody(Valued):
     the most ratio of neighbouring cells. `outer` (k,) are the last cells' ends, ascending, which do not move with the
     contact: their first is where the others end, the last of which is `last` long, in beta, if they are to be fine
     there too; see `at_equator`. Charts for a curve reach as far as the contact under the compressive load `to_load`, in
-    R dgamma. No cell on the axis is longer than `first`, in beta; see `at_tip`.
+    R dgamma. No cell on the axis is longer than `first`, in beta; see `at_tip`. Where that is less work, `together`
+    makes what `make` does of several grids, (n, m + 1), at once.
     """
 
     scales: Scales
@@ -66,6 +71,7 @@ class SizedBody(Valued):
     last: float = np.inf
     to_load: float = COMPRESSION
     first: float = np.inf
+    together: Callable[[Array], list[Made]] | None = None
 
     @property
     def length(self) -> float:
@@ -102,13 +108,20 @@ class SizedBody(Valued):
 
     def following(self, moving: MovingGrid, scales: Array) -> Chart:
         """Chart that follows the contact edge, from operators at some contact radii."""
-        made = [self.make(moving.lines(float(a))) for a in scales]
+        lines = np.array([moving.lines(float(a)) for a in scales])
+        made = self.together(lines) if self.together else [self.make(one) for one in lines]
         operator = Interpolated(scales, [operator for operator, _ in made], moving)
         return Chart(contact_of(self.scales, operator), made[0][1])
 
+    @property
+    def radii_of_curve(self) -> tuple[float, float]:
+        """Least and widest contact radius of charts for the whole curve that follow the contact."""
+        widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * self.scales.profile.end)
+        return least_along(self.until, widest), widest
+
     def curve(self, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
-        widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * self.scales.profile.end)
+        _, widest = self.radii_of_curve
         end, edge = float(self.outer[0]), self.coordinate.of(widest)
         inner = self._inner(2 * self.length / edge, widest)
         outside = grid.geometric(end, self.length, self._growth, self.last)
@@ -145,9 +158,14 @@ def standing(body: SizedBody) -> Standing:
     return Standing(body, AlongCurve(body))
 
 
+def least_along(until: float, widest: float) -> float:
+    """Least contact radius of a chart for a curve, up to the widest, on which it comes from the one on the axis."""
+    return min(LEAST * until, widest / 2)
+
+
 def radii_along(until: float, widest: float, apart: float = APART) -> Array:
     """Contact radii for a curve from where the chart centred on the axis is left: one `apart` times the other."""
-    least = min(LEAST * until, widest / 2)
+    least = least_along(until, widest)
     return chebyshev_radii(least, widest, 2 + int(np.ceil(np.log(widest / least) / np.log(apart))))
 
 
@@ -176,8 +194,13 @@ def at_tip(profile: Surface, nodes: int) -> float:
 
 
 def step_above(length: float) -> float:
-    """The next length of a geometric sequence that has 1, `STEPS` to a factor of e."""
-    return float(np.exp(np.ceil(STEPS * np.log(length)) / STEPS))
+    """The next length above of a sequence with `STEPS` to a factor of e."""
+    return of_sequence(length, STEPS, np.ceil)
+
+
+def of_sequence(length: float, steps: int, rounded: Callable[[float], float]) -> float:
+    """That length of the geometric sequence with 1, so many steps to a factor of e, to which another is rounded."""
+    return float(np.exp(rounded(steps * np.log(length)) / steps))
 
 
 def surroundings(rtol: float, level: int) -> tuple[float, int]:
@@ -188,6 +211,21 @@ def surroundings(rtol: float, level: int) -> tuple[float, int]:
     """
     window, count = (WINDOW, AROUND) if rtol >= TIGHT else (2 * WINDOW, AROUND + 2)
     return window / 2**level, count
+
+
+def apart_for_events(body: SizedBody, rtol: float) -> float | None:
+    """Ratio of the radii of a curve's operators by which events are found as well as on those made for each, to rtol.
+
+    They err by no more at coarse ones, lest estimates followed them. None where that takes more of them than the curve
+    for itself, and so many for each of four events.
+    """
+    least, widest = body.radii_of_curve
+    count = operators_across(body, min(rtol, TIGHT), 0, math.sqrt(least * widest), math.log(widest / least) / 2)
+    alone = radii_along(body.until, widest).size + FOLLOWING * surroundings(rtol, 0)[1]
+    return (widest / least) ** (1 / (count - 2)) if count < alone else None
+
+
+FOLLOWING = 4  # events on grids that follow the contact
 
 
 def operators_across(body: SizedBody, rtol: float, level: int, radius: float, window: float) -> int:
@@ -215,7 +253,8 @@ class AroundEvents(WhereAsked):
     width of the contact radii that a chart for one event serves, with so many operators in it, see `surroundings`. A
     fold is where a derivative vanishes, which errs by a power of it: windows that differ from rung to rung let the
     error estimate see it. `across` tells how many operators a chart for all events has, by its middle radius and its
-    window, see `operators_across`.
+    window, see `operators_across`; `apart` the ratio of the
+    radii for which there are operators for all points of the curve, if it is not to be by the window.
     """
 
     body: SizedBody
@@ -223,6 +262,7 @@ class AroundEvents(WhereAsked):
     count: int = AROUND
     leave: float = np.inf
     across: Callable[[float, float], int] | None = None
+    apart: float | None = None
 
     def prepare(self, events: Iterable[Located]) -> None:
         """Make one chart for all these events, where one for each takes more operators."""
@@ -263,11 +303,18 @@ class AroundEvents(WhereAsked):
         there = self(found).problem  # from nearer; the wide chart, which errs more, is none of this stage's
         return moved(found, problem if there is self(event).problem else there)
 
-    @property
+    @cached_property
     def everywhere(self) -> AlongCurve:
         """The same grid for every point of a curve."""
         apart = 1 + (CLOSER - 1) * self.window / WINDOW * 2.0 ** (AROUND - self.count)
-        return AlongCurve(self.body, apart)
+        return AlongCurve(self.body, self.apart or apart)
+
+    def by_curve(self) -> tuple[Chart, Chart]:
+        """Charts for the curve that serve its events as well, but for contacts smaller than they know."""
+        centred, following = self.everywhere.charts
+        self.keep(0.0, 0.0, centred)
+        self.keep(following.problem.interface.operator.least_radius, np.inf, following)
+        return centred, following
 
     @cached_property
     def at_rest(self) -> Stage:
@@ -312,14 +359,15 @@ class AlongCurve(Stage):
     apart: float = APART
 
     @cached_property
-    def _made(self) -> Charted:
-        return Charted(self.body.curve(self.apart))
+    def charts(self) -> tuple[Chart, Chart]:
+        """That on the axis, and that which follows the contact."""
+        return self.body.curve(self.apart)
 
     def __call__(self, event: Located) -> Chart:
         """Chart for a point of a curve."""
-        return self._made(event)
+        return Charted(self.charts)(event)
 
     @property
     def unknowns(self) -> int:
         """Unknowns of the larger chart."""
-        return self._made.unknowns
+        return Charted(self.charts).unknowns

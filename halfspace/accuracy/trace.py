@@ -22,6 +22,7 @@ from halfspace.accuracy.finite_bodies import (
     AroundEvents,
     Made,
     SizedBody,
+    apart_for_events,
     at_equator,
     at_tip,
     radii_along,
@@ -357,6 +358,9 @@ def _sized_rung(scales: Scales, images: Sequence[Images | None], rtol: float, to
     resolution = resolutions[0]
     doubt = 2 if images[0] and rtol < TIGHT else 1  # what is left at last is that of the images, who err alike
     settings = {"nodes": resolution.nodes, "finest": resolution.finest, "growth": resolution.growth}
+    if not level and images[0] is None and (apart := apart_for_events(fine, rtol)):
+        lowest = AroundEvents(fine, *surroundings(rtol, level), EVENTS_LEAVE, apart=apart)
+        return Rung(lowest.by_curve, (lowest,), settings)
     return Rung(
         fine.curve,
         (AroundEvents(fine, *surroundings(rtol, level), EVENTS_LEAVE),),
@@ -377,8 +381,17 @@ def _sized_body(
     how = resolution.finest, resolution.growth
     if images is None:
         R = scales.profile.end
-        make, outer = partial(_made_under_sphere, R, resolution.nodes), np.array([2 * R])
-        return SizedBody(scales, make, *how, outer, SurfaceCoordinate(R), to_load=to_load, first=first)
+        under = R, resolution.nodes
+        return SizedBody(
+            scales,
+            partial(_made_under_sphere, *under),
+            *how,
+            np.array([2 * R]),
+            SurfaceCoordinate(R),
+            to_load=to_load,
+            first=first,
+            together=partial(_all_under_sphere, *under),
+        )
     last = at_equator(scales.tabor, scales.profile, resolution.nodes) if ends else math.inf
     outer = np.array([scales.profile.end if ends else scales.whole_radius((FAR * resolution.extent) ** 2 / 2)])
     made = partial(_made, images, resolution.nodes)
@@ -386,7 +399,11 @@ def _sized_body(
 
 
 def _made_under_sphere(R: float, nodes: int, lines: Array) -> Made:
-    return compliance.panels(lines, nodes, R), nodes * (lines.size - 1)
+    return _all_under_sphere(R, nodes, lines[None])[0]
+
+
+def _all_under_sphere(R: float, nodes: int, lines: Array) -> list[Made]:
+    return [(operator, operator.radii.size) for operator in compliance.stacked_panels(lines, nodes, R)]
 
 
 def _made(images: Images, nodes: int, lines: Array) -> Made:
