@@ -86,6 +86,7 @@ class Windows(Stage):
     inwards: float
     to_load: float = COMPRESSION
     made: dict[tuple[bool, int], Window] = field(default_factory=dict, compare=False, repr=False)
+    alike: dict[tuple[bool, bytes], int] = field(default_factory=dict, compare=False, repr=False)
 
     def __call__(self, event: Located) -> Window:
         """Chart for an event, or a point of a path."""
@@ -122,12 +123,20 @@ class Windows(Stage):
         """
         surface, point = event.problem.interface, event.point
         follows, cells = surface.follows_contact, surface.operator.at(1.0).cells
-        own = self._number(follows, surface, point)
+        if (key := (follows, cells.tobytes())) not in self.alike:
+            number = self._number_of_same_cells(follows, cells, self._number(follows, surface, point))
+            if number is None:
+                return self.at(follows, surface, point)
+            self.alike[key] = number
+        return self._window(follows, self.alike[key])
+
+    def _number_of_same_cells(self, follows: bool, cells: Array, own: int) -> int | None:
+        """Window of these cells, one of those next to a point's own."""
         for number in range(own - PASSED if follows else max(own - PASSED, 0), own + PASSED + 1):
             lines = self._lines(follows, number)[2:]
             if np.array_equal(lines, cells[-lines.size :]):
-                return self._window(follows, number)
-        return self._window(follows, own)
+                return number
+        return None
 
     def place(self, follows: bool, problem: Traceable, point: Point) -> float:
         """Where the step stands on a grid of either kind: d/a, or r in beta, 0 where the surfaces are farther apart."""
