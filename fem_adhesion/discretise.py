@@ -25,7 +25,7 @@ from fem_adhesion.elasticity.space import Space, cell_stiffness
 from fem_adhesion.materials import LinearElastic
 from fem_adhesion.mesh.spheres import with_contact_to
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator, at_tip
+from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator, at_tip, of_sequence
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.grid import FLAT, SurfaceCoordinate
@@ -97,7 +97,7 @@ def mesh_of(scene: Scene, core: Array, how: Discretisation) -> Any:
 def finest_length(scene: Scene, how: Discretisation) -> float:
     """Length of the cells at the contact edge in beta; of bodies with a length the nearest of a sequence, to share."""
     length = scene.scales.edge_cell(how.finest)
-    return float(np.exp(np.round(LENGTHS * np.log(length)) / LENGTHS)) if scene.sized else length
+    return of_sequence(length, LENGTHS, np.round) if scene.sized else length
 
 
 def layout_of(scene: Scene, how: Discretisation) -> Layout:
