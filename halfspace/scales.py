@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -62,6 +62,11 @@ class Scales:
     law: Law = LENNARD_JONES
     profile: Surface = PARABOLOID
     body: LayeredBody | None = None
+
+    @cached_property
+    def of_contact(self) -> Scales:
+        """Those of the contact alone, whatever body is below it."""
+        return self if self.body is None else replace(self, body=None)
 
     @cached_property
     def softest(self) -> float:

@@ -23,6 +23,7 @@ from halfspace.equilibrium.path import (
     Steps,
     correct,
     follow,
+    grows_from_afar,
     least_slope,
     make_point,
     predict,
@@ -128,7 +129,7 @@ def _watched(
     problem: Traceable, a: Point, b: Point, condition: Condition, metric: Metric, depth: int = 8
 ) -> list[tuple[Point, Point]]:
     """Halve the interval between two points as long as a pair of roots may hide in it, unseen at its ends."""
-    if not depth or not _may_hide(a, b, condition):
+    if not depth or not _may_hide(a, b, condition, metric):
         return [(a, b)]
     length = b.arclength - a.arclength
     try:
@@ -153,13 +154,16 @@ def wound(problem: Traceable, a: Point, b: Point, metric: Metric) -> list[Point]
 SHORTER = 4  # steps in the place of one
 
 
-def _may_hide(a: Point, b: Point, condition: Condition) -> bool:
+def _may_hide(a: Point, b: Point, condition: Condition, metric: Metric) -> bool:
     """Whether a rate nearly vanishes at an end of a long interval, or inside it by the cubic through both points."""
     first, last, length = condition.of(a), condition.of(b), b.arclength - a.arclength
     if not condition.stationary or first * last <= 0 or _unfelt(a, b, condition):
         return False
+    mean, unit = (condition.level(b) - condition.level(a)) / length, metric.load
+    if condition.observable == LOAD and grows_from_afar(first / unit, last / unit, mean / unit):
+        return False
     little = NEARLY * max(abs(first), abs(last))
-    inside = least_slope(first, last, (condition.level(b) - condition.level(a)) / length)
+    inside = least_slope(first, last, mean)
     return inside < little or (length > LONG and min(abs(first), abs(last)) < little)
 
 

@@ -28,7 +28,7 @@ from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.scales import Scales
-from halfspace.values import Array, Valued, appended
+from halfspace.values import Array, Valued, appended, keep
 
 APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS = range(4)  # the observables, in this order
 OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
@@ -348,8 +348,10 @@ def _last_but_one(coefficients: Array) -> float:
 
 
 def contact_of(scales: Scales, operator: Operator) -> ContactProblem:
-    """Contact of these scales with an elastic operator."""
-    return ContactProblem(operator, scales.tabor, scales.law, scales.profile)
+    """Contact of these scales, which it shares with others, with an elastic operator."""
+    problem = ContactProblem(operator, scales.tabor, scales.law, scales.profile)
+    keep(problem, scales=scales.of_contact)  # what is cached of them is found once for all charts
+    return problem
 
 
 def count_negative(matrix: Array) -> int:

@@ -266,14 +266,14 @@ def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
     Its least slope between them, in the metric's units, must clear zero by a margin that shrinks with the step, and as
     its square where it is short: so a curve that all but folds is passed, and folds are where its slope changes sign.
     No more than a part of the larger slope at the ends is asked for, since curves of soft bodies wind in little; and
-    nothing where it is faint and grows as an exponential, as a load from afar: a cubic dips there, which it does not.
+    nothing of a load that is faint and grows as an exponential, from afar: a cubic dips there, which it does not.
     """
     if max(abs(a.rates[k]), abs(b.rates[k])) < UNFELT:
         return False
     length, unit = b.arclength - a.arclength, math.sqrt(metric.weights[k])
     first, last = unit * float(a.rates[k]), unit * float(b.rates[k])
     mean = unit * float(b.observables[k] - a.observables[k]) / length
-    if max(abs(first), abs(last)) < FAINT and _exponential(first, last, mean):
+    if k == LOAD and grows_from_afar(first, last, mean):
         return False
     margin = TURNING_MARGIN * length * min(1.0, length / SHORT)
     return least_slope(first, last, mean) < min(margin, NEARLY * max(abs(first), abs(last)))
@@ -286,9 +286,11 @@ LIKE = 0.8  # of the mean slope of an exponential: that of a power law is 0.9 of
 TURNING_MARGIN, SHORT = 0.3, 0.1  # of the step's length; a step below which the cubic errs by far less than that
 
 
-def _exponential(first: float, last: float, mean: float) -> bool:
-    """Whether the mean of a slope is about that of an exponential between its ends, their logarithmic mean."""
-    return first * last > 0 and first != last and mean * math.log(last / first) / (last - first) > LIKE
+def grows_from_afar(first: float, last: float, mean: float) -> bool:
+    """Whether a slope, in the metric's units, is faint and its mean about that of an exponential, the logarithmic."""
+    if max(abs(first), abs(last)) >= FAINT or first * last <= 0 or first == last:
+        return False
+    return mean * math.log(last / first) / (last - first) > LIKE
 
 
 STRAIGHT = 1e-10  # of the slopes: a bend that is rounding
