@@ -18,6 +18,7 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.events import is_fold
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Point, make_point
 from halfspace.errors import NotConverged
@@ -115,6 +116,5 @@ def at_gap(problem: Traceable, start: Array, gap: float) -> Point:
 
 
 def count_folds(path: EquilibriumPath) -> int:
-    """Number of folds in the approach along a curve."""
-    rates = np.array([point.rates[APPROACH] for point in path.points])
-    return int(np.sum(rates[:-1] * rates[1:] < 0))
+    """Number of folds in the approach along a curve: two of them may lie between two points."""
+    return sum(map(is_fold, path.events))
