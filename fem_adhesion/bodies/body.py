@@ -47,8 +47,8 @@ class Discretisation:
     `finest` is the length of the cells at the contact edge, in widths of the spike of tension there, `growth` the ratio
     of neighbouring cells, and `rings` the number of rings of cells around the corner where a mid-plane meets the free
     surface, if it is bonded. `beyond` is the size of what is meshed of a half-space under a surface that ends, in the
-    radius where that does: nothing acts beyond that, and the far field errs by O(L^-5). Under strata it is in the
-    length over which they spread a load.
+    radius where that does: nothing acts beyond that, and the far field errs by O(L^-5). Under strata it is in ten
+    times the length over which they spread a load.
     """
 
     degree: int
