@@ -32,7 +32,7 @@ from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.events import NO_EDGE, ErrorRule
+from halfspace.equilibrium.events import ErrorRule
 from halfspace.errors import GridTooCoarse
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array
@@ -105,7 +105,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     charted = tuple(Charted(block_charts(scene, stage, to_load)) for stage in stages)
     curve = partial(block_charts, scene, above, to_load)
     # A block of given size is compared with one other size only, and if both are small most of the error is left.
-    rule = ErrorRule(1.0, apart=NO_EDGE) if block_size(scene) is None else ErrorRule(2.0)
+    rule = ErrorRule(1.0 if block_size(scene) is None else 2.0)
     settings = {name: getattr(above.how, name) for name in ("degree", "finest", "growth")}
     return Rung(curve, charted, settings | {"radius": above.radius}, rule=rule)
 
@@ -161,7 +161,7 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
         (_around_events(scene, how, rtol, level, to_load),),
         asdict(how) | {"curve_degree": curve.degree},
         other if level and doubt.other_cells else None,
-        ErrorRule(doubt.times * step * REMAINING, along=True, apart=NO_EDGE),
+        ErrorRule(doubt.times * step * REMAINING, along=True),
     )
 
 

@@ -10,6 +10,7 @@ from scenes import hemisphere, pair
 
 from fem_adhesion import HeldSphere, Hemisphere, LinearElastic, Meshed, Scene, cli, discretise, harmonics
 from fem_adhesion.crosscheck import from_scratch
+from fem_adhesion.crosscheck import scenes as comparisons
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
 from fem_adhesion.crosscheck.weak_bodies import contacts
@@ -81,7 +82,7 @@ def test_the_command_refuses_in_one_line(arguments, message, capsys):
 
 def test_a_cap_is_heeded(monkeypatch):
     asked = []
-    monkeypatch.setattr(crosscheck, "run", lambda scenes, **_: asked.extend(scenes) or iter(()))
+    monkeypatch.setattr(comparisons, "run", lambda scenes, **_: asked.extend(scenes) or iter(()))
     with pytest.raises(StopIteration):
         cli.main(["compare", "--tabor", "2", "--body", "held-sphere", "--radius-ratio", "50", "--cap-angle", "20"])
     assert asked == [Scene(2.0, HeldSphere(radius_ratio=50.0, cap_angle=20.0))]

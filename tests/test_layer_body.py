@@ -26,7 +26,7 @@ from halfspace import Stratum, Substrate
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import panels
 from halfspace.elastic.layered import images_of, layered_panels
-from halfspace.errors import InputError
+from halfspace.errors import ContactTooWide, InputError
 from halfspace.laws import Dlvo, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, RoundedPunch, Sphere
 
@@ -303,3 +303,11 @@ def test_what_pulls_beyond_the_mesh_is_little_under_a_tip_that_rises_as_a_cone()
 def test_a_load_that_hardly_falls_with_the_radius_is_refused_on_a_layer():
     with pytest.raises(InputError, match=r"falls as r\^-0.1 alone, limit on layers: r\^-1; take a law"):
         fem_adhesion.trace(Scene(1.0, Layer(thickness=1.0), profile=Hyperboloid(5.0), law=PowerLaw(2.1, 9.0)))
+
+
+@pytest.mark.parametrize(
+    "scene", [Scene(1e-2, Layer(0.01), Hyperboloid(0.05)), Scene(1e-4, Layer(0.1), Hyperboloid(0.3))]
+)
+def test_a_contact_wider_than_what_yields_of_thin_strata_is_refused(scene):
+    with pytest.raises(ContactTooWide, match=r"^contact radius = .* beta, limit: \S+, beyond which .* as rigid; take"):
+        fem_adhesion.trace(scene, rtol=1e-2)

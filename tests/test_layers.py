@@ -23,6 +23,7 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dlvo
+from halfspace.profiles import Hyperboloid
 from halfspace.scales import Scales
 from halfspace.theories.layered import OnLayers
 
@@ -415,3 +416,11 @@ def test_a_central_gap_on_a_thin_layer_is_read_off_an_even_polynomial(rtol, off)
     )
     assert abs(gap.value - exact.value) < min(gap.error + exact.error, off)
     assert gap.error < 100 * off
+
+
+def test_the_estimate_holds_what_images_of_a_very_thin_layer_leave():
+    """By finite elements, which have none, at 1e-4 and 1e-6 alike to ten digits."""
+    path = trace(1.0, body=Layer(0.01, 0.3), profile=Hyperboloid(0.2), rtol=1e-6)
+    for name, value in (("zero_load", 0.6010980289), ("pull_off", 0.2212462660)):
+        found = path.event(name).estimate("approach")
+        assert abs(found.value - value) < found.error < 10 * abs(found.value - value)

@@ -155,7 +155,7 @@ def _judge(numbers, within=0.99, close=0.9):
 
 
 def test_estimates_hold_the_truth_between_points_and_at_them():
-    """Against solutions a hundred times tighter; in the far field no estimate may fail to hold."""
+    """Against solutions a hundred times tighter; in the far field estimates hold by far, so that they need but hold."""
     rng, at_points, between = np.random.default_rng(7), [], []
     for tabor in (0.3, 1.0, 2.0, 5.0):
         for rtol in (1e-2, 1e-5):
@@ -175,14 +175,6 @@ def test_the_error_of_a_point_is_the_part_of_the_changes_that_may_be_left_and_no
     np.testing.assert_allclose(threefold, 3 * once, rtol=1e-4, atol=1e-9)  # but for what rounding leaves
     assert np.nanmax(once) > 1e-7
     np.testing.assert_array_equal(less, once)
-
-
-def test_points_without_a_contact_are_held_to_half_of_what_others_are():
-    path = halfspace.trace(0.5, rtol=1e-2)
-    told, whole = path.finest_curve.errors, replace(path.finest_curve, apart=1.0).errors
-    apart, rounding = np.isnan(path.contact_radius), 1e-9  # the last point has a contact beside it
-    np.testing.assert_allclose(told[apart, :3][:-1], whole[apart, :3][:-1] / 2, rtol=1e-3, atol=rounding)
-    np.testing.assert_array_equal(told[~apart][1:], whole[~apart][1:])
 
 
 def test_next_to_a_fold_the_load_errs_by_the_root_of_what_the_approach_does():

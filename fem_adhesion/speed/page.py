@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from fem_adhesion.common import style
 from fem_adhesion.common.facts import machine, versions
@@ -80,6 +81,7 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
         _draw_hidden(axes, study, family, quantity)
         axes.set_title(f"{family}, judged by the {study.truths[family].family}")
         axes.tick_params(labelleft=True)
+        axes.xaxis.set_minor_formatter(NullFormatter())  # of less than two decades they print over each other
         label = ERRORS[quantity] if axes is panels[0] else ""
         style.dress(axes, "wall time from set-up to events, s", label, legend="below", columns=2)
     return figure

@@ -26,7 +26,7 @@ from halfspace.equilibrium.charts import COMPRESSION, Chart, Stage, moved
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, contact_of
 from halfspace.equilibrium.newton import Traceable
-from halfspace.errors import NotConverged
+from halfspace.errors import ContactTooWide, NotConverged
 from halfspace.profiles import Surface
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued
@@ -42,9 +42,6 @@ STEPS = 25  # per unit of the logarithm: where charts begin and end, so that tho
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
-ON_CURVE = (
-    1.3  # the same where events are solved for on the operators of the curve as well, each to be as good as its grid
-)
 
 Made = tuple[ElasticOperator, int]
 
@@ -93,9 +90,19 @@ class SizedBody(Valued):
 
     def lines(self, edge: float = 0.0) -> Array:
         """Ends of all cells that are finest at a contact edge, in the surface's coordinate, or on the axis."""
-        end, until = float(self.outer[0]), edge or self._reach
+        end, until = self._end_beyond(edge), edge or self._reach
         lines = grid.graded(edge, self.length, end, growth=self._growth, last=self.last, until=until)
         return np.concatenate([grid.towards_axis(lines, self.first, self._growth), self.outer[1:]])
+
+    def _end_beyond(self, edge: float) -> float:
+        """End of the cells that move with a contact edge; ContactTooWide unless they reach beyond it."""
+        end = float(self.outer[0])
+        if edge >= end:
+            raise ContactTooWide(
+                f"contact radius = {edge:.3g} beta, limit: {end:.3g}, beyond which the body is taken as rigid; take a "
+                "blunter tip, a thicker layer or the half-space solver"
+            )
+        return end
 
     def centred(self) -> Chart:
         """Chart fine on the axis."""
@@ -122,7 +129,8 @@ class SizedBody(Valued):
     def curve(self, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from operators at radii that are `apart` times one the other."""
         _, widest = self.radii_of_curve
-        end, edge = float(self.outer[0]), self.coordinate.of(widest)
+        edge = self.coordinate.of(widest)
+        end = self._end_beyond(edge)
         inner = self._inner(2 * self.length / edge, widest)
         outside = grid.geometric(end, self.length, self._growth, self.last)
         moving = self._moving(inner, outside / end)
@@ -130,8 +138,10 @@ class SizedBody(Valued):
 
     def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
         """Chart for contact radii near the given one, from so many operators, on cells fine enough for all."""
-        end, (least, most) = float(self.outer[0]), self.span(radius, window)
-        inner = self._inner(self.length / self.coordinate.of(most), most)
+        least, most = self.span(radius, window)
+        edge = self.coordinate.of(most)
+        end = self._end_beyond(edge)
+        inner = self._inner(self.length / edge, most)
         rest = end - self.coordinate.of(least)
         outside = grid.geometric(rest, self.length, self._growth, self.last)
         return self.following(self._moving(inner, outside / rest), chebyshev_radii(least, most, count))
@@ -253,8 +263,8 @@ class AroundEvents(WhereAsked):
     width of the contact radii that a chart for one event serves, with so many operators in it, see `surroundings`. A
     fold is where a derivative vanishes, which errs by a power of it: windows that differ from rung to rung let the
     error estimate see it. `across` tells how many operators a chart for all events has, by its middle radius and its
-    window, see `operators_across`; `apart` the ratio of the
-    radii for which there are operators for all points of the curve, if it is not to be by the window.
+    window, see `operators_across`; `apart` is the ratio of the radii with operators for all points of the curve, if it
+    is not to be by the window.
     """
 
     body: SizedBody

@@ -85,7 +85,6 @@ def _climb_from(
         higher.twin or (higher.stages[-2] if len(higher.stages) > 1 else None),
         chains[1][0] if higher.twin else {},
         higher.rule.remaining,
-        higher.rule.apart,
         _ways(below.stages[-1] if below.stages else Charted(tuple(charts)), higher),
         margin,
         left_out=further.unconfirmed,

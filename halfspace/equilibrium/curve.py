@@ -66,8 +66,6 @@ class EquilibriumPath(Valued):
         The events, and the two states of `energy`, on the twin.
     remaining : float
         Part of the change from either to the finest that may be left.
-    apart : float
-        Part of that at points of the curve without a contact.
     ways : chains of callables
         To the finest discretisation that serves the whole curve, see `halfspace.equilibrium.states.Ways`.
     margin : Estimate, optional
@@ -91,7 +89,6 @@ class EquilibriumPath(Valued):
     twin: Stage | None = None
     on_twin: Mapping[str, Located] = field(default_factory=dict)
     remaining: float = REMAINING
-    apart: float = 1.0
     ways: Ways = ()
     margin: Estimate | None = None
     model_uncertainty: Callable[[str], Mapping[str, float]] | None = field(default=None, compare=False)
@@ -233,7 +230,7 @@ class EquilibriumPath(Valued):
     @cached_property
     def finest_curve(self) -> FinestCurve:
         """The points solved for on the finest discretisation, when they are first asked for."""
-        return finest_curve(self.segments, self.ways, self.metric, self.remaining, self.apart)
+        return finest_curve(self.segments, self.ways, self.remaining, self.metric)
 
     def at(
         self,

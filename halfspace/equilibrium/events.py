@@ -19,9 +19,6 @@ FOLDS = ("jump_on", "jump_off")  # the outermost in the approach
 EVENTS = ("pull_off", *FOLDS, "zero_load")
 FURTHER = re.compile(r"fold_([2-9]|[1-9]\d+)")  # the folds between the jumps, by their numbers along the curve
 REMAINING = 0.5  # of a change between two discretisations: what is left if each errs at most a third of the one before
-# Of that part, what may be left of states without a contact, which have no edge with a spike of tension: there a node
-# or a degree more leaves a tenth. With a quarter, one of a hundred numbers under other laws and profiles was outside.
-NO_EDGE = 0.5
 
 
 @dataclass(frozen=True)
@@ -146,8 +143,7 @@ class ErrorRule:
     """How errors are told from the changes along chains of discretisations, all of which end with the best.
 
     `remaining` is the part of the changes that may be left as error, above 1 where it falls slowly from one to the
-    next, and of the last change `last` times as much, where that is from other cells with no twin beside. Of points of
-    the curve without a contact it is `apart` times as much: less where all that differs is a node more. `along` says
+    next, and of the last change `last` times as much, where that is from other cells with no twin beside. `along` says
     whether the shift of an event along the path counts, see `estimate_event`: on grids that follow the contact, whose
     radius tells it precisely, and where there is no twin to guard against chance.
     """
@@ -155,7 +151,6 @@ class ErrorRule:
     remaining: float = REMAINING
     along: bool = False
     last: float = 1.0
-    apart: float = 1.0
 
     def change(self, chain: Sequence[Array | float]) -> Array:
         """Sum of the changes along a chain of two values or more, arrays (...) or numbers, the last `last` times."""

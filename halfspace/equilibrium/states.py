@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.conditions import ROUND_OFF, Condition, between, hermite
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
 from halfspace.equilibrium.search import states
@@ -89,14 +89,13 @@ class FinestCurve(Valued):
     """A curve's segments, in order, on the finest discretisation.
 
     By the ways, chains of discretisations, errors are found; `remaining` is the part of the changes along a chain that
-    may be left, `apart` of that the part at points without a contact, and the metric says what arclength means.
+    may be left, and the metric says what arclength means.
     """
 
     segments: tuple[Segment, ...]
     ways: Ways
-    metric: Metric
     remaining: float
-    apart: float = 1.0
+    metric: Metric
 
     @cached_property
     def errors(self) -> Array:
@@ -106,10 +105,11 @@ class FinestCurve(Valued):
         through zero, where it tells nothing. Where there is but one change to tell, of two points on either side the
         larger counts, since a change may be all but zero at several.
         """
-        return np.concatenate([self._errors_along(segment) for segment in self.segments])
+        part = max(self.remaining, 1.0)
+        return np.concatenate([self._errors_along(segment, part) for segment in self.segments])
 
-    def _errors_along(self, segment: Segment) -> Array:
-        own = np.array([self._errors(segment.problem, point) for point in segment.points])
+    def _errors_along(self, segment: Segment, part: float) -> Array:
+        own = np.array([self._errors(segment.problem, point, part) for point in segment.points])
         farther = 2 if self._one_change else 1
         padded = np.pad(own, ((farther, farther), (0, 0)), mode="edge")
         sides = [padded[k : k + len(own)] for k in range(2 * farther + 1) if k != farther]
@@ -205,12 +205,11 @@ class FinestCurve(Valued):
             )
         return having[0]
 
-    def _errors(self, problem: Traceable, point: Point) -> Array:
+    def _errors(self, problem: Traceable, point: Point, part: float) -> Array:
         """Errors of the observables in the plane across the path, (4,); nan where there is nothing to compare with.
 
         They are a part of the largest change along a chain of discretisations.
         """
-        part = max(self.remaining, 1.0) * (self.apart if np.isnan(point.observables[CONTACT_RADIUS]) else 1.0)
         return self._in_plane(problem, point, part * _largest(self._steps(problem, point)))
 
     def _steps(self, problem: Traceable, point: Point) -> Sequence[Array]:
@@ -285,23 +284,21 @@ def require_coordinate(name: str) -> str:
     return name
 
 
-def finest_curve(
-    segments: Sequence[Segment], ways: Ways, metric: Metric, remaining: float, apart: float = 1.0
-) -> FinestCurve:
+def finest_curve(segments: Sequence[Segment], ways: Ways, remaining: float, metric: Metric) -> FinestCurve:
     """Solve for the points of a curve on the finest discretisation; without any the curve stays as it is.
 
     The segments are of the curve on any discretisation; the rest is as of `FinestCurve`, the ways leading to the
     finest.
     """
     if not ways:
-        return FinestCurve(tuple(segments), ways, metric, math.nan)
+        return FinestCurve(tuple(segments), ways, math.nan, metric)
     found = [ways[0][-1](segment.problem, point) for segment in segments for point in segment.points]
     runs = [list(run) for _, run in groupby(found, key=lambda one: id(one[0]))]
     finest: list[Segment] = []
     for run in runs:
         before = finest[-1].points[-1] if finest else None
         finest.append(measured(run[0][0], [point for _, point in run], metric, before))
-    return FinestCurve(tuple(finest), ways, metric, remaining, apart)
+    return FinestCurve(tuple(finest), ways, remaining, metric)
 
 
 def resampled(segments: Sequence[Segment], count: int, metric: Metric) -> tuple[Segment, ...]:
