@@ -2,7 +2,7 @@
 
 import csv
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 
 import combinations
@@ -237,6 +237,22 @@ def test_a_quadratic_power_and_a_wide_hyperboloid_are_paraboloids():
     assert_same(halfspace.trace(0.8, profile=Power(2)), paraboloid)
     wide = halfspace.trace(0.8, profile=Hyperboloid(1e5))
     assert wide.event("pull_off").load == pytest.approx(paraboloid.event("pull_off").load, rel=1e-6)
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize(("tabor", "k"), [(1e-6, 40), (1e-6, 50), (0.03, 20), (1e-4, 30), (0.01, 40)])
+def test_a_tension_of_short_range_is_followed_to_where_the_curve_falls_most_steeply(tabor, k, rtol):
+    """By the cubics between points that was next to the least load, in whose plane 0.1 of arclength on nothing is."""
+    law = Exponential(k)
+    path, truth = (halfspace.trace(tabor, law=law, rtol=to) for to in (rtol, rtol / 100))
+    for name, quantity in product(["pull_off", "zero_load"], ["approach", "load"]):
+        found = path.event(name).estimate(quantity)
+        assert abs(found.value - truth.event(name).estimate(quantity).value) <= found.error
+    assert abs(path.margin.value - truth.margin.value) <= path.margin.error
+    if tabor == 1e-6:  # rigid: the load falls as 2 pi R times the tension, [G97] 1.3
+        gaps = np.linspace(0, 0.1, 100001)
+        largest = np.max(-law.pressure(gaps, tabor)) / tabor
+        assert 2 * np.pi * largest * path.margin.value == pytest.approx(1, abs=3e-4)
 
 
 @pytest.mark.parametrize("law", [PowerLaw(2.5, 9.5), Morse(3), Exponential(3), Dlvo(0.3, 1.0)], ids=str)

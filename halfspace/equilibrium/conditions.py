@@ -136,9 +136,14 @@ def _watched(
         points = [a, correct(problem, a, length / 2, hermite(problem, a, b, 0.5, metric), metric, iterations=20)]
     except NotConverged:
         points = wound(problem, a, b, metric)[:-1]
-    rest = float((metric.weights * points[-1].rates)[:3] @ (b.observables - points[-1].observables)[:3])
-    points.append(replace(b, arclength=points[-1].arclength + rest))  # as `correct` measures it, along the tangent
+    points.append(seen_from(points[-1], b, metric))
     return [pair for c, d in pairwise(points) for pair in _watched(problem, c, d, condition, metric, depth - 1)]
+
+
+def seen_from(a: Point, b: Point, metric: Metric) -> Point:
+    """A point with its arclength as `correct` measures it from another, along the tangent of that."""
+    step = float((metric.weights * a.rates)[:3] @ (b.observables - a.observables)[:3])
+    return replace(b, arclength=a.arclength + step)
 
 
 def wound(problem: Traceable, a: Point, b: Point, metric: Metric) -> list[Point]:
