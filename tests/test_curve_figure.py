@@ -2,6 +2,7 @@
 
 import io
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from matplotlib import rc_context
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from fem_adhesion import Hemisphere
+from fem_adhesion import Hemisphere, LinearElastic, NeoHookean
 from fem_adhesion.common import style
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve import lines as curve_lines
@@ -324,6 +325,15 @@ PAGES = {
     "rigid": Question(Scene(1e-8), rtol=1e-2),
     "little load": Question(Scene(2.0), rtol=1e-2, to_load=0.01),
 }
+
+
+def test_the_title_tells_finite_strain(elements):
+    """As the terminal does: the same body at small strain has another curve."""
+    for material, told in ((NeoHookean(0.3), "hemisphere at finite strain; "), (LinearElastic(0.3), "hemisphere; ")):
+        scene = Scene(2.0, Hemisphere(radius_ratio=100.0, material=material))
+        named = replace(elements, question=Question(scene, "fem", 1e-3))
+        _, title = _drawn(named).axes[0].get_title(loc="left").split(" = 100, ")
+        assert title.startswith(told)
 
 
 @pytest.fixture(scope="module", params=PAGES)

@@ -197,7 +197,8 @@ def _maugis(tabor: float, radius: Array) -> tuple[Array, Array]:
 def _title(curves: Curves) -> str:
     body = curves.question.scene.body
     named = "" if body.endless else f", {body.file.name if body.file else body.name}"
-    return f"{contact_words(curves)}{named}; {curves.solver}"
+    strain = " at finite strain" if curves.question.scene.material.finite else ""
+    return f"{contact_words(curves)}{named}{strain}; {curves.solver}"
 
 
 def contact_words(curves: Curves) -> str:
