@@ -5,6 +5,9 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 # The systems are small and dense: threads inside LAPACK cost more than they bring.
 export OPENBLAS_NUM_THREADS ?= 1
+# Bytecode is kept in the environment, even where Python is told to write none: else each process compiles its imports.
+export PYTHONPYCACHEPREFIX ?= $(abspath $(BIN)/../bytecode)
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help compare test check bench hard honesty docs clean
 

@@ -3,6 +3,7 @@
 No target installs anything here: the stamps that say that the environment is complete are given.
 """
 
+import os
 import re
 import subprocess
 import tomllib
@@ -15,7 +16,8 @@ import side_by_side
 from conftest import LONGEST
 from whole_runs import BIN, ROOT, tables_in
 
-MAKEFILE = (ROOT / "Makefile").read_text()
+MAKEFILE_AT = ROOT / "Makefile"
+MAKEFILE = MAKEFILE_AT.read_text()
 
 # How each target is run; `test` is what runs this, `check` is run before it, and `clean` works on a copy.
 COMPARE = "make compare"
@@ -156,3 +158,16 @@ def test_the_environment_of_a_target_is_made_once_and_from_what_is_pinned():
     assert "--constraint constraints.txt --editable '.[studies]'" in rehearsed[1]
     assert rehearsed[-1] == "no-such-environment/bin/fem-adhesion compare"
     assert not Path(ROOT / "no-such-environment").exists()
+
+
+def test_processes_of_a_target_share_bytecode_in_the_environment_even_where_none_is_to_be_written(tmp_path):
+    (tmp_path / "told").write_text("told:\n\t@echo $$PYTHONPYCACHEPREFIX [$$PYTHONDONTWRITEBYTECODE]\n")
+    outside = {name: value for name, value in os.environ.items() if name != "PYTHONPYCACHEPREFIX"}
+    told = subprocess.run(
+        ["make", "--no-print-directory", f"--file={MAKEFILE_AT}", f"--file={tmp_path}/told", "told", "BIN=/some/bin"],
+        env=outside | {"PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert told.stdout.split() == ["/some/bytecode", "[]"]
