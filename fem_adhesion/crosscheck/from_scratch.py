@@ -253,7 +253,7 @@ def _places(event: Located) -> tuple[float, float]:
     return (radius, max(radius, attraction)) if radius > SMALL * attraction else (attraction, attraction)
 
 
-SMALL = 0.25  # contact, in the radius of the attraction
+SMALL = 0.1  # contact, in the radius of the attraction
 OPENING, CLOSEST = 0.49, 0.1  # of a gap by the 3-9 law: what it opens by in that radius; eps, the least that counts
 
 

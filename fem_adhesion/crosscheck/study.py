@@ -84,12 +84,12 @@ def compare(
     require_rtol(rtol)
     require_comparable(scene, rtol)
     known = unsolved(scene, rtol=rtol) if before is None else before
-    case = _solved(scene, rtol, rtol, solve)
+    fe, case = _solved(scene, rtol, rtol, solve)
     for closer in CLOSER:
         if rtol > closer * TIGHTEST and case.verdict == "inconclusive" and _left_open(case):
             with suppress(NotConverged):
-                case = _solved(scene, rtol, rtol / closer, solve)
-    return replace(case, rows=(*known, *case.rows))
+                fe, case = _solved(scene, rtol, rtol / closer, solve)
+    return replace(case, rows=(*known, *case.rows, *from_scratch.events(scene, fe)))
 
 
 def _left_open(case: Case) -> bool:
@@ -97,8 +97,8 @@ def _left_open(case: Case) -> bool:
     return any(row.verdict != "agree" for row in case.rows if row.between == SOLVERS)
 
 
-def _solved(scene: Scene, rtol: float, asked: float, solve: Solver) -> Case:
-    """What needs solutions of the scene: a comparison to a tolerance of what both solvers give to that asked of them.
+def _solved(scene: Scene, rtol: float, asked: float, solve: Solver) -> tuple[EquilibriumPath, Case]:
+    """The elements' curve, and a comparison to a tolerance of what both solvers give to that asked of them.
 
     Theirs is of loads and approaches. Of gaps, which the residuals see, the estimates may be wider than the budget.
     """
@@ -111,7 +111,7 @@ def _solved(scene: Scene, rtol: float, asked: float, solve: Solver) -> Case:
         solutions = {reference.between[0]: solution_of(other), **solutions}
         rows += [*_cross_residuals(other, fe, rtol, reference.between)]
         rows += [*_compare_events(other, fe, rtol, reference.between)]
-    return Case(scene, solutions, (*rows, *from_scratch.events(scene, fe)))
+    return fe, Case(scene, solutions, tuple(rows))
 
 
 def unsolved(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
