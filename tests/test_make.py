@@ -74,7 +74,7 @@ def test_check_asks_every_tool_about_all_there_is(made):
     assert run.out.splitlines() == [f"{BIN}/ruff format --check .", f"{BIN}/ruff check .", f"{BIN}/mypy"]
     landing = (ROOT / ".ci/run").read_text().splitlines()
     assert "set -euo pipefail" in landing
-    assert landing[-2:] == ["make check", "make test"]
+    assert landing[-3:] == ["make check & checked=$!", "make test", 'wait "$checked"']
     assert tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"] == {
         "strict": True,
         "files": ["halfspace", "fem_adhesion"],
