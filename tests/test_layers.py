@@ -2,6 +2,7 @@
 
 import csv
 import pickle
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from fem_adhesion.scene import Scene
 from halfspace import trace
 from halfspace.accuracy.trace import layered_half_space, resolution_for
 from halfspace.elastic import compliance, grid, layered
-from halfspace.elastic.layered import images_of, layered_panels
+from halfspace.elastic.layered import image_compliance, images_of, layered_panels
 from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, stiff_as, surface_compliance
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import ContactProblem
@@ -270,6 +271,22 @@ def test_bodies_that_are_the_same_have_the_same_events(body, alike):
             assert getattr(event, quantity) == pytest.approx(
                 getattr(other[name], quantity), rel=0, abs=sum(errors), nan_ok=True
             )
+
+
+def test_between_the_radii_of_a_curve_a_stiff_coating_is_as_well_known_as_a_soft_one():
+    """Against images integrated where the contact is; what they bend by is a hundred times the coating's own yield."""
+    for body, apart in ((Coated(0.5, 100.0), 1.7), (Coated(0.5, 10.0), 1.7), (Coated(0.5, 0.1), 1.5)):
+        scales, images = Scales(3.0, body=body), images_of(body)
+        made = layered_half_space(scales, images, resolution_for(scales, 1e-3))
+        operator = made.curve(apart)[1].problem.operator
+        radii = np.sort(operator.scales)
+        for a in np.sqrt(radii[1:] * radii[:-1])[::4]:
+            here = operator.at(a)
+            alone = replace(here, compliance=operator.unit.scaled(a).compliance)
+            exact = alone.compliance + image_compliance(images, alone, made.outer[0])
+            pressure = np.exp(-((here.radii / a) ** 2))
+            off = np.abs((here.compliance - exact) @ pressure).max()
+            assert off < 3e-4 * np.abs(exact @ pressure).max()
 
 
 def test_a_thick_layer_goes_over_into_the_half_space():

@@ -11,10 +11,12 @@ import pytest
 import fem_adhesion
 import halfspace
 from fem_adhesion import Hemisphere, Scene, cli
+from halfspace import Coated
 from halfspace.equilibrium.charts import placed
 from halfspace.equilibrium.contact import CENTRAL_GAP
 from halfspace.equilibrium.states import COORDINATES, shift
 from halfspace.errors import InputError
+from halfspace.profiles import Sphere
 
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 
@@ -167,6 +169,14 @@ def test_estimates_hold_the_truth_between_points_and_at_them():
     _judge(between)
     _judge(number for far, number in at_points if not far)
     _judge((number for far, number in at_points if far), within=1.0, close=0.75)
+
+
+def test_points_of_a_curve_on_a_stiff_coating_are_within_their_errors():
+    """By operators at fewer radii the curve rippled so that no plane across it met that of the next grid."""
+    scene = {"profile": Sphere(20.0, 1.0), "body": Coated(0.5, 100.0), "to_load": 0.5}
+    path, truth = (halfspace.trace(4.0, rtol=rtol, **scene) for rtol in (1e-4, 1e-7))
+    assert path.load_error.max() < 2e-3 * abs(path.event("pull_off").load)
+    _judge((number for _, number in _plane_differences(path, truth)), within=1.0, close=0.75)
 
 
 def test_the_error_of_a_point_is_the_part_of_the_changes_that_may_be_left_and_no_less_than_they():

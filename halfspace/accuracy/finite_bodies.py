@@ -134,7 +134,7 @@ class SizedBody(Valued):
         inner = self._inner(2 * self.length / edge, widest)
         outside = grid.geometric(end, self.length, self._growth, self.last)
         moving = self._moving(inner, outside / end)
-        return self.centred(), self.following(moving, radii_along(self.until, widest, apart))
+        return self.centred(), self.following(moving, radii_along(self.until, widest, apart, self.scales.softest))
 
     def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
         """Chart for contact radii near the given one, from so many operators, on cells fine enough for all."""
@@ -173,10 +173,17 @@ def least_along(until: float, widest: float) -> float:
     return min(LEAST * until, widest / 2)
 
 
-def radii_along(until: float, widest: float, apart: float = APART) -> Array:
-    """Contact radii for a curve from where the chart centred on the axis is left: one `apart` times the other."""
+def radii_along(until: float, widest: float, apart: float = APART, softest: float = 1.0) -> Array:
+    """Contact radii for a curve from where the chart centred on the axis is left: one `apart` times the other.
+
+    Or nearer, of what yields `softest` times as much as a half-space of E*: the polynomial through them errs in parts
+    of that, and n more leave rho^-n. In the logarithm of the radius, what is below strata deflects them by a kernel
+    that is analytic up to pi/2 beside the real axis, where a distance is the depth times i; see `operators_across`.
+    """
     least = least_along(until, widest)
-    return chebyshev_radii(least, widest, 2 + int(np.ceil(np.log(widest / least) / np.log(apart))))
+    side = np.pi / np.log(widest / least)
+    more = np.log(softest) / np.arcsinh(side)
+    return chebyshev_radii(least, widest, 2 + int(np.ceil(np.log(widest / least) / np.log(apart) + more)))
 
 
 def radii_around(radius: float, window: float = WINDOW, count: int = AROUND) -> Array:

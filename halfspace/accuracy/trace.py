@@ -212,7 +212,9 @@ class LayeredHalfSpace(SizedBody):
 
     def curve(self, apart: float = APART) -> tuple[Chart, Chart]:
         """Charts for the whole curve: the second from images at radii that are `apart` times one the other."""
-        return self.centred(), self._scaled(radii_along(self.until, self.scales.widest_radius(self.to_load), apart))
+        scales = self.scales
+        widest = scales.widest_radius(self.to_load)
+        return self.centred(), self._scaled(radii_along(self.until, widest, apart, scales.softest))
 
     def _scaled(self, scales: Array) -> Chart:
         edge, until = self._edge, float(self.outer[0])
