@@ -21,7 +21,8 @@ from halfspace.values import Array, keep
 
 # Stiff strata spread what pulls at them over a length along the half-space below, whose far field is that without them:
 # at 100, 1e3 and 1e4 such lengths the deflection of a stiff film errs by 6e-7, 2e-8 and less than 1e-9 of itself. So a
-# half-space under strata ends so many times (`farther`) as far out, in these lengths, as one without in its own.
+# half-space under strata ends so many times as far out, in these lengths, as one without in its own.
+FAR_OUT = 10.0
 SPREAD = 0.01  # the least such length, in what attracts
 WIDTH = 800.0  # of the mesh, in widths of a rigid attraction: the load left out beyond is 1e-10 R dgamma
 # Thicknesses that it is wider: what dies out falls by e^(-0.74 r/t) at least, there and back again to 1e-13. From the
@@ -40,8 +41,6 @@ class Stratified(Body):
     checked_by: ClassVar[SolverName] = "half-space"
     doubt: ClassVar[Doubt] = Doubt(other_cells=True, times=2.0)
     """Cells that suit the edge of the contact may be long for the rest; twice a usual change may be left."""
-
-    farther: ClassVar[float] = 10.0
 
     @property
     def layered(self) -> layers.Layers:
@@ -117,13 +116,16 @@ class Stratified(Body):
         moduli = [modulus for _, modulus in self.regions]
         if self.held != "substrate":
             return R + DIED_OUT * math.sqrt(max(moduli) / min(moduli)) * self.interfaces[-1]
-        return max(2 * R, how.beyond * self.farther * self.spread(R))
+        return max(2 * R, how.beyond * self.unit(R))
 
-    def spread(self, R: float) -> float:
-        """Length along a half-space below over which the strata spread what pulls at them within R, in beta."""
+    def unit(self, R: float) -> float:
+        """Length in beta by which a half-space below is measured, `Discretisation.beyond` times it.
+
+        It is so many times that over which the strata spread what pulls at them within R.
+        """
         moduli = [modulus / self.beyond.modulus for _, modulus in self.regions]
         stiffness = sum(max(1.0, E) * part.thickness for E, part in zip(moduli, self.strata, strict=False))
-        return max(SPREAD * R, stiffness)
+        return FAR_OUT * max(SPREAD * R, stiffness)
 
 
 def _slab(begin: float, end: float, finest: float, growth: float) -> Array:

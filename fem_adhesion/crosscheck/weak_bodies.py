@@ -16,7 +16,7 @@ from skfem import MeshTri
 
 from fem_adhesion.bodies.body import Body as ElasticBody
 from fem_adhesion.bodies.body import Discretisation
-from fem_adhesion.bodies.layers import Stratified
+from fem_adhesion.bodies.layers import FAR_OUT, Stratified
 from fem_adhesion.discretise import finest_length, layout_of, mesh_of, pair_meshes
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.body import TRIANGLES, Body, discretise, fine_within, half_space, on_ground, opposed
@@ -160,7 +160,7 @@ def _clamped(scene: Scene, strata: Stratified, W: float, R: float, radius: float
     """
     yielding = float(surface_compliance(strata, np.array([1 / radius]))[0]) / (2 * radius)
     far = 1 / (np.pi * strata.beyond.modulus * CLAMPED * (1 / (scene.tabor * W) + yielding))
-    return max(1.0, far / strata.spread(R)) / strata.farther
+    return max(1 / FAR_OUT, far / strata.unit(R))
 
 
 def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:

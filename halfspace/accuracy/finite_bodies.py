@@ -360,7 +360,7 @@ class AtRest(WhereAsked):
         return serving or self.keep(radius - near, radius + near, body.standing(radius))
 
 
-NEAR = 0.25  # of the finest cell, that a contact may end beside the place for which a grid was made
+NEAR = 0.25  # of the finest cell, as for events on grids that stand still; no derivative by the radius is asked here
 
 ASTRAY = 0.05  # of a contact radius: a leap in which a chart made for the first tells nothing about the second
 
