@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from whole_sphere import sphere_operator
 
 from fem_adhesion.common import style
-from fem_adhesion.finite_sphere import chart_figure, figures
+from fem_adhesion.finite_sphere import chart as chart_module
+from fem_adhesion.finite_sphere import figures
 from fem_adhesion.finite_sphere import page as finite_sphere_page
 from fem_adhesion.finite_sphere.cases import APPROACH_SCALE, CAUSES, CRITICAL, MODELS, Record, case_of
 from fem_adhesion.finite_sphere.chart import Field, contour, field_of, rule, safe_from
@@ -202,7 +203,7 @@ def test_a_rule_is_right_as_it_is_printed():
 
 
 def test_the_drawn_contour_is_that_of_the_deviations(table):
-    figure = chart_figure.chart(table, 0.3, ())
+    figure = chart_module.chart(table, 0.3, ())
     pull_off, jump_on = figure.axes
     for level in (0.1, 0.01, 0.001):
         expected = (1 + np.array(TABORS) / 2) / level
@@ -234,7 +235,7 @@ def test_a_point_is_hatched_by_how_it_ended_and_no_other_is(records):
         else r
         for r in records
     ]
-    axes = chart_figure.chart(rows(changed), 0.3, ()).axes[0]
+    axes = chart_module.chart(rows(changed), 0.3, ()).axes[0]
     hatched = {}
     for patch in axes.patches:
         (x, y), width, height = patch.get_xy(), patch.get_width(), patch.get_height()
@@ -249,7 +250,7 @@ def test_a_point_is_hatched_by_how_it_ended_and_no_other_is(records):
 
 
 def test_the_border_of_the_jumps_is_drawn_where_it_was_solved_for(records):
-    axes = chart_figure.chart(rows(records), 0.3, borders(records)).axes[1]
+    axes = chart_module.chart(rows(records), 0.3, borders(records)).axes[1]
     half_space, *spheres = borders(records)
     assert (half_space.radius_ratio, half_space.tabor.value) == (None, pytest.approx(0.6))
     assert [border.radius_ratio for border in spheres] == [*RATIOS] * 3

@@ -13,8 +13,8 @@ from fem_adhesion.elasticity.boundaries import clamped, free, point_load, slidin
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.space import Space, cell_stiffness, lame_parameters, scatter
 from fem_adhesion.finite_strain import material
-from fem_adhesion.finite_strain.assembly import finite_strain_problem
 from fem_adhesion.finite_strain.body import displacement_body, mixed_body
+from fem_adhesion.finite_strain.problem import finite_strain_problem
 from fem_adhesion.finite_strain.traction import Convention, convention_of, yielded_adhesion
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
 from halfspace.elastic import grid

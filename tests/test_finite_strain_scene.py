@@ -19,8 +19,7 @@ from fem_adhesion.curve import terminal as curve_terminal
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves, Question
 from fem_adhesion.finite_strain import problem as finite_strain_problem
 from fem_adhesion.finite_strain import scene as finite_strain_scene
-from fem_adhesion.finite_strain.assembly import FARTHEST, ScenesBody, Windows
-from fem_adhesion.finite_strain.scene import LITTLE, Stages, find_jumps, raised, trace
+from fem_adhesion.finite_strain.scene import FARTHEST, LITTLE, ScenesBody, Stages, Windows, find_jumps, raised, trace
 from fem_adhesion.finite_strain.traction import Convention
 from halfspace.accuracy.stages import Standing
 from halfspace.elastic import grid

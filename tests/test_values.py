@@ -21,7 +21,7 @@ import halfspace
 from fem_adhesion import Block, HeldSphere, Meshed, NeoHookean, Scene, share_of
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.space import Space
-from fem_adhesion.finite_strain.assembly import assemble
+from fem_adhesion.finite_strain.problem import assemble
 from fem_adhesion.finite_strain.scene import LITTLE
 from fem_adhesion.mesh.block import block_grid
 from halfspace.errors import InputError

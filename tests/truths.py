@@ -10,8 +10,7 @@ import numpy as np
 
 from fem_adhesion import discretise
 from fem_adhesion.bodies.body import Discretisation
-from fem_adhesion.finite_strain import assembly
-from fem_adhesion.finite_strain.scene import softening
+from fem_adhesion.finite_strain.scene import ScenesBody, Windows, softening
 from fem_adhesion.harmonics import Fineness as Series
 from fem_adhesion.harmonics import sized_body as series
 from halfspace.accuracy.finite_bodies import SizedBody, at_tip, standing
@@ -120,8 +119,8 @@ def finite_strain(scene):
     """A sphere at finite strain by elements of higher degree than its events are given, on cells of its own."""
     finest = 1 - softening(scene)
     hows = ((7, 0.55 * finest, 2.2), (8, 0.45 * finest, 2.0))
-    found = [assembly.ScenesBody(scene, Discretisation(*how)) for how in hows]
-    return [Standing(body, assembly.Windows(body)) for body in found]
+    found = [ScenesBody(scene, Discretisation(*how)) for how in hows]
+    return [Standing(body, Windows(body)) for body in found]
 
 
 def along_at_finite_strain(scene):

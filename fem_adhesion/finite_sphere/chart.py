@@ -1,5 +1,7 @@
 """The chart of the finite sphere: where in the plane of Tabor parameter and R/eps the half-space errs by how much.
 
+Drawn are contours of that error, with real materials placed among them.
+
 Along R/eps at each Tabor parameter the deviation is a power law between neighbouring points, or where its sign changes
 linear in ln(R/eps). A contour is the largest R/eps at which the deviation has a given size, above which it is smaller.
 
@@ -11,15 +13,23 @@ nothing.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
+from fem_adhesion.common import style
+from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.common.page import data_rows
-from fem_adhesion.finite_sphere.table import DeviationRow
+from fem_adhesion.common.style import Picture
+from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results, reference_poisson, samples
 from halfspace.errors import InputError
+from halfspace.limits import SMALLEST_SPHERE
 from halfspace.scaling import Units, contact_modulus, spacing_of
 from halfspace.values import Array, Valued
 
@@ -176,3 +186,197 @@ def _material(line: dict[str, str]) -> Material:
     spacing = spacing_of(float(line["hamaker_J"]), adhesion)
     units = Units(float(line["radius_m"]), modulus, adhesion, spacing)
     return Material(line["name"], units, poisson, line["source"], line["note"])
+
+
+# How it is drawn
+
+TABOR = r"Tabor parameter $\mu$"
+RATIO = r"radius over spacing $R/\epsilon$"
+LEFT, RIGHT = 0.028, 25.0  # Tabor parameters of the chart's edges
+BOTTOM, TOP = 4.0, 2e5  # R/eps of its edges
+
+PANELS = {"pull_off_load": "error of the pull-off force", "jump_on_approach": "error of the approach at jump-on"}
+LINES: Mapping[float, tuple[str, Any, float]] = {
+    0.1: (style.RED, "-", 2.6),
+    0.01: (style.BLUE, style.DASHED, 2.2),
+    0.001: ("black", style.DOTTED, 2.0),
+}
+SHADES = ("0.80", "0.90", "0.96")
+WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+UNSOLVED: Mapping[str, tuple[str, str]] = {  # by how a contact ended: hatching, and what it means
+    "ContactTooWide": ("///", "no solution: contact as wide as the sphere"),
+    "left out": ("|||", rf"not tried: $R < {SMALLEST_SPHERE**0.5:g}\,\beta$"),
+    "died": ("xxx", "not solved: its process died"),
+}
+OTHERWISE = "..."  # hatching of any other end
+MARKERS: Mapping[str, tuple[str, str]] = {
+    "silica": ("o", style.BLUE),
+    "gold": ("s", style.ORANGE),
+    "mica": ("^", style.GREEN),
+    "polystyrene": ("D", style.PINK),
+    "toner": ("P", style.RED),
+    "PDMS": ("v", "black"),
+}
+
+
+def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence[Border], heading: str = "") -> Figure:
+    """Draw the contours of 0.1, 1 and 10 % for the pull-off force and for the jump-on approach, side by side.
+
+    `borders` are where the jumps begin, `heading` what to know of the whole, as that a part was not solved.
+    """
+    figure, panels = style.panels(2, height=7.4)
+    for axes, (quantity, title) in zip(panels, PANELS.items(), strict=True):
+        _panel(axes, field_of(rows, quantity, poisson))
+        axes.set_title(f"half-space's {title}")
+        _materials(axes)
+        style.plain_ticks(axes.xaxis, (0.1, 0.3, 1, 3, 10))
+        axes.set(xlabel=TABOR, ylabel=RATIO, axisbelow=True)
+        axes.grid(True, color="0.9", linewidth=0.6)
+    _no_jump(panels[1], [border for border in borders if border.poisson == poisson])
+    if heading:
+        figure.suptitle(heading, fontsize=10.5, color="0.25")
+    style.legend_below(figure, panels, columns=5)
+    return figure
+
+
+def _panel(axes: Any, field: Field) -> None:
+    axes.set(xscale="log", yscale="log", xlim=(LEFT, RIGHT), ylim=(BOTTOM, TOP))
+    if field.tabor.size:
+        _contours(axes, field)
+        _unsolved(axes, field)
+        _points(axes, field)
+
+
+def _contours(axes: Any, field: Field) -> None:
+    for shade, level in zip(SHADES, LEVELS, strict=True):
+        ratio = contour(field, level)
+        if not np.isfinite(ratio).any():
+            continue
+        colour, dashes, width = LINES[level]
+        axes.fill_between(field.tabor, BOTTOM, ratio, color=shade, linewidth=0, zorder=level - 1)
+        look = {"color": colour, "linestyle": dashes, "linewidth": width, "marker": "_", "markersize": 7}  # if alone
+        axes.plot(field.tabor, ratio, **look, label=f"{100 * level:g} %")
+        _name(axes, field.tabor, ratio, level)
+
+
+def _name(axes: Any, tabor: Array, ratio: Array, level: float) -> None:
+    """The contour's error beside its right end."""
+    known = np.flatnonzero(np.isfinite(ratio))
+    if known.size:
+        at = float(tabor[known[-1]]), float(ratio[known[-1]])
+        style.note(axes, f"{100 * level:g} %", at, (5, -3), color=LINES[level][0], fontweight="bold", bbox=WHITE)
+
+
+def _unsolved(axes: Any, field: Field) -> None:
+    """Hatch what is nearest to the points that were not solved, each by how it ended."""
+    across, along = (_midways(values) for values in (field.tabor, field.radius_ratio))
+    for ending in sorted(set(field.ending.flat) - {"solved", "absent", ""}):
+        hatch, label = UNSOLVED.get(ending, (OTHERWISE, f"not solved: {ending}"))
+        look: Any = {"facecolor": "white", "edgecolor": "0.45", "hatch": hatch, "linewidth": 0.0, "zorder": 1.5}
+        for i, j in np.argwhere(field.ending == ending):
+            width, height = across[i + 1] - across[i], along[j + 1] - along[j]
+            axes.add_patch(Rectangle((across[i], along[j]), width, height, label=label, **look))
+
+
+def _midways(values: Array) -> Array:
+    """Midways between neighbours on a logarithmic axis, and as far beyond the outermost two."""
+    x = np.log(values)
+    steps = np.diff(x) if x.size > 1 else np.log([4.0])
+    return np.asarray(
+        np.exp(np.concatenate([x[:1] - steps[0] / 2, x[:-1] + steps[: x.size - 1] / 2, x[-1:] + steps[-1] / 2]))
+    )
+
+
+def _no_jump(axes: Any, borders: Sequence[Border]) -> None:
+    """Shade where the contact was found not to jump."""
+    found = [(b.tabor.value, b.radius_ratio) for b in borders if b.tabor and b.radius_ratio]
+    if not found:
+        return
+    tabor, ratio = np.array(sorted(found, key=lambda point: point[1])).T
+    axes.fill_betweenx(ratio, LEFT, tabor, color="0.97", linewidth=0, zorder=-2)
+    axes.plot(tabor, ratio, color="0.4", linewidth=1.2, marker="|", zorder=1.7, label="jumps begin, fixed grips")
+    at = float(tabor[-1]), float(ratio[-1])
+    style.note(axes, "no jump", at, (-6, -12), ha="right", color="0.35")
+
+
+def _points(axes: Any, field: Field) -> None:
+    """Dots where the deviation was solved for."""
+    solved = np.isfinite(field.deviation)
+    if solved.any():
+        mu, rho = np.meshgrid(field.tabor, field.radius_ratio, indexing="ij")
+        axes.plot(mu[solved], rho[solved], ".", color="0.4", markersize=4, zorder=1.8, label="solved")
+
+
+def _materials(axes: Any) -> None:
+    for name, sizes in groupby(materials(), key=lambda material: material.name.split(",")[0]):
+        listed = list(sizes)
+        marker, colour = MARKERS[name]
+        look = {"marker": marker, "color": colour, "markeredgecolor": "black", "markersize": 8, "linewidth": 0.9}
+        inside = [m.units for m in listed if m.units.tabor < RIGHT]
+        if inside:
+            axes.plot([u.tabor for u in inside], [u.radius_ratio for u in inside], label=name, zorder=3, **look)
+        for material in listed:
+            _label(axes, material, name)
+
+
+def _label(axes: Any, material: Material, name: str) -> None:
+    """Size: of a bead beside its point, of all tips at the left edge, with an arrow for one beyond the right edge."""
+    mu, rho = material.units.tabor, material.units.radius_ratio
+    size = (
+        f"{1e9 * material.units.radius:g} nm" if material.units.radius < 1e-6 else f"{1e6 * material.units.radius:g} µm"
+    )
+    if mu > RIGHT:
+        arrow = {"arrowstyle": "-|>", "color": "black"}
+        text = f"{name}, {size},\n" rf"$\mu = {mu:.0f}$"
+        place = {"xytext": (-104, 0), "textcoords": "offset points", "va": "center", "fontsize": 9.5}
+        axes.annotate(text, (RIGHT, rho), arrowprops=arrow, **place)
+    elif "tip" not in material.name:
+        style.note(axes, size, (mu, rho), (7, 4), zorder=4)
+    elif name == "silica":
+        axes.text(LEFT * 1.06, rho, size, color="0.25", fontsize=9.5, va="center")
+
+
+def _caption(results: Results) -> Iterator[str]:
+    """What is to be seen."""
+    poisson = reference_poisson(results.rows)
+    fields = [field_of(results.rows, quantity, poisson) for quantity in ("pull_off_load", "jump_on_approach")]
+    if any(np.isfinite(contour(field, level)).any() for field in fields for level in LEVELS):
+        yield (
+            "A line is where the half-space under a paraboloid errs by as much as it says, between the points solved; "
+            "at the points above it, it errs by less; what is below it is grey."
+        )
+    else:
+        yield f"No deviation passes {', '.join(f'{100 * level:g}' for level in LEVELS)} % between the points solved."
+    yield from _borders([border for border in results.borders if border.poisson in (None, poisson)])
+    if any(set(field.ending.flat) - {"solved", "absent", ""} for field in fields):
+        yield "Hatched: nearest to points that were not solved."
+    yield (
+        "Materials are typical, and placed by their own values, whatever their Poisson's ratio; sizes are radii, of "
+        "the tips at the left edge."
+    )
+
+
+def _borders(borders: Sequence[Border]) -> Iterator[str]:
+    """Where the jumps begin, on the smallest sphere, the largest, and the half-space."""
+    spheres = [(b.radius_ratio, b.tabor) for b in borders if b.tabor and b.radius_ratio]
+    flat = [b.tabor for b in borders if b.tabor and b.radius_ratio is None]
+    ends = dict(sorted(spheres, key=lambda pair: pair[0]))
+    shown = [f"{plus_minus(ends[ratio])} at R/eps = {ratio:g}" for ratio in dict.fromkeys([*ends][:1] + [*ends][-1:])]
+    shown += [f"{plus_minus(tabor)} on the half-space" for tabor in flat]
+    if shown:
+        yield f"Jumps under fixed grips begin at mu = {', '.join(shown)}."
+
+
+def _figure_chart(results: Results) -> Figure:
+    partly = results.study.quick or results.study.failed
+    heading = results.study.headline if partly else ""
+    return chart(results.rows, reference_poisson(results.rows), results.borders, heading)
+
+
+def no_sphere(results: Results) -> str:
+    """What is lacking where no sphere was solved, or empty."""
+    solved = samples(results.rows, "all", "pull_off_load", poisson=reference_poisson(results.rows))
+    return "" if solved.tabor.size else "no elastic sphere was solved beside the half-space"
+
+
+CHART = Picture("chart", "Where the half-space is good enough", _figure_chart, _caption, no_sphere)

@@ -15,7 +15,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import at_points, counted, span
 from fem_adhesion.common.style import Picture
-from fem_adhesion.finite_sphere.chart_figure import no_sphere
+from fem_adhesion.finite_sphere.chart import no_sphere
 from fem_adhesion.finite_sphere.fit import RIGID_PULL_OFF, SOFT_PULL_OFF, fit, leading_terms
 from fem_adhesion.finite_sphere.table import (
     DeviationRow,

@@ -14,8 +14,7 @@ from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.finite_sphere.cases import CAUSES, Record
-from fem_adhesion.finite_sphere.chart import LEVELS, Field, Rule, field_of, rule, safe_from
-from fem_adhesion.finite_sphere.chart_figure import CHART
+from fem_adhesion.finite_sphere.chart import CHART, LEVELS, Field, Rule, field_of, rule, safe_from
 from fem_adhesion.finite_sphere.figures import BULK_FIGURE, CAUSES_FIGURE, POISSON_FIGURE
 from fem_adhesion.finite_sphere.fit import (
     DEVIATIONS,

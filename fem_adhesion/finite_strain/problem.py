@@ -20,12 +20,15 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_adhesion.finite_strain.body import Body
+from fem_adhesion.elasticity.boundaries import Exterior, FarField, point_load, with_interiors
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain.body import Body, displacement_body
 from fem_adhesion.finite_strain.held import HeldBody, Tangent
-from fem_adhesion.finite_strain.surface import ContactSurface
-from fem_adhesion.finite_strain.traction import Convention, Traction, columns
+from fem_adhesion.finite_strain.traction import ContactSurface, Convention, Traction, columns, contact_surface
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem, Solver
-from halfspace.errors import IllPosed
+from halfspace.errors import IllPosed, InputError
+from halfspace.laws import LENNARD_JONES, Law
+from halfspace.profiles import PARABOLOID, Surface
 from halfspace.values import Array, Valued
 
 MOST_STEPS, ENOUGH = 12, 1e-4  # to a start under a given pressure, and its relative accuracy
@@ -308,3 +311,53 @@ class FiniteStrainProblem(Valued):
         if scales.far_energy:
             density -= scales.law.energy(mu * scales.profile.height(self.surface.radii), mu)
         return self.elastic_energy(x) + float(self.areas(x) @ density)
+
+
+# From its parts
+
+
+def finite_strain_problem(
+    body: Body,
+    exterior: Exterior,
+    tabor: float,
+    *,
+    profile: Surface = PARABOLOID,
+    convention: Convention,
+    points: int | None = None,
+    law: Law = LENNARD_JONES,
+) -> FiniteStrainProblem:
+    """Put a body under a rigid flat wall that attracts it.
+
+    The body is a `displacement_body` or `mixed_body` of `fem_adhesion.finite_strain.body`, the exterior one of
+    `fem_adhesion.elasticity.boundaries` on its space; tabor and law are as in
+    `halfspace.equilibrium.contact.ContactProblem`. The profile is the height of the body's undeformed surface over its
+    pole, carried along by its points; that of a block is a perturbation of its flat surface, as in the linear body. The
+    convention says what the law's traction is counted per, and its direction. Of Gauss's points there are p + 2 on each
+    contact facet unless given. InputError if the exterior holds the body by a spring that has to be taken off again
+    (`free`).
+    """
+    if exterior.rigid_compliance:
+        raise InputError("a far field with a rigid_compliance is known to `condense` only; use point_load or clamped")
+    space = body.space
+    whole = with_interiors(exterior, space, body.unknowns - space.unknowns)
+    surface = contact_surface(space, whole, space.degree + 2 if points is None else points)
+    interface = ContactProblem(surface.rigid, tabor, law, profile)
+    return FiniteStrainProblem(HeldBody(body, whole, surface.unknowns), surface, interface, convention)
+
+
+def assemble(
+    space: Space,
+    poisson: float,
+    tabor: float,
+    *,
+    far_field: FarField = point_load,
+    points: int | None = None,
+) -> FiniteStrainProblem:
+    """Contact problem of a linear block under a rigid paraboloid, none of its unknowns condensed but in the solver.
+
+    Space, poisson and points are as in `fem_adhesion.elasticity.condensation.condense`, whose problem has the same
+    solutions, the rest and the errors as of `finite_strain_problem`; the far field is `point_load` or `clamped`.
+    InputError, too, if poisson is out of range.
+    """
+    body, exterior = displacement_body(space, poisson, 0.0), far_field(space, poisson)
+    return finite_strain_problem(body, exterior, tabor, convention=Convention(0.0, 0.0), points=points)

@@ -1,4 +1,4 @@
-"""The load-approach curve of a sphere at finite strain, to an accuracy asked for."""
+"""A sphere at finite strain: its load-approach curve to an accuracy asked for, on meshes fine where the contact is."""
 
 from __future__ import annotations
 
@@ -11,16 +11,26 @@ from functools import partial
 import numpy as np
 
 from fem_adhesion.bodies.body import FINEST, GROWTH, Discretisation
-from fem_adhesion.discretise import CURVE_DEGREE, sized_body
-from fem_adhesion.finite_strain.assembly import ScenesBody, Windows
-from fem_adhesion.finite_strain.problem import FiniteStrainProblem
+from fem_adhesion.discretise import (
+    CURVE_DEGREE,
+    FAR_FIELDS,
+    finest_length,
+    layout_of,
+    mesh_of,
+    quadrilateral,
+    sized_body,
+)
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain.body import material_body
+from fem_adhesion.finite_strain.problem import FiniteStrainProblem, finite_strain_problem
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.refinement import ascend, climb
-from halfspace.accuracy.stages import Rung, Standing, State
+from halfspace.accuracy.stages import Rung, Standing, State, WhereAsked
 from halfspace.accuracy.trace import TWIN
-from halfspace.equilibrium.charts import COMPRESSION, metric_for, moved, trace_charts
+from halfspace.elastic import grid
+from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, trace_charts, undeformed_radius
 from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -42,6 +52,15 @@ SMALLEST_PART = 0.005  # of delta, in which it is raised where the linear body's
 JUMPS = ("pull_off", "jump_on", "jump_off")
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 CONSERVATIVE: tuple[TractionName, ...] = ("projected", "reference", "normal")
+
+FARTHEST = 0.98
+"""Undeformed radius in R up to which a contact may spread.
+
+Small slopes end before: `halfspace.equilibrium.contact.WIDEST`.
+"""
+
+WINDOW = 8
+"""Fine cells in a mesh of the curve: more cost more unknowns, fewer more meshes."""
 
 
 def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> EquilibriumPath:
@@ -233,3 +252,82 @@ def require_well_posed(scene: Scene) -> None:
             f"{scene.material.traction!r}, tabor {scene.tabor:g}, poisson {scene.poisson:g}: the equations are "
             f"ill-posed under an edge tension of {_edge_tension(scene):.2g} E*; take traction = 'reference'"
         )
+
+
+# Its meshes
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ScenesBody(Valued):
+    """The body of a scene, a hemisphere at finite strain, to be meshed for any range of contact radii.
+
+    `how` is the degree of the elements and the size of their cells, which grow the slower the more steeply the tension
+    ends.
+    """
+
+    scene: Scene
+    how: Discretisation
+
+    def standing(self, radius: float) -> Chart:
+        """Chart finest at a contact radius in beta."""
+        return replace(self.chart(radius, radius), until=np.inf)
+
+    def chart(self, inner: float, outer: float) -> Chart:
+        """Chart that serves contact radii between these."""
+        problem = self.meshed(inner, outer)
+        return Chart(problem, problem.body.unknowns, min(outer, self.farthest))
+
+    def meshed(self, inner: float, outer: float) -> FiniteStrainProblem:
+        """Discretise with cells that are fine for contact radii between these, as far as a contact may reach."""
+        scene, R = self.scene, self.scene.sphere_radius
+        how = replace(self.how, growth=scene.scales.growth(self.how.growth))
+        ends, coordinate = layout_of(scene, how)
+        first, last = (coordinate.of(min(radius, self.farthest)) for radius in (inner, outer))
+        lines = grid.graded(first, self.length, float(ends[0]), growth=how.growth, until=last)
+        space = Space(mesh_of(scene, lines, how), quadrilateral(how.degree))
+        return finite_strain_problem(
+            material_body(space, scene.poisson, 1 / R),
+            FAR_FIELDS[scene.body.held](space, scene.poisson),
+            scene.tabor,
+            profile=scene.surface,
+            convention=convention_of(scene.material.traction, scene.poisson),
+            law=scene.law,
+        )
+
+    @property
+    def farthest(self) -> float:
+        """Undeformed radius in beta up to which a contact may spread."""
+        return FARTHEST * self.scene.sphere_radius
+
+    @property
+    def length(self) -> float:
+        """Length in beta of the cells at the contact edge."""
+        return finest_length(self.scene, self.how)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Windows(WhereAsked):
+    """Charts for the whole curve, each fine for a window of contact radii."""
+
+    body: ScenesBody
+
+    def __iter__(self) -> Iterator[Chart]:
+        """All of them in order."""
+        return map(self._chart, range(self._count))
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for a point of the curve."""
+        radius = float(np.nan_to_num(undeformed_radius(event.problem, event.point)))
+        return self._chart(min(int(radius / self._width), self._count - 1))
+
+    def _chart(self, number: int) -> Chart:
+        first, last = self._width * number, self._width * (number + 1)
+        return self.serving((first + last) / 2) or self.keep(first, last, self.body.chart(first, last))
+
+    @property
+    def _width(self) -> float:
+        return WINDOW * self.body.length
+
+    @property
+    def _count(self) -> int:
+        return int(np.ceil(self.body.farthest / self._width))

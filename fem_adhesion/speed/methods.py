@@ -21,7 +21,7 @@ from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.elasticity.boundaries import FarField, clamped, point_load
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.space import Space
-from fem_adhesion.finite_strain.assembly import assemble
+from fem_adhesion.finite_strain.problem import assemble
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 from fem_adhesion.scene import Scene
 from halfspace.elastic import compliance, grid
