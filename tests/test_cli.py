@@ -128,10 +128,10 @@ def test_no_command_is_refused():
 
 def test_disagreement_exits_with_1(monkeypatch, capsys):
     """An elastic body twice as stiff: the finite elements solve another problem."""
-    from fem_adhesion.elasticity import space
+    from fem_adhesion.elasticity import cells
 
-    original = space.elastic_matrix
-    monkeypatch.setattr(space, "elastic_matrix", lambda nu: 2 * original(nu))
+    original = cells.elastic_matrix
+    monkeypatch.setattr(cells, "elastic_matrix", lambda nu: 2 * original(nu))
     assert cli.main(["compare", "--tabor", "0.05", "--rtol", "1e-2"]) == 1
     assert "verdict: disagree" in capsys.readouterr().out
 

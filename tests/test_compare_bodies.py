@@ -14,7 +14,7 @@ from fem_adhesion.crosscheck import scenes as comparisons
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
 from fem_adhesion.crosscheck.weak_bodies import contacts
-from fem_adhesion.elasticity import space
+from fem_adhesion.elasticity import cells
 from fem_adhesion.weak_form.contact import LENNARD_JONES
 from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.errors import InputError
@@ -129,8 +129,8 @@ def test_a_bonded_hemisphere_agrees_with_the_weak_form():
 
 
 def _stiffer(monkeypatch):
-    original = space.elastic_matrix
-    monkeypatch.setattr(space, "elastic_matrix", lambda nu: 1.01 * original(nu))
+    original = cells.elastic_matrix
+    monkeypatch.setattr(cells, "elastic_matrix", lambda nu: 1.01 * original(nu))
 
 
 def _another(profile=None, **change):

@@ -5,8 +5,9 @@ import pytest
 from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
 from fem_adhesion.elasticity.boundaries import clamped, free, point_load
+from fem_adhesion.elasticity.cells import cell_stiffness
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.space import Space, cell_stiffness, scatter
+from fem_adhesion.elasticity.space import Space, scatter
 from fem_adhesion.finite_strain.body import displacement_body
 from fem_adhesion.finite_strain.problem import assemble
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc

@@ -10,8 +10,9 @@ from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2
 
 from fem_adhesion.elasticity.boundaries import clamped, free, point_load, sliding
+from fem_adhesion.elasticity.cells import cell_stiffness
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.space import Space, cell_stiffness, lame_parameters, scatter
+from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.finite_strain import material
 from fem_adhesion.finite_strain.body import displacement_body, mixed_body
 from fem_adhesion.finite_strain.problem import finite_strain_problem

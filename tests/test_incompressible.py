@@ -11,24 +11,15 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import HalfSpace, Scene
 from fem_adhesion.elasticity.boundaries import clamped, free, point_load, with_interiors
+from fem_adhesion.elasticity.cells import Cells, cell_quadrature, cell_stiffness, of_gradient, shear_matrix
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.incompressible import (
     REMEDY_FROM,
-    dilatation,
     pressure_modes,
     projected_stiffness,
     stiffness_for,
 )
-from fem_adhesion.elasticity.space import (
-    Space,
-    cell_quadrature,
-    cell_stiffness,
-    cell_strains,
-    scatter,
-    scatter_pairs,
-    shear_matrix,
-    strain_products,
-)
+from fem_adhesion.elasticity.space import Space, scatter, scatter_pairs
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
 from halfspace.elastic import grid
 
@@ -46,10 +37,11 @@ def quads(degree, fine=0.3):
 def inf_sup(space, modes):
     """Smallest over pressures p of the largest over displacements v of int p div v/(|p| |v|), |v| that of strain."""
     blocks = []
-    for _, B, dA in cell_strains(space):
-        root = np.sqrt(dA)[:, :, None]
+    for _, cells in Cells.of(space).batches():
+        root = np.sqrt(cells.measure)[:, :, None]
         q = np.linalg.qr(root * modes)[0]
-        blocks.append((strain_products(shear_matrix(0.0), B, dA), q.transpose(0, 2, 1) @ (root * dilatation(B))))
+        work = q.transpose(0, 2, 1) @ (root * cells.dilatations().transpose(0, 2, 1))
+        blocks.append((cells.stiffness(of_gradient(shear_matrix(0.0))), work))
     K, coupling = (np.concatenate(part) for part in zip(*blocks, strict=True))
     T = with_interiors(clamped(space, 0.3), space).reduction
     numbers = np.arange(coupling.shape[0] * coupling.shape[1]).reshape(coupling.shape[:2]).T

@@ -10,6 +10,7 @@ from scipy import sparse
 from scipy.linalg.blas import dtrsm
 
 from fem_adhesion.elasticity.boundaries import Exterior, FarField, point_load, trace_on, with_interiors
+from fem_adhesion.elasticity.cells import CellStiffness, cell_stiffness
 from fem_adhesion.elasticity.elimination import (
     Factors,
     Region,
@@ -21,7 +22,7 @@ from fem_adhesion.elasticity.elimination import (
     reduced_cells,
     reduced_unknowns,
 )
-from fem_adhesion.elasticity.space import CellStiffness, Space, cell_stiffness, ring_measure, scatter
+from fem_adhesion.elasticity.space import Space, ring_measure, scatter
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued

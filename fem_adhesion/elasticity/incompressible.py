@@ -14,16 +14,15 @@ from functools import partial
 import numpy as np
 from numpy.polynomial.legendre import legvander2d
 
-from fem_adhesion.elasticity.space import (
+from fem_adhesion.elasticity.cells import (
+    Cells,
     CellStiffness,
-    Space,
     cell_quadrature,
     cell_stiffness,
-    cell_strains,
-    lame_parameters,
+    of_gradient,
     shear_matrix,
-    strain_products,
 )
+from fem_adhesion.elasticity.space import Space, lame_parameters
 from fem_adhesion.materials import Elastic
 from halfspace.errors import InputError
 from halfspace.values import Array
@@ -62,14 +61,13 @@ def projected_stiffness(space: Space, poisson: float) -> Array:
 
     Parameters and result as of `fem_adhesion.elasticity.space.cell_stiffness`.
     """
-    lam, D = lame_parameters(poisson)[0], shear_matrix(poisson)
-    modes = pressure_modes(space)
-    K = np.empty((space.mesh.nelements, *2 * [len(space.cell_dofs)]))
-    for cells, B, dA in cell_strains(space):
-        root = np.sqrt(dA)[:, :, None]
+    cells, modes = Cells.of(space), pressure_modes(space)
+    K = cells.stiffness(of_gradient(shear_matrix(poisson)))
+    for own, part in cells.batches():
+        root = np.sqrt(part.measure)[:, :, None]
         orthonormal = np.linalg.qr(root * modes)[0]
-        projected = orthonormal.transpose(0, 2, 1) @ (root * dilatation(B))
-        K[cells] = strain_products(D, B, dA) + lam * projected.transpose(0, 2, 1) @ projected
+        projected = part.dilatations() @ (root * orthonormal)
+        K[own] += lame_parameters(poisson)[0] * projected @ projected.transpose(0, 2, 1)
     return K
 
 
@@ -88,9 +86,3 @@ def pressure_modes(space: Space) -> Array:
     x, y = 2.0 * cell_quadrature(space)[0] - 1.0
     modes: Array = legvander2d(x, y, [space.degree - 1, space.degree - 1])[:, :-1]
     return modes
-
-
-def dilatation(B: Array) -> Array:
-    """Return the relative change of volume from the strains of `cell_strains`, (cells, q, 2 n)."""
-    volume: Array = B[:, :3].sum(axis=1)
-    return volume

@@ -1,29 +1,23 @@
-"""Axisymmetric isotropic elasticity: strains, elastic matrix, measure and cell stiffness matrices.
+"""Axisymmetric displacements on a mesh: their unknowns, and the functions that these belong to.
 
-Lengths in beta and E* = 1, so Young's modulus is E = 1 - nu^2. Strains and stresses are ordered
-(rr, zz, hoop, rz) with the engineering shear gamma_rz = du_r/dz + du_z/dr.
+Lengths are in beta and E* = 1, so Young's modulus is E = 1 - nu^2.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 from scipy import sparse
-from skfem import Dofs, ElementQuadP, ElementVector
+from skfem import Dofs, ElementVector
 from skfem.quadrature import get_quadrature
-from skfem.refdom import RefTri
 
-from fem_adhesion.elasticity.tensor import Products, integrated, products
 from fem_adhesion.materials import Elastic
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
-
-BATCH = 400_000
-"""Numbers held in one batch of strain-displacement matrices: 16 MB, small enough for the cache to help."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -102,10 +96,6 @@ class Space(Valued):
         return int(self.element.facet_dofs) + 1
 
 
-CellStiffness = Callable[[Space, float], Array]
-"""Stiffness matrices of all cells of a space at a Poisson's ratio, as `cell_stiffness` returns them."""
-
-
 def lame_parameters(poisson: float) -> tuple[float, float]:
     """Return Lamé's (lambda, G) of the material with E* = E/(1 - nu^2) = 1; InputError unless 0 <= poisson < 0.5."""
     if not 0.0 <= poisson < 0.5:
@@ -114,50 +104,9 @@ def lame_parameters(poisson: float) -> tuple[float, float]:
     return E * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), E / (2.0 * (1.0 + poisson))
 
 
-def shear_matrix(poisson: float) -> Array:
-    """Return the (4, 4) part of the elastic matrix that goes with G, in units of E*."""
-    _, G = lame_parameters(poisson)
-    return np.diag([2.0 * G, 2.0 * G, 2.0 * G, G])
-
-
-def elastic_matrix(poisson: float) -> Array:
-    """Return the (4, 4) matrix D of stress = D strain, in units of E*."""
-    D = shear_matrix(poisson)
-    D[:3, :3] += lame_parameters(poisson)[0]
-    return D
-
-
 def ring_measure(r: Array) -> Array:
     """Return 2 pi r, the area of revolution per unit area (or length) of the r-z plane."""
     return 2.0 * np.pi * r
-
-
-def strain_displacement(value: Array, grad: Array, r: Array) -> Array:
-    """Return the strains e_rr, e_zz, u_r/r, gamma_rz of the unit displacements of a cell, (cells, 4, q, 2 n).
-
-    First are those of unit u_r of all n functions, then of unit u_z. Values (n, cells, q) are of the scalar functions
-    at q quadrature points, grad (n, 2, cells, q) their derivatives by r and z, and r (cells, q) the points' radii, none
-    of them zero.
-    """
-    n, cells, q = value.shape
-    d_dr, d_dz = grad.transpose(1, 2, 3, 0)
-    B = np.zeros((cells, 4, q, 2, n))
-    B[:, 0, :, 0] = d_dr
-    B[:, 1, :, 1] = d_dz
-    B[:, 2, :, 0] = (value / r).transpose(1, 2, 0)
-    B[:, 3, :, 0] = d_dz
-    B[:, 3, :, 1] = d_dr
-    return B.reshape(cells, 4, q, 2 * n)
-
-
-def cell_quadrature(space: Space) -> tuple[Array, Array]:
-    """Return points and weights on the reference cell, enough for r times the product of two shape functions.
-
-    Exact for all strains but the hoop term u_r v_r / r: that is a polynomial in cells with a side on the axis,
-    where u_r = 0, and rational elsewhere. Its error is below a thousandth of the element's own: six more points in each
-    direction change the deflection by quadrilaterals of degree 6 by 2e-12, which is in error by 1e-7.
-    """
-    return quadrature(space.element, _order(space))
 
 
 @lru_cache(maxsize=100)
@@ -167,75 +116,6 @@ def quadrature(domain: Any, order: int) -> tuple[Array, Array]:
     for numbers in rule:
         numbers.flags.writeable = False
     return rule[0], rule[1]
-
-
-def cell_points(space: Space) -> tuple[Array, Array, Array]:
-    """Radii (cells, q) of these points, the reference cell's coordinates by r and z, and 2 pi r dr dz, (cells, q).
-
-    The derivatives (2, 2, cells, q) are the inverse of the Jacobian.
-    """
-    (points, weights), mapping = cell_quadrature(space), space.mesh.mapping()
-    r, (inverse, area) = np.asarray(mapping.F(points)[0]), inverted(mapping.DF(points))
-    return r, inverse, ring_measure(r) * area * weights
-
-
-def cell_products(space: Space) -> Products:
-    """Products of the functions of a space of ElementQuadP at these points."""
-    return products(space.element, _order(space))
-
-
-def _order(space: Space) -> int:
-    return 2 * space.degree + (2 if space.element.refdom is RefTri else 1)
-
-
-def cell_stiffness(space: Space, poisson: float) -> Array:
-    """Return the stiffness matrix of every cell, (cells, 2 n, 2 n), in E* beta, ordered as in ``space.cell_dofs``."""
-    D = elastic_matrix(poisson)
-    if isinstance(space.element, ElementQuadP):
-        return _product_stiffness(space, D)
-    return np.concatenate([strain_products(D, B, dA) for _, B, dA in cell_strains(space)])
-
-
-def _product_stiffness(space: Space, D: Array) -> Array:
-    """Return the same of quadrilaterals, where a sum over points is one of products."""
-    functions, (r, inverse, dA) = cell_products(space), cell_points(space)
-    K = np.empty((space.mesh.nelements, *functions.places.shape))
-    for cells in _batches(space, r.shape[1]):
-        # Of a function whose value or one of whose slopes is 1.
-        value, grad = np.zeros((3, *dA[cells].shape)), np.zeros((3, 2, *dA[cells].shape))
-        value[0], grad[1:] = 1.0, inverse[:, :, cells]
-        B = np.ascontiguousarray(strain_displacement(value, grad, r[cells]).transpose(1, 3, 0, 2))
-        stress = np.tensordot(D, B, axes=1) * dA[cells]
-        u_r, u_z = slice(0, 3), slice(3, 6)
-        pairs = (u_r, u_r), (u_z, u_r), (u_z, u_z)
-        work = [sum(b[one, None] * s[other] for b, s in zip(B, stress, strict=True)) for one, other in pairs]
-        K[cells] = integrated(np.array(work), functions)
-    return K
-
-
-def strain_products(D: Array, B: Array, dA: Array) -> Array:
-    """Return int B' D B dA of every cell, (cells, 2 n, 2 n), from `cell_strains`."""
-    stress = (D @ B.reshape(*B.shape[:2], -1)).reshape(B.shape) * dA[:, None, :, None]
-    rows = (len(B), -1, B.shape[-1])
-    products: Array = B.reshape(rows).transpose(0, 2, 1) @ stress.reshape(rows)
-    return products
-
-
-def cell_strains(space: Space) -> Iterator[tuple[slice, Array, Array]]:
-    """Cut the cells into batches: their numbers, their strains B, (cells, 4, q, 2 n), and 2 pi r dr dz, (cells, q)."""
-    value, slopes = reference_functions(space.element, cell_quadrature(space)[0])
-    radii, inverse, dA = cell_points(space)
-    for cells in _batches(space, radii.shape[1]):
-        r = radii[cells]
-        grad = np.einsum("ijcq,niq->njcq", inverse[:, :, cells], slopes, optimize=True)
-        yield cells, strain_displacement(np.broadcast_to(value[:, None], (len(value), *r.shape)), grad, r), dA[cells]
-
-
-def inverted(jacobian: Array) -> tuple[Array, Array]:
-    """Inverses of Jacobian matrices (2, 2, ...) and the sizes of their determinants (...)."""
-    (a, b), (c, d) = jacobian
-    determinant = a * d - b * c
-    return np.array([[d, -b], [-c, a]]) / determinant, np.abs(determinant)
 
 
 def reference_functions(element: Any, points: Array) -> tuple[Array, Array]:
@@ -269,9 +149,3 @@ def scatter_pairs(blocks: Array, row_dofs: Index, column_dofs: Index, shape: tup
     rows = np.broadcast_to(row_dofs.T[:, :, None], blocks.shape).ravel()
     columns = np.broadcast_to(column_dofs.T[:, None, :], blocks.shape).ravel()
     return sparse.csc_array((blocks.ravel(), (rows, columns)), shape=shape)
-
-
-def _batches(space: Space, points: int) -> list[slice]:
-    """Cut the cells into batches, given their quadrature points."""
-    step = max(1, BATCH // (4 * points * len(space.cell_dofs)))
-    return [slice(first, first + step) for first in range(0, space.mesh.nelements, step)]

@@ -14,16 +14,9 @@ from numpy.polynomial.legendre import legvander2d
 from scipy.sparse.linalg import splu
 from skfem import CellBasis
 
+from fem_adhesion.elasticity.cells import cell_quadrature, elastic_matrix, shear_matrix
 from fem_adhesion.elasticity.incompressible import pressure_modes, projects
-from fem_adhesion.elasticity.space import (
-    Space,
-    cell_quadrature,
-    elastic_matrix,
-    lame_parameters,
-    reference_functions,
-    scatter,
-    shear_matrix,
-)
+from fem_adhesion.elasticity.space import Space, lame_parameters, reference_functions, scatter
 from fem_adhesion.materials import Elastic
 from halfspace.values import Array, Index
 

@@ -21,20 +21,12 @@ from typing import Any
 
 import numpy as np
 from scipy import sparse
-from skfem import Dofs, ElementQuadP
+from skfem import Dofs
 
 from fem_adhesion.discretise import quadrilateral
+from fem_adhesion.elasticity.cells import Cells, cell_quadrature, summed
 from fem_adhesion.elasticity.incompressible import REMEDY_FROM
-from fem_adhesion.elasticity.space import (
-    Space,
-    cell_points,
-    cell_products,
-    cell_quadrature,
-    lame_parameters,
-    reference_functions,
-    scatter,
-)
-from fem_adhesion.elasticity.tensor import integrated
+from fem_adhesion.elasticity.space import Space, lame_parameters, reference_functions, scatter
 from fem_adhesion.finite_strain import material
 from halfspace.errors import InputError
 from halfspace.limits import require_between
@@ -48,23 +40,22 @@ class Body(Valued):
     """A neo-Hookean body of N displacement and M pressure unknowns, in this order; M = 0 for displacements alone.
 
     Poisson's ratio is that of small strains; the stretch delta = beta/R = sqrt(mu/rho) is zero for the linear body. A
-    cell has n scalar functions of displacement and m of pressure. `functions` (3, n, q) are the former at its q
-    quadrature points, with their derivatives on the reference cell, `inverse` (2, 2, cells, q) the derivatives of the
-    reference cell's coordinates by r and z, radii and measure (cells, q) r and 2 pi r dr dz. `pressure_functions`
-    (m, q) are the same in every cell, the numbers `pressures` (cells, m) are from 0, and `products` (M, M) are
-    those of two pressures, integrated over the body.
+    cell has m functions of pressure: `pressure_functions` (m, q) at its q quadrature points, the same in every cell,
+    whose numbers `pressures` (cells, m) are from 0; `products` (M, M) are those of two pressures, integrated over the
+    body.
     """
 
-    space: Space
+    cells: Cells
     poisson: float
     stretch: float
-    functions: Array
-    inverse: Array
-    radii: Array
-    measure: Array
     pressure_functions: Array
     pressures: Index
     products: sparse.csc_array
+
+    @property
+    def space(self) -> Space:
+        """Of the displacements."""
+        return self.cells.space
 
     @property
     def unknowns(self) -> int:
@@ -76,45 +67,16 @@ class Body(Valued):
         return replace(self, stretch=stretch)
 
     @cached_property
-    def displacements(self) -> Index:
-        """Displacement unknowns of each cell, (cells, 2 n): u_r of the n functions, then u_z."""
-        return np.ascontiguousarray(self.space.cell_dofs.T)
-
-    @cached_property
     def cell_dofs(self) -> Index:
         """Unknowns of each cell, (cells, k): displacements, then pressures."""
-        return np.concatenate([self.displacements, self.space.unknowns + self.pressures], axis=1)
-
-    def gradient(self, u: Array) -> Array:
-        """Components of grad u at the points, (5, cells, q), in the order of `fem_adhesion.finite_strain.material`."""
-        cells = u[self.displacements].reshape(len(self.displacements), 2, -1)
-        value, *slopes = (cells.transpose(1, 0, 2)[:, None] @ self.functions).transpose(1, 0, 2, 3)
-        plane = slopes[0][:, None] * self.inverse[0] + slopes[1][:, None] * self.inverse[1]
-        return np.concatenate([value[:1] / self.radii, plane.reshape(4, *self.radii.shape)])
-
-    def works(self, stress: Array) -> Array:
-        """Work of a stress, (5, cells, q), in each unit displacement, (N,)."""
-        amounts = self._by_functions(stress * self.measure)
-        cells = (amounts @ self.functions.transpose(0, 2, 1)).sum(axis=1)
-        return _summed(self.displacements, cells.transpose(1, 0, 2), self.space.unknowns)
-
-    def _by_functions(self, stress: Array) -> Array:
-        """What of a stress, (5, ..., cells, q), works in a value and in slopes on the reference cell, of u_r and u_z.
-
-        These are the factors, (2, 3, ..., cells, q), of the `functions` of a unit displacement.
-        """
-        plane, amounts = stress[1:].reshape(2, 2, *stress.shape[1:]), np.zeros((2, 3, *stress.shape[1:]))
-        amounts[0, 0] = stress[0] / self.radii
-        for i in range(2):
-            amounts[:, 1 + i] = plane[:, 0] * self.inverse[i, 0] + plane[:, 1] * self.inverse[i, 1]
-        return amounts
+        return np.concatenate([self.cells.displacements, self.space.unknowns + self.pressures], axis=1)
 
     def deformation(self, u: Array) -> material.Deformation:
         """Deformation at the points under all unknowns; of the last few states it is known."""
         for known, state in self._recent:
             if np.array_equal(known, u):
                 return state
-        self._recent.insert(0, (u.copy(), material.Deformation(self.gradient(u), self.stretch)))
+        self._recent.insert(0, (u.copy(), material.Deformation(self.cells.gradient(u), self.stretch)))
         del self._recent[RECENT:]
         return self._recent[0][1]
 
@@ -125,7 +87,7 @@ class Body(Valued):
     def forces(self, u: Array) -> Array:
         """Forces on the displacements, in R dgamma, and what is left of p = lambda ln J in each pressure, (N + M,)."""
         lam, G = self._lame
-        forces = self.works(material.stress(self.deformation(u), G, self._pressure(u)))
+        forces = self.cells.works(material.stress(self.deformation(u), G, self._pressure(u)))
         return np.append(forces, self.log_volumes(u) - self.products @ u[self.space.unknowns :] / lam)
 
     def tangent_product(self, u: Array) -> Callable[[Array], Array]:
@@ -133,50 +95,29 @@ class Body(Valued):
         (lam, _), D, f, N = self._lame, self._moduli(u), self.deformation(u).inverse_transpose, self.space.unknowns
 
         def product(v: Array) -> Array:
-            A = self.gradient(v)
+            A = self.cells.gradient(v)
             stress = np.einsum("abcq,bcq->acq", D, A)
             if not self._mixed:
-                return self.works(stress)
+                return self.cells.works(stress)
             work = self._of_pressures(np.sum(f * A, axis=0)) - self.products @ v[N:] / lam
-            return np.append(self.works(stress + f * self._at_points(v[N:])), work)
+            return np.append(self.cells.works(stress + f * self._at_points(v[N:])), work)
 
         return product
 
     def cell_tangents(self, u: Array) -> Array:
         """The same, symmetric, cell by cell, (cells, k, k): with pressures each a saddle point."""
-        n, blocks = self.functions.shape[1], np.empty((len(self.radii), *2 * [self.cell_dofs.shape[1]]))
-        once = self._by_functions(self._moduli(u) * self.measure)
-        twice = self._by_functions(np.moveaxis(once, 2, 0))
-        pairs = np.stack([twice[0, :, 0], twice[1, :, 0], twice[1, :, 1]])
-        blocks[:, : 2 * n, : 2 * n] = self._integrated(pairs)
-        if self._mixed:
-            self._border(blocks, u)
-        return blocks
-
-    def _border(self, blocks: Array, u: Array) -> None:
-        """Fill in what couples the pressures of a cell with its displacements and with each other."""
-        n, p, values = self.functions.shape[1], slice(2 * self.functions.shape[1], None), self.pressure_functions
-        amounts = self._by_functions(self.deformation(u).inverse_transpose * self.measure)
-        dilated = np.einsum("iacq,anq->cinq", amounts, self.functions).reshape(len(blocks), 2 * n, -1)
-        blocks[:, : 2 * n, p] = dilated @ values.T
-        blocks[:, p, : 2 * n] = blocks[:, : 2 * n, p].transpose(0, 2, 1)
-        blocks[:, p, p] = (self.measure[:, None] * values) @ values.T / -self._lame[0]
-
-    def _integrated(self, factors: Array) -> Array:
-        """Matrices (cells, 2 n, 2 n): sums over the points of factors times products of two functions.
-
-        The factors (3, 3, 3, cells, q) are of u_r with u_r, u_z with u_r and u_z with u_z.
-        """
-        if isinstance(self.space.element, ElementQuadP):
-            return integrated(factors, cell_products(self.space))
-        r, z_r, z = np.einsum("mabcq,aiq,bjq->mcij", factors, self.functions, self.functions, optimize=True)
-        return np.block([[r, z_r.transpose(0, 2, 1)], [z_r, z]])
+        K, values = self.cells.stiffness(self._moduli(u)), self.pressure_functions
+        if not self._mixed:
+            return K
+        beside = self.cells.densities(self.deformation(u).inverse_transpose * self.cells.measure) @ values.T
+        own = (self.cells.measure[:, None] * values) @ values.T / -self._lame[0]
+        return np.block([[K, beside], [beside.transpose(0, 2, 1), own]])
 
     def energy(self, u: Array) -> float:
         """Elastic energy in R dgamma mu eps."""
         (lam, G), state, p = self._lame, self.deformation(u), self._pressure(u)
         volumetric = p * state.log_volume - p**2 / (2 * lam) if self._mixed else p * state.log_volume / 2
-        return float(np.sum(self.measure * (material.shear_energy(state, G) + volumetric)))
+        return float(np.sum(self.cells.measure * (material.shear_energy(state, G) + volumetric)))
 
     def least_volume_ratio(self, u: Array) -> float:
         """Least J at any quadrature point; the body is turned inside out where it is not positive."""
@@ -213,12 +154,9 @@ class Body(Valued):
         """Amounts at the points, integrated with each pressure function, (M,)."""
         if not self._mixed:
             return np.zeros(0)
-        return _summed(self.pressures, (self.measure * amounts) @ self.pressure_functions.T, self.products.shape[0])
-
-
-def _summed(dofs: Index, values: Array, size: int) -> Array:
-    """Add up values to the unknowns of the same order, (size,)."""
-    return np.asarray(np.bincount(dofs.ravel(), weights=values.ravel(), minlength=size), dtype=np.float64)
+        return summed(
+            self.pressures, (self.cells.measure * amounts) @ self.pressure_functions.T, self.products.shape[0]
+        )
 
 
 def material_body(space: Space, poisson: float, stretch: float) -> Body:
@@ -231,11 +169,9 @@ def material_body(space: Space, poisson: float, stretch: float) -> Body:
 def displacement_body(space: Space, poisson: float, stretch: float) -> Body:
     """Prepare a body of displacements; raise InputError if poisson or stretch is out of range."""
     lame_parameters(poisson)
-    value, slopes = reference_functions(space.element, cell_quadrature(space)[0])
-    functions = np.ascontiguousarray(np.concatenate([value[None], slopes.transpose(1, 0, 2)]))
-    radii, inverse, measure = map(np.ascontiguousarray, cell_points(space))
-    none = np.zeros((0, radii.shape[1])), np.zeros((len(radii), 0), dtype=np.intp), sparse.csc_array((0, 0))
-    return Body(space, poisson, require_stretch(stretch), functions, inverse, radii, measure, *none)
+    cells = Cells.of(space)
+    none = np.zeros((0, cells.radii.shape[1])), np.zeros((len(cells.radii), 0), dtype=np.intp), sparse.csc_array((0, 0))
+    return Body(cells, poisson, require_stretch(stretch), *none)
 
 
 def mixed_body(space: Space, poisson: float, stretch: float, pressure: Any) -> Body:
@@ -249,7 +185,7 @@ def mixed_body(space: Space, poisson: float, stretch: float, pressure: Any) -> B
     body, dofs = displacement_body(space, poisson, stretch), Dofs(space.mesh, pressure)
     by_cell = np.asarray(dofs.element_dofs, dtype=np.intp)
     values, _ = reference_functions(pressure, cell_quadrature(space)[0])
-    products = scatter((body.measure[:, None] * values) @ values.T, by_cell, dofs.N)
+    products = scatter((body.cells.measure[:, None] * values) @ values.T, by_cell, dofs.N)
     return replace(body, pressure_functions=values, pressures=by_cell.T, products=products)
 
 

@@ -8,19 +8,9 @@ from scipy.sparse.linalg import splu
 from skfem import Dofs
 
 from fem_adhesion.elasticity.boundaries import FarField, point_load, with_interiors
+from fem_adhesion.elasticity.cells import Cells, cell_quadrature, of_gradient, shear_matrix
 from fem_adhesion.elasticity.condensation import CondensedBody, contact_surface, surface_operator
-from fem_adhesion.elasticity.incompressible import dilatation
-from fem_adhesion.elasticity.space import (
-    Space,
-    cell_quadrature,
-    cell_strains,
-    lame_parameters,
-    reference_functions,
-    scatter,
-    scatter_pairs,
-    shear_matrix,
-    strain_products,
-)
+from fem_adhesion.elasticity.space import Space, lame_parameters, reference_functions, scatter, scatter_pairs
 from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
@@ -70,12 +60,12 @@ def _mixed_matrices(
     space: Space, poisson: float, pressure: Any
 ) -> tuple[sparse.csc_array, sparse.csc_array, sparse.csc_array]:
     """Shear stiffness (N, N), work of each pressure in each dilatation (M, N) and products of pressures (M, M)."""
-    dofs, D = Dofs(space.mesh, pressure), shear_matrix(poisson)
+    dofs, D = Dofs(space.mesh, pressure), of_gradient(shear_matrix(poisson))
     q = reference_functions(pressure, cell_quadrature(space)[0])[0]
     blocks: list[tuple[Array, Array, Array]] = []
-    for _, B, dA in cell_strains(space):
-        weighted = q * dA[:, None, :]
-        blocks.append((strain_products(D, B, dA), weighted @ dilatation(B), weighted @ q.T))
+    for _, cells in Cells.of(space).batches():
+        weighted = q * cells.measure[:, None, :]
+        blocks.append((cells.stiffness(D), weighted @ cells.dilatations().transpose(0, 2, 1), weighted @ q.T))
     K, coupling, volume = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
     pressures = np.asarray(dofs.element_dofs, dtype=np.intp)
     return (
