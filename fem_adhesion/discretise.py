@@ -19,9 +19,8 @@ from skfem import ElementQuadP, ElementTriP2, MeshTri
 from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout
 from fem_adhesion.elasticity import boundaries
 from fem_adhesion.elasticity.boundaries import FarField
-from fem_adhesion.elasticity.cells import cell_stiffness
+from fem_adhesion.elasticity.cells import cell_stiffness, stiffness_of
 from fem_adhesion.elasticity.condensation import CondensedBody, condense
-from fem_adhesion.elasticity.incompressible import stiffness_of
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.materials import LinearElastic
 from fem_adhesion.mesh.spheres import with_contact_to

@@ -8,9 +8,8 @@ from skfem import CellBasis, ElementQuadP
 from whole_sphere import sphere_operator, surface_deflection
 
 from fem_adhesion.elasticity.boundaries import clamped, sliding
-from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness
+from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, stiffness_for
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.incompressible import stiffness_for
 from fem_adhesion.elasticity.space import Space, ring_measure, scatter
 from fem_adhesion.harmonics import legendre
 from fem_adhesion.mesh import curved, spheres

@@ -16,9 +16,8 @@ from fem_adhesion.elasticity.boundaries import (
     trace_on,
     trace_projection,
 )
-from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, elastic_matrix
+from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, elastic_matrix, projected_stiffness
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.incompressible import projected_stiffness
 from fem_adhesion.elasticity.space import Space, ring_measure, scatter
 from fem_adhesion.fields import half_space_beside
 from fem_adhesion.materials import Elastic

@@ -11,14 +11,18 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import HalfSpace, Scene
 from fem_adhesion.elasticity.boundaries import clamped, free, point_load, with_interiors
-from fem_adhesion.elasticity.cells import Cells, cell_quadrature, cell_stiffness, of_gradient, shear_matrix
-from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.incompressible import (
+from fem_adhesion.elasticity.cells import (
     REMEDY_FROM,
+    Cells,
+    cell_quadrature,
+    cell_stiffness,
+    of_gradient,
     pressure_modes,
     projected_stiffness,
+    shear_matrix,
     stiffness_for,
 )
+from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.space import Space, scatter, scatter_pairs
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
 from halfspace.elastic import grid

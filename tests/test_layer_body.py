@@ -15,8 +15,7 @@ from fem_adhesion.cli import main
 from fem_adhesion.crosscheck.comparison import difference
 from fem_adhesion.discretise import discretise, quadrilateral, sized_body
 from fem_adhesion.elasticity import stress
-from fem_adhesion.elasticity.cells import cell_stiffness
-from fem_adhesion.elasticity.incompressible import stiffness_of
+from fem_adhesion.elasticity.cells import cell_stiffness, stiffness_of
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.materials import Elastic, LinearElastic
 from fem_adhesion.mesh.block import tensor_grid

@@ -12,8 +12,8 @@ from skfem import ElementQuadP
 import fem_adhesion
 import halfspace
 from fem_adhesion import Block, HalfSpace, Scene
+from fem_adhesion.elasticity.cells import stiffness_for
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.incompressible import stiffness_for
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh.block import block_grid
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem

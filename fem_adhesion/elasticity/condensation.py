@@ -172,7 +172,7 @@ def condense(
 
     The far field is `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.boundaries`. Gauss's points are
     more than the degree p of the element on a contact facet, p + 2 unless given. Of the stiffnesses of the cells
-    `fem_adhesion.elasticity.incompressible.projected_stiffness` does not lock. With the traction "projected" the
+    `fem_adhesion.elasticity.cells.projected_stiffness` does not lock. With the traction "projected" the
     pressure, which is vertical, acts on the area projected on the plane of the contact, with "surface" on that of the
     surface. InputError unless 0 <= poisson < 0.5 and the points are enough.
     """

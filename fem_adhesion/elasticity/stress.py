@@ -14,8 +14,15 @@ from numpy.polynomial.legendre import legvander2d
 from scipy.sparse.linalg import splu
 from skfem import CellBasis
 
-from fem_adhesion.elasticity.cells import cell_quadrature, elastic_matrix, shear_matrix
-from fem_adhesion.elasticity.incompressible import pressure_modes, projects
+from fem_adhesion.elasticity.cells import (
+    TRACE,
+    Cells,
+    cell_quadrature,
+    elastic_matrix,
+    pressure_modes,
+    projects,
+    shear_matrix,
+)
 from fem_adhesion.elasticity.space import Space, lame_parameters, reference_functions, scatter
 from fem_adhesion.materials import Elastic
 from halfspace.values import Array, Index
@@ -60,7 +67,7 @@ def stresses(
     """Return the stresses of a displacement at points of each cell, (4, cells, k), in E* beta/R, tension positive.
 
     They are discontinuous from cell to cell; the arguments are those of `strains`. With projected dilatation the
-    displacement is that of `fem_adhesion.elasticity.incompressible.projected_stiffness`, whose mean stress is lambda
+    displacement is that of `fem_adhesion.elasticity.cells.projected_stiffness`, whose mean stress is lambda
     times the projection of div u, not div u itself.
     """
     strain = strains(space, displacement, places)
@@ -124,10 +131,8 @@ def projection(space: Space, values: Array) -> Array:
 
 def _projected_dilatation(space: Space, displacement: Array, places: Array) -> Array:
     """Projection of div u, cell by cell, on `pressure_modes`, at points (2, k): (cells, k)."""
-    points, weights = cell_quadrature(space)
-    basis = _basis(space, points, weights)
-    root = np.sqrt(np.asarray(basis.global_coordinates())[0] * basis.dx)
-    dilatation = strains(space, displacement, points)[:3].sum(axis=0)
+    cells = Cells.of(space)
+    root, dilatation = np.sqrt(cells.measure), np.tensordot(TRACE, cells.gradient(displacement), 1)
     Q, triangle = np.linalg.qr(root[:, :, None] * pressure_modes(space))
     parts = np.einsum("ckm,ck->cm", Q, root * dilatation)
     coefficients = np.linalg.solve(triangle, parts[:, :, None])[:, :, 0]

@@ -24,8 +24,7 @@ from scipy import sparse
 from skfem import Dofs
 
 from fem_adhesion.discretise import quadrilateral
-from fem_adhesion.elasticity.cells import Cells, cell_quadrature, summed
-from fem_adhesion.elasticity.incompressible import REMEDY_FROM
+from fem_adhesion.elasticity.cells import REMEDY_FROM, Cells, cell_quadrature, summed
 from fem_adhesion.elasticity.space import Space, lame_parameters, reference_functions, scatter
 from fem_adhesion.finite_strain import material
 from halfspace.errors import InputError

@@ -13,8 +13,8 @@ from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3, MeshTr
 
 import halfspace
 from fem_adhesion import convergence
+from fem_adhesion.elasticity.cells import projected_stiffness
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.incompressible import projected_stiffness
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh.block import (
     block_grid,
