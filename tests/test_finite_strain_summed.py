@@ -67,8 +67,8 @@ class Summed:
         points, _ = cell_quadrature(space)
         self.values, _ = reference_functions(space.element, points)
         self.depth = -self.scale * space.mesh.mapping().F(points)[1]  # of the undeformed body, in eps
-        self.volume = problem.body.measure
-        self.dofs = problem.body.displacements[:, len(self.values) :]
+        self.volume = problem.body.cells.measure
+        self.dofs = problem.body.cells.displacements[:, len(self.values) :]
 
     def derivatives(self, x):
         """All displacements, and the potential's first two derivatives by the gap at every point, times its volume."""
