@@ -260,7 +260,7 @@ def element_methods() -> list[Method]:
 
     Degrees rise with the resolution, adaptively, and on fixed meshes for the other far field and solver.
     """
-    method = partial(Method, "finite elements")
+    method, held = partial(Method, "finite elements"), partial(_condensed, far_field=clamped)
     P1, P2, P3 = (partial(_on_disc, element) for element in (ElementTriP1(), ElementTriP2(), ElementTriP3()))
     tri = [(0.6, 16.0), (0.4, 24.0), (0.28, 34.0), (0.2, 48.0), (0.14, 68.0), (0.1, 96.0)]
     quad = [(0.6, 16.0, 2.0), (0.4, 24.0, 1.7), (0.28, 34.0, 1.45), (0.2, 48.0, 1.3), (0.14, 68.0, 1.2)]
@@ -271,48 +271,37 @@ def element_methods() -> list[Method]:
         method("P2", ladder(P2, "f L", tri), 3),
         method("P3", ladder(P3, "f L", tri), 3),
         method("Q2", ladder(_on_block, "p f L", [(2, *s) for s in quad]), 4),
-        method("P1", ladder(partial(P1, far_field=clamped), "f L", tri), 4, "clamped"),
-        method("P2", ladder(partial(P2, far_field=clamped), "f L", tri), 3, "clamped"),
+        method("P1", ladder(partial(P1, solve=held), "f L", tri), 4, "clamped"),
+        method("P2", ladder(partial(P2, solve=held), "f L", tri), 3, "clamped"),
         method("P2", ladder(partial(P2, solve=_monolithic), "f L", tri[:3]), 1, "monolithic"),
         method("hp", adaptive(trace_elements, range(3, 9)), 4),  # looser tolerances choose the same degree
-        method("hp", ladder(partial(_on_block, far_field=clamped), "p f L", boxes), 3, "clamped"),
+        method("hp", ladder(partial(_on_block, solve=held), "p f L", boxes), 3, "clamped"),
         method("hp", ladder(partial(_on_block, solve=_monolithic), "p f L", small), 2, "monolithic"),
     ]
 
 
-Solver = Callable[[Space, float, FarField], Solved]
+Solver = Callable[[Space, float], Solved]
 
 
-def _condensed(space: Space, tabor: float, far_field: FarField) -> Solved:
+def _condensed(space: Space, tabor: float, far_field: FarField = point_load) -> Solved:
     body = condense(space, POISSON, far_field=far_field)
     return from_chart(ContactProblem(body.operator, tabor), body.unknowns)
 
 
-def _monolithic(space: Space, tabor: float, far_field: FarField) -> Solved:
-    problem = assemble(space, POISSON, tabor, far_field=far_field)
-    return from_chart(problem, space.unknowns)
+def _monolithic(space: Space, tabor: float) -> Solved:
+    return from_chart(assemble(space, POISSON, tabor, far_field=point_load), space.unknowns)
 
 
-def _on_disc(
-    element: Any, tabor: float, f: float, L: float, far_field: FarField = point_load, solve: Solver = _condensed
-) -> Solved:
+def _on_disc(element: Any, tabor: float, f: float, L: float, solve: Solver = _condensed) -> Solved:
     """Quarter disc of triangles whose edges grow by the fraction f of the distance."""
     size = graded_size(f * Scales(tabor).spike_width, widest(tabor), f)
-    return solve(Space(quarter_disc(_box(L, tabor), size), element), tabor, far_field)
+    return solve(Space(quarter_disc(_box(L, tabor), size), element), tabor)
 
 
-def _on_block(
-    tabor: float,
-    p: int,
-    f: float,
-    L: float,
-    growth: float,
-    far_field: FarField = point_load,
-    solve: Solver = _condensed,
-) -> Solved:
+def _on_block(tabor: float, p: int, f: float, L: float, growth: float, solve: Solver = _condensed) -> Solved:
     """Box of quadrilaterals of degree p between graded lines."""
     mesh = block_grid(f * Scales(tabor).spike_width, widest(tabor), _box(L, tabor), growth=growth)
-    return solve(Space(mesh, ElementQuad2() if p == 2 else ElementQuadP(p)), tabor, far_field)
+    return solve(Space(mesh, ElementQuad2() if p == 2 else ElementQuadP(p)), tabor)
 
 
 def _box(L: float, tabor: float) -> float:
