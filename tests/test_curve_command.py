@@ -303,7 +303,7 @@ def test_each_key_of_the_json_holds_what_it_says(both, real):
 def test_the_command_of_the_readme_writes_every_kind_of_file_whole(tmp_path, monkeypatch, capsys):
     """Through the command line, and read back by other people's programs."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(module, "FRAMES", 6)
+    monkeypatch.setattr(module, "FRAMES", 2)
     files = ["--json", "curve.json", "--csv", "curve.csv", "--plot", "curve.png", "--vtk", "curve", "--points", "2"]
     pictures = ["--revolve", "90", "--render", "body.png", "--movie", "jump.gif"]
     assert cli.main(["curve", "--tabor", "2", "--rtol", "1e-3", *files, *pictures]) == 0
