@@ -5,7 +5,7 @@ The run itself, over a coarse net, is a test of the Makefile's targets.
 
 import math
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from itertools import pairwise
 
 import drawn_layers
@@ -110,9 +110,14 @@ def test_what_is_refused_of_drawn_scenes_is_told_and_of_others_ends_the_run(monk
 @pytest.mark.parametrize("seed", range(30))
 def test_contacts_on_layers_are_drawn_for_any_seed(seed):
     """What is refused when it is made, law or body, is drawn again."""
-    scenes = drawn_layers.drawn(seed, 12)
+    scenes = _drawn(seed)
     assert len(scenes) == 12
-    assert drawn_layers.drawn(seed, 12) == scenes != drawn_layers.drawn(seed + 1, 12)
+    assert drawn_layers.drawn(seed, 12) == scenes != _drawn(seed + 1)
+
+
+@cache
+def _drawn(seed):
+    return drawn_layers.drawn(seed, 12)
 
 
 @pytest.mark.parametrize(
