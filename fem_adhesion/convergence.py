@@ -19,7 +19,6 @@ from fem_adhesion.discretise import (
     size_for,
     sized_body,
 )
-from fem_adhesion.finite_strain import scene as finite_strain_scene
 from fem_adhesion.mesh.file import read_scaled
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy.finite_bodies import AroundEvents, operators_across, surroundings
@@ -79,6 +78,8 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     require_scene(scene)
     rtol, to_load = require_rtol(rtol), require_load(to_load)
     if scene.material.finite:
+        from fem_adhesion.finite_strain import scene as finite_strain_scene  # it takes time to load, and few need it
+
         return finite_strain_scene.trace(scene, rtol, to_load)
     if scene.body.file:
         return _trace_on_given_mesh(scene, scene.body.file, rtol, to_load)

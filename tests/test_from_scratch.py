@@ -1,6 +1,7 @@
 """The fourth level: what both solvers share, against closed forms and against a weak form that shares nothing."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -213,6 +214,37 @@ def test_a_finer_body_is_taken_where_two_differ_by_more_than_the_budget(monkeypa
     assert doubt() > 1e-4
     monkeypatch.setattr(from_scratch, "BUDGET", 1e-4)
     assert doubt() < 1e-4
+
+
+def test_what_changes_from_stage_to_stage_is_no_mistake_of_a_balance():
+    """A stiff law makes of a ripple of the gaps a deflection of its own; what both stages share is a mistake."""
+    scene = Scene(0.5)
+    path = fem_adhesion.trace(scene, rtol=1e-3)
+    smooth = path.stages[-1]["zero_load"]
+    wave = 0.02 * np.cos(6 * smooth.problem.operator_at(smooth.point.x).radii)
+    x = smooth.point.x + np.append(wave, [0.0, 0.0])
+    rippled = replace(smooth, point=replace(smooth.point, x=x))
+
+    def verdict(*stages):
+        told = SimpleNamespace(events=path.events, stages=[{"zero_load": stage} for stage in stages])
+        balance, _ = from_scratch._of_event("zero_load", scene, told, *contacts(scene)[:2])
+        return balance.row(from_scratch.LEAST).verdict
+
+    assert verdict(smooth, smooth) == "agree"
+    assert verdict(smooth, rippled) == "inconclusive"
+    assert verdict(rippled, rippled) == "disagree"
+
+
+def test_the_work_of_adhesion_is_that_of_an_adaptive_rule(monkeypatch):
+    """Of laws scaled to do a work of 1; cut nowhere, a step is found by halving."""
+    laws = (PowerLaw(2.1, 2.5), Morse(20), Exponential(0.5, 4), Dlvo(-1.0, 0.3), Dugdale(0.07))
+    monkeypatch.setattr(from_scratch, "WORK_LEFT", ())
+    for law in laws:
+        work = from_scratch._work(law)
+        assert abs(work.value - 1) < work.error < 1e-9
+    monkeypatch.setattr(from_scratch, "HALVINGS", 0)
+    cut = from_scratch._work(laws[-1])
+    assert abs(cut.value - 1) < cut.error > 1e-6
 
 
 def test_closed_forms_agree():
