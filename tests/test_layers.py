@@ -21,6 +21,7 @@ from halfspace.accuracy.trace import layered_half_space, resolution_for
 from halfspace.elastic import compliance, grid, layered
 from halfspace.elastic.layered import image_compliance, images_of, layered_panels
 from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, stiff_as, surface_compliance
+from halfspace.elastic.operators import BESIDE, NearlyHomogeneous
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import APPROACH, ContactProblem
@@ -281,14 +282,14 @@ def test_between_the_radii_of_a_curve_a_stiff_coating_is_as_well_known_as_a_soft
         scales, images = Scales(3.0, body=body), images_of(body)
         made = layered_half_space(scales, images, resolution_for(scales, 1e-3))
         operator = made.curve(apart)[1].problem.operator
-        radii = np.sort(operator.scales)
+        radii = operator.scales[BESIDE:-BESIDE]
         for a in np.sqrt(radii[1:] * radii[:-1])[::4]:
             here = operator.at(a)
             alone = replace(here, compliance=operator.unit.scaled(a).compliance)
-            exact = alone.compliance + image_compliance(images, alone, made.outer[0])
+            exact = alone.compliance + image_compliance(images, alone)
             pressure = np.exp(-((here.radii / a) ** 2))
             off = np.abs((here.compliance - exact) @ pressure).max()
-            assert off < 3e-4 * np.abs(exact @ pressure).max()
+            assert off < 1e-8 * np.abs(exact @ pressure).max()
 
 
 def test_a_thick_layer_goes_over_into_the_half_space():
@@ -393,6 +394,23 @@ def test_a_bell_deflects_a_layer_on_a_scaled_grid_as_on_one_that_stands(charted)
     inside = there.radii < 10
     found = (there.compliance @ np.exp(-(there.radii**2)))[inside]
     assert found == pytest.approx(other.values_at(there.radii[inside], wanted), rel=0, abs=1e-7)
+
+
+@pytest.mark.parametrize("body", [Layer(2.0, 0.3), SOFT_BETWEEN, Coated(0.1, 100.0)], ids=repr)
+@pytest.mark.parametrize("spacing", [1.14, 1.17])
+def test_images_in_units_of_the_contact_deflect_as_at_their_own_depths(body, spacing):
+    """At the ends of what they serve and between; the rule for long cells is that of the widest contact."""
+    images = images_of(body, spacing)
+    unit = compliance.panels(grid.graded(1.0, 0.1, 20.0, growth=3.0), 8)
+    pressure = np.exp(-(unit.radii**2))
+    scales, shared = images.in_units(0.3, 3.0)
+    operator = NearlyHomogeneous(unit, scales, image_compliance(shared, unit))
+    for a in (operator.least_radius, 0.95, 3.0):
+        own = replace(images, smooth=shared.smooth * a)
+        wanted = a * unit.compliance + image_compliance(own, unit.scaled(a))
+        found, wanted = (each @ pressure for each in (operator.at(a).compliance, wanted))
+        assert found == pytest.approx(wanted, rel=0, abs=5e-9 * np.abs(wanted).max())
+    assert operator.least_radius == pytest.approx(0.3)
 
 
 def test_a_layer_widened_twice_keeps_its_images(charted):

@@ -21,13 +21,12 @@ from halfspace.accuracy.finite_bodies import (
     AtRest,
     SizedBody,
     operators_across,
-    radii_around,
     surroundings,
 )
 from halfspace.accuracy.stages import on_all
 from halfspace.accuracy.trace import _sized_body, resolution_for
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.operators import Homogeneous
+from halfspace.elastic.operators import Homogeneous, chebyshev_radii
 from halfspace.equilibrium.charts import Chart, moved
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.devices import cycle
@@ -283,7 +282,8 @@ def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_toleran
     pressure = -np.exp(-8 * (operator.at(1.18).radii / 1.18 - 1) ** 2)
 
     def derivative(window, count):
-        chart = body.following(operator.grid, radii_around(1.18, window, count))
+        around = chebyshev_radii(1.18 * np.exp(-window), 1.18 * np.exp(window), count)
+        chart = body.following(operator.grid, around)
         return chart.problem.operator.rates(1.18, pressure)[2]
 
     wide, middle, narrow = (derivative(window, 2) for window in (4e-2, 2e-2, 1e-2))

@@ -186,11 +186,6 @@ def radii_along(until: float, widest: float, apart: float = APART, softest: floa
     return chebyshev_radii(least, widest, 2 + int(np.ceil(np.log(widest / least) / np.log(apart) + more)))
 
 
-def radii_around(radius: float, window: float = WINDOW, count: int = AROUND) -> Array:
-    """So many contact radii near a given one, in a window of half that logarithmic width."""
-    return chebyshev_radii(radius * np.exp(-window), radius * np.exp(window), count)
-
-
 def at_equator(tabor: float, profile: Surface, nodes: int) -> float:
     """Length in beta of the last cell at the equator of a sphere, r = R, where its profile has a vertical tangent.
 

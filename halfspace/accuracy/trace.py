@@ -25,8 +25,6 @@ from halfspace.accuracy.finite_bodies import (
     apart_for_events,
     at_equator,
     at_tip,
-    radii_along,
-    radii_around,
     surroundings,
 )
 from halfspace.accuracy.refinement import climb
@@ -195,7 +193,8 @@ class LayeredHalfSpace(SizedBody):
     """Layered body on the grids of the half-space, with what its images have beside that.
 
     The cells end at twice the half-space's extent, to where all images are integrated: what is pressed farther out, in
-    the infinite cell, is too little to deflect a layer. Those that follow the contact scale with it, all of them.
+    the infinite cell, is too little to deflect a layer. Those that follow the contact scale with it, all of them, so
+    that one chart serves the whole curve and its events, see `Images.in_units`.
     """
 
     images: Images
@@ -206,24 +205,26 @@ class LayeredHalfSpace(SizedBody):
         """Ends of all finite cells of the chart fine on the axis."""
         return self.rings.centred
 
-    def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:
-        """Chart for contact radii near the given one, which may be beyond where the cells on the axis end."""
-        return self._scaled(radii_around(radius, window, count))
+    def centred(self) -> Chart:
+        """Chart fine on the axis."""
+        return self._charts[0]
 
-    def curve(self, apart: float = APART) -> tuple[Chart, Chart]:
-        """Charts for the whole curve: the second from images at radii that are `apart` times one the other."""
-        scales = self.scales
-        widest = scales.widest_radius(self.to_load)
-        return self.centred(), self._scaled(radii_along(self.until, widest, apart, scales.softest))
+    def around(self, radius: float, window: float = WINDOW, count: int = AROUND) -> Chart:  # noqa: ARG002
+        """Chart that follows the contact, the same at all radii."""
+        return self._charts[1]
 
-    def _scaled(self, scales: Array) -> Chart:
-        edge, until = self._edge, float(self.outer[0])
-        beside = [image_compliance(self.images, edge.scaled(a), until) / a for a in scales.tolist()]
-        return Chart(contact_of(self.scales, NearlyHomogeneous(edge, scales, np.array(beside))), edge.radii.size)
+    def curve(self, apart: float = APART) -> tuple[Chart, Chart]:  # noqa: ARG002 (as above)
+        """Charts for the whole curve."""
+        return self._charts
 
     @cached_property
-    def _edge(self) -> compliance.ElasticOperator:
-        return self.half_space(self.rings.edge)
+    def _charts(self) -> tuple[Chart, Chart]:
+        edge, (least, widest) = self.half_space(self.rings.edge), self.radii_of_curve
+        least = min(least, EVENTS_LEAVE * self.length)
+        scales, images = self.images.in_units(least, widest)
+        beside = image_compliance(images, edge, float(self.outer[0]) / least)
+        following = Chart(contact_of(self.scales, NearlyHomogeneous(edge, scales, beside)), edge.radii.size)
+        return super().centred(), following
 
 
 def layered_half_space(

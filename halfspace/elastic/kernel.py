@@ -163,20 +163,21 @@ def near_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: 
     """Integrate a ring against the first k Legendre polynomials of a panel for each target, on the panel or off it.
 
     A panel with the target r (n,) on it is cut in two there. The rule is as of `graded_rule`, from the target on, or
-    the end of the panel next to it. Return (n, k).
+    the end of the panel next to it. Return (..., n, k), with the leading axes that the ring's values have.
     """
-    moments = np.empty((r.size, k))
     on = (left < r) & (r < right)
-    moments[~on] = beside(ring, r[~on], left[~on], right[~on], k, rule)
+    off = beside(ring, r[~on], left[~on], right[~on], k, rule)
+    moments = np.empty((*off.shape[:-2], r.size, k))
+    moments[..., ~on, :] = off
     r, left, right = r[on], left[on], right[on]
     parts = [beside(ring, r, left, r, k, rule), beside(ring, r, r, right, k, rule)]
-    moments[on] = _of_parts(parts, _halves(np.asarray((r - left) / (right - left)), k))
+    moments[..., on, :] = _of_parts(parts, _halves(np.asarray((r - left) / (right - left)), k))
     return moments
 
 
 def _of_parts(moments: Sequence[Array], polynomials: Sequence[Array]) -> Array:
-    """Moments of a panel (n, k) from those of its parts, by its polynomials in theirs, (n, k, k) each."""
-    return np.asarray(sum(np.einsum("nk,nkl->nl", *part) for part in zip(moments, polynomials, strict=True)))
+    """Moments of a panel (..., n, k) from those of its parts, by its polynomials in theirs, (n, k, k) each."""
+    return np.asarray(sum(np.einsum("...nk,nkl->...nl", *part) for part in zip(moments, polynomials, strict=True)))
 
 
 def _halves(cuts: Array, k: int) -> Sequence[Array]:
@@ -204,7 +205,7 @@ def beside(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: tuple[
     s = end[:, None] + inwards[:, None] * t
     values = ring(r[:, None], s, np.abs(end - r)[:, None] + np.abs(inwards)[:, None] * t)
     moments = values @ polynomials * np.abs(inwards)[:, None]
-    moments[~above, 1::2] *= -1  # odd polynomials, seen from the right end
+    moments[..., ~above, 1::2] *= -1  # odd polynomials, seen from the right end
     return np.asarray(moments)
 
 

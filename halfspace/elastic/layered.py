@@ -29,6 +29,7 @@ from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
 from halfspace.elastic.grid import gauss_legendre
 from halfspace.elastic.kernel import near_moments
 from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
+from halfspace.elastic.operators import BESIDE
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
@@ -37,6 +38,7 @@ Complex = NDArray[np.complex128]
 SHALLOWEST, DEEPEST = 1.0, 60.0  # images, in thicknesses of the first stratum and of all
 DEEPER = (1.0, 10.0, 100.0, 1000.0)  # times as deep they go if need be: stiff strata spread a load as widely
 SPACING = 1.14  # ratio of neighbouring depths: with 1.2 the fit is a decade worse, with 1.1 no better
+CLOSE = 0.14  # most logarithm of the ratio of lengths between which images are interpolated, half if they are tilted
 SAMPLES = 500  # wave numbers at which S is fitted
 # Rule for the nodes near a cell that is longer than the first stratum is thick: with 6 nodes a cell a bell of pressure
 # deflects the surface to 1e-8 as by a rule of 64 points, q = 5, up to two lengths away, with 8 nodes to 2e-9.
@@ -50,8 +52,9 @@ FITTED, AT_WORST = 3e-8, 1e-6  # of the largest S, or of 1: where deeper images 
 class Images(Valued):
     """Rings below the surface whose kernels, summed, are what a layered body has beside the half-space's.
 
-    The depths z_j and their strengths c_j are complex, (n,); the depths, and the first stratum's thickness `smooth`, a
-    distance over which the sum hardly changes, are in beta.
+    The depths z_j are complex, (n,), and so are their strengths c_j, (n,), or (m, n) if m bodies share the depths, each
+    with a kernel of its own, (m, ...). The depths, and the first stratum's thickness `smooth`, a distance over which
+    the sum hardly changes, are in beta, or in units of a length that differs from body to body.
     """
 
     depths: Complex
@@ -64,15 +67,42 @@ class Images(Valued):
 
     def kernel(self, r: Array, s: Array) -> Array:
         """Deflection at radius r by all images of a ring of unit pressure times radius at s; arrays broadcast."""
-        total, (r, s) = np.zeros(np.broadcast(r, s).shape), (np.asarray(r), np.asarray(s))
-        sums, differences = (r + s) ** 2, (r - s) ** 2
-        for z, c in zip(self.depths, self.strengths, strict=True):
-            if z.imag:
-                total += np.real(2 * c / _mean(np.sqrt(sums + z**2), np.sqrt(differences + z**2)))
-            else:
-                d2 = sums + z.real**2
-                total += 4 * c.real / np.pi * ellipkm1((differences + z.real**2) / d2) / np.sqrt(d2)
-        return total
+        sums, differences = np.asarray(r + s) ** 2, np.asarray(r - s) ** 2
+        rings = np.empty((self.depths.size, *sums.shape), complex if self.depths.imag.any() else float)
+        for ring, z in zip(rings, self.depths.tolist(), strict=True):
+            ring[...] = _ring(z, sums, differences)
+        strengths = self.strengths if np.iscomplexobj(rings) else self.strengths.real
+        return np.asarray(np.tensordot(strengths, rings, 1).real)
+
+    def in_units(self, least: float, most: float) -> tuple[Array, Images]:
+        """Lengths (m,) from one to another, with `BESIDE` past either, and the images in units of each of them.
+
+        They are a geometric sequence, and so are the depths: in units of the one these are as in those of the next, but
+        for the first or last. So few more depths serve all lengths than serve one.
+        """
+        real, tilted = self.depths.real, self.depths.imag > 0
+        ratio = float(np.log(real[1] / real[0]))
+        parts = int(np.ceil(ratio / (CLOSE / 2 if tilted.any() else CLOSE)))
+        step = ratio / parts
+        count = int(np.ceil(np.log(most / least) / step)) + 1 + 2 * BESIDE
+        lengths = least * np.exp(step * (np.arange(count) - BESIDE))
+        number = parts * np.rint(np.log(real / real[0]) / ratio).astype(int)
+        of_a_kind = number.max() + count
+        ladder = real[0] / lengths[-1] * np.exp(step * np.arange(of_a_kind))
+        strengths = np.zeros((count, 2 * of_a_kind), complex)
+        places = number + np.arange(count)[::-1, None] + of_a_kind * tilted
+        np.put_along_axis(strengths, places, np.broadcast_to(self.strengths, places.shape), axis=1)
+        used = strengths.any(axis=0)
+        depths = np.append(ladder, (1 + 1j) * ladder)[used]
+        return lengths, Images(depths, strengths[:, used], self.smooth / lengths[-1])
+
+
+def _ring(z: complex, sums: Array, differences: Array) -> Array | Complex:
+    """Kernel of an image of strength 1 from the squares of r + s and r - s; complex at a complex depth."""
+    if z.imag:
+        return 2 / _mean(np.sqrt(sums + z**2), np.sqrt(differences + z**2))
+    d2 = sums + z.real**2
+    return np.asarray(4 / np.pi * ellipkm1((differences + z.real**2) / d2) / np.sqrt(d2))
 
 
 def _mean(a: Complex, b: Complex) -> Complex:
@@ -157,7 +187,7 @@ def layered(images: Images, half_space: ElasticOperator, until: float, known: in
 
 
 def image_compliance(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> Array:
-    """What the images of a layered body deflect the nodes of a half-space's panels by pressures there, (q, q).
+    """What the images of a layered body deflect the nodes of a half-space's panels by pressures there, (..., q, q).
 
     Cells that begin beyond a radius, in beta, and an infinite one are integrated by their nodes even where they are
     longer than the first stratum is thick: too stiffly for what is pressed there, if anything is. Between the first
@@ -168,7 +198,7 @@ def image_compliance(images: Images, body: ElasticOperator, until: float = np.in
     i, j = _near(body.radii, left, right, (right - left > images.smooth) & (left < until))
     i, j = i[i >= known], j[i >= known]
     moments = near_moments(images.ring, body.radii[i], left[j], right[j], k, (NEAR_POINTS, GRADING))
-    compliance[i[:, None], body.cell_nodes[j]] = moments @ np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
+    compliance[..., i[:, None], body.cell_nodes[j]] = moments @ np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
     return compliance
 
 
@@ -176,10 +206,10 @@ def _by_nodes(images: Images, radii: Array, weights: Array, known: int) -> Array
     """Gauss's rule at the nodes themselves, where all is smooth; the kernel is symmetric."""
     i, j = np.triu_indices(radii.size)
     i, j = i[j >= known], j[j >= known]
-    kernel = np.zeros((radii.size, radii.size))
-    kernel[i, j] = images.kernel(radii[i], radii[j])
-    kernel[j, i] = kernel[i, j]
-    return np.asarray(kernel * (weights / (2 * np.pi)))
+    kernel = np.zeros((*images.strengths.shape[:-1], radii.size, radii.size))
+    kernel[..., i, j] = kernel[..., j, i] = images.kernel(radii[i], radii[j])
+    kernel *= weights / (2 * np.pi)
+    return kernel
 
 
 def _near(radii: Array, left: Array, right: Array, long: Mask) -> tuple[Index, Index]:

@@ -9,8 +9,9 @@ at the depth z, displacements U J1(k r), W J0(k r) and stresses sigma_rz = 2 G k
     T = -e^-zeta [a + b (zeta + 1 - 2 nu)]      + e^zeta [c - d (zeta - 1 + 2 nu)]
     N = -e^-zeta [a + b (zeta + 2 - 2 nu)]      - e^zeta [c - d (zeta - 2 + 2 nu)],
 
-so that what holds below a stratum, displacement = M stress, becomes the same above it. Sources: the solutions are
-Muki's (1960) for axial symmetry; of one bonded stratum the recursion is
+so that what holds below a stratum, displacement = M stress, becomes the same above it: there what comes back, c and d,
+is told by what goes down, a and b, e^(-2 zeta) times smaller, zeta that of the whole stratum. Sources: the solutions
+are Muki's (1960) for axial symmetry; of one bonded stratum the recursion is
 
     S(x) = [(3 - 4 nu) sinh 2x - 2x]/[(3 - 4 nu) cosh 2x + 2x^2 + 5 - 12 nu + 8 nu^2], x = k t,
 
@@ -158,12 +159,12 @@ def surface_compliance(body: LayeredBody, wave_numbers: Array) -> Array:
     first, k = body.strata[0], np.asarray(wave_numbers, float)
     held, free = _at_base(body.base)  # A and B: A displacement + B stress = 0
     for stratum in reversed(body.strata):
-        depth = np.minimum(k * stratum.thickness, DEEP)
-        parts = max(1, int(np.ceil(depth.max(initial=0.0))))  # waves grow e-fold in each: more would drown in rounding
-        across = _across(depth / parts, stratum)
-        for _ in range(parts):
-            above = held @ across[..., :2, :] + free @ across[..., 2:, :]
-            held, free = np.eye(2), np.asarray(np.linalg.solve(above[..., :2], above[..., 2:]), float)
+        depth, unit = np.minimum(k * stratum.thickness, DEEP), stratum.modulus / (1 + stratum.poisson)  # 2 G
+        below, on_top = (_waves(zeta, stratum.poisson) for zeta in (depth, np.array(0.0)))
+        going = held @ below[..., :2, :] + unit * free @ below[..., 2:, :]
+        back = -np.exp(-2 * depth)[:, None, None] * np.linalg.solve(going[..., 2:], going[..., :2])
+        displacement, stress = (part[:, :2] + part[:, 2:] @ back for part in (on_top[:2], unit * on_top[2:]))
+        held, free = np.eye(2), -displacement @ np.linalg.inv(stress)
     return np.asarray(free[..., 1, 1] * first.modulus / (1 - first.poisson**2) / 2)
 
 
@@ -197,21 +198,14 @@ def _at_base(base: Foundation | Substrate) -> tuple[Array, Array]:
     raise InputError(f"base = {base!r} is none of bonded, sliding, Substrate(modulus, poisson); take one of these")
 
 
-def _across(zeta: Array, stratum: Stratum) -> Array:
-    """Displacements times k, and stresses, at the depth zeta, from those on top: (n, 4, 4)."""
-    at_top = np.linalg.inv(_waves(np.array(0.0), stratum.poisson))
-    unit = np.repeat([1.0, stratum.modulus / (1 + stratum.poisson)], 2)  # 2 G
-    return np.asarray(_waves(zeta, stratum.poisson) @ at_top * unit[:, None] / unit)
-
-
 def _waves(zeta: Array, nu: float) -> Array:
-    """U, W, T, N (rows) of the four solutions a, b, c, d (columns) at the depth zeta, (..., 4, 4)."""
-    down, up = np.exp(-zeta), np.exp(zeta)
+    """U, W, T, N (rows) of the four solutions a, b, c, d (columns) at the depth zeta, but for e^-+zeta, (..., 4, 4)."""
+    one = np.ones_like(zeta)
     rows = [
-        [down, zeta * down, up, -zeta * up],
-        [down, (zeta + 3 - 4 * nu) * down, -up, (zeta - 3 + 4 * nu) * up],
-        [-down, -(zeta + 1 - 2 * nu) * down, up, -(zeta - 1 + 2 * nu) * up],
-        [-down, -(zeta + 2 - 2 * nu) * down, -up, (zeta - 2 + 2 * nu) * up],
+        [one, zeta, one, -zeta],
+        [one, zeta + 3 - 4 * nu, -one, zeta - 3 + 4 * nu],
+        [-one, -(zeta + 1 - 2 * nu), one, -(zeta - 1 + 2 * nu)],
+        [-one, -(zeta + 2 - 2 * nu), -one, zeta - 2 + 2 * nu],
     ]
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 

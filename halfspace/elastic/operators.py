@@ -70,8 +70,9 @@ class Homogeneous(Valued, Operator):
 class NearlyHomogeneous(Homogeneous):
     """A homogeneous body and what another one has beside it, on a grid that is scaled with the contact.
 
-    `beside` (m, q, q) is what it has beside at the contact radii `scales` (m,) over these, see `chebyshev_radii`. The
-    singular part of the kernel is that of the homogeneous body: only what is smooth is interpolated.
+    `beside` (m, q, q) is what it has beside at the contact radii `scales` (m,) over these, a geometric sequence of 2
+    `BESIDE` or more, between the nearest of which it is a polynomial. The singular part of the kernel is that of the
+    homogeneous body: only what is smooth is interpolated.
     """
 
     scales: Array
@@ -79,33 +80,32 @@ class NearlyHomogeneous(Homogeneous):
 
     @property
     def least_radius(self) -> float:
-        """Least contact radius that it serves, a little below those at which it is known."""
-        return float(self.scales.min()) / OUTSIDE
+        """Least contact radius that it serves, with enough of those at which it is known on either side."""
+        return float(self.scales[BESIDE])
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
         return self._latest.get(scale, self._made)
 
     def _made(self, scale: float) -> ElasticOperator:
-        beside = self._combined(self._by_radius.at(scale)[0])
-        return replace(self.unit, compliance=self.unit.compliance + beside).scaled(scale)
+        return replace(self.unit, compliance=self.unit.compliance + self._combined(scale, 0)).scaled(scale)
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""
         radii, weights, _ = super().rates(scale, pressure)
-        rate = self._combined(self._by_radius.at(scale)[1]) @ pressure
+        rate = self._combined(scale, 1) @ pressure
         return radii, weights, self.at(scale).compliance @ pressure / scale + rate
 
     def root(self, scale: float) -> Array:
         """Square root of the balanced compliance."""
         return self.at(scale).compliance_root
 
-    def _combined(self, weights: Array) -> Array:
-        return np.asarray(np.tensordot(weights, self.beside, 1))
-
-    @cached_property
-    def _by_radius(self) -> _Logarithmic:
-        return _Logarithmic(np.log(self.scales))
+    def _combined(self, scale: float, derivative: int) -> Array:
+        """What it has beside at a contact radius, or its derivative by the logarithm of that."""
+        first = min(max(int(np.searchsorted(self.scales, scale)) - BESIDE, 0), self.scales.size - 2 * BESIDE)
+        near = slice(first, first + 2 * BESIDE)
+        weights = _Logarithmic(np.log(self.scales[near])).at(scale)[derivative]
+        return np.asarray(np.tensordot(weights, self.beside[near], 1))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -278,6 +278,10 @@ class _AtScale(Valued):
         return self.body._combined(self._rows[1]) / np.maximum.outer(self.nodes.radii, self.nodes.radii)
 
 
+# Of a geometric sequence of lengths, as many on either side: a kernel at a depth is analytic up to pi/2 beside the real
+# axis of the logarithm, so that a polynomial through twice as many 0.14 apart errs by 1e-9 of the largest or less. With
+# 0.16 pull-off from a layer 1 beta thin at Tabor parameter 100 did not meet 1e-8.
+BESIDE = 8
 OUTSIDE = 1.3  # of the least radius: as far as the curve's own are apart there, and a step more
 
 
