@@ -13,10 +13,12 @@ import halfspace
 from fem_adhesion import Hemisphere, Scene, cli
 from halfspace import Coated
 from halfspace.equilibrium.charts import placed
+from halfspace.equilibrium.conditions import EXTREMUM
 from halfspace.equilibrium.contact import CENTRAL_GAP
 from halfspace.equilibrium.states import COORDINATES, shift
-from halfspace.errors import InputError
-from halfspace.profiles import Sphere
+from halfspace.errors import InputError, NotConverged
+from halfspace.laws import Dlvo
+from halfspace.profiles import Power, Sphere
 
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 
@@ -177,6 +179,41 @@ def test_points_of_a_curve_on_a_stiff_coating_are_within_their_errors():
     path, truth = (halfspace.trace(4.0, rtol=rtol, **scene) for rtol in (1e-4, 1e-7))
     assert path.load_error.max() < 2e-3 * abs(path.event("pull_off").load)
     _judge((number for _, number in _plane_differences(path, truth)), within=1.0, close=0.75)
+
+
+def test_a_curve_whose_contact_is_there_at_once_has_errors_at_every_point():
+    """Where no plane across it met the next grid's curve, which goes elsewhere, they are by the state nearest to it."""
+    path, truth = (halfspace.trace(0.01, profile=Power(10.0), rtol=rtol) for rtol in (1e-4, 1e-8))
+    touching = [number for far, number in _plane_differences(path, truth) if not far]
+    assert np.isfinite(path.load_error).all()
+    _judge(touching, close=0.6)
+
+
+def test_an_observable_turns_where_it_goes_by_more_than_it_errs(paths):
+    curve = paths[2.0].finest_curve
+    assert list(curve.branches("load")) == ["separated", "unstable 1", "unstable 2", "contact"]
+    assert len(replace(curve, remaining=1e12).branches("load")) == 2
+    assert len(paths[2.0].states(EXTREMUM)) == 3
+    assert len(replace(paths[2.0], remaining=1e12).states(EXTREMUM)) == 1
+
+
+def test_ripples_of_a_coarse_grid_are_no_extrema():
+    """There were 15 at this tolerance, and are 5 on grids fine enough for any."""
+    path = halfspace.trace(4.0, law=Dlvo(0.3, 1.0), body=Coated(0.1, 10.0), rtol=1e-4)
+    assert len(path.branches("load")) - 1 == len(path.states(EXTREMUM)) == 5
+
+
+def test_a_point_that_another_grid_does_not_have_has_no_error_that_bounds_it(paths):
+    def nowhere(*_):
+        raise NotConverged("no such state")
+
+    curve = paths[2.0].finest_curve
+    lost = replace(curve, ways=((nowhere, curve.ways[0][-1]),))
+    assert np.isinf(lost.errors[:, :3]).all()
+    np.testing.assert_array_equal(np.isnan(lost.errors[:, 3]), np.isnan(curve.errors[:, 3]))
+    state = lost.at("approach", -1.0, "contact")
+    assert np.isinf(state.load_error)
+    assert state.load == curve.at("approach", -1.0, "contact").load
 
 
 def test_the_error_of_a_point_is_the_part_of_the_changes_that_may_be_left_and_no_less_than_they():

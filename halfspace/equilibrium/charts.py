@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.conditions import FOLD, Located, relocate, same_place
+from halfspace.equilibrium.conditions import FOLD, Located, nearest, relocate, same_place
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, WIDEST, ContactProblem
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import (
@@ -190,12 +190,18 @@ def _deflection_beyond(source: ContactProblem, x: Array, radii: Array) -> Array:
 
 
 def placed(finest: Stage, problem: Traceable, point: Point) -> tuple[Traceable, Point]:
-    """Solve for a point of the path again on another discretisation, in the plane across the path at that point."""
+    """Solve for a point of the path again on another discretisation, in the plane across the path at that point.
+
+    Where the paths wind too differently for the plane across one to meet the other, for the state nearest to the point.
+    """
     target = finest(Located(FOLD, problem, point, 1.0)).problem
     if target is problem:
         return problem, point
-    start = transfer(problem, point.x, target)
-    return target, same_place(point, target, start, metric_for(target))
+    start, metric = transfer(problem, point.x, target), metric_for(target)
+    try:
+        return target, same_place(point, target, start, metric)
+    except NotConverged:
+        return target, nearest(point, target, start, metric)
 
 
 def moved(event: Located, problem: Traceable) -> Located:

@@ -6,6 +6,7 @@ corrector runs at every trial of the root finder; nothing is interpolated betwee
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -13,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.contact import APPROACH, LOAD
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import (
     NEARLY,
@@ -119,6 +120,7 @@ def brackets(
     return [
         (c, d)
         for a, b in pairwise(points)
+        if b.arclength > a.arclength  # points solved for again may change places
         for c, d in _watched(problem, a, b, condition, metric)
         if (condition.of(c) < 0) != (condition.of(d) < 0)  # their product is zero at a root, and where it underflows
         and not _unfelt(c, d, condition)
@@ -333,3 +335,20 @@ def same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -
     control = Control(weights, float(weights[used] @ point.observables[used]))
     solution = newton.solve(problem, start, control)
     return make_point(problem, solution, metric, weights, point.arclength)
+
+
+def nearest(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:
+    """State on another discretisation nearest to a point, from that at its contact radius, or at its central gap."""
+    k = CENTRAL_GAP if np.isnan(point.observables[CONTACT_RADIUS]) else CONTACT_RADIUS
+    control = Control(np.eye(4)[k], float(point.observables[k]))
+    onwards = math.copysign(1.0, point.rates[k]) * control.weights
+    near = make_point(problem, newton.solve(problem, start, control), metric, onwards, point.arclength)
+    for _ in range(FEET):
+        step = float((metric.weights * near.rates)[:3] @ (point.observables - near.observables)[:3])
+        if abs(step) < metric.distance(point, near) * ACROSS:
+            break
+        near = correct(problem, near, step, predict(problem, near, step), metric, iterations=20)
+    return replace(near, arclength=point.arclength)
+
+
+FEET, ACROSS = 8, 1e-3  # steps to the foot of a perpendicular; what is left along the path, in its length

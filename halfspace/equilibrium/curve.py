@@ -269,8 +269,14 @@ class EquilibriumPath(Valued):
         return self.finest_curve.at(coordinate, values, branch)
 
     def states(self, condition: Condition) -> list[Located]:
-        """Every state of the path as it was traced, on the coarsest grid, that meets a condition, in order."""
-        return states(self.segments, condition)
+        """Every state of the path as it was traced, on the coarsest grid, that meets a condition, in order.
+
+        Where an observable turns but for ripples of that grid, see `FinestCurve.confirmed`.
+        """
+        found = states(self.segments, condition)
+        if not condition.stationary:
+            return found
+        return FinestCurve((), self.ways, self.remaining, self.metric).confirmed(found)
 
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Parts of the curve in order along which a coordinate goes in one direction, and its range on each.

@@ -20,12 +20,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.conditions import ROUND_OFF, Condition, between, hermite
+from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located, between, hermite
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
 from halfspace.equilibrium.search import states
-from halfspace.errors import InputError
+from halfspace.errors import InputError, NotConverged
 from halfspace.values import Array, Valued
 
 Again = Callable[[Traceable, Point], tuple[Traceable, Point]]
@@ -103,7 +103,8 @@ class FinestCurve(Valued):
 
         No less than between those at the points beside it, in the geometric mean: along the path a change passes
         through zero, where it tells nothing. Where there is but one change to tell, of two points on either side the
-        larger counts, since a change may be all but zero at several.
+        larger counts, since a change may be all but zero at several. Infinite at a point that another discretisation
+        does not have, nor a state near to it.
         """
         part = max(self.remaining, 1.0)
         return np.concatenate([self._errors_along(segment, part) for segment in self.segments])
@@ -111,7 +112,7 @@ class FinestCurve(Valued):
     def _errors_along(self, segment: Segment, part: float) -> Array:
         own = np.array([self._errors(segment.problem, point, part) for point in segment.points])
         farther = 2 if self._one_change else 1
-        padded = np.pad(own, ((farther, farther), (0, 0)), mode="edge")
+        padded = np.pad(np.where(np.isfinite(own), own, np.nan), ((farther, farther), (0, 0)), mode="edge")
         sides = [padded[k : k + len(own)] for k in range(2 * farther + 1) if k != farther]
         beside = np.sqrt(np.fmax.reduce(sides[:farther]) * np.fmax.reduce(sides[farther:]))
         return np.where(np.isnan(own), own, np.fmax(own, beside))
@@ -138,13 +139,43 @@ class FinestCurve(Valued):
         """For each coordinate the parts of the curve along which it goes in one direction, by name."""
         return {name: self._cut(k) for name, (k, _) in COORDINATES.items()}
 
+    def confirmed(self, turns: Sequence[Located]) -> list[Located]:
+        """Places in order where an observable turns, found on any discretisation, but for those by which it ripples.
+
+        It does between two next to each other where it goes by no more than it errs there: on a finer grid neither is.
+        """
+        left = list(turns)
+        levels = [turn.condition.level(turn.point) for turn in turns]
+        errs = [self._error_of(turn) for turn in turns] if self.ways and len(turns) > 1 else []
+        while errs and len(left) > 1:
+            clear = np.abs(np.diff(levels)) / (np.array(errs[1:]) + errs[:-1])
+            ripple = int(np.argmin(clear))
+            if clear[ripple] > 1:
+                break
+            for numbers in (left, levels, errs):
+                del numbers[ripple : ripple + 2]
+        return left
+
+    def _error_of(self, turn: Located) -> float:
+        """Error of what turns there, by how far the place is from that on the finest discretisation, and its own."""
+        try:
+            problem, point = self.ways[0][-1](turn.problem, turn.point)
+        except NotConverged:
+            return math.inf
+        errors = self._errors(problem, point, max(self.remaining, 1.0)) + np.abs(
+            point.observables - turn.point.observables
+        )
+        used = turn.condition.weights != 0
+        return float(np.abs(turn.condition.weights[used]) @ errors[used])
+
     def _cut(self, k: int) -> Mapping[str, Sequence[Segment]]:
         """Cut the curve where an observable turns."""
         branches: list[list[Segment]] = [[]]
-        for part in self.segments:
-            turns = states([part], Condition(k, stationary=True))
+        found = [states([part], Condition(k, stationary=True)) for part in self.segments]
+        confirmed = {id(turn) for turn in self.confirmed([turn for turns in found for turn in turns])}
+        for part, turns in zip(self.segments, found, strict=True):
             points = list(part.points)
-            for turn in turns:
+            for turn in (one for one in turns if id(one) in confirmed):
                 before = [p for p in points if p.arclength < turn.point.arclength]
                 branches[-1].append(measured(part.problem, [*before, turn.point], self.metric))
                 branches.append([])
@@ -165,14 +196,18 @@ class FinestCurve(Valued):
         problem, point, bend = self._solved(
             k, value, self._branches[coordinate][self._chosen(coordinate, value, branch)]
         )
-        return np.concatenate([point.observables, self._errors_given(k, problem, point, bend)])
+        try:
+            errors = self._errors_given(k, problem, point, bend)
+        except NotConverged:
+            errors = _unbounded(point)
+        return np.concatenate([point.observables, errors])
 
     def _solved(self, k: int, value: float, parts: Sequence[Segment]) -> tuple[Traceable, Point, float]:
         """State on a branch where an observable has a value, and the observable's second derivative along the path."""
         condition = Condition(k, value=value)
         for part in parts:
             for a, b in pairwise(part.points):
-                if condition.of(a) * condition.of(b) <= 0:
+                if condition.of(a) * condition.of(b) <= 0 and b.arclength > a.arclength:
                     bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
                     return part.problem, between(part.problem, a, b, condition, self.metric).point, bend
         # Between the last point on one discretisation and the first on the next.
@@ -208,9 +243,14 @@ class FinestCurve(Valued):
     def _errors(self, problem: Traceable, point: Point, part: float) -> Array:
         """Errors of the observables in the plane across the path, (4,); nan where there is nothing to compare with.
 
-        They are a part of the largest change along a chain of discretisations.
+        They are a part of the largest change along a chain of discretisations; infinite where one of these has no such
+        state.
         """
-        return self._in_plane(problem, point, part * _largest(self._steps(problem, point)))
+        try:
+            steps = self._steps(problem, point)
+        except NotConverged:
+            return _unbounded(point)
+        return self._in_plane(problem, point, part * _largest(steps))
 
     def _steps(self, problem: Traceable, point: Point) -> Sequence[Array]:
         """Changes of the observables from each discretisation of a chain to the next, (steps, 4) for every chain."""
@@ -249,6 +289,11 @@ class FinestCurve(Valued):
             errors = errors + np.abs(rates) * whole
         errors[k] = ROUND_OFF * (1 + abs(point.observables[k]))
         return errors
+
+
+def _unbounded(point: Point) -> Array:
+    """Errors at a point that another discretisation does not have, (4,)."""
+    return np.where(np.isnan(point.observables), np.nan, np.inf)
 
 
 def _largest(steps: Sequence[Array]) -> Array:
