@@ -15,9 +15,11 @@ from halfspace.equilibrium import conditions, events
 from halfspace.equilibrium.charts import Chart, settled
 from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import APPROACH
+from halfspace.equilibrium.path import grows_from_afar
 from halfspace.errors import NotConverged
 from halfspace.laws import Dlvo, PowerLaw
 from halfspace.profiles import Power
+from halfspace.scales import Scales
 
 
 @pytest.mark.parametrize("rtol", [1e-1, 1e-2])
@@ -159,7 +161,7 @@ def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, still, rate
     rates[still] = -rate
     values = np.array([[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
     values[0, other] = 4e-6
-    interface = SimpleNamespace(ripples=lambda _: np.zeros(2))
+    interface = SimpleNamespace(ripples=lambda _: np.zeros(2), scales=Scales(1.0))
     problem = SimpleNamespace(interface=interface, surface_state=lambda x: x)
     chain = [
         SimpleNamespace(condition=own, problem=problem, point=SimpleNamespace(observables=v, rates=rates, x=None))
@@ -169,3 +171,11 @@ def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, still, rate
     assert event.contact_radius_error == pytest.approx(0.5 * 4e-6 / 2.0 * 0.5, rel=1e-4)
     assert event.central_gap_error == pytest.approx(0.5 * 4e-6 / 2.0 * 1.0, rel=1e-4)
     assert (event.approach_error, event.load_error)[still] < 1e-10
+
+
+@pytest.mark.parametrize(("part", "passed"), [(1.0, True), (0.85, True), (0.7, False), (1.2, True), (1.4, False)])
+def test_a_load_grows_from_afar_where_its_mean_slope_is_about_an_exponentials(part, passed):
+    """Neither less, where it may dip, nor more, where it may have come back from higher up."""
+    first, last = 1e-4, 8e-4
+    mean = part * (last - first) / float(np.log(last / first))
+    assert grows_from_afar(first, last, mean) is passed

@@ -37,6 +37,7 @@ LEAVE = 0.8  # of these cells: the radius at which the chart centred on the axis
 WINDOW, AROUND = 2e-3, 3  # half the logarithmic width of the radii around an event on the lowest rung, operators in it
 WIDE, WIDELY = 0.4, 7  # the same farther around: an event that lies off by a fifth is then told to 1e-6 of its radius
 ACROSS = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
+COARSEST = 1e-3  # tolerance for that: at 1e-2 landings and pull-off on hemispheres were up to 4.9 times outside
 BESIDE = 0.01  # logarithmic width by which a chart for all events reaches past them: they move from grid to grid
 STEPS = 25  # per unit of the logarithm: where charts begin and end, so that those of like contacts are the same
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
@@ -246,14 +247,15 @@ def operators_across(body: SizedBody, rtol: float, level: int, radius: float, wi
     In the logarithm of the edge's coordinate the kernel is analytic up to pi beside the real axis, where a node is the
     image of another, and along it up to the end of the cells that move. The polynomial through n of them errs by
     rho^-n, rho the sum of the half axes, in windows, of the ellipse around the window that reaches so far (Bernstein).
-    There is one more on each rung, whose change tells the error.
+    There is one more on each rung, whose change tells the error: of few it falls unevenly, so that there are no fewer
+    at coarser tolerances.
     """
     least, most = (np.log(body.coordinate.of(a)) for a in body.span(radius, window))
     window, middle = (most - least) / 2, (most + least) / 2
     end = (np.log(float(body.outer[0])) - middle) / window
     side, end = np.pi / window, max(end, 1.1)  # where they end within the window, more than ever pay
     rho = min(side + np.sqrt(side**2 + 1), end + np.sqrt(end**2 - 1))
-    return int(np.ceil(np.log(ACROSS / rtol) / np.log(rho))) + level
+    return int(np.ceil(np.log(ACROSS / min(rtol, COARSEST)) / np.log(rho))) + level
 
 
 @dataclass(frozen=True, eq=False, repr=False)

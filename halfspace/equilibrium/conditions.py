@@ -166,8 +166,8 @@ def _may_hide(a: Point, b: Point, condition: Condition, metric: Metric) -> bool:
     first, last, length = condition.of(a), condition.of(b), b.arclength - a.arclength
     if not condition.stationary or first * last <= 0 or _unfelt(a, b, condition):
         return False
-    mean, unit = (condition.level(b) - condition.level(a)) / length, metric.load
-    if condition.observable == LOAD and grows_from_afar(first / unit, last / unit, mean / unit):
+    mean = (condition.level(b) - condition.level(a)) / length
+    if condition.observable == LOAD and grows_from_afar(*(slope / metric.load for slope in (first, last, mean))):
         return False
     little = NEARLY * max(abs(first), abs(last))
     inside = least_slope(first, last, mean)

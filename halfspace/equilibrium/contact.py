@@ -316,9 +316,10 @@ def _left_out(coefficients: Array) -> float:
 
 
 def _lacking(coefficients: Array) -> float:
-    """Size of the Legendre coefficient after an element's own, by those: carried on to it by how fast they fall.
+    """Size of the last Legendre coefficient where it is none of the deflection's own, by those.
 
-    Elements have two nodes more than their degree, so that it is the last, which is none of theirs.
+    They are carried on to it by how fast they fall. So it is of piecewise polynomials of a degree two less than a
+    cell's nodes.
     """
     return _carried_on(coefficients, np.array([2.0, 1.0, 0.0]))
 

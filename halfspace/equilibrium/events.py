@@ -10,6 +10,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.conditions import ROUND_OFF, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.values import Array, Estimate
@@ -200,10 +201,11 @@ def _shifted(event: Located, change: Array) -> tuple[Array, Array]:
 
     For all of them the shift is read off the contact radius, or off the central gap where there is no contact; for
     these two, which are at a point and may stand still by accident, also off the load or approach that has a rate: at a
-    jump with a soft apparatus it is the approach, as at the load's own extremum.
+    jump with a soft apparatus it is the approach, as at the load's own extremum. Which has one the arclength's units
+    tell.
     """
     rates, tell = event.point.rates, CONTACT_RADIUS if np.isfinite(change[CONTACT_RADIUS]) else CENTRAL_GAP
-    other = LOAD if abs(rates[LOAD]) > abs(rates[APPROACH]) else APPROACH
+    other = int(np.argmax(metric_for(event.problem).weights[:CENTRAL_GAP] * rates[:CENTRAL_GAP] ** 2))
     by_point, by_average = (np.abs(rates) * (change[k] / np.abs(rates[k])) for k in (tell, other))
     by_average[[APPROACH, LOAD]] = 0.0
     return by_point, by_average

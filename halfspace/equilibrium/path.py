@@ -282,7 +282,7 @@ def _hides_turning_points(a: Point, b: Point, k: int, metric: Metric) -> bool:
 UNFELT = 1e-8  # eps or R dgamma in the arclength 1: surfaces so far apart that an exponential law is all but nothing
 NEARLY = 0.2  # of the larger of two slopes: one that nearly vanishes
 FAINT = 0.1  # slope in the metric's units, of which the observable is but a tenth of the path
-LIKE = 0.8  # of the mean slope of an exponential: that of a power law is 0.9 of it where the slope grows eightfold
+LIKE = 0.8  # of an exponential's mean slope, or as much above: a power law's is 0.9 of it where it grows eightfold
 TURNING_MARGIN, SHORT = 0.3, 0.1  # of the step's length; a step below which the cubic errs by far less than that
 
 
@@ -290,7 +290,7 @@ def grows_from_afar(first: float, last: float, mean: float) -> bool:
     """Whether a slope, in the metric's units, is faint and its mean about that of an exponential, the logarithmic."""
     if max(abs(first), abs(last)) >= FAINT or first * last <= 0 or first == last:
         return False
-    return mean * math.log(last / first) / (last - first) > LIKE
+    return LIKE < mean * math.log(last / first) / (last - first) < 1 / LIKE
 
 
 STRAIGHT = 1e-10  # of the slopes: a bend that is rounding
