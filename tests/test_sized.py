@@ -239,6 +239,18 @@ def test_events_share_one_chart_where_that_takes_fewer_operators_than_one_for_ea
     assert len([made for made in small.finest.made if made[0]]) > 1
 
 
+def test_points_of_a_curve_have_no_more_operators_than_rounding_lets_tell_apart():
+    """On a high rung there were two thousand, whose polynomial overflowed: at `rtol=1e-9` a curve had no points."""
+    scales = Scales(1.0, profile=between_spheres(np.sqrt(30.0), np.inf))
+    body = _sized_body(scales, None, resolution_for(scales, 1e-3))
+    stage = AroundEvents(body, *surroundings(1e-9, 7))
+    operator = stage.everywhere.charts[1].problem.operator
+    assert operator.scales.size < 80
+    a = float(np.sqrt(operator.scales[3] * operator.scales[4]))
+    exact = body.together(operator.grid.lines(a)[None])[0][0]
+    assert operator.at(a).compliance == pytest.approx(exact.compliance, rel=0, abs=1e-11 * np.max(exact.compliance))
+
+
 @pytest.mark.parametrize(("window", "level"), [(0.29, 0), (0.7, 0), (0.7, 1)])
 def test_an_operator_across_events_errs_as_the_number_it_was_made_for_says(window, level):
     """Against one made where it errs most, at the end of its window, on the same grid."""

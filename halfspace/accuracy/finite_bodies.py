@@ -43,6 +43,7 @@ STEPS = 25  # per unit of the logarithm: where charts begin and end, so that tho
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
+EXACT = 1e-12  # tolerance past which they are no closer: at rtol 1e-9 they were up to thousands
 
 Made = tuple[ElasticOperator, int]
 
@@ -232,10 +233,16 @@ def apart_for_events(body: SizedBody, rtol: float) -> float | None:
     They err by no more at coarse ones, lest estimates followed them. None where that takes more of them than the curve
     for itself, and so many for each of four events.
     """
+    count, apart = _as_good_as(body, min(rtol, TIGHT))
+    alone = radii_along(body.until, body.radii_of_curve[1]).size + FOLLOWING * surroundings(rtol, 0)[1]
+    return apart if count < alone else None
+
+
+def _as_good_as(body: SizedBody, rtol: float) -> tuple[int, float]:
+    """Number of a curve's operators between which one is as good as that, and the ratio of their radii."""
     least, widest = body.radii_of_curve
-    count = operators_across(body, min(rtol, TIGHT), 0, math.sqrt(least * widest), math.log(widest / least) / 2)
-    alone = radii_along(body.until, widest).size + FOLLOWING * surroundings(rtol, 0)[1]
-    return (widest / least) ** (1 / (count - 2)) if count < alone else None
+    count = operators_across(body, rtol, 0, math.sqrt(least * widest), math.log(widest / least) / 2)
+    return count, (widest / least) ** (1 / (count - 2))
 
 
 FOLLOWING = 4  # events on grids that follow the contact
@@ -321,7 +328,7 @@ class AroundEvents(WhereAsked):
     def everywhere(self) -> AlongCurve:
         """The same grid for every point of a curve."""
         apart = 1 + (CLOSER - 1) * self.window / WINDOW * 2.0 ** (AROUND - self.count)
-        return AlongCurve(self.body, self.apart or apart)
+        return AlongCurve(self.body, self.apart or max(apart, _as_good_as(self.body, EXACT)[1]))
 
     def by_curve(self) -> tuple[Chart, Chart]:
         """Charts for the curve that serve its events as well, but for contacts smaller than they know."""
