@@ -13,7 +13,7 @@ import halfspace
 from fem_adhesion import Hemisphere, Scene, cli
 from halfspace import Coated
 from halfspace.equilibrium.charts import placed
-from halfspace.equilibrium.conditions import EXTREMUM
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD
 from halfspace.equilibrium.contact import CENTRAL_GAP
 from halfspace.equilibrium.states import COORDINATES, shift
 from halfspace.errors import InputError, NotConverged
@@ -197,6 +197,17 @@ def test_an_observable_turns_where_it_goes_by_more_than_it_errs(paths):
     assert len(replace(paths[2.0], remaining=1e12).states(EXTREMUM)) == 1
 
 
+def test_folds_near_each_other_are_kept_where_a_coarse_grid_shifts_both():
+    """By more than they are apart, and both alike."""
+    path = halfspace.trace(4.0, law=Dlvo(0.3, 1.0), rtol=0.1)
+    folds = [event for name, event in path.events.items() if name.startswith(("fold", "jump"))]
+    assert len(folds) == 4
+    found = path.states(FOLD)
+    assert [state.point.observables[0] for state in found] == pytest.approx(
+        [event.approach for event in folds], rel=1e-2
+    )
+
+
 def test_ripples_of_a_coarse_grid_are_no_extrema():
     """There were 15 at this tolerance, and are 5 on grids fine enough for any."""
     path = halfspace.trace(4.0, law=Dlvo(0.3, 1.0), body=Coated(0.1, 10.0), rtol=1e-4)
@@ -213,6 +224,7 @@ def test_a_point_that_another_grid_does_not_have_has_no_error_that_bounds_it(pat
     np.testing.assert_array_equal(np.isnan(lost.errors[:, 3]), np.isnan(curve.errors[:, 3]))
     state = lost.at("approach", -1.0, "contact")
     assert np.isinf(state.load_error)
+    assert state.approach_error < 1e-10  # which was given
     assert state.load == curve.at("approach", -1.0, "contact").load
 
 

@@ -142,31 +142,30 @@ class FinestCurve(Valued):
     def confirmed(self, turns: Sequence[Located]) -> list[Located]:
         """Places in order where an observable turns, found on any discretisation, but for those by which it ripples.
 
-        It does between two next to each other where it goes by no more than it errs there: on a finer grid neither is.
+        It does between two next to each other where on the finest it goes by no more than it errs there, or back. A
+        shift that both share, from grid to grid, does not count.
         """
         left = list(turns)
-        levels = [turn.condition.level(turn.point) for turn in turns]
-        errs = [self._error_of(turn) for turn in turns] if self.ways and len(turns) > 1 else []
-        while errs and len(left) > 1:
-            clear = np.abs(np.diff(levels)) / (np.array(errs[1:]) + errs[:-1])
-            ripple = int(np.argmin(clear))
+        told = [self._finest_level(turn) for turn in turns] if self.ways and len(turns) > 1 else []
+        while told and len(left) > 1:
+            goes = np.diff([turn.condition.level(turn.point) for turn in left])
+            levels, errs = np.array(told).T
+            clear = np.sign(goes) * np.diff(levels) / (errs[1:] + errs[:-1])
+            ripple = int(np.lexsort((np.abs(goes), clear))[0])
             if clear[ripple] > 1:
                 break
-            for numbers in (left, levels, errs):
+            for numbers in (left, told):
                 del numbers[ripple : ripple + 2]
         return left
 
-    def _error_of(self, turn: Located) -> float:
-        """Error of what turns there, by how far the place is from that on the finest discretisation, and its own."""
+    def _finest_level(self, turn: Located) -> tuple[float, float]:
+        """What turns there, on the finest discretisation, and its error; infinite where that has no such state."""
         try:
             problem, point = self.ways[0][-1](turn.problem, turn.point)
         except NotConverged:
-            return math.inf
-        errors = self._errors(problem, point, max(self.remaining, 1.0)) + np.abs(
-            point.observables - turn.point.observables
-        )
-        used = turn.condition.weights != 0
-        return float(np.abs(turn.condition.weights[used]) @ errors[used])
+            return turn.condition.level(turn.point), math.inf
+        errors, weights = self._errors(problem, point, max(self.remaining, 1.0)), turn.condition.weights
+        return turn.condition.level(point), float(np.abs(weights[weights != 0]) @ errors[weights != 0])
 
     def _cut(self, k: int) -> Mapping[str, Sequence[Segment]]:
         """Cut the curve where an observable turns."""
@@ -200,6 +199,7 @@ class FinestCurve(Valued):
             errors = self._errors_given(k, problem, point, bend)
         except NotConverged:
             errors = _unbounded(point)
+            errors[k] = ROUND_OFF * (1 + abs(value))
         return np.concatenate([point.observables, errors])
 
     def _solved(self, k: int, value: float, parts: Sequence[Segment]) -> tuple[Traceable, Point, float]:
