@@ -6,7 +6,10 @@ BIN    := $(VENV)/bin
 # The systems are small and dense: threads inside LAPACK cost more than they bring.
 export OPENBLAS_NUM_THREADS ?= 1
 # Bytecode is kept in the environment, even where Python is told to write none: else each process compiles its imports.
-export PYTHONPYCACHEPREFIX ?= $(abspath $(BIN)/../bytecode)
+# Another one given as BIN may have bytecode of its own, or be read only: there Python does as it does.
+ifeq ($(BIN),$(VENV)/bin)
+export PYTHONPYCACHEPREFIX ?= $(abspath $(VENV)/bytecode)
+endif
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help compare test check bench hard honesty docs clean

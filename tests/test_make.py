@@ -19,7 +19,7 @@ from whole_runs import BIN, ROOT, tables_in
 MAKEFILE_AT = ROOT / "Makefile"
 MAKEFILE = MAKEFILE_AT.read_text()
 
-# How each target is run; `test` is what runs this, `check` is run before it, and `clean` works on a copy.
+# How each target is run; `test` is what runs this, `check` is run beside it, and `clean` works on a copy.
 COMPARE = "make compare"
 HARD = "make hard OUT=hard"
 TARGETS = {
@@ -74,7 +74,12 @@ def test_check_asks_every_tool_about_all_there_is(made):
     assert run.out.splitlines() == [f"{BIN}/ruff format --check .", f"{BIN}/ruff check .", f"{BIN}/mypy"]
     landing = (ROOT / ".ci/run").read_text().splitlines()
     assert "set -euo pipefail" in landing
-    assert landing[-3:] == ["make check & checked=$!", "make test", 'wait "$checked"']
+    assert landing[-4:-1] == [
+        "make check & checked=$!",
+        """trap 'kill %1 2> /dev/null || true' EXIT""",
+        "make test",
+    ]
+    assert landing[-1].startswith('wait "$checked" || {')
     assert tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"] == {
         "strict": True,
         "files": ["halfspace", "fem_adhesion"],
@@ -162,9 +167,9 @@ def test_the_environment_of_a_target_is_made_once_and_from_what_is_pinned():
 
 def test_processes_of_a_target_share_bytecode_in_the_environment_even_where_none_is_to_be_written(tmp_path):
     (tmp_path / "told").write_text("told:\n\t@echo $$PYTHONPYCACHEPREFIX [$$PYTHONDONTWRITEBYTECODE]\n")
-    outside = {name: value for name, value in os.environ.items() if name != "PYTHONPYCACHEPREFIX"}
+    outside = {name: value for name, value in os.environ.items() if name not in ("PYTHONPYCACHEPREFIX", "MAKEFLAGS")}
     told = subprocess.run(
-        ["make", "--no-print-directory", f"--file={MAKEFILE_AT}", f"--file={tmp_path}/told", "told", "BIN=/some/bin"],
+        ["make", "--no-print-directory", f"--file={MAKEFILE_AT}", f"--file={tmp_path}/told", "told", "VENV=/some"],
         env=outside | {"PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,
         text=True,
