@@ -11,7 +11,7 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Block, HalfSpace, Scene, cli, convergence, discretise
 from fem_adhesion.common.jobs import WorkerDied
-from fem_adhesion.crosscheck import comparison, references
+from fem_adhesion.crosscheck import comparison, from_scratch, references
 from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Case, Failure, Row, crosscheck_tables
@@ -240,16 +240,19 @@ def test_a_solver_less_accurate_than_the_comparison_is_inconclusive_whatever_it_
 
 @pytest.mark.usefixtures("two_solvers")
 @pytest.mark.parametrize("times", [1, 2])
-def test_what_estimates_leave_open_is_asked_again_to_a_closer_tolerance(times):
-    asked = []
+def test_what_estimates_leave_open_is_asked_again_to_a_closer_tolerance(times, monkeypatch):
+    asked, solved, judged = [], [], []
+    monkeypatch.setattr(from_scratch, "events", lambda _, path: judged.append(path) or [])
 
     def at_first_too_coarse(scene, *, rtol):
         asked.append(rtol)
-        return fem_adhesion.trace(scene, rtol=rtol if len(asked) > times else 1e-2)
+        solved.append(fem_adhesion.trace(scene, rtol=rtol if len(asked) > times else 1e-2))
+        return solved[-1]
 
     case = crosscheck.compare(Scene(tabor=2.0), rtol=RTOL, before=(), solve=at_first_too_coarse)
     assert [row.quantity for row in case.rows if row.between == comparison.SOLVERS and row.verdict != "agree"] == []
     assert asked == pytest.approx([0.9 * RTOL / 10**n for n in range(times + 1)])
+    assert [path is solved[-1] for path in judged] == [True]
 
 
 @pytest.mark.usefixtures("two_solvers")

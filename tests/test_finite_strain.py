@@ -9,8 +9,9 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2
 
+from fem_adhesion.elasticity import cells
 from fem_adhesion.elasticity.boundaries import clamped, free, point_load, sliding
-from fem_adhesion.elasticity.cells import cell_stiffness
+from fem_adhesion.elasticity.cells import Cells, cell_stiffness
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.finite_strain import material
@@ -247,6 +248,15 @@ def test_the_step_solves_the_bordered_equations(contact):
     dx = problem.bordered_solver(x, row)(rhs)
     np.testing.assert_allclose(problem.along(x, dx), rhs[:-1], atol=1e-8)
     assert row @ dx == pytest.approx(rhs[-1], abs=1e-10)
+
+
+def test_moduli_that_differ_from_cell_to_cell_stay_with_theirs_in_batches(monkeypatch):
+    cells_of = Cells.of(block())
+    moduli = RNG.normal(size=(5, 5, *cells_of.radii.shape))
+    whole = cells_of.stiffness(moduli + moduli.transpose(1, 0, 2, 3))
+    monkeypatch.setattr(cells, "BATCH", 1)
+    assert len(list(cells_of.batches())) == len(whole) > 1
+    np.testing.assert_array_equal(cells_of.stiffness(moduli + moduli.transpose(1, 0, 2, 3)), whole)
 
 
 def test_a_traction_with_an_energy_has_a_symmetric_tangent_and_the_vertical_one_has_not(contact):

@@ -38,7 +38,7 @@ from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
 BATCH = 400_000
-"""Numbers held in one batch of cells: some 16 MB, small enough for the cache to help."""
+"""Numbers held in one batch of cells: 3 MB, and a few times that in what is made of them, for the cache to help."""
 
 CellStiffness = Callable[[Space, float], Array]
 """Stiffness matrices of all cells of a space at a Poisson's ratio, as `cell_stiffness` returns them."""
@@ -74,7 +74,7 @@ class Cells(Valued):
         return cls(space, functions, np.ascontiguousarray(inverse), r, ring_measure(r) * area * weights)
 
     def batches(self) -> Iterator[tuple[slice, Cells]]:
-        """All in batches, with their numbers: for matrices, as the unknowns are those of all."""
+        """Parts of the cells, with their numbers, for matrices; `displacements` and `works` are of all cells alone."""
         step = max(1, BATCH // (4 * self.radii.shape[1] * len(self.space.cell_dofs)))
         for first in range(0, len(self.radii), step):
             own = slice(first, first + step)
@@ -120,16 +120,16 @@ class Cells(Valued):
         return self.densities(np.broadcast_to(TRACE[:, None, None], (5, *self.radii.shape)))
 
     def stiffness(self, moduli: Array) -> Array:
-        """Matrices (c, 2 n, 2 n) by the derivative of the stress by grad u, symmetric.
+        """Matrices (c, 2 n, 2 n) by moduli, the symmetric derivative of the stress by grad u.
 
-        It is (5, 5, c, q), or (5, 5) where it is the same at all points.
+        Moduli are (5, 5, c, q), or (5, 5) where they are the same at all points.
         """
         K = np.empty((len(self.radii), *2 * [len(self.space.cell_dofs)]))
         for own, part in self.batches():
             D = moduli[:, :, own] if moduli.ndim > 2 else moduli[:, :, None, None]
-            once = part.by_functions(D * part.measure)
-            twice = part.by_functions(np.moveaxis(once, 2, 0))
-            K[own] = part._integrated(np.stack([twice[0, :, 0], twice[1, :, 0], twice[1, :, 1]]))
+            by_one = part.by_functions(D * part.measure)
+            by_both = part.by_functions(np.moveaxis(by_one, 2, 0))
+            K[own] = part._integrated(np.stack([by_both[0, :, 0], by_both[1, :, 0], by_both[1, :, 1]]))
         return K
 
     def _integrated(self, factors: Array) -> Array:
