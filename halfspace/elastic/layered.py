@@ -29,7 +29,7 @@ from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
 from halfspace.elastic.grid import gauss_legendre
 from halfspace.elastic.kernel import near_moments
 from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
-from halfspace.elastic.operators import BESIDE
+from halfspace.elastic.operators import nodes_beside
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
@@ -44,6 +44,7 @@ SAMPLES = 500  # wave numbers at which S is fitted
 # deflects the surface to 1e-8 as by a rule of 64 points, q = 5, up to two lengths away, with 8 nodes to 2e-9.
 NEAR = 0.5  # lengths of the cell
 NEAR_POINTS, GRADING = 24, 2  # see `halfspace.elastic.kernel.graded_rule`
+AT_ONCE = 10**6  # numbers that are integrated at once
 ALIKE = 1e-8  # relative difference of two numbers of which the mean errs by a sixteenth of its square
 FITTED, AT_WORST = 3e-8, 1e-6  # of the largest S, or of 1: where deeper images are tried no more, and what is refused
 
@@ -74,18 +75,20 @@ class Images(Valued):
         strengths = self.strengths if np.iscomplexobj(rings) else self.strengths.real
         return np.asarray(np.tensordot(strengths, rings, 1).real)
 
-    def in_units(self, least: float, most: float) -> tuple[Array, Images]:
-        """Lengths (m,) from one to another, with `BESIDE` past either, and the images in units of each of them.
+    def in_units(self, least: float, most: float, left: float) -> tuple[Array, int, Images]:
+        """Lengths (m,) from one to another and some past either, how many, and the images in units of each.
 
         They are a geometric sequence, and so are the depths: in units of the one these are as in those of the next, but
-        for the first or last. So few more depths serve all lengths than serve one.
+        for the first or last. So few more depths serve all lengths than serve one. Past either end there are as many
+        as polynomials take that leave a part `left` of what images deflect.
         """
         real, tilted = self.depths.real, self.depths.imag > 0
         ratio = float(np.log(real[1] / real[0]))
         parts = int(np.ceil(ratio / (CLOSE / 2 if tilted.any() else CLOSE)))
         step = ratio / parts
-        count = int(np.ceil(np.log(most / least) / step)) + 1 + 2 * BESIDE
-        lengths = least * np.exp(step * (np.arange(count) - BESIDE))
+        past = nodes_beside(step * (2 if tilted.any() else 1), left)
+        count = int(np.ceil(np.log(most / least) / step)) + 1 + 2 * past
+        lengths = least * np.exp(step * (np.arange(count) - past))
         number = parts * np.rint(np.log(real / real[0]) / ratio).astype(int)
         of_a_kind = number.max() + count
         ladder = real[0] / lengths[-1] * np.exp(step * np.arange(of_a_kind))
@@ -94,7 +97,7 @@ class Images(Valued):
         np.put_along_axis(strengths, places, np.broadcast_to(self.strengths, places.shape), axis=1)
         used = strengths.any(axis=0)
         depths = np.append(ladder, (1 + 1j) * ladder)[used]
-        return lengths, Images(depths, strengths[:, used], self.smooth / lengths[-1])
+        return lengths, past, Images(depths, strengths[:, used], self.smooth / lengths[-1])
 
 
 def _ring(z: complex, sums: Array, differences: Array) -> Array | Complex:
@@ -187,29 +190,42 @@ def layered(images: Images, half_space: ElasticOperator, until: float, known: in
 
 
 def image_compliance(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> Array:
-    """What the images of a layered body deflect the nodes of a half-space's panels by pressures there, (..., q, q).
+    """What the images of a layered body deflect the nodes of a half-space's panels by pressures there, (..., q, q)."""
+    values, places = image_kernels(images, body, until, known)
+    return np.asarray(values[..., places] * body.weights)
+
+
+def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> tuple[Array, Index]:
+    """The same but for the weights, as values (..., n) and their places (q, q) among these: the kernel is symmetric.
 
     Cells that begin beyond a radius, in beta, and an infinite one are integrated by their nodes even where they are
     longer than the first stratum is thick: too stiffly for what is pressed there, if anything is. Between the first
     nodes, so many, where it is known, it is left zero; all finite cells are theirs.
     """
-    left, right, k = body.cells[:-1], body.cells[1:], body.cell_nodes.shape[1]
-    compliance = _by_nodes(images, body.radii, body.weights, known)
-    i, j = _near(body.radii, left, right, (right - left > images.smooth) & (left < until))
-    i, j = i[i >= known], j[i >= known]
-    moments = near_moments(images.ring, body.radii[i], left[j], right[j], k, (NEAR_POINTS, GRADING))
-    compliance[..., i[:, None], body.cell_nodes[j]] = moments @ np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
-    return compliance
-
-
-def _by_nodes(images: Images, radii: Array, weights: Array, known: int) -> Array:
-    """Gauss's rule at the nodes themselves, where all is smooth; the kernel is symmetric."""
+    radii, (left, right), k = body.radii, (body.cells[:-1], body.cells[1:]), body.cell_nodes.shape[1]
     i, j = np.triu_indices(radii.size)
     i, j = i[j >= known], j[j >= known]
-    kernel = np.zeros((*images.strengths.shape[:-1], radii.size, radii.size))
-    kernel[..., i, j] = kernel[..., j, i] = images.kernel(radii[i], radii[j])
-    kernel *= weights / (2 * np.pi)
-    return kernel
+    to, cell = _near(radii, left, right, (right - left > images.smooth) & (left < until))
+    to, cell = to[to >= known], cell[to >= known]
+    values = np.zeros((*images.strengths.shape[:-1], i.size + to.size * k + 1))
+    places = np.full((radii.size, radii.size), values.shape[-1] - 1)
+    places[i, j] = places[j, i] = np.arange(i.size)
+    for some in _blocks(i.size, images.depths.size):
+        values[..., some] = images.kernel(radii[i[some]], radii[j[some]]) / (2 * np.pi)
+    at_nodes = np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
+    for some in _blocks(to.size, images.depths.size * NEAR_POINTS):
+        nodes = body.cell_nodes[cell[some]]
+        rule = radii[to[some]], left[cell[some]], right[cell[some]], k, (NEAR_POINTS, GRADING)
+        near = near_moments(images.ring, *rule) @ at_nodes / body.weights[nodes]
+        here = i.size + np.arange(to.size * k).reshape(-1, k)[some]
+        places[to[some, None], nodes], values[..., here] = here, near
+    return values, places
+
+
+def _blocks(count: int, size: int) -> list[slice]:
+    """Parts of so many items, of a size each, of no more than `AT_ONCE` in all, or one."""
+    several = max(1, AT_ONCE // size)
+    return [slice(first, min(first + several, count)) for first in range(0, count, several)]
 
 
 def _near(radii: Array, left: Array, right: Array, long: Mask) -> tuple[Index, Index]:

@@ -70,18 +70,21 @@ class Homogeneous(Valued, Operator):
 class NearlyHomogeneous(Homogeneous):
     """A homogeneous body and what another one has beside it, on a grid that is scaled with the contact.
 
-    `beside` (m, q, q) is what it has beside at the contact radii `scales` (m,) over these, a geometric sequence of 2
-    `BESIDE` or more, between the nearest of which it is a polynomial. The singular part of the kernel is that of the
+    `beside` (m, n) is what it has beside at the contact radii `scales` (m,) over these and the nodes' weights, a number
+    for all entries of the compliance of which `places` (q, q) are alike. The radii are a geometric sequence, between
+    the nearest of which, `past` on either side, it is a polynomial. The singular part of the kernel is that of the
     homogeneous body: only what is smooth is interpolated.
     """
 
     scales: Array
+    past: int
     beside: Array
+    places: Index
 
     @property
     def least_radius(self) -> float:
         """Least contact radius that it serves, with enough of those at which it is known on either side."""
-        return float(self.scales[BESIDE])
+        return float(self.scales[self.past])
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
@@ -102,10 +105,11 @@ class NearlyHomogeneous(Homogeneous):
 
     def _combined(self, scale: float, derivative: int) -> Array:
         """What it has beside at a contact radius, or its derivative by the logarithm of that."""
-        first = min(max(int(np.searchsorted(self.scales, scale)) - BESIDE, 0), self.scales.size - 2 * BESIDE)
-        near = slice(first, first + 2 * BESIDE)
+        first = int(np.searchsorted(self.scales, scale)) - self.past
+        first = min(max(first, 0), self.scales.size - 2 * self.past)
+        near = slice(first, first + 2 * self.past)
         weights = _Logarithmic(np.log(self.scales[near])).at(scale)[derivative]
-        return np.asarray(np.tensordot(weights, self.beside[near], 1))
+        return np.asarray((weights @ self.beside[near])[self.places] * self.unit.weights)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -278,11 +282,18 @@ class _AtScale(Valued):
         return self.body._combined(self._rows[1]) / np.maximum.outer(self.nodes.radii, self.nodes.radii)
 
 
-# Of a geometric sequence of lengths, as many on either side: a kernel at a depth is analytic up to pi/2 beside the real
-# axis of the logarithm, so that a polynomial through twice as many 0.14 apart errs by 1e-9 of the largest or less. With
-# 0.16 pull-off from a layer 1 beta thin at Tabor parameter 100 did not meet 1e-8.
-BESIDE = 8
+MOST_BESIDE = 20  # lengths on either side: 0.13 apart they leave 1e-13
 OUTSIDE = 1.3  # of the least radius: as far as the curve's own are apart there, and a step more
+
+
+def nodes_beside(step: float, left: float) -> int:
+    """How many lengths of a geometric sequence a polynomial in their logarithm takes on either side of where it is.
+
+    So many that it leaves a part `left` of a kernel at a depth, whose first poles, where the distance vanishes, lie
+    pi/2 beside the real axis: in their middle prod x_j^2/(x_j^2 + pi^2/4), x_j from there to the lengths.
+    """
+    x2 = (step * (np.arange(MOST_BESIDE) + 0.5)) ** 2
+    return 1 + int(np.count_nonzero(np.cumprod(x2 / (x2 + np.pi**2 / 4))[:-1] > left))
 
 
 def chebyshev_radii(least: float, most: float, count: int) -> Array:
