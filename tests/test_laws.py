@@ -350,9 +350,11 @@ def _radius_at(gap, event, inside):
     return brentq(lambda r: body.continuous(r)[0] @ gaps - gap, inside, 2 * inside, xtol=1e-13)
 
 
-def test_only_a_law_that_ends_by_a_step_has_cells_that_grow_more_slowly():
+def test_only_a_law_that_ends_by_a_step_or_attracts_once_more_has_cells_that_grow_more_slowly():
+    beyond_a_barrier = Dlvo(0.3, 1.0)  # it attracts again beyond H = 3, by a third of the load in each part of ln H
     for law in LAWS[:-1]:
-        assert Scales(1.0, law).growth(3.0) == 3
+        assert (Scales(1.0, law).growth(3.0) == 3) == (law != beyond_a_barrier)
+    assert 1.5 < Scales(1.0, beyond_a_barrier).growth(3.0) < 2
     sharper, softer = (Scales(1.0, Dugdale(width)).growth(3.0) - 1 for width in (0.1, 0.2))
     assert sharper < softer / 2 < 1
 

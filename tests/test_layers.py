@@ -455,6 +455,13 @@ def test_a_law_with_two_edges_is_traced_on_a_layer():
     assert on_layer.event("pull_off").load == pytest.approx(alone.event("pull_off").load, abs=1e-3)
 
 
+def test_a_barrier_is_resolved_on_a_stiff_coating():
+    """Against 16 nodes in each of the cells and `rtol=1e-8`; cells that grew threefold ended at 15 nodes and 6.7863."""
+    jump_on = trace(2, law=Dlvo(0.3, 1.0), body=Coated(0.2, 20), rtol=1e-2).event("jump_on")
+    assert abs(jump_on.approach - 6.78583698) < jump_on.approach_error < 1e-3
+    assert abs(jump_on.load - 0.130549561) < jump_on.load_error < 3e-4
+
+
 def test_the_scaled_operator_changes_with_the_contact_as_its_rates_say(charted):
     _, operator = charted
     a, h = 1.4, 1e-4
