@@ -280,7 +280,7 @@ class ScenesBody(Valued):
     def meshed(self, inner: float, outer: float) -> FiniteStrainProblem:
         """Discretise with cells that are fine for contact radii between these, as far as a contact may reach."""
         scene, R = self.scene, self.scene.sphere_radius
-        how = replace(self.how, growth=scene.scales.growth(self.how.growth))
+        how = replace(self.how, growth=1 + (self.how.growth - 1) * scene.scales.gradual)
         ends, coordinate = layout_of(scene, how)
         first, last = (coordinate.of(min(radius, self.farthest)) for radius in (inner, outer))
         lines = grid.graded(first, self.length, float(ends[0]), growth=how.growth, until=last)
