@@ -35,7 +35,8 @@ BUDGET = 1e-3  # of each quantity
 ROUND_OFF = 1e-10
 LEAST = BUDGET / 20  # of each number that the weak form knows none better than: both its bodies may err alike
 WORK_LEFT = (0.5, 0.1, 0.01, 1e-4)  # of dgamma, beyond the gaps at which the law's integral is cut
-HALVINGS, LITTLE = 20, 1e-12  # of its parts, at most; by how much two rules may differ on each
+HALVINGS = 20  # of the cells on which the law's integral is taken, at most
+LITTLE = 1e-12  # dgamma, by which two rules may differ on such a cell
 
 # Closed forms
 
@@ -200,7 +201,7 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
     event, located = path.events[name], path.stages[-1][name]
     radius, reach = _places(located)
     coarse, fine = (_state(contact(radius, reach), located) for contact in (on_coarse, on_fine))
-    before = _state(fine.contact, path.stages[-2][name])  # whose ripples a stiff law may make as much of
+    before = _state(fine.contact, path.stages[-2][name])  # of the stage before: how much of ripples a stiff law makes
     approach, load = map(event.estimate, ("approach", "load"))
     width, force = 1 + abs(approach.value), abs(load.value)
     balances, reactions = (coarse.balance, fine.balance), (coarse.reaction, fine.reaction)
