@@ -22,9 +22,9 @@ from fem_adhesion.discretise import (
 from fem_adhesion.mesh.file import read_scaled
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy.finite_bodies import AroundEvents, operators_across, surroundings
+from halfspace.accuracy.grids import TWIN, rings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung
-from halfspace.accuracy.trace import TWIN, rings
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import to_infinity
 from halfspace.elastic.operators import Homogeneous

@@ -58,7 +58,7 @@ import fem_adhesion.bodies.half_space
 import fem_adhesion.bodies.held
 import fem_adhesion.convergence
 import halfspace.accuracy.finite_bodies
-import halfspace.accuracy.trace
+import halfspace.accuracy.grids
 import halfspace.accuracy.windows
 import halfspace.elastic.operators
 import halfspace.equilibrium.charts
@@ -228,13 +228,13 @@ DEFAULTS = (body.Discretisation.__init__, "__defaults__")
 
 
 CONSTANTS = (
-    Constant(halfspace.accuracy.trace, "ONE_NODE", estimates("half-space", "springs, half-space")),
-    Constant(halfspace.accuracy.trace, "REMAINING", estimates("half-space", "sphere's profile")),
-    Constant(halfspace.accuracy.trace, "TWIN", estimates("half-space", "sphere's profile"), from_one),
-    Constant(halfspace.accuracy.trace, "EXTENT", estimates("half-space")),
+    Constant(halfspace.accuracy.grids, "ONE_NODE", estimates("half-space", "springs, half-space")),
+    Constant(halfspace.accuracy.grids, "REMAINING", estimates("half-space", "sphere's profile")),
+    Constant(halfspace.accuracy.grids, "TWIN", estimates("half-space", "sphere's profile"), from_one),
+    Constant(halfspace.accuracy.grids, "EXTENT", estimates("half-space")),
     Constant(halfspace.accuracy.finite_bodies, "WINDOW", estimates("sphere's profile")),
-    Constant(halfspace.accuracy.trace, "EVENTS_LEAVE", estimates("sphere's profile")),
-    Constant(halfspace.accuracy.trace, "TIP", estimates("laws and profiles"), to_the_power),
+    Constant(halfspace.accuracy.finite_bodies, "EVENTS_LEAVE", estimates("sphere's profile")),
+    Constant(halfspace.accuracy.grids, "TIP", estimates("laws and profiles"), to_the_power),
     Constant(halfspace.scales, "SUDDEN", estimates("laws and profiles")),
     Constant(halfspace.accuracy.windows, "STRETCH", on_a_step, to_the_power),
     Constant(halfspace.accuracy.windows, "MARGIN", on_a_step, to_the_power),

@@ -8,7 +8,7 @@ from fem_adhesion.elasticity.boundaries import sliding
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
-from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.grid import FLAT, SurfaceCoordinate
 from halfspace.elastic.operators import Homogeneous, Interpolated, MovingGrid, chebyshev_radii

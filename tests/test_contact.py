@@ -8,7 +8,7 @@ from truths import relocated, under_sphere
 
 import halfspace
 from halfspace.accuracy.fold_birth import approached
-from halfspace.accuracy.trace import half_space_charts, resolution_for, rings
+from halfspace.accuracy.grids import half_space_charts, resolution_for, rings
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton

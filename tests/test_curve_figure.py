@@ -18,7 +18,7 @@ from fem_adhesion.curve import load as load_panel
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields import state_at
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.path import Steps

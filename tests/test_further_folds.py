@@ -22,8 +22,9 @@ from fem_adhesion.curve.pictures import experiment
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace import Layer
 from halfspace.accuracy.fold_birth import count_folds
+from halfspace.accuracy.grids import half_space_charts, resolution_for, rings
 from halfspace.accuracy.stages import Rung, on_all
-from halfspace.accuracy.trace import _sized_body, half_space_charts, resolution_for, rings
+from halfspace.accuracy.trace import under_sphere
 from halfspace.equilibrium import path as path_module
 from halfspace.equilibrium.charts import Stage, moved, trace_charts
 from halfspace.equilibrium.devices import cycle
@@ -279,7 +280,7 @@ def test_folds_are_found_at_every_tolerance_also_where_contact_is_about_to_be_ma
     tolerances = (1e-1, 1e-4, 1e-5, 1e-7)
     paths = {rtol: halfspace.trace(5.0, profile=Sphere(30.0), rtol=rtol) for rtol in tolerances}
     scales = Scales(5.0, profile=Sphere(30.0).surface(5.0))
-    body = replace(_sized_body(scales, None, resolution_for(scales, 1e-9)), finest=0.3)
+    body = replace(under_sphere(scales, resolution_for(scales, 1e-9)), finest=0.3)
     standing = body.centred().problem
     for name in ("fold_2", "fold_3"):
         approach, load, gap = moved(paths[1e-4].stages[-1][name], standing).point.observables[:3]

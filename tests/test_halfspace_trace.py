@@ -12,8 +12,8 @@ from hard.references import charted_rung
 
 import halfspace
 from halfspace.accuracy.fold_birth import critical_stiffness
+from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
-from halfspace.accuracy.trace import Resolution, half_space_charts, resolution_for
 from halfspace.elastic import compliance
 from halfspace.equilibrium.charts import metric_for, trace_charts
 from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets, locate

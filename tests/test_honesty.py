@@ -19,7 +19,7 @@ from honesty import FAMILIES, Judged, Net, Row
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene
-from halfspace.accuracy.trace import Resolution, half_space_charts
+from halfspace.accuracy.grids import Resolution, half_space_charts
 from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.search import energy_released, find_events
 from halfspace.errors import NotConverged

@@ -18,8 +18,8 @@ from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck.references import elements_of
 from fem_adhesion.scene import Scene
 from halfspace import Coated
+from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for
 from halfspace.accuracy.stages import Charted
-from halfspace.accuracy.trace import Resolution, half_space_charts, resolution_for
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import moved, transfer
 from halfspace.equilibrium.conditions import FOLD, Located

@@ -18,7 +18,8 @@ from scipy.special import j0
 import fem_adhesion
 from fem_adhesion.scene import Scene
 from halfspace import trace
-from halfspace.accuracy.trace import layered_half_space, resolution_for
+from halfspace.accuracy.grids import resolution_for
+from halfspace.accuracy.layered import layered_charts
 from halfspace.elastic import compliance, grid, layered
 from halfspace.elastic.compliance import barycentric, lagrange
 from halfspace.elastic.layered import image_compliance, image_kernels, images_of, layered_panels
@@ -280,10 +281,9 @@ def test_bodies_that_are_the_same_have_the_same_events(body, alike):
 
 def test_between_the_radii_of_a_curve_a_stiff_coating_is_as_well_known_as_a_soft_one():
     """Against images integrated where the contact is; what they bend by is a hundred times the coating's own yield."""
-    for body, apart in ((Coated(0.5, 100.0), 1.7), (Coated(0.5, 10.0), 1.7), (Coated(0.5, 0.1), 1.5)):
+    for body in (Coated(0.5, 100.0), Coated(0.5, 10.0), Coated(0.5, 0.1)):
         scales, images = Scales(3.0, body=body), images_of(body)
-        made = layered_half_space(scales, images, resolution_for(scales, 1e-3))
-        operator = made.curve(apart)[1].problem.operator
+        operator = layered_charts(scales, images, resolution_for(scales, 1e-3))[1].problem.operator
         radii = operator.scales[operator.past : -operator.past]
         for a in np.sqrt(radii[1:] * radii[:-1])[::4]:
             here = operator.at(a)
@@ -381,10 +381,10 @@ def test_pull_off_from_a_layer_approaches_jkrs_as_the_tabor_parameter_grows():
 
 @pytest.fixture(scope="module")
 def charted():
-    """A layer on the grids of a half-space, the last cell of which is infinite, and its chart that follows contacts."""
+    """Operators of a layer on the grids of a half-space, the last cell of which is infinite: it stands, or follows."""
     scales = Scales(1.0, body=Layer(2.0, 0.3))
-    body = layered_half_space(scales, images_of(scales.body), resolution_for(scales, 1e-8))
-    return body, body.around(1.4, count=5).problem.operator
+    charts = layered_charts(scales, images_of(scales.body), resolution_for(scales, 1e-8))
+    return tuple(chart.problem.operator for chart in charts)
 
 
 def test_a_bell_deflects_a_layer_on_a_scaled_grid_as_on_one_that_stands(charted):
@@ -437,8 +437,7 @@ def test_polynomials_between_lengths_leave_as_little_of_a_kernel_as_they_are_cho
 
 
 def test_a_layer_widened_twice_keeps_its_images(charted):
-    body, _ = charted
-    standing = body.centred().problem.operator
+    standing, _ = charted
     twice, once = (operator.widened(6, 20.0) for operator in (standing.widened(6, 8.0), standing))
     assert np.count_nonzero(standing.radii > standing.extent) > 0
     np.testing.assert_array_equal(twice.radii, once.radii)
@@ -475,8 +474,7 @@ def test_the_scaled_operator_changes_with_the_contact_as_its_rates_say(charted):
 
 
 def test_a_layer_with_other_cells_far_out_is_the_same_layer(charted):
-    body, _ = charted
-    operator = body.centred().problem.operator
+    operator, _ = charted
     wide = operator.widened(12, 8.0)
     assert wide.beyond.size > operator.beyond.size
     inside = operator.radii < operator.extent

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import halfspace
 from fem_adhesion.elasticity.elimination import factor, inverses
-from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.conditions import ZERO_LOAD, locate

@@ -23,8 +23,9 @@ from halfspace.accuracy.finite_bodies import (
     operators_across,
     surroundings,
 )
+from halfspace.accuracy.grids import resolution_for
 from halfspace.accuracy.stages import on_all
-from halfspace.accuracy.trace import _sized_body, resolution_for
+from halfspace.accuracy.trace import under_sphere
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous, chebyshev_radii
 from halfspace.equilibrium.charts import Chart, moved
@@ -242,7 +243,7 @@ def test_events_share_one_chart_where_that_takes_fewer_operators_than_one_for_ea
 def test_points_of_a_curve_have_no_more_operators_than_rounding_lets_tell_apart():
     """On a high rung there were two thousand, whose polynomial overflowed: at `rtol=1e-9` a curve had no points."""
     scales = Scales(1.0, profile=between_spheres(np.sqrt(30.0), np.inf))
-    body = _sized_body(scales, None, resolution_for(scales, 1e-3))
+    body = under_sphere(scales, resolution_for(scales, 1e-3))
     stage = AroundEvents(body, *surroundings(1e-9, 7))
     operator = stage.everywhere.charts[1].problem.operator
     assert operator.scales.size < 80
@@ -289,7 +290,7 @@ def test_an_event_that_moves_out_of_a_window_is_solved_for_on_an_operator_of_its
 def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_tolerance():
     """By which a fold is found; against differences of whole operators over ever narrower windows, extrapolated."""
     scales = Scales(2.0, profile=between_spheres(np.sqrt(5.0), np.inf))
-    body = _sized_body(scales, None, resolution_for(scales, 1e-8))
+    body = under_sphere(scales, resolution_for(scales, 1e-8))
     operator = body.around(1.18).problem.operator
     pressure = -np.exp(-8 * (operator.at(1.18).radii / 1.18 - 1) ** 2)
 

@@ -14,8 +14,8 @@ from fem_adhesion.finite_strain.scene import ScenesBody, Windows, softening
 from fem_adhesion.harmonics import Fineness as Series
 from fem_adhesion.harmonics import sized_body as series
 from halfspace.accuracy.finite_bodies import SizedBody, at_tip, standing
+from halfspace.accuracy.grids import Resolution, half_space_charts
 from halfspace.accuracy.stages import Charted, Standing
-from halfspace.accuracy.trace import Resolution, half_space_charts
 from halfspace.elastic import compliance
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import images_of, layered_panels

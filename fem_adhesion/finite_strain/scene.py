@@ -26,9 +26,9 @@ from fem_adhesion.finite_strain.problem import FiniteStrainProblem, finite_strai
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
+from halfspace.accuracy.grids import TWIN
 from halfspace.accuracy.refinement import ascend, climb
 from halfspace.accuracy.stages import Rung, Standing, State, WhereAsked
-from halfspace.accuracy.trace import TWIN
 from halfspace.elastic import grid
 from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, trace_charts, undeformed_radius
 from halfspace.equilibrium.conditions import Located, relocate

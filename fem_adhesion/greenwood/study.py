@@ -21,7 +21,7 @@ from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple, Rise, attempts
 from fem_adhesion.greenwood.tables import Printed
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.fold_birth import FIRST, critical_stiffness, tabor_of
-from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.equilibrium.charts import COMPRESSION, trace_charts
 from halfspace.equilibrium.conditions import FOLD, Condition, Located
 from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS

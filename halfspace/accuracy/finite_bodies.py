@@ -9,7 +9,7 @@ where the interpolation is as good as exact: whichever takes fewer operators.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -17,7 +17,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from halfspace.accuracy.stages import Charted, Standing, WhereAsked
+from halfspace.accuracy.stages import Charted, Rung, Standing, WhereAsked
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.grid import SurfaceCoordinate
@@ -25,6 +25,7 @@ from halfspace.elastic.operators import Interpolated, MovingGrid, chebyshev_radi
 from halfspace.equilibrium.charts import COMPRESSION, Chart, Stage, moved
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS, WIDEST, contact_of
+from halfspace.equilibrium.events import ErrorRule
 from halfspace.equilibrium.newton import Traceable
 from halfspace.errors import ContactTooWide, NotConverged
 from halfspace.profiles import Surface
@@ -43,6 +44,9 @@ STEPS = 25  # per unit of the logarithm: where charts begin and end, so that tho
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
+# Cells on the axis after which an event has its own that end at its contact edge: on those of the axis the estimates of
+# folds were up to a thousand times too large. By finite elements they were not; a fifth of the time is saved there.
+EVENTS_LEAVE = 1.0
 EXACT = 1e-12  # tolerance past which they are no closer: at rtol 1e-9 they were up to thousands
 
 Made = tuple[ElasticOperator, int]
@@ -225,6 +229,15 @@ def surroundings(rtol: float, level: int) -> tuple[float, int]:
     """
     window, count = (WINDOW, AROUND) if rtol >= TIGHT else (2 * WINDOW, AROUND + 2)
     return window / 2**level, count
+
+
+def sized_rung(
+    fine: SizedBody, other: SizedBody, rtol: float, level: int, settings: Mapping[str, object], rule: ErrorRule
+) -> Rung:
+    """Rung of a level on which events leave the chart on the axis early, with a twin as fine as the level below."""
+    stage = AroundEvents(fine, *surroundings(rtol, level), EVENTS_LEAVE)
+    twin = AroundEvents(other, *surroundings(rtol, level - 1), EVENTS_LEAVE) if level else None
+    return Rung(fine.curve, (stage,), settings, twin, rule)
 
 
 def apart_for_events(body: SizedBody, rtol: float) -> float | None:

@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from halfspace.accuracy.trace import half_space_charts, resolution_for
+from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import metric_for
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD

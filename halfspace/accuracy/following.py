@@ -24,9 +24,10 @@ from typing import Any
 
 import numpy as np
 
+from halfspace.accuracy.grids import Grids, Resolution
 from halfspace.accuracy.refinement import climb, energy_along
 from halfspace.accuracy.stages import Charted, Rung, State
-from halfspace.accuracy.trace import Grids, Resolution, half_space_rung
+from halfspace.accuracy.trace import half_space_rung
 from halfspace.elastic.grid import polynomial
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.charts import Chart, Stage, metric_for

@@ -9,9 +9,9 @@ from scipy.optimize import minimize_scalar
 
 import halfspace
 from halfspace.accuracy.fold_birth import Birth, approached, at_gap, count_folds, tabor_of
+from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung
-from halfspace.accuracy.trace import half_space_charts, resolution_for
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import COMPRESSION, metric_for, trace_charts, transfer
 from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located, locate

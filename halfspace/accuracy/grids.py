@@ -1,0 +1,163 @@
+"""Grids of the half-space: how fine they are, and what is left as error from one to the next."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from halfspace.accuracy.finite_bodies import EQUAL, LEAVE, at_tip
+from halfspace.elastic import compliance, grid
+from halfspace.elastic.operators import Homogeneous
+from halfspace.equilibrium.charts import COMPRESSION, Chart
+from halfspace.equilibrium.contact import contact_of
+from halfspace.equilibrium.events import REMAINING, ErrorRule
+from halfspace.errors import InputError
+from halfspace.scales import Scales
+from halfspace.values import Array, Valued
+
+EXTENT = 8.0  # of the finite cells, in widths of a rigid attraction: the infinite one is then as good as they are
+MOST_NODES = 16  # of a panel
+# Times as fast as elsewhere cells grow from a tip u^k: the nearer to the axis they are, the less there is to be left of
+# it. In the first cell n nodes leave n^(-2k) of it, so that its radius is n^2 times that at which u^k is all left. With
+# 2 or 3 in the place of 1.5 two of 427 numbers were outside their estimates.
+TIP = 1.5
+# Found by trial; what each decides at half and at double is in tests/constants.py.
+ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
+MOST_CELLS = 100  # of one length
+TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How finely the half-space is discretised, in nodes per panel; the error falls about a decade a node.
+
+    `finest` is the length of the panels at the contact edge, in widths of the spike of tension there, `growth` the
+    ratio of neighbouring panels. The extent of the finite cells is in widths of a rigid paraboloid's attraction,
+    beta/sqrt(mu), or where another profile is as high; beyond it is one cell more, see
+    `halfspace.elastic.compliance.to_infinity`.
+    """
+
+    nodes: int
+    finest: float
+    growth: float
+    extent: float
+
+    @property
+    def cells(self) -> dict[str, object]:
+        """What it tells of a body whose extent is its own."""
+        return {"nodes": self.nodes, "finest": self.finest, "growth": self.growth}
+
+
+def resolution_for(scales: Scales, rtol: float, level: int = 0) -> Resolution:
+    """Resolution whose events are right to about `rtol` at level 0 and five to ten times better with each node more.
+
+    The first level above it has one more, the second two more than that, and so on.
+    """
+    nodes = max(math.ceil(2 - math.log10(rtol) - 1e-9), 5) + level * (level + 1) // 2
+    return Resolution(min(nodes, MOST_NODES), finest=0.6, growth=3.0, extent=EXTENT * scales.widened)
+
+
+def resolutions_for(scales: Scales, rtol: float, level: int) -> tuple[Resolution, Resolution]:
+    """Resolution of a level, and that of a twin as fine as the level below, with other cells."""
+    below, (finest, growth, extent) = resolution_for(scales, rtol, max(level - 1, 0)), TWIN
+    twin = replace(below, finest=finest * below.finest, growth=growth * below.growth, extent=extent * below.extent)
+    return resolution_for(scales, rtol, level), twin
+
+
+def rule_for(level: int, doubt: int = 1) -> ErrorRule:
+    """How errors are told from the change by one node more, or by two and more, and so many times as large.
+
+    Where a profile's derivatives leap inside a cell an error falls as a power of the nodes: a pair more leaves as much
+    there as elsewhere one.
+    """
+    return ErrorRule(doubt * (ONE_NODE if level == 1 else REMAINING))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Rings(Valued):
+    """Breakpoints of two charts: centred on the axis up to a contact radius, then on the edge, whose radius is 1."""
+
+    centred: Array
+    edge: Array
+    until: float
+
+
+def rings(
+    scales: Scales,
+    finest: float,
+    growth: float,
+    extent: float,
+    to_load: float = COMPRESSION,
+    nodes: int = MOST_NODES,
+) -> Rings:
+    """Breakpoints fine enough for the spike of tension at every contact radius up to that under the load `to_load`.
+
+    `finest` is in widths of the spike, `extent` in those of the attraction, as in `Resolution`.
+    """
+    length = scales.edge_cell(finest)
+    outer = scales.outer_radius(extent**2 / 2)
+    widest, first = scales.widest_radius(to_load), at_tip(scales.profile, nodes)
+    growth = scales.growth(growth)
+    reach = EQUAL * length
+    until = LEAVE * reach
+    centred = grid.graded(0.0, length, outer, growth=growth, until=reach)
+    if scales.law.outermost:
+        return Rings(_fine_throughout(scales, finest, growth, outer, to_load), centred, math.inf)
+    edge = grid.graded(1.0, 2 * length / widest, outer / until, growth=growth)  # as wide from the first
+    towards = inwards(scales, growth)
+    return Rings(grid.towards_axis(centred, first, towards), grid.towards_axis(edge, first / widest, towards), until)
+
+
+def inwards(scales: Scales, growth: float) -> float:
+    """Ratio of neighbouring cells towards the axis."""
+    return TIP * growth if scales.profile.pointed else growth
+
+
+def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float, to_load: float) -> Array:
+    """Breakpoints as fine as at a contact edge wherever one may stand, by a law whose tension has several largest."""
+    reach = float(np.hypot(scales.widest_radius(to_load), scales.radius_at(scales.law.outermost)))
+    spacing = finest * scales.spike_width
+    cells = reach / spacing
+    if cells > MOST_CELLS:
+        raise InputError(
+            f"{scales.law}: the tension rises again at H = {scales.law.outermost:.3g}, so that {cells:.0f} cells of "
+            f"{spacing:.2g} beta are needed up to {reach:.3g} beta, limit: {MOST_CELLS}; take a smaller tabor than "
+            f"{scales.tabor:g}, or a smaller to_load"
+        )
+    return grid.graded(0.0, spacing, max(outer, reach + spacing), growth=growth, until=reach)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Grids(Valued):
+    """The half-space on two grids: one centred on the axis, up to a contact radius in beta, and one that follows it."""
+
+    centred: compliance.ElasticOperator
+    edge: Homogeneous
+    until: float
+
+    @classmethod
+    def of(cls, scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> Grids:
+        """Panels as fine as a contact of these scales needs them, up to a load."""
+        nodes, reach = resolution.nodes, scales.tail_reach
+        lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, nodes)
+        centred, edge = (endless(nodes, reach, breaks) for breaks in (lines.centred, lines.edge))
+        return cls(centred, Homogeneous(edge), lines.until)
+
+    def charts(self, scales: Scales) -> tuple[Chart, Chart]:
+        """Both grids under a contact of these scales, or of stiffer ones that need no finer cells."""
+        return (
+            Chart(contact_of(scales, self.centred), self.centred.radii.size, self.until),
+            Chart(contact_of(scales, self.edge), self.edge.unit.radii.size),
+        )
+
+
+def half_space_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:
+    """Panel grids centred on the axis and following the contact edge."""
+    return Grids.of(scales, resolution, to_load).charts(scales)
+
+
+def endless(nodes: int, reach: float, breaks: Array) -> compliance.ElasticOperator:
+    """Operator of the half-space on panels of so many nodes, the last of which is infinite, see `Scales.tail_reach`."""
+    return compliance.to_infinity(compliance.panels(breaks, nodes), nodes, reach)
