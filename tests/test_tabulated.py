@@ -130,6 +130,45 @@ def test_few_rows_within_the_apex_radius_are_enough_for_a_paraboloid(rows, first
     assert abs(tip.radius - R) <= max(tip.radius_error, 1e-12 * R)
 
 
+@pytest.mark.parametrize("nearly", [0.0, 1e-17, -1e-17])
+def test_a_row_without_tension_is_equilibrium(nearly, tmp_path):
+    h = EPS * np.append(np.linspace(0.8, 0.99, 20), np.geomspace(1.0, 30, 600))
+    tension = np.where(h == EPS, nearly, lennard_jones(h))
+    law = require_law(laws.Tabulated(written(tmp_path / "law.csv", h, tension)))
+    assert law.spacing == pytest.approx(EPS, rel=1e-14)
+    metres = laws.Tabulated(written(tmp_path / "law.csv", h * 1e-9, tension))
+    assert metres.spacing == pytest.approx(EPS * 1e-9, rel=1e-14, abs=0)
+    ours, known = (halfspace.trace(0.5, law=one, rtol=1e-4).event("pull_off") for one in (law, LENNARD_JONES))
+    assert abs(ours.load - known.load) < ours.load_error + known.load_error + 1e-4
+
+
+def test_a_table_that_ends_with_zeros_ends_at_the_first_of_them(tmp_path):
+    """Nothing acts farther out; what is left there of the 3-9 law's work of adhesion, h^-2 4/3, is not its own."""
+    h, cut = EPS * np.geomspace(0.7, 30, 600), 10 * EPS
+    tension = np.where(h < cut, lennard_jones(h), 0.0)
+    law = require_law(laws.Tabulated(written(tmp_path / "law.csv", h, tension)))
+    end = h[h >= cut][0]
+    assert law.work_of_adhesion == pytest.approx(WORK * (1 - 4 / 3 / 10**2), rel=1e-4)
+    beyond = np.array([1.0, 1.01, 100.0]) * end / law.spacing - 1
+    for values in (law.pressure, law.slope, law.energy):
+        np.testing.assert_allclose(values(beyond, 0.7), 0.0, rtol=0, atol=1e-12)
+    assert law.decay == np.inf
+    once = laws.Tabulated(written(tmp_path / "once.csv", h[h <= end], tension[h <= end]))
+    np.testing.assert_array_equal(once.pressure(H, 1.0), law.pressure(H, 1.0))
+    rough, fine = (halfspace.trace(0.5, law=law, rtol=rtol) for rtol in (1e-3, 1e-6))
+    assert rough.met
+    for name, event in fine.events.items():
+        assert abs(rough.event(name).load - event.load) < rough.event(name).load_error + event.load_error
+
+
+def test_a_valley_may_touch_zero(tmp_path):
+    h = np.append(np.linspace(0.8, 0.99, 20), np.append(np.linspace(1.0, 4.0, 301), np.geomspace(4.1, 30, 60)))
+    tension = -LENNARD_JONES.pressure(h - 1, 1.0) * (1 - np.exp(-(((h - 2) / 0.2) ** 2)))
+    law = laws.Tabulated(written(tmp_path / "law.csv", h, np.where(abs(h - 2) < 1e-9, 0, tension)))
+    assert law.outermost > 1
+    assert halfspace.trace(1.0, law=law, rtol=1e-2).met
+
+
 @pytest.mark.parametrize("count", [100, 200, 300])
 def test_what_a_table_leaves_open_is_told(count, tmp_path):
     """Between its rows the spline is off from the law that it was made of by about that; a hole is found."""
@@ -154,6 +193,9 @@ H = EPS * np.geomspace(0.7, 30, 300)
         (H[50:], lennard_jones(H)[50:], "limit: -"),
         (H[:120], lennard_jones(H)[:120] + 40, "it ends as gap^-"),
         (H, lennard_jones(H) - 3, "the last tension is -"),
+        (H, np.where(abs(H - EPS) < 0.05 * EPS, 0, lennard_jones(H)), "no tension from gap 0.158"),
+        (H, np.where(H < EPS, 0, lennard_jones(H)), "the first tension is 0, limit: -"),
+        (H, 0 * H, "the largest tension is 0, limit: above 0"),
         (H, lennard_jones(H) * np.cos(H), "the tension changes sign again, limit: once"),
         (H, -abs(lennard_jones(H)), "the largest tension is -"),
         (H[::-1], lennard_jones(H), "line 3: the first column goes from 4.95 to 4.88818, limit: ascending"),

@@ -11,6 +11,7 @@ import numpy as np
 
 from halfspace.errors import InputError
 from halfspace.laws.law import Law
+from halfspace.roots import root
 from halfspace.values import Array, keep, read_columns
 
 if TYPE_CHECKING:
@@ -26,8 +27,9 @@ class Tabulated(Law):
     """Cubic spline through a table of gaps and tensions, in any units: spacing and work of adhesion are its own.
 
     Beyond the last gap the tension falls as the power of the gap that it ends with, before the first the pressure rises
-    as the exponential that it begins with. The path is of a CSV file with two columns, gap and tension (negative where
-    the surfaces repel), and any header; InputError if it cannot be read, has holes, no repulsive core or no decay.
+    as the exponential that it begins with. In a table that ends with zeros it ends at the first of them, without a
+    kink. The path is of a CSV file with two columns, gap and tension (negative where the surfaces repel), and any
+    header; InputError if it cannot be read, has holes, no repulsive core or no decay.
     """
 
     path: Path
@@ -39,10 +41,14 @@ class Tabulated(Law):
         for value, holds, limit, remedy in (
             (f"the largest tension is {strength:g}", strength > 0, "above 0", "let the surfaces attract"),
             (f"the first tension is {tension[0]:g}", tension[0] <= -strength, f"{-strength:g}", CORE),
-            (f"the last tension is {tension[-1]:g}", tension[-1] > 0, "above 0", "end where they attract"),
+            (f"the last tension is {tension[-1]:g}", tension[-1] >= 0, "0 or above", "end where they attract"),
         ):
             self._require(holds, value, limit, remedy)
-        self._require(np.count_nonzero(np.diff(np.sign(tension))) == 1, "the tension changes sign again", "once", MEND)
+        signs = np.sign(tension[tension != 0])
+        self._require(np.count_nonzero(np.diff(signs)) == 1, "the tension changes sign again", "once", MEND)
+        core, attraction = self._beside_equilibrium
+        flat = f"there is no tension from gap {h[core + 1]:g} to {h[attraction - 1]:g}"
+        self._require(attraction - core <= 2, flat, "one gap in equilibrium", "give more digits there")
         self._require(
             self._fall > SLOWEST, f"it ends as gap^{-self._fall:.3g}", f"below {-SLOWEST:g}", "give it a tail"
         )
@@ -59,22 +65,24 @@ class Tabulated(Law):
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
-        """Gaps and tensions."""
+        """Gaps and tensions, but for zeros beyond the first of those that end them."""
         h, tension = read_columns(self.path, FEWEST)
         self._require(bool(h[0] > 0), f"the first gap is {h[0]:g}", "above 0", "gaps are distances of the surfaces")
-        return h, tension
+        until = int(np.flatnonzero(tension).max(initial=-1)) + 2
+        return h[:until], tension[:until]
 
     @cached_property
     def _spline(self) -> CubicSpline:
         from scipy.interpolate import CubicSpline  # it takes as long to load as all else, and few need it
 
-        return CubicSpline(*self._table)
+        h, tension = self._table
+        return CubicSpline(h, tension, bc_type=("not-a-knot", "not-a-knot" if tension[-1] else "clamped"))
 
     @cached_property
     def _fall(self) -> float:
-        """Exponent of the tension beyond the last gap."""
-        last = self._table[0][-1]
-        return float(-last * self._spline(last, 1) / self._spline(last))
+        """Exponent of the tension beyond the last gap, infinite where it is nothing."""
+        h, tension = self._table
+        return float(-h[-1] * self._spline(h[-1], 1) / tension[-1]) if tension[-1] else np.inf
 
     @cached_property
     def _rise(self) -> float:
@@ -82,13 +90,20 @@ class Tabulated(Law):
         first = self._table[0][0]
         return float(-self._spline(first, 1) / self._spline(first))
 
+    @property
+    def _beside_equilibrium(self) -> tuple[int, int]:
+        """The last row where the surfaces repel and the first where they attract."""
+        tension = self._table[1]
+        return int(np.flatnonzero(tension < 0)[-1]), int(np.flatnonzero(tension > 0)[0])
+
     @cached_property
     def spacing(self) -> float:
         """Gap without tension, in the table's unit."""
-        h, tension = self._table
-        roots = self._spline.roots(extrapolate=False)
-        i = int(np.flatnonzero(tension > 0)[0])
-        return float(roots[(roots >= h[i - 1]) & (roots <= h[i])][0])
+        h, (core, attraction) = self._table[0], self._beside_equilibrium
+        if attraction - core > 1:
+            return float(h[core + 1])
+        between = float(h[core]), float(h[attraction])
+        return root(lambda gap: float(self._spline(gap)), *between, "equilibrium; mend the table", xtol=1e-300)
 
     @cached_property
     def work_of_adhesion(self) -> float:
@@ -126,9 +141,9 @@ class Tabulated(Law):
         before, beyond = gaps < first, gaps > last
         found = np.asarray(self._spline(np.clip(gaps, first, last), order))
         core = float(self._spline(first)) * np.exp(self._rise * (first - np.minimum(gaps, first)))
-        tail = float(self._spline(last)) * (np.maximum(gaps, last) / last) ** -self._fall
+        tail = float(self._spline(last, order)) * (np.maximum(gaps, last) / last) ** -(self._fall + order)
         if order:
-            core, tail = -self._rise * core, -self._fall / np.maximum(gaps, last) * tail
+            core = -self._rise * core
         return np.where(before, core, np.where(beyond, tail, found))
 
     def _left(self, h: Array) -> Array:
