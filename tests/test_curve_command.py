@@ -16,10 +16,10 @@ from rich.console import Console
 from scenes import pair
 
 from fem_adhesion import Hemisphere, cli
+from fem_adhesion.common import lines as curve_lines
 from fem_adhesion.common.options import Parser
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.curve import command as curve
-from fem_adhesion.curve import lines as curve_lines
 from fem_adhesion.curve import pictures as module
 from fem_adhesion.curve import record as curve_record
 from fem_adhesion.curve import solve as study

@@ -11,9 +11,9 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from fem_adhesion import Hemisphere, LinearElastic, NeoHookean
+from fem_adhesion.common import lines as curve_lines
 from fem_adhesion.common import style
 from fem_adhesion.curve import figure as curve_figure
-from fem_adhesion.curve import lines as curve_lines
 from fem_adhesion.curve import load as load_panel
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.fields import state_at

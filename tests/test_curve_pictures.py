@@ -9,10 +9,10 @@ from scipy.interpolate import CubicSpline
 
 from fem_adhesion import Hemisphere
 from fem_adhesion.common.files import written_aside
+from fem_adhesion.common.lines import smooth
 from fem_adhesion.common.options import Parser
 from fem_adhesion.curve import command as curve
 from fem_adhesion.curve import pictures as module
-from fem_adhesion.curve.lines import smooth
 from fem_adhesion.curve.load import KINDS, STATES
 from fem_adhesion.curve.solve import Question, solve
 from fem_adhesion.paraview import picture as solid_view

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.assess.theories import Curve, loop
 from fem_adhesion.common import style
+from fem_adhesion.common.lines import smooth
 from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of
-from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle, reaching
 from halfspace.scaling import Units
@@ -26,7 +26,6 @@ LINES: tuple[dict[str, Any], ...] = (
 BEHIND: dict[str, Any] = {"color": "0.6", "linewidth": 1.3, "linestyle": style.CHAIN, "zorder": 1}
 WIDER, HIGHER = 1.3, 0.35  # frame: beyond the jump on, and above zero in pull-off forces
 THINNED = 50  # of so many samples of a closed theory one is drawn
-BETWEEN = 8  # points drawn from one computed point to the next
 
 Ends = tuple[float, float]
 
@@ -90,10 +89,10 @@ def _line(curve: EquilibriumPath | Curve | None, assessment: Assessment) -> tupl
     """Approach and load along a curve, smooth between computed points."""
     if isinstance(curve, EquilibriumPath):
         path = reaching(curve, assessment.contact.reduced_stiffness)
-        fine = np.concatenate([each.between(BETWEEN)[0] for each in path.finest_curve.segments])
-        lowest, pull_off = np.argmin(fine[:, LOAD]), path.events["pull_off"]
-        fine[lowest, [APPROACH, LOAD]] = pull_off.approach, pull_off.load  # solved for, not between points
-        return fine[:, APPROACH], fine[:, LOAD]
+        line, pull_off = smooth(path), path.events["pull_off"]
+        lowest = np.argmin(line.load)
+        line.approach[lowest], line.load[lowest] = pull_off.approach, pull_off.load  # solved for, not between points
+        return line.approach, line.load
     if curve is None:
         return np.empty(0), np.empty(0)
     touching = int(np.argmax(np.isfinite(curve.radius)))  # where the curve may leap

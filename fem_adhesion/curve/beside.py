@@ -14,10 +14,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion import registry
-from fem_adhesion.common import style
+from fem_adhesion.common import lines, style
 from fem_adhesion.common.facts import plain
 from fem_adhesion.common.jobs import Progress, unheard
-from fem_adhesion.curve import lines
 from fem_adhesion.curve.solve import PAPER, Curves, trace
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -124,10 +123,10 @@ def draw(beside: EquallyStrong) -> Figure:
     frames = []
     for (color, dashes), (law, path) in zip(LOOKS, beside.curves, strict=False):
         line, frame = lines.smooth(path), lines.around_events(path)
-        x, unstable = line.approach / path.tabor, line.kind == lines.UNSTABLE
+        x, (stable, unstable) = line.approach / path.tabor, line.stretches(line.load)
         look = {"color": color, "linewidth": 1.9}
-        left.plot(x, np.where(unstable, np.nan, line.load), linestyle=dashes, label=_name(law, path), **look)
-        left.plot(x, np.where(unstable, line.load, np.nan), color=color, linewidth=1.1, linestyle=style.DOTTED)
+        left.plot(x, stable, linestyle=dashes, label=_name(law, path), **look)
+        left.plot(x, unstable, color=color, linewidth=1.1, linestyle=style.DOTTED)
         for name, marker in MARKERS.items():
             if event := path.event(name):
                 left.plot(event.approach / path.tabor, event.load, marker, color=color, zorder=4)

@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from fem_adhesion.common import style
+from fem_adhesion.common import lines, style
+from fem_adhesion.common.lines import Frame
 from fem_adhesion.common.numbers import engineering
-from fem_adhesion.curve import lines
-from fem_adhesion.curve.lines import Frame
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.fields import is_same_contact
 from fem_adhesion.scene import Scene

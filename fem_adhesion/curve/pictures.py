@@ -20,8 +20,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 from scipy.spatial import KDTree
 
+from fem_adhesion.common import lines
 from fem_adhesion.common.numbers import with_error
-from fem_adhesion.curve import lines
 from fem_adhesion.curve.figure import LOOK
 from fem_adhesion.curve.load import KINDS, STATES, contact_words
 from fem_adhesion.curve.solve import Curves

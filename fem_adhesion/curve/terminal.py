@@ -10,10 +10,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.text import Text
 
+from fem_adhesion.common import lines
 from fem_adhesion.common.contact import edge_told
 from fem_adhesion.common.numbers import engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
-from fem_adhesion.curve import lines
 from fem_adhesion.curve.solve import Curves, Scale
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.devices import Cycle, reaching

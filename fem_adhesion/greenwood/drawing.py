@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem_adhesion.common.lines import smooth
 from fem_adhesion.common.numbers import told
 from fem_adhesion.common.style import BLUE, CHAIN, DASHED, DOTTED, GREEN, LONG, ORANGE, PINK, RED, SKY
 from halfspace.equilibrium.contact import CENTRAL_GAP as GAP
@@ -49,20 +49,11 @@ def curve(axes: Any, tabor: float, x: Array, y: Array) -> None:
     axes.plot(x, y, label=rf"$\mu = {tabor:g}$", linewidth=1.9, **style)
 
 
-def branches(axes: Any, path: EquilibriumPath, x: Array, y: Array) -> None:
-    """Curve whose stretches unstable under fixed grips are dotted."""
-    colour = OF_TABOR[path.tabor]
-    unstable = ~path.stable
-    axes.plot(x, np.where(unstable, np.nan, y), color=colour, linewidth=1.9)
-    axes.plot(x, np.where(_widened(unstable), y, np.nan), color=colour, linewidth=1.9, linestyle=DOTTED)
-
-
-def _widened(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Mask with the neighbours of its points, so that the stretches join."""
-    wide = mask.copy()
-    wide[1:] |= mask[:-1]
-    wide[:-1] |= mask[1:]
-    return wide
+def branches(axes: Any, path: EquilibriumPath, x: str, y: str) -> None:
+    """Curve by the names of two of approach, load and central gap; stretches unstable under fixed grips are dotted."""
+    line = smooth(path)
+    for part, dashes in zip(line.stretches(getattr(line, y)), ("-", DOTTED), strict=True):
+        axes.plot(getattr(line, x), part, color=OF_TABOR[path.tabor], linewidth=1.9, linestyle=dashes)
 
 
 def stability_key(axes: Any) -> None:

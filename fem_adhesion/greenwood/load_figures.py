@@ -139,7 +139,7 @@ def _see_1c(study: Greenwood1997) -> Iterator[str]:
 def _figure_2a(study: Greenwood1997) -> Figure:
     path = study.curves[JUMPS_AT]
     figure, (axes,) = panels()
-    drawing.branches(axes, path, path.approach, path.load)
+    drawing.branches(axes, path, "approach", "load")
     drawing.stability_key(axes)
     if fe := study.elements.get(JUMPS_AT):
         drawing.elements(axes, fe, fe.approach, fe.load)

@@ -45,7 +45,7 @@ def _gaps(study: Greenwood1997, along: str, places: Sequence[tuple[float, float]
     figure, (axes,) = panels()
     for mu, place in zip(GAPS_AT, places, strict=True):
         path = study.curves[mu]
-        branches(axes, path, getattr(path, along), path.central_gap)
+        branches(axes, path, along, "central_gap")
         axes.text(*place, rf"$\mu = {mu:g}$", color=drawing.OF_TABOR[mu], fontsize=11, weight="bold")
     return figure, axes
 
@@ -91,7 +91,7 @@ def _figure_3c(study: Greenwood1997) -> Figure:
     path, folds = study.curves[WINDING_AT], study.folds
     figure, (whole, close) = panels(2)
     for axes in (whole, close):
-        branches(axes, path, path.approach, path.central_gap)
+        branches(axes, path, "approach", "central_gap")
         axes.plot(folds[:, 0], folds[:, 2], "o", color="black", markersize=5, label="folds")
     drawing.stability_key(whole)
     for number, fold in enumerate(folds):

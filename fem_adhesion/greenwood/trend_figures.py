@@ -164,7 +164,7 @@ def _figure_8(study: Greenwood1997) -> Figure:
     figure, (jumps, border) = panels(2)
     devices = study.devices
     path = study.curves[devices.tabor]
-    drawing.branches(jumps, path, path.approach, path.load)
+    drawing.branches(jumps, path, "approach", "load")
     for cycle in devices.cycles:
         if cycle.stiffness in STIFFNESS_STYLES:
             _arrows(jumps, cycle)

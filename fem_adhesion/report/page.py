@@ -14,6 +14,7 @@ from pathlib import Path
 from matplotlib import rc_context
 
 from fem_adhesion.common.facts import machine, versions
+from fem_adhesion.common.lines import UNSTABLE, smooth
 from fem_adhesion.common.page import Columns, Section, Table, inlined, render, template_text
 from fem_adhesion.common.style import laid_out
 from fem_adhesion.crosscheck.comparison import (
@@ -31,7 +32,6 @@ from fem_adhesion.crosscheck.comparison import (
     verdict_of,
 )
 from fem_adhesion.curve import figure as curve_figure
-from fem_adhesion.curve.lines import UNSTABLE, smooth
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.report.walk import Walk, walk_data, walk_words
 from halfspace.errors import InputError

@@ -17,7 +17,7 @@ from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 from fem_adhesion import convergence
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common.jobs import Progress, unheard
-from fem_adhesion.curve.lines import UNSTABLE, Line, smooth
+from fem_adhesion.common.lines import UNSTABLE, Line, smooth
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.elasticity.stress import positions, sampled
 from fem_adhesion.fields import State, half_space_beside, states_along

@@ -45,10 +45,18 @@ class Line(Valued):
     def parts(self, y: Array) -> Iterator[tuple[int, Array]]:
         """Each kind that occurs, with y where the curve is of it and nan elsewhere; the parts join."""
         for kind in KINDS:
-            mask = self.kind == kind
-            if mask.any():
-                mask[1:] |= mask[:-1].copy()
-                yield kind, np.where(mask, y, np.nan)
+            if np.any(self.kind == kind):
+                yield kind, _where(self.kind == kind, y)
+
+    def stretches(self, y: Array) -> tuple[Array, Array]:
+        """The same where the curve is stable under fixed grips, and where it is not."""
+        unstable = self.kind == UNSTABLE
+        return _where(~unstable, y), _where(unstable, y)
+
+
+def _where(mask: NDArray[np.bool_], y: Array) -> Array:
+    """Values where the mask holds, and at the next point: there the next part begins."""
+    return np.where(mask | np.append(False, mask[:-1]), y, np.nan)
 
 
 @dataclass(frozen=True)
