@@ -19,7 +19,7 @@ import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import Discretised, discretised_about
-from fem_adhesion.elasticity.condensation import Surface
+from fem_adhesion.elasticity.boundaries import Trace
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.elasticity.stress import recovered_stresses
 from fem_adhesion.scene import Scene
@@ -56,8 +56,8 @@ class State(Valued):
     stress : (4, functions) array
         Coefficients of the recovered stress (rr, zz, hoop, rz), in E* beta/R, tension positive; for
         `fem_adhesion.elasticity.stress.sampled`.
-    surface : Surface
-        Quadrature points of the contact surface, by their radii, ascending, as arrays (q,).
+    surface : Trace
+        Quadrature points of the contact surface, by their radii, ascending, q in all.
     problem : ContactProblem
         The surface law on this body.
     point : Point
@@ -69,7 +69,7 @@ class State(Valued):
     space: Space
     displacement: Array
     stress: Array
-    surface: Surface
+    surface: Trace
     problem: ContactProblem
     point: Point
 

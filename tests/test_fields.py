@@ -169,7 +169,7 @@ def test_the_energy_of_the_stress_is_the_work_of_the_pressure(poisson):
     for state in fields.states_along(scene, fem_adhesion.trace(scene, rtol=1e-2), points=0):
         functions = state.space.boundary_functions("contact")
         deflection = -(state.surface.values @ state.components[1, functions])
-        work = np.sum(state.surface.weights * state.pressure * deflection) / 2
+        work = np.sum(state.surface.weights() * state.pressure * deflection) / 2
         assert energy_inside(state) == pytest.approx(work, rel=1e-4)
 
 
@@ -181,7 +181,7 @@ def test_two_bodies_share_the_energy_by_their_compliance():
     functions = state.space.boundary_functions("contact")
     own = -(state.surface.values @ state.components[1, functions])
     both = (state.gap + state.observables[0]) / scene.tabor - state.problem.profile.height(state.surface.radii)
-    weighted = state.surface.weights * state.pressure / 2
+    weighted = state.surface.weights() * state.pressure / 2
     assert energy_inside(state) == pytest.approx(weighted @ own, rel=1e-4)
     assert weighted @ own == pytest.approx(0.75 * (weighted @ both), rel=0.01)  # but for the shapes of the bodies
 

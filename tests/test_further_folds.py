@@ -16,8 +16,9 @@ from scipy.optimize import brentq
 import fem_adhesion
 import halfspace
 from fem_adhesion import Scene, convergence
+from fem_adhesion.common import lines
 from fem_adhesion.crosscheck.study import _compare_events
-from fem_adhesion.curve import lines, record, terminal
+from fem_adhesion.curve import record, terminal
 from fem_adhesion.curve.pictures import experiment
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace import Layer

@@ -9,7 +9,7 @@ from skfem import Basis, ElementQuadP, ElementTriP2
 
 from fem_adhesion.elasticity.boundaries import Exterior, clamped, sliding, trace_on, with_interiors
 from fem_adhesion.elasticity.cells import Cells, cell_stiffness
-from fem_adhesion.elasticity.condensation import Dissection, condense, contact_surface
+from fem_adhesion.elasticity.condensation import Dissection, condense
 from fem_adhesion.elasticity.space import Space, ring_measure
 from fem_adhesion.mesh import spheres as module
 from fem_adhesion.mesh.curved import refined_towards
@@ -89,10 +89,10 @@ def test_rim_of_the_cap_is_where_its_facets_end(cap_angle):
 
 @pytest.mark.parametrize("cap_angle", CAPS)
 def test_contact_ends_are_those_of_the_cells(cap_angle):
-    surface = contact_surface(Space(sphere(cap_angle), ElementQuadP(3)), 5)
+    surface = trace_on(Space(sphere(cap_angle), ElementQuadP(3)), "contact", 5)
     x = np.concatenate([lines()[0], contact_ends(R, rings_at_equator(R, cap_angle))[1:]])
-    assert surface.cells == pytest.approx(SurfaceCoordinate(R).radius(x)[0], rel=1e-12, abs=1e-12)
-    assert np.all(surface.weights > 0)
+    assert surface.ends == pytest.approx(SurfaceCoordinate(R).radius(x)[0], rel=1e-12, abs=1e-12)
+    assert np.all(surface.weights() > 0)
 
 
 def test_refinement_keeps_the_sides_of_all_other_cells():
@@ -144,7 +144,7 @@ def test_uniform_tension_is_exact_in_elements_of_the_degree_of_the_cells(cap_ang
 def between_two_walls(degree):
     """Deflection of the poles per unit load of a free sphere with the same pressure on both, relative to its centre."""
     space = Space(sphere(90.0), ElementQuadP(degree))
-    surface = contact_surface(space, degree + 4)
+    surface = trace_on(space, "contact", degree + 4)
     held = np.concatenate([space.components[0, space.boundary_functions("axis")], space.interior_dofs])
     vertex = np.argmin(np.hypot(space.mesh.p[0], space.mesh.p[1] + R))
     centre = space.components[1, space.scalar_dofs.nodal_dofs[0, vertex]]
@@ -154,9 +154,9 @@ def between_two_walls(degree):
     K, T = cell_stiffness(space, NU), exterior.reduction
     factors = Dissection(space, space.cell_dofs, exterior, np.zeros(0, dtype=np.intp)).factorised(K)
 
-    load = surface.weights @ gaussian(surface.radii)
-    forces = np.zeros(space.unknowns)
-    forces[surface.unknowns] -= surface.values.T @ (surface.weights * gaussian(surface.radii))
+    pressed = surface.weights() * gaussian(surface.radii)
+    load, forces = np.sum(pressed), np.zeros(space.unknowns)
+    forces[space.components[1, surface.functions]] -= surface.values.T @ pressed
     far = trace_on(space, "far", degree + 4)
     r, normal = far.places[0], far.normals[1]
     upwards = (-normal * gaussian(r) * ring_measure(r) * far.lengths).ravel()

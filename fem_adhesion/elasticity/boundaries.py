@@ -22,35 +22,65 @@ from halfspace.values import Array, Index, Valued
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Trace(Valued):
-    """Gauss's points of a named boundary, k on each of its facets, and the scalar functions there.
+    """Gauss's points of a named boundary, k on each of its facets, outwards, and the scalar functions there.
 
     Places and normals (2, facets, k) are r and z of the points, and of the outward normal there; lengths (facets, k)
-    are the weights of the length along the boundary. Of the functions (m,), those that do not vanish on it, ascending,
-    the values (facets k, m) are at the points. Of the n functions of each facet's cell, whose numbers are `cells`
-    (n, facets), the slopes (n, facets, k) are their derivatives by the arclength along (n_z, -n_r): on the contact
-    surface, whose normal is upwards at the pole, that is outwards from it.
+    are the weights of the length along the boundary, and the ends (facets + 1,) radii of the facets' ends. Of the
+    functions (m,), those that do not vanish on it, ascending, the values (q, m) are at all q = facets k points. Of the
+    n functions of each facet's cell, whose numbers are (n, facets), the derivatives (n, facets, k) are by the arclength
+    along (n_z, -n_r): on the contact surface, whose normal is upwards at the pole, that is outwards from it.
     """
 
     places: Array
     normals: Array
     lengths: Array
+    ends: Array
     functions: Index
     values: sparse.csr_array
-    cells: Index
-    slopes: Array
+    cell_functions: Index
+    derivatives: Array
 
     @property
     def rates(self) -> sparse.csr_array:
-        """Slopes of the functions at the points, (facets k, m)."""
-        return _rows(self.slopes, self.cells, self.functions)
+        """Derivatives of the functions at the points, (q, m)."""
+        return _rows(self.derivatives, self.cell_functions, self.functions)
+
+    @property
+    def radii(self) -> Array:
+        """Of the points in beta, (q,); ascending on the contact surface."""
+        return self.places[0].ravel()
+
+    @property
+    def depths(self) -> Array:
+        """Of the points under z = 0, in beta, (q,)."""
+        return -self.places[1].ravel()
+
+    @property
+    def slopes(self) -> Array:
+        """Derivative of the depth by the radius, (q,)."""
+        n_r, n_z = self.normals
+        return np.asarray((n_r / n_z).ravel())
+
+    @property
+    def facet_points(self) -> Index:
+        """Points of each facet, (facets, k)."""
+        return np.arange(self.lengths.size).reshape(self.lengths.shape)
+
+    def weights(self, traction: str = "projected") -> Array:
+        """Of 2 pi r dr, or of the area of the boundary itself with the traction "surface", in beta^2, (q,)."""
+        lengths = self.lengths if traction == "surface" else self.normals[1] * self.lengths
+        return ring_measure(self.radii) * lengths.ravel()
 
 
 def trace_on(space: Space, name: str, points: int) -> Trace:
     """Evaluate a space at so many Gauss points on each facet of a named boundary."""
     mesh, functions = space.mesh, space.boundary_functions(name)
     facets = mesh.boundaries[name]
+    facets = facets[np.argsort(mesh.p[0, mesh.facets[:, facets]].min(axis=0), kind="stable")]
     cells, (X, weights) = mesh.f2t[0, facets], quadrature(RefLine, 2 * points - 1)
-    ends = [np.argmax(mesh.t[:, cells] == vertex, axis=0) for vertex in mesh.facets[:, facets]]
+    corners = mesh.facets[:, facets]
+    corners = np.take_along_axis(corners, np.argsort(mesh.p[0, corners], axis=0, kind="stable"), axis=0)
+    ends = [np.argmax(mesh.t[:, cells] == vertex, axis=0) for vertex in corners]
     places, normals = np.empty((2, 2, cells.size, points))
     lengths = np.empty((cells.size, points))
     values, rates = np.empty((2, len(space.scalar_dofs.element_dofs), *lengths.shape))
@@ -67,7 +97,8 @@ def trace_on(space: Space, name: str, points: int) -> Trace:
         values[:, alike] = value[:, None]
         rates[:, alike] = np.einsum("nik,i->nk", slopes, along)[:, None] * -turned / lengths[alike]
     dofs = np.asarray(space.scalar_dofs.element_dofs)[:, cells]
-    return Trace(places, normals, lengths * weights, functions, _rows(values, dofs, functions), dofs, rates)
+    radii, values = np.sort(mesh.p[0, np.unique(corners)]), _rows(values, dofs, functions)
+    return Trace(places, normals, lengths * weights, radii, functions, values, dofs, rates)
 
 
 def _side(corners: Array, first: int, second: int, X: Array) -> tuple[Array, Array, float]:

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import sparse
 from scipy.linalg.blas import dtrsm
 
-from fem_adhesion.elasticity.boundaries import Exterior, FarField, point_load, trace_on, with_interiors
+from fem_adhesion.elasticity.boundaries import Exterior, FarField, Trace, point_load, trace_on, with_interiors
 from fem_adhesion.elasticity.cells import CellStiffness, cell_stiffness
 from fem_adhesion.elasticity.elimination import (
     Factors,
@@ -22,7 +21,7 @@ from fem_adhesion.elasticity.elimination import (
     reduced_cells,
     reduced_unknowns,
 )
-from fem_adhesion.elasticity.space import Space, ring_measure, scatter
+from fem_adhesion.elasticity.space import Space, scatter
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -72,30 +71,6 @@ class Dissection(Valued):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Surface(Valued):
-    """Quadrature points of the contact surface, facet by facet outwards; q = facets * k points.
-
-    Radii (q,) are in beta, their weights (q,), of 2 pi r dr, in beta^2. Unknowns (m,) are the vertical ones that do not
-    vanish on the surface, values (q, m) their functions at the points. `cells` (facets + 1,) are the end radii of the
-    facets, from 0; depths and slopes (q,) the depth of the undeformed surface under z = 0, in beta, and its derivative
-    by the radius.
-    """
-
-    radii: Array
-    weights: Array
-    unknowns: Index
-    values: sparse.csr_array
-    cells: Array
-    depths: Array
-    slopes: Array
-
-    @property
-    def cell_nodes(self) -> Index:
-        """Points of each facet, (facets, k)."""
-        return np.arange(len(self.radii)).reshape(len(self.cells) - 1, -1)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class CondensedBody(Valued):
     """A block factorised once: its surface compliance, and the fields inside for a given surface pressure.
 
@@ -109,7 +84,7 @@ class CondensedBody(Valued):
     stiffness: CellStiffness
     cells: Array
     exterior: Exterior
-    surface: Surface
+    surface: Trace
 
     @cached_property
     def factors(self) -> Factors:
@@ -136,7 +111,8 @@ class CondensedBody(Valued):
     def nodal_forces(self, pressure: Array) -> Array:
         """Return the (N,) forces, in E* beta^2, that do the same work as the pressure: negative, downwards."""
         forces = np.zeros(self.unknowns)
-        forces[self.surface.unknowns] = -(self.surface.values.T @ (self.surface.weights * pressure))
+        vertical = self.space.components[1, self.surface.functions]
+        forces[vertical] = -(self.surface.values.T @ (self.operator.weights * pressure))
         return forces
 
     def reduced_displacement(self, pressure: Array) -> Array:
@@ -179,24 +155,10 @@ def condense(
     points = space.degree + 2 if points is None else points
     if points <= space.degree:
         raise InputError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
-    surface = contact_surface(space, points, traction)
-    exterior = far_field(space, poisson)
-    cells = stiffness(space, poisson)
-    operator = surface_operator(surface, exterior, flexibility(space, cells, exterior, surface.unknowns))
+    surface, exterior, cells = trace_on(space, "contact", points), far_field(space, poisson), stiffness(space, poisson)
+    yielding = flexibility(space, cells, exterior, space.components[1, surface.functions])
+    operator = surface_operator(surface, exterior, yielding, traction)
     return CondensedBody(operator, space, poisson, stiffness, cells, exterior, surface)
-
-
-def contact_surface(space: Space, points: int, traction: str = "projected") -> Surface:
-    """Return the Gauss points of the contact facets, sorted by radius, with the weights of the area asked for."""
-    trace = trace_on(space, "contact", points)
-    radii, heights = trace.places.reshape(2, -1)
-    order = np.argsort(radii)
-    n_r, n_z = trace.normals
-    lengths = trace.lengths if traction == "surface" else n_z * trace.lengths
-    weights = (ring_measure(radii) * lengths.ravel())[order]
-    ends = space.mesh.p[0, np.unique(space.mesh.facets[:, space.mesh.boundaries["contact"]])]
-    vertical, slopes = space.components[1, trace.functions], (n_r / n_z).ravel()[order]
-    return Surface(radii[order], weights, vertical, trace.values[order], np.sort(ends), -heights[order], slopes)
 
 
 def eliminate_interiors(space: Space, K: Array) -> Array:
@@ -247,9 +209,11 @@ def with_exterior(region: Region, stiffness: Array, exterior: Exterior) -> Array
     return np.asarray(stiffness + exterior.stiffness[left][:, left].toarray())
 
 
-def surface_operator(surface: Surface, exterior: Exterior, flexibility: Array) -> ElasticOperator:
+def surface_operator(
+    surface: Trace, exterior: Exterior, flexibility: Array, traction: str = "projected"
+) -> ElasticOperator:
     """Return the compliance of the surface, from the displacements of its vertical unknowns under unit forces."""
-    N = surface.values
-    C = (N @ (N @ flexibility).T).T * surface.weights
-    C -= exterior.rigid_compliance * surface.weights
-    return ElasticOperator(surface.radii, surface.weights, C, surface.cells, surface.cell_nodes)
+    N, weights = surface.values, surface.weights(traction)
+    C = (N @ (N @ flexibility).T).T * weights
+    C -= exterior.rigid_compliance * weights
+    return ElasticOperator(surface.radii, weights, C, surface.ends, surface.facet_points)

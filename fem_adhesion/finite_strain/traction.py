@@ -49,11 +49,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
-from fem_adhesion.elasticity.boundaries import Exterior, trace_on
+from fem_adhesion.elasticity.boundaries import Exterior, Trace, trace_on
 from fem_adhesion.elasticity.space import Space
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.laws import LENNARD_JONES, Law
@@ -169,19 +170,26 @@ def columns(depths: Array) -> Array:
 class ContactSurface(Valued):
     """Gauss points of the contact facets by radius, q in all, and the m unknowns s that move them.
 
-    Radii (q,) are r in beta, undeformed, their rates (q,) r', the derivative by the arclength, and the measure (q,) is
-    2 pi ds; the ends, in beta, are the facets'. Unknowns (m,) are the body's reduced ones that are not zero at the
-    points, ascending: radial, vertical and radial_rate (q, m) give u_r, u_z and u_r' from these.
+    The points are those of the undeformed surface. Unknowns (m,) are the body's reduced ones that are not zero there,
+    ascending: radial, vertical and radial_rate (q, m) give u_r, u_z and u_r', the derivative by the arclength, from
+    these.
     """
 
-    radii: Array
-    radii_rate: Array
-    measure: Array
-    ends: Array
+    points: Trace
     unknowns: Index
     radial: Array
     vertical: Array
     radial_rate: Array
+
+    @cached_property
+    def radii(self) -> Array:
+        """R in beta, undeformed, (q,)."""
+        return self.points.radii
+
+    @cached_property
+    def measure(self) -> Array:
+        """2 pi ds, (q,)."""
+        return np.asarray(2 * np.pi * self.points.lengths.ravel())
 
     def deformed_radii(self, s: Array, stretch: float) -> Array:
         """r_d in beta, (q,)."""
@@ -203,26 +211,21 @@ class ContactSurface(Valued):
         return np.asarray(half + half.T)
 
     def _radii_rate(self, s: Array, stretch: float) -> Array:
-        return np.asarray(self.radii_rate + stretch * (self.radial_rate @ s))
+        """r_d', which is n_z as long as nothing moves."""
+        return np.asarray(self.points.normals[1].ravel() + stretch * (self.radial_rate @ s))
 
     @property
     def rigid(self) -> ElasticOperator:
         """Operator of a rigid body on the points, with the weights of the undeformed horizontal area."""
-        q = self.radii.size
-        nodes = np.arange(q).reshape(self.ends.size - 1, -1)
-        weights = self.measure * self.radii * self.radii_rate
-        return ElasticOperator(self.radii, weights, np.zeros((q, q)), self.ends, nodes)
+        points = self.points
+        rigid = np.zeros((self.radii.size, self.radii.size))
+        return ElasticOperator(self.radii, points.weights(), rigid, points.ends, points.facet_points)
 
 
 def contact_surface(space: Space, exterior: Exterior, points: int) -> ContactSurface:
     """Evaluate the contact surface and the reduced unknowns at `points` Gauss points a facet."""
     trace = trace_on(space, "contact", points)
-    radii, n_z = trace.places[0].ravel(), trace.normals[1].ravel()
-    order = np.argsort(radii)
     parts = [exterior.reduction.tocsr()[components[trace.functions]] for components in space.components]
     moved = np.unique(np.concatenate([part.nonzero()[1] for part in parts]))
     radial, vertical = (part[:, moved].toarray() for part in parts)
-    ends = np.sort(space.mesh.p[0, np.unique(space.mesh.facets[:, space.mesh.boundaries["contact"]])])
-    measure, at_points, along = 2 * np.pi * trace.lengths.ravel()[order], trace.values[order], trace.rates[order]
-    fields = (at_points @ radial, at_points @ vertical, along @ radial)
-    return ContactSurface(radii[order], n_z[order], measure, ends, moved, *fields)
+    return ContactSurface(trace, moved, trace.values @ radial, trace.values @ vertical, trace.rates @ radial)
