@@ -32,18 +32,21 @@ from fem_adhesion.speed.methods import (
     element_methods,
     halfspace_methods,
 )
-from fem_adhesion.speed.result import (
+from fem_adhesion.speed.page import read_earlier
+from fem_adhesion.speed.study import (
+    GROWTHS,
     Growth,
     SpeedStudy,
     Timing,
     Truth,
     best,
     cheapest,
+    growths_for,
+    measure,
     pareto_front,
-    read_earlier,
     slope,
+    timed,
 )
-from fem_adhesion.speed.study import GROWTHS, growths_for, measure, timed
 from halfspace.elastic import compliance
 from halfspace.equilibrium import newton, relaxation
 from halfspace.equilibrium.charts import transfer

@@ -27,10 +27,9 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.common.page import markdown
     from fem_adhesion.speed import page
     from fem_adhesion.speed import study as speed
-    from fem_adhesion.speed.result import read_earlier
 
     speed.require_tabor(options.tabor)
-    beside = read_earlier(options.beside, options.tabor) if options.beside else None
+    beside = page.read_earlier(options.beside, options.tabor) if options.beside else None
     with directory_written_aside(options.out, force=options.force) as aside, progress_bar() as step:
         study = speed.measure(options.tabor, quick=options.quick, progress=step, earlier=beside)
         with writing(options.out):

@@ -5,8 +5,9 @@ A figure for each quantity has half-space and finite elements side by side, on l
 
 from __future__ import annotations
 
+import csv
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,8 +21,19 @@ from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.page import Columns, Table, markdown, write_csv
 from fem_adhesion.common.style import Picture, captions, draw
 from fem_adhesion.speed.methods import QUANTITIES, Family, Method
-from fem_adhesion.speed.result import EXPONENTS, Earlier, Growth, SpeedStudy, Timing, best, cheapest, pareto_front
-from fem_adhesion.speed.study import RTOL, TABOR
+from fem_adhesion.speed.study import (
+    EXPONENTS,
+    RTOL,
+    TABOR,
+    Earlier,
+    Growth,
+    SpeedStudy,
+    Timing,
+    best,
+    cheapest,
+    pareto_front,
+)
+from halfspace.errors import InputError
 
 CAPTION = "Error against wall time: half-space left, finite elements right."
 FAMILIES: tuple[Family, ...] = ("half-space", "finite elements")
@@ -296,3 +308,38 @@ def _growths(study: SpeedStudy) -> Table:
         "b expected at most": lambda growth: f"{growth.expected:g}",
     }
     return Table.of("", title, "", study.growths, columns)
+
+
+# An earlier run, read back from its table
+
+
+def read_earlier(path: Path, tabor: float) -> Earlier:
+    """Read ``speed.csv`` of an earlier run at the same Tabor parameter, or raise InputError."""
+    try:
+        with path.open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        at = {float(row["tabor"]) for row in rows}
+        rungs = tuple(_rung(row) for row in rows if row["outcome"] == "converged")
+    except OSError as error:
+        raise InputError(
+            f"beside = {path} cannot be read: {error.strerror}; give speed.csv of an earlier run"
+        ) from None
+    except KeyError as error:
+        raise InputError(f"beside = {path} has no column {error}; give speed.csv of this version's study") from None
+    except (TypeError, ValueError, csv.Error) as error:
+        raise InputError(f"beside = {path} is no table of a speed study ({error}); give its speed.csv") from None
+    if not rungs:
+        raise InputError(f"beside = {path} has no rung with a result; give speed.csv of an earlier run")
+    if at != {tabor}:
+        raise InputError(f"beside = {path} is of tabor {', '.join(f'{t:g}' for t in sorted(at))}, not {tabor:g}")
+    return Earlier(str(path), rungs)
+
+
+def _rung(row: Mapping[str, str]) -> Timing:
+    """Rung of a row of the table, where what is not known is empty."""
+    told = [q for q in QUANTITIES if row[f"{q}_error"]]
+    errors, floors = ({q: float(row[f"{q}_{what}"]) for q in told} for what in ("error", "truth_uncertainty"))
+    yardsticks = float(row["yardsticks"])
+    if not 0 < yardsticks < math.inf or not all(math.isfinite(error) for error in errors.values()):
+        raise ValueError(f"{row['method']} at {row['setting']} has no time or no error")
+    return Timing(row["method"], row["setting"], "converged", yardsticks, errors=errors, floors=floors)
