@@ -12,7 +12,8 @@ from skfem import ElementQuadP
 from fem_adhesion.elasticity.boundaries import sliding
 from fem_adhesion.elasticity.cells import cell_quadrature
 from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.space import Space, reference_functions, scatter
+from fem_adhesion.elasticity.reference import reference_functions
+from fem_adhesion.elasticity.space import Space, scatter
 from fem_adhesion.finite_strain.body import displacement_body
 from fem_adhesion.finite_strain.problem import finite_strain_problem
 from fem_adhesion.finite_strain.traction import convention_of

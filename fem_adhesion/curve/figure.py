@@ -44,18 +44,10 @@ def named(figure: Figure) -> list[str]:
 def draw(curves: Curves) -> Figure:
     """Page with the curve on top, the profiles of its states, the edge spike, and the mesh or the central gap."""
     figure = Figure(figsize=SIZE, layout="constrained")
-    rows = [["load", "load"], ["pressure", "gap"], ["spike", "body"]]
-    areas: dict[str, Any] = figure.subplot_mosaic(rows, height_ratios=[1.6, 1, 1])  # type: ignore[arg-type]
-    painters = {
-        "load": draw_load,
-        "pressure": draw_pressure,
-        "gap": draw_gap,
-        "spike": draw_spike,
-        "body": draw_mesh if has_mesh(curves) else draw_central_gap,
-    }
-    for letter, (name, paint) in zip("abcde", painters.items(), strict=True):
-        words = paint(areas[name], curves)
-        areas[name].set_title(f"({letter}) {words}", loc="left", fontsize=9.5)
+    areas = figure.subplot_mosaic("aa;bc;de", height_ratios=[1.6, 1, 1])
+    body = draw_mesh if has_mesh(curves) else draw_central_gap
+    for letter, paint in zip("abcde", (draw_load, draw_pressure, draw_gap, draw_spike, body), strict=True):
+        areas[letter].set_title(f"({letter}) {paint(areas[letter], curves)}", loc="left", fontsize=9.5)
     return figure
 
 

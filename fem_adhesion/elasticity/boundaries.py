@@ -15,7 +15,8 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 from skfem.refdom import RefLine
 
-from fem_adhesion.elasticity.space import Space, lame_parameters, quadrature, reference_functions, ring_measure
+from fem_adhesion.elasticity.reference import quadrature, reference_functions
+from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure
 from fem_adhesion.materials import Elastic
 from halfspace.values import Array, Index, Valued
 
@@ -48,12 +49,12 @@ class Trace(Valued):
     @property
     def radii(self) -> Array:
         """Of the points in beta, (q,); ascending on the contact surface."""
-        return self.places[0].ravel()
+        return np.asarray(self.places[0].ravel())
 
     @property
     def depths(self) -> Array:
         """Of the points under z = 0, in beta, (q,)."""
-        return -self.places[1].ravel()
+        return np.asarray(-self.places[1].ravel())
 
     @property
     def slopes(self) -> Array:

@@ -11,28 +11,21 @@ Displacements alone lock as Poisson's ratio nears 1/2. The energy density is tha
 lambda grows, div u must vanish at every point, which costs a displacement of degree p its accuracy. If Pi div u takes
 the place of div u, Pi the projection on polynomials of a lower degree, no more conditions are left than a displacement
 can meet. The pressure of the mixed form is lambda Pi div u, eliminated cell by cell.
-
-Of quadrilaterals the matrices come by sum factorisation. The functions of degree p on the reference square are products
-f(x) g(y) of p + 1 functions along each side, and its quadrature points a grid. Summed along one side at a time, along y
-first, a matrix of n = (p + 1)^2 functions costs of the order of n^2 p instead of n^3. S. A. Orszag, J. Comput. Phys. 37
-(1980) 70-92.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property, partial
-from itertools import product
-from typing import Any
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.polynomial.legendre import legvander2d
-from skfem import ElementLinePp, ElementQuadP
-from skfem.quadrature import get_quadrature
+from skfem import ElementQuadP
 from skfem.refdom import RefTri
 
-from fem_adhesion.elasticity.space import Space, lame_parameters, quadrature, reference_functions, ring_measure
+from fem_adhesion.elasticity.reference import integrated, products, quadrature, reference_functions
+from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure
 from fem_adhesion.materials import Elastic
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -253,65 +246,3 @@ def pressure_modes(space: Space) -> Array:
     x, y = 2.0 * cell_quadrature(space)[0] - 1.0
     modes: Array = legvander2d(x, y, [space.degree - 1, space.degree - 1])[:, :-1]
     return modes
-
-
-# Products of two functions
-
-VALUE, BY_X, BY_Y = range(3)  # of a function: a product f g, f' g or f g'
-TERMS = (
-    ((VALUE, VALUE), (VALUE, BY_Y), (BY_Y, VALUE), (BY_Y, BY_Y)),
-    ((VALUE, BY_X), (BY_Y, BY_X)),
-    ((BY_X, VALUE), (BY_X, BY_Y)),
-    ((BY_X, BY_X),),
-)
-"""Products of two functions, by what stands along x: f f, f f', f' f and f' f'."""
-FIRST, SECOND = np.transpose([term for terms in TERMS for term in terms])
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Products(Valued):
-    """Products of two of the k functions along a side at its q points.
-
-    For each group of `TERMS`, along_y has an array (terms q, k^2) of each term in it; along_x (k^2, q 4) is for each
-    group. `places` (2 n, 2 n) are where those of two of the n = k^2 functions of the square, of u_r and then of u_z,
-    are among the k^2 k^2 products along x and y for u_r with u_r, u_z with u_r and u_z with u_z.
-    """
-
-    along_y: tuple[Array, ...]
-    along_x: Array
-    places: Index
-
-
-@cache
-def products(element: Any, order: int) -> Products:
-    """Products of the functions of an ElementQuadP at the points of its quadrature of an order."""
-    line, k = ElementLinePp(element.p), element.p + 1
-    x, _ = get_quadrature(line, order)
-    found = [line.lbasis(x, i) for i in range(k)]
-    f, slope = np.array([value for value, _ in found]), np.array([np.ravel(slope) for _, slope in found])
-    pairs = [(g[:, None] * h).reshape(k * k, -1).T for g, h in product((f, slope), repeat=2)]
-    along_y = tuple(np.concatenate([pairs[2 * (m == BY_Y) + (n == BY_Y)] for m, n in terms]) for terms in TERMS)
-    along_x = np.stack(pairs, axis=1).reshape(-1, k * k).T.copy()
-    points, _ = get_quadrature(element, order)  # y runs fastest
-    values = np.array([element.lbasis(points, i)[0] for i in range(k * k)])
-    grid = np.einsum("ix,jy->ijxy", f, f).reshape(k * k, -1)
-    i, j = np.divmod(np.argmin(np.abs(values[:, None] - grid).sum(axis=-1), axis=1), k)
-    own = (i[:, None] * k + i) * k * k + j[:, None] * k + j
-    return Products(along_y, along_x, np.block([[own, own.T + k**4], [own + k**4, own + 2 * k**4]]))
-
-
-def integrated(coefficients: Array, functions: Products) -> Array:
-    """Matrices (cells, 2 n, 2 n) of u_r and u_z: sums over the points of the square.
-
-    The coefficients (3, 3, 3, cells, q^2), for u_r with u_r, u_z with u_r and u_z with u_z, are of the products of
-    value, slope by x and slope by y of two functions at the points, with their weights.
-    """
-    (size, along), cells = functions.along_x.shape, coefficients.shape[3]
-    q = along // len(TERMS)
-    by_terms = coefficients[:, FIRST, SECOND].reshape(3, len(FIRST), cells, q, q).transpose(2, 0, 3, 1, 4)
-    by_terms, summed, first = by_terms.reshape(-1, len(FIRST) * q), np.empty((cells * 3 * q, len(TERMS), size)), 0
-    for group, table in enumerate(functions.along_y):
-        np.matmul(by_terms[:, first : first + len(table)], table, out=summed[:, group])
-        first += len(table)
-    both = functions.along_x @ summed.reshape(cells, 3, along, size)
-    return both.reshape(cells, -1).take(functions.places, axis=1)

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from scipy import sparse
 from skfem import Dofs, ElementVector
-from skfem.quadrature import get_quadrature
 
+from fem_adhesion.elasticity.reference import quadrature, reference_functions
 from fem_adhesion.materials import Elastic
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -73,8 +73,7 @@ class Space(Valued):
     def constant(self) -> Array:
         """Coefficients of the field 1, (functions,): which functions those are differs between elements."""
         X, _ = quadrature(self.element, 2 * self.degree)
-        n = len(self.scalar_dofs.element_dofs)
-        values = np.array([self.element.lbasis(X, i)[0] for i in range(n)])
+        values = reference_functions(self.element, X)[0]
         coefficients = np.empty(self.scalar_dofs.N)
         coefficients[self.scalar_dofs.element_dofs] = np.linalg.lstsq(values.T, np.ones(X.shape[1]))[0][:, None]
         return coefficients
@@ -107,36 +106,6 @@ def lame_parameters(poisson: float) -> tuple[float, float]:
 def ring_measure(r: Array) -> Array:
     """Return 2 pi r, the area of revolution per unit area (or length) of the r-z plane."""
     return 2.0 * np.pi * r
-
-
-@lru_cache(maxsize=100)
-def quadrature(domain: Any, order: int) -> tuple[Array, Array]:
-    """Points and weights on an element's reference cell, or on a reference side; kept, and not to be written to."""
-    rule = get_quadrature(domain, order)
-    for numbers in rule:
-        numbers.flags.writeable = False
-    return rule[0], rule[1]
-
-
-def reference_functions(element: Any, points: Array) -> tuple[Array, Array]:
-    """Values (n, q) and derivatives (n, 2, q) of an element's functions at points (2, q) of the reference cell.
-
-    They are kept, and not to be written to: all meshes of the same element ask for the same.
-    """
-    return _functions(element, points.shape, points.tobytes())
-
-
-@lru_cache(maxsize=100)
-def _functions(element: Any, shape: tuple[int, ...], places: bytes) -> tuple[Array, Array]:
-    points = np.frombuffer(places).reshape(shape)
-    count = (
-        element.refdom.nnodes * element.nodal_dofs + element.refdom.nfacets * element.facet_dofs + element.interior_dofs
-    )
-    found = [element.lbasis(points, i) for i in range(count)]
-    values = np.array([np.broadcast_to(value, points.shape[1:]) for value, _ in found])
-    slopes = np.array([np.broadcast_to(slope, points.shape) for _, slope in found])
-    values.flags.writeable = slopes.flags.writeable = False
-    return values, slopes
 
 
 def scatter(blocks: Array, dofs: Index, size: int) -> sparse.csc_array:

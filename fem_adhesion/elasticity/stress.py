@@ -23,7 +23,8 @@ from fem_adhesion.elasticity.cells import (
     projects,
     shear_matrix,
 )
-from fem_adhesion.elasticity.space import Space, lame_parameters, reference_functions, scatter
+from fem_adhesion.elasticity.reference import reference_functions
+from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.materials import Elastic
 from halfspace.values import Array, Index
 

@@ -211,9 +211,6 @@ def _over(points: Samples, values: Array, whole: Samples) -> Array:
     return np.array([value / sizes[mu, rho] for mu, rho, value in each if (mu, rho) in sizes], float)
 
 
-CAUSES_FIGURE = Picture("causes", "What makes the pull-off force deviate", _draw, _caption, no_sphere)
-
-
 MOST_LINES = 4
 DASHES = ("-", style.DASHED, style.DOTTED)  # one after the other when colours and markers come again
 JUMPS = {"jump_on_approach": "jump-on", "jump_off_approach": "jump-off"}
@@ -325,17 +322,17 @@ def _left(rows: Sequence[DeviationRow], quantity: str, poisson: float | None) ->
     return np.abs(_over(rest, np.abs(rest.deviation) + rest.error, whole.significant))
 
 
-POISSON_FIGURE = Picture(
-    "poisson",
-    "How the deviations depend on Poisson's ratio",
-    _figure_poisson,
-    _see_poisson,
-    lambda results: "" if points_by_poisson(results.rows) else "no point was solved at two Poisson's ratios",
-)
-BULK_FIGURE = Picture(
-    "bulk",
-    "The approach at the jumps, raw and without the body's linear yield",
-    _figure_bulk,
-    _see_bulk,
-    lambda results: "" if jumping_tabors(results.rows) else "no Tabor parameter jumps on spheres of two sizes",
+def _no_poissons(results: Results) -> str:
+    return "" if points_by_poisson(results.rows) else "no point was solved at two Poisson's ratios"
+
+
+def _no_jumps(results: Results) -> str:
+    return "" if jumping_tabors(results.rows) else "no Tabor parameter jumps on spheres of two sizes"
+
+
+WITHOUT_YIELD = "The approach at the jumps, raw and without the body's linear yield"
+FIGURES = (
+    Picture("causes", "What makes the pull-off force deviate", _draw, _caption, no_sphere),
+    Picture("poisson", "How the deviations depend on Poisson's ratio", _figure_poisson, _see_poisson, _no_poissons),
+    Picture("bulk", WITHOUT_YIELD, _figure_bulk, _see_bulk, _no_jumps),
 )

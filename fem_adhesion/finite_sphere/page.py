@@ -15,7 +15,7 @@ from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.finite_sphere.cases import CAUSES, Record
 from fem_adhesion.finite_sphere.chart import CHART, LEVELS, Field, Rule, field_of, rule, safe_from
-from fem_adhesion.finite_sphere.figures import BULK_FIGURE, CAUSES_FIGURE, POISSON_FIGURE
+from fem_adhesion.finite_sphere.figures import FIGURES
 from fem_adhesion.finite_sphere.fit import (
     DEVIATIONS,
     TOLERANCE,
@@ -168,7 +168,7 @@ def _borders(borders: Sequence[Border]) -> Table:
     return Table.of("first_jumps", "Where jumps under fixed grips begin", see, borders, columns)
 
 
-PICTURES = (CHART, CAUSES_FIGURE, POISSON_FIGURE, BULK_FIGURE)
+PICTURES = (CHART, *FIGURES)
 LEVEL = 0.01  # of the answer on top
 PARTS = ("table", *(f"figure {picture.stem}" for picture in PICTURES), "page")
 """What `write` tells that it begins, in this order."""

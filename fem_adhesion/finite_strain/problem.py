@@ -147,13 +147,9 @@ class FiniteStrainProblem(Valued):
         (P, Phi, slope), s = self._law(x), self.surface_unknowns(x)
         return np.column_stack([self.traction.tangent(s, P, Phi, slope), self.traction.forces(s, -slope, P)])
 
-    def tangent_product(self, x: Array) -> Callable[[Array], Array]:
-        """Derivative of the residual, (n,), along any direction of the state."""
-        return self.held.tangent_product(x[:-1], self._surface_tangent(x))
-
     def along(self, x: Array, v: Array) -> Array:
         """Derivative of the residual along a direction of the state, (n,)."""
-        return self.tangent_product(x)(v)
+        return self.held.tangent_product(x[:-1], self._surface_tangent(x))(v)
 
     def bordered_solver(self, x: Array, row: Array) -> Solver:
         """Solve the Jacobian with the control's `row` below it; regular at folds, unlike the Jacobian alone."""

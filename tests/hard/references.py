@@ -10,7 +10,8 @@ from skfem import Dofs
 from fem_adhesion.elasticity.boundaries import FarField, point_load, trace_on, with_interiors
 from fem_adhesion.elasticity.cells import Cells, cell_quadrature, of_gradient, shear_matrix
 from fem_adhesion.elasticity.condensation import CondensedBody, surface_operator
-from fem_adhesion.elasticity.space import Space, lame_parameters, reference_functions, scatter, scatter_pairs
+from fem_adhesion.elasticity.reference import reference_functions
+from fem_adhesion.elasticity.space import Space, lame_parameters, scatter, scatter_pairs
 from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
