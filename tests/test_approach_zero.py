@@ -5,9 +5,8 @@ from dataclasses import replace
 import pytest
 
 import halfspace
-from fem_adhesion.assess.predictions import Prediction
+from fem_adhesion.assess.predictions import Prediction, Quantity
 from fem_adhesion.assess.verdict import ranked
-from fem_adhesion.common.numbers import Quantity
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.finite_sphere.cases import Record, case_of, quantities_of
 from fem_adhesion.finite_sphere.table import rows

@@ -19,14 +19,14 @@ from fem_adhesion import Hemisphere, cli, convergence
 from fem_adhesion.assess import figure as assess_figure
 from fem_adhesion.assess import study
 from fem_adhesion.assess import theories as assess_theories
-from fem_adhesion.assess.predictions import QUANTITIES, WORDS, Prediction, computed, large_tabor
+from fem_adhesion.assess.predictions import QUANTITIES, WORDS, Prediction, Quantity, computed, large_tabor
 from fem_adhesion.assess.study import Assessment, assess
 from fem_adhesion.assess.terminal import contact_radius, record, report
 from fem_adhesion.assess.verdict import Distance, cautions, deviations, ranked, regime, verdict, yielding
 from fem_adhesion.common import style
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.files import written_aside
-from fem_adhesion.common.numbers import KINDS, PREFIXES, Quantity, engineering, exponent_of, parse, with_error
+from fem_adhesion.common.numbers import KINDS, PREFIXES, engineering, exponent_of, parse, with_error
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged

@@ -231,8 +231,8 @@ def test_a_window_wider_than_the_sphere_ends_on_it(outer):
     R = body.scene.sphere_radius
     for inner in (0.0, 0.5, 0.94):
         surface = body.meshed(inner * R, outer * R).surface
-        assert np.all(np.diff(surface.radii) > 0)
-        assert surface.radii[-1] < R
+        assert np.all(np.diff(surface.points.radii) > 0)
+        assert surface.points.radii[-1] < R
 
 
 def test_an_event_that_moved_on_its_mesh_keeps_it():

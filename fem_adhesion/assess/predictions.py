@@ -9,7 +9,6 @@ from functools import partial
 
 from fem_adhesion.assess import theories
 from fem_adhesion.assess.theories import Curve, estimated, loop
-from fem_adhesion.common.numbers import Quantity
 from halfspace.elastic.layers import Layers
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
@@ -39,6 +38,24 @@ ON_LAYER = "thin sample"
 THIN = 0.12  # beta: on a layer so thick the distance at the Tabor parameter 300 is at most twice the half-space's
 RADII = ("pull_off_radius", "zero_load_radius")
 POSITIONS = (("jump_on_separation", "jump_off_separation"), ("jump_on_base", "jump_off_base"))  # along two axes
+
+
+@dataclass(frozen=True)
+class Quantity(Estimate):
+    """A number in SI with the estimated bound of its error, in the same unit; `unit` is "1" for a ratio."""
+
+    unit: str
+
+    @classmethod
+    def of(cls, estimate: Estimate, size: float, unit: str) -> Quantity:
+        """Dimensionless estimate times the SI size of its unit."""
+        whole = estimate * size
+        return cls(whole.value, whole.error, unit)
+
+    @classmethod
+    def ratio(cls, estimate: Estimate) -> Quantity:
+        """What has no unit."""
+        return cls.of(estimate, 1.0, "1")
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,12 @@ from dataclasses import asdict
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction
+from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction, Quantity
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.assess.thin_sample import WRONG, ThinSample
 from fem_adhesion.common.contact import Contact, edge_told
 from fem_adhesion.common.facts import plain, versions
-from fem_adhesion.common.numbers import PREFIXES, Quantity, engineering, exponent_of, with_error
+from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.registry import record_of, told
 from halfspace.laws import LENNARD_JONES

@@ -10,9 +10,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache, partial
 
-from fem_adhesion.assess.predictions import QUANTITIES, Prediction, relative
+from fem_adhesion.assess.predictions import QUANTITIES, Prediction, Quantity, relative
 from fem_adhesion.common.contact import Contact
-from fem_adhesion.common.numbers import Quantity
 from halfspace.elastic.layers import Layer, Layers
 from halfspace.errors import NotConverged
 from halfspace.limits import LAYER_THICKNESS

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from fem_adhesion.assess.predictions import QUANTITIES, RADII, WORDS, Prediction, relative
+from fem_adhesion.assess.predictions import QUANTITIES, RADII, WORDS, Prediction, Quantity, relative
 from fem_adhesion.common.contact import Contact
-from fem_adhesion.common.numbers import Quantity
 from fem_adhesion.finite_strain.traction import yielded_adhesion
 from halfspace.laws import LENNARD_JONES
 

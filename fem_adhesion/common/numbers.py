@@ -1,4 +1,4 @@
-"""Numbers with unit and error: read from text into SI, kept with both, written as text, and told in sentences.
+"""Numbers with unit and error: read from text into SI, written as text, and told in sentences.
 
 A sentence is left unsaid where one of its numbers is missing.
 """
@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -40,24 +39,6 @@ KINDS: Mapping[str, tuple[str, str]] = {
 
 PREFIXES = dict(zip(range(-24, 15, 3), ("y", "z", "a", "f", "p", "n", "µ", "m", "", "k", "M", "G", "T"), strict=True))
 DIGITS = 6  # significant, at most
-
-
-@dataclass(frozen=True)
-class Quantity(Estimate):
-    """A number in SI with the estimated bound of its error, in the same unit; `unit` is "1" for a ratio."""
-
-    unit: str
-
-    @classmethod
-    def of(cls, estimate: Estimate, size: float, unit: str) -> Quantity:
-        """Dimensionless estimate times the SI size of its unit."""
-        whole = estimate * size
-        return cls(whole.value, whole.error, unit)
-
-    @classmethod
-    def ratio(cls, estimate: Estimate) -> Quantity:
-        """What has no unit."""
-        return cls.of(estimate, 1.0, "1")
 
 
 def parse(text: str, name: str) -> float:
@@ -163,17 +144,7 @@ def counted(count: int, what: str) -> str:
     return f"{count} {what}{'' if count == 1 else 's'}"
 
 
-def rises(values: Array) -> bool:
-    """Whether each value exceeds the one before it; there must be two."""
-    return values.size > 1 and bool(np.all(np.diff(values) > 0))
-
-
 def span(values: Sequence[float] | Array) -> str:
     """Least and largest of some numbers, to two digits or to the last before the point."""
     ends = (float(np.min(values)), float(np.max(values)))
     return " to ".join(dict.fromkeys(f"{end:.2g}" if abs(end) < 99.5 else f"{end:.0f}" for end in ends))
-
-
-def at_points(count: int) -> str:
-    """At how many points something was found."""
-    return f" ({counted(count, 'point')})"

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fem_adhesion.common import style
-from fem_adhesion.common.numbers import at_points, counted, span
+from fem_adhesion.common.numbers import counted, span
 from fem_adhesion.common.style import Picture
 from fem_adhesion.finite_sphere.chart import no_sphere
 from fem_adhesion.finite_sphere.fit import RIGID_PULL_OFF, SOFT_PULL_OFF, fit, leading_terms
@@ -174,13 +174,13 @@ def _changes(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[st
     for cause, name in (("grip", "The grip"), ("strain", "Finite strain")):
         shares = np.abs(_ratios(_pull_off(rows, cause, poisson), whole))
         if shares.size:
-            yield f"{name} changes the force by {span(100 * shares)} % of the whole deviation{at_points(shares.size)}."
+            yield f"{name} changes the force by {span(100 * shares)} % of the whole deviation{_at_points(shares.size)}."
     others = [_ratios(_pull_off(rows, cause, poisson), whole) for cause in ("reference", "normal")]
     spread = np.abs(np.concatenate(others))
     if spread.size:
         yield (
             f"What its traction is counted per, a model uncertainty, leaves {span(100 * spread)} % of it "
-            f"open{at_points(spread.size)}."
+            f"open{_at_points(spread.size)}."
         )
 
 
@@ -189,13 +189,18 @@ def _given_back(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator
     shares = _ratios(_pull_off(rows, "traction", poisson), _pull_off(rows, "profile", poisson))
     if not shares.size:
         return
-    where = at_points(shares.size)
+    where = _at_points(shares.size)
     if np.all(shares < 0):
         yield f"The law per true area gives back {span(-100 * shares)} % of what the profile takes{where}."
     elif np.all(shares > 0):
         yield f"The law per true area adds {span(100 * shares)} % to what the profile does{where}."
     else:
         yield f"The law per true area works against the profile at {np.sum(shares < 0)} of {shares.size} points."
+
+
+def _at_points(count: int) -> str:
+    """At how many points something was found."""
+    return f" ({counted(count, 'point')})"
 
 
 def _ratios(part: Samples, whole: Samples) -> Array:
@@ -311,7 +316,7 @@ def _see_bulk(results: Results) -> Iterator[str]:
         return
     most = int(np.sum(shares < 0.5))
     yield (
-        f"Without it {span(100 * shares)} % of the deviation is left{at_points(shares.size)}: the yield is most of it "
+        f"Without it {span(100 * shares)} % of the deviation is left{_at_points(shares.size)}: the yield is most of it "
         f"at {most if most < shares.size else 'all'} of them."
     )
 

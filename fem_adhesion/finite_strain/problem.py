@@ -80,7 +80,7 @@ class FiniteStrainProblem(Valued):
     @cached_property
     def _columns(self) -> Array:
         """Of the surface's undeformed points over the equator's plane; a surface that does not end has none."""
-        profile, radii = self.interface.profile, self.surface.radii
+        profile, radii = self.interface.profile, self.surface.points.radii
         if not np.isfinite(profile.end):
             return np.ones(radii.size)
         return columns(self.tabor * (profile.height(np.array(profile.end)) - profile.height(radii)))
@@ -280,7 +280,7 @@ class FiniteStrainProblem(Valued):
         GridTooCoarse and IllPosed tell what there is, and the limit.
         """
         self.interface.require_resolution(self.surface_state(x))
-        drawn = np.max(self._deformed_radii(x) / self.surface.radii)
+        drawn = np.max(self._deformed_radii(x) / self.surface.points.radii)
         if drawn > MOST_DRAWN:
             raise IllPosed(
                 f"the surface is drawn out {drawn:.3g} times at approach {x[-1]:.6g} eps, load {self.load(x):.6g} "
@@ -305,7 +305,7 @@ class FiniteStrainProblem(Valued):
         scales, mu = self.interface.scales, self.tabor
         density = scales.law.energy(self.gaps(x), mu)
         if scales.far_energy:
-            density -= scales.law.energy(mu * scales.profile.height(self.surface.radii), mu)
+            density -= scales.law.energy(mu * scales.profile.height(self.surface.points.radii), mu)
         return self.elastic_energy(x) + float(self.areas(x) @ density)
 
 

@@ -181,34 +181,29 @@ class ContactSurface(Valued):
     vertical: Array
     radial_rate: Array
 
-    @cached_property
-    def radii(self) -> Array:
-        """R in beta, undeformed, (q,)."""
-        return self.points.radii
-
-    @cached_property
-    def measure(self) -> Array:
-        """2 pi ds, (q,)."""
-        return np.asarray(2 * np.pi * self.points.lengths.ravel())
-
     def deformed_radii(self, s: Array, stretch: float) -> Array:
         """r_d in beta, (q,)."""
-        return np.asarray(self.radii + stretch * (self.radial @ s))
+        return np.asarray(self.points.radii + stretch * (self.radial @ s))
 
     def areas(self, s: Array, stretch: float) -> Array:
         """Weights of the deformed horizontal area 2 pi r_d dr_d, (q,), in beta^2."""
-        return np.asarray(self.measure * self.deformed_radii(s, stretch) * self._radii_rate(s, stretch))
+        return np.asarray(self._measure * self.deformed_radii(s, stretch) * self._radii_rate(s, stretch))
 
     def area_rates(self, s: Array, stretch: float) -> Array:
         """Derivative by s of the areas, (q, m)."""
         change = self._radii_rate(s, stretch)[:, None] * self.radial
         change += self.deformed_radii(s, stretch)[:, None] * self.radial_rate
-        return np.asarray(stretch * self.measure[:, None] * change)
+        return np.asarray(stretch * self._measure[:, None] * change)
 
     def area_curvature(self, stretch: float, amounts: Array) -> Array:
         """Second derivative by s of the areas, summed with the given amounts (q,), (m, m)."""
-        half = self.radial.T @ ((stretch**2 * self.measure * amounts)[:, None] * self.radial_rate)
+        half = self.radial.T @ ((stretch**2 * self._measure * amounts)[:, None] * self.radial_rate)
         return np.asarray(half + half.T)
+
+    @cached_property
+    def _measure(self) -> Array:
+        """2 pi ds, (q,)."""
+        return np.asarray(2 * np.pi * self.points.lengths.ravel())
 
     def _radii_rate(self, s: Array, stretch: float) -> Array:
         """r_d', which is n_z as long as nothing moves."""
@@ -218,8 +213,8 @@ class ContactSurface(Valued):
     def rigid(self) -> ElasticOperator:
         """Operator of a rigid body on the points, with the weights of the undeformed horizontal area."""
         points = self.points
-        rigid = np.zeros((self.radii.size, self.radii.size))
-        return ElasticOperator(self.radii, points.weights(), rigid, points.ends, points.facet_points)
+        rigid = np.zeros(2 * points.radii.shape)
+        return ElasticOperator(points.radii, points.weights(), rigid, points.ends, points.facet_points)
 
 
 def contact_surface(space: Space, exterior: Exterior, points: int) -> ContactSurface:

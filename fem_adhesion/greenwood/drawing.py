@@ -72,6 +72,11 @@ def theory(axes: Any, name: str, x: Array, y: Array, label: str | None = None, *
     axes.plot(x, y, label=label or name, **{**THEORIES[name], **style})
 
 
+def rises(values: Array) -> bool:
+    """Whether each value exceeds the one before it; there must be two."""
+    return values.size > 1 and bool(np.all(np.diff(values) > 0))
+
+
 def gap_falls(path: EquilibriumPath) -> bool:
     """Whether the central gap falls at every point of a curve, by the tangents: grids hand over with a small step."""
     return all(point.rates[GAP] < 0 for point in path.points)

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
-from fem_adhesion.common.numbers import listed, rises, told
+from fem_adhesion.common.numbers import listed, told
 from fem_adhesion.common.style import dress, note, panels
 from fem_adhesion.greenwood import drawing
-from fem_adhesion.greenwood.drawing import curve, elements_beside, theory
+from fem_adhesion.greenwood.drawing import curve, elements_beside, rises, theory
 from fem_adhesion.greenwood.study import JUMPS_AT, Greenwood1997
 from halfspace.theories import dmt
 from halfspace.theories.closed_forms import (

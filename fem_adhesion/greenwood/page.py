@@ -12,11 +12,12 @@ from pathlib import Path
 import numpy as np
 from markupsafe import Markup
 
-from fem_adhesion.common.numbers import digits, joined, plus_minus, rises, told
+from fem_adhesion.common.numbers import digits, joined, plus_minus, told
 from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.greenwood import load_figures, state_figures, trend_figures
 from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, closed_ratios
+from fem_adhesion.greenwood.drawing import rises
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
 from fem_adhesion.greenwood.study import JUMPS_AT, WINDING_AT, DeviceStudy, Greenwood1997, PullOff
 from fem_adhesion.greenwood.tables import Printed

@@ -10,10 +10,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
-from fem_adhesion.common.numbers import listed, plus_minus, rises, told
+from fem_adhesion.common.numbers import listed, plus_minus, told
 from fem_adhesion.common.style import dress, note, panels
 from fem_adhesion.greenwood import drawing
-from fem_adhesion.greenwood.drawing import branches, curve, elements_beside, gap_falls, theory
+from fem_adhesion.greenwood.drawing import branches, curve, elements_beside, gap_falls, rises, theory
 from fem_adhesion.greenwood.study import WINDING_AT, Greenwood1997
 from halfspace.accuracy.fold_birth import count_folds
 from halfspace.equilibrium.curve import EquilibriumPath

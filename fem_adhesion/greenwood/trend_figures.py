@@ -10,10 +10,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem_adhesion.common import style
-from fem_adhesion.common.numbers import digits, listed, plus_minus, rises, told
+from fem_adhesion.common.numbers import digits, listed, plus_minus, told
 from fem_adhesion.common.style import dress, note, panels, plain_ticks
 from fem_adhesion.greenwood import drawing
 from fem_adhesion.greenwood.criteria import Criterion, words_on
+from fem_adhesion.greenwood.drawing import rises
 from fem_adhesion.greenwood.numerics_1997 import Ripple
 from fem_adhesion.greenwood.study import RIPPLE_AT, Greenwood1997
 from halfspace.equilibrium.devices import Cycle
