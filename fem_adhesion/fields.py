@@ -117,11 +117,10 @@ class State(Valued):
 
     def recovered_pressure(self) -> Array:
         """Pressure P at the nodes that the stress inside exerts, shape (q,): to be compared with the law's."""
-        surface = self.surface
         functions = self.space.boundary_functions("contact")
-        _, zz, _, rz = (surface.values @ self.stress[:, functions].T).T
-        n_z = 1 / np.hypot(1.0, surface.slopes)
-        traction = rz * surface.slopes * n_z + zz * n_z
+        _, zz, _, rz = (self.surface.values @ self.stress[:, functions].T).T
+        n_r, n_z = self.surface.normals.reshape(2, -1)
+        traction = rz * n_r + zz * n_z
         return np.asarray(-traction / (n_z if self.scene.material.area == "projected" else 1.0))
 
 

@@ -25,6 +25,7 @@ import numpy as np
 
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import Made, SizedBody, standing
+from halfspace.accuracy.grids import TWIN
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung
 from halfspace.elastic import compliance, grid
@@ -149,7 +150,6 @@ def sphere_compliance(
 PER_DIGIT, PER_RUNG, OF_CURVE = 2.5, 6.0, 10.0
 MOST = 5000  # harmonics on the first rung above the lowest
 FINEST, GROWTH = 0.4, 2.0  # of the cells: at the contact edge in widths of the spike of tension, and of their lengths
-TWIN = (0.75, 0.87)  # both of a twin, in those of its sibling
 
 
 @dataclass(frozen=True)
