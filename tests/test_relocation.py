@@ -161,16 +161,27 @@ def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, still, rate
     rates[still] = -rate
     values = np.array([[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
     values[0, other] = 4e-6
-    interface = SimpleNamespace(ripples=lambda _: np.zeros(2), scales=Scales(1.0))
-    problem = SimpleNamespace(interface=interface, surface_state=lambda x: x)
-    chain = [
-        SimpleNamespace(condition=own, problem=problem, point=SimpleNamespace(observables=v, rates=rates, x=None))
-        for v in values
-    ]
-    event = events.estimate_event("any", [chain], events.ErrorRule(along=True))
+    event = events.estimate_event("any", [_chain(own, rates, values)], events.ErrorRule(along=True))
     assert event.contact_radius_error == pytest.approx(0.5 * 4e-6 / 2.0 * 0.5, rel=1e-4)
     assert event.central_gap_error == pytest.approx(0.5 * 4e-6 / 2.0 * 1.0, rel=1e-4)
     assert (event.approach_error, event.load_error)[still] < 1e-10
+
+
+def test_what_a_shift_along_the_path_and_the_rest_take_from_each_other_is_left_of_both():
+    """A load at a fold that stands still by accident, as under Dugdale's law on a coating: told to half of it."""
+    rates = np.array([0.0, -5.0, -1e-3, 1.0])
+    values = np.array([[2e-4, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0 - 1e-5]])
+    event = events.estimate_event("any", [_chain(conditions.FOLD, rates, values)], events.ErrorRule(along=True))
+    assert event.load_error == pytest.approx(0.5 * 2 * 5.0 * 1e-5, rel=1e-4)
+    assert event.approach_error == pytest.approx(0.5 * 2e-4, rel=1e-4)
+
+
+def _chain(condition, rates, values):
+    """An event on grids on which its numbers are these."""
+    interface = SimpleNamespace(ripples=lambda _: np.zeros(2), scales=Scales(1.0))
+    problem = SimpleNamespace(interface=interface, surface_state=lambda x: x)
+    points = [SimpleNamespace(observables=v, rates=rates, x=None) for v in values]
+    return [SimpleNamespace(condition=condition, problem=problem, point=point) for point in points]
 
 
 @pytest.mark.parametrize(("part", "passed"), [(1.0, True), (0.85, True), (0.7, False), (1.2, True), (1.4, False)])

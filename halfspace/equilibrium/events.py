@@ -177,15 +177,16 @@ def estimate_event(
     known no better than to what the polynomials there end with; where there is but one chain, or `rule.along`, nor is
     the gap. `least` (4,) are the changes of the observables that count where the chains' own are less.
 
-    If `rule.along`, an observable's change is taken to be no less than what the event's shift along the path makes of
-    it: on a single chain, one number may stand still by accident while the event moves. For stationary conditions only.
-    Nor do the gap and radius, which are at a point, then fall as averages do: the changes of all chains add up.
+    If `rule.along`, an observable's change along each chain is taken apart: into what the event's shift along the path
+    makes of it, and the rest. On a single chain one number may stand still by accident while the event moves, and both
+    parts may cancel, so their magnitudes add up. For stationary conditions only. Nor do the gap and radius, which are
+    at a point, then fall as averages do: the changes of all chains add up.
     """
     values = chains[0][-1].point.observables
     changes = [rule.change([event.point.observables for event in chain]) for chain in chains]
     whole = np.sum(changes, axis=0)
     if rule.along and chains[0][-1].condition.stationary:
-        changes += [shift for change in changes for shift in _shifted(chains[0][-1], change)]
+        changes += [apart for chain in chains for apart in _apart(chain, rule)]
     errors = rule.remaining * np.maximum(np.max(changes, axis=0), least) + ROUND_OFF * (1 + np.abs(values))
     if rule.along:
         errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
@@ -196,16 +197,18 @@ def estimate_event(
     return Event(name, *map(float, values), *map(float, errors))
 
 
-def _shifted(event: Located, change: Array) -> tuple[Array, Array]:
-    """Changes of the observables by a shift along the path, to which an event is sensitive where a rate must vanish.
+def _apart(chain: Sequence[Located], rule: ErrorRule) -> tuple[Array, Array]:
+    """Changes of the observables along a chain: by the event's shift along the path and the rest, added up.
 
-    For all of them the shift is read off the contact radius, or off the central gap where there is no contact; for
-    these two, which are at a point and may stand still by accident, also off the load or approach that has a rate: at a
-    jump with a soft apparatus it is the approach, as at the load's own extremum. Which has one the arclength's units
-    tell.
+    An event is sensitive to shifts where a rate must vanish. They are read off the contact radius, or off the central
+    gap where there is no contact. For these two, which are at a point and may stand still by accident, the second array
+    is what a shift makes of them that is read off the load or approach that has a rate: at a jump with a soft apparatus
+    it is the approach, as at the load's own extremum. Which has one the arclength's units tell.
     """
-    rates, tell = event.point.rates, CONTACT_RADIUS if np.isfinite(change[CONTACT_RADIUS]) else CENTRAL_GAP
+    event, values = chain[-1], np.array([event.point.observables for event in chain])
+    rates, tell = event.point.rates, CONTACT_RADIUS if np.isfinite(values[:, CONTACT_RADIUS]).all() else CENTRAL_GAP
     other = int(np.argmax(metric_for(event.problem).weights[:CENTRAL_GAP] * rates[:CENTRAL_GAP] ** 2))
-    by_point, by_average = (np.abs(rates) * (change[k] / np.abs(rates[k])) for k in (tell, other))
-    by_average[[APPROACH, LOAD]] = 0.0
-    return by_point, by_average
+    by_point, by_average = (values[:, [k]] * (rates / rates[k]) for k in (tell, other))
+    apart, at_least = rule.change(by_point) + rule.change(values - by_point), rule.change(by_average)
+    at_least[[APPROACH, LOAD]] = 0.0
+    return apart, at_least
