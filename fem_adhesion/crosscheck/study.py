@@ -86,15 +86,20 @@ def compare(
     known = unsolved(scene, rtol=rtol) if before is None else before
     fe, case = _solved(scene, rtol, rtol, solve)
     for closer in CLOSER:
-        if rtol > closer * TIGHTEST and case.verdict == "inconclusive" and _left_open(case):
+        reach = np.inf if closer == CLOSER[-1] else closer
+        if rtol > closer * TIGHTEST and case.verdict == "inconclusive" and _left_open(case, reach):
             with suppress(NotConverged):
                 fe, case = _solved(scene, rtol, rtol / closer, solve)
     return replace(case, rows=(*known, *case.rows, *from_scratch.events(scene, fe)))
 
 
-def _left_open(case: Case) -> bool:
-    """Whether something between both solvers is."""
-    return any(row.verdict != "agree" for row in case.rows if row.between == SOLVERS)
+def _left_open(case: Case, reach: float) -> bool:
+    """Whether something between both solvers is, and nothing is wider than its budget by more than may be won.
+
+    A decade of tolerance leaves a tenth of an estimate at best.
+    """
+    left = [row for row in case.rows if row.between == SOLVERS and row.verdict != "agree"]
+    return bool(left) and not any(row.error > reach * row.budget for row in left)
 
 
 def _solved(scene: Scene, rtol: float, asked: float, solve: Solver) -> tuple[EquilibriumPath, Case]:
