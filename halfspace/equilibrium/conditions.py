@@ -338,17 +338,24 @@ def same_place(point: Point, problem: Traceable, start: Array, metric: Metric) -
 
 
 def nearest(point: Point, problem: Traceable, start: Array, metric: Metric) -> Point:
-    """State on another discretisation nearest to a point, from that at its contact radius, or at its central gap."""
+    """State on another discretisation nearest to a point, from that at its contact radius, or at its central gap.
+
+    NotConverged if the path there winds too much to tell.
+    """
     k = CENTRAL_GAP if np.isnan(point.observables[CONTACT_RADIUS]) else CONTACT_RADIUS
     control = Control(np.eye(4)[k], float(point.observables[k]))
     onwards = math.copysign(1.0, point.rates[k]) * control.weights
     near = make_point(problem, newton.solve(problem, start, control), metric, onwards, point.arclength)
     for _ in range(FEET):
         step = float((metric.weights * near.rates)[:3] @ (point.observables - near.observables)[:3])
-        if abs(step) < metric.distance(point, near) * ACROSS:
+        far = metric.distance(point, near)
+        if abs(step) < far * ACROSS:
             break
         near = correct(problem, near, step, predict(problem, near, step), metric, iterations=20)
+    if abs(step) > far * ASLANT:
+        raise NotConverged("no state on another grid is nearest to one of the curve's; take a smaller rtol")
     return replace(near, arclength=point.arclength)
 
 
-FEET, ACROSS = 8, 1e-3  # steps to the foot of a perpendicular; what is left along the path, in its length
+FEET = 8  # steps to the foot of a perpendicular
+ACROSS, ASLANT = 1e-3, 0.1  # of its length, what is left along the path, and what may be after so many: 0.005 longer
