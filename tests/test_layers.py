@@ -22,9 +22,9 @@ from halfspace.accuracy.grids import resolution_for
 from halfspace.accuracy.layered import layered_charts
 from halfspace.elastic import compliance, grid, layered
 from halfspace.elastic.compliance import barycentric, lagrange
-from halfspace.elastic.layered import image_compliance, image_kernels, images_of, layered_panels
+from halfspace.elastic.layered import image_compliance, images_of, layered_panels, nearly_homogeneous
 from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, stiff_as, surface_compliance
-from halfspace.elastic.operators import NearlyHomogeneous, nodes_beside
+from halfspace.elastic.operators import nodes_beside
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import APPROACH, ContactProblem
@@ -284,8 +284,7 @@ def test_between_the_radii_of_a_curve_a_stiff_coating_is_as_well_known_as_a_soft
     for body in (Coated(0.5, 100.0), Coated(0.5, 10.0), Coated(0.5, 0.1)):
         scales, images = Scales(3.0, body=body), images_of(body)
         operator = layered_charts(scales, images, resolution_for(scales, 1e-3))[1].problem.operator
-        radii = operator.scales[operator.past : -operator.past]
-        for a in np.sqrt(radii[1:] * radii[:-1])[::4]:
+        for a in np.concatenate([np.sqrt(part.scales[1:] * part.scales[:-1])[::4] for part in operator.parts]):
             here = operator.at(a)
             alone = replace(here, compliance=operator.unit.scaled(a).compliance)
             exact = alone.compliance + image_compliance(images, alone)
@@ -406,10 +405,9 @@ def test_images_in_units_of_the_contact_deflect_as_at_their_own_depths(body, spa
     rounded = 1e-15 * np.abs(images.strengths).sum()  # up to 1e6 each, of either sign
     unit = compliance.panels(grid.graded(1.0, 0.1, 20.0, growth=3.0), 8)
     pressure = np.exp(-(unit.radii**2))
-    scales, past, shared = images.in_units(0.3, 3.0, 1e-12)
-    operator = NearlyHomogeneous(unit, scales, past, *image_kernels(shared, unit))
+    operator = nearly_homogeneous(images, unit, (0.3, 3.0), np.inf, 1e-12)
     for a in (operator.least_radius, 0.95, 3.0):
-        own = replace(images, smooth=shared.smooth * a)
+        own = replace(images, smooth=images.smooth * a / operator.parts[0].scales.max())
         wanted = a * unit.compliance + image_compliance(own, unit.scaled(a))
         found, wanted = (each @ pressure for each in (operator.at(a).compliance, wanted))
         assert found == pytest.approx(wanted, rel=0, abs=(1e-10 + rounded) * np.abs(wanted).max())

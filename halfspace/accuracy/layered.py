@@ -28,9 +28,8 @@ from halfspace.accuracy.finite_bodies import (
 from halfspace.accuracy.grids import Grids, Resolution, resolutions_for, rule_for
 from halfspace.accuracy.stages import Charted, Rung
 from halfspace.elastic.grid import FLAT
-from halfspace.elastic.layered import Images, image_kernels, images_of, layered, layered_panels
+from halfspace.elastic.layered import Images, images_of, layered, layered_panels, nearly_homogeneous
 from halfspace.elastic.layers import LayeredBody
-from halfspace.elastic.operators import NearlyHomogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS, contact_of
@@ -111,8 +110,7 @@ def layered_charts(
     half_space, outer = Grids.of(scales, how, to_load), scales.outer_radius(how.extent**2 / 2)
     edge, widest = half_space.edge.unit, step_above(scales.widest_radius(to_load))
     least = min(least_along(half_space.until, widest), EVENTS_LEAVE * scales.edge_cell(how.finest))
-    radii, past, shared = images.in_units(least, widest, BETWEEN * 10.0**-how.nodes)
-    following = NearlyHomogeneous(edge, radii, past, *image_kernels(shared, edge, outer / least))
+    following = nearly_homogeneous(images, edge, (least, widest), outer, BETWEEN * 10.0**-how.nodes)
     standing = layered(images, half_space.centred, outer)
     return (
         Chart(contact_of(scales, standing), standing.radii.size, half_space.until),

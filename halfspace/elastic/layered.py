@@ -18,7 +18,8 @@ S rises and falls, and depths and strengths are complex, of which the real part 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from itertools import product
+from functools import partial
+from itertools import pairwise, product
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -26,10 +27,10 @@ from numpy.typing import NDArray
 from scipy.special import ellipkm1
 
 from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
-from halfspace.elastic.grid import gauss_legendre
+from halfspace.elastic.grid import gauss_legendre, polynomial
 from halfspace.elastic.kernel import near_moments
 from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
-from halfspace.elastic.operators import nodes_beside
+from halfspace.elastic.operators import Beside, NearlyHomogeneous, chebyshev_radii, nodes_beside
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
@@ -39,11 +40,13 @@ SHALLOWEST, DEEPEST = 1.0, 60.0  # images, in thicknesses of the first stratum a
 DEEPER = (1.0, 10.0, 100.0, 1000.0)  # times as deep they go if need be: stiff strata spread a load as widely
 SPACING = 1.14  # ratio of neighbouring depths: with 1.2 the fit is a decade worse, with 1.1 no better
 CLOSE = 0.14  # most logarithm of the ratio of lengths between which images are interpolated, half if they are tilted
+WIDE = 3.5  # most logarithm of the ratio of contact radii between which what images deflect is one polynomial
 SAMPLES = 500  # wave numbers at which S is fitted
 # Rule for the nodes near a cell that is longer than the first stratum is thick: with 6 nodes a cell a bell of pressure
 # deflects the surface to 1e-8 as by a rule of 64 points, q = 5, up to two lengths away, with 8 nodes to 2e-9.
 NEAR = 0.5  # lengths of the cell
 NEAR_POINTS, GRADING = 24, 2  # see `halfspace.elastic.kernel.graded_rule`
+APART, APART_POINTS = 0.3, 14  # lengths from which Gauss's rule serves: it leaves 5e-11 of a kernel, the other 1e-9
 AT_ONCE = 10**6  # numbers that are integrated at once
 ALIKE = 1e-8  # relative difference of two numbers of which the mean errs by a sixteenth of its square
 FITTED, AT_WORST = 3e-8, 1e-6  # of the largest S, or of 1: where deeper images are tried no more, and what is refused
@@ -75,29 +78,29 @@ class Images(Valued):
         strengths = self.strengths if np.iscomplexobj(rings) else self.strengths.real
         return np.asarray(np.tensordot(strengths, rings, 1).real)
 
-    def in_units(self, least: float, most: float, left: float) -> tuple[Array, int, Images]:
-        """Lengths (m,) from one to another and some past either, how many, and the images in units of each.
+    def in_units(self, lengths: Array, left: float) -> Images:
+        """Return the images in units of each of some lengths (m,), at depths that all share.
 
-        They are a geometric sequence, and so are the depths: in units of the one these are as in those of the next, but
-        for the first or last. So few more depths serve all lengths than serve one. Past either end there are as many
-        as polynomials take that leave a part `left` of what images deflect.
+        These are a geometric sequence, as the body's own are. Between them an image's kernel is a polynomial in the
+        logarithm of its depth that leaves a part `left` of it: few more depths serve all lengths than serve one.
         """
         real, tilted = self.depths.real, self.depths.imag > 0
         ratio = float(np.log(real[1] / real[0]))
         parts = int(np.ceil(ratio / (CLOSE / 2 if tilted.any() else CLOSE)))
         step = ratio / parts
-        past = nodes_beside(step * (2 if tilted.any() else 1), left)
-        count = int(np.ceil(np.log(most / least) / step)) + 1 + 2 * past
-        lengths = least * np.exp(step * (np.arange(count) - past))
-        number = parts * np.rint(np.log(real / real[0]) / ratio).astype(int)
-        of_a_kind = number.max() + count
-        ladder = real[0] / lengths[-1] * np.exp(step * np.arange(of_a_kind))
-        strengths = np.zeros((count, 2 * of_a_kind), complex)
-        places = number + np.arange(count)[::-1, None] + of_a_kind * tilted
-        np.put_along_axis(strengths, places, np.broadcast_to(self.strengths, places.shape), axis=1)
+        near = 2 * nodes_beside(step * (2 if tilted.any() else 1), left)
+        shallowest = np.log(real[0] / lengths)
+        deeper, between = np.divmod((shallowest - shallowest.min()) / step, 1)
+        weights = polynomial(np.arange(near, dtype=float) - (near / 2 - 1), between)
+        number = parts * np.rint(np.log(real / real[0]) / ratio).astype(int) + deeper.astype(int)[:, None]
+        of_a_kind = number.max() + near
+        ladder = np.exp(shallowest.min() + step * (np.arange(of_a_kind) - (near / 2 - 1)))
+        strengths, each = np.zeros((lengths.size, 2 * of_a_kind), complex), np.arange(lengths.size)[:, None]
+        for place in range(near):
+            strengths[each, number + place + of_a_kind * tilted] += self.strengths * weights[:, place, None]
         used = strengths.any(axis=0)
         depths = np.append(ladder, (1 + 1j) * ladder)[used]
-        return lengths, past, Images(depths, strengths[:, used], self.smooth / lengths[-1])
+        return Images(depths, strengths[:, used], self.smooth / float(lengths.max()))
 
 
 def _ring(z: complex, sums: Array, differences: Array) -> Array | Complex:
@@ -205,21 +208,42 @@ def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, 
     radii, (left, right), k = body.radii, (body.cells[:-1], body.cells[1:]), body.cell_nodes.shape[1]
     i, j = np.triu_indices(radii.size)
     i, j = i[j >= known], j[j >= known]
-    to, cell = _near(radii, left, right, (right - left > images.smooth) & (left < until))
-    to, cell = to[to >= known], cell[to >= known]
-    values = np.zeros((*images.strengths.shape[:-1], i.size + to.size * k + 1))
+    rules = _near(radii, left, right, (right - left > images.smooth) & (left < until), known)
+    values = np.zeros((*images.strengths.shape[:-1], i.size + sum(to.size for to, *_ in rules) * k + 1))
     places = np.full((radii.size, radii.size), values.shape[-1] - 1)
     places[i, j] = places[j, i] = np.arange(i.size)
     for some in _blocks(i.size, images.depths.size):
         values[..., some] = images.kernel(radii[i[some]], radii[j[some]]) / (2 * np.pi)
-    at_nodes = np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1))
-    for some in _blocks(to.size, images.depths.size * NEAR_POINTS):
-        nodes = body.cell_nodes[cell[some]]
-        rule = radii[to[some]], left[cell[some]], right[cell[some]], k, (NEAR_POINTS, GRADING)
-        near = near_moments(images.ring, *rule) @ at_nodes / body.weights[nodes]
-        here = i.size + np.arange(to.size * k).reshape(-1, k)[some]
-        places[to[some, None], nodes], values[..., here] = here, near
+    at_nodes, end = np.linalg.inv(legvander(gauss_legendre(k)[0], k - 1)), i.size
+    for to, cell, rule in rules:
+        for some in _blocks(to.size, images.depths.size * rule[0]):
+            nodes = body.cell_nodes[cell[some]]
+            moments = near_moments(images.ring, radii[to[some]], left[cell[some]], right[cell[some]], k, rule)
+            here = end + np.arange(nodes.size).reshape(nodes.shape)
+            places[to[some, None], nodes], values[..., here] = here, moments @ at_nodes / body.weights[nodes]
+            end += nodes.size
     return values, places
+
+
+def nearly_homogeneous(
+    images: Images, unit: ElasticOperator, between: tuple[float, float], until: float, left: float
+) -> NearlyHomogeneous:
+    """Layered body on a half-space's grid about the contact radius 1, scaled with those between two, in beta.
+
+    Polynomials in the logarithm of the radius leave a part `left` of a kernel at a depth, whose first poles, where the
+    distance vanishes, lie pi/2 beside the real axis, or pi/4 at a complex one; the rest is as of `image_kernels`.
+    """
+    count = int(np.ceil(np.log(between[1] / between[0]) / WIDE))
+    ends = np.geomspace(*between, count + 1)
+    pole = np.pi / (4 if images.depths.imag.any() else 2) / (np.log(ends[1] / ends[0]) / 2)
+    degree = int(np.ceil(np.log(2 / left) / np.arcsinh(pole)))
+    parts = [chebyshev_radii(least, most, degree) for least, most in pairwise(ends.tolist())]
+    make = partial(_in_units, images, unit, until, left)
+    return NearlyHomogeneous(unit, ends, [Beside(radii, partial(make, radii)) for radii in parts])
+
+
+def _in_units(images: Images, unit: ElasticOperator, until: float, left: float, radii: Array) -> tuple[Array, Index]:
+    return image_kernels(images.in_units(radii, left), unit, until / float(radii.min()))
 
 
 def _blocks(count: int, size: int) -> list[slice]:
@@ -228,8 +252,11 @@ def _blocks(count: int, size: int) -> list[slice]:
     return [slice(first, min(first + several, count)) for first in range(0, count, several)]
 
 
-def _near(radii: Array, left: Array, right: Array, long: Mask) -> tuple[Index, Index]:
-    """Nodes and long cells, by their numbers, that lie near each other."""
-    distance = np.maximum(left - radii[:, None], radii[:, None] - right)
-    i, j = np.nonzero((distance < NEAR * (right - left)) & long)
-    return i, j
+def _near(
+    radii: Array, left: Array, right: Array, long: Mask, known: int
+) -> list[tuple[Index, Index, tuple[int, int]]]:
+    """Nodes, but for the first that are known, and long cells near them, by their numbers, for each rule."""
+    distance = np.maximum(left - radii[:, None], radii[:, None] - right) / (right - left)
+    near = (distance < NEAR) & long & (np.arange(radii.size) >= known)[:, None]
+    adjacent, apart = np.nonzero(near & (distance < APART)), np.nonzero(near & (distance >= APART))
+    return [(adjacent[0], adjacent[1], (NEAR_POINTS, GRADING)), (apart[0], apart[1], (APART_POINTS, 1))]

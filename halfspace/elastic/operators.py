@@ -67,52 +67,6 @@ class Homogeneous(Valued, Operator):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class NearlyHomogeneous(Homogeneous):
-    """A homogeneous body and what another one has beside it, on a grid that is scaled with the contact.
-
-    `beside` (m, n) is what it has beside at the contact radii `scales` (m,) over these and the nodes' weights, a number
-    for all entries of the compliance of which `places` (q, q) are alike. The radii are a geometric sequence, between
-    the nearest of which, `past` on either side, it is a polynomial. The singular part of the kernel is that of the
-    homogeneous body: only what is smooth is interpolated.
-    """
-
-    scales: Array
-    past: int
-    beside: Array
-    places: Index
-
-    @property
-    def least_radius(self) -> float:
-        """Least contact radius that it serves, with enough of those at which it is known on either side."""
-        return float(self.scales[self.past])
-
-    def at(self, scale: float) -> ElasticOperator:
-        """Operator at a contact radius in beta."""
-        return self._latest.get(scale, self._made)
-
-    def _made(self, scale: float) -> ElasticOperator:
-        return replace(self.unit, compliance=self.unit.compliance + self._combined(scale, 0)).scaled(scale)
-
-    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
-        """Derivatives by the scale of radii, weights and the deflection under a pressure."""
-        radii, weights, _ = super().rates(scale, pressure)
-        rate = self._combined(scale, 1) @ pressure
-        return radii, weights, self.at(scale).compliance @ pressure / scale + rate
-
-    def root(self, scale: float) -> Array:
-        """Square root of the balanced compliance."""
-        return self.at(scale).compliance_root
-
-    def _combined(self, scale: float, derivative: int) -> Array:
-        """What it has beside at a contact radius, or its derivative by the logarithm of that."""
-        first = int(np.searchsorted(self.scales, scale)) - self.past
-        first = min(max(first, 0), self.scales.size - 2 * self.past)
-        near = slice(first, first + 2 * self.past)
-        weights = _Logarithmic(np.log(self.scales[near])).at(scale)[derivative]
-        return np.asarray((weights @ self.beside[near])[self.places] * self.unit.weights)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class _Logarithmic(Valued):
     """Polynomials in the logarithm of a length through their values at some, log x (m,)."""
 
@@ -126,6 +80,70 @@ class _Logarithmic(Valued):
     @cached_property
     def _barycentric(self) -> Array:
         return barycentric(self.nodes)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Beside(Valued):
+    """What a body has beside a homogeneous one, a polynomial in the logarithm of the contact radius through some.
+
+    `make` gives it at the radii `scales` (m,), over these and the nodes' weights: values (m, n), a number for all
+    entries of the compliance of which places (q, q) are alike. It is asked when one is first needed.
+    """
+
+    scales: Array
+    make: Callable[[], tuple[Array, Index]]
+
+    def at(self, scale: float, derivative: int) -> Array:
+        """What it is at a contact radius, or its derivative by the logarithm of that, (q, q)."""
+        values, places = self._made
+        return np.asarray((self._logarithmic.at(scale)[derivative] @ values)[places])
+
+    @cached_property
+    def _made(self) -> tuple[Array, Index]:
+        return self.make()
+
+    @cached_property
+    def _logarithmic(self) -> _Logarithmic:
+        return _Logarithmic(np.log(self.scales))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class NearlyHomogeneous(Homogeneous):
+    """A homogeneous body and what another one has beside it, on a grid that is scaled with the contact.
+
+    Each of the parts (k,) serves contact radii from one of the ends (k + 1,), ascending, in beta, to the next. The
+    singular part of the kernel is that of the homogeneous body: only what is smooth is interpolated.
+    """
+
+    ends: Array
+    parts: Sequence[Beside]
+
+    @property
+    def least_radius(self) -> float:
+        """Least contact radius that it serves."""
+        return float(self.ends[0])
+
+    def at(self, scale: float) -> ElasticOperator:
+        """Operator at a contact radius in beta."""
+        return self._latest.get(scale, self._made)
+
+    def _made(self, scale: float) -> ElasticOperator:
+        return replace(self.unit, compliance=self.unit.compliance + self._beside(scale, 0)).scaled(scale)
+
+    def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
+        """Derivatives by the scale of radii, weights and the deflection under a pressure."""
+        radii, weights, _ = super().rates(scale, pressure)
+        rate = self._beside(scale, 1) @ pressure
+        return radii, weights, self.at(scale).compliance @ pressure / scale + rate
+
+    def root(self, scale: float) -> Array:
+        """Square root of the balanced compliance."""
+        return self.at(scale).compliance_root
+
+    def _beside(self, scale: float, derivative: int) -> Array:
+        """What it has beside at a contact radius, or its derivative by the logarithm of that."""
+        part = self.parts[int(np.searchsorted(self.ends[1:-1], scale))]
+        return part.at(scale, derivative) * self.unit.weights
 
 
 @dataclass(frozen=True, eq=False, repr=False)
