@@ -1,4 +1,4 @@
-"""scikit-fem's own basis on a boundary, beside which ours is held."""
+"""On boundaries: scikit-fem's own basis, beside which ours is held, and the force that holds the far one."""
 
 from functools import partial
 
@@ -6,6 +6,8 @@ from skfem import FacetBasis
 from skfem.mapping import MappingIsoparametric
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine
+
+from fem_adhesion.elasticity.space import scatter
 
 INVERSION_TOLERANCE = 1e-6
 """Summed over the points of a facet, in units of the reference cell; a cell of 1e-9 of its radius is still resolved."""
@@ -36,3 +38,11 @@ def _forgiving_mapping(mesh):
     if isinstance(mapping, MappingIsoparametric):
         mapping.invF = partial(mapping.invF, newton_tol=INVERSION_TOLERANCE)
     return mapping
+
+
+def far_reaction(body, pressure):
+    """Upward force with which the exterior of a condensed body holds its far boundary, in E* beta^2: the load."""
+    K = scatter(body.cells, body.space.cell_dofs, body.unknowns)
+    forces = K @ body.displacement(pressure) - body.nodal_forces(pressure)
+    far = body.space.components[1, body.space.boundary_functions("far")]
+    return float(body.translation[far] @ forces[far])

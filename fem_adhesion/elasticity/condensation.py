@@ -21,7 +21,7 @@ from fem_adhesion.elasticity.elimination import (
     reduced_cells,
     reduced_unknowns,
 )
-from fem_adhesion.elasticity.space import Space, scatter
+from fem_adhesion.elasticity.space import Space
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -123,13 +123,6 @@ class CondensedBody(Valued):
         """Return all (N,) displacement unknowns, in beta, interior ones included."""
         sunk = self.exterior.rigid_compliance * (self.operator.weights @ pressure)
         return np.asarray(self._whole.reduction @ self.reduced_displacement(pressure) + sunk * self.translation)
-
-    def far_reaction(self, pressure: Array) -> float:
-        """Return the upward force with which the exterior holds the far boundary, in E* beta^2: equal to the load."""
-        K = scatter(self.cells, self.space.cell_dofs, self.unknowns)
-        forces = K @ self.displacement(pressure) - self.nodal_forces(pressure)
-        far = self.space.components[1, self.space.boundary_functions("far")]
-        return float(self.translation[far] @ forces[far])
 
 
 def condense(
