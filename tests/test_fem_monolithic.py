@@ -205,7 +205,7 @@ def test_newton_takes_the_same_steps(body):
 
 def far_reaction(problem, x):
     """Upward force on the far boundary, in R dgamma, of what holds the body there."""
-    space, displacement = problem.body.space, problem.displacement(x)
+    space, displacement = problem.body.space, problem.held.unknowns(x[:-1])[: problem.body.space.unknowns]
     far, vertical = space.boundary_functions("far"), space.components[1]
     return space.constant[far] @ problem.body.forces(displacement)[vertical[far]]
 

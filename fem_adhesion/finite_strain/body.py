@@ -175,10 +175,6 @@ class Body(Valued):
         """Number of unknowns N + M."""
         return self.space.unknowns + self.products.shape[0]
 
-    def stretched(self, stretch: float) -> Body:
-        """Return the same body at another delta."""
-        return replace(self, stretch=stretch)
-
     @cached_property
     def cell_dofs(self) -> Index:
         """Unknowns of each cell, (cells, k): displacements, then pressures."""
@@ -280,11 +276,15 @@ def material_body(space: Space, poisson: float, stretch: float) -> Body:
 
 
 def displacement_body(space: Space, poisson: float, stretch: float) -> Body:
-    """Prepare a body of displacements; raise InputError if poisson or stretch is out of range."""
+    """Prepare a body of displacements; raise InputError if poisson is out of range, or the stretch of 0 to 2.
+
+    A larger one is of a sphere smaller than its own contact.
+    """
     lame_parameters(poisson)
+    require_between(stretch, "stretch", 0.0, 2.0, "give beta/R = sqrt(tabor/radius_ratio)")
     cells = Cells.of(space)
     none = np.zeros((0, cells.radii.shape[1])), np.zeros((len(cells.radii), 0), dtype=np.intp), sparse.csc_array((0, 0))
-    return Body(cells, poisson, require_stretch(stretch), *none)
+    return Body(cells, poisson, stretch, *none)
 
 
 def mixed_body(space: Space, poisson: float, stretch: float, pressure: Any) -> Body:
@@ -300,8 +300,3 @@ def mixed_body(space: Space, poisson: float, stretch: float, pressure: Any) -> B
     values, _ = reference_functions(pressure, cell_quadrature(space)[0])
     products = scatter((body.cells.measure[:, None] * values) @ values.T, by_cell, dofs.N)
     return replace(body, pressure_functions=values, pressures=by_cell.T, products=products)
-
-
-def require_stretch(stretch: float) -> float:
-    """Return delta = beta/R, or raise InputError unless 0 <= stretch <= 2: a sphere smaller than its own contact."""
-    return require_between(stretch, "stretch", 0.0, 2.0, "give beta/R = sqrt(tabor/radius_ratio)")

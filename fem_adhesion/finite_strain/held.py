@@ -115,10 +115,6 @@ class HeldBody(Valued):
         """Elastic energy of body and exterior in R dgamma mu eps."""
         return self.body.energy(self.unknowns(y)) + float(y @ (self.exterior.stiffness @ y)) / 2
 
-    def least_volume_ratio(self, y: Array) -> float:
-        """Least J at any quadrature point."""
-        return self.body.least_volume_ratio(self.unknowns(y))
-
     def solver(self, y: Array, change: Array, row: Array) -> Solver:
         """Solver of the bordered equations of a state, see `Tangent.bordered`, by the tangent at hand if it will do."""
         tangent, product = self.near, cache(lambda: self.tangent_product(y, change))

@@ -87,15 +87,11 @@ class FiniteStrainProblem(Valued):
 
     def stretched(self, stretch: float) -> FiniteStrainProblem:
         """Return the same problem at another delta, the undeformed shape unchanged."""
-        return replace(self, held=replace(self.held, body=self.body.stretched(stretch)))
+        return replace(self, held=replace(self.held, body=replace(self.body, stretch=stretch)))
 
     def undeformed(self, approach: float) -> Array:
         """State without deformation, as a start for Newton's method."""
         return np.append(np.zeros(self.held.size), approach)
-
-    def displacement(self, x: Array) -> Array:
-        """All N displacements of a state, in beta^2/R."""
-        return self.held.unknowns(x[:-1])[: self.body.space.unknowns]
 
     def surface_unknowns(self, x: Array) -> Array:
         """Those that move the surface, s, (m,)."""
@@ -259,8 +255,9 @@ class FiniteStrainProblem(Valued):
 
     def _unturned(self, y: Array, dy: Array, fraction: float) -> float:
         """Part of a step, a fraction of it at most, that turns no cell inside out."""
-        least = min(LEAST_VOLUME, self.held.least_volume_ratio(y) / 2)
-        while self.held.least_volume_ratio(y + fraction * dy) < least:
+        ratio = self.body.least_volume_ratio
+        least = min(LEAST_VOLUME, ratio(self.held.unknowns(y)) / 2)
+        while ratio(self.held.unknowns(y + fraction * dy)) < least:
             fraction /= 2
         return fraction
 
@@ -291,10 +288,6 @@ class FiniteStrainProblem(Valued):
         """Errors of the observables that the changes between discretisations may not tell, (4,): zero."""
         return np.array([0.0, 0.0, 0.0, np.nan])
 
-    def elastic_energy(self, x: Array) -> float:
-        """Elastic energy of body and exterior in R dgamma eps."""
-        return self.tabor * self.held.energy(x[:-1])
-
     def energy(self, x: Array) -> float:
         """Elastic and surface energy in R dgamma eps, the latter int Phi(H) dA; nan unless conservative.
 
@@ -306,7 +299,7 @@ class FiniteStrainProblem(Valued):
         density = scales.law.energy(self.gaps(x), mu)
         if scales.far_energy:
             density -= scales.law.energy(mu * scales.profile.height(self.surface.points.radii), mu)
-        return self.elastic_energy(x) + float(self.areas(x) @ density)
+        return mu * self.held.energy(x[:-1]) + float(self.areas(x) @ density)
 
 
 # From its parts
