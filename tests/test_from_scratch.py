@@ -8,7 +8,7 @@ import pytest
 from scipy import sparse
 
 import fem_adhesion
-from fem_adhesion import Coated, HalfSpace, Layer, Scene, cli, scene
+from fem_adhesion import Coated, HalfSpace, Hemisphere, Layer, Scene, cli, scene
 from fem_adhesion.crosscheck import from_scratch
 from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Failure
@@ -25,6 +25,7 @@ from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.errors import NotConverged
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Paraboloid, Sphere
+from halfspace.values import Estimate
 
 # --- the weak form ---
 
@@ -214,6 +215,37 @@ def test_a_finer_body_is_taken_where_two_differ_by_more_than_the_budget(monkeypa
     assert doubt() > 1e-4
     monkeypatch.setattr(from_scratch, "BUDGET", 1e-4)
     assert doubt() < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("reaction", "rounding", "verdict"),
+    [
+        (4e-4, 4e-4, "agree"),
+        (4e-4, 0.0, "disagree"),
+        (4e-4, 4e-3, "inconclusive"),
+        (3e-3, 4e-4, "disagree"),
+    ],
+)
+def test_what_rounding_makes_of_a_reaction_counts_for_that_alone(reaction, rounding, verdict):
+    """Under a coating 72 times as stiff, both nearly incompressible, a reaction was 1.5 times outside by rounding."""
+    found = (1 - rounding, 1 + reaction)
+    compared = from_scratch.Compared("reaction", "", found, Estimate(1.0, 1e-6), 1.0, (rounding, rounding))
+    assert compared.row(from_scratch.LEAST).verdict == verdict
+    assert compared.change == pytest.approx(max(reaction - rounding, 0.0), abs=1e-12)
+
+
+def test_a_reaction_is_what_acts_at_the_gaps_but_for_rounding():
+    scenes = (
+        Scene(1.0),
+        Scene(1.0, Layer(0.5, "sliding")),
+        Scene(1.0, Coated(1.0, 5.0)),
+        Scene(1.0, Hemisphere(radius_ratio=100.0)),
+    )
+    for each in scenes:
+        contact = contacts(each)[0](1.0, 1.0)
+        h = 1.1 + contact.body.radii**2
+        state = from_scratch.StateInWeakForm(contact, h, 0.0, 0.0, contact.displacement(h), 0.0)
+        assert state.rounding < 1e-7 * abs(state.reaction)
 
 
 def test_what_changes_from_stage_to_stage_is_no_mistake_of_a_balance():
