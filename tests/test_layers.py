@@ -414,6 +414,19 @@ def test_images_in_units_of_the_contact_deflect_as_at_their_own_depths(body, spa
     assert operator.least_radius == pytest.approx(0.3)
 
 
+def test_images_are_integrated_for_contact_radii_that_are_asked_for_and_alike_where_two_polynomials_meet():
+    path = trace(30.0, body=Layer(1.0, 0.3), rtol=1e-3)
+    operator = path.stages[-1]["pull_off"].problem.operator
+    assert sum("_made" in vars(part) for part in operator.parts) == 1 < len(operator.parts)
+    assert np.isfinite(path.load).all()
+    assert all("_made" in vars(part) for part in operator.parts)
+    pressure = np.exp(-(operator.unit.radii**2)) * operator.unit.weights
+    for end, below, above in zip(operator.ends[1:-1], operator.parts[:-1], operator.parts[1:], strict=True):
+        for derivative, close in ((0, 1e-8), (1, 2e-6)):
+            found, wanted = (part.at(end, derivative) @ pressure for part in (below, above))
+            assert found == pytest.approx(wanted, rel=0, abs=close * np.abs(operator.unit.compliance @ pressure).max())
+
+
 def test_images_deflect_alike_in_however_many_parts_they_are_integrated(monkeypatch):
     """Also where cells that are longer than the first stratum is thick have a rule of their own."""
     images = images_of(SOFT_BETWEEN)
