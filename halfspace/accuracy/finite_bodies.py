@@ -42,6 +42,7 @@ COARSEST = 1e-3  # tolerance for that: at 1e-2 landings and pull-off on hemisphe
 BESIDE = 0.01  # logarithmic width by which a chart for all events reaches past them: they move from grid to grid
 STEPS = 25  # per unit of the logarithm: where charts begin and end, so that those of like contacts are the same
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
+CLIMBED = 2  # rungs up, from which on it is not either
 APART = 1.7  # mean ratio of the radii between which the curve's operator is interpolated
 CLOSER = 1.4  # the same of its points when they are solved for again on the lowest rung; closer on those above it
 # Cells on the axis after which an event has its own that end at its contact edge: on those of the axis the estimates of
@@ -226,8 +227,10 @@ def surroundings(rtol: float, level: int) -> tuple[float, int]:
 
     In their middle the operator is as good as exact. Its derivative, by which a fold or an extremum is found, errs by
     the window's square with three operators, some 1e-7 of the approach at pull-off, and by its fourth power with five.
+    What each operator errs by counts the more the narrower the window: under a large sphere on strata as much at a
+    quarter of the lowest rung's as its square does, so that there are five where the two lowest rungs did not do.
     """
-    window, count = (WINDOW, AROUND) if rtol >= TIGHT else (2 * WINDOW, AROUND + 2)
+    window, count = (WINDOW, AROUND) if rtol >= TIGHT and level < CLIMBED else (2 * WINDOW, AROUND + 2)
     return window / 2**level, count
 
 
