@@ -16,6 +16,7 @@ from halfspace.accuracy.further_folds import Completed, FurtherFolds
 from halfspace.accuracy.stages import Charted, FoldsLost, Rung, State, on_all
 from halfspace.equilibrium.charts import COMPRESSION, Stage, placed, trace_charts
 from halfspace.equilibrium.conditions import ROUND_OFF, STEEPEST
+from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import FOLDS, Event, Tolerance
 from halfspace.equilibrium.search import energy_released, find_events, folds_in_doubt
@@ -24,6 +25,7 @@ from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 from halfspace.values import Estimate, Valued
 
 MOST_RUNGS = 4  # above the lowest
+AWAY = 0.1  # eps from zero approach: with 1, a tenth of all energies had estimates over a hundred times their errors
 FLAT = 1e-9  # eps/(R dgamma), of it: what the last of the parabolas and rounding leave
 
 
@@ -128,7 +130,12 @@ def _margin(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate | None:
 
 
 def energy_along(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate:
-    """Energy released from separation to zero approach, with the error that the changes along the chains leave."""
+    """Energy released from separation to zero approach, with the error that the changes along the chains leave.
+
+    Those of the load there count as well: it is the energy's derivative by the approach. Where the energy stands still
+    by accident, it does not a little `AWAY`, and that is as good a place to end at.
+    """
     values = [[energy_released(state) for state in chain] for chain in chains]
     best = values[0][-1]
-    return Estimate(best, rung.rule.error(values) + ROUND_OFF * (1 + abs(best)))
+    ends = [[AWAY * float(state["zero_approach"].point.observables[LOAD]) for state in chain] for chain in chains]
+    return Estimate(best, rung.rule.error([*values, *ends]) + ROUND_OFF * (1 + abs(best)))
