@@ -30,6 +30,7 @@ FARTHER = 8.0  # extents, up to which the infinite cell is cut where the tail is
 # cells grow where it falls by more. With 0.7 and 1 the sharper of Dugdale's laws did not meet 1e-6, and at 1e-8 it
 # erred by twice the estimates.
 SUDDEN, SLOWER = 0.65, 1.5
+STEPPED = 0.55  # of it, above which laws with a step are, however wide it is; all others are below
 # Of the most load in a part of ln H, how deep a valley may lie in it; with which power of deeper ones cells grow less.
 # With cells that grew threefold curves rippled, and 15 nodes in each left 1e-4 in the load of a fold on a coating.
 SHALLOW, BROKEN = 0.05, 0.5
@@ -131,6 +132,11 @@ class Scales:
         """Gap at which a tension that ends by a step does so; 0 for one that falls gradually."""
         gaps, steepness = self._steepness
         return float(gaps[np.argmax(steepness)]) if self.gradual < 1 else 0.0
+
+    @property
+    def steps(self) -> bool:
+        """Whether the tension ends by a step, if only by one so wide that cells grow as by any other law."""
+        return bool(self._steepness[1].max() > STEPPED)
 
     @property
     def _rigid_width(self) -> float:

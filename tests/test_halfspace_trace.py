@@ -12,7 +12,7 @@ from hard.references import charted_rung
 
 import halfspace
 from halfspace.accuracy.fold_birth import critical_stiffness
-from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for
+from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for, resolutions_for, rule_for
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.elastic import compliance
 from halfspace.equilibrium.charts import metric_for, trace_charts
@@ -22,7 +22,7 @@ from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.path import Metric, Point, Steps, _hides_turning_points, correct
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES, Dugdale
+from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Sphere
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
@@ -436,3 +436,17 @@ def test_a_step_does_not_leap_over_the_end_of_a_chart_into_cells_too_coarse(tabo
     last = segments[0].points[-1]
     assert last.observables[CONTACT_RADIUS] > charts[0].until
     segments[0].problem.require_resolution(last.x)
+
+
+def test_a_level_for_which_there_are_not_nodes_enough_is_trusted_no_more_than_one_node():
+    """The fourth at 1e-6 has two more, not four: a fold on a stiff coating changed by less than its error."""
+    scales = Scales(1.0)
+    parts = [rule_for(scales, resolutions_for(scales, 1e-6, level), level).remaining for level in (1, 2, 3, 4)]
+    assert parts[0] == parts[3] > 1 > parts[1] == parts[2]
+
+
+@pytest.mark.parametrize("width", [0.15, 0.274, 0.399, 0.5])
+def test_a_law_with_a_step_is_told_from_others_however_wide_it_is(width):
+    assert Scales(1.0, Dugdale(width)).steps
+    others = LENNARD_JONES, Morse(0.5), Morse(8), PowerLaw(5, 14), Dlvo(0.3, 1), Exponential(5, 15), Exponential(0.5, 4)
+    assert not any(Scales(1.0, law).steps for law in others)

@@ -29,8 +29,8 @@ from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import APPROACH, ContactProblem
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES, Dlvo
-from halfspace.profiles import Hyperboloid
+from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Morse
+from halfspace.profiles import Hyperboloid, Sphere
 from halfspace.scales import Scales
 from halfspace.theories.layered import OnLayers
 
@@ -246,6 +246,37 @@ def test_pull_off_from_a_layer_is_within_its_estimate_of_the_reference(on_layer,
     assert abs(event.load - load) <= event.load_error + 1e-8
     assert event.approach_error <= rtol * 3
     assert event.load_error <= rtol * 6
+
+
+def _off(rough, best):
+    """How far a number is off, in what it and a better one are told to err by."""
+    return abs(rough.value - best.value) / (rough.error + best.error)
+
+
+@pytest.fixture(scope="module")
+def under_a_sphere():
+    """Of a sphere with a stiff law on a coating, at several tolerances."""
+    how = {"law": Morse(4.1), "profile": Sphere(72.5), "body": Coated(0.319, 0.218, 0.16, 0.39)}
+    return {rtol: trace(4.72, **how, rtol=rtol) for rtol in (1e-2, 1e-4, 1e-6)}
+
+
+def test_a_gap_on_which_three_grids_agree_by_accident_is_known_as_well_as_those_beside_it(under_a_sphere):
+    """To a twentieth of what each of them errs by, so that it was nine times outside; one on a layer eleven times."""
+    on_a_layer = {
+        rtol: trace(5.93, law=Exponential(1.31, 10), body=Layer(0.0816, 0.4999, "sliding"), rtol=rtol)
+        for rtol in (1e-2, 1e-6)
+    }
+    for paths in (under_a_sphere, on_a_layer):
+        rough, best = (paths[rtol].events["zero_load"].estimate("central_gap") for rtol in (1e-2, 1e-6))
+        assert _off(rough, best) < 1
+        assert rough.error < 100 * abs(rough.value - best.value)
+
+
+def test_an_energy_on_which_three_grids_agree_by_accident_is_known_by_the_load_where_it_ends(under_a_sphere):
+    """It was twice outside."""
+    rough, best = (under_a_sphere[rtol].energy for rtol in (1e-4, 1e-6))
+    assert _off(rough, best) < 1
+    assert rough.error < 100 * abs(rough.value - best.value)
 
 
 def test_a_curve_on_a_layer_can_be_pickled():

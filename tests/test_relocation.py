@@ -146,6 +146,26 @@ def test_a_sign_that_changes_where_states_leap_is_no_event(monkeypatch, leap, fo
             conditions.bracketed(None, a, b, Condition(0), None)
 
 
+def test_a_load_at_a_fold_is_known_no_better_than_its_place_where_the_law_has_a_step():
+    """By the radius' shift: a load that three grids had alike by accident was 3.4 times outside at jump_off."""
+    values = np.array([[0.0, 5.0, 0.0, 1.0], [0.0, 5.0, 0.0, 1.0 + 1e-5]])
+    chain = _chain(conditions.FOLD, np.array([0.0, -6.0, 0.03, 1.5]), values)
+    still, shifted = (
+        events.estimate_event("any", [chain], events.ErrorRule(2.0, steps=steps)) for steps in (False, True)
+    )
+    assert still.load_error < 1e-10
+    assert shifted.load_error == pytest.approx(2.0 * 2 * 1e-5 / 1.5 * 6.0, rel=1e-6)
+    assert shifted.contact_radius_error == pytest.approx(still.contact_radius_error)
+    assert shifted.approach_error == still.approach_error
+
+
+def test_a_gap_is_known_no_better_than_those_beside_it():
+    values = np.array([[0.0, 5.0, 1.0, np.nan], [0.0, 5.0, 1.0, np.nan]])
+    chain = _chain(conditions.ZERO_LOAD, np.ones(4), values, near_axis=((1.0, 2.0), (1.0, 2.0 + 1e-6)))
+    event = events.estimate_event("any", [chain], events.ErrorRule(2.0))
+    assert event.central_gap_error == pytest.approx(2e-6, rel=1e-4)
+
+
 SOFT = Condition(APPROACH, stationary=True, compliance=1e6)
 
 
@@ -176,11 +196,16 @@ def test_what_a_shift_along_the_path_and_the_rest_take_from_each_other_is_left_o
     assert event.approach_error == pytest.approx(0.5 * 2e-4, rel=1e-4)
 
 
-def _chain(condition, rates, values):
-    """An event on grids on which its numbers are these."""
-    interface = SimpleNamespace(ripples=lambda _: np.zeros(2), scales=Scales(1.0))
+def _chain(condition, rates, values, near_axis=((0.0,), (0.0,))):
+    """An event on grids on which its numbers, and the gaps near the axis, are these."""
+    interface = SimpleNamespace(
+        ripples=lambda _: np.zeros(2),
+        scales=Scales(1.0),
+        beside_axis=lambda _: np.zeros(1),
+        near_axis=lambda number, _: np.array(near_axis[number]),
+    )
     problem = SimpleNamespace(interface=interface, surface_state=lambda x: x)
-    points = [SimpleNamespace(observables=v, rates=rates, x=None) for v in values]
+    points = [SimpleNamespace(observables=v, rates=rates, x=number) for number, v in enumerate(values)]
     return [SimpleNamespace(condition=condition, problem=problem, point=point) for point in points]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -66,13 +67,16 @@ def resolutions_for(scales: Scales, rtol: float, level: int) -> tuple[Resolution
     return resolution_for(scales, rtol, level), twin
 
 
-def rule_for(level: int, doubt: int = 1) -> ErrorRule:
+def rule_for(scales: Scales, resolutions: Sequence[Resolution], level: int, doubt: int = 1) -> ErrorRule:
     """How errors are told from the change by one node more, or by two and more, and so many times as large.
 
     Where a profile's derivatives leap inside a cell an error falls as a power of the nodes: a pair more leaves as much
-    there as elsewhere one.
+    there as elsewhere one. So it does on a level for which there are not nodes enough, of the resolutions of that and
+    of the one below: it has been climbed to since errors fall slowly.
     """
-    return ErrorRule(doubt * (ONE_NODE if level == 1 else REMAINING))
+    most, fewer = (resolution.nodes for resolution in resolutions)
+    remaining = doubt * (ONE_NODE if level == 1 or scales.profile.pieced else REMAINING)
+    return ErrorRule(remaining if most - fewer == level else max(remaining, ONE_NODE))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

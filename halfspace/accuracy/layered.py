@@ -74,7 +74,7 @@ def layered_rungs(scales: Scales, body: LayeredBody, rtol: float, to_load: float
 def _rung(scales: Scales, images: Sequence[Images], doubt: int, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level, which errs so many times as much as it changes."""
     resolutions = resolutions_for(scales, rtol, level)
-    rule = rule_for(1 if scales.profile.pieced else level, doubt)
+    rule = replace(rule_for(scales, resolutions, level, doubt), steps=scales.steps)
     if math.isfinite(scales.profile.end) or scales.law.outermost:
         fine, other = (layered_body(scales, *both, to_load) for both in zip(images, resolutions, strict=True))
         return sized_rung(fine, other, rtol, level, resolutions[0].cells, rule)

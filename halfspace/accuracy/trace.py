@@ -101,14 +101,15 @@ def half_space_rung(
     if not level:
         return Rung(curve, (), asdict(resolution))
     fine, twin = (Charted(charts(r)) for r in (resolution, below))
-    return Rung(curve, (fine,), asdict(resolution), twin, rule_for(level))
+    return Rung(curve, (fine,), asdict(resolution), twin, rule_for(scales, (resolution, below), level))
 
 
 def _stepped_rung(scales: Scales, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level for a half-space under a law that ends by a step."""
     resolutions = resolutions_for(scales, rtol, level)
     fine, twin = (_windows(scales, resolution, to_load) for resolution in resolutions)
-    return Rung(fine.curve, (fine,), asdict(resolutions[0]), twin if level else None, rule_for(level))
+    rule = rule_for(scales, resolutions, level)
+    return Rung(fine.curve, (fine,), asdict(resolutions[0]), twin if level else None, rule)
 
 
 def _windows(scales: Scales, resolution: Resolution, to_load: float) -> Windows:
@@ -127,7 +128,7 @@ def _sphere_rung(scales: Scales, rtol: float, to_load: float, level: int) -> Run
     if not level and (apart := apart_for_events(fine, rtol)):
         lowest = AroundEvents(fine, *surroundings(rtol, level), EVENTS_LEAVE, apart=apart)
         return Rung(lowest.by_curve, (lowest,), settings)
-    return sized_rung(fine, other, rtol, level, settings, rule_for(1 if scales.profile.pieced else level))
+    return sized_rung(fine, other, rtol, level, settings, rule_for(scales, resolutions, level))
 
 
 def under_sphere(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> SizedBody:

@@ -23,6 +23,7 @@ from numpy.polynomial.legendre import legvander
 from scipy.linalg.lapack import dgetrf, dgetrs, dsytrf
 
 from halfspace.elastic.compliance import ElasticOperator, Operator
+from halfspace.elastic.grid import polynomial
 from halfspace.equilibrium.acting import Acting, by_straight_lines
 from halfspace.errors import GridTooCoarse, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
@@ -197,6 +198,22 @@ class ContactProblem(Valued):
         Where they are nowhere so far apart it is the extent of the surface.
         """
         return self._acting(x).contact_radius
+
+    def beside_axis(self, x: Array) -> Array:
+        """Radii in beta of the nodes in the inner half of the cell on the axis."""
+        body = self.operator_at(x)
+        nodes = body.cell_nodes[0]
+        return np.asarray(body.radii[nodes[: (nodes.size + 1) // 2]])
+
+    def near_axis(self, x: Array, radii: Array) -> Array:
+        """Deflection in eps less the approach at radii (n,) in the cell on the axis: the gap at 0.
+
+        By the polynomial through its nodes in the squares of the radii, as the gap on the axis: one in the radii errs
+        by far more between nodes than at them.
+        """
+        body = self.operator_at(x)
+        nodes = body.cell_nodes[0]
+        return np.asarray(polynomial(body.radii[nodes] ** 2, radii**2) @ self.deflection(x)[nodes] - x[-2])
 
     def radius_at_gap(self, x: Array, gap: float) -> float:
         """Largest radius in beta at which the gap is about that, by straight lines between nodes; 0 if it is wider."""

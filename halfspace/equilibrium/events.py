@@ -146,12 +146,15 @@ class ErrorRule:
     `remaining` is the part of the changes that may be left as error, above 1 where it falls slowly from one to the
     next, and of the last change `last` times as much, where that is from other cells with no twin beside. `along` says
     whether the shift of an event along the path counts, see `estimate_event`: on grids that follow the contact, whose
-    radius tells it precisely, and where there is no twin to guard against chance.
+    radius tells it precisely, and where there is no twin to guard against chance. `steps` says that it does for other
+    numbers than those at a point alone, as under a law that ends by a step: an integral over a cell in which that
+    stands errs this way or that by its place, so that a number of several grids may agree by accident.
     """
 
     remaining: float = REMAINING
     along: bool = False
     last: float = 1.0
+    steps: bool = False
 
     def change(self, chain: Sequence[Array | float]) -> Array:
         """Sum of the changes along a chain of two values or more, arrays (...) or numbers, the last `last` times."""
@@ -177,16 +180,17 @@ def estimate_event(
     known no better than to what the polynomials there end with; where there is but one chain, or `rule.along`, nor is
     the gap. `least` (4,) are the changes of the observables that count where the chains' own are less.
 
-    If `rule.along`, an observable's change along each chain is taken apart: into what the event's shift along the path
-    makes of it, and the rest. On a single chain one number may stand still by accident while the event moves, and both
-    parts may cancel, so their magnitudes add up. For stationary conditions only. Nor do the gap and radius, which are
-    at a point, then fall as averages do: the changes of all chains add up.
+    If `rule.along`, or `rule.steps`, an observable's change along each chain is taken apart: into what the event's
+    shift along the path makes of it, and the rest. On a single chain one number may stand still by accident while the
+    event moves, and both parts may cancel, so their magnitudes add up. For stationary conditions only. If `rule.along`,
+    nor do the gap and radius, which are at a point, then fall as averages do: the changes of all chains add up.
     """
     values = chains[0][-1].point.observables
-    changes = [rule.change([event.point.observables for event in chain]) for chain in chains]
+    changes = [_changes(chain, rule) for chain in chains]
     whole = np.sum(changes, axis=0)
-    if rule.along and chains[0][-1].condition.stationary:
-        changes += [apart for chain in chains for apart in _apart(chain, rule)]
+    if (rule.along or rule.steps) and chains[0][-1].condition.stationary:
+        ways = slice(None) if rule.along else slice(1)
+        changes += [apart for chain in chains for apart in _apart(chain, rule)[ways]]
     errors = rule.remaining * np.maximum(np.max(changes, axis=0), least) + ROUND_OFF * (1 + np.abs(values))
     if rule.along:
         errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
@@ -195,6 +199,20 @@ def estimate_event(
     alone = rule.along or len(chains) == 1
     errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], [gap if alone else 0.0, radius])
     return Event(name, *map(float, values), *map(float, errors))
+
+
+def _changes(chain: Sequence[Located], rule: ErrorRule) -> Array:
+    """Changes of the observables along a chain, (4,), that of the central gap no less than gaps beside it tell.
+
+    At a point several grids may agree by accident, beside it they do not.
+    """
+    changes = rule.change([event.point.observables for event in chain])
+    states = [(event.problem.interface, event.problem.surface_state(event.point.x)) for event in chain]
+    surface, best = states[-1]
+    beside = surface.beside_axis(best)
+    gaps = rule.change([surface.near_axis(x, beside) for surface, x in states])
+    changes[CENTRAL_GAP] = max(changes[CENTRAL_GAP], *gaps)
+    return changes
 
 
 def _apart(chain: Sequence[Located], rule: ErrorRule) -> tuple[Array, Array]:
