@@ -72,6 +72,11 @@ class Scales:
         """Those of the contact alone, whatever body is below it."""
         return self if self.body is None else replace(self, body=None)
 
+    @property
+    def pieced(self) -> bool:
+        """Whether derivatives of the law or the profile leap."""
+        return self.law.pieced or self.profile.pieced
+
     @cached_property
     def softest(self) -> float:
         """How many times as much as a half-space of E* the body yields to waves of any length, at most."""
@@ -84,7 +89,16 @@ class Scales:
         A stiffness f' of the law balances an elastic deflection over 1/(mu^2 f'), a strength s the work of adhesion
         over 1/(mu s)^2; less where something softer below lets strata bend.
         """
-        width = self.tabor**-2 * self._sharpness
+        return self._width(self._sharpness)
+
+    @cached_property
+    def least_width(self) -> float:
+        """That wherever surfaces attract: the steepest fall of the tension takes the place of the stiffness."""
+        return self._width(min(self._sharpness, _steepest(LENNARD_JONES) / _steepest(self.law)))
+
+    def _width(self, sharpness: float) -> float:
+        """Width of a spike from that in a soft contact's by the 3-9 law."""
+        width = self.tabor**-2 * sharpness
         return float(min(width if self.body is None else stiff_as(self.body, width), self._rigid_width))
 
     @cached_property
@@ -252,3 +266,8 @@ class Scales:
         z = height / self.tabor
         what = f"the radius at which the profile rises to {z:.3g} beta^2/R; let it grow outwards"
         return rising_root(lambda r: float(self.profile.height(np.array(r))) - z, what, end=self.profile.end)
+
+
+def _steepest(law: Law) -> float:
+    """Steepest fall of a law's tension beyond its edge, in dgamma/eps^2."""
+    return float(law.slope(NEAR[law.edge_gap < NEAR], 1.0).max())

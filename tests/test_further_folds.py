@@ -259,9 +259,9 @@ def test_a_barrier_holds_the_surfaces_apart_up_to_a_load():
     assert path.event("pull_off").load < 0
 
 
-def test_a_law_with_two_edges_on_a_soft_body_is_refused_by_the_cells_it_needs():
+def test_a_law_with_two_edges_on_a_soft_body_is_refused_by_what_is_to_be_resolved():
     with pytest.raises(
-        InputError, match=r"the tension rises again at H = .* cells .*, limit: 100; take a smaller tabor"
+        InputError, match=r"the tension rises again at H = .* times as far, limit: 60; take a smaller tabor"
     ):
         halfspace.trace(30.0, law=LAW)
 

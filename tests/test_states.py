@@ -17,7 +17,7 @@ from halfspace.equilibrium.conditions import EXTREMUM, FOLD
 from halfspace.equilibrium.contact import CENTRAL_GAP
 from halfspace.equilibrium.states import COORDINATES, shift
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import Dlvo
+from halfspace.laws import LENNARD_JONES, Dlvo, PowerLaw
 from halfspace.profiles import Power, Sphere
 
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
@@ -187,6 +187,13 @@ def test_a_curve_whose_contact_is_there_at_once_has_errors_at_every_point():
     touching = [number for far, number in _plane_differences(path, truth) if not far]
     assert np.isfinite(path.load_error).all()
     _judge(touching, close=0.6)
+
+
+@pytest.mark.parametrize(("tabor", "rtol", "law"), [(0.3, 1e-4, PowerLaw(2.2, 9.0)), (4.0, 1e-5, LENNARD_JONES)])
+def test_the_first_point_in_contact_is_within_its_errors(tabor, rtol, law):
+    """By accident its radius hardly changes: it was 2.6 and 3.8 times outside, as none is beside it on its grid."""
+    path, truth = (halfspace.trace(tabor, law=law, rtol=part) for part in (rtol, 1e-8))
+    _judge((number for far, number in _plane_differences(path, truth) if not far), within=1.0)
 
 
 def test_an_observable_turns_where_it_goes_by_more_than_it_errs(paths):

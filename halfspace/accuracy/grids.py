@@ -26,7 +26,7 @@ MOST_NODES = 16  # of a panel
 TIP = 1.5
 # Found by trial; what each decides at half and at double is in tests/constants.py.
 ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
-MOST_CELLS = 100  # of one length
+MOST_WIDTHS = 60  # of a spike of tension that are resolved at once
 TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same
 
 
@@ -70,12 +70,12 @@ def resolutions_for(scales: Scales, rtol: float, level: int) -> tuple[Resolution
 def rule_for(scales: Scales, resolutions: Sequence[Resolution], level: int, doubt: int = 1) -> ErrorRule:
     """How errors are told from the change by one node more, or by two and more, and so many times as large.
 
-    Where a profile's derivatives leap inside a cell an error falls as a power of the nodes: a pair more leaves as much
+    Where derivatives of profile or law leap inside a cell an error falls as a power of the nodes: a pair more leaves as much
     there as elsewhere one. So it does on a level for which there are not nodes enough, of the resolutions of that and
     of the one below: it has been climbed to since errors fall slowly.
     """
     most, fewer = (resolution.nodes for resolution in resolutions)
-    remaining = doubt * (ONE_NODE if level == 1 or scales.profile.pieced else REMAINING)
+    remaining = doubt * (ONE_NODE if level == 1 or scales.pieced else REMAINING)
     return ErrorRule(remaining if most - fewer == level else max(remaining, ONE_NODE))
 
 
@@ -122,14 +122,14 @@ def inwards(scales: Scales, growth: float) -> float:
 def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float, to_load: float) -> Array:
     """Breakpoints as fine as at a contact edge wherever one may stand, by a law whose tension has several largest."""
     reach = float(np.hypot(scales.widest_radius(to_load), scales.radius_at(scales.law.outermost)))
-    spacing = finest * scales.spike_width
-    cells = reach / spacing
-    if cells > MOST_CELLS:
+    width = scales.least_width
+    if reach > MOST_WIDTHS * width:
         raise InputError(
-            f"{scales.law}: the tension rises again at H = {scales.law.outermost:.3g}, so that {cells:.0f} cells of "
-            f"{spacing:.2g} beta are needed up to {reach:.3g} beta, limit: {MOST_CELLS}; take a smaller tabor than "
-            f"{scales.tabor:g}, or a smaller to_load"
+            f"{scales.law}: the tension rises again at H = {scales.law.outermost:.3g}, so that what varies over "
+            f"{width:.2g} beta may stand anywhere up to {reach:.3g} beta, {reach / width:.0f} times as far, limit: "
+            f"{MOST_WIDTHS}; take a smaller tabor than {scales.tabor:g}, a smaller to_load or a smoother law"
         )
+    spacing = finest * width
     return grid.graded(0.0, spacing, max(outer, reach + spacing), growth=growth, until=reach)
 
 

@@ -103,19 +103,22 @@ class FinestCurve(Valued):
 
         No less than between those at the points beside it, in the geometric mean: along the path a change passes
         through zero, where it tells nothing. Where there is but one change to tell, of two points on either side the
-        larger counts, since a change may be all but zero at several. Infinite at a point that another discretisation
-        does not have, nor a state near to it.
+        larger counts, since a change may be all but zero at several. Where one grid hands over to the next its last
+        point has the other's beside it as well: it may be the only one in contact. Infinite at a point that another
+        discretisation does not have, nor a state near to it.
         """
         part = max(self.remaining, 1.0)
-        return np.concatenate([self._errors_along(segment, part) for segment in self.segments])
+        own = [np.array([self._errors(s.problem, point, part) for point in s.points]) for s in self.segments]
+        apart = np.concatenate([self._no_less_than_beside(along) for along in own])
+        return np.fmax(apart, self._no_less_than_beside(np.concatenate(own)))
 
-    def _errors_along(self, segment: Segment, part: float) -> Array:
-        own = np.array([self._errors(segment.problem, point, part) for point in segment.points])
+    def _no_less_than_beside(self, own: Array) -> Array:
+        """Errors along the path, (points, 4), no less than those beside; at its ends, and a contact's, its own."""
         farther = 2 if self._one_change else 1
         padded = np.pad(np.where(np.isfinite(own), own, np.nan), ((farther, farther), (0, 0)), mode="edge")
         sides = [padded[k : k + len(own)] for k in range(2 * farther + 1) if k != farther]
-        beside = np.sqrt(np.fmax.reduce(sides[:farther]) * np.fmax.reduce(sides[farther:]))
-        return np.where(np.isnan(own), own, np.fmax(own, beside))
+        before, after = (np.fmax.reduce(side) for side in (sides[:farther], sides[farther:]))
+        return np.where(np.isnan(own), own, np.fmax(own, np.sqrt(_known(before, own) * _known(after, own))))
 
     @property
     def _one_change(self) -> bool:
@@ -294,6 +297,11 @@ class FinestCurve(Valued):
 def _unbounded(point: Point) -> Array:
     """Errors at a point that another discretisation does not have, (4,)."""
     return np.where(np.isnan(point.observables), np.nan, np.inf)
+
+
+def _known(numbers: Array, otherwise: Array) -> Array:
+    """Numbers, others in the place of those that are nan."""
+    return np.where(np.isnan(numbers), otherwise, numbers)
 
 
 def _largest(steps: Sequence[Array]) -> Array:

@@ -41,6 +41,11 @@ class Law:
         """Phi(H) with -dPhi/dH = P and Phi = 0 far apart; multiply by R dgamma eps for an energy per beta^2."""
         raise NotImplementedError
 
+    @property
+    def pieced(self) -> bool:
+        """Whether some derivative leaps between pieces of it, as of a spline."""
+        return False
+
     def room(self, gap: Array) -> Array:
         """Size by which changes of a gap are measured: h, by which it may shrink until the bodies are one."""
         return gap + 1

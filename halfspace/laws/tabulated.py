@@ -172,6 +172,11 @@ class Tabulated(Law):
         """Phi."""
         return -tabor / self.work_of_adhesion * self._left(self.spacing * (1 + gap))
 
+    @property
+    def pieced(self) -> bool:
+        """True: the third derivative of its spline leaps."""
+        return True
+
     def room(self, gap: Array) -> Array:
         """As for other laws, but over four lengths of the core at least."""
         return np.maximum(gap + 1, 4 / (self._rise * self.spacing))
