@@ -38,6 +38,7 @@ SHALLOW, BROKEN = 0.05, 0.5
 # elements that are longer still, beside as thin ones, the stiffness is singular.
 LEFT, MOST_LEFT, FARTHEST = 1e-9, 1e-6, 1e5
 UNTOLD, CROWD = 1e-7, 64.0  # of the load beyond, what the last cell may leave of it; how much nearer its nodes are
+FLATTEST = 6.0  # times as many widths of its edge as a contact on a paraboloid: on a flat punch there is no end to them
 STEP = 0.1  # of the trapezoidal rule in ln r for the tension of undeformed surfaces
 LOGARITHMS = np.arange(-16.0, 16.0, STEP)
 LEAST_LOAD = 0.1  # R dgamma, below which curves that end at loads of 5 would take too many steps
@@ -157,6 +158,11 @@ class Scales:
         """Length over which the undeformed gap opens by as much as the tension rises over."""
         r = self._touching_radius
         return 2 * float(self.profile.height(np.array(r)) / self.profile.slope(np.array(r)))
+
+    @cached_property
+    def flat(self) -> float:
+        """How many times as many widths of its edge as on a paraboloid a rigid contact is wide: k/2 on u^k."""
+        return min(max(1.0, self._touching_radius / self._rigid_width), FLATTEST)
 
     @cached_property
     def _touching_radius(self) -> float:

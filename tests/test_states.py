@@ -181,12 +181,16 @@ def test_points_of_a_curve_on_a_stiff_coating_are_within_their_errors():
     _judge((number for _, number in _plane_differences(path, truth)), within=1.0, close=0.75)
 
 
-def test_a_curve_whose_contact_is_there_at_once_has_errors_at_every_point():
-    """Where no plane across it met the next grid's curve, which goes elsewhere, they are by the state nearest to it."""
-    path, truth = (halfspace.trace(0.01, profile=Power(10.0), rtol=rtol) for rtol in (1e-4, 1e-8))
-    touching = [number for far, number in _plane_differences(path, truth) if not far]
-    assert np.isfinite(path.load_error).all()
-    _judge(touching, close=0.6)
+@pytest.mark.parametrize(("tabor", "exponent", "rtol"), [(0.01, 10.0, 1e-4), (0.1, 8.0, 1e-5)])
+def test_a_contact_that_is_there_at_once_stays_on_the_axis_grid_until_the_next_carries_it(tabor, exponent, rtol):
+    """On a flat tip the one around its edge rippled, and ended branches, before the contact was as wide as that.
+
+    Errors of loads are a thousandth of what they were, and for half the numbers over a hundred times the true ones.
+    """
+    path, truth = (halfspace.trace(tabor, profile=Power(exponent), rtol=part) for part in (rtol, 1e-8))
+    assert list(path.branches("load")) == ["separated", "contact"]
+    assert path.load_error.max() < rtol * abs(path.event("pull_off").load)
+    _judge((number for far, number in _plane_differences(path, truth) if not far), within=1.0, close=0.5)
 
 
 @pytest.mark.parametrize(("tabor", "rtol", "law"), [(0.3, 1e-4, PowerLaw(2.2, 9.0)), (4.0, 1e-5, LENNARD_JONES)])

@@ -104,14 +104,14 @@ def rings(
     outer = scales.outer_radius(extent**2 / 2)
     widest, first = scales.widest_radius(to_load), at_tip(scales.profile, nodes)
     growth = scales.growth(growth)
-    reach = EQUAL * length
-    until = LEAVE * reach
+    least, reach = EQUAL * length, math.floor(EQUAL * scales.flat) * length  # that carries a contact there at once
     centred = grid.graded(0.0, length, outer, growth=growth, until=reach)
     if scales.law.outermost:
         return Rings(_fine_throughout(scales, finest, growth, outer, to_load), centred, math.inf)
-    edge = grid.graded(1.0, 2 * length / widest, outer / until, growth=growth)  # as wide from the first
+    edge = grid.graded(1.0, 2 * length / widest, outer / (LEAVE * least), growth=growth)  # as wide from the first
     towards = inwards(scales, growth)
-    return Rings(grid.towards_axis(centred, first, towards), grid.towards_axis(edge, first / widest, towards), until)
+    edge = grid.towards_axis(edge, first / widest, towards)
+    return Rings(grid.towards_axis(centred, first, towards), edge, LEAVE * reach)
 
 
 def inwards(scales: Scales, growth: float) -> float:

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -26,13 +26,12 @@ from halfspace.accuracy.finite_bodies import (
     step_above,
 )
 from halfspace.accuracy.grids import Grids, Resolution, resolutions_for, rule_for
-from halfspace.accuracy.stages import Charted, Rung
+from halfspace.accuracy.stages import LeavesEarly, Rung
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import Images, images_of, layered, layered_panels, nearly_homogeneous
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.charts import COMPRESSION, Chart
-from halfspace.equilibrium.conditions import Located
-from halfspace.equilibrium.contact import CONTACT_RADIUS, contact_of
+from halfspace.equilibrium.contact import contact_of
 from halfspace.scales import Scales
 from halfspace.values import Array
 
@@ -43,26 +42,6 @@ BETWEEN = 1e-4
 THIN = 0.05  # beta: strata on which most of what is wrong is their images'
 IMAGES = (1.14, 1.17)  # ratios of the depths of a layered body's images, and of its twin's
 WIDER = 2  # times the half-space's extent, to where all images are integrated
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LeavesEarly(Charted):
-    """Two charts of which events leave the first as soon as their contact is wider than `leave`, in beta.
-
-    The curve stays on it as long as it serves.
-    """
-
-    leave: float
-
-    def __call__(self, event: Located) -> Chart:
-        """Chart for an event."""
-        wide = event.point.observables[CONTACT_RADIUS] > self.leave
-        return self.charts[-1] if wide else super().__call__(event)
-
-    @cached_property
-    def everywhere(self) -> Charted:
-        """The same charts for every point of a curve."""
-        return Charted(self.charts)
 
 
 def layered_rungs(scales: Scales, body: LayeredBody, rtol: float, to_load: float) -> Callable[[int], Rung]:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Protocol
 
 from halfspace.equilibrium.charts import Chart, Stage, settled, undeformed_radius
 from halfspace.equilibrium.conditions import Located
+from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.events import FOLDS, USUAL, ErrorRule, Event, estimate_event, is_event
 from halfspace.errors import ContactTooWide, IllPosed, NotConverged
 from halfspace.values import Valued
@@ -33,6 +35,26 @@ class Charted(Stage):
     def unknowns(self) -> int:
         """Unknowns of the largest chart."""
         return max(chart.unknowns for chart in self.charts)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LeavesEarly(Charted):
+    """Two charts of which events leave the first as soon as their contact is wider than `leave`, in beta.
+
+    The curve stays on it as long as it serves.
+    """
+
+    leave: float
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event."""
+        wide = event.point.observables[CONTACT_RADIUS] > self.leave
+        return self.charts[-1] if wide else super().__call__(event)
+
+    @cached_property
+    def everywhere(self) -> Charted:
+        """The same charts for every point of a curve."""
+        return Charted(self.charts)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from halfspace.accuracy.finite_bodies import (
+    EQUAL,
     EVENTS_LEAVE,
     AroundEvents,
     Made,
@@ -25,7 +26,7 @@ from halfspace.accuracy.finite_bodies import (
 from halfspace.accuracy.grids import Resolution, endless, half_space_charts, inwards, resolutions_for, rule_for
 from halfspace.accuracy.layered import layered_rungs
 from halfspace.accuracy.refinement import climb
-from halfspace.accuracy.stages import Charted, Rung
+from halfspace.accuracy.stages import LeavesEarly, Rung
 from halfspace.accuracy.windows import Windows
 from halfspace.elastic.compliance import panels, stacked_panels
 from halfspace.elastic.grid import SurfaceCoordinate
@@ -100,7 +101,7 @@ def half_space_rung(
     curve = partial(charts, resolution)
     if not level:
         return Rung(curve, (), asdict(resolution))
-    fine, twin = (Charted(charts(r)) for r in (resolution, below))
+    fine, twin = (LeavesEarly(charts(r), EQUAL * scales.edge_cell(r.finest)) for r in (resolution, below))
     return Rung(curve, (fine,), asdict(resolution), twin, rule_for(scales, (resolution, below), level))
 
 

@@ -110,7 +110,7 @@ class FinestCurve(Valued):
         part = max(self.remaining, 1.0)
         own = [np.array([self._errors(s.problem, point, part) for point in s.points]) for s in self.segments]
         apart = np.concatenate([self._no_less_than_beside(along) for along in own])
-        return np.fmax(apart, self._no_less_than_beside(np.concatenate(own)))
+        return np.asarray(np.fmax(apart, self._no_less_than_beside(np.concatenate(own))))
 
     def _no_less_than_beside(self, own: Array) -> Array:
         """Errors along the path, (points, 4), no less than those beside; at its ends, and a contact's, its own."""
