@@ -12,9 +12,11 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Hemisphere, Scene, cli
 from halfspace import Coated
-from halfspace.equilibrium.charts import placed
-from halfspace.equilibrium.conditions import EXTREMUM, FOLD
+from halfspace.equilibrium.charts import metric_for, placed
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD, ZERO_LOAD
 from halfspace.equilibrium.contact import CENTRAL_GAP
+from halfspace.equilibrium.path import correct, predict
+from halfspace.equilibrium.search import states
 from halfspace.equilibrium.states import COORDINATES, shift
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dlvo, PowerLaw
@@ -111,6 +113,48 @@ def test_the_finest_curve_is_solved_for_when_it_is_asked_for_and_no_part_of_the_
     asked = path.at(approach=0.5), path.load
     assert before == path == pickle.loads(pickle.dumps(path))
     assert (before.at(approach=0.5), before.load.tolist()) == (asked[0], asked[1].tolist())
+
+
+def _parted_at(turn, segments):
+    """Segments of a curve, that with a state handing over there: one ends as far before it as the next begins."""
+    parted = []
+    for segment in segments:
+        first, last = (segment.points[end].arclength for end in (0, -1))
+        if segment.problem is turn.problem and first < turn.point.arclength < last:
+            metric = metric_for(turn.problem)
+            before, after = (
+                correct(turn.problem, turn.point, step, predict(turn.problem, turn.point, step), metric)
+                for step in (-1e-4, 1e-4)
+            )
+            parted.append(replace(segment, points=(*_where(segment, last=before), before)))
+            parted.append(replace(segment, points=(after, *_where(segment, first=after))))
+        else:
+            parted.append(segment)
+    return tuple(parted)
+
+
+def _where(segment, first=None, last=None):
+    low, high = first.arclength if first else -np.inf, last.arclength if last else np.inf
+    return [point for point in segment.points if low < point.arclength < high]
+
+
+@pytest.mark.parametrize("condition", [FOLD, EXTREMUM, ZERO_LOAD])
+def test_a_state_where_one_grid_hands_over_to_the_next_is_counted_once(paths, condition):
+    """Before the last point of one and beyond the first of the other it was on neither."""
+    segments, curve = paths[2.0].segments, paths[2.0].finest_curve
+    known = states(segments, condition)
+    for turn in known:
+        parted = _parted_at(turn, segments)
+        assert len(parted) == len(segments) + 1
+        found = states(parted, condition)
+        assert len(found) == len(known)
+        for ours, theirs in zip(found, known, strict=True):
+            np.testing.assert_allclose(ours.point.observables, theirs.point.observables, rtol=1e-9, atol=1e-9)
+    if condition.stationary:
+        for turn in states(curve.segments, condition):
+            parted = replace(curve, segments=_parted_at(turn, curve.segments))
+            for name, ends in curve.branches("load").items():
+                assert parted.branches("load")[name] == pytest.approx(ends, rel=1e-7)
 
 
 # --- their errors ---

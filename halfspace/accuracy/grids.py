@@ -70,9 +70,9 @@ def resolutions_for(scales: Scales, rtol: float, level: int) -> tuple[Resolution
 def rule_for(scales: Scales, resolutions: Sequence[Resolution], level: int, doubt: int = 1) -> ErrorRule:
     """How errors are told from the change by one node more, or by two and more, and so many times as large.
 
-    Where derivatives of profile or law leap inside a cell an error falls as a power of the nodes: a pair more leaves as much
-    there as elsewhere one. So it does on a level for which there are not nodes enough, of the resolutions of that and
-    of the one below: it has been climbed to since errors fall slowly.
+    Where derivatives of profile or law leap inside a cell an error falls as a power of the nodes: a pair more leaves as
+    much there as elsewhere one. So it does on a level for which there are not nodes enough, of the resolutions of that
+    and of the one below: it has been climbed to since errors fall slowly.
     """
     most, fewer = (resolution.nodes for resolution in resolutions)
     remaining = doubt * (ONE_NODE if level == 1 or scales.pieced else REMAINING)

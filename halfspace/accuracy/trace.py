@@ -101,8 +101,13 @@ def half_space_rung(
     curve = partial(charts, resolution)
     if not level:
         return Rung(curve, (), asdict(resolution))
-    fine, twin = (LeavesEarly(charts(r), EQUAL * scales.edge_cell(r.finest)) for r in (resolution, below))
+    fine, twin = (LeavesEarly(charts(r), _leave(scales, r)) for r in (resolution, below))
     return Rung(curve, (fine,), asdict(resolution), twin, rule_for(scales, (resolution, below), level))
+
+
+def _leave(scales: Scales, resolution: Resolution) -> float:
+    """Contact radius from which an event has the grid around its edge, unless one is fine throughout for the law."""
+    return math.inf if scales.law.outermost else EQUAL * scales.edge_cell(resolution.finest)
 
 
 def _stepped_rung(scales: Scales, rtol: float, to_load: float, level: int) -> Rung:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import pairwise
+from contextlib import suppress
+from itertools import pairwise, zip_longest
 from typing import NoReturn
 
 import numpy as np
@@ -27,7 +28,7 @@ from halfspace.equilibrium.conditions import (
 )
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, WIDEST
 from halfspace.equilibrium.newton import Traceable
-from halfspace.equilibrium.path import Point, Segment, correct
+from halfspace.equilibrium.path import Metric, Point, Segment, correct, predict
 from halfspace.errors import ContactTooWide, NotConverged
 from halfspace.scales import BRADLEY
 
@@ -36,10 +37,14 @@ Bracket = tuple[Traceable, Point, Point]
 
 def states(segments: Sequence[Segment], condition: Condition, known: Iterable[Located] = ()) -> list[Located]:
     """Every state of a traced curve that meets a condition, in order; those known are not solved for again."""
+    return [state for found in states_in(segments, condition, known) for state in found]
+
+
+def states_in(segments: Sequence[Segment], condition: Condition, known: Iterable[Located] = ()) -> list[list[Located]]:
+    """Those of each segment."""
     return [
-        state
-        for bracket in brackets_of(segments, condition)
-        for state in _within(bracket, known) or with_care(bracket, condition)
+        [state for bracket in found for state in _within(bracket, known) or with_care(bracket, condition)]
+        for found in _brackets_in(segments, condition)
     ]
 
 
@@ -50,8 +55,32 @@ def _within(bracket: Bracket, known: Iterable[Located]) -> list[Located]:
 
 def brackets_of(segments: Sequence[Segment], condition: Condition) -> list[Bracket]:
     """Discretisation and pair of points for every state that meets a condition, in order."""
+    return [bracket for found in _brackets_in(segments, condition) for bracket in found]
+
+
+def _brackets_in(segments: Sequence[Segment], condition: Condition) -> list[list[Bracket]]:
     metric = metric_for(segments[0].problem)
-    return [(s.problem, a, b) for s in segments for a, b in brackets(s.problem, s.points, metric, condition)]
+    along = [_to_hand_over(s, after, condition, metric) for s, after in zip_longest(segments, segments[1:])]
+    return [
+        [(s.problem, a, b) for a, b in brackets(s.problem, points, metric, condition)]
+        for s, points in zip(segments, along, strict=True)
+    ]
+
+
+def _to_hand_over(segment: Segment, after: Segment | None, condition: Condition, metric: Metric) -> Sequence[Point]:
+    """Points of a segment, and one more where the next discretisation begins beyond a state that this has not met."""
+    last, problem = segment.points[-1], segment.problem
+    if after is None or (condition.of(last) < 0) == (condition.of(after.points[0]) < 0):
+        return segment.points
+    for step in np.geomspace(SHORTEST, LONGEST, 8):
+        with suppress(NotConverged):
+            point = correct(problem, last, step, predict(problem, last, step), metric, iterations=20)
+            if (condition.of(point) < 0) != (condition.of(last) < 0):
+                return (*segment.points, point)
+    return segment.points
+
+
+SHORTEST, LONGEST = 1e-6, 0.1  # arclengths by which one discretisation may be behind another
 
 
 def _state(bracket: Bracket, condition: Condition) -> Located:

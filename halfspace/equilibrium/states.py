@@ -24,7 +24,7 @@ from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located, betw
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
-from halfspace.equilibrium.search import states
+from halfspace.equilibrium.search import states_in
 from halfspace.errors import InputError, NotConverged
 from halfspace.values import Array, Valued
 
@@ -173,7 +173,7 @@ class FinestCurve(Valued):
     def _cut(self, k: int) -> Mapping[str, Sequence[Segment]]:
         """Cut the curve where an observable turns."""
         branches: list[list[Segment]] = [[]]
-        found = [states([part], Condition(k, stationary=True)) for part in self.segments]
+        found = states_in(self.segments, Condition(k, stationary=True))
         confirmed = {id(turn) for turn in self.confirmed([turn for turns in found for turn in turns])}
         for part, turns in zip(self.segments, found, strict=True):
             points = list(part.points)
