@@ -208,8 +208,7 @@ def _changes(chain: Sequence[Located], rule: ErrorRule) -> Array:
     """
     changes = rule.change([event.point.observables for event in chain])
     states = [(event.problem.interface, event.problem.surface_state(event.point.x)) for event in chain]
-    surface, best = states[-1]
-    beside = surface.beside_axis(best)
+    beside = min((surface.beside_axis(x) for surface, x in states), key=max)
     gaps = rule.change([surface.near_axis(x, beside) for surface, x in states])
     changes[CENTRAL_GAP] = max(changes[CENTRAL_GAP], *gaps)
     return changes
