@@ -21,7 +21,16 @@ from fem_adhesion.discretise import (
 )
 from fem_adhesion.mesh.file import read_scaled
 from fem_adhesion.scene import Scene, require_scene
-from halfspace.accuracy.finite_bodies import AroundEvents, operators_across, surroundings
+from halfspace.accuracy.finite_bodies import (
+    AROUND,
+    CLIMBED,
+    COARSEST,
+    TIGHT,
+    WINDOW,
+    AroundEvents,
+    operators_across,
+    surroundings,
+)
 from halfspace.accuracy.grids import TWIN, rings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung
@@ -43,6 +52,7 @@ LARGER_ENDLESS, LARGER_HELD = 10**0.25, 3.2
 FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
 PER_DEGREE = 15.0  # what each degree divides it by
 REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
+WINDOW_OF_FIVE = 4e-2  # half the width where the derivative by five operators errs by 1e-8 to 3e-8 of the deflection
 BY_STEP = 2.0  # times as much by a law whose tension ends by a step: a degree may leave half of it
 
 
@@ -167,10 +177,28 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
 
 
 def _around_events(scene: Scene, how: Discretisation, rtol: float, level: int, to_load: float) -> AroundEvents:
-    """Stage of a level; events on a layer, whose kernel has its images near by, have operators each its own."""
+    """Stage of a level; events on a layer, whose kernel has its images near by, have operators each its own.
+
+    They differ by rounding, which counts in their derivative by the inverse of the window, see `windows`.
+    """
     body = sized_body(scene, how, to_load)
     across = partial(operators_across, body, rtol, level) if scene.body.curved else None
-    return AroundEvents(body, *surroundings(rtol, level), across=across)
+    usual, count = surroundings(rtol, level)
+    window = windows(rtol, level, count)
+    return AroundEvents(body, window, count, across=across, wider=window / usual)
+
+
+def windows(rtol: float, level: int, count: int) -> float:
+    """Half the logarithmic width of the radii around an event with three or five operators, as wide as `rtol` allows.
+
+    Rubber's operators differ by up to 1e-8 of themselves by rounding: on a stiff film of poisson 0.4999 the load at
+    jump-off erred by 3e-4, and more on each rung, where five were within 5e-4 either side. The derivative by three
+    errs by a seventh of the tolerance at most, in parts of the deflection, that by five by less than `TIGHT` / 30.
+    """
+    if count == AROUND:
+        return WINDOW * math.sqrt(max(min(rtol, COARSEST) / (4 * TIGHT), 1.0)) * 0.5**level
+    begin = CLIMBED if rtol >= TIGHT else 0
+    return WINDOW_OF_FIVE * math.sqrt(math.sqrt(min(rtol / TIGHT, 1.0))) * 0.5 ** (level - begin)
 
 
 def degree_for(rtol: float) -> int:

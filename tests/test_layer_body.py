@@ -12,6 +12,7 @@ import halfspace
 from fem_adhesion import Coated, HalfSpace, Layer, Layers, Scene, fields
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.cli import main
+from fem_adhesion.convergence import windows, with_rings
 from fem_adhesion.crosscheck.comparison import difference
 from fem_adhesion.discretise import discretise, quadrilateral, sized_body
 from fem_adhesion.elasticity import stress
@@ -23,6 +24,7 @@ from fem_adhesion.paraview import picture
 from fem_adhesion.paraview.arrays import inside
 from fem_adhesion.paraview.cells import Cut, Lattice
 from halfspace import Stratum, Substrate
+from halfspace.accuracy.finite_bodies import surroundings
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import panels
 from halfspace.elastic.layered import images_of, layered_panels
@@ -308,3 +310,26 @@ def test_a_load_that_hardly_falls_with_the_radius_is_refused_on_a_layer():
 def test_a_contact_wider_than_what_yields_of_thin_strata_is_refused(scene):
     with pytest.raises(ContactTooWide, match=r"^contact radius = .* beta, limit: \S+, beyond which .* as rigid; take"):
         fem_adhesion.trace(scene, rtol=1e-2)
+
+
+def _log_rate(body, radius, window, count):
+    """Derivative of the deflection of the centre by ln a, under a pressure scaled with the contact, in parts of it."""
+    operator = body.around(radius, window, count).problem.interface.operator
+    middle, step = operator.at(radius), 1e-5
+    p = np.maximum(1 - (middle.radii / radius) ** 2, 0)
+    before, after = (operator.at(radius * np.exp(x)).compliance[0] @ p for x in (-step, step))
+    return (after - before) / (2 * step) / (middle.compliance[0] @ p)
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-5, 1e-6, 1e-9])
+def test_the_derivative_of_elements_around_an_event_errs_by_less_than_the_tolerance(rtol):
+    body = sized_body(Scene(3.0, Layer(0.3)), with_rings(5))
+    exact = _log_rate(body, 1.2, 4e-2, 9)
+    _, count = surroundings(rtol, 1)
+    assert abs(_log_rate(body, 1.2, windows(rtol, 1, count), count) - exact) < rtol / 2
+
+
+def test_rounding_does_not_show_in_the_derivative_by_the_radius_on_higher_rungs():
+    body = sized_body(Scene(0.36, Coated(0.252, 72.4, 0.4999, poisson=0.4999)), with_rings(6))
+    wide, narrow = ([_log_rate(body, a, windows(1e-5, level, 5), 5) for a in (2.1, 2.2, 2.3)] for level in (2, 3))
+    assert np.abs(np.subtract(wide, narrow)).max() < 2e-6  # 2e-5 in windows of 1e-3 and 5e-4

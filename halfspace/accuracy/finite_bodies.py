@@ -291,7 +291,7 @@ class AroundEvents(WhereAsked):
     fold is where a derivative vanishes, which errs by a power of it: windows that differ from rung to rung let the
     error estimate see it. `across` tells how many operators a chart for all events has, by its middle radius and its
     window, see `operators_across`; `apart` is the ratio of the radii with operators for all points of the curve, if it
-    is not to be by the window.
+    is not to be by the window, which is so many times `wider` than `surroundings`.
     """
 
     body: SizedBody
@@ -300,6 +300,7 @@ class AroundEvents(WhereAsked):
     leave: float = np.inf
     across: Callable[[float, float], int] | None = None
     apart: float | None = None
+    wider: float = 1.0
 
     def prepare(self, events: Iterable[Located]) -> None:
         """Make one chart for all these events, where one for each takes more operators."""
@@ -343,7 +344,7 @@ class AroundEvents(WhereAsked):
     @cached_property
     def everywhere(self) -> AlongCurve:
         """The same grid for every point of a curve."""
-        apart = 1 + (CLOSER - 1) * self.window / WINDOW * 2.0 ** (AROUND - self.count)
+        apart = 1 + (CLOSER - 1) * self.window / (self.wider * WINDOW) * 2.0 ** (AROUND - self.count)
         return AlongCurve(self.body, self.apart or max(apart, _as_good_as(self.body, EXACT)[1]))
 
     def by_curve(self) -> tuple[Chart, Chart]:
