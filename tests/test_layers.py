@@ -445,6 +445,19 @@ def test_images_in_units_of_the_contact_deflect_as_at_their_own_depths(body, spa
     assert operator.least_radius == pytest.approx(0.3)
 
 
+def test_a_contact_that_is_wider_than_the_attraction_rests_on_images_integrated_up_to_its_edge():
+    """Under a load a cone on a thin layer is forty times as wide as it attracts; there deflections were of any size."""
+    body, profile = Layer(0.05, 0.3), Hyperboloid(0.05).surface(300.0)
+    scales, images = Scales(300.0, profile=profile, body=body), images_of(body)
+    operator = layered_charts(scales, images, resolution_for(scales, 1e-2), 1000.0)[1].problem.operator
+    pressure = np.sqrt(np.maximum(1 - operator.unit.radii**2, 0))
+    for radius in scales.widest_radius(1000.0) * np.array([1.0, 0.1]):
+        own = layered.layered(images, operator.unit.scaled(radius), np.inf)
+        found, wanted = (each.compliance @ pressure for each in (operator.at(radius), own))
+        inside = operator.unit.radii < 1.0
+        assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=1e-5 * np.abs(wanted).max())
+
+
 def test_images_are_integrated_for_contact_radii_that_are_asked_for_and_alike_where_two_polynomials_meet():
     path = trace(30.0, body=Layer(1.0, 0.3), rtol=1e-3)
     operator = path.stages[-1]["pull_off"].problem.operator

@@ -83,13 +83,14 @@ def layered_charts(
     """Charts of a layered body as fine as the half-space's, fine on the axis and following the contact.
 
     The cells end at twice the half-space's extent, to where all images are integrated: what is pressed farther out, in
-    the infinite cell, is too little to deflect a layer.
+    the infinite cell, is too little to deflect a layer. Those that follow the contact do past the
+    widest one: a sharp tip's is wider than that.
     """
     how = replace(resolution, extent=WIDER * resolution.extent)
     half_space, outer = Grids.of(scales, how, to_load), scales.outer_radius(how.extent**2 / 2)
     edge, widest = half_space.edge.unit, step_above(scales.widest_radius(to_load))
     least = min(least_along(half_space.until, widest), EVENTS_LEAVE * scales.edge_cell(how.finest))
-    following = nearly_homogeneous(images, edge, (least, widest), outer, BETWEEN * 10.0**-how.nodes)
+    following = nearly_homogeneous(images, edge, (least, widest), outer + widest, BETWEEN * 10.0**-how.nodes)
     standing = layered(images, half_space.centred, outer)
     return (
         Chart(contact_of(scales, standing), standing.radii.size, half_space.until),
