@@ -52,7 +52,7 @@ LARGER_ENDLESS, LARGER_HELD = 10**0.25, 3.2
 FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
 PER_DEGREE = 15.0  # what each degree divides it by
 REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
-WINDOW_OF_FIVE = 4e-2  # half the width where the derivative by five operators errs by 1e-8 to 3e-8 of the deflection
+WINDOW_OF_FIVE = 4e-2  # half the width where the derivative by five operators errs by 1e-8 to 4e-8 of the deflection
 BY_STEP = 2.0  # times as much by a law whose tension ends by a step: a degree may leave half of it
 
 

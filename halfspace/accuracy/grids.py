@@ -75,8 +75,8 @@ def rule_for(scales: Scales, resolutions: Sequence[Resolution], level: int, doub
     and of the one below: it has been climbed to since errors fall slowly.
     """
     most, fewer = (resolution.nodes for resolution in resolutions)
-    remaining = doubt * (ONE_NODE if level == 1 or scales.pieced else REMAINING)
-    return ErrorRule(remaining if most - fewer == level else max(remaining, ONE_NODE))
+    falls_slowly = level == 1 or scales.pieced or most - fewer < level
+    return ErrorRule(doubt * (ONE_NODE if falls_slowly else REMAINING))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
