@@ -199,6 +199,8 @@ def test_every_contact_with_a_body_is_solved(tabor, poisson, rtol, to_load):
 
 @over_inputs(40)
 @given(poisson=poissons, radii=st.lists(st.floats(0.1, 8), min_size=1, max_size=4), degree=st.integers(3, 5))
+@example(poisson=0.499999, radii=[3.1, 0.1, 5.3], degree=3)
+@example(poisson=0.4999, radii=[3.1, 0.1, 5.3], degree=4)
 def test_a_block_holds_any_load_and_stores_its_work(poisson, radii, degree):
     space = Space(block_grid(0.5, 1.5, 10.0), ElementQuadP(degree))
     body = condense(space, poisson, stiffness=stiffness_for(poisson))
@@ -206,7 +208,10 @@ def test_a_block_holds_any_load_and_stores_its_work(poisson, radii, degree):
     pressure = sum(np.where(r < edge, (-1.0) ** i, 0.0) for i, edge in enumerate(radii)) + 1e-3
     load, deflection = body.operator.weights @ pressure, body.operator.compliance @ pressure
     scale = body.operator.weights @ np.abs(pressure)
-    assert abs(far_reaction(body, pressure) - load) <= 1e-7 * scale
+    # A change of volume meets 1/(1 - 2 nu) times the stiffness: by that much displacements err more than round-off, and
+    # forces found from them once more. At Poisson's ratios from 0.49 to 0.499999 it is 0.1 to 5 times this.
+    rounding = np.finfo(float).eps / (1 - 2 * poisson) ** 2
+    assert abs(far_reaction(body, pressure) - load) <= (1e-9 + 20 * rounding) * scale
     work = 0.5 * (body.operator.weights * pressure) @ deflection
-    assert abs(strain_energy(body, pressure) - work) <= 1e-7 * scale * np.max(np.abs(deflection))
+    assert abs(strain_energy(body, pressure) - work) <= (1e-9 + 20 * rounding) * scale * np.max(np.abs(deflection))
     assert work > 0
