@@ -107,6 +107,14 @@ def test_newton_says_when_it_ends_without_an_equilibrium(box):
         newton(Contact(box, 1.0), 1 + box.radii**2, 0.0, load=-50.0)
 
 
+def test_newton_follows_a_law_that_ends_by_a_step():
+    """A tangent kept from where the step stood let it wander: no equilibrium was found in 20 steps."""
+    contact = contacts(Scene(3.0, law=Dugdale(0.363)))[0](2.0, 2.0)
+    found = newton(contact, 1 + np.maximum(0.75 * (contact.body.radii**2 - 4), 0.0), 3.0)
+    u = contact.displacement(found.gap)
+    np.testing.assert_allclose(contact.gap(u, found.approach), found.gap, rtol=0, atol=1e-7)
+
+
 def test_the_matrix_of_the_surface_is_what_is_left_when_all_else_is_eliminated(box):
     """With one stiffness of the law and another: determinants, and what points rise by, as of the whole matrix."""
     tension, logs = np.exp(-(box.radii**2)), []
@@ -215,6 +223,19 @@ def test_a_finer_body_is_taken_where_two_differ_by_more_than_the_budget(monkeypa
     assert doubt() > 1e-4
     monkeypatch.setattr(from_scratch, "BUDGET", 1e-4)
     assert doubt() < 1e-4
+
+
+def test_a_finer_body_is_taken_where_one_does_not_find_what_turns(monkeypatch):
+    """A state of a coating under Dugdale's law turned on the finest body only: the comparison ended in no number."""
+    asked = []
+
+    def found_from_the_third_on(*asking):
+        asked.append(asking)
+        yield from_scratch.Compared("load", "", (1.0, 1.0) if len(asked) == 2 else (1.0, None), Estimate(1.0, 0.0), 1.0)
+
+    monkeypatch.setattr(from_scratch, "_on_both", found_from_the_third_on)
+    (row,) = from_scratch.events(Scene(0.5), None)
+    assert (len(asked), row.verdict) == (2, "agree")
 
 
 @pytest.mark.parametrize(

@@ -181,15 +181,15 @@ def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
     """Balance, reaction, turning points and energy of every event of the finite elements, in the weak form.
 
     The weak form errs by less than a coarser and a finer body differ; they are ever finer until that is within its
-    budget. As two may agree by chance on one number, the largest of their differences counts for all, relative to the
-    sizes.
+    budget, and both have every number: ripples of a law with a step may hide where a state turns. As two may agree by
+    chance on one number, the largest of their differences counts for all, relative to the sizes.
     """
     rows: list[Row] = []
     for both in pairwise(contacts(scene)):
         found = list(_on_both(scene, path, *both))
         doubt = max(LEAST, *(compared.change for compared in found))
         rows = [compared.row(doubt) for compared in found]
-        if doubt <= BUDGET:
+        if doubt <= BUDGET and not any(None in compared.both for compared in found):
             break
     return rows
 

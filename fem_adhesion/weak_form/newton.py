@@ -70,9 +70,11 @@ def newton(
 
     Each step solves the problem with the law's straight line, sigma(h) + sigma' (h_new - h), in the place of the law.
     While each is much shorter than the one before, they keep its slope and with it the factors of the tangent, from
-    that given on. NotConverged if the steps run out.
+    that given on; none is kept any more as soon as a step is longer, as where the law ends by a step. NotConverged if
+    the steps run out.
     """
     before: float | None = None
+    kept = KEPT
     for _ in range(MOST_STEPS):
         if tangent is None:
             tangent, before = Tangent.at(contact, h, approach), 1.0  # its error falls as the square
@@ -83,7 +85,8 @@ def newton(
         contraction = KEPT if before is None else moved / before  # along the tangent given, a guess
         if moved * contraction < NEAR:
             return Equilibrium(contact, h, approach, contact.load(contact.law.tension(h), approach), tangent)
-        tangent, before = (tangent if contraction <= KEPT else None), moved
+        kept = 0.0 if contraction > 1 else kept
+        tangent, before = (tangent if contraction <= kept else None), moved
     raise NotConverged(f"no equilibrium in {MOST_STEPS} Newton steps of the weak form; try a nearer start")
 
 
