@@ -72,11 +72,12 @@ def rule_for(scales: Scales, resolutions: Sequence[Resolution], level: int, doub
 
     Where derivatives of profile or law leap inside a cell an error falls as a power of the nodes: a pair more leaves as
     much there as elsewhere one. So it does on a level for which there are not nodes enough, of the resolutions of that
-    and of the one below: it has been climbed to since errors fall slowly.
+    and of the one below: it has been climbed to since errors fall slowly. There the doubt, which is of a change by a
+    level's own nodes, counts as far as it exceeds that: both at once are 13 times the error on 0.01 beta.
     """
     most, fewer = (resolution.nodes for resolution in resolutions)
-    falls_slowly = level == 1 or scales.pieced or most - fewer < level
-    return ErrorRule(doubt * (ONE_NODE if falls_slowly else REMAINING))
+    remaining = doubt * (ONE_NODE if level == 1 or scales.pieced else REMAINING)
+    return ErrorRule(remaining if most - fewer == level else max(remaining, ONE_NODE))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
