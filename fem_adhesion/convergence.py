@@ -172,7 +172,7 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
         (_around_events(scene, how, rtol, level, to_load),),
         asdict(how) | {"curve_degree": curve.degree},
         other if level and doubt.other_cells else None,
-        ErrorRule(doubt.times * step * REMAINING, along=True),
+        ErrorRule(doubt.times * step * REMAINING, along=True, steps=scene.scales.steps),
     )
 
 

@@ -191,9 +191,11 @@ def test_what_a_shift_along_the_path_and_the_rest_take_from_each_other_is_left_o
     """A load at a fold that stands still by accident, as under Dugdale's law on a coating: told to half of it."""
     rates = np.array([0.0, -5.0, -1e-3, 1.0])
     values = np.array([[2e-4, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0 - 1e-5]])
-    event = events.estimate_event("any", [_chain(conditions.FOLD, rates, values)], events.ErrorRule(along=True))
-    assert event.load_error == pytest.approx(0.5 * 2 * 5.0 * 1e-5, rel=1e-4)
-    assert event.approach_error == pytest.approx(0.5 * 2e-4, rel=1e-4)
+    for steps, times in ((True, 2), (False, 1)):
+        rule = events.ErrorRule(along=True, steps=steps)
+        event = events.estimate_event("any", [_chain(conditions.FOLD, rates, values)], rule)
+        assert event.load_error == pytest.approx(0.5 * times * 5.0 * 1e-5, rel=1e-4)
+        assert event.approach_error == pytest.approx(0.5 * 2e-4, rel=1e-4)
 
 
 def _chain(condition, rates, values, near_axis=((0.0,), (0.0,))):

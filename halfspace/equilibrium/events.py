@@ -181,9 +181,9 @@ def estimate_event(
     the gap. `least` (4,) are the changes of the observables that count where the chains' own are less.
 
     If `rule.along`, or `rule.steps`, an observable's change along each chain is taken apart: into what the event's
-    shift along the path makes of it, and the rest. On a single chain one number may stand still by accident while the
-    event moves, and both parts may cancel, so their magnitudes add up. For stationary conditions only. If `rule.along`,
-    nor do the gap and radius, which are at a point, then fall as averages do: the changes of all chains add up.
+    shift along the path makes of it, and the rest, see `_apart`: on a single chain one number may stand still by
+    accident while the event moves. For stationary conditions only. If `rule.along`, nor do the gap and radius, which
+    are at a point, then fall as averages do: the changes of all chains add up.
     """
     values = chains[0][-1].point.observables
     changes = [_changes(chain, rule) for chain in chains]
@@ -215,17 +215,19 @@ def _changes(chain: Sequence[Located], rule: ErrorRule) -> Array:
 
 
 def _apart(chain: Sequence[Located], rule: ErrorRule) -> tuple[Array, Array]:
-    """Changes of the observables along a chain: by the event's shift along the path and the rest, added up.
+    """Changes of the observables along a chain: by the event's shift along the path, and the rest, the larger counts.
 
-    An event is sensitive to shifts where a rate must vanish. They are read off the contact radius, or off the central
-    gap where there is no contact. For these two, which are at a point and may stand still by accident, the second array
-    is what a shift makes of them that is read off the load or approach that has a rate: at a jump with a soft apparatus
-    it is the approach, as at the load's own extremum. Which has one the arclength's units tell.
+    By a law that ends by a step their sum: there they cancel by accident, elsewhere mostly a number is as well known as
+    both cancel. An event is sensitive to shifts where a rate must vanish. They are read off the contact radius, or off
+    the central gap where there is no contact. For these two, which are at a point and may stand still by accident, the
+    second array is what a shift makes of them that is read off the load or approach that has a rate: at a jump with a
+    soft apparatus it is the approach, as at the load's own extremum. Which has one the arclength's units tell.
     """
     event, values = chain[-1], np.array([event.point.observables for event in chain])
     rates, tell = event.point.rates, CONTACT_RADIUS if np.isfinite(values[:, CONTACT_RADIUS]).all() else CENTRAL_GAP
     other = int(np.argmax(metric_for(event.problem).weights[:CENTRAL_GAP] * rates[:CENTRAL_GAP] ** 2))
     by_point, by_average = (values[:, [k]] * (rates / rates[k]) for k in (tell, other))
-    apart, at_least = rule.change(by_point) + rule.change(values - by_point), rule.change(by_average)
+    both = np.add if rule.steps else np.maximum
+    apart, at_least = both(rule.change(by_point), rule.change(values - by_point)), rule.change(by_average)
     at_least[[APPROACH, LOAD]] = 0.0
     return apart, at_least
