@@ -117,7 +117,7 @@ def test_the_row_of_the_jump_off_at_5_is_one_state_beside_the_fold(study):
     """Printed load 2.708, central gap 0.00630 and radius 0.700 belong together; no fold lies there."""
     note = next(p.note for p in study.tables.table_2 if p.row == "jump_off H0" and p.column == 5)
     assert note.startswith("a state beside the fold")
-    assert "H0 = 0.00630, a* = 0.701" in note
+    assert "H0 = 0.006297 (as printed 0.00630), a* = 0.7011 (not the printed 0.700)" in note
 
 
 def test_no_separated_state_exists_at_the_printed_jump_on(study):

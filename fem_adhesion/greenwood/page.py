@@ -93,7 +93,7 @@ def _printed_tables(study: Greenwood1997) -> Iterator[Table]:
     see = _see_table_1(printed.table_1, printed.asymptote)
     yield _printed("table_1", title, see, "alpha*", printed.table_1)
     title = "Table 2: jumping on and off under fixed grips"
-    see = f"{_agreement(printed.table_2)} The notes say what explains the others."
+    see = f"{_agreement(printed.table_2)} The notes say what explains the others, or that nothing does."
     yield _printed("table_2", title, see, "mu", printed.table_2)
     title, see = f"Pressures printed with Fig. 4, mu = {WINDING_AT:g}", _see_profile_checks(printed.profile_checks)
     yield _printed("fig_4_checks", title, see, "gap H", printed.profile_checks)

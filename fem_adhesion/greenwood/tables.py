@@ -177,20 +177,27 @@ def _beyond_the_fold(name: str, computed: Estimate, column: Mapping[str, str], t
 
 
 def _beside(name: str, quantity: str, column: Mapping[str, str], path: EquilibriumPath) -> str:
-    """State whose load is the printed one: the paper's column, if it is beside the fold and has the printed number."""
+    """Compare the state whose load is the printed one with the whole printed column.
+
+    That state explains a printed number if it lies beside the fold and has that number; the load, which it always has,
+    if it has the printed gap or radius.
+    """
     found = path.states(Condition(LOAD, value=-float(column["minus_W_over_R_dgamma"])))
     if not found:
         return ""
     approach, _, gap, radius = found[0].point.observables
-    edge = "" if np.isnan(radius) else f"a* = {radius:.4f}, "
-    has = f"ours with the printed load has H0 = {gap:.5f}, {edge}alpha* = {approach:.5f}"
-    fold = path.events[name].approach
-    if abs(approach - fold) > BESIDE * path.approach_scale:
-        return f"{UNEXPLAINED}: {has}"
-    ours = {"H0": gap, "a_star": radius}
-    meets = {key: key in column and is_rounded(column[key], Estimate(value, 0.0)) for key, value in ours.items()}
-    belongs = meets.get(quantity, any(meets.values()))
-    return f"{'a state beside the fold' if belongs else 'near a state beside the fold'}: {has}"
+    ours = {"H0": ("H0", gap), "a_star": ("a*", radius), "minus_alpha_star": ("-alpha*", -approach)}
+    printed = {key: column[key] for key in ours if key in column}
+    meets = {key: is_rounded(text, Estimate(ours[key][1], 0.0)) for key, text in printed.items()}
+    beside = abs(approach - path.events[name].approach) <= BESIDE * path.approach_scale
+    explains = beside and meets.get(quantity, meets["H0"] or meets.get("a_star", False))
+    numbers = [
+        f"{symbol} = {value:.{_decimals(text) + 1}f} ({'as' if meets[key] else 'not the'} printed {text})"
+        for key, text in printed.items()
+        for symbol, value in (ours[key],)
+    ]
+    where = f"{'beside' if beside else 'far from'} the fold"
+    return f"{'' if explains else UNEXPLAINED + ': '}a state {where} with the printed load has {', '.join(numbers)}"
 
 
 def profile_checks() -> list[Printed]:
@@ -214,4 +221,8 @@ def is_rounded(printed: str, computed: Estimate) -> bool:
 
 
 def _last_digit(printed: str) -> float:
-    return float(10.0 ** -len(printed.partition(".")[2]))
+    return float(10.0 ** -_decimals(printed))
+
+
+def _decimals(printed: str) -> int:
+    return len(printed.partition(".")[2])

@@ -33,7 +33,7 @@ Ring = Callable[[Array, Array, Array], Array]
 
 
 def ring_kernel(r: Array, s: Array) -> Array:
-    """Deflection at radius r by a ring of unit pressure times radius at s: G = 4/(pi max) K(min/max), [G97] (2.6)."""
+    """Deflection at radius r by a ring of unit pressure times radius at s: G = 4/(pi max) K(min/max), [G97] (2.4)."""
     return _kernel(r, s, np.abs(s - r))
 
 

@@ -62,9 +62,10 @@ def simple(
     """Solve by simple relaxation, H <- H + c (H' - H), H' being the gaps under the pressures that belong to H.
 
     The problem is on a fixed grid, `start` its first state vector, and the control that of the approach or the central
-    gap. Of c Greenwood needed as little as 0.005, and only a small Tabor parameter converges at all; the tolerance is
-    the largest change H' - H accepted, relative to the gap h. InputError if the grid follows the contact, or the
-    control is another one; NotConverged if the gaps run away or `most_sweeps` run out.
+    gap. The larger the Tabor parameter, the smaller c must be, and the more sweeps it takes: Greenwood went down to
+    0.005, with which states in contact converge up to a Tabor parameter of 3 in 19 000 sweeps of 200 nodes. The
+    tolerance is the largest change H' - H accepted, relative to the gap h. InputError if the grid follows the contact,
+    or the control is another one; NotConverged if the gaps run away or `most_sweeps` run out.
     """
     gaps, tabor, law = _gaps_under(problem, control), problem.tabor, problem.law
     H = start[:-2].copy()

@@ -19,7 +19,7 @@ from halfspace.values import Array, Valued, keep
 class Paraboloid(Dimensionless):
     """r^2/2R, up to the radius `end` in beta.
 
-    Every smooth surface is close to one at its pole: Greenwood's sphere, [G97] (2.4).
+    Every smooth surface is close to one at its pole: Greenwood's sphere, [G97] (2.1) and (2.6).
     """
 
     end: float = np.inf
