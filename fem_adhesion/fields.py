@@ -23,7 +23,7 @@ from fem_adhesion.elasticity.boundaries import Trace
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.elasticity.stress import recovered_stresses
 from fem_adhesion.scene import Scene
-from halfspace.elastic import compliance
+from halfspace.elastic.layered import panels_of
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import metric_for, transfer
 from halfspace.equilibrium.conditions import Located, same_place
@@ -208,13 +208,14 @@ class Beside(Valued):
 def half_space_beside(state: State) -> Beside:
     """Solve for the half-space by the integral equation where a body of finite elements was solved for.
 
-    Its rings end where the elements do, except at the contact edge, but its compliance is that of the ring kernel.
+    Its rings end where the elements do, except at the contact edge, but its compliance is that of the ring kernel; on a
+    layered body it has the strata, too.
     The contact radius is prescribed, or the central gap if there is no contact; approach and load are its own.
     NotConverged if the half-space has no such state.
     """
     source, tabor = state.problem.operator.at(1.0), state.scene.tabor
     cells = _clear_of(source.cells, float(state.observables[CONTACT_RADIUS]))
-    operator = compliance.panels(cells, min(source.cell_nodes.shape[1], MOST_NODES))
+    operator = panels_of(state.scene.body.layered, cells, min(source.cell_nodes.shape[1], MOST_NODES))
     problem = ContactProblem(operator, tabor, state.problem.law, state.problem.profile)
     start = np.append(source.values_at(operator.radii, state.gap), state.point.x[-2:])
     solution = newton.solve(problem, start, _same(state.observables))
@@ -235,11 +236,6 @@ def _clear_of(cells: Array, radius: float) -> Array:
     moved = cells.copy()
     moved[nearest] = (cells[nearest] + cells[other]) / 2
     return moved
-
-
-def is_same_contact(scene: Scene) -> bool:
-    """Whether the half-space is the scene's body, so that the two solutions differ by their errors alone."""
-    return scene.body.endless
 
 
 def _same(observables: Array) -> newton.Control:

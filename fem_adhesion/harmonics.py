@@ -172,14 +172,14 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
     Parameters
     ----------
     scene : Scene
-        Of a body that is ``checked_by`` harmonics, with a counter-body or without.
+        One that is ``checked_by`` harmonics, with a counter-body or without.
     rtol, to_load : float
         As in `halfspace.trace`.
 
     Raises
     ------
     InputError
-        If an input is out of range, or it takes too many harmonics.
+        If an input is out of range, the harmonics do not know a body, or it takes too many of them.
     halfspace.errors.NotConverged
         If the curve cannot be traced.
     """
@@ -210,7 +210,12 @@ def counts(scene: Scene, how: Fineness) -> list[int]:
 
 
 def require_few(scene: Scene, rtol: float) -> None:
-    """Refuse a scene that takes too many harmonics; raise InputError."""
+    """Refuse a scene that is not ``checked_by`` harmonics, or takes too many; raise InputError."""
+    if scene.checked_by != "harmonics":
+        raise InputError(
+            f"scene = {', '.join(scene.told)} is not known to harmonics, limit: linear hemispheres that slide, all "
+            "tractions per projected area; take fem_adhesion.trace"
+        )
     most = max(counts(scene, resolution_for(rtol, 1)))
     if most > MOST:
         raise InputError(

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
-from fem_adhesion.bodies.body import Body
+from fem_adhesion.bodies.body import Body, SolverName
 from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.bodies.layers import as_body
 from fem_adhesion.materials import Material
@@ -116,6 +117,24 @@ class Scene:
         """Poisson's ratio of the first body."""
         return self.material.poisson
 
+    @property
+    def checked_by(self) -> SolverName | None:
+        """Solver without finite elements that knows every body, see `fem_adhesion.crosscheck.references`."""
+        known = [body.checked_by for body in (self.body, self.counter) if body]
+        return known[0] if all(known) else None
+
+    @property
+    def for_half_space(self) -> dict[str, Any]:
+        """What `halfspace.trace` is given of the scene."""
+        return {"tabor": self.tabor, "law": self.law, "profile": self.shape, "body": self.body.layered}
+
+    @property
+    def left_out(self) -> list[str]:
+        """What `halfspace.trace` is not given of the scene, in words; nothing of a half-space and of strata."""
+        if self.body.endless or self.body.layered:
+            return []
+        return [*self.body.told, f"poisson {self.poisson:g}", *self._unusual]
+
     def made_of(self, material: Material) -> Scene:
         """Return the same contact of another material."""
         return replace(self, body=replace(self.body, material=material))
@@ -186,19 +205,24 @@ class Scene:
     @property
     def told(self) -> list[str]:
         """What it is, in words: Tabor parameter, material and body, and what else is not as usual."""
-        material = self.material
         parts = {
             f"under a {told(self.profile)}": self.profile is not None and self.profile != self.body.shape,
             f"law {told(self.law)}, {self._as_lennard_jones}": self.law != LENNARD_JONES,
-            f"traction per {material.traction}": material.traction != "projected",
-            "finite strain": material.finite,
         }
         words = [f"tabor {self.tabor:g}", f"poisson {self.poisson:g}", *self.body.told]
         words += [f"R/eps {self.radius_ratio:.4g}"] if self.radius_ratio else []
-        words += [word for word, holds in parts.items() if holds]
+        return [*words, *(word for word, holds in parts.items() if holds), *self._unusual]
+
+    @property
+    def _unusual(self) -> list[str]:
+        """What there is of the material and a counter-body that is not as usual, in words."""
+        material = self.material
+        words = [f"traction per {material.traction}"] if material.traction != "projected" else []
+        words += ["finite strain"] if material.finite else []
         if self.counter:
             larger = 1 / self._smaller if self._smaller else math.inf
             words.append(f"counter-body with {self.share:.4g} of the compliance, radius {larger:.4g}")
+            words += [f"its poisson {self.counter.material.poisson:g}", *self.counter.told[1:]]
         return words
 
 

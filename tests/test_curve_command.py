@@ -641,7 +641,7 @@ def test_a_hamaker_constant_makes_the_spacing(monkeypatch):
 
 def test_the_other_solver_of_a_true_sphere_has_its_profile(monkeypatch):
     asked = {}
-    monkeypatch.setattr(study.halfspace, "trace", lambda _, **options: asked.update(options))
+    monkeypatch.setattr(study.halfspace, "trace", lambda **scene: asked.update(scene))
     scene = Scene(2.0, Hemisphere(radius_ratio=100))
     study.trace(study.Question(scene, solver="both"), study.HALF_SPACE)
     assert asked["profile"] == Sphere(100)

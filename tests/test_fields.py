@@ -7,7 +7,7 @@ from scipy.sparse.linalg import spsolve
 from skfem import CellBasis, ElementQuad2, ElementQuadP
 
 import fem_adhesion
-from fem_adhesion import HeldSphere, Hemisphere, NeoHookean, fields
+from fem_adhesion import HeldSphere, Hemisphere, Layer, NeoHookean, fields
 from fem_adhesion.elasticity import stress
 from fem_adhesion.elasticity.boundaries import (
     boussinesq_displacement,
@@ -153,6 +153,12 @@ def test_the_finite_elements_agree_with_the_half_space_beside_them(states):
         beside = half_space_beside(state)
         assert np.max(np.abs(beside.pressure - state.pressure)) < 2e-4 * np.max(np.abs(state.pressure))
         assert beside.observables[:2] == pytest.approx(state.observables[:2], abs=2e-4)
+
+
+def test_the_half_space_beside_a_layer_has_its_strata():
+    scene = Scene(1.0, Layer(2.0))
+    for state in fields.states_along(scene, fem_adhesion.trace(scene, rtol=1e-3), points=0):
+        assert half_space_beside(state).observables[:2] == pytest.approx(state.observables[:2], abs=2e-3)
 
 
 def energy_inside(state):

@@ -31,7 +31,8 @@ class Hemisphere(Held):
     @property
     def checked_by(self) -> SolverName | None:
         """Whole sphere by harmonics."""
-        return "harmonics" if self.grip == "sliding" and self.material.area == "projected" else None
+        linear = self.material.area == "projected" and not self.material.finite
+        return "harmonics" if self.grip == "sliding" and linear else None
 
     @property
     def singular(self) -> bool:

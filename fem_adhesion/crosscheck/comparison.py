@@ -150,7 +150,7 @@ def require_comparable(scene: Scene, rtol: float) -> None:
             f"material = {scene.material} is compared with nothing, limit: small strain; no other solver of the house "
             "knows it"
         )
-    if scene.body.checked_by == "harmonics":
+    if scene.checked_by == "harmonics":
         from fem_adhesion import harmonics  # here, as other scenes are handed to processes by one that loads no solver
 
         harmonics.require_few(scene, tighter(rtol))

@@ -17,9 +17,9 @@ from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, Pair
 from fem_adhesion.discretise import block_size
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import SizedBody, at_equator
-from halfspace.elastic import compliance, grid
+from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.elastic.layered import images_of, layered_panels
+from halfspace.elastic.layered import panels_of
 from halfspace.equilibrium.contact import ContactProblem, contact_of
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.values import Array
@@ -42,12 +42,11 @@ class Reference:
 
 def reference_for(scene: Scene) -> Reference | None:
     """The half-space or the whole sphere by harmonics; None for a body that neither knows."""
-    return REFERENCES[scene.body.checked_by](scene) if scene.body.checked_by else None
+    return REFERENCES[scene.checked_by](scene) if scene.checked_by else None
 
 
 def _by_integral_equation(scene: Scene) -> Reference:
-    trace = partial(halfspace.trace, scene.tabor, law=scene.law, profile=scene.shape, body=scene.body.layered)
-    return Reference(SOLVERS, trace, partial(_half_spaces, scene))
+    return Reference(SOLVERS, partial(halfspace.trace, **scene.for_half_space), partial(_half_spaces, scene))
 
 
 REFERENCES: Mapping[SolverName, Callable[[Scene], Reference]] = {
@@ -98,9 +97,7 @@ def _half_spaces(scene: Scene, rtol: float) -> Operators:
     degree = convergence.resolution_for(scene, rtol, 0).how.degree
     lines = _lines(scene)
     wider = lines if scene.sized else grid.graded(1.0, FINEST, 2 * lines[-1])
-    body = scene.body.layered
-    panels = partial(layered_panels, images_of(body)) if body else compliance.panels
-    return [panels(wider, k) for k in (degree + 3, degree + 5)]
+    return [panels_of(scene.body.layered, wider, k) for k in (degree + 3, degree + 5)]
 
 
 # Spheres by harmonics

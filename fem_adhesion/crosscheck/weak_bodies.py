@@ -69,7 +69,7 @@ def contacts(scene: Scene, load: float | None = None) -> list[FineAt]:
         return [partial(_on_half_space, scene, fineness) for fineness in FINENESS]
     if scene.body.file:
         return [partial(_on_given_mesh, scene, degree) for degree in DEGREES if degree in TRIANGLES]
-    more = int(scene.body.checked_by is None or scene.poisson > NEARLY or scene.body.layered is not None)
+    more = int(scene.checked_by is None or scene.poisson > NEARLY or scene.body.layered is not None)
     load = load or scene.scales.largest_load
     return [partial(_sized, scene, degree + more, load) for degree in DEGREES]
 

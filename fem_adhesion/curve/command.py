@@ -213,7 +213,8 @@ def _question(options: argparse.Namespace) -> Question:
     contact = material_unless_tabor(options)
     scene = _scene(options, contact)
     inside = options.vtk or options.render or options.movie
-    solver: SolverName = options.solver or ("half-space" if scene.body.endless and not inside else "fem")
+    plain = scene.body.name == "half-space" and not inside
+    solver: SolverName = options.solver or ("half-space" if plain else "fem")
     _require_heeded(options, scene, solver, contact)
     if contact:
         _require_own_radius(contact.units.radius, scene.shape)
@@ -231,8 +232,10 @@ def _question(options: argparse.Namespace) -> Question:
 
 def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverName, contact: Contact | None) -> None:
     """Refuse what the question would not depend on."""
-    if not contact and solver == "half-space":
-        refuse(options, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it")
+    if solver == "half-space":
+        refuse(options, ("block_radius",), "with fem or both, as half-spaces have none")
+        if not contact and not scene.body.layered:
+            refuse(options, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it")
     if not options.vtk:
         refuse(options, ("revolve", "force"), "with --vtk DIR")
     if not (options.json or options.csv or options.plot or options.vtk):

@@ -13,7 +13,6 @@ from fem_adhesion.common import lines, style
 from fem_adhesion.common.lines import Frame
 from fem_adhesion.common.numbers import engineering
 from fem_adhesion.curve.solve import Curves
-from fem_adhesion.fields import is_same_contact
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import reaching
 from halfspace.laws import LENNARD_JONES
@@ -103,7 +102,7 @@ def _draw_other(axes: Any, curves: Curves, frame: Frame) -> None:
     """The half-space beside the finite elements: points on the same contact, a line for another."""
     if curves.other is None:
         return
-    if is_same_contact(curves.question.scene):
+    if not curves.question.scene.left_out:
         look: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 4, "markerfacecolor": "white"}
         look |= {"color": "black", "markeredgewidth": 0.8, "zorder": 4}
         approach, load = _spread(curves.other.approach, curves.other.load, frame)

@@ -36,7 +36,9 @@ def record(curves: Curves) -> dict[str, Any]:
         "to_load": question.to_load,
         "units": UNITS,
         "si": _si(question.units) if question.units else None,
-        "solutions": {name: _solution(path) for name, path in curves.sampled.items()},
+        "solutions": {
+            name: _solution(path) | {"left_out": curves.left_out(name)} for name, path in curves.sampled.items()
+        },
         "jumps": {"fixed_grips": _cycle(curves.grips), "apparatus": _cycle(curves.apparatus)},
         "versions": versions(),
     }

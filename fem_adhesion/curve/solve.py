@@ -32,11 +32,13 @@ SolverName = Literal["half-space", "fem", "both"]
 class Question:
     """What is asked of a contact.
 
-    Of a body that is no half-space the integral equation solves the half-space under the same profile, so that it
-    serves for comparison only. `rtol` is the relative accuracy asked of loads and approaches, 1e-9 to 1e-1; the curve
-    ends at a compressive load in R dgamma; units are of the contact in SI, if its material is known; the stiffness is
-    that of the apparatus in R dgamma/eps, infinite for fixed grips. Each curve has so many points in files, evenly
-    spaced in arclength; as many as its tracing takes unless given, or drawn.
+    Of a body that is neither a half-space nor layers the integral equation solves the half-space under the same
+    profile, so that it serves for comparison only: `Curves.left_out` says what is missing.
+
+    `rtol` is the relative accuracy asked of loads and approaches, 1e-9 to 1e-1; the curve ends at a compressive load in
+    R dgamma; units are of the contact in SI, if its material is known; the stiffness is that of the apparatus in
+    R dgamma/eps, infinite for fixed grips. Each curve has so many points in files, evenly spaced in arclength; as many
+    as its tracing takes unless given, or drawn.
 
     InputError if a value is out of range, or the solver does not serve the scene.
     """
@@ -58,9 +60,10 @@ class Question:
             raise InputError(
                 f"stiffness = {self.stiffness:g} R dgamma/eps is outside 0 < stiffness; leave it out for fixed grips"
             )
-        if self.solver == "half-space" and not self.scene.body.endless:
+        if self.solver == "half-space" and self.scene.left_out:
             raise InputError(
-                f"solver = half-space does not serve body = {self.scene.body.name}, limit: half-space; take fem or both"
+                f"solver = half-space does not serve body = {self.scene.body.name}, limit: a half-space or layers; "
+                "take fem or both"
             )
 
 
@@ -94,6 +97,10 @@ class Curves:
             return self.paths
         points = self.question.points
         return {name: path if path.count == points else path.resampled(points) for name, path in self.paths.items()}
+
+    def left_out(self, solver: str) -> list[str]:
+        """What a solver was not given of the scene, in words."""
+        return self.question.scene.left_out if solver == HALF_SPACE else []
 
     @property
     def other(self) -> EquilibriumPath | None:
@@ -134,7 +141,7 @@ def trace(question: Question, solver: str) -> EquilibriumPath:
     scene, rtol, to_load = question.scene, question.rtol, question.to_load
     if solver == FINITE_ELEMENTS:
         return convergence.trace(scene, rtol=rtol, to_load=to_load)
-    return halfspace.trace(scene.tabor, law=scene.law, profile=scene.shape, rtol=rtol, to_load=to_load)
+    return halfspace.trace(**scene.for_half_space, rtol=rtol, to_load=to_load)
 
 
 @dataclass(frozen=True)

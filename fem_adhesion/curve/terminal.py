@@ -119,6 +119,8 @@ def notes(curves: Curves) -> Iterator[str]:
             yield f"no jumps, {device}: the contact follows smoothly"
     yield from _uncertainty(curves)
     for solver, path in curves.paths.items():
+        if missing := curves.left_out(solver):
+            yield f"{solver}: another body under the same profile, which leaves out: {', '.join(missing)}"
         if path.margin:
             yield f"{solver}: {_how_far(path.margin)}"
         for fold in path.unconfirmed:

@@ -10,7 +10,7 @@ import numpy as np
 
 from fem_adhesion.common.facts import plain
 from fem_adhesion.elasticity import stress as stresses
-from fem_adhesion.fields import Beside, State, is_same_contact
+from fem_adhesion.fields import Beside, State
 from fem_adhesion.paraview.cells import Cut, Solid
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.contact import OBSERVABLES
@@ -153,7 +153,7 @@ def turned(arrays: Named, solid: Solid) -> Named:
 
 def on_surface(state: State, beside: Beside, scale: float) -> Named:
     """Arrays on the nodes of the contact surface; those of the half-space say so, and whether it is another body."""
-    other = "half_space" if is_same_contact(state.scene) else "half_space_which_is_another_body"
+    other = "half_space_which_is_another_body" if state.scene.left_out else "half_space"
     u_r, u_z = state.surface_displacement
     displacement = np.stack([u_r, np.zeros_like(u_r), u_z], axis=1)
     return _displacements(state, displacement, scale) | {
@@ -223,7 +223,7 @@ def half_space_numbers(beside: Beside, units: Units | None) -> dict[str, float]:
 def words(scene: Scene) -> dict[str, object]:
     """What the arrays are, for people: units, meanings, components, signs."""
     where = "at the same contact radius, or central gap without contact"
-    other = "the same contact, solved by the integral equation" if is_same_contact(scene) else "another body than this"
+    other = "another body than this" if scene.left_out else "the same contact, solved by the integral equation"
     return {
         "scene": plain(asdict(scene)),
         "units": {name: unit.words for name, unit in UNITS.items()},

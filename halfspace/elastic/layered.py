@@ -172,6 +172,13 @@ def layered_panels(images: Images, breakpoints: Array, nodes_per_panel: int) -> 
     return replace(half_space, compliance=half_space.compliance + image_compliance(images, half_space))
 
 
+def panels_of(body: LayeredBody | None, breakpoints: Array, nodes_per_panel: int) -> ElasticOperator:
+    """Layered body, or a half-space for None, as of `layered_panels`."""
+    if body is None:
+        return panels(breakpoints, nodes_per_panel)
+    return layered_panels(images_of(body), breakpoints, nodes_per_panel)
+
+
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class LayeredOperator(ElasticOperator):
     """Layered body on the grid of a half-space's operator; the rest is as of `image_compliance`."""

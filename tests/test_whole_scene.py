@@ -1,0 +1,207 @@
+"""Whoever solves a scene is given the whole of it, or says what it was not: each option, command and solver."""
+
+import pytest
+
+import fem_adhesion
+import halfspace
+from fem_adhesion import cli, convergence, harmonics
+from fem_adhesion.common.options import Parser
+from fem_adhesion.common.scene_options import add_body, add_contact
+from fem_adhesion.crosscheck import scenes as comparisons
+from fem_adhesion.crosscheck.references import reference_for
+from fem_adhesion.scene import Scene
+from halfspace.errors import InputError, NotConverged
+
+MATERIAL = "--radius 100nm --modulus 1GPa --poisson 0.3 --work-of-adhesion 50mJ/m^2 --spacing 0.3nm"
+PLAIN = "--tabor 1"
+COUNTER = "--counter-modulus 3GPa --counter-poisson 0.4"
+SPHERE = "--tabor 1 --body hemisphere --radius-ratio 40"
+PAIR = f"{SPHERE} --counter-share 0.4"
+LAYER = "--tabor 1 --body layer --thickness 2"
+COATED = "--tabor 1 --body coated --thickness 2 --modulus-ratio 3"
+HELD = "--tabor 1 --body held-sphere --radius-ratio 40"
+BLOCK = "--tabor 1 --body block --block-radius 20"
+STRATA = "--tabor 1 --body layers --strata"
+MESH = "--tabor 1 --radius-ratio 40 --mesh meshes"
+
+CHANGES = {
+    "tabor": [(PLAIN, "--tabor 2")],
+    "radius": [(MATERIAL, MATERIAL.replace("100nm", "90nm"))],
+    "modulus": [(MATERIAL, MATERIAL.replace("1GPa", "2GPa"))],
+    "poisson": [
+        (MATERIAL, MATERIAL.replace("0.3 ", "0.4 ")),
+        *(
+            (f"{start} --poisson 0.3", f"{start} --poisson 0.4")
+            for start in (
+                PLAIN,
+                SPHERE,
+                f"{SPHERE} --grip bonded",
+                PAIR,
+                LAYER,
+                COATED,
+                HELD,
+            )
+        ),
+    ],
+    "work_of_adhesion": [(MATERIAL, MATERIAL.replace("50mJ", "60mJ"))],
+    "spacing": [(MATERIAL, MATERIAL.replace("0.3nm", "0.4nm"))],
+    "hamaker": [(MATERIAL, MATERIAL.replace("--spacing 0.3nm", "--hamaker 65zJ"))],
+    "counter_modulus": [
+        (MATERIAL, f"{MATERIAL} {COUNTER}"),
+        (f"{MATERIAL} --body hemisphere", f"{MATERIAL} --body hemisphere {COUNTER}"),
+    ],
+    "counter_poisson": [
+        (f"{PAIR} --counter-poisson 0.3", f"{PAIR} --counter-poisson 0.4"),
+        (f"{MATERIAL} {COUNTER}", f"{MATERIAL} {COUNTER.replace('0.4', '0.2')}"),
+    ],
+    "counter_radius": [
+        (PAIR, f"{PAIR} --counter-radius 3"),
+        (f"{MATERIAL} {COUNTER}", f"{MATERIAL} {COUNTER} --counter-radius 300nm"),
+    ],
+    "counter_share": [(SPHERE, PAIR), (PAIR, PAIR.replace("0.4", "0.3"))],
+    "grip": [
+        (SPHERE, f"{SPHERE} --grip bonded"),
+        (f"{PAIR} --counter-radius 3", f"{PAIR} --counter-radius 3 --grip bonded"),
+    ],
+    "body": [(PLAIN, SPHERE), (PLAIN, LAYER)],
+    "mesh": [(f"{MESH}/hemisphere.msh", f"{MESH}/tip.msh")],
+    "profile": [(PLAIN, f"{PLAIN} --profile power --profile-parameter 4"), (SPHERE, f"{SPHERE} --profile paraboloid")],
+    "profile_parameter": [
+        (f"{PLAIN} --profile power --profile-parameter 4", f"{PLAIN} --profile power --profile-parameter 3")
+    ],
+    "law": [(PLAIN, f"{PLAIN} --law morse --law-parameter 3"), (SPHERE, f"{SPHERE} --law morse --law-parameter 3")],
+    "law_parameter": [(f"{PLAIN} --law morse --law-parameter 3", f"{PLAIN} --law morse --law-parameter 4")],
+    "cap_angle": [(HELD, f"{HELD} --cap-angle 50")],
+    "thickness": [
+        (LAYER, f"{PLAIN} --body layer --thickness 3"),
+        (f"{MATERIAL} --body layer --thickness 5nm", f"{MATERIAL} --body layer --thickness 6nm"),
+    ],
+    "foundation": [(LAYER, f"{LAYER} --foundation sliding")],
+    "modulus_ratio": [(COATED, f"{PLAIN} --body coated --thickness 2 --modulus-ratio 2")],
+    "substrate_poisson": [
+        (COATED, f"{COATED} --substrate-poisson 0.4"),
+    ],
+    "strata": [(f"{STRATA} 2 3:0.4:2", f"{STRATA} 2 3:0.2:2"), (f"{STRATA} 2", f"{STRATA} 3")],
+    "substrate": [
+        (f"{STRATA} 2", f"{STRATA} 2 --substrate 3:0.2"),
+        (f"{STRATA} 2 --substrate 3:0.2", f"{STRATA} 2 --substrate 3:0.3"),
+    ],
+    "block_radius": [(BLOCK, f"{PLAIN} --body block --block-radius 30")],
+    "far_field": [(BLOCK, f"{BLOCK} --far-field free")],
+    "strain": [(SPHERE, f"{SPHERE} --strain finite")],
+    "traction": [
+        (SPHERE, f"{SPHERE} --traction surface"),
+        (f"{SPHERE} --strain finite", f"{SPHERE} --strain finite --traction normal"),
+    ],
+    "radius_ratio": [
+        (SPHERE, SPHERE.replace("40", "30")),
+        (f"{PLAIN} --profile sphere --radius-ratio 40", f"{PLAIN} --profile sphere --radius-ratio 30"),
+    ],
+}
+"""For every option of a scene two scenes that it tells apart."""
+
+ONE_NUMBER = {
+    "poisson": "E*, which a Tabor parameter has in it",
+    "block_radius": "an estimate",
+    "far_field": "an estimate",
+}
+"""What of a half-space makes no difference to one: a block that is cut off is one to within its error estimate."""
+
+
+@pytest.fixture(scope="module")
+def path():
+    return halfspace.trace(2.0, rtol=0.1)
+
+
+@pytest.fixture
+def given(monkeypatch, path):
+    """What the solvers were given since it was emptied."""
+    found = []
+
+    def recording(name):
+        return lambda *scene, **parts: found.append((name, scene, parts)) or path
+
+    for module, name in ((halfspace, "half-space"), (convergence, "fem"), (harmonics, "harmonics")):
+        monkeypatch.setattr(module, "trace", recording(name))
+    return found
+
+
+def test_every_option_of_a_scene_is_here():
+    parser = Parser(prog="scene")
+    add_contact(parser)
+    add_body(parser)
+    assert {action.dest for action in parser._actions} - {"help", "stiffness"} == CHANGES.keys()
+
+
+def _cases():
+    return [
+        pytest.param(option, *pair, id=f"{option}-{k}")
+        for option, pairs in CHANGES.items()
+        for k, pair in enumerate(pairs)
+    ]
+
+
+@pytest.mark.parametrize(("option", "one", "other"), _cases())
+@pytest.mark.parametrize("solver", ["half-space", "fem", "both"])
+def test_curve_gives_every_option_to_every_solver_or_says_what_it_left_out(option, one, other, solver, given, capsys):
+    curves = []
+    for words in (one, other):
+        code = cli.main(["curve", *words.split(), "--solver", solver])
+        layered = any(f"--body {body}" in words for body in ("layer", "coated"))
+        assert code == 0 or (solver == "half-space" and not layered)
+        missing = capsys.readouterr().out.partition("leaves out: ")[2].partition(" unknowns, ")[0]
+        curves.append((code, given.copy(), missing))
+        given.clear()
+    (code, first, missing), (other_code, second, missing_too) = curves
+    if 0 == code == other_code:
+        assert len(first) == len(second) == (2 if solver == "both" else 1)
+        for a, b in zip(first, second, strict=True):
+            plain = a[0] == "half-space" and not (missing or missing_too)
+            assert a != b or missing != missing_too or (plain and option in ONE_NUMBER)
+
+
+@pytest.mark.parametrize(("option", "one", "other"), [case for case in _cases() if "nm" not in case.values[1]])
+def test_compare_gives_every_option_to_its_reference_or_has_none(option, one, other, given, monkeypatch):
+    asked = []
+
+    def run(scenes, **_):
+        asked.extend(scenes)
+        raise NotConverged("asked")
+
+    monkeypatch.setattr(comparisons, "run", run)
+    for words in (one, other):
+        assert cli.main(["compare", *words.split()]) == (2 if "finite" in words else 1)
+    for reference in map(reference_for, asked):
+        given.extend([None] if reference is None else [])
+        _ = reference and reference.trace(rtol=1e-5)
+    if len(given) == 2 and given != [None, None]:
+        assert given[0] != given[1] or (given[0][0] == "half-space" and option in ONE_NUMBER)
+
+
+def test_a_layer_is_a_layer_to_both_solvers(capsys):
+    """Not the half-space beside it, at -5.24855 R dgamma."""
+    for solver, rows in (("half-space", 1), ("both", 2)):
+        assert cli.main(["curve", *LAYER.split(), "--solver", solver, "--rtol", "1e-4"]) == 0
+        assert capsys.readouterr().out.count("-5.6816") == rows
+
+
+def test_harmonics_refuse_what_they_do_not_know():
+    """A bonded counter-body, finite strain, and a body of another kind: the answer would be another contact's."""
+    bonded = fem_adhesion.Hemisphere(radius_ratio=40.0, grip="bonded")
+    sliding = fem_adhesion.Hemisphere(radius_ratio=40.0)
+    rubber = fem_adhesion.Hemisphere(radius_ratio=40.0, material=fem_adhesion.NeoHookean())
+    for scene in (Scene(1.0, sliding, counter=bonded, share=0.5), Scene(1.0, rubber), Scene(1.0, bonded), Scene(1.0)):
+        with pytest.raises(InputError, match="is not known to harmonics"):
+            harmonics.trace(scene)
+
+
+def test_a_sound_pair_one_of_which_is_bonded_is_not_held_against_a_sliding_one():
+    scene = Scene(
+        1.0,
+        fem_adhesion.Hemisphere(radius_ratio=40.0),
+        counter=fem_adhesion.Hemisphere(radius_ratio=40.0, grip="bonded"),
+        share=0.5,
+    )
+    case = fem_adhesion.compare(scene, rtol=1e-3)
+    assert list(case.solutions) == ["finite elements"]
+    assert case.verdict == "agree"
