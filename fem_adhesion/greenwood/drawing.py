@@ -1,25 +1,31 @@
-"""How curves after the paper's are drawn, and what is to be seen in them: how near finite elements are, and what falls.
+"""A figure as data: axes, lines, and what is to be seen in them. What is drawn is what its CSV file holds.
 
-Each Tabor parameter and each theory has a look of its own; a figure shows no two parameters of the same colour.
+Each Tabor parameter and each theory has a look of its own; a figure shows no two Tabor parameters in the same look.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
-from fem_adhesion.common.lines import smooth
+from fem_adhesion.common import style
 from fem_adhesion.common.numbers import told
+from fem_adhesion.common.page import Table
 from fem_adhesion.common.style import BLUE, CHAIN, DASHED, DOTTED, GREEN, LONG, ORANGE, PINK, RED, SKY
-from halfspace.equilibrium.contact import CENTRAL_GAP as GAP
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.values import Array
+from halfspace.equilibrium.states import States
+from halfspace.values import Array, Valued
 
-OF_TABOR = {0.02: SKY, 0.1: BLUE, 0.3: GREEN, 0.5: ORANGE, 1.0: RED, 2.0: BLUE, 3.0: PINK, 5.0: GREEN}
-DASHES_OF_TABOR = dict(zip(OF_TABOR, ("-", DASHED, CHAIN, LONG, "-", DASHED, CHAIN, DOTTED), strict=True))
+OF_TABOR = {
+    0.02: SKY, 0.05: SKY, 0.1: BLUE, 0.2: GREEN, 0.5: ORANGE, 0.7: SKY, 1.0: RED, 2.0: BLUE, 3.0: PINK, 5.0: GREEN,
+}  # fmt: skip
+DASHES_OF_TABOR = dict(zip(OF_TABOR, ("-", "-", DASHED, CHAIN, LONG, DASHED, "-", DASHED, CHAIN, LONG), strict=True))
 THEORIES: Mapping[str, Mapping[str, Any]] = {
     "Bradley": {"color": "black", "linestyle": DOTTED, "linewidth": 1.8},
     "JKR": {"color": "black", "linestyle": DASHED, "linewidth": 1.5},
@@ -28,48 +34,204 @@ THEORIES: Mapping[str, Mapping[str, Any]] = {
     "DMT force method": {"color": PINK, "linestyle": DASHED, "linewidth": 1.5},
     "DMT thermodynamic": {"color": RED, "linestyle": CHAIN, "linewidth": 1.5},
 }
-ELEMENTS: Mapping[str, Any] = {
-    "linestyle": "none",
-    "marker": "o",
-    "markersize": 5,
-    "markerfacecolor": "white",
-    "zorder": 4,
-}
-
-LOAD = r"load $W/R\Delta\gamma$"
-APPROACH = r"approach $\alpha^*$"
-SCALED_APPROACH = r"scaled approach $\alpha^*/\mu$"
-CENTRAL_GAP = r"central gap $H(0)$"
-RADIUS = r"radius $u = r/\beta$"
+MARKS: Mapping[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 5, "markerfacecolor": "white"}
+HALF_SPACE, ELEMENTS = "half-space", "finite elements"
 
 
-def curve(axes: Any, tabor: float, x: Array, y: Array) -> None:
-    """Whole curve at a Tabor parameter, its dashes those of the parameter."""
-    style = {"color": OF_TABOR[tabor], "linestyle": DASHES_OF_TABOR[tabor]}
-    axes.plot(x, y, label=rf"$\mu = {tabor:g}$", linewidth=1.9, **style)
+@dataclass(frozen=True)
+class Axis:
+    """What is along an axis: quantity and unit, which name the column of the file, and the label.
+
+    The unit is in words joined by underscores, empty if there is none; limits are those of the picture, in that unit.
+    """
+
+    quantity: str
+    unit: str
+    label: str
+    limits: tuple[float, float] | None = None
+    ticks: Sequence[float] = ()
+    logarithmic: bool = False
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the columns of its values and of their errors."""
+        return tuple("_".join(filter(None, (name, self.unit))) for name in (self.quantity, f"{self.quantity}_error"))
+
+    def within(self, low: float, high: float) -> Axis:
+        """The same, of which this range is shown."""
+        return replace(self, limits=(low, high))
+
+    def values(self, states: EquilibriumPath | States, tabor: float) -> tuple[Array, Array]:
+        """Numbers of states along the axis, and their errors, (n,) arrays."""
+        names, size = (self.quantity, f"{self.quantity}_error"), SIZES.get(self.unit, lambda _: 1.0)(tabor)
+        value, error = (np.atleast_1d(getattr(states, name)) / size for name in names)
+        return value, error
 
 
-def branches(axes: Any, path: EquilibriumPath, x: str, y: str) -> None:
-    """Curve by the names of two of approach, load and central gap; stretches unstable under fixed grips are dotted."""
-    line = smooth(path)
-    for part, dashes in zip(line.stretches(getattr(line, y)), ("-", DOTTED), strict=True):
-        axes.plot(getattr(line, x), part, color=OF_TABOR[path.tabor], linewidth=1.9, linestyle=dashes)
+SIZES = {"mu_eps": lambda tabor: tabor, "2_pi_R_dgamma": lambda _: 2 * math.pi}
+"""Sizes of units, at a Tabor parameter, in those of a computed curve; of others 1."""
+
+LOAD = Axis("load", "R_dgamma", r"load $W/R\Delta\gamma$")
+LOAD_OF_RIGID = Axis("load", "2_pi_R_dgamma", r"load $W/2\pi R\Delta\gamma$")
+APPROACH = Axis("approach", "eps", r"approach $\alpha^*$")
+SCALED_APPROACH = Axis("approach", "mu_eps", r"scaled approach $\alpha^*/\mu$")
+CENTRAL_GAP = Axis("central_gap", "eps", r"central gap $H(0)$")
+CONTACT_RADIUS = Axis("contact_radius", "beta", r"contact radius $a^* = a/\beta$")
+RADIUS = Axis("radius", "beta", r"radius $u = r/\beta$")
+TABOR = Axis("tabor", "", r"Tabor parameter $\mu$", logarithmic=True)
 
 
-def stability_key(axes: Any) -> None:
-    """Legend entries that say which line is stable."""
-    axes.plot([], [], color="0.3", linewidth=1.9, label="stable under fixed grips")
-    axes.plot([], [], color="0.3", linewidth=1.9, linestyle=DOTTED, label="unstable")
+@dataclass(frozen=True, eq=False, repr=False)
+class Line(Valued):
+    """A line of a figure: whose it is, at which Tabor parameter if it belongs to one, and its points, (n,) arrays.
+
+    Errors are those of computed numbers; of closed theories there are none. What is `dotted`, a mask (n,), is unstable
+    under fixed grips. `label` is that of the legend, where that differs from the name; empty if it has none there.
+    """
+
+    curve: str
+    tabor: float | None
+    x: Array
+    y: Array
+    look: Mapping[str, Any]
+    x_error: Array | None = None
+    y_error: Array | None = None
+    dotted: NDArray[np.bool_] | None = None
+    label: str | None = None
+
+    @property
+    def key(self) -> str:
+        """What the legend says of it."""
+        if self.label is not None:
+            return self.label
+        mu = "" if self.tabor is None else rf"$\mu = {self.tabor:g}$"
+        return mu if self.curve == HALF_SPACE and mu else ", ".join(filter(None, (self.curve, mu)))
 
 
-def elements(axes: Any, path: EquilibriumPath, x: Array, y: Array, label: str = "finite elements") -> None:
-    """Finite-element points over a curve."""
-    axes.plot(x, y, label=label, color=OF_TABOR[path.tabor], **ELEMENTS)
+@dataclass(frozen=True)
+class Arrow:
+    """An arrow from point to point, in the units of the axes."""
+
+    tail: tuple[float, float]
+    head: tuple[float, float]
+    look: Mapping[str, Any]
 
 
-def theory(axes: Any, name: str, x: Array, y: Array, label: str | None = None, **style: Any) -> None:
-    """Curve of a theory."""
-    axes.plot(x, y, label=label or name, **{**THEORIES[name], **style})
+@dataclass(frozen=True)
+class Note:
+    """A text beside a point, offset in points."""
+
+    text: str
+    at: tuple[float, float]
+    offset: tuple[float, float] = (7.0, 2.0)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Plot(Valued):
+    """A figure: what is drawn, and sentences on what is to be seen, measured on it; empty ones are left out.
+
+    The legend is at a place of Matplotlib's, or below. `above` is another scale of the horizontal axis: its label, and
+    the factor to it.
+    """
+
+    x: Axis
+    y: Axis
+    lines: Sequence[Line]
+    see: Sequence[str]
+    arrows: Sequence[Arrow] = ()
+    notes: Sequence[Note] = ()
+    title: str = ""
+    legend: str = "upper left"
+    above: tuple[str, float] | None = None
+
+
+def half_space(path: EquilibriumPath, x: Axis, y: Axis) -> Line:
+    """A computed curve; stretches that are unstable under fixed grips are dotted."""
+    mu = path.tabor
+    look = {"color": OF_TABOR[mu], "linestyle": DASHES_OF_TABOR[mu], "linewidth": 1.9}
+    (u, u_error), (v, v_error) = x.values(path, mu), y.values(path, mu)
+    return Line(HALF_SPACE, mu, u, v, look, u_error, v_error, ~path.stable)
+
+
+def marked(states: EquilibriumPath | States, tabor: float, curve: str, x: Axis, y: Axis) -> Line:
+    """States of a curve as markers."""
+    (u, u_error), (v, v_error) = x.values(states, tabor), y.values(states, tabor)
+    return Line(curve, tabor, u, v, {"color": OF_TABOR[tabor], **MARKS}, u_error, v_error)
+
+
+def by_elements(elements: Mapping[float, EquilibriumPath], tabors: Sequence[float], x: Axis, y: Axis) -> list[Line]:
+    """Finite-element points at those of the Tabor parameters for which there are any."""
+    return [marked(elements[mu], mu, ELEMENTS, x, y) for mu in tabors if mu in elements]
+
+
+def theory(name: str, x: Array, y: Array, tabor: float | None = None, **look: Any) -> Line:
+    """Curve of a closed theory, in the units of the axes."""
+    return Line(name, tabor, x, y, {**THEORIES.get(name, {}), **look})
+
+
+# What becomes of a plot
+
+
+def drawn(plot: Plot) -> Figure:
+    """Picture of a plot."""
+    figure, (axes,) = style.panels(height=5.8)
+    for line in plot.lines:
+        _draw(axes, line)
+    if any(line.dotted is not None and np.any(line.dotted) for line in plot.lines):
+        axes.plot([], [], color="0.3", linewidth=1.9, linestyle=DOTTED, label="unstable under fixed grips")
+    for arrow in plot.arrows:
+        style.arrow(axes, arrow.tail, arrow.head, **arrow.look)
+    for note in plot.notes:
+        style.note(axes, note.text, note.at, note.offset, weight="bold")
+    if plot.above:
+        label, factor = plot.above
+        axes.secondary_xaxis("top", functions=(lambda x: x * factor, lambda x: x / factor)).set_xlabel(label)
+    for axis, name in ((plot.x, "x"), (plot.y, "y")):
+        if axis.logarithmic:
+            axes.set(**{f"{name}scale": "log"})
+        if axis.limits:
+            axes.set(**{f"{name}lim": axis.limits})
+        if axis.ticks:
+            style.plain_ticks(getattr(axes, f"{name}axis"), axis.ticks)
+    style.dress(axes, plot.x.label, plot.y.label, legend=plot.legend)
+    axes.set_title(plot.title)
+    return figure
+
+
+def _draw(axes: Any, line: Line) -> None:
+    """Line as a whole, or in two: a stable part, and a dotted one that joins it."""
+    if line.dotted is None:
+        axes.plot(line.x, line.y, label=line.key or None, **line.look)
+        return
+    for mask, label, look in ((~line.dotted, line.key, {}), (line.dotted, None, {"linestyle": DOTTED})):
+        joins = mask | np.append(False, mask[:-1])
+        axes.plot(line.x, np.where(joins, line.y, np.nan), label=label, **{**line.look, **look})
+
+
+def table(stem: str, title: str, plot: Plot) -> Table:
+    """Points of a plot: whose they are, their Tabor parameter, both numbers, and their errors where there are any."""
+    (x, dx), (y, dy) = plot.x.columns, plot.y.columns
+    rows = [row for line in plot.lines for row in _rows(line)]
+    known = [n for n in range(len(COMMON) + 4) if n < len(COMMON) + 2 or any(row[n] for row in rows)]
+    columns = (*COMMON, x, y, dx, dy)
+    return Table(stem, title, "", [columns[n] for n in known], [[row[n] for n in known] for row in rows])
+
+
+COMMON = ("curve", "mu")  # columns of every file of a figure
+
+
+def _rows(line: Line) -> Iterator[list[str]]:
+    """Rows of a line; points that are no numbers, such as a radius without contact, are left out."""
+    mu = "" if line.tabor is None else f"{line.tabor:g}"
+    nothing = np.full(np.shape(line.x), np.nan)
+    x_error, y_error = (nothing if error is None else error for error in (line.x_error, line.y_error))
+    for x, y, *errors in zip(line.x, line.y, x_error, y_error, strict=True):
+        if np.isfinite(x) and np.isfinite(y):
+            shown = [f"{error:.1e}" if np.isfinite(error) else "" for error in errors]
+            yield [line.curve, mu, f"{x:.10g}", f"{y:.10g}", *shown]
+
+
+# What is to be seen
 
 
 def rises(values: Array) -> bool:
@@ -77,30 +239,22 @@ def rises(values: Array) -> bool:
     return values.size > 1 and bool(np.all(np.diff(values) > 0))
 
 
-def gap_falls(path: EquilibriumPath) -> bool:
-    """Whether the central gap falls at every point of a curve, by the tangents: grids hand over with a small step."""
-    return all(point.rates[GAP] < 0 for point in path.points)
+def elements_beside(lines: Sequence[Line]) -> str:
+    """How far finite-element points lie from the half-space's curve at the same Tabor parameter."""
+    curves = {line.tabor: line for line in lines if line.curve == HALF_SPACE}
+    off = [_farthest(line, curves[line.tabor]) for line in lines if line.curve == ELEMENTS]
+    text = f"Finite-element points are within {max(off, default=0):.1e} of the lines, in units of their extent."
+    return told(text, np.array(off))
 
 
-def elements_beside(fe: EquilibriumPath | None, path: EquilibriumPath, x: str, y: str) -> str:
-    """How far finite-element points lie from the half-space's curve."""
-    if fe is None:
-        return ""
-    seen = (fe.load <= path.load.max(initial=-np.inf)) & (fe.approach >= path.approach.min(initial=np.inf))
-    if x == "contact_radius" or y == "contact_radius":
-        seen &= np.isfinite(fe.contact_radius)
-    line = np.isfinite(getattr(path, x)) & np.isfinite(getattr(path, y))
-    off = _farthest((getattr(fe, x)[seen], getattr(fe, y)[seen]), (getattr(path, x)[line], getattr(path, y)[line]))
-    text = (
-        f"At mu = {path.tabor:g} the finite-element points are within {off:.1e} of the line, in units of their extent."
-    )
-    return told(text, off)
-
-
-def _farthest(points: tuple[Array, Array], line: tuple[Array, Array]) -> float:
-    """Largest distance of points from a polygon, in units of its width and height where the points are."""
-    at, corners = np.stack(points), np.stack(line)
-    if at.size == 0 or corners.shape[1] < 2:
+def _farthest(points: Line, line: Line) -> float:
+    """Largest distance of points from a polygon, where that is, in units of their width and height."""
+    at, corners = (np.stack([one.x, one.y])[:, np.isfinite(one.x) & np.isfinite(one.y)] for one in (points, line))
+    if corners.shape[1] < 2:
+        return math.nan
+    low, high = corners.min(axis=1)[:, None], corners.max(axis=1)[:, None]
+    at = at[:, np.all((at >= low) & (at <= high), axis=0)]
+    if at.size == 0:
         return math.nan
     size = np.maximum(np.ptp(at, axis=1), 1e-12)[:, None]
     at, corners = at / size, corners / size
@@ -109,3 +263,16 @@ def _farthest(points: tuple[Array, Array], line: tuple[Array, Array]) -> float:
     offsets = at[:, :, None] - start[:, None]
     t = np.clip(np.sum(offsets * step[:, None], axis=0) / length, 0, 1)
     return float(np.hypot(*(offsets - t * step[:, None])).min(axis=1).max())
+
+
+def crossings(line: Line, other: Line) -> Array:
+    """Points (n, 2) where two polygons cross, in the order of the first."""
+    a, b = (np.column_stack([one.x, one.y]) for one in (line, other))
+    da, db = np.diff(a, axis=0), np.diff(b, axis=0)
+    apart = b[None, :-1] - a[:-1, None]
+    cross = da[:, None, 0] * db[None, :, 1] - da[:, None, 1] * db[None, :, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):  # parallel pieces do not cross
+        s = (apart[..., 0] * db[None, :, 1] - apart[..., 1] * db[None, :, 0]) / cross
+        t = (apart[..., 0] * da[:, None, 1] - apart[..., 1] * da[:, None, 0]) / cross
+    pieces, others = np.nonzero((s >= 0) & (s < 1) & (t >= 0) & (t < 1))
+    return np.asarray(a[pieces] + s[pieces, others][:, None] * da[pieces])

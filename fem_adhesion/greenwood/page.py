@@ -15,11 +15,11 @@ from markupsafe import Markup
 from fem_adhesion.common.numbers import digits, joined, plus_minus, told
 from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
 from fem_adhesion.common.style import Picture, captions, draw, shown
-from fem_adhesion.greenwood import load_figures, state_figures, trend_figures
+from fem_adhesion.greenwood import beyond, load_figures, state_figures
 from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, closed_ratios
-from fem_adhesion.greenwood.drawing import rises
+from fem_adhesion.greenwood.drawing import drawn, rises, table
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
-from fem_adhesion.greenwood.study import JUMPS_AT, WINDING_AT, DeviceStudy, Greenwood1997, PullOff
+from fem_adhesion.greenwood.study import APPARATUS, JUMPS_AT, WINDING_AT, DeviceStudy, Greenwood1997, PullOff
 from fem_adhesion.greenwood.tables import Printed
 from halfspace.equilibrium.devices import Cycle
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
@@ -27,23 +27,31 @@ from halfspace.values import Estimate
 
 PAPER = "J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1277-1297"
 DOI = "10.1098/rspa.1997.0070"
-BEYOND = ("8",)
-DRAWN = (*load_figures.FIGURES, *state_figures.FIGURES, *trend_figures.FIGURES)  # in the paper's order
-FIGURES = tuple(  # under the number that each has in the paper, or would have
-    Picture(f"fig_{number}", f"{'Beyond the paper,' if number in BEYOND else 'After'} Fig. {number}: {title}", *how)
-    for number, title, *how in DRAWN
-)
+OF_PAPER = dict(sorted((load_figures.FIGURES | state_figures.FIGURES).items()))
+PLOTS = {f"fig_{number}": (f"Fig. {number}: {title}", plot) for number, (title, plot) in OF_PAPER.items()} | {
+    f"beyond_{name}": (f"Beyond the paper: {title}", plot) for name, (title, plot) in beyond.FIGURES.items()
+}
+"""Title and plot of each figure by the name of its files: those of the paper in its order, and further ones."""
+
+
+def _picture(stem: str) -> Picture[Greenwood1997]:
+    title, plot = PLOTS[stem]
+    return Picture(stem, title, lambda study: drawn(plot(study)), lambda study: plot(study).see)
+
+
+FIGURES = tuple(_picture(stem) for stem in PLOTS)
 
 
 def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = lambda _: None) -> None:
-    """Write every figure as SVG and PNG, every table and the captions as CSV, and ``index.html``.
+    """Write every figure as SVG, PNG and CSV, every table and the captions as CSV, and ``index.html``.
 
     Give it a directory made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none;
     `begin` is told what is drawn next, once for each of `FIGURES`.
     """
     draw(FIGURES, study, directory, begin)
     written = tables(study)
-    write_csv([*written, captions(FIGURES, study)], directory)
+    data = [table(stem, title, plot(study)) for stem, (title, plot) in PLOTS.items()]
+    write_csv([*written, *data, captions(FIGURES, study)], directory)
     title = f"Greenwood (1997), computed again{', quick run' if study.quick else ''}"
     figures = Section("figures", "Figures", figures=shown(FIGURES, study, directory))
     sections = [figures, Section("tables", "Tables", tables=written)]
@@ -151,7 +159,7 @@ def _see_profile_checks(entries: Sequence[Printed]) -> str:
 
 
 def _jumps(study: Greenwood1997) -> Table:
-    columns: Columns[str] = {
+    columns: Columns[tuple[str, str]] = {
         "jump": " to ".join,
         ("alpha*, eps", "error of alpha*, eps"): lambda ends: _cells(study.jumps[ends].take_off.estimate("approach")),
         ("W before, R dgamma", "error of W before, R dgamma"): lambda ends: _cells(
@@ -162,7 +170,13 @@ def _jumps(study: Greenwood1997) -> Table:
         ),
     }
     see = "Where each jump takes off and lands." if study.jumps else "No jump was found."
-    return Table.of("jumps", f"Jumps of Fig. 2a, mu = {JUMPS_AT:g}, fixed grips", see, study.jumps, columns)
+    return Table.of(
+        "jumps",
+        f"Jumps of Fig. 2a, mu = {JUMPS_AT:g}, primed in an apparatus of {APPARATUS:g} R dgamma/eps",
+        see,
+        study.jumps,
+        columns,
+    )
 
 
 def _cycles(devices: DeviceStudy) -> Table:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,25 +21,42 @@ from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple, Rise, attempts
 from fem_adhesion.greenwood.tables import Printed
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.fold_birth import FIRST, critical_stiffness, tabor_of
-from halfspace.accuracy.grids import half_space_charts, resolution_for
-from halfspace.equilibrium.charts import COMPRESSION, trace_charts
-from halfspace.equilibrium.conditions import FOLD, Condition, Located
+from halfspace.equilibrium.charts import COMPRESSION
+from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, Jump, cycle
-from halfspace.equilibrium.path import Steps
-from halfspace.scales import Scales
+from halfspace.equilibrium.events import Event, is_fold
+from halfspace.equilibrium.states import States
+from halfspace.laws import LENNARD_JONES
 from halfspace.values import Array, Estimate, Valued
 
-FINE = Steps(first=0.02, longest=0.08, turn=0.06)  # a polygon through the points looks smooth
-FINEST = Steps(first=0.02, longest=0.03, turn=0.02)  # even enlarged
-SEEN = 1e-4  # relative accuracy of what is only drawn
+RTOL = 1e-5  # relative accuracy of the events of what is drawn; points carry their own errors
+POINTS = 300  # of a curve: a polygon through them looks smooth
+DRAWN = (0.02, 0.05, 0.1, 0.2, 0.5, 0.7, 1.0, 2.0, 3.0, 5.0)  # Tabor parameters of the figures' curves
+DEEP = {0.02: 50.0}  # load to which a curve goes, Fig. 1c
 
-# States of [G97] Fig. 4 at mu = 5: the central gap, and whether it is met first or last along the path.
-PROFILES = ((2.554, 0), (1.0, 0), (0.3, 0), (0.02, 0), (0.0, -1), (-0.0036, -1), (-0.01, -1))
-PROFILE_RADII = np.concatenate([[0.0], np.geomspace(1e-3, 0.05, 30), np.linspace(0.052, 4.0, 1200)])
+# Central gaps prescribed for Fig. 3, by Tabor parameter, and where the curve winds.
+WINDING_AT = 5.0  # Fig. 4, too
+GAPS = np.array([4, 3, 2.5, 2, 1.5, 1, 0.7, 0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0, -0.005, -0.01])
+SPECIFIED = {1.0: GAPS, 2.0: GAPS, 3.0: GAPS, WINDING_AT: np.linspace(1.4, 0.05, 120)}
 
+JUMPS_AT = 1.0  # Fig. 2a
+APPARATUS = 3.0  # its stiffness in R dgamma/eps, of the primed letters
+DEVICES_AT = 2.0
 STIFFNESSES = (math.inf, 100.0, 10.0, 3.0, 1.0, 0.3, 0.1)  # R dgamma/eps, of an apparatus
+
+# States of Fig. 4, before and after the jump, and others beyond it, by the central gap.
+PRINTED_GAPS = (2.554, -0.0036)
+PROFILE_GAPS = (1.0, 0.3, 0.02, 0.0, -0.01)
+PROFILE_RADII = np.linspace(0.0, 4.0, 201)  # beta, and closer to the spike at the contact edge:
+PROFILE_OFFSETS = np.concatenate([sign * np.geomspace(1e-3, 0.3, 40) for sign in (-1, 1)])
+CHECKED = 1e-5  # relative accuracy of the curve whose profiles tell the errors of those at a hundredth of it
+
+RIPPLE_AT = 2.0
+RIPPLES = (0.2, 0.1, 0.05)  # spacings in beta of the rippling curves
+RISES = (0.2, 0.1, 0.05, 0.025)  # of the false rise
+RIPPLE_WINDOW = 0.4  # beta
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,7 +64,7 @@ class DrawnState(Valued):
     """Shape and pressure of one state.
 
     Central gap and approach in eps, load in R dgamma, contact radius in beta, nan where the central gap exceeds 3^(1/6)
-    eps; radii in beta, gap in eps and pressure in dgamma/(mu eps), (n,) arrays.
+    eps; radii in beta, gap in eps and pressure in dgamma/(mu eps) with their errors, (n,) arrays.
     """
 
     central_gap: float
@@ -57,39 +74,35 @@ class DrawnState(Valued):
     radii: Array
     gap: Array
     pressure: Array
+    gap_error: Array
+    pressure_error: Array
 
 
-def fine_path(tabor: float, *, to_load: float = COMPRESSION, steps: Steps = FINE) -> EquilibriumPath:
-    """Trace a curve and put points on it that are close enough to be drawn; its events are the trace's."""
-    scales = Scales(tabor)
-    charts = half_space_charts(scales, resolution_for(scales, SEEN), to_load)
-    path = halfspace.trace(tabor, rtol=SEEN, to_load=to_load)
-    return replace(path, segments=trace_charts(charts, to_load, steps))
+def jumps(tabor: float) -> dict[tuple[str, str], Jump]:
+    """Jumps by the letters of their ends in [G97] Fig. 2a, primed in an apparatus; none without a fold."""
+    path = halfspace.trace(tabor, rtol=1e-6)
+    grips, apparatus = cycle(path), cycle(path, APPARATUS)
+    found = {("A", "B"): grips.jump_on, ("C", "D"): grips.jump_off} if grips else {}
+    return found | ({("A'", "B'"): apparatus.jump_on, ("C'", "D'"): apparatus.jump_off} if apparatus else {})
 
 
-def jumps(tabor: float) -> dict[str, Jump]:
-    """Jumps under fixed grips by the letters of their ends in [G97] Fig. 2a; none where the curve does not fold."""
-    grips = cycle(halfspace.trace(tabor, rtol=1e-6))
-    return {"AB": grips.jump_on, "CD": grips.jump_off} if grips else {}
+def profiles(gaps: Sequence[float]) -> tuple[DrawnState, ...]:
+    """States at mu = 5 with given central gaps, their errors by comparison with a coarser grid."""
+    paths = [halfspace.trace(WINDING_AT, rtol=rtol) for rtol in (CHECKED, CHECKED / 100)]
+    return tuple(_profile(*(path.states(Condition(CENTRAL_GAP, value=gap))[0] for path in paths)) for gap in gaps)
 
 
-def profiles(path: EquilibriumPath) -> Iterator[DrawnState]:
-    """States of Fig. 4 on a path, in order along it."""
-    for gap, which in PROFILES:
-        found = path.states(Condition(CENTRAL_GAP, value=gap))
-        if found:
-            yield _profile(found[which])
-
-
-def _profile(state: Located) -> DrawnState:
-    """State as a field; the gap is interpolated, the pressure is what the law gives for it."""
-    problem = state.problem.interface
-    edge = state.point.observables[CONTACT_RADIUS]  # where the tension is largest
-    radii = np.union1d(PROFILE_RADII, edge[np.isfinite(edge)])
-    gap = gaps_at(state, radii)
-    approach, load, central_gap, radius = state.point.observables
-    pressure = problem.law.pressure(gap, problem.tabor)
-    return DrawnState(central_gap, approach, load, radius, radii, gap, pressure)
+def _profile(coarse: Located, fine: Located) -> DrawnState:
+    """State as a field: the gap is interpolated, the pressure is what the law gives for it."""
+    edge = np.nan_to_num(fine.point.observables[CONTACT_RADIUS])
+    radii = np.unique(np.concatenate([PROFILE_RADII, np.maximum(edge + np.append(PROFILE_OFFSETS, 0.0), 0.0)]))
+    gap, coarse_gap = (gaps_at(state, radii) for state in (fine, coarse))
+    pressure, coarse_pressure = (
+        LENNARD_JONES.pressure(values, fine.problem.interface.tabor) for values in (gap, coarse_gap)
+    )
+    approach, load, central_gap, radius = fine.point.observables
+    errors = np.abs(gap - coarse_gap), np.abs(pressure - coarse_pressure)
+    return DrawnState(central_gap, approach, load, radius, radii, gap, pressure, *errors)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -112,16 +125,6 @@ def devices(path: EquilibriumPath) -> DeviceStudy:
     tabors = critical * (1 - np.geomspace(0.999, 1e-3, 40))
     border = np.array([[tabor, critical_stiffness(float(tabor))] for tabor in tabors])
     return DeviceStudy(path.tabor, tuple(c for c in cycles if c is not None), border)
-
-
-DRAWN = (0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0)  # Tabor parameters of the figures' curves
-DEEP = {0.02: 20.0}  # load to which a curve goes, Fig. 1c
-JUMPS_AT = 2.0  # Fig. 2a
-WINDING_AT = 5.0  # Figs 3c and 4
-RIPPLE_AT = 2.0
-RIPPLES = (0.2, 0.1, 0.05)  # spacings in beta of the rippling curves
-RISES = (0.2, 0.1, 0.05, 0.025)  # of the false rise
-RIPPLE_WINDOW = 0.4  # beta
 
 
 @dataclass(frozen=True)
@@ -155,19 +158,22 @@ class Tables:
 class Greenwood1997(Valued):
     """What the figures and tables show.
 
-    Curves on the half-space and by finite elements are by Tabor parameter; `jumps` are those under fixed grips at mu =
-    2, by the letters of their ends; `folds` (n, 4) approach, load, central gap and contact radius at every fold at mu =
-    5, in order, where the profiles are of Fig. 4. Pull-offs are by rising Tabor parameter, ripples curves at mu = 2 on
-    grids that are too coarse, and rises, by spacing, the false ones of the pull-off force. Relaxations are the
-    iterations of 1997 on 200 nodes, devices apparatus of finite stiffness at mu = 2; the critical Tabor parameter is
-    where the curve first has a vertical tangent. Seconds are those of the computation; a quick one has fewer points.
+    Curves on the half-space and by finite elements are by Tabor parameter, and `specified` states of prescribed central
+    gap; `jumps` are those at mu = 1, by the letters of their ends; `folds` all folds at mu = 5, in order. There are the
+    `profiles` of Fig. 4, before the jump and after, and `more_profiles` in contact and on the way to it. Pull-offs are
+    by rising Tabor parameter, ripples curves at mu = 2 on grids that are too coarse, and rises, by spacing, the false
+    ones of the pull-off force. Relaxations are the iterations of 1997 on 200 nodes, devices apparatus of finite
+    stiffness at mu = 2; the critical Tabor parameter is where the curve first has a vertical tangent. Seconds are those
+    of the computation; a quick one has fewer points.
     """
 
     curves: Mapping[float, EquilibriumPath]
     elements: Mapping[float, EquilibriumPath]
-    jumps: Mapping[str, Jump]
-    folds: Array
+    specified: Mapping[float, States]
+    jumps: Mapping[tuple[str, str], Jump]
+    folds: tuple[Event, ...]
     profiles: tuple[DrawnState, ...]
+    more_profiles: tuple[DrawnState, ...]
     pull_offs: tuple[PullOff, ...]
     ripples: tuple[Ripple, ...]
     rises: Mapping[float, Rise]
@@ -253,8 +259,9 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     began = time.perf_counter()
     extent = QUICK if quick else FULL
     begin("curves")
-    steps = {mu: FINEST if mu == WINDING_AT else FINE for mu in DRAWN}
-    drawn = {mu: fine_path(mu, to_load=DEEP.get(mu, COMPRESSION), steps=steps[mu]) for mu in DRAWN}
+    traced = {mu: halfspace.trace(mu, rtol=RTOL, to_load=DEEP.get(mu, COMPRESSION)) for mu in DRAWN}
+    drawn = {mu: path.resampled(POINTS) for mu, path in traced.items()}
+    specified = {mu: traced[mu].at(central_gap=gaps) for mu, gaps in SPECIFIED.items()}
     begin("finite elements")
     elements = {mu: _by_elements(mu) for mu in extent.elements}
     begin("criteria")
@@ -263,7 +270,7 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     pull_offs = tuple(_pull_off(mu, extent) for mu in sorted({*extent.pull_offs, *extent.element_pull_offs}))
     begin("false rise")
     ripples = tuple(ripple(drawn[RIPPLE_AT], spacing, RIPPLE_WINDOW) for spacing in RIPPLES)
-    resolved = [halfspace.trace(mu, rtol=SEEN) for mu in extent.rising]
+    resolved = [halfspace.trace(mu, rtol=1e-4) for mu in extent.rising]
     rises = {spacing: false_rise(resolved, spacing) for spacing in extent.rises}
     begin("tables")
     paths = {mu: halfspace.trace(mu, rtol=extent.rtol) for mu in tables.TABORS}
@@ -271,14 +278,13 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     begin("relaxations")
     relaxations = tuple(attempts(extent.sweeps))
     begin("devices")
-    apparatus = devices(halfspace.trace(JUMPS_AT, rtol=extent.rtol))
+    apparatus = devices(halfspace.trace(DEVICES_AT, rtol=extent.rtol))
     begin("critical Tabor parameter")
     critical_tabor = Estimate.refined(*(tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7)))
-    winding = drawn[WINDING_AT]
-    folds = np.array([fold.point.observables for fold in winding.states(FOLD)])
-    leaps, states = jumps(JUMPS_AT), tuple(profiles(winding))
+    folds = tuple(event for name, event in traced[WINDING_AT].events.items() if is_fold(name))
+    states = jumps(JUMPS_AT), folds, profiles(PRINTED_GAPS), profiles(PROFILE_GAPS)
     seconds = time.perf_counter() - began
-    parts = drawn, elements, leaps, folds, states, pull_offs, ripples, rises, criteria, printed, relaxations
+    parts = drawn, elements, specified, *states, pull_offs, ripples, rises, criteria, printed, relaxations
     return Greenwood1997(*parts, apparatus, critical_tabor, seconds, quick)
 
 

@@ -262,7 +262,7 @@ SOURCES = (
         "Greenwood (1997), printed and computed",
         "The paper's tables beside the same quantities computed here with their estimated errors, and figures after "
         "the paper's and beyond.",
-        ("fig_3b", "fig_7", "fig_8"),
+        ("fig_3c", "fig_7", "beyond_devices"),
         (("table_1", "Table 1"), ("table_2", "Table 2"), ("criteria_constants", "Criteria for jumping on")),
     ),
     Source(
