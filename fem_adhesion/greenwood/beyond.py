@@ -138,7 +138,7 @@ def folds(study: Greenwood1997) -> Plot:
     places = [(fold.approach, fold.central_gap) for fold in study.folds]
     x, y = np.reshape(places, (-1, 2)).T
     errors = [np.array([getattr(f, name) for f in study.folds]) for name in ("approach_error", "central_gap_error")]
-    marks = Line("folds", WINDING_AT, x, y, {**MARKS, "color": "black"}, *errors, label="folds")
+    marks = Line("folds", WINDING_AT, x, y, {**MARKS, "color": "black"}, errors[0], errors[1], label="folds")
     inner = study.folds[1:-1]
     notes = [Note(str(n), (f.approach, f.central_gap)) for n, f in enumerate(inner, 2)]
     count = len(study.folds)
@@ -332,18 +332,13 @@ def _cycle_lines(cycle: Cycle, look: dict[str, Any]) -> list[Line]:
     fixed = math.isinf(cycle.stiffness)
     name = "fixed grips" if fixed else f"apparatus {cycle.stiffness:g} R dgamma/eps"
     label = name if fixed else rf"$k = {cycle.stiffness:g}\,R\Delta\gamma/\epsilon$"
-    jumps = (("on", cycle.jump_on, label), ("off", cycle.jump_off, ""))
-    return [
-        Line(
-            f"{name}, jump {way}",
-            DEVICES_AT,
-            *np.transpose([(state.approach, state.load) for state in jump.ends]),
-            look,
-            *(np.array([getattr(state, f"{name}_error") for state in jump.ends]) for name in ("approach", "load")),
-            label=key,
+    lines = []
+    for way, jump, key in (("on", cycle.jump_on, label), ("off", cycle.jump_off, "")):
+        approach, dx, load, dy = np.transpose(
+            [(state.approach, state.approach_error, state.load, state.load_error) for state in jump.ends]
         )
-        for way, jump, key in jumps
-    ]
+        lines.append(Line(f"{name}, jump {way}", DEVICES_AT, approach, load, look, dx, dy, label=key))
+    return lines
 
 
 def stiffness(study: Greenwood1997) -> Plot:

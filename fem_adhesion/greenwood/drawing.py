@@ -6,7 +6,7 @@ Each Tabor parameter and each theory has a look of its own; a figure shows no tw
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -63,12 +63,12 @@ class Axis:
 
     def values(self, states: EquilibriumPath | States, tabor: float) -> tuple[Array, Array]:
         """Numbers of states along the axis, and their errors, (n,) arrays."""
-        names, size = (self.quantity, f"{self.quantity}_error"), SIZES.get(self.unit, lambda _: 1.0)(tabor)
+        names, size = (self.quantity, f"{self.quantity}_error"), SIZES[self.unit](tabor) if self.unit in SIZES else 1.0
         value, error = (np.atleast_1d(getattr(states, name)) / size for name in names)
         return value, error
 
 
-SIZES = {"mu_eps": lambda tabor: tabor, "2_pi_R_dgamma": lambda _: 2 * math.pi}
+SIZES: Mapping[str, Callable[[float], float]] = {"mu_eps": lambda tabor: tabor, "2_pi_R_dgamma": lambda _: 2 * math.pi}
 """Sizes of units, at a Tabor parameter, in those of a computed curve; of others 1."""
 
 LOAD = Axis("load", "R_dgamma", r"load $W/R\Delta\gamma$")

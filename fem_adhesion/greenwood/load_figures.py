@@ -133,10 +133,12 @@ def fig_2a(study: Greenwood1997) -> Plot:
     for letters, jump in study.jumps.items():
         ends = [(state.approach, state.load) for state in jump.ends]
         colour = style.PINK if "'" in letters[0] else "black"
-        arrows.append(Arrow(*ends, {"color": colour, "linewidth": 1.4}))
+        arrows.append(Arrow(ends[0], ends[1], {"color": colour, "linewidth": 1.4}))
         notes += [Note(letter, end, OFFSETS[letter]) for letter, end in zip(letters, ends, strict=True)]
         name = f"jump {' to '.join(letters)}"
-        lines.append(Line(name, JUMPS_AT, *np.transpose(ends), {"linestyle": "none"}, label=""))
+        approach, load = np.transpose(ends)
+        dx, dy = np.transpose([(state.approach_error, state.load_error) for state in jump.ends])
+        lines.append(Line(name, JUMPS_AT, approach, load, {"linestyle": "none"}, dx, dy, label=""))
         if "'" in letters[0]:
             lines.append(_load_line(letters, ends))
     see = [_jump_words(study), _vertical(study)]

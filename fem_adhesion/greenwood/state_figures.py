@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -150,12 +151,12 @@ def fig_7(study: Greenwood1997) -> Plot:
     maugis = np.array([-MaugisDugdale.matched(mu).pull_off().load for mu in tabor])
     blue = {"color": style.BLUE, "linewidth": 2, "marker": "."}
     label = "half-space; Muller et al. solved the same equations"
-    attard, pi = {"color": style.RED, "linestyle": style.DASHED, "marker": "s"}, np.pi
+    attard: dict[str, Any] = {"color": style.RED, "linestyle": style.DASHED, "marker": "s"}
     lines = [
         Line(HALF_SPACE, None, tabor, force, blue, None, error, label=label),
         Line(ELEMENTS, None, fe_tabor, fe_force, {"color": style.BLUE, **MARKS}, None, fe_error),
         theory("Maugis-Dugdale", tabor, maugis, color=style.GREEN, linestyle=style.CHAIN),
-        theory("Attard & Parker, the two values quoted", ATTARD_PARKER[:, 0], pi * ATTARD_PARKER[:, 1], **attard),
+        theory("Attard & Parker, the two values quoted", ATTARD_PARKER[:, 0], np.pi * ATTARD_PARKER[:, 1], **attard),
     ]
     for name, limit in (("Bradley", -BRADLEY_PULL_OFF), ("JKR", -JKR_PULL_OFF)):
         lines.append(theory(name, tabor, np.full_like(tabor, limit), linewidth=1.0))
