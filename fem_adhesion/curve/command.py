@@ -51,6 +51,9 @@ def _add_body(curve: Parser) -> None:
     body = curve.add_argument_group("body and solver")
     solvers = ("half-space", "fem", "both")
     body.add_argument("--solver", choices=solvers, help="half-space unless the body is another, fem then")
+    kernels = ("panels", "triangles", "bands")
+    pressure = "what the half-space's pressure is made of, triangles and bands as in 1997; panels unless given"
+    body.add_argument("--kernel", choices=kernels, help=pressure)
     add_body(body)
     beside = "draw curves by other laws, as strong, in the same units beside it: morse:3 power-law:4,10, say"
     body.add_argument("--beside", nargs="+", help=beside, metavar="LAW")
@@ -227,7 +230,8 @@ def _question(options: argparse.Namespace) -> Question:
     points = options.points if options.json or options.csv or options.plot else None
     if options.vtk and points in (0, 1):
         points = None  # of the states in DIR alone, where there may be none between the events
-    return Question(scene, solver, options.rtol, options.to_load, units, stiffness_of(options, contact), points)
+    kernel, stiffness = options.kernel or "panels", stiffness_of(options, contact)
+    return Question(scene, solver, options.rtol, options.to_load, units, stiffness, points, kernel)
 
 
 def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverName, contact: Contact | None) -> None:
@@ -236,6 +240,8 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
         refuse(options, ("block_radius",), "with fem or both, as half-spaces have none")
         if not contact and not scene.body.layered:
             refuse(options, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it")
+    if solver not in ("half-space", "both"):
+        refuse(options, ("kernel",), "with --solver half-space or both")
     if not options.vtk:
         refuse(options, ("revolve", "force"), "with --vtk DIR")
     if not (options.json or options.csv or options.plot or options.vtk):

@@ -16,11 +16,13 @@ from fem_adhesion import convergence
 from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.common.numbers import PREFIXES, exponent_of
 from fem_adhesion.scene import Scene
+from halfspace.accuracy.kernels import require_kernel
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_points, require_rtol
+from halfspace.scales import Scales
 from halfspace.scaling import Units
 from halfspace.values import Array
 
@@ -38,7 +40,7 @@ class Question:
     `rtol` is the relative accuracy asked of loads and approaches, 1e-9 to 1e-1; the curve ends at a compressive load in
     R dgamma; units are of the contact in SI, if its material is known; the stiffness is that of the apparatus in
     R dgamma/eps, infinite for fixed grips. Each curve has so many points in files, evenly spaced in arclength; as many
-    as its tracing takes unless given, or drawn.
+    as its tracing takes unless given, or drawn. The kernel is that of `halfspace.trace`.
 
     InputError if a value is out of range, or the solver does not serve the scene.
     """
@@ -50,9 +52,13 @@ class Question:
     units: Units | None = None
     stiffness: float = math.inf
     points: int | None = None
+    kernel: str = "panels"
 
     def __post_init__(self) -> None:
         require_rtol(self.rtol)
+        scene = self.scene
+        surface = scene.shape.surface(scene.tabor)
+        require_kernel(self.kernel, Scales(scene.tabor, scene.law, surface, scene.body.layered), self.rtol)
         require_load(self.to_load)
         if self.points is not None:
             require_points(self.points)
@@ -141,7 +147,7 @@ def trace(question: Question, solver: str) -> EquilibriumPath:
     scene, rtol, to_load = question.scene, question.rtol, question.to_load
     if solver == FINITE_ELEMENTS:
         return convergence.trace(scene, rtol=rtol, to_load=to_load)
-    return halfspace.trace(**scene.for_half_space, rtol=rtol, to_load=to_load)
+    return halfspace.trace(**scene.for_half_space, kernel=question.kernel, rtol=rtol, to_load=to_load)
 
 
 @dataclass(frozen=True)

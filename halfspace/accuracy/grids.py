@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -62,9 +62,18 @@ def resolution_for(scales: Scales, rtol: float, level: int = 0) -> Resolution:
 
 def resolutions_for(scales: Scales, rtol: float, level: int) -> tuple[Resolution, Resolution]:
     """Resolution of a level, and that of a twin as fine as the level below, with other cells."""
-    below, (finest, growth, extent) = resolution_for(scales, rtol, max(level - 1, 0)), TWIN
-    twin = replace(below, finest=finest * below.finest, growth=growth * below.growth, extent=extent * below.extent)
-    return resolution_for(scales, rtol, level), twin
+    return resolution_for(scales, rtol, level), twin_of(resolution_for(scales, rtol, max(level - 1, 0)))
+
+
+def twin_of(resolution: Resolution) -> Resolution:
+    """Resolution as fine as another, with other cells."""
+    finest, growth, extent = TWIN
+    return replace(
+        resolution,
+        finest=finest * resolution.finest,
+        growth=growth * resolution.growth,
+        extent=extent * resolution.extent,
+    )
 
 
 def rule_for(scales: Scales, resolutions: Sequence[Resolution], level: int, doubt: int = 1) -> ErrorRule:
@@ -143,11 +152,17 @@ class Grids(Valued):
     until: float
 
     @classmethod
-    def of(cls, scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> Grids:
-        """Panels as fine as a contact of these scales needs them, up to a load."""
-        nodes, reach = resolution.nodes, scales.tail_reach
+    def of(
+        cls,
+        scales: Scales,
+        resolution: Resolution,
+        to_load: float = COMPRESSION,
+        operator: Callable[[int, float, Array], compliance.ElasticOperator] | None = None,
+    ) -> Grids:
+        """Cells as fine as a contact needs them up to a load, with the operator `endless` unless another is given."""
+        nodes, reach, make = resolution.nodes, scales.tail_reach, operator or endless
         lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, nodes)
-        centred, edge = (endless(nodes, reach, breaks) for breaks in (lines.centred, lines.edge))
+        centred, edge = (make(nodes, reach, breaks) for breaks in (lines.centred, lines.edge))
         return cls(centred, Homogeneous(edge), lines.until)
 
     def charts(self, scales: Scales) -> tuple[Chart, Chart]:

@@ -23,7 +23,8 @@ from halfspace.accuracy.finite_bodies import (
     sized_rung,
     surroundings,
 )
-from halfspace.accuracy.grids import Resolution, endless, half_space_charts, inwards, resolutions_for, rule_for
+from halfspace.accuracy.grids import Resolution, endless, inwards, resolutions_for, rule_for
+from halfspace.accuracy.kernels import KERNELS, require_kernel
 from halfspace.accuracy.layered import layered_rungs
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import LeavesEarly, Rung
@@ -47,6 +48,7 @@ def trace(
     law: Law = LENNARD_JONES,
     profile: Profile = PARABOLOID,
     body: LayeredBody | None = None,
+    kernel: str = "panels",
     rtol: float = 1e-6,
     to_load: float = COMPRESSION,
 ) -> EquilibriumPath:
@@ -63,6 +65,9 @@ def trace(
     body : LayeredBody, optional
         Layers on a base or a coating, see `halfspace.elastic.layers`, in the place of the half-space; E*, in the Tabor
         parameter and beta, is that of the first stratum.
+    kernel : str
+        How the pressure is represented: ``panels`` (polynomials, the fastest), ``triangles`` (overlapping triangles,
+        [G97] section 2a) or ``bands`` (uniform bands, [G97] App. B), see `halfspace.accuracy.kernels`.
     rtol : float
         Relative accuracy asked of loads and approaches, 1e-9 to 1e-1; of approaches, which have no natural zero, in
         parts of eps and the range of those of all events.
@@ -83,26 +88,34 @@ def trace(
     """
     tabor, rtol, to_load = require_tabor(tabor), require_rtol(rtol), require_load(to_load)
     scales = Scales(tabor, require_law(law), require_profile(profile).surface(tabor), body)
+    how = require_kernel(kernel, scales, rtol)
     if body is not None:
         return climb(rtol, layered_rungs(scales, body, rtol, to_load), to_load=to_load)
     if math.isfinite(scales.profile.end):
         return climb(rtol, partial(_sphere_rung, scales, rtol, to_load), to_load=to_load)
-    if scales.step_gap and not scales.law.outermost:
+    if scales.step_gap and not scales.law.outermost and kernel == "panels":
         return climb(rtol, partial(_stepped_rung, scales, rtol, to_load), to_load=to_load)
-    charts = partial(half_space_charts, scales, to_load=to_load)
-    return climb(rtol, partial(half_space_rung, scales, rtol, charts), to_load=to_load)
+    charts = partial(how.charts, scales, to_load=to_load)
+    rung = partial(half_space_rung, scales, rtol, charts, kernel=kernel)
+    return climb(rtol, rung, to_load=to_load, most_rungs=how.most_rungs)
 
 
 def half_space_rung(
-    scales: Scales, rtol: float, charts: Callable[[Resolution], tuple[Chart, Chart]], level: int
+    scales: Scales,
+    rtol: float,
+    charts: Callable[[Resolution], tuple[Chart, Chart]],
+    level: int,
+    *,
+    kernel: str = "panels",
 ) -> Rung:
     """Rung of a level for a half-space under an endless surface, whose charts are made of a resolution."""
-    resolution, below = resolutions_for(scales, rtol, level)
-    curve = partial(charts, resolution)
+    how = KERNELS[kernel]
+    resolution, below = how.resolutions(scales, rtol, level)
+    curve, settings = partial(charts, resolution), {"kernel": kernel, **asdict(resolution)}
     if not level:
-        return Rung(curve, (), asdict(resolution))
+        return Rung(curve, (), settings)
     fine, twin = (LeavesEarly(charts(r), _leave(scales, r)) for r in (resolution, below))
-    return Rung(curve, (fine,), asdict(resolution), twin, rule_for(scales, (resolution, below), level))
+    return Rung(curve, (fine,), settings, twin, how.rule(scales, (resolution, below), level))
 
 
 def _leave(scales: Scales, resolution: Resolution) -> float:

@@ -120,9 +120,12 @@ class ElasticOperator(Valued, Operator):
 
     @cached_property
     def compliance_root(self) -> Array:
-        """L of `root`; the rank m falls short of q where the nodes outnumber the freedoms of the surface."""
+        """L of `root`; the rank m falls short of q where the nodes outnumber the freedoms of the surface.
+
+        A node without weight bears no load, and its row is zero.
+        """
         root = np.sqrt(self.weights)
-        balanced = self.compliance * (root[:, None] / root)
+        balanced = self.compliance * (root[:, None] / np.where(root > 0, root, np.inf))
         values, vectors = eigh((balanced + balanced.T) / 2)
         kept = values > 1e-13 * values[-1]
         return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
@@ -298,6 +301,9 @@ def collocated(radii: Array, lengths: Array, compliance: Array, cells: Array) ->
     )
 
 
+NEXT_TO_AXIS = 1e-9  # of the extent: a node on the axis, which inversion maps to infinity, sinks by what one there does
+
+
 def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> ElasticOperator:
     """Let the surface law act on a half-space beyond the extent U of an operator, in cells up to infinity.
 
@@ -315,7 +321,7 @@ def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> El
     t, w = (part.ravel() for part in grid.gauss_points(ends, nodes))
     U, inner = operator.extent, operator.finite
     radii, weights = U / t, 2 * np.pi * U**2 * w / t**3
-    tau = U / np.append(inner.radii, radii)
+    tau = U / np.append(np.maximum(inner.radii, NEXT_TO_AXIS * U), radii)
     integrals = panel_integrals(tau, ends, grid.gauss_legendre(nodes)[0]).reshape(tau.size, t.size)
     order = np.argsort(radii)
     deflection = (U * tau[:, None] * integrals / t**3)[:, order]
