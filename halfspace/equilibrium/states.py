@@ -89,13 +89,15 @@ class FinestCurve(Valued):
     """A curve's segments, in order, on the finest discretisation.
 
     By the ways, chains of discretisations, errors are found; `remaining` is the part of the changes along a chain that
-    may be left, and the metric says what arclength means.
+    may be left, and the metric says what arclength means. A point that the finest discretisation does not have stays on
+    one of those left behind, with infinite errors.
     """
 
     segments: tuple[Segment, ...]
     ways: Ways
     remaining: float
     metric: Metric
+    left_behind: tuple[Traceable, ...] = ()
 
     @cached_property
     def errors(self) -> Array:
@@ -213,13 +215,18 @@ class FinestCurve(Valued):
                 if condition.of(a) * condition.of(b) <= 0 and b.arclength > a.arclength:
                     bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
                     return part.problem, between(part.problem, a, b, condition, self.metric).point, bend
-        # Between the last point on one discretisation and the first on the next.
-        off, problem, near = min(
-            ((abs(condition.of(p)), part.problem, p) for part in parts for p in part.points), key=lambda one: one[0]
-        )
-        solution = newton.solve(problem, near.x, newton.Control(np.eye(4)[k], value))
-        weights = self.metric.weights * near.rates
-        return problem, make_point(problem, solution, self.metric, weights, near.arclength + off), 0.0
+        # Between the last point on one discretisation and the first on the next, either of which may not have it.
+        nearest = [min(part.points, key=lambda p: abs(condition.of(p))) for part in parts]
+        by_distance = sorted(zip(nearest, parts, strict=True), key=lambda one: abs(condition.of(one[0])))
+        for tries_left, (near, part) in zip(reversed(range(len(parts))), by_distance, strict=True):
+            try:
+                solution = newton.solve(part.problem, near.x, newton.Control(np.eye(4)[k], value))
+                break
+            except NotConverged:
+                if not tries_left:
+                    raise
+        weights, s = self.metric.weights * near.rates, near.arclength + abs(condition.of(near))
+        return part.problem, make_point(part.problem, solution, self.metric, weights, s), 0.0
 
     def _chosen(self, coordinate: str, value: float, branch: str | None) -> str:
         """Name of the branch that is asked for, if it has the value, or of the only one that has."""
@@ -256,7 +263,12 @@ class FinestCurve(Valued):
         return self._in_plane(problem, point, part * _largest(steps))
 
     def _steps(self, problem: Traceable, point: Point) -> Sequence[Array]:
-        """Changes of the observables from each discretisation of a chain to the next, (steps, 4) for every chain."""
+        """Changes of the observables from each discretisation of a chain to the next, (steps, 4) for every chain.
+
+        NotConverged if one of these has no such state.
+        """
+        if any(problem is one for one in self.left_behind):
+            raise NotConverged("the finest grid has no state near this one; take a larger rtol")
         found = [[again(problem, point)[1].observables for again in way[:-1]] for way in self.ways]
         return [np.diff([*others, point.observables], axis=0) for others in found]
 
@@ -341,17 +353,23 @@ def finest_curve(segments: Sequence[Segment], ways: Ways, remaining: float, metr
     """Solve for the points of a curve on the finest discretisation; without any the curve stays as it is.
 
     The segments are of the curve on any discretisation; the rest is as of `FinestCurve`, the ways leading to the
-    finest.
+    finest. A point that cannot be solved for there stays where it is.
     """
     if not ways:
         return FinestCurve(tuple(segments), ways, math.nan, metric)
-    found = [ways[0][-1](segment.problem, point) for segment in segments for point in segment.points]
+    found, left_behind = list[tuple[Traceable, Point]](), dict[int, Traceable]()
+    for problem, point in ((segment.problem, point) for segment in segments for point in segment.points):
+        try:
+            found.append(ways[0][-1](problem, point))
+        except NotConverged:
+            found.append((problem, point))
+            left_behind[id(problem)] = problem
     runs = [list(run) for _, run in groupby(found, key=lambda one: id(one[0]))]
     finest: list[Segment] = []
     for run in runs:
         before = finest[-1].points[-1] if finest else None
         finest.append(measured(run[0][0], [point for _, point in run], metric, before))
-    return FinestCurve(tuple(finest), ways, remaining, metric)
+    return FinestCurve(tuple(finest), ways, remaining, metric, tuple(left_behind.values()))
 
 
 def resampled(segments: Sequence[Segment], count: int, metric: Metric) -> tuple[Segment, ...]:
