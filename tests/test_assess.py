@@ -652,7 +652,8 @@ def test_the_regime_is_that_of_its_limits(tabor, word):
     ("what", "contact", "values", "figure"),
     [
         ("spacing over R", {"radius": 1e-9, "spacing": 0.2e-9}, {}, "0.2, limit 0.1"),
-        ("strain beta/R", {"radius": 1e-9, "modulus": 1e9, "spacing": 1e-11}, {}, "0.46, limit 0.2"),
+        ("strain beta/R", {"radius": 1e-9, "modulus": 1e9, "poisson": 0.4999, "spacing": 1e-11}, {}, "0.42, limit 0.2"),
+        ("yield of the attracted layer over the work of adhesion", {"modulus": 5e8}, {}, "0.17, limit 0.1"),
         ("contact radius over R", {}, {"zero_load_radius": 0.4e-7}, "0.4, limit 0.3"),
         ("jump-on distance over R", {}, {"jump_on_separation": 0.5e-7}, "0.5, limit 0.3"),
     ],
@@ -671,6 +672,63 @@ def test_the_yield_of_the_attracted_layer_corrects_the_work_of_adhesion_of_one_s
     more = 0.273797 * units.tabor * np.sqrt(units.tabor / units.radius_ratio) * (1 - 2 * 0.17) / (1 - 0.17) ** 2
     (line,) = (line for line in silica.cautions if "attracted layer" in line)
     assert f"by {100 * more:.3g} %, to {units.work_of_adhesion * (1 + more):.4g} J/m^2; give" in line
+
+
+@pytest.mark.parametrize(("modulus", "told"), [(1e14, False), (1e12, False), (72e9, True), (1e9, True), (5e8, False)])
+def test_the_yield_is_corrected_between_a_thousandth_and_a_tenth_only(modulus, told):
+    """Of the work of adhesion. Below it is silent, beyond a caution says that the first order is not enough."""
+    contact = Contact(**(SILICA | {"modulus": modulus}))
+    mu, ratio = contact.units.tabor, contact.units.radius_ratio
+    part = 0.273797 * mu * np.sqrt(mu / ratio) * (1 - 2 * 0.17) / (1 - 0.17) ** 2
+    assert (1e-3 <= part <= 0.1) == told == bool(list(yielding(contact)))
+    said = [line for line in cautions(contact, Prediction("absurd", {})) if "attracted layer" in line]
+    assert bool(said) == (part > 0.1)
+    assert all("deepens that by more than its first order tells" in line for line in said)
+
+
+def test_a_verdict_heeds_the_cautions_that_pass_a_limit(capsys):
+    """A thin sample pressed in by more than its thickness: it is not to be trusted, only better than the others."""
+    thin = ["--radius", "20nm", "--modulus", "2GPa", "--poisson", "0.3", "--work-of-adhesion", "0.05J/m^2"]
+    assert cli.main(["assess", *thin, "--spacing", "0.2nm", "--thickness", "1nm"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "indentation over thickness is 1.2, limit 0.2: finite strain matters" in text
+    assert "trust no model as it is: finite strain matters, its base attracts through the sample; of these the" in text
+    assert "trust the" not in text
+
+
+GLASS = ("--radius", "100nm", "--modulus", "72GPa", "--poisson", "0.17", "--work-of-adhesion", "0.063J/m^2")
+
+
+@pytest.mark.parametrize("error", [math.inf, math.nan])
+def test_a_number_whose_error_is_not_known_is_shown_as_such(error):
+    assert with_error(Quantity(-1.2345678e-9, error, "m"), 1e9) == "-1.23457(?)"
+
+
+def test_a_loop_that_is_a_ripple_of_the_samples_is_none(tmp_path, capsys):
+    """Maugis's at a Tabor parameter of 4e-4 was one of 4e-35 J, whose error was not a number: nothing was shown."""
+    assert cli.main(["assess", *GLASS, "--spacing", "100nm", "--json", str(tmp_path / "found.json")]) == 0
+    models = {model["model"]: model["values"] for model in json.loads((tmp_path / "found.json").read_text())["models"]}
+    assert "energy_lost" not in models["Maugis-Dugdale"]
+    assert all(math.isfinite(number["error"]) for values in models.values() for number in values.values())
+    assert "pull-off force" in capsys.readouterr().out
+
+
+def test_a_report_that_fails_leaves_no_files(tmp_path, monkeypatch):
+    def fail(_):
+        raise ArithmeticError
+
+    monkeypatch.setattr("fem_adhesion.assess.terminal.report", fail)
+    monkeypatch.setattr("fem_adhesion.assess.study.assess", lambda *_: None)
+    monkeypatch.setattr("fem_adhesion.assess.terminal.record", lambda _: {})
+    with pytest.raises(ArithmeticError):
+        cli.main(["assess", *GLASS, "--spacing", "0.3nm", "--json", str(tmp_path / "found.json")])
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("thickness", [0.1e-9, 0.2e-9])
+def test_a_sample_is_thicker_than_the_spacing(thickness):
+    with pytest.raises(InputError, match="is outside 2e-10 m < thickness, the equilibrium spacing"):
+        Contact(2e-9, 2e9, 0.3, 0.05, 0.2e-9, thickness=thickness)
 
 
 def test_the_yield_by_another_law_is_told_with_its_premise(silica):

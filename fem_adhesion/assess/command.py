@@ -46,7 +46,8 @@ def run(options: argparse.Namespace) -> int:
             json.dump(terminal.record(assessment), record, indent=1, allow_nan=False)
         if plot:
             style.write(lambda: figure.draw(assessment), plot, form)
-    console_beside(options.json).print(terminal.report(assessment))
+        report = terminal.report(assessment)  # before the files take their places
+    console_beside(options.json).print(report)
     return AGREE
 
 

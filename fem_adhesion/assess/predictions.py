@@ -117,7 +117,7 @@ def closed(
         "zero_load_radius": estimated(curve, lambda c: theories.zero_load(c).contact_radius),
     }
     jumps = loop(curve, stiffness)
-    if jumps:
+    if jumps and loop(theories.half(curve), stiffness):  # not a ripple of the samples
         for name, (at, _) in (("jump_on", jumps.jump_on), ("jump_off", jumps.jump_off)):
             found |= _take_off(name, Estimate(at.approach, jumps.spacing), Estimate(at.load, 0.0), stiffness)
         found["energy_lost"] = estimated(curve, lambda c: _lost(c, stiffness))

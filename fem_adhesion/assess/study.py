@@ -122,6 +122,7 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
     finite, why_not = _tried(body, _finite, contact)
     if contact.layer:
         begin("thickness that is enough")
+    doubts, left_out = tuple(cautions(contact, half_space)), tuple(yielding(contact))
     sample, unknown = _tried("thickness that is enough", partial(_thin_sample, half_space=half_space), contact)
     return Assessment(
         contact,
@@ -133,12 +134,12 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
         distances := ranked((half_space, profile, finite, *theories), contact.spacing),
         regime(contact.units.tabor),
         (
-            *cautions(contact, half_space),
-            *yielding(contact),
+            *doubts,
+            *left_out,
             *filter(None, (reason, why_not, unknown)),
             *_missed(half_space, profile, finite),
         ),
-        tuple(verdict(finite or half_space, distances, computed=finite is not None)),
+        tuple(verdict(finite or half_space, distances, computed=finite is not None, doubts=doubts)),
         time.perf_counter() - began,
         sample,
     )

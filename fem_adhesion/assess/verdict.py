@@ -21,6 +21,13 @@ LARGEST_SPACING = 0.1  # eps/R: a sphere of ten atoms is no continuum
 FARTHEST_JUMP = 0.3  # of the radius: the law between planes is meant for gaps small against it
 
 
+FIRST_ORDER = 1e-3, 0.1
+"""Yield of the attracted layer, as a part of the work of adhesion, between which its first order is told.
+
+Below, no measured work of adhesion has that digit; beyond, the second order, its square, is more than a per cent.
+"""
+
+
 @dataclass(frozen=True)
 class Deviation:
     """Relative difference of one of `QUANTITIES` from the half-space's, by cause.
@@ -99,11 +106,13 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
     units = contact.units
     R = units.radius
     wide, far = (half_space.values.get(name) for name in ("zero_load_radius", "jump_on_separation"))
+    deepened = f"it deepens that by more than its first order tells{_premise(contact)}"
     judged = [
         ("contact radius over R", _over(wide, R), WIDEST_CONTACT, "linear elasticity no longer holds"),
         ("strain beta/R", units.length / R, LARGEST_STRAIN, "finite strain matters"),
         ("spacing over R", units.spacing / R, LARGEST_SPACING, "a law between continuous planes is doubtful"),
         ("jump-on distance over R", _over(far, R), FARTHEST_JUMP, "the law between planes is doubtful"),
+        ("yield of the attracted layer over the work of adhesion", _yield(contact), FIRST_ORDER[1], deepened),
     ]
     if contact.thickness:
         pressed, h = _over(wide, R) ** 2 * R, contact.thickness
@@ -117,24 +126,36 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
 
 
 def yielding(contact: Contact) -> Iterator[str]:
-    """What the yield of the attracted layer, which no surface law has, does to one sphere's adhesion."""
+    """What the yield of the attracted layer, which no surface law has, does to the adhesion, where that is known."""
+    part, (least, most) = _yield(contact), FIRST_ORDER
+    if least <= part <= most:
+        adhesion = contact.units.work_of_adhesion * (1 + part)
+        yield (
+            "yield of the attracted layer is left out: to the first order it deepens the work of adhesion by "
+            f"{_percent(part)}, to {adhesion:.4g} J/m^2{_premise(contact)}; give that to include it"
+        )
+
+
+def _yield(contact: Contact) -> float:
+    """First order of the part by which the yield of the attracted layer deepens one sphere's work of adhesion."""
     units = contact.units
     if contact.pair or contact.layer:
-        return
-    ratio = yielded_adhesion(units.tabor, units.radius_ratio, contact.poisson, contact.law)
-    premise = "" if contact.law == LENNARD_JONES else ", if the law attracts matter and not charges on the surfaces"
-    yield (
-        "yield of the attracted layer is left out: to the first order it deepens the work of adhesion by "
-        f"{_percent(ratio - 1)}, to {units.work_of_adhesion * ratio:.4g} J/m^2{premise}; give that to include it"
-    )
+        return 0.0
+    return yielded_adhesion(units.tabor, units.radius_ratio, contact.poisson, contact.law) - 1
+
+
+def _premise(contact: Contact) -> str:
+    return "" if contact.law == LENNARD_JONES else ", if the law attracts matter and not charges on the surfaces"
 
 
 def _over(quantity: Quantity | None, R: float) -> float:
     return quantity.value / R if quantity else 0.0
 
 
-def verdict(best: Prediction, distances: Sequence[Distance], *, computed: bool) -> Iterator[str]:
-    """Sentences on which model to trust.
+def verdict(
+    best: Prediction, distances: Sequence[Distance], *, computed: bool, doubts: Sequence[str] = ()
+) -> Iterator[str]:
+    """Sentences on which model to trust; none as it is where there are doubts, cautions that pass a limit.
 
     The distances, from `ranked`, are from the best one; `computed` says whether that is of the finite bodies.
     """
@@ -144,13 +165,17 @@ def verdict(best: Prediction, distances: Sequence[Distance], *, computed: bool) 
         return
     whole = [distance for distance in distances if distance.worst and not distance.missing]
     good = [distance.model for distance in whole if distance.size <= GOOD]
+    trust = f"trust the {best.model}"
+    if doubts:
+        meanings = ", ".join(doubt.rpartition(": ")[2] for doubt in doubts)
+        trust = f"trust no model as it is: {meanings}; of these the {best.model} leaves out least"
     if good:
-        yield f"trust the {best.model}; within {_percent(GOOD)} in every quantity: {', '.join(good)}"
+        yield f"{trust}; within {_percent(GOOD)} in every quantity: {', '.join(good)}"
     elif whole:
         nearest = f"the {whole[0].model} is nearest, off by up to {_percent(whole[0].size)}"
-        yield f"trust the {best.model}; no other model is within {_percent(GOOD)} in every quantity, {nearest}"
+        yield f"{trust}; no other model is within {_percent(GOOD)} in every quantity, {nearest}"
     else:
-        yield f"trust the {best.model}; no other model has all its quantities"
+        yield f"{trust}; no other model has all its quantities"
 
 
 def _judged(distance: Distance) -> str:

@@ -32,7 +32,7 @@ class Contact:
     of its modulus and Poisson's ratio are given, and flat unless its radius is. The stiffness is that of the cantilever
     in N/m, infinite for fixed grips; the grip is how spheres are held at their mid-planes. With a thickness in m it is
     a rigid sphere on a thin sample, whose are `modulus` and `poisson` then, and the foundation how that stands on its
-    rigid base.
+    rigid base; it is thicker than the spacing.
 
     InputError if a value is out of range, one of the other body's two is missing, or there is one beside a thin sample.
     """
@@ -68,6 +68,11 @@ class Contact:
                 "thin sample; leave out the counter-body"
             )
         self.units, self.layer  # noqa: B018  they refuse what is not positive
+        if self.thickness is not None and not self.thickness > self.spacing:
+            raise InputError(
+                f"thickness = {self.thickness:g} m is outside {self.spacing:g} m < thickness, the equilibrium spacing "
+                "of the surfaces; give a thicker sample, or a unit, as 500nm"
+            )
 
     @cached_property
     def units(self) -> Units:

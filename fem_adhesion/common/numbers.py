@@ -83,9 +83,11 @@ def _registry() -> Any:
 def with_error(quantity: Estimate, scale: float = 1.0, digits: int = DIGITS) -> str:
     """Number, times a scale, with the error of its last digit in brackets, rounded up: 60.4440(1).
 
-    It has so many significant digits at most.
+    It has so many significant digits at most, and a question mark where the error is not known.
     """
     number = quantity * scale
+    if not math.isfinite(number.error):
+        return f"{number.value:.{digits}g}(?)"
     most = digits - 1 - _decade(number.value)
     decimals = max(0, min(most, -_decade(number.error)) if number.error else most)
     uncertain = max(1, math.ceil(number.error * 10**decimals * (1 - 1e-9)))

@@ -87,7 +87,7 @@ def cells(event: Event, units: Mapping[str, Scale], tolerance: Tolerance) -> Ite
         found = event.estimate(name)
         if np.isnan(found.value):
             yield "-"
-        elif abs(found.value) <= found.error:
+        elif abs(found.value) <= found.error < np.inf:
             yield "0"
         else:
             yield with_error(found, units[name].size, DIGITS) + (MISSED if name in missed else "")
