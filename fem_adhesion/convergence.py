@@ -6,6 +6,7 @@ import math
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from fem_adhesion.discretise import (
     size_for,
     sized_body,
 )
-from fem_adhesion.mesh.file import read_scaled
+from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
 from halfspace.accuracy.finite_bodies import (
     AROUND,
@@ -216,11 +217,29 @@ def with_rings(degree: int) -> Discretisation:
 
 def _trace_on_given_mesh(scene: Scene, file: Path, rtol: float, to_load: float) -> EquilibriumPath:
     """Trace on a mesh and once cut finer; raise GridTooCoarse in the file's unit if it does not carry the spike."""
-    _, unit = read_scaled(file)
+    mesh, unit = read_scaled(file)
+    _require_smooth(mesh, unit, scene, rtol)
     try:
         return climb(rtol, partial(mesh_ladder, scene, unit), to_load=to_load, most_rungs=1)
     except GridTooCoarse as error:
         raise _in_the_files_unit(error, scene, unit) from error
+
+
+def _require_smooth(mesh: Any, unit: float, scene: Scene, rtol: float) -> None:
+    """Refuse straight lines of a contact that leave its smooth line by more than the tolerance of the gap there."""
+    (r, z), off = chords(mesh)
+    limit = rtol * (1 / scene.body.size - z)
+    if np.all(off <= limit):
+        return
+    worst = int(np.argmax(off / limit))
+    where = [float(values[worst]) for values in (r, off, limit)]
+    place, found, most = (unit * value for value in where)
+    raise GridTooCoarse(
+        f"mesh {scene.body.file}: straight cells leave the smooth line of the contact by {found:.2g} at "
+        f"r = {place:.3g}, in the file's unit, limit {most:.2g} for radius_ratio {scene.body.size:g}, rtol {rtol:g}; "
+        "mesh it in second order (Gmsh: Mesh.ElementOrder = 2), or finer there",
+        *(scene.sphere_radius * value for value in where),
+    )
 
 
 def mesh_ladder(scene: Scene, unit: float, level: int) -> Rung:

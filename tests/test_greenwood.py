@@ -269,6 +269,7 @@ def test_the_page_shows_everything(report):
     assert len(page.images) == len(FIGURES)
     assert all(len(image["aria-label"]) > 40 for image in page.images)
     assert {*FIGURES, *TABLES} <= page.ids
+    assert {f"{stem}.{suffix}" for stem in FIGURES for suffix in ("svg", "png", "csv")} <= set(page.links)
     for link in page.links:
         assert link.startswith("https://doi.org/") or link.lstrip("#") in page.ids or (report / link).exists()
 

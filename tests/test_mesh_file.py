@@ -1,6 +1,8 @@
 """A body from a file: the examples in meshes/, every format and cell that is read, and every refusal."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import meshio
@@ -544,3 +546,12 @@ def test_the_deflection_under_hertz_pressure_is_that_of_a_finer_mesh(example):
     np.testing.assert_allclose(coarse, fine, rtol=5e-3 if name == "sphere" else 6e-4)
     assert np.subtract(*coarse) == pytest.approx(np.subtract(*fine), rel=1e-3)
     assert np.subtract(*fine) == pytest.approx(edge[0] ** 2 / 2, rel=5e-3)
+
+
+def test_scikit_fem_gives_no_advice_to_the_user(tmp_path):
+    """On elements that suit straight quadrilaterals, say; in another process, as pytest catches what is logged."""
+    mesh = with_physical_groups(to_meshio(*paraboloid("quad", columns=64, rows=16)))
+    file = str(written(mesh, tmp_path / "quads.msh", file_format="gmsh22"))
+    code = f"import fem_adhesion as f; f.trace(f.Scene(0.3, f.Meshed({file!r}, radius_ratio=5.0)), rtol=1e-2)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr == ""

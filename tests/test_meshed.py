@@ -94,6 +94,50 @@ def test_a_mesh_that_cannot_carry_the_spike_is_refused_in_its_own_unit(tmp_path,
     assert 0.85 * limit < fine < 0.98 * limit
 
 
+# --- straight cells, between which the contact has corners ---
+
+
+def straight(tmp_path, unit=1.0):
+    """The hemisphere without the middles of its lines."""
+    raw = meshio.read(MESHES / "hemisphere.msh")
+    cells = [(block.type[:-1], block.data[:, : {"triangle6": 3, "line3": 2}[block.type]]) for block in raw.cells]
+    mesh = meshio.Mesh(unit * raw.points, cells, cell_data=raw.cell_data, field_data=raw.field_data)
+    mesh.write(tmp_path / "straight.msh", file_format="gmsh22")
+    return tmp_path / "straight.msh"
+
+
+@pytest.mark.parametrize("unit", [1.0, 1.03])
+def test_a_contact_whose_chords_leave_the_surface_by_more_than_the_tolerance_is_refused(tmp_path, unit):
+    """Chords of a circle leave it by 1 - cos of half their angle; in the file's unit."""
+    file = straight(tmp_path, unit)
+    with pytest.raises(GridTooCoarse, match="second order") as refused:
+        fem_adhesion.trace(Scene(0.6, Meshed(file, radius_ratio=20.0)), rtol=1e-3)
+    off, place, limit = map(float, re.search(r"by (\S+) at r = (\S+), .* limit (\S+) for", str(refused.value)).groups())
+    mesh = read_body(MESHES / "hemisphere.msh")
+    angles = np.sort(np.arcsin(np.minimum(mesh.p[0, np.unique(mesh.facets[:, mesh.boundaries["contact"]])], 1.0)))
+    middles, chords = (angles[1:] + angles[:-1]) / 2, np.cos(np.diff(angles) / 2)
+    k = np.argmax((1 - chords) / (1 / 20 + 1 - chords * np.cos(middles)))
+    assert place == pytest.approx(unit * chords[k] * np.sin(middles[k]), rel=2e-2)
+    assert off == pytest.approx(unit * (1 - chords[k]), rel=5e-2)
+    assert limit == pytest.approx(unit * 1e-3 * (1 / 20 + 1 - chords[k] * np.cos(middles[k])), rel=2e-2)
+
+
+@pytest.mark.parametrize(("tabor", "radius_ratio"), [(0.6, 20.0), (1.0, 100.0)])
+def test_what_a_polygon_errs_by_is_in_the_estimate(tmp_path, tabor, radius_ratio):
+    ours = fem_adhesion.trace(Scene(tabor, Hemisphere(radius_ratio=radius_ratio)), rtol=1e-5)
+    theirs = fem_adhesion.trace(Scene(tabor, Meshed(straight(tmp_path), radius_ratio=radius_ratio)), rtol=1e-2)
+    for name, b in ours.events.items():
+        a = theirs.events[name]
+        for quantity in ("approach", "load", "central_gap", "contact_radius"):
+            off = abs(getattr(a, quantity) - getattr(b, quantity))
+            assert np.isnan(off) or off <= getattr(a, f"{quantity}_error") + getattr(b, f"{quantity}_error")
+
+
+def test_a_polygon_agrees_with_the_weak_form(tmp_path):
+    scene = Scene(0.6, Meshed(straight(tmp_path), radius_ratio=20.0))
+    assert fem_adhesion.compare(scene, rtol=1e-2).verdict == "agree"
+
+
 def test_the_unit_of_a_mesh_does_not_move_the_events(tmp_path):
     """Of one that is off by 4 % the loads would be, too; R is the radius of curvature at the pole."""
     bodies = (MESHES / "hemisphere.msh", rescaled(tmp_path, 1.04))

@@ -69,13 +69,15 @@ def _listed(cells: str | Sequence[str]) -> Sequence[str]:
 class Figure:
     """A picture as SVG that can stand inside HTML; its caption, what is to be seen, is the text alternative too.
 
-    The title says what is drawn; `stem` is the name of its files without suffix, empty if there are none.
+    The title says what is drawn; `stem` is the name of its files without suffix, empty if there are none, and `files`
+    are their suffixes.
     """
 
     markup: str
     caption: str
     title: str = ""
     stem: str = ""
+    files: Sequence[str] = ()
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Generic, TextIO, TypeVar
@@ -146,10 +146,14 @@ def captions(pictures: Sequence[Picture[Results]], results: Results) -> page.Tab
 
 
 def shown(pictures: Sequence[Picture[Results]], results: Results, directory: Path) -> list[page.Figure]:
-    """Figures that `draw` has written, as parts of a page, which can be sent alone."""
+    """Figures that `draw` has written, as parts of a page, which can be sent alone, with links to the files beside."""
     drawn = [picture for picture in pictures if not picture.lacks(results)]
-    files = ((picture, (directory / f"{picture.stem}.svg").read_bytes()) for picture in drawn)
-    return [page.inlined(svg, one.stem, one.see(results), one.title, one.stem) for one, svg in files]
+    figures = []
+    for one in drawn:
+        files = [directory / f"{one.stem}.{suffix}" for suffix in ("svg", "png", "csv")]
+        figure = page.inlined(files[0].read_bytes(), one.stem, one.see(results), one.title, one.stem)
+        figures.append(replace(figure, files=[file.suffix[1:] for file in files if file.exists()]))
+    return figures
 
 
 def require_suffix(path: Path) -> str:

@@ -18,6 +18,7 @@ from fem_adhesion.bodies.body import Body as ElasticBody
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.bodies.layers import FAR_OUT, Stratified
 from fem_adhesion.discretise import finest_length, layout_of, mesh_of, pair_meshes
+from fem_adhesion.mesh.file import is_straight, refined
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.body import TRIANGLES, Body, discretise, fine_within, half_space, on_ground, opposed
 from fem_adhesion.weak_form.contact import Contact, Heights, Law, lennard_jones, paraboloid, sphere
@@ -127,8 +128,12 @@ def _on_given_mesh(scene: Scene, degree: int, *_: float) -> Contact:
 
 @lru_cache(maxsize=2)
 def _given_mesh(scene: Scene) -> Any:
-    """The mesh as it is; the vertices of triangles ascend, so that neighbours agree on the places along their sides."""
+    """The mesh as it is, of straight cells that on their smooth line; the vertices of triangles ascend.
+
+    So neighbours agree on the places along their sides.
+    """
     mesh = mesh_of(scene, np.zeros(1), Discretisation(DEGREES[0]))
+    mesh = refined(mesh) if is_straight(mesh) else mesh
     return type(mesh)(mesh.doflocs, np.sort(mesh.t, axis=0), mesh.boundaries) if isinstance(mesh, MeshTri) else mesh
 
 

@@ -123,7 +123,7 @@ def fig_1c(study: Greenwood1997) -> Plot:
         f"it differs by {least:.1f} at least, and by {abs(load - float(bradley_load(end))):.3g} from Bradley's. The "
         f"loads that Hertz's exceeds them by are {listing}."
     )
-    axes = APPROACH.within(-0.3, 0.36), LOAD.within(-8, 50)
+    axes = APPROACH.within(-0.3, 0.5), LOAD.within(-8, 50)
     return Plot(*axes, lines, [told(text, end, load)])
 
 

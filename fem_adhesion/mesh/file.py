@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from skfem import MeshQuad, MeshQuad2, MeshTri, MeshTri2
 
 from fem_adhesion.mesh.checks import GROUPS, TOLERANCE, facet_nodes, pole, pole_radius, require_body
@@ -211,7 +212,41 @@ def _one_line(text: str) -> str:
     return words if len(words) <= 150 else f"{words[:150]}..."
 
 
-# Finer: new nodes are placed by the shape of the cells, which scikit-fem's are not
+# The contact as a smooth line, which straight cells are a polygon in
+
+
+class SmoothLine:
+    """Contact line of a mesh: a cubic spline through its vertices by the length of their chords, even at the pole."""
+
+    def __init__(self, mesh: Any) -> None:
+        vertices = mesh.p[:, np.unique(mesh.facets[:, mesh.boundaries["contact"]])]
+        self.r, z = vertices[:, np.argsort(vertices[0])]
+        self.s = np.append(0.0, np.cumsum(np.hypot(np.diff(self.r), np.diff(z))))
+        mirrored = [np.concatenate([sign * x[:0:-1], x]) for sign, x in ((-1, self.s), (-1, self.r), (1, z))]
+        self.at = CubicSpline(mirrored[0], np.stack(mirrored[1:]), axis=1)
+
+    def above(self, r: Array) -> Array:
+        """Points (2, n) of the line in the place of those on the polygon at radii (n,)."""
+        return np.asarray(self.at(np.interp(r, self.r, self.s)))
+
+
+def is_straight(mesh: Any) -> bool:
+    """Whether the sides of the cells are."""
+    return type(mesh) is STRAIGHT[type(mesh)]
+
+
+def chords(mesh: Any) -> tuple[Array, Array]:
+    """Middles of the straight lines of the contact (2, n), and how far the smooth line is from them (n,); none curved.
+
+    The mesh is as of `read_body`; all are in its unit.
+    """
+    if not is_straight(mesh):
+        return np.empty((2, 0)), np.empty(0)
+    middles = mesh.p[:, mesh.facets[:, mesh.boundaries["contact"]]].mean(axis=1)
+    return middles, np.hypot(*(SmoothLine(mesh).above(middles[0]) - middles))
+
+
+# Finer: new nodes are placed by the shape of the cells, which scikit-fem's are not, and of a polygon on a smooth line
 
 CURVED = {MeshTri: MeshTri2, MeshTri2: MeshTri2, MeshQuad: MeshQuad2, MeshQuad2: MeshQuad2}
 STRAIGHT = {MeshTri: MeshTri, MeshTri2: MeshTri, MeshQuad: MeshQuad, MeshQuad2: MeshQuad}
@@ -220,7 +255,8 @@ STRAIGHT = {MeshTri: MeshTri, MeshTri2: MeshTri, MeshQuad: MeshQuad, MeshQuad2: 
 def refined(mesh: Any) -> Any:
     """Cut each cell of a mesh of straight or curved sides into four of the same shape together.
 
-    A MeshTri or MeshTri2 becomes a MeshTri2, a MeshQuad or MeshQuad2 a MeshQuad2, with the same named boundaries.
+    A MeshTri or MeshTri2 becomes a MeshTri2, a MeshQuad or MeshQuad2 a MeshQuad2, with the same named boundaries. Of
+    straight cells the new nodes of the contact are on its smooth line: what the polygon errs by is in the change.
     """
     kind = type(mesh)
     sorting = {"sort_t": False} if STRAIGHT[kind] is MeshTri else {}
@@ -232,4 +268,7 @@ def refined(mesh: Any) -> Any:
     X = straight.mapping().invF(fine.doflocs[:, cells].transpose(0, 2, 1), tind=parents)
     points = fine.doflocs.copy()
     points[:, cells.T] = mesh.mapping().F(X, tind=parents)
+    if is_straight(mesh) and "contact" in (finer.boundaries or {}):
+        line = np.unique(facet_nodes(fine, finer.boundaries["contact"]))
+        points[:, line] = SmoothLine(mesh).above(points[0, line])
     return CURVED[kind](points, fine.t, finer.boundaries)
