@@ -12,11 +12,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from halfspace.elastic import compliance, grid
+from halfspace.elastic.compliance import ElasticOperator
+from halfspace.elastic.kernel import ring_kernel
 from halfspace.equilibrium import newton, relaxation
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
@@ -61,14 +63,35 @@ class Rise:
     ended: str
 
 
-def ripple(path: EquilibriumPath, spacing: float, window: float, steps: int = STEPS_DRAWN) -> Ripple:
-    """Separate the surfaces through pull-off on uniform triangles, from a resolved path's state in contact.
+def without_singular_point(nodes: Array) -> ElasticOperator:
+    """Half-space by a sum of the kernel over uniform nodes (q,) in beta that leaves out the node itself.
 
-    The contact radius is prescribed, which goes on falling where approach and load ripple: from a window in beta above
-    that at pull-off to as far below, in a number of steps to a spacing. NotConverged if the coarse grid has no state
-    near the resolved one.
+    The kernel is infinite there, and a sum over all others is what [G97] section 4b saw a student take.
     """
-    problem = Unguarded(compliance.triangles(grid.uniform(EXTENT, spacing)), path.tabor)
+    weights = np.full(nodes.size, nodes[1] - nodes[0])
+    weights[[0, -1]] /= 2  # trapezoidal rule
+    r, s = np.broadcast_arrays(nodes[:, None], nodes)
+    others = ~np.eye(nodes.size, dtype=bool)
+    matrix = np.zeros(r.shape)
+    matrix[others] = ring_kernel(r[others], s[others])
+    whole = compliance.triangles(nodes)
+    return replace(whole, weights=2 * np.pi * nodes * weights, compliance=matrix * nodes * weights)
+
+
+def ripple(
+    path: EquilibriumPath,
+    spacing: float,
+    window: float,
+    steps: int = STEPS_DRAWN,
+    body: Callable[[Array], ElasticOperator] = compliance.triangles,
+) -> Ripple:
+    """Separate the surfaces through pull-off on uniform nodes, from a resolved path's state in contact.
+
+    The nodes are apices of triangles of pressure, unless `body` makes another operator on them. The contact radius is
+    prescribed, which goes on falling where approach and load ripple: from a window in beta above that at pull-off to as
+    far below, in a number of steps to a spacing. NotConverged if the coarse grid has no state near the resolved one.
+    """
+    problem = Unguarded(body(grid.uniform(EXTENT, spacing)), path.tabor)
     centre = path.events["pull_off"].contact_radius
     radii = np.arange(centre + window, centre - window, -spacing / steps)
     resolved = path.segments[-1]
@@ -81,12 +104,14 @@ def ripple(path: EquilibriumPath, spacing: float, window: float, steps: int = ST
     return Ripple(path.tabor, spacing, *np.transpose(values))
 
 
-def false_rise(paths: Sequence[EquilibriumPath], spacing: float) -> Rise:
+def false_rise(
+    paths: Sequence[EquilibriumPath], spacing: float, body: Callable[[Array], ElasticOperator] = compliance.triangles
+) -> Rise:
     """Pull-off at rising Tabor parameters on one spacing, until the rise is proved or the grid has no solution."""
     found: list[Ripple] = []
     for path in paths:
         try:
-            found.append(ripple(path, spacing, WINDOW * spacing, STEPS))
+            found.append(ripple(path, spacing, WINDOW * spacing, STEPS, body))
         except NotConverged as error:
             return Rise(tuple(found), f"no solution at mu = {path.tabor:.3g}: {error}")
         if found[-1].pull_off < ENOUGH:

@@ -15,7 +15,7 @@ from markupsafe import Markup
 from fem_adhesion.common.numbers import digits, joined, plus_minus, told
 from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
 from fem_adhesion.common.style import Picture, captions, draw, shown
-from fem_adhesion.greenwood import beyond, load_figures, state_figures
+from fem_adhesion.greenwood import beyond, claims, load_figures, state_figures
 from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, closed_ratios
 from fem_adhesion.greenwood.drawing import drawn, rises, table
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
@@ -84,6 +84,7 @@ EMPTY = "Nothing was computed."
 def tables(study: Greenwood1997) -> list[Table]:
     """All tables in the order of the page."""
     return [
+        *claims.tables(study.claims),
         *_printed_tables(study),
         _jumps(study),
         _cycles(study.devices),

@@ -15,10 +15,11 @@ import numpy as np
 import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.fields import gaps_at
-from fem_adhesion.greenwood import tables
+from fem_adhesion.greenwood import claims, facts, tables
+from fem_adhesion.greenwood.claims import Claims
 from fem_adhesion.greenwood.criteria import CriteriaStudy, fit, jump_on
 from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple, Rise, attempts, false_rise, ripple
-from fem_adhesion.greenwood.tables import Printed
+from fem_adhesion.greenwood.tables import Tables
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.fold_birth import FIRST, critical_stiffness, tabor_of
 from halfspace.equilibrium.charts import COMPRESSION
@@ -141,19 +142,6 @@ class PullOff:
         return self.finite_element is not None and self.half_space.agrees(self.finite_element)
 
 
-@dataclass(frozen=True)
-class Tables:
-    """Printed beside computed: both tables, and the pressures printed with Fig. 4.
-
-    `asymptote` has the constants of f = a alpha*^(3/2) - b alpha*^2, with the standard errors of their fit.
-    """
-
-    table_1: Sequence[Printed]
-    table_2: Sequence[Printed]
-    profile_checks: Sequence[Printed]
-    asymptote: tuple[Estimate, Estimate]
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Greenwood1997(Valued):
     """What the figures and tables show.
@@ -163,8 +151,8 @@ class Greenwood1997(Valued):
     `profiles` of Fig. 4, before the jump and after, and `more_profiles` in contact and on the way to it. Pull-offs are
     by rising Tabor parameter, ripples curves at mu = 2 on grids that are too coarse, and rises, by spacing, the false
     ones of the pull-off force. Relaxations are the iterations of 1997 on 200 nodes, devices apparatus of finite
-    stiffness at mu = 2; the critical Tabor parameter is where the curve first has a vertical tangent. Seconds are those
-    of the computation; a quick one has fewer points.
+    stiffness at mu = 2; the critical Tabor parameter is where the curve first has a vertical tangent. Claims are those
+    of the paper, each with its verdict. Seconds are those of the computation; a quick one has fewer points.
     """
 
     curves: Mapping[float, EquilibriumPath]
@@ -182,6 +170,7 @@ class Greenwood1997(Valued):
     relaxations: tuple[Attempt, ...]
     devices: DeviceStudy
     critical_tabor: Estimate
+    claims: Claims
     seconds: float
     quick: bool
 
@@ -248,6 +237,7 @@ SUBJECTS = (
     "relaxations",
     "devices",
     "critical Tabor parameter",
+    "claims",
 )
 
 
@@ -281,11 +271,15 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     apparatus = devices(halfspace.trace(DEVICES_AT, rtol=extent.rtol))
     begin("critical Tabor parameter")
     critical_tabor = Estimate.refined(*(tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7)))
+    begin("claims")
+    forces = {p.tabor: p.half_space for p in pull_offs}
+    known = facts.gathered(traced | paths, extent.rtol, criteria, forces, printed, relaxations, rises, critical_tabor)
+    examined = claims.examined(known)
     folds = tuple(event for name, event in traced[WINDING_AT].events.items() if is_fold(name))
     states = jumps(JUMPS_AT), folds, profiles(PRINTED_GAPS), profiles(PROFILE_GAPS)
     seconds = time.perf_counter() - began
     parts = drawn, elements, specified, *states, pull_offs, ripples, rises, criteria, printed, relaxations
-    return Greenwood1997(*parts, apparatus, critical_tabor, seconds, quick)
+    return Greenwood1997(*parts, apparatus, critical_tabor, examined, seconds, quick)
 
 
 def _pull_off(tabor: float, extent: Extent) -> PullOff:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -60,6 +60,19 @@ class Printed:
     def credible(self) -> bool:
         """Whether the two are as near as a hand and a computer of 1997 let expect."""
         return abs(self.deviation) <= CREDIBLE
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Printed beside computed: both tables, and the pressures printed with Fig. 4.
+
+    `asymptote` has the constants of f = a alpha*^(3/2) - b alpha*^2, with the standard errors of their fit.
+    """
+
+    table_1: Sequence[Printed]
+    table_2: Sequence[Printed]
+    profile_checks: Sequence[Printed]
+    asymptote: tuple[Estimate, Estimate]
 
 
 def table_1() -> list[Printed]:
