@@ -48,6 +48,8 @@ TABLES = (
     "coarse_grids",
     "criteria",
     "criteria_constants",
+    "claims",
+    "claims_numbers",
 )
 
 

@@ -90,7 +90,7 @@ def tables(claims: Claims) -> list[Table]:
     }
     see = "Forces on coarse grids and by a wrong sum are wrong on purpose: their error is that of rounding."
     return [
-        Table.of("claims", "Every claim, held against the numbers", words(claims.judged), claims.judged, columns),
+        Table.of("claims", "Every claim, in the order of the paper", words(claims.judged), claims.judged, columns),
         Table.of("claims_numbers", "Numbers that claims rest on and no other table has", see, claims.numbers, rest),
     ]
 

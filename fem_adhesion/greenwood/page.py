@@ -49,12 +49,16 @@ def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = 
     `begin` is told what is drawn next, once for each of `FIGURES`.
     """
     draw(FIGURES, study, directory, begin)
-    written = tables(study)
+    written, held = tables(study), claims.tables(study.claims)
     data = [table(stem, title, plot(study)) for stem, (title, plot) in PLOTS.items()]
-    write_csv([*written, *data, captions(FIGURES, study)], directory)
+    write_csv([*held, *written, *data, captions(FIGURES, study)], directory)
     title = f"Greenwood (1997), computed again{', quick run' if study.quick else ''}"
     figures = Section("figures", "Figures", figures=shown(FIGURES, study, directory))
-    sections = [figures, Section("tables", "Tables", tables=written)]
+    sections = [
+        figures,
+        Section("held", "Claims of the paper, held against the numbers", tables=held),
+        Section("tables", "Tables", tables=written),
+    ]
     write_page(directory, title, list(lead(study)), sections, f"{study.seconds:.1f} s, drawing apart")
 
 
@@ -84,7 +88,6 @@ EMPTY = "Nothing was computed."
 def tables(study: Greenwood1997) -> list[Table]:
     """All tables in the order of the page."""
     return [
-        *claims.tables(study.claims),
         *_printed_tables(study),
         _jumps(study),
         _cycles(study.devices),
