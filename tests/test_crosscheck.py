@@ -213,9 +213,9 @@ def test_the_record_of_the_command_holds_both_solvers_under_their_names(record):
 
 def test_the_tables_of_the_command_show_what_the_record_holds(command, record):
     tables = tables_in(command.out)
-    assert len(tables) == 3 * len(record["cases"])
+    assert len(tables) == 4 * len(record["cases"])
     for number, table in enumerate(tables):
-        rows = record["cases"][number // 3]["comparison"]
+        rows = record["cases"][number // 4]["comparison"]
         between = list(table[0])[2:4]
         for row, shown in zip([row for row in rows if row["between"] == between], table, strict=True):
             assert (shown["quantity"], shown["unit"], shown["verdict"]) == (row["quantity"], row["unit"], "agree")

@@ -135,8 +135,8 @@ def section_text(section):
 
 def test_the_levels_of_the_report_hold_each_value_under_its_header():
     section = crosscheck_section([case(AGREE, DISAGREE), FAILED])
-    summary, lost, operators, residuals, equations, apart, limits, events = tables(section_text(section))
-    assert residuals == equations == apart == limits == []
+    summary, lost, operators, residuals, triangles, equations, apart, limits, events = tables(section_text(section))
+    assert residuals == triangles == equations == apart == limits == []
     assert lost == [{"Tabor parameter": "3", "reason": FAILED.reason}]
     for line, row, tabor in zip([*operators, *events], (WIDE, AGREE, DISAGREE), ("3", "2", "2"), strict=True):
         assert (line["Tabor parameter"], line["quantity"]) == (tabor, row.quantity)

@@ -14,6 +14,9 @@ How independent the two solvers are:
   without end in closed form, and by the load as derivative of the energy.
 * Surface law, contact problem, Newton's method, continuation, events: shared. Checked by the rigid (Bradley) and soft
   (JKR) limits, the printed values of the paper, energies against work, converged reference values.
+* The pressure on the half-space: panels against the overlapping triangles of [G97], a curve of its own whose pull-off
+  and jumps are compared with the finite elements as well. Shared with the panels are the ring kernel, where cells begin
+  and end, and the infinite one.
 * Where cells begin and end: the same radial lines; error estimates by refinement on each side.
 * All that is shared is checked by a weak form with its own law, profile, energy, Newton's method and determinant, on
   its own mesh. Of laws but the 3-9 it is told the potential alone, of profiles but spheres the height. It imports
@@ -29,7 +32,8 @@ and meshes of the user's have the weak form alone (`weak_bodies`); it shares wit
 
 A quantity agrees only if the difference is within the sum of both error estimates and that sum is within the budget.
 Seven defects of one side - no hoop strain, E for E*, 2 pi r forgotten, half the shear modulus, a shifted approach,
-wrong exponents, a clamped block of ten beta - and seven that both sides share - 1 % on the law, the profile, the load
-or the elastic term, jumps taken on a spring, the energy without its half, the slope of the load 5 % short - are
+wrong exponents, a clamped block of ten beta -, four of the triangles - one half alone, no far side of the ring, the
+modulus for the parameter of K, uniform for linear - and seven that both sides share - 1 % on the law, the profile, the
+load or the elastic term, jumps taken on a spring, the energy without its half, the slope of the load 5 % short - are
 injected in the tests, and each is rejected.
 """

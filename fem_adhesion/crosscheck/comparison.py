@@ -20,6 +20,7 @@ Verdict = Literal["agree", "disagree", "inconclusive"]
 Pair = tuple[str, str]
 
 SOLVERS: Pair = ("half-space", "finite elements")
+TRIANGLES: Pair = ("overlapping triangles", "finite elements")
 HARMONICS: Pair = ("harmonics", "finite elements")
 WEAK_FORM: Pair = ("weak form", "finite elements")
 CLOSED_FORM: Pair = ("closed form", "half-space")
@@ -216,6 +217,7 @@ def _row(row: Row) -> dict[str, Any]:
 
 SHORT = {
     "half-space": "hs",
+    "overlapping triangles": "tr",
     "harmonics": "ha",
     "finite elements": "fe",
     "weak form": "wf",

@@ -20,6 +20,7 @@ from fem_adhesion.common.style import laid_out
 from fem_adhesion.crosscheck.comparison import (
     CLOSED_FORM,
     SOLVERS,
+    TRIANGLES,
     WEAK_FORM,
     Case,
     Failure,
@@ -113,12 +114,13 @@ def _curves_section(curves: Curves) -> Section:
     return Section("curves", f"The curve by {solvers}", figures=(inlined(stream.getvalue(), "curves", text),))
 
 
-# Sections: the cross-check in its four levels, what the solvers chose, and what other commands left
+# Sections: the cross-check in its levels, what the solvers chose, and what other commands left
 
 
 LEVELS = {
     "operator:": ("Both elastic operators under the same pressures", SOLVERS),
     "cross-residual:": ("The state found by one solver in the equations of the other", SOLVERS),
+    "triangles:": ("The half-space by overlapping triangles, as in 1997", TRIANGLES),
     "equations:": ("What both share, at a state made up, and a weak form that shares nothing", WEAK_FORM),
     "apart:": ("The events of the finite elements in that weak form", WEAK_FORM),
     "limit:": ("What both share, in closed form", CLOSED_FORM),
@@ -147,7 +149,7 @@ def crosscheck_section(cases: Cases) -> Section:
     ]
     return Section(
         "levels",
-        "The four levels",
+        "The levels",
         paragraphs=(
             "A quantity agrees only if the difference is within the sum of both error estimates and that sum within "
             "the budget. Loads in R dgamma, approaches in eps, energies in R dgamma eps.",

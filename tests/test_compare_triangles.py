@@ -1,0 +1,140 @@
+"""The comparison's level of overlapping triangles: they agree with the finite elements, and wrong triangles do not."""
+
+import json
+from functools import cache, partial
+
+import numpy as np
+import pytest
+from scipy.special import ellipkinc, ellipkm1
+
+import fem_adhesion
+import halfspace
+from fem_adhesion import HalfSpace, Hemisphere, Layer, Scene
+from fem_adhesion.crosscheck import study
+from fem_adhesion.crosscheck.comparison import TRIANGLES, crosscheck_record, crosscheck_tables
+from halfspace.elastic import compliance
+from halfspace.elastic.kernel import panel_integrals
+from halfspace.errors import NotConverged
+
+QUANTITIES = ["pull_off load", "jump_on approach", "jump_on load", "jump_off approach", "jump_off load"]
+
+
+@cache
+def elements(tabor, rtol):
+    return fem_adhesion.trace(Scene(tabor), rtol=rtol)
+
+
+def _case(tabor, rtol):
+    """Comparison whose finite elements are solved once for all of its tests."""
+    return study.compare(Scene(tabor), rtol=rtol, before=(), solve=lambda _, rtol: elements(tabor, rtol))
+
+
+def _rows(case):
+    return {row.quantity.removeprefix("triangles: "): row for row in case.rows if row.between == TRIANGLES}
+
+
+@pytest.mark.parametrize("tabor", [0.05, 0.5, 1.0, 2.0, 5.0, 10.0])
+def test_triangles_agree_with_finite_elements_within_both_estimates_and_a_part_in_a_hundred_thousand(tabor):
+    rows = _rows(_case(tabor, 1e-5))
+    assert list(rows) == (QUANTITIES if tabor > 0.697 else QUANTITIES[:1])
+    scale = elements(tabor, 0.9 * 1e-5).approach_scale
+    for name, row in rows.items():
+        size = scale if name.endswith("approach") else abs(row.second.value)
+        assert row.verdict == "agree"
+        assert row.difference <= row.error <= 1e-5 * size == pytest.approx(row.budget)
+        assert row.first.value != row.second.value
+
+
+def test_the_triangles_are_a_solver_of_their_own():
+    row = _rows(_case(1.0, 1e-4))["jump_off load"]
+    own = halfspace.trace(1.0, kernel="triangles", rtol=0.25e-4).event("jump_off")
+    assert (row.first.value, row.first.error) == (own.load, own.load_error)
+    panels = halfspace.trace(1.0, rtol=1e-5).event("jump_off").load
+    assert 1e-9 < abs(row.first.value - panels) < 1e-4
+
+
+# --- wrong triangles ---
+
+
+def _integrals_of(wrong, targets, nodes, ends):
+    return wrong(panel_integrals(targets, nodes, ends))
+
+
+def _without_one_half(halves):
+    return halves * [1.0, 0.0]
+
+
+def _uniform_over_both_intervals(halves):
+    """App. B's uniform band without the triangle that is to be taken off it."""
+    return halves.sum(axis=-1, keepdims=True) * [1.0, 1.0]
+
+
+def _near_half_of_the_ring(r, s, distance):
+    """The ring as a section shows it, without its image beyond the axis: psi = (pi - phi)/2 from pi/4 to pi/2."""
+    complement = (distance / (r + s)) ** 2
+    both = ellipkm1(complement) - ellipkinc(np.pi / 4, 1 - complement)
+    return 4 / np.pi / (r + s) * both * s
+
+
+def _modulus_for_parameter(r, s, distance):
+    """K(k) where scipy wants K(k^2)."""
+    larger = np.maximum(r, s)
+    return 4 / np.pi / larger * ellipkm1(distance / larger) * s
+
+
+WRONG = {
+    "half a triangle": partial(_integrals_of, _without_one_half),
+    "no image beyond the axis": partial(panel_integrals, ring=_near_half_of_the_ring),
+    "modulus for parameter": partial(panel_integrals, ring=_modulus_for_parameter),
+    "uniform for linear": partial(_integrals_of, _uniform_over_both_intervals),
+}
+
+
+@pytest.mark.parametrize("defect", WRONG)
+def test_wrong_triangles_are_rejected_and_nothing_else_is(defect, monkeypatch):
+    triangles = compliance.triangles
+
+    def wrong(nodes):
+        with monkeypatch.context() as patch:
+            patch.setattr(compliance, "panel_integrals", WRONG[defect])
+            return triangles(nodes)
+
+    monkeypatch.setattr(compliance, "triangles", wrong)
+    case = _case(1.0, 1e-4)
+    verdicts = {name: row.verdict for name, row in _rows(case).items()}
+    assert verdicts == dict.fromkeys(QUANTITIES, "disagree")
+    assert {row.verdict for row in case.rows if row.between != TRIANGLES} == {"agree"}
+    assert case.verdict == "disagree"
+
+
+def test_triangles_that_do_not_converge_disagree(monkeypatch):
+    def fails(*_, kernel="panels", **others):
+        if kernel == "triangles":
+            raise NotConverged("too coarse")
+        return original(*_, kernel=kernel, **others)
+
+    original = halfspace.trace
+    monkeypatch.setattr(halfspace, "trace", fails)
+    rows = _rows(_case(1.0, 1e-4))
+    assert {name: (row.first, row.verdict) for name, row in rows.items()} == dict.fromkeys(
+        QUANTITIES, (None, "disagree")
+    )
+
+
+# --- what is told ---
+
+
+def test_record_and_tables_have_the_level():
+    case = _case(1.0, 1e-4)
+    rows = [row for row in crosscheck_record([case])["cases"][0]["comparison"] if row["between"] == [*TRIANGLES]]
+    assert [row["quantity"] for row in rows] == [f"triangles: {quantity}" for quantity in QUANTITIES]
+    assert json.loads(json.dumps(rows)) == rows
+    tables = {tuple(table.title): [column.header for column in table.columns] for table in crosscheck_tables(case)}
+    assert "error (tr)" in tables["overlapping triangles and finite elements",]
+
+
+@pytest.mark.parametrize("body", [HalfSpace(), Layer(thickness=2.0), Hemisphere(radius_ratio=100.0)], ids=str)
+def test_bodies_that_triangles_do_not_know_have_no_such_level(body):
+    scene = Scene(1.0, body)
+    path = fem_adhesion.trace(scene, rtol=1e-2)
+    assert bool(list(study._by_triangles(scene, path, 1e-2))) == isinstance(body, HalfSpace)
