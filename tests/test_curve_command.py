@@ -133,6 +133,25 @@ def test_what_misses_its_tolerance_is_marked_where_it_stands(both):
     assert all(line.endswith("rtol 0.0001 met") for line in curve_terminal.notes(both) if "unknowns" in line)
 
 
+@pytest.mark.parametrize("rtol", [1e-5, 1e-13])
+def test_table_notes_and_record_miss_the_same_numbers_of_jumps(rtol):
+    """A soft cantilever lands far away, by which its approaches are measured: at 1e-5 none is missed, at 1e-13 all."""
+    units = Units(100e-9, 74.14e9, 0.063, 0.143e-9)
+    curves = study.solve(study.Question(Scene(units.tabor), units=units, stiffness=0.1 / units.stiffness))
+    cycle = replace(curves.apparatus, tolerance=replace(curves.apparatus.tolerance, rtol=rtol))
+    curves = replace(curves, apparatus=cycle)
+    printed = {row[0]: row[2:4] for row in _rows(curves)}
+    jumps, notes = curve_record.record(curves)["jumps"]["apparatus"], " ".join(curve_terminal.notes(curves))
+    for name, words in (("jump_on", "jump on"), ("jump_off", "jump off")):
+        for end, row in (("take_off", words), ("landing", f"{words} lands")):
+            missed = cycle.missed.get(f"{name} {end}", ())
+            starred = [n for n, cell in zip(NUMBERS, printed[f"{row}, apparatus"], strict=False) if "*" in cell]
+            assert starred == list(missed) == list(jumps[name][end]["missed"])
+            assert (f"{name} {end}, apparatus, {' and '.join(missed)}" in notes) == bool(missed)
+            assert bool(missed) == (rtol < 1e-5)
+    assert ("rtol 1e-05 met" in notes) == (rtol == 1e-5)
+
+
 def relative_errors(event, path):
     """Of approach and load, the latter unless it is zero by definition."""
     yield event.approach_error / path.approach_scale

@@ -277,8 +277,22 @@ def test_a_material_with_another_radius_than_its_tip_is_refused_in_one_line(tmp_
     assert "apex radius 2e-08" in capsys.readouterr().out
     assert cli.main([*curve, "--radius", "20.3nm"]) == 2
     err = capsys.readouterr().err
-    assert "radius = 2.03e-08 m under a tip whose apex has 2e-08, limit: the same to 1 %" in err
+    assert "radius = 20.3 nm under a tip whose apex has 2e-08 in its table's unit, limit: the same to 1 %" in err
     assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(("unit", "factor"), [(1e-9, "1e-09"), (1e-6, "1e-06"), (1e-10, "1e-10")])
+def test_a_tip_in_another_unit_is_refused_with_the_factor(unit, factor, tmp_path, capsys):
+    """In nm, say: with that factor in both columns the same command runs."""
+    r, material = np.linspace(0, 15e-9, 100), ["--modulus", "70GPa", "--poisson", "0.2", "--radius", "20nm"]
+    curve = ["curve", *material, "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm", "--profile", "tabulated"]
+    tip = written(tmp_path / "tip.csv", r / unit, r**2 / 40e-9 / unit)
+    assert cli.main([*curve, "--profile-parameter", str(tip), "--rtol", "1e-2"]) == 2
+    said = capsys.readouterr().err
+    assert f"the table in m; multiply both columns by {factor}" in said
+    assert "--radius" not in said
+    tip = written(tmp_path / "tip.csv", r / unit * float(factor), r**2 / 40e-9 / unit * float(factor))
+    assert cli.main([*curve, "--profile-parameter", str(tip), "--rtol", "1e-2"]) == 0
 
 
 def test_a_tip_that_turns_back_is_refused(tmp_path):

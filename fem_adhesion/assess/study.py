@@ -212,7 +212,7 @@ def _finite(contact: Contact) -> Prediction:
     if units.tabor > FINITE_TABOR:
         raise InputError(
             f"tabor = {units.tabor:.4g} is outside tabor <= {FINITE_TABOR:g}, beyond which it takes long; "
-            "trace a Scene with a Hemisphere"
+            "take fem-adhesion curve --body hemisphere"
         )
     scene = Scene(
         tabor=units.tabor,

@@ -252,11 +252,17 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
 
 def _require_own_radius(radius: float, profile: Profile) -> None:
     """Refuse a material of another radius than a profile that is known in SI has itself."""
+    from fem_adhesion.common.numbers import engineering
+
     own = getattr(profile, "radius", radius)
     if abs(own / radius - 1) > OWN:
+        decades = round(math.log10(own / radius))
+        remedy = f"give --radius {engineering(own, 'm').replace(' ', '')}"
+        if abs(own / radius * 10.0**-decades - 1) <= OWN:
+            remedy = f"multiply both columns by 1e{-decades:+03d}"
         raise InputError(
-            f"radius = {radius:.4g} m under a tip whose apex has {own:.4g}, limit: the same to {100 * OWN:g} %, its "
-            f"table in m; give --radius {own:.4g}m"
+            f"radius = {engineering(radius, 'm')} under a tip whose apex has {own:.4g} in its table's unit, limit: the "
+            f"same to {100 * OWN:g} %, the table in m; {remedy}"
         )
 
 

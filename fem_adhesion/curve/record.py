@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import IO, Any
 
 from fem_adhesion.common.facts import plain, versions
@@ -13,7 +13,7 @@ from fem_adhesion.registry import record_of
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle
-from halfspace.equilibrium.events import Event, Tolerance
+from halfspace.equilibrium.events import Event
 from halfspace.scaling import IN_SI, Units
 
 UNITS = {"arclength": "1", **{name: PAPER[name].unit for name in (*OBSERVABLES, "energy", "stiffness")}}
@@ -56,7 +56,7 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
         "stable_under_dead_load": path.stable_under_dead_load,
     }
     return {
-        "events": {name: _event(event, path.tolerance) for name, event in path.events.items()},
+        "events": {name: _event(event, path.tolerance.missed_by(event)) for name, event in path.events.items()},
         "curve": {name: getattr(path, name) for name in COLUMNS} | stability,
         "met": path.met,
         "jumps": path.jumps,
@@ -70,9 +70,9 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
     }
 
 
-def _event(event: Event, tolerance: Tolerance) -> dict[str, Any]:
-    """Numbers of an event with their errors, and which of them miss a tolerance."""
-    return {key: getattr(event, key) for key in NUMBERS} | {"missed": tolerance.missed_by(event)}
+def _event(event: Event, missed: Sequence[str]) -> dict[str, Any]:
+    """Numbers of an event with their errors, and which of them miss the tolerance."""
+    return {key: getattr(event, key) for key in NUMBERS} | {"missed": missed}
 
 
 def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
@@ -80,8 +80,8 @@ def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
         return None
     ends = {
         name: {
-            "take_off": _event(jump.take_off, cycle.tolerance),
-            "landing": _event(jump.landing, cycle.tolerance),
+            "take_off": _event(jump.take_off, cycle.missed_by(name, "take_off")),
+            "landing": _event(jump.landing, cycle.missed_by(name, "landing")),
             "energy": jump.energy,
         }
         for name, jump in cycle.jumps.items()

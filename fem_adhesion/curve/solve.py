@@ -108,6 +108,12 @@ class Curves:
         """What a solver was not given of the scene, in words."""
         return self.question.scene.left_out if solver == HALF_SPACE else []
 
+    def missed(self, solver: str) -> dict[str, tuple[str, ...]]:
+        """By event, and by end of a jump on the first path, the numbers that miss the tolerance."""
+        cycles = {"fixed grips": self.grips, "apparatus": self.apparatus} if solver == self.solver else {}
+        jumps = {f"{name}, {device},": m for device, c in cycles.items() if c for name, m in c.missed.items()}
+        return self.paths[solver].missed | jumps
+
     @property
     def other(self) -> EquilibriumPath | None:
         """The second path."""

@@ -17,7 +17,7 @@ from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.curve.solve import Curves, Scale
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.devices import Cycle, reaching
-from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
+from halfspace.equilibrium.events import Event, tolerance_told
 from halfspace.laws import LENNARD_JONES
 from halfspace.values import Array, Estimate
 
@@ -50,10 +50,10 @@ def show(curves: Curves, console: Console) -> None:
 def table(curves: Curves) -> Fitted:
     """A line for each event of each solver, and for where each jump lands."""
     units, rows = curves.scales, list(_rows(curves))
-    words = Column("state", [words for words, _, _ in rows], text=True, wraps=True)
+    words = Column("state", [words for words, *_ in rows], text=True, wraps=True)
     # The solver tells rows apart only where there are two.
-    solver = Column("solver", [name for _, name, _ in rows], 0 if len(curves.paths) > 1 else 3, text=True, wraps=True)
-    numbers = zip(*(cells(event, units, curves.paths[name].tolerance) for _, name, event in rows), strict=True)
+    solver = Column("solver", [name for _, name, *_ in rows], 0 if len(curves.paths) > 1 else 3, text=True, wraps=True)
+    numbers = zip(*(cells(event, units, missed) for _, _, event, missed in rows), strict=True)
     columns = [
         Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts, RANKS[name])
         for name, texts in zip(OBSERVABLES, numbers, strict=True)
@@ -61,28 +61,29 @@ def table(curves: Curves) -> Fitted:
     return Fitted([words, solver, *columns], list(_title(curves)))
 
 
-def _rows(curves: Curves) -> Iterator[tuple[str, str, Event]]:
-    """What each row is, by which solver, and its numbers."""
+def _rows(curves: Curves) -> Iterator[tuple[str, str, Event, Sequence[str]]]:
+    """What each row is, by which solver, its numbers, and which of them miss the tolerance."""
     for solver, path in curves.paths.items():
         for name, event in path.events.items():
-            yield EVENTS.get(name, name.replace("_", " ")), solver, event
+            yield EVENTS.get(name, name.replace("_", " ")), solver, event, path.tolerance.missed_by(event)
     for device, cycle in (("fixed grips", curves.grips), ("apparatus", curves.apparatus)):
-        for words, state in _landings(cycle, with_take_off=device == "apparatus"):
-            yield f"{words}, {device}", curves.solver, state
+        for words, state, missed in _landings(cycle, with_take_off=device == "apparatus"):
+            yield f"{words}, {device}", curves.solver, state, missed
 
 
-def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str, Event]]:
+def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str, Event, Sequence[str]]]:
     """Where jumps land; where they take off too, unless that is an event of the curve."""
-    for name, jump in cycle.jumps.items() if cycle else ():
+    if cycle is None:
+        return
+    for name, jump in cycle.jumps.items():
         words = name.replace("_", " ")
         if with_take_off:
-            yield words, jump.take_off
-        yield f"{words} lands", jump.landing
+            yield words, jump.take_off, cycle.missed_by(name, "take_off")
+        yield f"{words} lands", jump.landing, cycle.missed_by(name, "landing")
 
 
-def cells(event: Event, units: Mapping[str, Scale], tolerance: Tolerance) -> Iterator[str]:
-    """Numbers of an event, each with the error of its last digit in brackets, and a mark if that misses a tolerance."""
-    missed = tolerance.missed_by(event)
+def cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> Iterator[str]:
+    """Numbers of an event, each with the error of its last digit in brackets, and a mark if it is missed."""
     for name in OBSERVABLES:
         found = event.estimate(name)
         if np.isnan(found.value):
@@ -126,10 +127,10 @@ def notes(curves: Curves) -> Iterator[str]:
         for fold in path.unconfirmed:
             where = f"approach {fold.approach:.3g} eps, load {fold.load:.3g} R dgamma"
             yield f"{solver}: a fold near {where} cannot be told, no finer grid has it; a smaller rtol may"
-        told = tolerance_told(path.rtol, path.missed)
+        told = tolerance_told(path.rtol, curves.missed(solver))
         yield f"{solver}: {path.unknowns} unknowns, {path.count} points, {path.seconds:.2f} s; {told}"
-    if any(curves.paths[name].tolerance.missed_by(event) for _, name, event in _rows(curves)):
-        size = "of eps and the range of all events' approaches"
+    if any(missed for *_, missed in _rows(curves)):
+        size = "of eps and the range of all approaches"
         yield f"{MISSED}: the error is above rtol = {curves.question.rtol:g} of the load, of an approach {size}."
     yield (
         "In brackets: error of the last digit. Compression and approach are positive. Contact radius: "

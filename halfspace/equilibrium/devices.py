@@ -92,15 +92,18 @@ class Cycle:
 
     @property
     def missed(self) -> dict[str, tuple[str, ...]]:
-        """By state, as ``jump_on landing``, the numbers that have not.
+        """By state, as ``jump_on landing``, the numbers that have not."""
+        states = {f"{name} {end}": self.missed_by(name, end) for name in self.jumps for end in ("take_off", "landing")}
+        return {name: numbers for name, numbers in states.items() if numbers}
+
+    def missed_by(self, name: str, end: str) -> tuple[str, ...]:
+        """Numbers of one end of a jump, ``take_off`` or ``landing``, that have not the accuracy asked for.
 
         The load at a landing counts by the larger one of its jump: of a contact that has parted nearly none is left.
         """
-        states: dict[str, tuple[str, ...]] = {}
-        for name, jump in self.jumps.items():
-            states[f"{name} take_off"] = self.tolerance.missed_by(jump.take_off)
-            states[f"{name} landing"] = self.tolerance.missed_by(jump.landing, load=abs(jump.take_off.load))
-        return {name: numbers for name, numbers in states.items() if numbers}
+        jump = self.jumps[name]
+        load = abs(jump.take_off.load) if end == "landing" else 0.0
+        return self.tolerance.missed_by(getattr(jump, end), load)
 
 
 @dataclass(frozen=True)
