@@ -14,7 +14,20 @@ from fem_adhesion.greenwood import claims, facts
 from fem_adhesion.greenwood.claims import CLAIMS
 from fem_adhesion.greenwood.numerics_1997 import Rise
 from fem_adhesion.greenwood.tables import LAST_DIGIT, TABORS
-from fem_adhesion.greenwood.verdicts import FAILS, HOLDS, MISPRINT, OPEN, above, between, decide, digits, judge, within
+from fem_adhesion.greenwood.verdicts import (
+    FAILS,
+    HOLDS,
+    MISPRINT,
+    OPEN,
+    above,
+    below,
+    between,
+    decide,
+    digits,
+    formula,
+    judge,
+    within,
+)
 from halfspace.errors import InputError
 from halfspace.laws.law import require_law
 from halfspace.theories.closed_forms import bradley_load
@@ -67,6 +80,20 @@ def known(study):
 )
 def test_a_number_decides_with_its_error(value, error, allowed, verdict):
     assert decide(Estimate(value, error), allowed) == verdict
+
+
+@pytest.mark.parametrize(
+    ("allowed", "told"),
+    [
+        (above(0.05, "large", "5 %"), "from 0.05 on: 5 %"),
+        (below(0.05, "small", "5 %"), "up to 0.05: 5 %"),
+        (digits("1.2"), "1.15 to 1.25: last printed digit"),
+        (between(2, 2, "two", "two folds"), "2: two folds"),
+        (formula(np.pi, "pi"), "3.14159: a formula"),
+    ],
+)
+def test_an_interval_is_told_with_the_words_that_give_it(allowed, told):
+    assert allowed.interval == told
 
 
 def inside(allowed):

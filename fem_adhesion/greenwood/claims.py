@@ -78,9 +78,9 @@ def tables(claims: Claims) -> list[Table]:
         "section": lambda c: c.section,
         "claim (what is measured)": lambda c: c.words,
         "printed": lambda c: c.allowed.printed,
-        "holds for": lambda c: c.allowed.interval,
         ("computed", "error", "unit"): lambda c: (*_cells(c.computed), c.unit),
         "verdict": lambda c: f"{c.verdict}: {c.how}" if c.how else c.verdict,
+        "holds for": lambda c: c.allowed.interval,
         "shown by": lambda c: c.shown,
     }
     rest: Columns[Number] = {
@@ -96,10 +96,10 @@ def tables(claims: Claims) -> list[Table]:
 
 
 def _cells(number: Estimate) -> tuple[str, str]:
-    """Value to its error, ten digits at most, and the error."""
+    """Value to its error, eight digits at most, and the error."""
     if number.error == 0:
         return f"{number.value:g}", "0"
-    value = f"{number.value:.10g}" if number.error < 1e-9 * abs(number.value) else digits(number)
+    value = f"{number.value:.8g}" if number.error < 1e-7 * abs(number.value) else digits(number)
     return value if abs(number.value) > 1e-9 else f"{number.value:.1e}", f"{number.error:.1e}"
 
 

@@ -22,11 +22,17 @@ from halfspace.theories import closed_forms, criteria
 from halfspace.values import Array, Estimate, Valued
 
 ROUNDING = 1e-14  # relative error of closed forms
-STIFF, SOFT = (0.02, 0.05, 0.1, 0.2, 0.5, 0.9), 6.7  # Tabor parameters of claims, beside those of Table 2
+STIFF, RISEN, SOFT = (0.02, 0.05, 0.1, 0.2, 0.5, 0.9), 1.25, 6.7  # Tabor parameters, beside those of Table 2
 JUMPING = (1.0, 2.0, 3.0, 5.0, 6.0)  # of Table 2
 HIGHEST = (1.0, 2.0, 3.0, 5.0)  # of Fig. 2b
 DEEP, DEEPER = 20.0, 25.0  # load of claims on Fig. 1c, and to which the curve goes, R dgamma
-COARSE = (0.02, 0.01)  # spacings in beta: 300 and 600 nodes up to 6 beta
+COARSE, WIDEST = (0.02, 0.01), 0.5  # spacings in beta: 300, 600 and 12 nodes up to 6 beta
+COARSE_GRIDS = (  # Tabor parameters and spacings of forces that are wrong on purpose
+    (3.0, COARSE[0]),
+    (5.0, COARSE[0]),
+    (5.0, COARSE[1]),
+    *((mu, WIDEST) for mu in (0.5, 0.9, 1.0, RISEN)),
+)
 NODES_APART = 0.025  # beta, 240 nodes, for a sum without the singular point
 MORE_WORK = 0.5  # part by which another core raises the work of adhesion
 
@@ -163,7 +169,7 @@ def steps(numbers: Sequence[Estimate]) -> list[Estimate]:
 
 def traced(rtol: float, known: Mapping[float, EquilibriumPath]) -> dict[float, EquilibriumPath]:
     """Paths of all the claims' Tabor parameters, beside those that are known."""
-    missing = sorted({*STIFF, *JUMPING, SOFT} - set(known))
+    missing = sorted({*STIFF, RISEN, *JUMPING, SOFT} - set(known))
     paths = {mu: halfspace.trace(mu, rtol=rtol, to_load=DEEPER if mu == STIFF[0] else 5.0) for mu in missing}
     return {**known, **paths}
 
@@ -204,7 +210,7 @@ def coarse(paths: Mapping[float, EquilibriumPath]) -> dict[tuple[float, float], 
 
 
 def _coarse(paths: Mapping[float, EquilibriumPath]) -> Iterator[tuple[tuple[float, float], float]]:
-    for tabor, spacing in ((3.0, COARSE[0]), (5.0, COARSE[0]), (5.0, COARSE[1])):
+    for tabor, spacing in COARSE_GRIDS:
         try:
             yield (tabor, spacing), -ripple(paths[tabor], spacing, 1.5 * spacing, 8).pull_off
         except NotConverged:

@@ -37,12 +37,12 @@ class Allowed:
     @property
     def interval(self) -> str:
         """The interval and the words that give it."""
-        if self.high - self.low <= 3 * FORMULA * abs(self.high):
-            ends = f"{self.high:.6g}"
-        elif math.isinf(self.low):
+        if math.isinf(self.low):
             ends = f"up to {self.high:.6g}"
         elif math.isinf(self.high):
             ends = f"from {self.low:.6g} on"
+        elif self.high - self.low <= 3 * FORMULA * abs(self.high):
+            ends = f"{self.high:.6g}"
         else:
             ends = f"{self.low:.6g} to {self.high:.6g}"
         return f"{ends}: {self.words}"
