@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -96,7 +97,9 @@ def tables(claims: Claims) -> list[Table]:
 
 
 def _cells(number: Estimate) -> tuple[str, str]:
-    """Value to its error, eight digits at most, and the error."""
+    """Value to its error, eight digits at most, and the error; nothing of what is no number."""
+    if not math.isfinite(number.value):
+        return "", ""
     if number.error == 0:
         return f"{number.value:g}", "0"
     value = f"{number.value:.8g}" if number.error < 1e-7 * abs(number.value) else digits(number)
