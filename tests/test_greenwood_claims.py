@@ -357,9 +357,9 @@ def test_every_claim_is_a_row_in_the_order_of_the_paper(rows, study):
         assert row["claim (what is measured)"] == claim.words
         assert row["printed"] == claim.allowed.printed
         assert row["verdict"].partition(":")[0] == judged.verdict
-        assert float(row["computed"]) == pytest.approx(
-            judged.computed.value, rel=1e-6, abs=1e-9 + judged.computed.error
-        )
+        value, error = judged.computed.value, judged.computed.error
+        assert float(row["computed"] or "nan") == pytest.approx(value, rel=1e-6, abs=1e-9 + error, nan_ok=True)
+        assert float(row["error"] or "nan") == pytest.approx(error, rel=0.06, nan_ok=True)
         assert row["unit"] == claim.unit
     order = ["abs", "1", "2", "3", "4", "5", "App. A", "App. B", "App. C"]
     plain = [row["section"].removeprefix("beyond ").replace("C", "App. C", 1) if row["section"] == "beyond C"
