@@ -144,8 +144,23 @@ def test_states_are_those_of_the_curve_through_its_folds(winding, states):
 
 def test_traction_of_the_stress_is_the_laws_pressure_the_spike_included(states):
     for state in states:
-        error = np.abs(state.recovered_pressure() - state.pressure)
+        error = np.abs(state.recovered_traction() - state.traction)
         assert np.max(error) < 3e-4 * np.max(np.abs(state.pressure))
+        np.testing.assert_array_equal(state.traction, state.pressure)  # on a flat surface
+
+
+@pytest.mark.parametrize(
+    ("radius_ratio", "poisson", "grip"), [(40.0, 0.3, "bonded"), (10.0, 0.45, "bonded"), (40.0, 0.3, "sliding")]
+)
+def test_traction_of_the_stress_is_the_laws_up_to_the_equator(radius_ratio, poisson, grip):
+    """Where the surface is upright and what is on its projected area is nothing; not in a singular corner."""
+    scene = hemisphere(1.0, radius_ratio, poisson=poisson, grip=grip)
+    for state in fields.states_along(scene, fem_adhesion.trace(scene, rtol=1e-3), points=0):
+        r, largest = state.surface.radii / scene.sphere_radius, np.max(np.abs(state.pressure))
+        error = np.abs(state.recovered_traction() - state.traction) / largest
+        assert error[r < 1 - 2e-5].max() < 5e-4
+        assert error.max() < (5e-4 if grip == "sliding" else 10)
+        np.testing.assert_allclose(state.traction, state.pressure * np.sqrt(1 - r**2), atol=1e-6 * largest)
 
 
 def test_the_finite_elements_agree_with_the_half_space_beside_them(states):

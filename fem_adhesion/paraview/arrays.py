@@ -66,11 +66,12 @@ _STRESS = Unit("E* beta/R = dgamma/(mu eps)", "pressure")
 UNITS: Mapping[str, Unit] = {
     "points": _LENGTH,
     "displacement": _DISPLACEMENT,
-    **dict.fromkeys(("displacement_in_beta", "displacement_magnified"), _LENGTH),
+    "displacement_in_beta": Unit(_LENGTH.words),  # in SI it would be the displacement again
+    "displacement_magnified": _LENGTH,
     **dict.fromkeys(("stress_cylindrical", "stress", "von_mises", "hydrostatic", "principal_stresses"), _STRESS),
     "strain_energy_density": Unit("E* (beta/R)^2", "energy_density"),
     "region": Unit("1"),
-    "pressure": _STRESS,
+    **dict.fromkeys(("pressure", "traction"), _STRESS),
     "gap": _GAP,
     "H": Unit("1"),
     "deflection": _DISPLACEMENT,
@@ -89,7 +90,8 @@ MEANINGS: Mapping[str, str] = {
     "hydrostatic": "mean of the three normal stresses",
     "principal_stresses": "descending",
     "region": "of its own material, 0 on top",
-    "pressure": "that of the surface law; pressure_from_stress what the stress inside exerts",
+    "pressure": "that of the surface law",
+    "traction": "that of the law per area of the surface; traction_from_stress what the stress inside exerts",
     "gap": "h, from surface to surface",
     "H": "h/eps - 1",
     "deflection": "-u_z",
@@ -99,7 +101,7 @@ MEANINGS: Mapping[str, str] = {
 }
 
 SIGNS = (
-    "pressure and load positive in compression, stress positive in tension; approach positive when pressed together; "
+    "pressure, traction and load positive in compression, stress in tension; approach positive when pressed together; "
     "displacement z upwards, out of the body; deflection positive into the body"
 )
 
@@ -158,7 +160,8 @@ def on_surface(state: State, beside: Beside, scale: float) -> Named:
     displacement = np.stack([u_r, np.zeros_like(u_r), u_z], axis=1)
     return _displacements(state, displacement, scale) | {
         "pressure": state.pressure,
-        "pressure_from_stress": state.recovered_pressure(),
+        "traction": state.traction,
+        "traction_from_stress": state.recovered_traction(),
         f"pressure_of_{other}": beside.pressure,
         "gap": state.gap + 1,
         f"gap_of_{other}": beside.gap + 1,
