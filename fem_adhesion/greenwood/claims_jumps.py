@@ -401,7 +401,7 @@ APPENDIX_C = (
         "criteria",
     ),
     Claim[Facts](
-        "beyond C",
+        "beyond App. C",
         "The same at the jump off, where the paper does not test it (mu = 5).",
         AT_ONE,
         lambda f: _by_approach(f, "jump_off", 5.0),
