@@ -226,16 +226,13 @@ class ContactProblem(Valued):
         `_left_out`; the contact radius, nan without contact, by the last but one in the cells on both sides of the
         edge, see `_last_but_one`, in the geometric mean: they have it from either. On a grid whose cells inside the
         contact alone grow with it they are not alike, and that outside counts, of whose polynomial the radius is a
-        root. On finite elements of degree p, with p + 2 nodes, the last is none of theirs. Of a straight line between
-        two nodes it is the next divided difference that tells.
+        root. On finite elements of degree p, with p + 2 nodes, the last is none of theirs. A straight line between two
+        nodes does not tell of the radius: nan.
         """
         body, radius = self.operator_at(x), self.contact_radius(x)
         gap = _left_out(self._coefficients(x, 0))
-        if np.isnan(radius):
+        if np.isnan(radius) or body.cell_nodes.shape[1] == 2:
             return np.array([gap, np.nan])
-        if body.cell_nodes.shape[1] == 2:
-            first = int(body.cell_nodes[body.cell_of(radius), 0])
-            return np.array([gap, _beside_line(body.radii, x[:-2], first, radius)])
         sides = (-1e-9, 1e-9) if self.operator.alike else (1e-9,)
         cells = {body.cell_of(radius * (1 + side)) for side in sides}
         slope = abs(body.continuous(radius)[1] @ x[:-2])
@@ -367,14 +364,6 @@ def _last_but_one(coefficients: Array) -> float:
         return known
     before, last = coefficients[-5], coefficients[-3]
     return max(known, float(last * min(1.0, last / before)) if before else 0.0)
-
-
-def _beside_line(radii: Array, H: Array, node: int, radius: float) -> float:
-    """Error of a radius at which the straight line through a node and the next has a value, by the node after these."""
-    u, values = radii[node : node + 3], H[node : node + 3]
-    slopes = np.diff(values) / np.diff(u)
-    curvature = (slopes[1] - slopes[0]) / (u[2] - u[0])
-    return float(abs((radius - u[0]) * (u[1] - radius) * curvature / slopes[0]))
 
 
 def contact_of(scales: Scales, operator: Operator) -> ContactProblem:
