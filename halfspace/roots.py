@@ -54,6 +54,9 @@ def rising_root(
     first = last
     while function(first) > 0:
         first /= 2
+        if first < 1 / farthest:
+            sought, _, remedy = what.partition("; ")
+            raise NotConverged(f"{sought} is below {1 / farthest:g}; {remedy}")
     return root(function, first, last, what, xtol=1e-300, rtol=1e-15)
 
 

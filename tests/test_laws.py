@@ -14,8 +14,6 @@ from scipy.special import beta
 
 import fem_adhesion
 import halfspace
-from fem_adhesion.crosscheck import from_scratch
-from fem_adhesion.crosscheck.references import elements_of
 from fem_adhesion.scene import Scene
 from halfspace import Coated
 from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for
@@ -25,11 +23,12 @@ from halfspace.equilibrium.charts import moved, transfer
 from halfspace.equilibrium.conditions import FOLD, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.events import usual
-from halfspace.errors import InputError
+from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
 from halfspace.laws.law import require_law
 from halfspace.profiles import PARABOLOID, Endless, Hyperboloid, Paraboloid, Power, RoundedPunch, Sphere
 from halfspace.profiles.indentation import hertz_approach, hertz_load, hertz_radius, jkr_approach, jkr_load, jkr_radius
+from halfspace.roots import rising_root
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
 from halfspace.theories.maugis import TENSION_TO_MAUGIS, MaugisDugdale
@@ -630,9 +629,60 @@ class Slack(Yukawa):
         return super().energy(gap, tabor) * (1 - 0.02 * np.exp(-(((gap - 0.17) / 0.03) ** 2)))
 
 
-def test_a_law_whose_potential_and_pressure_differ_is_rejected():
-    rows = from_scratch.equations(scene := Scene(1.0, law=Slack()), elements_of(scene, 1e-3)[-2:], 1.0)
-    assert "disagree" in {row.verdict for row in rows}
+def test_a_law_whose_potential_and_pressure_differ_is_refused():
+    with pytest.raises(InputError, match=r"the pressure is off by .* from the energy's derivative"):
+        Scene(1.0, law=Slack())
+
+
+@dataclass(frozen=True)
+class Half(Yukawa):
+    """One whose slope is wrong by half between two gaps."""
+
+    def slope(self, gap, tabor):
+        """dP/dH."""
+        return super().slope(gap, tabor) * np.where((gap > 0.4) & (gap < 0.8), 0.5, 1.0)
+
+
+def test_a_law_whose_slope_is_wrong_between_some_gaps_is_refused_by_its_name():
+    with pytest.raises(InputError, match=r"^Half\(.*the slope is off by .* from the pressure's"):
+        halfspace.trace(1.0, law=Half())
+
+
+@dataclass(frozen=True)
+class Own(Endless):
+    """A paraboloid that is lifted, bends down, or has another slope."""
+
+    lift: float = 0.0
+    bend: float = 0.0
+    steeper: float = 1.0
+
+    def height(self, radii):
+        """In beta^2/R."""
+        return self.lift + radii**2 / 2 - self.bend * radii**4
+
+    def slope(self, radii):
+        """Its derivative."""
+        return self.steeper * radii - 4 * self.bend * radii**3
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"lift": 0.3}, "the height on the axis is 0.3 beta"),
+        ({"bend": 0.02}, "the height falls by"),
+        ({"steeper": 1.01}, "the slope is off by 0.00"),
+    ],
+)
+def test_a_profile_of_ones_own_is_checked_as_laws_are(wrong, message):
+    assert halfspace.trace(1.0, profile=Own(), rtol=1e-2).met
+    for ask in (lambda: halfspace.trace(1.0, profile=Own(**wrong)), lambda: Scene(1.0, profile=Own(**wrong))):
+        with pytest.raises(InputError, match=message):
+            ask()
+
+
+def test_a_search_for_a_length_ends():
+    with pytest.raises(NotConverged, match="a length is below"):
+        rising_root(lambda r: r + 0.3, "a length; let it begin at zero")
 
 
 def test_a_scene_tells_the_tabor_parameters_of_the_3_9_law_as_strong_and_as_stiff():

@@ -98,7 +98,10 @@ class Law:
         return root(lambda H: -float(self.energy(np.array(H), 1.0)) - part, 0.0, 1e12, "the law's range; mend the law")
 
 
-PROBES = np.array([-0.3, -0.1, 0.05, 0.3, 1.0, 3.0, 10.0])  # gaps H at which derivatives are compared
+CORE = np.array([-0.3, -0.1])  # gaps H at which the pressure rises inwards
+PROBES = np.concatenate(
+    [np.arange(-0.3, 0.0, 0.01), np.geomspace(0.01, 10.0, 350)]
+)  # at which derivatives are compared
 STEP, CLOSE = 1e-4, 1e-4  # of a gap, for differences; what they may be off by, in parts of the largest value around
 TINY = 1e-9  # dgamma/eps, no tension
 REACH = 1e-2  # of the largest tension: what may be left of it at the largest of the gaps looked at
@@ -115,7 +118,7 @@ def require_law(law: Law) -> Law:
 
 def _found(law: Law) -> list[tuple[str, bool, str, str]]:
     """What the law has of each that is asked, whether it will do, the limit and the remedy."""
-    tension, core = -law.pressure(NEAR, 1.0), law.pressure(PROBES[:2], 1.0)
+    tension, core = -law.pressure(NEAR, 1.0), law.pressure(CORE, 1.0)
     strength = max(float(tension.max()), TINY)
     rest, energy = (float(value(np.array(0.0), 1.0)) for value in (law.pressure, law.energy))
     left = float(tension[-1]) / strength
@@ -136,7 +139,11 @@ MEND = "mend either, or smooth the table"
 
 
 def _apart(derivative: Callable[[Array, float], Array], of: Callable[[Array], Array]) -> float:
-    """Largest distance of a derivative from differences of what it is of, in parts of its size at each gap."""
+    """Largest distance of a derivative from differences of what it is of, in parts of its size at each gap.
+
+    That at two gaps next to each other counts: at one alone a law may have a corner or a step.
+    """
     values, d = derivative(PROBES, 1.0), STEP * (1 + PROBES)
     found = (8 * (of(PROBES + d) - of(PROBES - d)) - (of(PROBES + 2 * d) - of(PROBES - 2 * d))) / (12 * d)
-    return float(np.max(np.abs(values - found) / (np.abs(values) + 1e-3 * np.max(np.abs(values[2:])))))
+    off = np.abs(values - found) / (np.abs(values) + 1e-3 * np.max(np.abs(values[PROBES > 0])))
+    return float(np.max(np.minimum(off[1:], off[:-1])))
