@@ -95,6 +95,21 @@ def test_contact_ends_are_those_of_the_cells(cap_angle):
     assert np.all(surface.weights() > 0)
 
 
+def test_facets_on_the_axis_are_known_whatever_rounding_makes_of_their_radii():
+    """Else they are the cap's or the contact's, and the sphere is held there: by which processor multiplies."""
+    mesh = sphere(1.0)
+    known = {name: np.sort(facets) for name, facets in mesh.boundaries.items()}
+    mesh.p[0, np.unique(mesh.facets[:, known["axis"]])] = 2e-18
+    module.named(
+        mesh, lambda r, z: {"axis": r == 0, "contact": (r > 0) & (z > -R), "far": (r > 0) & (r < 0.6) & (z < -R)}
+    )
+    assert np.array_equal(np.sort(mesh.boundaries["axis"]), known["axis"])
+    assert np.array_equal(np.sort(mesh.boundaries["contact"]), known["contact"])
+    assert np.all(mesh.p[0, mesh.facets[:, mesh.boundaries["axis"]]] == 2e-18)
+    ends = np.hypot(*np.diff(mesh.p[:, mesh.facets[:, known["axis"]]], axis=1)[:, 0])
+    assert ends.sum() == pytest.approx(2 * R)
+
+
 def test_refinement_keeps_the_sides_of_all_other_cells():
     mesh = hemisphere(R, *lines())
     for vertex in (0, 30, mesh.t[2, -1]):

@@ -137,10 +137,18 @@ def with_contact_to(mesh: Any, radius: float) -> Any:
     return mesh.with_boundaries({"contact": facets[inside]})
 
 
+ON_AXIS = 1e-6  # distance from the axis in lengths of a facet: rounding on the axis, about half a length beside it
+
+
 def named(mesh: CurvedQuads, where: Callable[[Array, Array], dict[str, Any]]) -> CurvedQuads:
-    """Name in place the boundary facets for which the masks, by name, hold at r and z of their middles."""
+    """Name in place the boundary facets for which the masks, by name, hold at r and z of their middles.
+
+    A facet on the axis has r = 0, whatever rounding left where cells were cut.
+    """
     facets = mesh.boundary_facets()
-    masks = where(*mesh.p[:, mesh.facets[:, facets]].mean(axis=1))
+    ends = mesh.p[:, mesh.facets[:, facets]]
+    r, z = ends.mean(axis=1)
+    masks = where(np.where(r < ON_AXIS * np.hypot(*np.diff(ends, axis=1)[:, 0]), 0.0, r), z)
     mesh.name_boundaries({name: facets[mask] for name, mask in masks.items()})
     return mesh
 
