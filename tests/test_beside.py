@@ -41,18 +41,29 @@ def test_the_numbers_are_those_of_the_curves(collapsed):
     size = abs(first.events["pull_off"].load)
     pull_off = max(abs(path.events["pull_off"].load - first.events["pull_off"].load) for path in others) / size
     assert collapsed.apart("pull-off").value == pytest.approx(pull_off, rel=1e-12)
-    approach = max(
-        abs(path.events[name].approach / path.tabor - first.events[name].approach / 2) / (first.approach_scale / 2)
-        for path in others
-        for name in ("jump_on", "jump_off")
-    )
-    load = max(
-        abs(path.events[n].load - first.events[n].load) / size for path in others for n in ("jump_on", "jump_off")
-    )
-    assert collapsed.apart("jumps").value == pytest.approx(max(approach, load), rel=1e-12)
     assert 0 < collapsed.apart("jumps").error < 1e-3
     assert f"{100 * pull_off:.3g} +- " in collapsed.told
     assert "morse k 3 at tabor" in collapsed.told
+
+
+@pytest.mark.parametrize("name", ["jump_on", "jump_off"])
+@pytest.mark.parametrize("quantity", ["approach", "load"])
+def test_jumps_differ_by_the_largest_part_in_loads_of_the_pull_off_and_in_approaches_of_their_range(
+    collapsed, name, quantity
+):
+    """The first curve beside itself, moved in one number alone, at a Tabor parameter that scales its approaches."""
+    law, path = collapsed.curves[0]
+    event, events = path.events[name], path.events
+    size = {"approach": 1 + np.ptp([e.approach for e in events.values()]), "load": abs(events["pull_off"].load)}
+    scaled = {
+        n: replace(e, approach=1.5 * e.approach, approach_error=1.5 * e.approach_error) for n, e in events.items()
+    }
+    moved, error = 0.01 * size[quantity], 2 * getattr(event, f"{quantity}_error") / size[quantity]
+    unit = 1.5 if quantity == "approach" else 1.0
+    scaled[name] = replace(scaled[name], **{quantity: unit * (getattr(event, quantity) + moved)})
+    found = beside.EquallyStrong([(law, path), (law, replace(path, tabor=1.5 * path.tabor, events=scaled))])
+    assert found.apart("jumps").value == pytest.approx(0.01, rel=1e-9)
+    assert found.apart("jumps").error == pytest.approx(error, rel=1e-6)
 
 
 def test_the_stronger_the_adhesion_the_better_curves_collapse():

@@ -649,6 +649,8 @@ def test_the_counter_body_of_a_tabor_parameter_is_heeded(monkeypatch):
     assert found.scene == pair(1.0, 90.0, 0.4)
     found = _asked(monkeypatch, *body, "--counter-share", 0.4, "--counter-poisson", 0.2, "--counter-radius", 3)
     assert found.scene == pair(1.0, 90.0, 0.4, 0.2, 3.0)
+    found = _asked(monkeypatch, *body, "--counter-share", 0.4, "--counter-radius", 3, "--grip", "bonded")
+    assert (found.scene.body.grip, found.scene.counter.grip) == ("bonded", "bonded")
 
 
 def test_a_hamaker_constant_makes_the_spacing(monkeypatch):

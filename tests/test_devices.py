@@ -68,14 +68,6 @@ def test_the_loss_on_one_discretisation_is_that_of_the_cycle_under_fixed_grips(p
     )
 
 
-def test_of_several_states_at_the_base_of_a_take_off_the_last_in_contact_is_landed_on():
-    """At tabor 5 the curve winds: between its four folds as many states share an approach."""
-    winding = halfspace.trace(5.0, rtol=1e-4)
-    on = cycle(winding).jump_on
-    assert on.landing.approach == pytest.approx(on.take_off.approach, abs=1e-6)
-    assert on.landing.contact_radius > 1.0
-
-
 def test_a_softer_apparatus_loses_more(path):
     losses = [cycle(path, stiffness).energy_lost.value for stiffness in (0.1, 1.0, 10.0, np.inf)]
     assert np.all(np.diff(losses) < 0)

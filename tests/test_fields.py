@@ -7,7 +7,7 @@ from scipy.sparse.linalg import spsolve
 from skfem import CellBasis, ElementQuad2, ElementQuadP
 
 import fem_adhesion
-from fem_adhesion import HeldSphere, Hemisphere, Layer, NeoHookean, fields
+from fem_adhesion import HeldSphere, Hemisphere, Layer, LinearElastic, NeoHookean, fields
 from fem_adhesion.elasticity import stress
 from fem_adhesion.elasticity.boundaries import (
     boussinesq_displacement,
@@ -24,6 +24,8 @@ from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh.block import tensor_grid
 from fem_adhesion.scene import Scene
 from halfspace.elastic import grid
+from halfspace.laws import Morse
+from halfspace.profiles import Power
 
 PLACES = np.stack(np.meshgrid(np.linspace(0, 1, 5), np.linspace(0, 1, 5))).reshape(2, -1)
 
@@ -163,6 +165,15 @@ def test_traction_of_the_stress_is_the_laws_up_to_the_equator(radius_ratio, pois
         np.testing.assert_allclose(state.traction, state.pressure * np.sqrt(1 - r**2), atol=1e-6 * largest)
 
 
+def test_traction_per_true_area_is_that_of_the_stress():
+    """Where the surface is steep, and still away from the corner at the mid-plane; R is 3.2 beta."""
+    scene = Scene(1.0, Hemisphere(radius_ratio=10.0, material=LinearElastic(0.3, "surface")))
+    for state in fields.states_along(scene, fem_adhesion.trace(scene, rtol=1e-2), points=0):
+        steep = (state.surface.radii > 1.0) & (state.surface.radii < 2.5)
+        error = np.abs(state.recovered_pressure() - state.pressure)[steep]
+        assert np.max(error) < 5e-3 * np.max(np.abs(state.pressure[steep]))
+
+
 def test_the_finite_elements_agree_with_the_half_space_beside_them(states):
     for state in states:
         beside = half_space_beside(state)
@@ -170,8 +181,12 @@ def test_the_finite_elements_agree_with_the_half_space_beside_them(states):
         assert beside.observables[:2] == pytest.approx(state.observables[:2], abs=2e-4)
 
 
-def test_the_half_space_beside_a_layer_has_its_strata():
-    scene = Scene(1.0, Layer(2.0))
+@pytest.mark.parametrize(
+    "scene",
+    [Scene(1.0, Layer(2.0)), Scene(1.0, law=Morse(3.0)), Scene(1.0, profile=Power(4))],
+    ids=["strata", "law", "profile"],
+)
+def test_the_half_space_beside_has_the_scenes_parts(scene):
     for state in fields.states_along(scene, fem_adhesion.trace(scene, rtol=1e-3), points=0):
         assert half_space_beside(state).observables[:2] == pytest.approx(state.observables[:2], abs=2e-3)
 

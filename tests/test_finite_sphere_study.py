@@ -52,6 +52,7 @@ from fem_adhesion.finite_sphere.table import (
     write_tables,
 )
 from fem_adhesion.finite_strain.scene import find_jumps
+from halfspace.equilibrium.devices import cycle
 from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Paraboloid, Sphere
@@ -553,6 +554,7 @@ def test_the_fit_says_up_to_where_it_holds():
     found = fit(synthetic(lambda mu, rho: 0.5 * np.sqrt(mu / rho) + 20 * (mu / rho) ** 2))
     assert 0.02 < found.holds_to < 0.5
     assert found.coefficients["beta/R"].value == pytest.approx(0.5, rel=0.02)
+    assert abs(found.coefficients["beta/R"].value - 0.5) < found.coefficients["beta/R"].error  # what is left out pulls
 
 
 def test_what_the_terms_cannot_fit_is_refused():
@@ -608,7 +610,16 @@ def test_quantities_are_those_of_the_curve():
     assert values.keys() == {*QUANTITIES, APPROACH_SCALE}
     assert values[APPROACH_SCALE].value == path.approach_scale
     assert values["pull_off_load"].value == min(path.load.min(), path.events["pull_off"].load)
-    assert values["jump_off_approach"].value == path.events["jump_off"].approach
+    events = path.events
+    for name in ("pull_off_load", *(f"jump_{way}_{what}" for way in ("on", "off") for what in ("approach", "load"))):
+        state, _, quantity = name.rpartition("_")
+        error = getattr(events[state], f"{quantity}_error")
+        assert values[name] == Estimate(getattr(events[state], quantity), error)
+    assert values["zero_load_radius"] == Estimate(
+        events["zero_load"].contact_radius, events["zero_load"].contact_radius_error
+    )
+    assert values[APPROACH_SCALE].error == 2 * max(event.approach_error for event in events.values())
+    assert values["hysteresis"] == cycle(path).energy_lost
     # Fig. 2a: the energy lost is what is released less what is won back, and positive.
     assert 0 < values["hysteresis"].value < path.energy.value
 

@@ -175,6 +175,20 @@ def test_relaxation_from_past_a_fold_ends_where_the_jump_lands(winding, name):
     assert problem.observables(x)[2] == pytest.approx(jump.landing.central_gap, abs=0.1)
 
 
+def test_of_several_states_at_the_base_of_a_take_off_the_nearest_stable_one_is_landed_on():
+    """A spring of 1 R dgamma/eps: three states of the curve are at the base of a jump on, and of one off."""
+    path = halfspace.trace(1.0, law=LAW, rtol=1e-4)
+    found, base = cycle(path, 1.0), path.approach + path.load
+    for jump, part in ((found.jump_on, 1), (found.jump_off, -1)):
+        takes_off = int(np.hypot(path.approach - jump.take_off.approach, path.load - jump.take_off.load).argmin())
+        beyond = slice(takes_off + 3, None) if part > 0 else slice(takes_off - 3, None, -1)
+        off, approach = (base[beyond] - jump.take_off.approach - jump.take_off.load), path.approach[beyond]
+        crossings = np.flatnonzero(off[:-1] * off[1:] < 0)
+        assert crossings.size == 3
+        first = crossings[0]
+        assert sorted(approach[first : first + 2])[0] < jump.landing.approach < sorted(approach[first : first + 2])[1]
+
+
 PAST, PACE, MOST = 0.05, 0.005, 20000  # eps beyond the fold; of a residual in a step; steps
 
 

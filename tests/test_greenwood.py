@@ -213,6 +213,22 @@ def test_a_fit_returns_the_constants_that_made_the_jumps():
     assert fitted["fit of App. C"].scatter < 1e-12
 
 
+def test_the_errors_of_refitted_constants_are_the_spread_of_fits_to_scattered_jumps():
+    tabor, random = np.geomspace(1, 100, 12), np.random.default_rng(5)
+    gaps, approaches = criteria.fitted_gap(tabor), criteria.fitted_approach(tabor)
+
+    def refitted():
+        y, z = (np.exp(random.normal(0, 1e-3, tabor.size)) for _ in range(2))
+        scattered = zip(tabor, 1 - (1 - approaches) * z, (gaps + 1) * y - 1, strict=True)
+        made = fit(JumpOn(mu, Estimate(a, 0.0), Estimate(g, 0.0)) for mu, a, g in scattered)
+        return [(e.value, e.error) for c in made.criteria for _, _, e in c.constants]
+
+    values, errors = np.moveaxis([refitted() for _ in range(400)], -1, 0)
+    spread = np.std(values, axis=0)
+    # The three before err by their formula; of the second here, n, the scatter of what it is fitted against counts too.
+    assert np.mean(errors, axis=0)[3:] == pytest.approx(spread[3:], rel=0.25)
+
+
 # --- the report ---
 
 

@@ -210,6 +210,16 @@ def test_every_kind_of_cell_is_read(tmp_path, kind):
     assert mesh.p.shape[1] == len(np.unique(cells[kind])) + (mesh.nelements if kind == "quad8" else 0)
 
 
+def test_the_ninth_node_of_a_quadrilateral_is_where_the_file_has_it(tmp_path):
+    """Off the place that the other eight give it, it moves what is inside a cell."""
+    points, cells, groups = paraboloid("quad9")
+    points[cells["quad9"][:, 8]] += [0.003, 0.002, 0.0]
+    mesh = read_body(written(to_meshio(points, cells, groups), tmp_path / "body.vtu"))
+    centres = mesh.mapping().F(np.array([[0.5], [0.5]]))[:, :, 0].T
+    expected = points[cells["quad9"][:, 8], :2]
+    assert centres[np.lexsort(centres.T)] == pytest.approx(expected[np.lexsort(expected.T)], abs=1e-12)
+
+
 def test_a_mesh_that_scikit_fem_saved_is_read(tmp_path):
     mesh = read_body(MESHES / "hemisphere.msh")
     names = mesh.boundaries

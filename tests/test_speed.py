@@ -458,6 +458,22 @@ def test_the_slope_of_a_power_is_its_exponent():
     assert math.isnan(slope(n[:1], n[:1]))
 
 
+def test_each_cost_grows_by_its_own_exponent():
+    """Of n unknowns: n^2 seconds, n^1.5 MiB, but for what is too little to tell, and an error of n^-3."""
+    made = [
+        Timing("some", "", "converged", n**2.0, "", n, n**1.5 if n > 2 else 3.9, {"pull_off": n**-3.0})
+        for n in (2, 10, 100, 1000)
+    ]
+    assert made_study(rungs=made).exponents("some") == pytest.approx(
+        {
+            "time, x = unknowns": 2,
+            "peak memory, x = unknowns": 1.5,
+            "time, x = 1/error": 2 / 3,
+            "peak memory, x = 1/error": 0.5,
+        }
+    )
+
+
 def test_errors_that_the_truth_cannot_tell_do_not_bend_the_exponents():
     made = [Timing("some", "", "converged", 10.0**n, "", 10**n, 1.0, {"pull_off": 10.0**-n}) for n in (1, 2, 3)]
     floor = {"pull_off": 1e-3}

@@ -176,6 +176,32 @@ def test_the_points_are_load_against_approach_and_hollow_where_unstable(open_pag
     assert against == ["approach", "radius", "radius", "radius"]
 
 
+def test_the_curve_of_each_solver_is_load_against_approach_and_marked_where_unstable(browser, report):
+    """On a page whose half-space bears twice the load; along the scales of the points."""
+    found = re.search(r'(id="walk-data">)(.*?)(</script>)', report.read_text(), re.S)
+    data = json.loads(found[2])
+    fe, hs = data["curves"]
+    hs["load"] = [2 * load for load in hs["load"]]
+    changed = report.with_name("changed.html")
+    text = report.read_text()
+    changed.write_text(text[: found.start(2)] + json.dumps(data) + text[found.end(2) :])
+    shown = browser.new_page()
+    shown.goto(changed.as_uri())
+    scale = "all => all.map(c => [+c.getAttribute('cx'), +c.getAttribute('cy')])"
+    at = np.transpose(shown.locator("#curve circle.station").evaluate_all(scale))
+    x, y = (
+        np.polyfit([one[name] for one in data["stations"]], at[k], 1) for k, name in enumerate(["approach", "load"])
+    )
+    unstable = shown.locator("#curve path.unstable")
+    drawn = [shown.locator("#curve path.fe"), unstable.nth(0), shown.locator("#curve path.hs"), unstable.nth(1)]
+    wanted = [(curve, kind) for curve in (fe, hs) for kind in (False, True)]
+    for line, (curve, kind) in zip(drawn, wanted, strict=True):
+        kept = np.array(curve["unstable"]) == kind
+        expected = np.polyval(x, np.array(curve["approach"])[kept]), np.polyval(y, np.array(curve["load"])[kept])
+        assert np.transpose(places(line.get_attribute("d"))) == pytest.approx(np.array(expected), abs=0.2)
+    shown.close()
+
+
 def test_the_state_is_said_to_be_what_it_is(open_page, stations):
     shown = open_page()
     for number, one in enumerate(stations):
