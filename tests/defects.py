@@ -200,6 +200,34 @@ DEFECTS = (
             "tests/browser/test_report_browser.py::test_the_curve_of_each_solver_is_load_against_approach_and_marked_where_unstable",
         ),
     ),
+    Defect(
+        "contact radius without the ripples of the gap",
+        "halfspace/equilibrium/events.py",
+        "[gap if alone else 0.0, radius]",
+        "[gap if alone else 0.0, 0.0]",
+        ("tests/test_devices.py::test_a_contact_radius_is_known_no_better_than_the_gap_ripples_there",),
+    ),
+    Defect(
+        "force of the figure in nN whatever its label",
+        "fem_adhesion/assess/figure.py",
+        "load * self.units.load * 10.0**-self.newtons",
+        "load * self.units.load * 1e9",
+        ("tests/test_assess.py::test_the_axes_of_the_figure_are_in_the_units_that_they_name",),
+    ),
+    Defect(
+        "reach of Hertz without its square",
+        "fem_adhesion/assess/terminal.py",
+        "(sample.hertz_until.value * contact.thickness) ** 2 / contact.units.radius",
+        "sample.hertz_until.value * contact.thickness**2 / contact.units.radius",
+        ("tests/test_thin_sample.py::test_the_reach_of_hertz_is_told_as_an_indentation",),
+    ),
+    Defect(
+        "rigid limit by JKR's theory",
+        "fem_adhesion/assess/study.py",
+        'closed("rigid half-space", bradley, units.tabor',
+        'closed("rigid half-space", jkr, units.tabor',
+        ("tests/test_assess.py::test_a_sphere_that_is_all_but_rigid_has_bradleys_force",),
+    ),
 )
 
 

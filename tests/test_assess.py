@@ -567,6 +567,15 @@ def test_a_rubber_bead_is_left_to_the_closed_theories(bead):
     assert bead.half_space.values["jump_on_separation"].value > 10e-9
 
 
+def test_a_sphere_that_is_all_but_rigid_has_bradleys_force():
+    """2 pi R dgamma on the half-space, and 9/7 eps/R less by the sphere's profile."""
+    rigid = Contact(radius=100e-9, modulus=7e28, poisson=0.17, work_of_adhesion=0.1, spacing=0.3e-9, stiffness=0.2)
+    assert rigid.units.tabor < study.RIGID_TABOR
+    forces = [model(rigid).values["pull_off_force"].value for model in (study._half_space, study._profile)]
+    bradley = 2 * np.pi * 100e-9 * 0.1
+    assert forces == [pytest.approx(bradley, rel=1e-8), pytest.approx(bradley * (1 - 9 / 7 * 0.003), rel=3e-5)]
+
+
 # What is said ---------------------------------------------------------------------------------------------------------
 
 
@@ -892,6 +901,20 @@ def test_the_axes_of_the_figure_say_what_is_drawn_along_them(axes, silica):
             assert separation == pytest.approx((1 - at) * 0.3, abs=0.02)
     low, high = axes.get_ylim()
     assert low < -1e9 * silica.half_space.values["pull_off_force"].value < 0 < high
+
+
+def test_the_axes_of_the_figure_are_in_the_units_that_they_name(bead):
+    """Other ones than nm and nN: a bead of 50 um pulls with some microN."""
+    axes = assess_figure.draw(bead).axes[0]
+    unit = {PREFIXES[exponent] + "N": 10.0**exponent for exponent in PREFIXES}[axes.get_ylabel().rpartition(", ")[2]]
+    assert unit == 1e-6
+    line = next(line for line in axes.lines if line.get_label() == bead.half_space.model)
+    force = bead.half_space.values["pull_off_force"].value
+    assert np.nanmin(line.get_ydata()) * unit == pytest.approx(-force, rel=1e-3)
+    metres = {PREFIXES[exponent] + "m": 10.0**exponent for exponent in PREFIXES}[axes.get_xlabel().rpartition(", ")[2]]
+    arrow = next(text for text in axes.texts if text.arrow_patch)
+    on = bead.half_space.values["jump_on_separation"].value
+    assert arrow.xyann[0] * metres == pytest.approx(on, rel=1e-3)
 
 
 def test_the_arrows_of_the_figure_are_the_two_jumps(axes, silica):

@@ -68,6 +68,16 @@ def test_the_loss_on_one_discretisation_is_that_of_the_cycle_under_fixed_grips(p
     )
 
 
+def test_a_contact_radius_is_known_no_better_than_the_gap_ripples_there():
+    rippling = halfspace.trace(5.0, rtol=1e-3)
+    for name, event in rippling.events.items():
+        located = rippling.stages[-1][name]
+        if math.isfinite(event.contact_radius):
+            surface, point = located.problem.interface, located.point
+            ripple = surface.ripples(located.problem.surface_state(point.x))[1]
+            assert event.contact_radius_error >= ripple > 0, name
+
+
 def test_a_softer_apparatus_loses_more(path):
     losses = [cycle(path, stiffness).energy_lost.value for stiffness in (0.1, 1.0, 10.0, np.inf)]
     assert np.all(np.diff(losses) < 0)

@@ -186,6 +186,13 @@ def test_what_is_printed_of_the_sample_is_what_was_found(said):
         assert worst == WORDS[row.worst]
 
 
+def test_the_reach_of_hertz_is_told_as_an_indentation(said):
+    text, chi = " ".join(_text(report(said[0]), 150).split()), said[0].sample.hertz_until.value
+    told = text[text.index("here an indentation of ") :].split()[4:6]
+    assert told[1] == "pm."
+    assert float(told[0]) == pytest.approx(1e12 * (chi * 30e-9) ** 2 / 100e-9, rel=1e-3)
+
+
 def test_the_record_has_all_of_it(said):
     record, sample = said[1], said[0].sample
     for found, row in zip(record["thin_sample"]["indentations"], sample.indentations, strict=True):
