@@ -476,6 +476,13 @@ FAMILIES = {
         of_path,
         partial(traced, truths.half_space, _itself),
     ),
+    "triangles": Family(
+        Net((*USUAL[:12], *BETWEEN), _decades(*range(1, 7))),
+        Net((0.75, 3), _decades(3, 5)),
+        _by(partial(halfspace.trace, kernel="triangles")),
+        of_path,
+        partial(traced, truths.half_space, _itself),
+    ),
     "block": Family(
         Net(BLOCKS, _decades(*range(1, 8))),
         Net((Scene(0.1), Scene(1, HalfSpace(poisson=0.499)), Scene(3)), _decades(2, 4)),
