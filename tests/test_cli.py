@@ -338,14 +338,6 @@ def test_what_fails_leaves_nothing_on_standard_output(monkeypatch, capsys):
     assert capsys.readouterr().out == ""
 
 
-def test_a_device_is_never_replaced_by_a_file(tmp_path):
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    with pytest.raises(ValueError, match=r"is a device or a pipe, limit: a file; "), written_aside(pipe):
-        raise AssertionError
-    assert pipe.is_fifo()
-
-
 def test_what_does_not_converge_is_one_line_and_exit_code_1(monkeypatch, capsys):
     def fail(*_, **__):
         raise NotConverged("no convergence in 40 Newton steps; try a nearer start")

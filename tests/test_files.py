@@ -215,6 +215,97 @@ def test_a_file_that_cannot_be_replaced_keeps_its_content(tmp_path, monkeypatch)
     assert list(tmp_path.iterdir()) == [file]
 
 
+def test_what_a_link_leads_to_is_written_and_keeps_its_mode(tmp_path):
+    (tmp_path / "far").mkdir()
+    real, link, dangling = tmp_path / "far" / "a.txt", tmp_path / "link", tmp_path / "dangling"
+    real.write_text("old")
+    real.chmod(0o640)
+    link.symlink_to(real)
+    dangling.symlink_to(tmp_path / "far" / "b.txt")
+    for path in (link, dangling):
+        with written_aside(path) as file:
+            file.write("new")
+        assert path.is_symlink()
+        assert path.read_text() == "new"
+    assert real.stat().st_mode & 0o777 == 0o640
+    assert sorted(file.name for file in (tmp_path / "far").iterdir()) == ["a.txt", "b.txt"]
+
+
+def test_links_to_and_in_a_directory_are_written_through_and_modes_kept(tmp_path):
+    (tmp_path / "out").symlink_to(tmp_path / "real")
+    for force, text in ((False, "first"), (True, "second")):
+        with directory_written_aside(tmp_path / "out", force=force) as folder:
+            (folder / "a.txt").write_text(text)
+        assert (tmp_path / "out").is_symlink()
+        assert (tmp_path / "real" / "a.txt").read_text() == text
+        (tmp_path / "real" / "a.txt").chmod(0o640)
+    (tmp_path / "real" / "a.txt").rename(tmp_path / "elsewhere")
+    (tmp_path / "real" / "a.txt").symlink_to(tmp_path / "elsewhere")
+    with directory_written_aside(tmp_path / "out", force=True) as folder:
+        (folder / "a.txt").write_text("third")
+    assert (tmp_path / "real" / "a.txt").is_symlink()
+    assert (tmp_path / "elsewhere").read_text() == "third"
+    assert (tmp_path / "elsewhere").stat().st_mode & 0o777 == 0o640
+
+
+def test_a_device_and_a_pipe_are_written_to_whole_or_not_at_all(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    with pytest.raises(ZeroDivisionError), written_aside(pipe) as file:
+        file.write(f"{'half' * 9999} {1 / 0}")
+    with written_aside(pipe) as file:
+        file.write("wh")
+        file.flush()
+        file.buffer.write(b"ole")
+    assert os.read(reader, 99) == b"whole"
+    os.close(reader)
+    assert pipe.is_fifo()
+    full = r"/dev/full cannot be written \(No space left on device\)"
+    with pytest.raises(NotWritten, match=full), written_aside(Path("/dev/full")) as file:
+        file.write("lost")
+
+
+TO_OUTPUT = """
+import pathlib, sys
+from fem_adhesion.common.files import written_aside
+for name in sys.argv[1:]:
+    with written_aside(pathlib.Path(name)) as file:
+        file.write("line\\n")
+print("end")
+"""
+
+
+def test_standard_output_by_name_is_written_to_where_it_leads(tmp_path):
+    """Links of our own to what /dev/stdout is a link to: that one, were it replaced, would be missed by others."""
+    names = [str(tmp_path / "link"), str(tmp_path / "again")]
+    for name in names:
+        Path(name).symlink_to("/proc/self/fd/1")
+    for out in ("file", subprocess.PIPE):
+        with (tmp_path / "file").open("w") as file:
+            command = [sys.executable, "-c", TO_OUTPUT, *names]
+            done = subprocess.run(command, stdout=file if out == "file" else out, text=True, check=True)
+        assert (done.stdout or (tmp_path / "file").read_text()) == "line\nline\nend\n"
+    assert all(Path(name).is_symlink() for name in names)
+
+
+def test_two_that_store_the_same_case_at_once_both_succeed(tmp_path, monkeypatch):
+    first, second = (open_store(tmp_path / "study", "code", resume=True) for _ in range(2))
+    sync, asked = os.fsync, []
+
+    def meanwhile(descriptor):
+        if not asked:
+            asked.append(descriptor)
+            second.put({"a": 1}, {"b": "second"})
+        sync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", meanwhile)
+    first.put({"a": 1}, {"b": "first"})
+    assert first.get({"a": 1}) == {"b": "first"}
+    assert len(list((tmp_path / "study" / "cases").iterdir())) == 1
+    assert not first.notes
+
+
 def test_what_is_not_about_writing_passes_through(tmp_path):
     with pytest.raises(ZeroDivisionError), writing(tmp_path):
         _ = 1 / 0

@@ -17,6 +17,7 @@ import io
 import json
 import os
 import shutil
+import stat
 import tempfile
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -44,6 +45,7 @@ REMEDIES: Mapping[int, str] = {
 
 ELSEWHERE = "choose another place"
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # what is no fault of the name that was given
+STANDARD_OUTPUT = 1  # its descriptor
 
 
 class NotWritten(RuntimeError):
@@ -70,26 +72,50 @@ def refusal(path: Path, error: OSError) -> str:
 def written_aside(path: Path) -> Iterator[TextIO]:
     """Open a file beside `path` that takes its place when the block ends well, and vanishes if it does not.
 
-    The file is of text; its attribute ``buffer`` takes bytes. InputError at once, before any work, if `path` cannot be
-    written; NotWritten where what is written to the file does not go to the disk.
+    The file is of text; its attribute ``buffer`` takes bytes. Where `path` is a symbolic link, what it leads to is
+    written, and a file that is replaced leaves its mode. A device, a pipe and what is this process' standard output
+    have no place to take: they are written to when the block ends well. InputError at once, before any work, if `path`
+    cannot be written; NotWritten where what is written to the file does not go to the disk.
     """
     with _first(path):
         if path.is_dir():
             raise InputError(f"{path} is a directory; give the name of a file")
-        if path.exists() and not path.is_file():
-            raise InputError(f"{path} is a device or a pipe, limit: a file; give the name of one")
-        descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", text=True)
+        target, place = path.resolve(), _in_place(path)
+        if place is None:
+            descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", text=True)
+    if place is not None:
+        held = io.BytesIO()
+        with _opened(place, path) as stream, io.TextIOWrapper(held, encoding="utf-8") as file:
+            yield file
+            file.flush()
+            stream.buffer.write(held.getvalue())
+        return
     aside = Path(name)
     try:
         with _opened(descriptor, path) as file:
             yield file
             file.flush()
         with writing(path):
-            aside.chmod(0o666 & ~_umask())
-            aside.replace(path)
+            _put(aside, target)
     finally:
         with suppress(OSError):  # the folder may have vanished, or have become read-only
             aside.unlink()
+
+
+def _in_place(path: Path) -> int | None:
+    """Descriptor of what is written to where it is, or None of what a file can take the place of."""
+    if not path.exists():
+        return None
+    with suppress(OSError):  # standard output may be closed
+        if os.path.samestat(path.stat(), os.fstat(STANDARD_OUTPUT)):
+            return os.dup(STANDARD_OUTPUT)
+    return None if path.is_file() else os.open(path, os.O_WRONLY)
+
+
+def _put(aside: Path, target: Path) -> None:
+    """Let a file take its place, with the mode of the file that was there, or that of a new one."""
+    aside.chmod(stat.S_IMODE(target.stat().st_mode) if target.exists() else 0o666 & ~_umask())
+    aside.replace(target)
 
 
 class _Output(io.FileIO):
@@ -120,15 +146,15 @@ def directory_written_aside(path: Path, *, force: bool = False) -> Iterator[Path
     with _first(path):
         if path.exists() and not path.is_dir():
             raise InputError(f"{path} is a file; give the name of a directory")
-        exists = path.is_dir()
-        aside = Path(tempfile.mkdtemp(dir=path if exists else path.parent, prefix=".unfinished."))
+        exists, target = path.is_dir(), path.resolve()
+        aside = Path(tempfile.mkdtemp(dir=target if exists else target.parent, prefix=".unfinished."))
     try:
         present = sum(1 for _ in path.iterdir()) - 1 if exists else 0
         if present and not force:
             raise InputError(f"{path} holds {present} files, limit 0; empty it, choose another or use --force")
         yield aside
         with writing(path):
-            _moved(aside, path, exists=exists)
+            _moved(aside, target, exists=exists)
     finally:
         shutil.rmtree(aside, ignore_errors=True)
 
@@ -140,7 +166,11 @@ def _moved(aside: Path, path: Path, *, exists: bool) -> None:
         aside.replace(path)
         return
     for file in aside.iterdir():
-        file.replace(path / file.name)
+        target = (path / file.name).resolve()
+        if target.is_file():
+            _put(file, target)
+        else:
+            file.replace(target)
 
 
 @contextmanager
@@ -262,14 +292,15 @@ def open_store(directory: Path, code: str, *, resume: bool = False, force: bool 
 
 
 def _write_through(path: Path, text: str) -> None:
-    """Write a file aside, wait until it is on disk, and put it in its place."""
-    aside = path.with_name(f".{path.name}")  # left by a crash, it is overwritten by the case's next attempt
+    """Write a file aside, wait until it is on disk, and put it in its place, whoever else writes the same one."""
+    descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    aside = Path(name)
     try:
-        with aside.open("w") as file:
+        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
             file.write(text)
             file.flush()
             os.fsync(file.fileno())
-        aside.replace(path)
+        _put(aside, path)
     finally:
         aside.unlink(missing_ok=True)
     _sync_directory(path.parent)
