@@ -233,7 +233,7 @@ def at_places(stages, scene, path):
     for coordinate, branch, values in _asked(path):
         k, _ = COORDINATES[coordinate]
         for n, value in enumerate(values):
-            problem, point, _ = curve._solved(k, value, curve._branches[coordinate][branch])
+            problem, point, _ = curve._solved(k, value, curve.parts(coordinate)[branch])
             found[coordinate, n, branch] = Located(Condition(k, value=value), problem, point, float(point.rates[k]))
     return [_at_places(stage, found) for stage in stages(scene)]
 

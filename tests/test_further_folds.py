@@ -28,8 +28,9 @@ from halfspace.accuracy.stages import Rung, on_all
 from halfspace.accuracy.trace import under_sphere
 from halfspace.equilibrium import path as path_module
 from halfspace.equilibrium.charts import Stage, moved, trace_charts
+from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.events import usual
+from halfspace.equilibrium.events import is_fold, usual
 from halfspace.equilibrium.path import Steps
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, Morse, PowerLaw
@@ -218,6 +219,31 @@ def test_a_curve_that_winds_more_has_all_its_folds(tabor):
     assert between == [f"fold_{number}" for number in range(2, turned)]
     assert all(path.event(name).approach_error < 1e-6 * path.approach_scale for name in between)
     assert list(cycle(path).jumps) == ["jump_on", "jump_off"]
+
+
+@pytest.mark.parametrize(
+    ("tabor", "law", "rtol"),
+    [
+        (300.0, PowerLaw(3.427, 19.84), 1e-3),
+        (300.0, PowerLaw(3.427, 19.84), 1e-4),
+        (100.0, LENNARD_JONES, 1e-2),
+        (20.0, LENNARD_JONES, 1e-1),
+        (5.0, Morse(2.0), 1e-3),
+        (2.0, LAW, 1e-3),
+        (0.5, LENNARD_JONES, 1e-3),
+    ],
+    ids=str,
+)
+def test_branches_end_at_the_folds_that_are_events(tabor, law, rtol):
+    """With the first two folds 5 and 6 are as close as either errs, by one shift of both: a branch was left out."""
+    path = halfspace.trace(tabor, law=law, rtol=rtol)
+    folds = [event for name, event in path.events.items() if is_fold(name)]
+    branches = list(path.branches("approach").values())
+    assert len(branches) == len(folds) + 1
+    assert len(path.states(FOLD)) == len(folds)
+    for fold, (before, after) in zip(folds, pairwise(branches), strict=True):
+        assert min(abs(a - b) for a in before for b in after) == 0
+        assert min(abs(end - fold.approach) for end in before) <= fold.approach_error
 
 
 def test_folds_are_in_tables_records_and_on_the_plot(winding):

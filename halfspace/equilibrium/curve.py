@@ -22,6 +22,7 @@ from halfspace.equilibrium.events import (
     Unconfirmed,
     approach_scale,
     is_event,
+    is_fold,
     tolerance_told,
     usual,
 )
@@ -230,7 +231,11 @@ class EquilibriumPath(Valued):
     @cached_property
     def finest_curve(self) -> FinestCurve:
         """The points solved for on the finest discretisation, when they are first asked for."""
-        return finest_curve(self.segments, self.ways, self.remaining, self.metric)
+        return finest_curve(self.segments, self.ways, self.remaining, self.metric, self._folds)
+
+    def _folds(self) -> list[Located]:
+        """Folds on the finest discretisation, those between the jumps solved for by now."""
+        return [fold for name, fold in self.stages[-1].items() if is_fold(name)]
 
     def at(
         self,
@@ -276,7 +281,7 @@ class EquilibriumPath(Valued):
         found = states(self.segments, condition)
         if not condition.stationary:
             return found
-        return FinestCurve((), self.ways, self.remaining, self.metric).confirmed(found)
+        return FinestCurve((), self.ways, self.remaining, self.metric, self._folds).confirmed(found)
 
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Parts of the curve in order along which a coordinate goes in one direction, and its range on each.

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located, between, hermite
+from halfspace.equilibrium.conditions import FOLD, ROUND_OFF, Condition, Located, between, hermite
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
@@ -90,13 +90,14 @@ class FinestCurve(Valued):
 
     By the ways, chains of discretisations, errors are found; `remaining` is the part of the changes along a chain that
     may be left, and the metric says what arclength means. A point that the finest discretisation does not have stays on
-    one of those left behind, with infinite errors.
+    one of those left behind, with infinite errors. The folds are those that are told as events.
     """
 
     segments: tuple[Segment, ...]
     ways: Ways
     remaining: float
     metric: Metric
+    folds: Callable[[], Sequence[Located]]
     left_behind: tuple[Traceable, ...] = ()
 
     @cached_property
@@ -132,24 +133,33 @@ class FinestCurve(Valued):
         ends = [part.points[place].observables for part, place in self._ends(coordinate)]
         values = [float(end[COORDINATES[coordinate][0]]) for end in ends]
         pairs = zip(values[::2], values[1::2], strict=True)
-        return {name: (min(pair), max(pair)) for name, pair in zip(self._branches[coordinate], pairs, strict=True)}
+        return {name: (min(pair), max(pair)) for name, pair in zip(self.parts(coordinate), pairs, strict=True)}
 
     def _ends(self, coordinate: str) -> Iterator[tuple[Segment, int]]:
-        for parts in self._branches[coordinate].values():
+        for parts in self.parts(coordinate).values():
             yield parts[0], 0
             yield parts[-1], -1
 
+    def parts(self, coordinate: str) -> Mapping[str, Sequence[Segment]]:
+        """Parts of the curve along which a coordinate goes in one direction, by name."""
+        if coordinate not in self._parts:
+            self._parts[coordinate] = self._cut(COORDINATES[coordinate][0])
+        return self._parts[coordinate]
+
     @cached_property
-    def _branches(self) -> Mapping[str, Mapping[str, Sequence[Segment]]]:
-        """For each coordinate the parts of the curve along which it goes in one direction, by name."""
-        return {name: self._cut(k) for name, (k, _) in COORDINATES.items()}
+    def _parts(self) -> dict[str, Mapping[str, Sequence[Segment]]]:
+        """Those that were asked for before."""
+        return {}
 
     def confirmed(self, turns: Sequence[Located]) -> list[Located]:
         """Places in order where an observable turns, found on any discretisation, but for those by which it ripples.
 
-        It does between two next to each other where on the finest it goes by no more than it errs there, or back. A
-        shift that both share, from grid to grid, does not count.
+        The approach turns at the folds that are told as events. Another observable ripples between two places next to
+        each other where on the finest it goes by no more than it errs there, or back. A shift that both share, from
+        grid to grid, does not count.
         """
+        if turns and turns[0].condition == FOLD:
+            return self._folds_among(turns)
         left = list(turns)
         told = [self._finest_level(turn) for turn in turns] if self.ways and len(turns) > 1 else []
         while told and len(left) > 1:
@@ -162,6 +172,14 @@ class FinestCurve(Valued):
             for numbers in (left, told):
                 del numbers[ripple : ripple + 2]
         return left
+
+    def _folds_among(self, turns: Sequence[Located]) -> list[Located]:
+        """Of the places where the approach turns those nearest to its folds, least or largest as these."""
+        found = set[int]()
+        for fold in self.folds():
+            alike = [turn for turn in turns if turn.slope * fold.slope > 0]
+            found |= {id(turn) for turn in sorted(alike, key=lambda t: self.metric.distance(t.point, fold.point))[:1]}
+        return [turn for turn in turns if id(turn) in found]
 
     def _finest_level(self, turn: Located) -> tuple[float, float]:
         """What turns there, on the finest discretisation, and its error; infinite where that has no such state."""
@@ -197,9 +215,7 @@ class FinestCurve(Valued):
     def _at(self, coordinate: str, value: float, branch: str | None) -> Array:
         """Numbers of one state and their errors, (8,)."""
         k, _ = COORDINATES[coordinate]
-        problem, point, bend = self._solved(
-            k, value, self._branches[coordinate][self._chosen(coordinate, value, branch)]
-        )
+        problem, point, bend = self._solved(k, value, self.parts(coordinate)[self._chosen(coordinate, value, branch)])
         try:
             errors = self._errors_given(k, problem, point, bend)
         except NotConverged:
@@ -349,14 +365,16 @@ def require_coordinate(name: str) -> str:
     return name
 
 
-def finest_curve(segments: Sequence[Segment], ways: Ways, remaining: float, metric: Metric) -> FinestCurve:
+def finest_curve(
+    segments: Sequence[Segment], ways: Ways, remaining: float, metric: Metric, folds: Callable[[], Sequence[Located]]
+) -> FinestCurve:
     """Solve for the points of a curve on the finest discretisation; without any the curve stays as it is.
 
     The segments are of the curve on any discretisation; the rest is as of `FinestCurve`, the ways leading to the
     finest. A point that cannot be solved for there stays where it is.
     """
     if not ways:
-        return FinestCurve(tuple(segments), ways, math.nan, metric)
+        return FinestCurve(tuple(segments), ways, math.nan, metric, folds)
     found, left_behind = list[tuple[Traceable, Point]](), dict[int, Traceable]()
     for problem, point in ((segment.problem, point) for segment in segments for point in segment.points):
         try:
@@ -369,7 +387,7 @@ def finest_curve(segments: Sequence[Segment], ways: Ways, remaining: float, metr
     for run in runs:
         before = finest[-1].points[-1] if finest else None
         finest.append(measured(run[0][0], [point for _, point in run], metric, before))
-    return FinestCurve(tuple(finest), ways, remaining, metric, tuple(left_behind.values()))
+    return FinestCurve(tuple(finest), ways, remaining, metric, folds, tuple(left_behind.values()))
 
 
 def resampled(segments: Sequence[Segment], count: int, metric: Metric) -> tuple[Segment, ...]:
