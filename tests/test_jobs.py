@@ -215,6 +215,22 @@ def listens(address):
 
 
 @needs_cluster
+def test_a_scheduler_is_found_by_host_and_port_and_said_to_be_waited_for_only_without_workers(
+    cluster, capsys, monkeypatch
+):
+    """That the scheduler knows of none is made up: the work is done all the same."""
+    from distributed import Client
+
+    address = cluster.removeprefix("tcp://")
+    said = f"dask = {address} has no workers yet and is waited for; start one with dask worker {cluster}"
+    assert list(stream(square, [3], dask=address)) == [(3, 9)]
+    assert "no workers" not in capsys.readouterr().err
+    monkeypatch.setattr(Client, "nthreads", lambda _: {})
+    assert list(stream(square, [3], dask=address)) == [(3, 9)]
+    assert said in capsys.readouterr().err
+
+
+@needs_cluster
 def test_a_dask_cluster_does_the_work(cluster):
     assert sorted(stream(square, range(20), dask=cluster)) == [(x, x * x) for x in range(20)]
 

@@ -146,6 +146,27 @@ def test_a_directory_of_another_kind_is_refused_before_any_work(tmp_path, capsys
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    ("option", "name", "content", "words"),
+    [
+        ("--speed", "captions.csv", b"stem,words\na,b\n", "has the columns stem, words, but not figure; "),
+        ("--speed", "captions.csv", b"figure,words\na,b\n", "has the columns figure, words, but not caption; "),
+        ("--hard", "hard.csv", b"name,ended\na,b\n", "has the columns name, ended, but not outcome; "),
+        ("--hard", "hard.csv", b"name,outcome\na\n", "line 2: 1 cells, not 2; "),
+        ("--hard", "hard.csv", b"name,outcome\n\xff,b\n", "is no CSV file: "),
+    ],
+)
+def test_a_table_of_other_columns_is_refused_before_any_work(option, name, content, words, tmp_path, capsys):
+    (tmp_path / "locking.csv").write_text("poisson,error\n0.3,1e-5\n")
+    (tmp_path / name).write_bytes(content)
+    assert cli.main(["report", "--out", str(tmp_path / "report.html"), option, str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert str(tmp_path / name) in error
+    assert words in error
+    assert error.endswith("; run its command again\n")
+    assert error.count("\n") == 1
+
+
 @pytest.mark.usefixtures("_drawn_before")
 def test_the_command_writes_the_page_with_what_other_commands_left(contents, tmp_path, monkeypatch, capsys):
     """Solved before; `test_readme` has it solve for itself, with all that the other commands left."""

@@ -304,7 +304,7 @@ def test_a_range_is_of_equal_ratios_with_both_ends(text, values):
     assert tabors_of([text, text]) == tabors_of([text])
 
 
-@pytest.mark.parametrize("text", ["1:2", "a", "1:2:x", "0:1:5", "-1:2:5", "1:2:1", "1:2:3:4", "400", "nan"])
+@pytest.mark.parametrize("text", ["1:2", "a", "1:2:x", "0:1:5", "-1:2:5", "1:2:1", "1:2:3:4", "400", "nan", "1:inf:5"])
 def test_what_is_no_tabor_parameter_is_refused_in_one_line(capsys, tmp_path, text):
     table = tmp_path / "table.csv"
     assert cli.main(["sweep", f"--tabor={text}", "--csv", str(table)]) == 2
@@ -312,6 +312,11 @@ def test_what_is_no_tabor_parameter_is_refused_in_one_line(capsys, tmp_path, tex
     assert err.count("\n") == 1
     assert "; " in err
     assert not table.exists()
+
+
+def test_a_range_of_more_parameters_than_a_table_is_for_is_refused(capsys, tmp_path):
+    assert cli.main(["sweep", "--tabor", "1:2:99999999999", "--csv", str(tmp_path / "table.csv")]) == 2
+    assert "COUNT 2 to 100000; write 0.05:50:200, say\n" in capsys.readouterr().err
 
 
 def counted(tabors, **asked):

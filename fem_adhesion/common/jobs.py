@@ -239,13 +239,17 @@ def _cluster(address: str, width: int) -> Pool:
         distributed = importlib.import_module("distributed")
     except ModuleNotFoundError as error:
         raise InputError(f"dask = {address} needs the extra cluster; pip install 'fem-adhesion[cluster]'") from error
+    found = address if "://" in address else f"tcp://{address}"
     try:
-        _knock(address)
-        client = distributed.Client(address, timeout=CONNECTION_SECONDS, set_as_default=False)
+        _knock(found)
+        client = distributed.Client(found, timeout=CONNECTION_SECONDS, set_as_default=False)
     except (OSError, ValueError) as error:
         raise InputError(
             f"dask = {address} does not answer within {CONNECTION_SECONDS} s; give the scheduler's, as tcp://host:8786"
         ) from error
+    if not client.nthreads():
+        idle = f"dask = {address} has no workers yet and is waited for"
+        sys.stderr.write(f"fem-adhesion: {idle}; start one with dask worker {found}\n")
 
     def submit(*call: Any) -> Future[Any]:
         future: Future[Any] = Future()

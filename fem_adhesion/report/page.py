@@ -290,8 +290,7 @@ def section_of(source: Source, directory: Path | None) -> Section:
     tables = {stem: read_table(_require(directory / f"{stem}.csv", source), title) for stem, title in source.tables}
     paragraphs, warning = [source.introduction], ""
     if source.counted:
-        counted = tables[source.counted]
-        ended = Counter(dict(zip(counted.columns, row, strict=True))["outcome"] for row in counted.rows)
+        ended = Counter(_column(directory / f"{source.counted}.csv", "outcome"))
         paragraphs.append(f"Of {ended.total()} cases: {', '.join(f'{n} {outcome}' for outcome, n in ended.items())}.")
         wrong = {outcome: n for outcome, n in ended.items() if outcome not in WELL}
         warning = f"{', '.join(f'{n} {outcome}' for outcome, n in wrong.items())}." if wrong else ""
@@ -301,16 +300,36 @@ def section_of(source: Source, directory: Path | None) -> Section:
 
 def _captions(source: Source, directory: Path) -> dict[str, str]:
     """Captions that the command left beside its figures."""
-    with _require(directory / "captions.csv", source).open(newline="", encoding="utf-8") as file:
-        return {row["figure"]: row["caption"] for row in csv.DictReader(file)}
+    file = _require(directory / "captions.csv", source)
+    return dict(zip(_column(file, "figure"), _column(file, "caption"), strict=True))
+
+
+def _column(file: Path, name: str) -> list[str]:
+    """Column of a CSV file, InputError if there is none of that name."""
+    columns, *rows = _lines(file)
+    if name not in columns:
+        raise InputError(f"{file} has the columns {', '.join(columns)}, but not {name}; run its command again")
+    return [row[columns.index(name)] for row in rows]
+
+
+def _lines(file: Path) -> list[list[str]]:
+    """Lines of a CSV file, of its columns' names first; InputError if it is empty or not all have as many cells."""
+    try:
+        with file.open(newline="", encoding="utf-8") as stream:
+            lines = list(csv.reader(stream))
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{file} is no CSV file: {error}; run its command again") from error
+    if not lines or not lines[0]:
+        raise InputError(f"{file} is empty; run its command again")
+    for number, line in enumerate(lines, start=1):
+        if len(line) != len(lines[0]):
+            raise InputError(f"{file}, line {number}: {len(line)} cells, not {len(lines[0])}; run its command again")
+    return lines
 
 
 def read_table(file: Path, title: str) -> Table:
-    """Contents of a CSV file, InputError if it is empty; the title says so where rows are left out."""
-    with file.open(newline="", encoding="utf-8") as stream:
-        columns, *rows = list(csv.reader(stream)) or [[]]
-    if not columns:
-        raise InputError(f"{file} is empty; run its command again")
+    """Contents of a CSV file, InputError if it holds none; the title says so where rows are left out."""
+    columns, *rows = _lines(file)
     left_out = f" (first {MOST_ROWS} of {len(rows)} lines; all are in {file.name})" if len(rows) > MOST_ROWS else ""
     shown = [[cell(text) for text in row] for row in rows[:MOST_ROWS]]
     return Table("", title + left_out, "", [name.replace("_", " ") for name in columns], shown)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from halfspace.accuracy.following import Summary
+
+MOST = 10**5  # Tabor parameters of one FROM:TO:COUNT: over seven decades neighbours then differ by 2e-4
 
 
 def add_options(command: Parser) -> None:
@@ -55,9 +58,9 @@ def _values(text: str) -> Sequence[float]:
         first, last, count = float(parts[0]), float(parts[1]), int(parts[2])
     except (ValueError, IndexError) as error:
         raise InputError(f"tabor = {text} is no number and not FROM:TO:COUNT; write 0.05:50:200, say") from error
-    if len(parts) > 3 or count < 2 or min(first, last) <= 0:
+    if len(parts) > 3 or not 2 <= count <= MOST or not (min(first, last) > 0 and max(first, last) < math.inf):
         raise InputError(
-            f"tabor = {text}, limit: FROM:TO:COUNT, both positive, COUNT 2 or more; write 0.05:50:200, say"
+            f"tabor = {text}, limit: FROM:TO:COUNT, both positive and finite, COUNT 2 to {MOST}; write 0.05:50:200, say"
         )
     return [float(value) for value in geomspace(first, last, count)]
 
