@@ -268,7 +268,9 @@ class Scales:
         return -apart - self.tabor * max(2.0, -1.2 * jkr_fold(self.profile))
 
     def radius_at(self, height: float) -> float:
-        """Radius at which the undeformed gap has opened by a height in eps, or where the surface ends."""
+        """Radius at which the undeformed gap has opened by a height in eps, 0 by none, or where the surface ends."""
+        if height <= 0:
+            return 0.0
         z = height / self.tabor
         what = f"the radius at which the profile rises to {z:.3g} beta^2/R; let it grow outwards"
         return rising_root(lambda r: float(self.profile.height(np.array(r))) - z, what, end=self.profile.end)

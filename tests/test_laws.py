@@ -568,6 +568,7 @@ def test_a_profiles_slope_is_that_of_its_height(profile):
     by_differences = (profile.height(r * (1 + 1e-6)) - profile.height(r * (1 - 1e-6))) / (2e-6 * r)
     np.testing.assert_allclose(profile.slope(r), by_differences, rtol=1e-8)
     assert 0.7 * profile.height(Scales(0.7, profile=profile).radius_at(3.0)) == pytest.approx(3.0, rel=1e-12)
+    assert Scales(0.7, profile=profile).radius_at(0.0) == 0
 
 
 def test_the_default_lengths_are_those_that_were_tried():
