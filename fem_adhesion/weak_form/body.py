@@ -32,10 +32,10 @@ Materials = Sequence[tuple[float, float]]
 # The weak form
 
 
-def strains(u: Any, r: Array) -> Array:
-    """Radial, vertical and hoop strain, and twice the shear strain, (4, ...) of displacements at radii r."""
+def strains(u: Any, r: Array) -> tuple[Array, Array, Array, Array]:
+    """Radial, vertical and hoop strain, and twice the shear strain, of displacements at radii r."""
     (u_rr, u_rz), (u_zr, u_zz) = u.grad
-    return np.stack([u_rr, u_zz, u[0] / r, u_rz + u_zr])
+    return u_rr, u_zz, u[0] / r, u_rz + u_zr
 
 
 def moduli(mesh: Any, materials: Materials) -> Array:
@@ -61,7 +61,7 @@ def elasticity(basis: Any, D: Array) -> sparse.csr_array:
     roots, weights = np.linalg.cholesky(D).transpose(0, 2, 1), 2 * np.pi * r * basis.dx
     A = np.empty((cells, functions, *roots.shape[1:2], r.shape[1]))
     for n, (function,) in enumerate(basis.basis):
-        A[:, n] = roots @ strains(function, r).transpose(1, 0, 2)
+        A[:, n] = roots @ np.stack(strains(function, r), axis=1)
     left, right = (part.reshape(cells, functions, -1) for part in (A * weights[:, None, None], A))
     K = left @ right.transpose(0, 2, 1)
     K = K[:, :outer, :outer] - K[:, :outer, outer:] @ np.linalg.solve(K[:, outer:, outer:], K[:, outer:, :outer])

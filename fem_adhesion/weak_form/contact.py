@@ -22,12 +22,14 @@ class Law:
 
     The potential is w = -int_h^inf sigma in dgamma at gaps h in eps; the attraction of two bodies does the work
     -w(1) = 1. The grain, (sigma'(1))^(-1/2), is the part of a gap over which the tension varies. The room is the gap in
-    eps that counts as one at least: surfaces without a core may come closer than none.
+    eps that counts as one at least: surfaces without a core may come closer than none. The edge is the gap in eps
+    of the largest tension.
     """
 
     potential: Callable[[Array], Array]
     grain: float = 0.25
     room: float = 0.0
+    edge: float = 3 ** (1 / 6)
 
     def size(self, h: Array) -> Array:
         """Size by which changes of a gap are measured; a start may have surfaces that overlap."""

@@ -1,0 +1,209 @@
+"""The whole load-approach curve of a scene by full Newton on the weak form, with errors from elements of two degrees."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_adhesion.scene import Scene, require_scene
+from fem_adhesion.weak_form.body import Array
+from fem_adhesion.weak_form.path import Point, events, follow, on_finer
+from fem_adhesion.weak_form.problem import Problem, half_space_mesh
+from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
+from halfspace.errors import InputError
+from halfspace.laws import LENNARD_JONES
+from halfspace.limits import require_between
+from halfspace.profiles import Paraboloid
+from halfspace.values import Valued
+
+DEGREES = (3, 4, 5)  # of the elements, until two in a row agree to rtol
+SEPARATED = -9.0  # eps, the approach at which the curve begins; the attraction is a hundredth of its maximum there
+LEFT_OUT = 0.01  # part of rtol eps that the far clamp may take from the approach
+FOUND = 1e-8  # to which a point is solved for, of each number in its unit
+OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
+
+LIMITS = {"tabor": (0.02, 5.0), "poisson": (0.0, 0.49), "rtol": (1e-4, 0.1), "to_load": (0.0, 20.0)}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Curve(Valued):
+    """A load-approach curve from separation to compression, through every fold.
+
+    Attributes
+    ----------
+    tabor, rtol : float
+        Tabor parameter, and the relative accuracy that was asked of loads and approaches.
+    observables, errors : (points, 4) array
+        Approach (eps), load (R dgamma, positive in compression), central gap H(0) (eps) and contact radius (beta, nan
+        without contact) of each point, and the estimated errors of these.
+    rates : (points, 3) array
+        Of approach, load and central gap along the path.
+    arclength : (points,) array
+        Along the path, in eps: of approach and root mean square of the gap.
+    stable : (points,) array of bool
+        Stability under fixed grips.
+    events : mapping of str to Event
+        ``pull_off``, ``jump_on``, ``jump_off``, ``zero_load`` and, where the path winds, ``fold_2`` ...; each solved
+        for, with the estimated error of each number.
+    unknowns : int
+        Displacements of the finest elements.
+    seconds : float
+        Wall time.
+    settings : mapping
+        Degrees of the elements, cells, size of the box.
+    """
+
+    tabor: float
+    rtol: float
+    observables: Array
+    errors: Array
+    rates: Array
+    arclength: Array
+    stable: NDArray[np.bool_]
+    events: Mapping[str, Event]
+    unknowns: int
+    seconds: float = field(compare=False)
+    settings: Mapping[str, Any]
+
+    def __getattr__(self, name: str) -> Array:
+        """Observables by name, ``approach``, ``load``, ``central_gap``, ``contact_radius``, and ``load_error`` ..."""
+        observable, _, error = name.partition("_error")
+        if observable not in OBSERVABLES or (error and name):
+            raise AttributeError(name)
+        table = self.errors if name.endswith("_error") else self.observables
+        return np.asarray(table[:, OBSERVABLES.index(observable)])
+
+    def __repr__(self) -> str:
+        """What was found, and whether to the accuracy asked for."""
+        told = "; ".join(f"{name} at {each.approach:.5g} eps, {each.load:.5g}" for name, each in self.events.items())
+        return f"<Curve of tabor {self.tabor:g}, {len(self.load)} points: {told}; {self.tolerance_told}>"
+
+    def event(self, name: str) -> Event | None:
+        """Event by name, None if the curve does not have it."""
+        return self.events.get(name)
+
+    @property
+    def stable_under_dead_load(self) -> NDArray[np.bool_]:
+        """Stability under a dead load: stable under fixed grips, and the load rises with the approach."""
+        return np.asarray(self.stable & (self.rates[:, 0] * self.rates[:, 1] > 0))
+
+    @property
+    def tolerance(self) -> Tolerance:
+        """What `rtol` means for loads and approaches."""
+        return Tolerance.on(self.events, self.rtol)
+
+    @property
+    def missed(self) -> dict[str, tuple[str, ...]]:
+        """By event, the numbers whose estimated errors exceed `tolerance`."""
+        return self.tolerance.missed(self.events)
+
+    @property
+    def met(self) -> bool:
+        """Whether all events have their loads and approaches to the accuracy asked for."""
+        return not self.missed
+
+    @property
+    def tolerance_told(self) -> str:
+        """The same in words."""
+        return tolerance_told(self.rtol, self.missed)
+
+
+def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0) -> Curve:
+    """Trace the load-approach curve by Newton's method for all displacements at once.
+
+    The body is meshed by quadrilaterals and clamped far away; scikit-fem assembles the weak form of
+    `fem_adhesion.weak_form`, and a sparse factorisation solves it with the approach as a further unknown and the
+    arclength as a further equation. Elements of two degrees give each number an error estimate, its change from one to
+    the other; degrees rise until that is within `rtol`.
+
+    Parameters
+    ----------
+    scene : Scene
+        A half-space under a paraboloid by the 3-9 law, of Tabor parameter 0.02 to 5 and Poisson's ratio to 0.49.
+    rtol : float
+        Relative accuracy of loads, and of approaches in the range of the events', 1e-4 to 0.1.
+    to_load : float
+        Compressive load in R dgamma at which the curve ends, 0 to 20.
+
+    Raises
+    ------
+    InputError
+        If the scene is another, or a value is out of range.
+    NotConverged
+        If the path ends before that load.
+    """
+    require_served(scene, rtol, to_load)
+    began, mu = time.perf_counter(), scene.tabor
+    far = mu * max(to_load, 1.0) / (np.pi * LEFT_OUT * rtol)  # a clamp at L takes W/(pi L) beta^2/R of the approach
+    mesh, disc = half_space_mesh(mu, to_load, far)
+    problems = [Problem(mesh, degree, mu, scene.poisson, disc) for degree in DEGREES]
+    points = follow(problems[0], SEPARATED, to_load)
+    found = events(problems[0], points)
+    for coarse, fine in pairwise(problems):
+        finer = on_finer(fine, coarse, points)
+        located = events(fine, finer)
+        curve = _curve(fine, (points, finer), (found, located), rtol, began)
+        if curve.met:
+            break
+        points, found = finer, located
+    return curve
+
+
+def _curve(
+    problem: Problem,
+    points: tuple[list[Point], list[Point]],
+    found: tuple[Mapping[str, Point], Mapping[str, Point]],
+    rtol: float,
+    began: float,
+) -> Curve:
+    """Curve on the finer of two degrees; what the coarser makes of a number tells its error."""
+    coarse, fine = (np.array([point.observables for point in each]) for each in points)
+    steps = [float(a.row @ (b.x - a.x)) for a, b in pairwise(points[1])]
+    return Curve(
+        problem.tabor,
+        rtol,
+        fine,
+        np.abs(fine - coarse),
+        np.array([point.rates for point in points[1]]),
+        np.cumsum([0.0, *steps]),
+        np.array([point.stable for point in points[1]]),
+        {name: _event(name, found[0].get(name), point) for name, point in found[1].items()},
+        problem.free.size,
+        time.perf_counter() - began,
+        {"rtol": rtol, "degree": problem.degree, "cells": problem.mesh.nelements, "far": -float(problem.mesh.p[1].min())},
+    )
+
+
+def _event(name: str, coarse: Point | None, fine: Point) -> Event:
+    """Numbers of an event with errors, which are infinite where the coarser elements do not have it.
+
+    Each errs by its change. As two numbers may agree by chance while the event moves, approach and load err no less
+    than by what the event's shift along the path makes of them, which the central gap tells.
+    """
+    changes = np.full(4, np.inf) if coarse is None else np.abs(fine.observables - coarse.observables)
+    shift = changes[2] / abs(fine.rates[2])
+    changes[:2] = np.maximum(changes[:2], np.abs(fine.rates[:2]) * shift)
+    return Event(name, *map(float, fine.observables), *map(float, changes + FOUND))
+
+
+def require_served(scene: Scene, rtol: float, to_load: float) -> None:
+    """Refuse a scene or a value that the weak form is not written for; raise InputError."""
+    require_scene(scene)
+    counts = {
+        "body": (scene.body.name, scene.body.name == "half-space", "half-space"),
+        "profile": (scene.shape, scene.shape == Paraboloid(), "paraboloid"),
+        "law": (scene.law, scene.law == LENNARD_JONES, "the 3-9 law"),
+        "material": (scene.material, not scene.material.finite, "small strain"),
+    }
+    for name, (value, served, limit) in counts.items():
+        if not served:
+            raise InputError(f"{name} = {value} by the weak form, limit: {limit}; take fem_adhesion.trace (solver fem)")
+    values = {"tabor": scene.tabor, "poisson": scene.poisson, "rtol": rtol, "to_load": to_load}
+    for name, value in values.items():
+        require_between(value, name, *LIMITS[name], "take fem_adhesion.trace (solver fem)", "of the weak form")
