@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from halfspace.profiles import Profile
 
 POINTS = 20  # of a curve for ParaView
+NOT_BY_WEAK_FORM = ("vtk", "render", "movie", "at", "beside", "points", "stiffness", "block_radius")
 OWN = 0.01  # part by which the radius of a tip's apex, fitted to its table, may differ from what is given
 
 
@@ -49,15 +50,17 @@ def add_options(command: Parser) -> None:
 
 def _add_body(curve: Parser) -> None:
     body = curve.add_argument_group("body and solver")
-    solvers = ("half-space", "fem", "both")
-    body.add_argument("--solver", choices=solvers, help="half-space unless the body is another, fem then")
+    solvers = ("half-space", "fem", "both", "weak-form")
+    which = "half-space unless the body is another, fem then; weak-form: full Newton in scikit-fem, a textbook's"
+    body.add_argument("--solver", choices=solvers, help=which)
     kernels = ("panels", "triangles", "bands")
     pressure = "what the half-space's pressure is made of, triangles and bands as in 1997; panels unless given"
     body.add_argument("--kernel", choices=kernels, help=pressure)
     add_body(body)
     beside = "draw curves by other laws, as strong, in the same units beside it: morse:3 power-law:4,10, say"
     body.add_argument("--beside", nargs="+", help=beside, metavar="LAW")
-    body.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy, 1e-9 to 1e-1")
+    accuracy = "relative accuracy, 1e-9 to 1e-1, 1e-5 unless given; of weak-form 1e-4 to 1e-1, 1e-3 unless given"
+    body.add_argument("--rtol", type=float, help=accuracy)
     body.add_argument("--to-load", type=float, default=5.0, help="load in R dgamma at which it ends", metavar="W")
 
 
@@ -87,6 +90,8 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.curve.solve import solve
 
     question = _question(options)
+    if question.solver == "weak-form":
+        return _run_weak_form(options, question)
     collapse = _beside(question, [law_named(text) for text in options.beside or ()])
     form = _form_of(options.plot)
     require_distinct(options.json, options.csv, options.plot, options.render, options.movie, options.vtk)
@@ -117,6 +122,30 @@ def run(options: argparse.Namespace) -> int:
     terminal.show(curves, console)
     if collapsed:
         console.print(prose(collapsed.told), highlight=False)
+    return AGREE
+
+
+def _run_weak_form(options: argparse.Namespace, question: Question) -> int:
+    """The same by full Newton on the weak form, whose curve has points and events alone."""
+    from fem_adhesion.common import style
+    from fem_adhesion.common.files import written_aside
+    from fem_adhesion.curve import weak_form
+
+    form = _form_of(options.plot)
+    require_distinct(options.json, options.csv, options.plot)
+    with ExitStack() as stack:
+        data, points = (stack.enter_context(written(path)) for path in (options.json, options.csv))
+        plot = stack.enter_context(written_aside(options.plot)) if options.plot else None
+        found = weak_form.solve(question)
+        if data:
+            json.dump(weak_form.as_record(found), data, indent=1, allow_nan=False)
+        if points:
+            weak_form.write_csv(found, points)
+        if plot:
+            style.write(lambda: weak_form.draw(found), plot, form)
+        for file in filter(None, (data, points, plot)):
+            file.flush()
+    weak_form.show(found, console_beside(options.json, options.csv))
     return AGREE
 
 
@@ -231,7 +260,8 @@ def _question(options: argparse.Namespace) -> Question:
     if options.vtk and points in (0, 1):
         points = None  # of the states in DIR alone, where there may be none between the events
     kernel, stiffness = options.kernel or "panels", stiffness_of(options, contact)
-    return Question(scene, solver, options.rtol, options.to_load, units, stiffness, points, kernel)
+    rtol = options.rtol or (1e-3 if solver == "weak-form" else 1e-5)
+    return Question(scene, solver, rtol, options.to_load, units, stiffness, points, kernel)
 
 
 def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverName, contact: Contact | None) -> None:
@@ -242,6 +272,8 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
             refuse(options, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it")
     if solver not in ("half-space", "both"):
         refuse(options, ("kernel",), "with --solver half-space or both")
+    if solver == "weak-form":
+        refuse(options, NOT_BY_WEAK_FORM, "with another solver, as the weak form gives points and events alone")
     if not options.vtk:
         refuse(options, ("revolve", "force"), "with --vtk DIR")
     if not (options.json or options.csv or options.plot or options.vtk):

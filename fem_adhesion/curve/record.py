@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import IO, Any
 
 from fem_adhesion.common.facts import plain, versions
-from fem_adhesion.curve.solve import PAPER, Curves
+from fem_adhesion.curve.solve import PAPER, Curves, Question
 from fem_adhesion.registry import record_of
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -29,13 +29,7 @@ def record(curves: Curves) -> dict[str, Any]:
     ``units`` names the units of all numbers in ``solutions`` and ``jumps``; where the material is known ``si`` has the
     factor that takes each into SI, and the SI unit.
     """
-    question = curves.question
-    found = {
-        "scene": record_of(question.scene),
-        "rtol": question.rtol,
-        "to_load": question.to_load,
-        "units": UNITS,
-        "si": _si(question.units) if question.units else None,
+    found = asked(curves.question) | {
         "solutions": {
             name: _solution(path) | {"left_out": curves.left_out(name)} for name, path in curves.sampled.items()
         },
@@ -43,6 +37,17 @@ def record(curves: Curves) -> dict[str, Any]:
         "versions": versions(),
     }
     return {name: plain(part) for name, part in found.items()}
+
+
+def asked(question: Question) -> dict[str, Any]:
+    """What was asked, and the units of all numbers."""
+    return {
+        "scene": record_of(question.scene),
+        "rtol": question.rtol,
+        "to_load": question.to_load,
+        "units": UNITS,
+        "si": _si(question.units) if question.units else None,
+    }
 
 
 def _si(units: Units) -> dict[str, Any]:
@@ -56,7 +61,7 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
         "stable_under_dead_load": path.stable_under_dead_load,
     }
     return {
-        "events": {name: _event(event, path.tolerance.missed_by(event)) for name, event in path.events.items()},
+        "events": {name: event_record(event, path.tolerance.missed_by(event)) for name, event in path.events.items()},
         "curve": {name: getattr(path, name) for name in COLUMNS} | stability,
         "met": path.met,
         "jumps": path.jumps,
@@ -70,7 +75,7 @@ def _solution(path: EquilibriumPath) -> dict[str, Any]:
     }
 
 
-def _event(event: Event, missed: Sequence[str]) -> dict[str, Any]:
+def event_record(event: Event, missed: Sequence[str]) -> dict[str, Any]:
     """Numbers of an event with their errors, and which of them miss the tolerance."""
     return {key: getattr(event, key) for key in NUMBERS} | {"missed": missed}
 
@@ -80,8 +85,8 @@ def _cycle(cycle: Cycle | None) -> dict[str, Any] | None:
         return None
     ends = {
         name: {
-            "take_off": _event(jump.take_off, cycle.missed_by(name, "take_off")),
-            "landing": _event(jump.landing, cycle.missed_by(name, "landing")),
+            "take_off": event_record(jump.take_off, cycle.missed_by(name, "take_off")),
+            "landing": event_record(jump.landing, cycle.missed_by(name, "landing")),
             "energy": jump.energy,
         }
         for name, jump in cycle.jumps.items()
@@ -96,11 +101,11 @@ def write_csv(curves: Curves, file: IO[str]) -> None:
     out at events, which are where it changes. ``missed_rtol`` names the quantities of an event whose errors are above
     the tolerance. At finite strain the ``model_uncertainty`` of an event's numbers has columns of its own.
     """
-    writer = csv.DictWriter(file, _columns(curves), lineterminator="\n", restval="")
+    writer = csv.DictWriter(file, columns(curves), lineterminator="\n", restval="")
     writer.writeheader()
     for solver, path in curves.sampled.items():
         rows = sorted([*_points(path), *_events(path)], key=lambda row: row["arclength"])
-        writer.writerows(_with_units(curves, {"solver": solver, **row}) for row in rows)
+        writer.writerows(with_units(curves, {"solver": solver, **row}) for row in rows)
 
 
 def _points(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
@@ -118,7 +123,8 @@ def _events(path: EquilibriumPath) -> Iterator[dict[str, Any]]:
         yield {"event": name, "arclength": path.stages[-1][name].point.arclength, **numbers, "missed_rtol": missed}
 
 
-def _columns(curves: Curves) -> list[str]:
+def columns(curves: Curves) -> list[str]:
+    """Names of the columns of a table, units included."""
     spread = [name + SPREAD for name in OBSERVABLES if any(path.spread for path in curves.paths.values())]
     names = [column for quantity in (*OBSERVABLES, *ERRORS, *spread) for column in _named(curves, quantity)]
     stability = ["stable_under_fixed_grips", "stable_under_dead_load"]
@@ -140,7 +146,7 @@ def _observable(quantity: str) -> str:
     return quantity.removesuffix("_error").removesuffix(SPREAD)
 
 
-def _with_units(curves: Curves, row: Mapping[str, Any]) -> dict[str, Any]:
+def with_units(curves: Curves, row: Mapping[str, Any]) -> dict[str, Any]:
     """Row under the names of the columns; without contact the contact radius is left empty."""
     named: dict[str, Any] = {}
     for key, value in row.items():

@@ -20,6 +20,7 @@ from halfspace.accuracy.kernels import require_kernel
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
+from halfspace.equilibrium.events import Event
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_points, require_rtol
 from halfspace.scales import Scales
@@ -27,7 +28,7 @@ from halfspace.scaling import Units
 from halfspace.values import Array
 
 HALF_SPACE, FINITE_ELEMENTS = "half-space", "finite elements"
-SolverName = Literal["half-space", "fem", "both"]
+SolverName = Literal["half-space", "fem", "both", "weak-form"]
 
 
 @dataclass(frozen=True)
@@ -78,13 +79,15 @@ class Curves:
     """Curves of what was asked of a contact.
 
     The paths are by solver, `FINITE_ELEMENTS` first if it was asked; `grips` and `apparatus` are the jumps on the first
-    path under fixed grips and with the apparatus, if the contact jumps; with fixed grips there is no apparatus.
+    path under fixed grips and with the apparatus, if the contact jumps; with fixed grips there is no apparatus. Others
+    are events shown that are on no path here.
     """
 
     question: Question
     paths: Mapping[str, EquilibriumPath]
     grips: Cycle | None
     apparatus: Cycle | None
+    others: tuple[Event, ...] = ()
 
     @property
     def path(self) -> EquilibriumPath:
@@ -186,7 +189,7 @@ ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}  #
 
 def _largest(curves: Curves) -> Mapping[str, float]:
     """Largest size of what a table of events shows, in dimensionless units; what is not known is left out."""
-    states = [event for path in curves.paths.values() for event in path.events.values()]
+    states = [*curves.others, *(event for path in curves.paths.values() for event in path.events.values())]
     cycles = [cycle for cycle in (curves.grips, curves.apparatus) if cycle]
     states += [state for cycle in cycles for jump in cycle.jumps.values() for state in jump.ends]
     sizes = {name: [abs(getattr(state, name)) for state in states] for name in OBSERVABLES}

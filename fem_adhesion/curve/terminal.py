@@ -58,7 +58,7 @@ def table(curves: Curves) -> Fitted:
         Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts, RANKS[name])
         for name, texts in zip(OBSERVABLES, numbers, strict=True)
     ]
-    return Fitted([words, solver, *columns], list(_title(curves)))
+    return Fitted([words, solver, *columns], list(title(curves)))
 
 
 def _rows(curves: Curves) -> Iterator[tuple[str, str, Event, Sequence[str]]]:
@@ -94,7 +94,8 @@ def cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> It
             yield with_error(found, units[name].size, DIGITS) + (MISSED if name in missed else "")
 
 
-def _title(curves: Curves) -> Iterator[str]:
+def title(curves: Curves) -> Iterator[str]:
+    """What was solved, in rich's markup."""
     scene, units = curves.question.scene, curves.question.units
     yield from map(escape, scene.told)
     if units:

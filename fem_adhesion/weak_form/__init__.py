@@ -1,9 +1,8 @@
-"""The contact problem as a textbook writes it: a law, a profile, a weak form, Newton's method and a determinant.
+"""The contact problem as a textbook writes it: a law, a profile, a weak form and Newton's method, in scikit-fem.
 
-It checks the solvers, so it shares nothing with them: it imports NumPy, SciPy and scikit-fem alone, save an exception
-and how results are shown, forms every integral by scikit-fem's quadrature, keeps every displacement among its unknowns,
-condenses nothing, and has no far field but a clamp so far away that what it leaves out is small. Clarity comes first:
-it is right to 1e-3.
+This is the method of the project, in its plainest form. `trace` gives the whole load-approach curve by it: every
+displacement is an unknown, and nothing is condensed. The solver `fem_adhesion.trace` solves the same equations after
+an exact elimination of all displacements but those of the surface, which is why it is fast.
 
 Displacements u = (u_r, u_z) are in beta^2/R = mu eps, radii in beta, the gap h and the approach alpha in eps, E* = 1.
 The potential energy over mu, with the elastic form a, the energy w(h) of the surfaces per area and 2 pi r dr = dA,
@@ -12,8 +11,25 @@ The potential energy over mu, with the elastic form a, the energy w(h) of the su
 
 is stationary in u where, for all v, with w' = sigma the tension,
 
-    a(u, v) - mu int sigma(h) v_z dA = 0;        tangent:  a(u, v) + mu^2 int sigma'(h) u_z v_z dA.
+    F(u, alpha) v = a(u, v) - mu int sigma(h) v_z dA = 0;     tangent:  a(u, v) + mu^2 int sigma'(h) u_z v_z dA.
 
-In the order of reading: `newton` (Newton's method, determinant, turning points), `contact` (law, profile, gaps, load,
-energy), `body` (elasticity, meshes, what holds them).
+The curve is followed through its folds in arclength, with alpha as a further unknown and the step as a further
+equation; an event exchanges that equation for its own: d(alpha)/ds = 0 at jump_on and jump_off, dW/ds = 0 at pull_off,
+W = 0 at zero_load.
+
+In the order of reading: `problem` (the forms, assembled; the mesh), `path` (Newton's method with a border, arclength,
+events), `curve` (a scene's curve with its errors).
+
+Beside it stands what the check of the solvers (`fem_adhesion.crosscheck.from_scratch`) needs in a second: `contact`
+(law, profile, gaps, load, energy), `body` (elasticity of any body and what holds it), `newton` (determinant, turning
+points). There the unknowns inside each cell and below the surface are eliminated, exactly, before Newton's method
+begins. Strains, law and profile are the same in both. Bodies with a length of their own come to that check with the
+meshes of the solver that it checks, see `fem_adhesion.crosscheck.weak_bodies`.
+
+The room checks the solvers, so it shares no physics with them: it imports NumPy, SciPy and scikit-fem, and of the house
+exceptions, limits of the inputs, containers of results, and the parts by which a scene is known.
 """
+
+from fem_adhesion.weak_form.curve import Curve, trace
+
+__all__ = ["Curve", "trace"]

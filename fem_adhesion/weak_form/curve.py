@@ -1,4 +1,4 @@
-"""The whole load-approach curve of a scene by full Newton on the weak form, with errors from elements of two degrees."""
+"""The whole load-approach curve of a scene by full Newton on the weak form, with errors from two degrees."""
 
 from __future__ import annotations
 
@@ -176,19 +176,25 @@ def _curve(
         {name: _event(name, found[0].get(name), point) for name, point in found[1].items()},
         problem.free.size,
         time.perf_counter() - began,
-        {"rtol": rtol, "degree": problem.degree, "cells": problem.mesh.nelements, "far": -float(problem.mesh.p[1].min())},
+        {
+            "rtol": rtol,
+            "degree": problem.degree,
+            "cells": problem.mesh.nelements,
+            "far": -float(problem.mesh.p[1].min()),
+        },
     )
 
 
 def _event(name: str, coarse: Point | None, fine: Point) -> Event:
     """Numbers of an event with errors, which are infinite where the coarser elements do not have it.
 
-    Each errs by its change. As two numbers may agree by chance while the event moves, approach and load err no less
-    than by what the event's shift along the path makes of them, which the central gap tells.
+    Each errs by its change. As two numbers may agree by chance while the event moves, approach and load where
+    the path turns err no less than by what the event's shift along the path makes of them, which the central gap tells.
     """
     changes = np.full(4, np.inf) if coarse is None else np.abs(fine.observables - coarse.observables)
-    shift = changes[2] / abs(fine.rates[2])
-    changes[:2] = np.maximum(changes[:2], np.abs(fine.rates[:2]) * shift)
+    if name != "zero_load":
+        shift = changes[2] / abs(fine.rates[2])
+        changes[:2] = np.maximum(changes[:2], np.abs(fine.rates[:2]) * shift)
     return Event(name, *map(float, fine.observables), *map(float, changes + FOUND))
 
 
@@ -203,7 +209,7 @@ def require_served(scene: Scene, rtol: float, to_load: float) -> None:
     }
     for name, (value, served, limit) in counts.items():
         if not served:
-            raise InputError(f"{name} = {value} by the weak form, limit: {limit}; take fem_adhesion.trace (solver fem)")
+            raise InputError(f"{name} = {value} by the weak form, limit: {limit}; take fem_adhesion.trace, solver fem")
     values = {"tabor": scene.tabor, "poisson": scene.poisson, "rtol": rtol, "to_load": to_load}
     for name, value in values.items():
-        require_between(value, name, *LIMITS[name], "take fem_adhesion.trace (solver fem)", "of the weak form")
+        require_between(value, name, *LIMITS[name], "take fem_adhesion.trace, solver fem", " of the weak form")

@@ -19,6 +19,7 @@ NEAR = 1e-5  # relative change of a gap in the last Newton step; the error after
 CLOSING = 0.75  # part of a gap that one Newton step may close
 USUAL = 5  # Newton steps of a step along the path that suits; the next is longer after fewer
 SHORTEST, MOST_POINTS = 1e-6, 1000  # step along the path at which it ends without a curve; points likewise
+OPENING = 0.3  # largest part by which the gap on the axis changes in a step, lest it pass by two folds
 TURN = 0.5  # least cosine between the tangents at both ends of a step
 ROOT = 1e-7  # part of a step along the path within which an event is found
 FIRST = 0.5  # first step, in units of the arclength
@@ -107,7 +108,9 @@ def follow(problem: Problem, approach: float, to_load: float) -> list[Point]:
         except NotConverged:
             s /= 2
             continue
-        if points[-1].row @ point.tangent < TURN or turns_twice(points[-1], point):
+        before, after = (1 + each.observables[2] for each in (points[-1], point))
+        opened = abs(after / before - 1)
+        if opened > OPENING or points[-1].row @ point.tangent < TURN or turns_twice(points[-1], point):
             s /= 2
             continue
         points.append(point)

@@ -20,8 +20,7 @@ from fem_adhesion.weak_form.contact import LENNARD_JONES, Law, paraboloid
 from halfspace.values import Valued
 
 
-@BilinearForm
-def elasticity(u: Any, v: Any, w: Any) -> Array:
+def elasticity(u: Any, v: Any, w: Any) -> Any:
     """a(u, v) = int strains(v) : stresses(u) dV of an isotropic body of revolution with E* = 1."""
     G, r = (1 - w.poisson) / 2, w.x[0]
     bulk = 2 * G * w.poisson / (1 - 2 * w.poisson)
@@ -31,20 +30,17 @@ def elasticity(u: Any, v: Any, w: Any) -> Array:
     return 2 * np.pi * r * (2 * G * (e_r * d_r + e_z * d_z + e_hoop * d_hoop) + G * shear * d_shear + bulk * volume)
 
 
-@LinearForm
-def traction(v: Any, w: Any) -> Array:
+def traction(v: Any, w: Any) -> Any:
     """Work int t v_z dA of a vertical traction t on the surface."""
     return w.t * v[1] * 2 * np.pi * w.x[0]
 
 
-@BilinearForm
-def spring(u: Any, v: Any, w: Any) -> Array:
+def spring(u: Any, v: Any, w: Any) -> Any:
     """Form int k u_z v_z dA of a bed of springs of stiffness k on the surface."""
     return w.k * u[1] * v[1] * 2 * np.pi * w.x[0]
 
 
-@Functional
-def integral(w: Any) -> Array:
+def integral(w: Any) -> Any:
     """Integral int t dA over the surface."""
     return w.t * 2 * np.pi * w.x[0]
 
@@ -93,7 +89,7 @@ class Problem(Valued):
     @cached_property
     def stiffness(self) -> sparse.csc_array:
         """Matrix of a(u, v) on the free displacements."""
-        return sparse.csc_array(self._among_free(elasticity.assemble(self.basis, poisson=self.poisson)))
+        return sparse.csc_array(self._among_free(BilinearForm(elasticity).assemble(self.basis, poisson=self.poisson)))
 
     def _among_free(self, matrix: Any) -> Any:
         return matrix[self.free][:, self.free]
@@ -105,11 +101,12 @@ class Problem(Valued):
         return u
 
     def _work(self, t: Array) -> Array:
-        """int t v_z dA for each free displacement v."""
-        return np.asarray(traction.assemble(self.surface, t=t))[self.free]
+        """Integral int t v_z dA for each free displacement v."""
+        work: Array = np.asarray(LinearForm(traction).assemble(self.surface, t=t))[self.free]
+        return work
 
     def _integral(self, t: Array) -> float:
-        return float(integral.assemble(self.surface, t=t))
+        return float(Functional(integral).assemble(self.surface, t=t))
 
     @cached_property
     def _radii(self) -> Array:
@@ -134,7 +131,7 @@ class Problem(Valued):
         It is symmetric and factorised without row exchanges, so that the signs of the pivots are those of its
         eigenvalues (Sylvester's law of inertia).
         """
-        law = self._among_free(spring.assemble(self.surface, k=self.tabor**2 * self.law.slope(h)))
+        law = self._among_free(BilinearForm(spring).assemble(self.surface, k=self.tabor**2 * self.law.slope(h)))
         how: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
         return splu(sparse.csc_array(self.stiffness + law), permc_spec="MMD_AT_PLUS_A", **how)
 
