@@ -20,7 +20,7 @@ W = 0 at zero_load.
 In the order of reading: `problem` (the forms, assembled; the mesh), `path` (Newton's method with a border, arclength,
 events), `curve` (a scene's curve with its errors).
 
-Beside it stands what the check of the solvers (`fem_adhesion.crosscheck.from_scratch`) needs in a second: `contact`
+Beside it stands what the check of the solvers (`fem_adhesion.crosscheck.from_scratch`) takes: `contact`
 (law, profile, gaps, load, energy), `body` (elasticity of any body and what holds it), `newton` (determinant, turning
 points). There the unknowns inside each cell and below the surface are eliminated, exactly, before Newton's method
 begins. Strains, law and profile are the same in both. Bodies with a length of their own come to that check with the

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, newton
 
 from fem_adhesion.weak_form.body import Array
 from fem_adhesion.weak_form.problem import Problem
@@ -23,6 +23,7 @@ OPENING = 0.3  # largest part by which the gap on the axis changes in a step, le
 TURN = 0.5  # least cosine between the tangents at both ends of a step
 ROOT = 1e-7  # part of a step along the path within which an event is found
 FIRST = 0.5  # first step, in units of the arclength
+ASIDE = 1e-3  # arclength to the second state from which an event is sought by the secant
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -154,6 +155,21 @@ def extremum(point: Point) -> float:
 def unloaded(point: Point) -> float:
     """Load W, zero where nothing pulls or presses."""
     return float(point.observables[1])
+
+
+CONDITIONS: Mapping[str, Condition] = {"pull_off": extremum, "zero_load": unloaded}  # of all other events: fold
+
+
+def events_on_finer(problem: Problem, coarse: Problem, found: Mapping[str, Point]) -> dict[str, Point]:
+    """The events of a path on elements of higher degree, each by the secant from its place on those of lower degree."""
+    carried = zip(found, on_finer(problem, coarse, list(found.values())), strict=True)
+    return {name: _moved(problem, point, CONDITIONS.get(name, fold)) for name, point in carried}
+
+
+def _moved(problem: Problem, near: Point, condition: Condition) -> Point:
+    """Point past another, or before it, where a condition is zero."""
+    s = newton(lambda s: condition(onward(problem, near, s)[0]), 0.0, x1=ASIDE, tol=ROOT * FIRST, maxiter=MOST_STEPS)
+    return onward(problem, near, float(s))[0]
 
 
 def located(problem: Problem, points: Sequence[Point], condition: Condition) -> list[Point]:
