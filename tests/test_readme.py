@@ -40,6 +40,7 @@ LINES = {
     "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve": (
         "fem-adhesion curve --tabor 2 --json curve.json --csv curve.csv --vtk curve"
     ),
+    "fem-adhesion curve --tabor 0.5 --solver weak-form": "fem-adhesion curve --tabor 0.5 --solver weak-form",
     "fem-adhesion sweep --tabor 0.1:10:7 --csv sweep.csv": "fem-adhesion sweep --tabor 0.1:10:7 --csv sweep.csv",
     "pip install 'fem-adhesion[view]'": INSTALL,
     "pip install '.[studies]'": INSTALL,
