@@ -202,6 +202,7 @@ def _chain(condition, rates, values, near_axis=((0.0,), (0.0,))):
     """An event on grids on which its numbers, and the gaps near the axis, are these."""
     interface = SimpleNamespace(
         ripples=lambda _: np.zeros(2),
+        sizes=lambda _: np.zeros(4),
         scales=Scales(1.0),
         beside_axis=lambda _: np.zeros(1),
         near_axis=lambda number, _: np.array(near_axis[number]),

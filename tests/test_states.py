@@ -19,8 +19,8 @@ from halfspace.equilibrium.path import correct, predict
 from halfspace.equilibrium.search import states
 from halfspace.equilibrium.states import COORDINATES, shift
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES, Dlvo, PowerLaw
-from halfspace.profiles import Power, Sphere
+from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, PowerLaw
+from halfspace.profiles import Hyperboloid, Power, Sphere
 
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 
@@ -44,6 +44,16 @@ def test_a_state_has_the_value_asked_for_in_the_shape_it_was_asked_in(paths):
     gaps = paths[2.0].at(central_gap=[3.0, 0.1])
     assert np.isnan(gaps.contact_radius[0])
     assert gaps.contact_radius[1] > gaps.contact_radius_error[1] > 0
+
+
+@pytest.mark.parametrize("law", [Exponential(0.36, 30.0), LENNARD_JONES], ids=str)
+@pytest.mark.parametrize("load", [20.0, 0.0, -3.0])
+def test_a_small_load_of_large_tensions_has_the_value_asked_for_within_its_error(law, load):
+    """On the first 1e8 R dgamma of tension and pressure cancel: 20 was met to 3e-6, within 2e-10 by the load alone."""
+    path = halfspace.trace(1e-6, law=law, profile=Hyperboloid(0.5614), rtol=1e-5)
+    branches = path.branches("load")
+    state = path.at(load=load, branch=list(branches)[-1])
+    assert abs(state.load - load) <= state.load_error <= 1e-10 * (1 + np.abs(path.load).max())
 
 
 def test_events_are_states_of_the_curve(paths):

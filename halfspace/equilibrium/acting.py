@@ -85,6 +85,14 @@ class Acting(Valued):
         return _edge(self.body, self.x[:-2], self.law.edge_gap)
 
     @cached_property
+    def sizes(self) -> Array:
+        """Sums of the sizes of the terms of approach, load, central gap and contact radius, which may cancel, (4,)."""
+        approach = abs(self.approach)
+        gaps = np.abs(self.x[:-2]) + approach + self.tabor * np.abs(self.profile.height(self.body.radii))
+        load = np.abs(self.body.weights) @ np.abs(self.pressure)
+        return np.array([approach, load, np.abs(self.operator.axis_row) @ gaps, self.contact_radius])
+
+    @cached_property
     def gradients(self) -> Array:
         """Derivatives by x of approach, load and central gap, (3, q + 2)."""
         rows, axis = np.zeros((3, self.x.size)), self.operator.axis_row

@@ -34,7 +34,7 @@ from halfspace.roots import root
 from halfspace.values import Array, Valued
 
 ARCLENGTH_TOLERANCE = 1e-12
-ROUND_OFF = 1e-11  # what Newton's method, the root finder and the matrices leave, relative to 1 + the value
+ROUND_OFF = 1e-11  # what Newton's method, root finder and matrices leave, relative to 1 + the sizes of the terms
 
 
 @dataclass(frozen=True)
@@ -106,6 +106,11 @@ class Located(Valued):
     problem: Traceable
     point: Point
     slope: float
+
+
+def rounding(problem: Traceable, x: Array) -> Array:
+    """What rounding leaves of the observables of a state, (4,): it is of the terms, however much of these cancels."""
+    return ROUND_OFF * (1 + problem.interface.sizes(problem.surface_state(x)))
 
 
 def locate(problem: Traceable, points: Sequence[Point], metric: Metric, condition: Condition) -> list[Located]:

@@ -166,6 +166,10 @@ class ContactProblem(Valued):
         here = self._acting(x)
         return np.array([float(getattr(here, name)) for name in OBSERVABLES])
 
+    def sizes(self, x: Array) -> Array:
+        """Sums of the sizes of the terms that the observables are made of, shape (4,)."""
+        return self._acting(x).sizes
+
     def weighted_observables(self, x: Array, weights: Array) -> float:
         """Sum of the observables by the given weights; one of weight zero is not computed and need not exist."""
         here = self._acting(x)

@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from halfspace.equilibrium.charts import metric_for
-from halfspace.equilibrium.conditions import ROUND_OFF, Located
+from halfspace.equilibrium.conditions import Located, rounding
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.values import Array, Estimate
 
@@ -185,16 +185,16 @@ def estimate_event(
     accident while the event moves. For stationary conditions only. If `rule.along`, nor do the gap and radius, which
     are at a point, then fall as averages do: the changes of all chains add up.
     """
-    values = chains[0][-1].point.observables
+    best = chains[0][-1]
+    values = best.point.observables
     changes = [_changes(chain, rule) for chain in chains]
     whole = np.sum(changes, axis=0)
     if (rule.along or rule.steps) and chains[0][-1].condition.stationary:
         ways = slice(None) if rule.along else slice(1)
         changes += [apart for chain in chains for apart in _apart(chain, rule)[ways]]
-    errors = rule.remaining * np.maximum(np.max(changes, axis=0), least) + ROUND_OFF * (1 + np.abs(values))
+    errors = rule.remaining * np.maximum(np.max(changes, axis=0), least) + rounding(best.problem, best.point.x)
     if rule.along:
         errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
-    best = chains[0][-1]
     gap, radius = best.problem.interface.ripples(best.problem.surface_state(best.point.x))
     alone = rule.along or len(chains) == 1
     errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], [gap if alone else 0.0, radius])

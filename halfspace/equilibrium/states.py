@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.conditions import FOLD, ROUND_OFF, Condition, Located, between, hermite
+from halfspace.equilibrium.conditions import FOLD, Condition, Located, between, hermite, rounding
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
@@ -220,7 +220,7 @@ class FinestCurve(Valued):
             errors = self._errors_given(k, problem, point, bend)
         except NotConverged:
             errors = _unbounded(point)
-            errors[k] = ROUND_OFF * (1 + abs(value))
+            errors[k] = rounding(problem, point.x)[k]
         return np.concatenate([point.observables, errors])
 
     def _solved(self, k: int, value: float, parts: Sequence[Segment]) -> tuple[Traceable, Point, float]:
@@ -293,7 +293,7 @@ class FinestCurve(Valued):
         here = point.observables
         if not self.ways:
             return np.full(4, np.nan)
-        errors = change + ROUND_OFF * (1 + np.abs(here))
+        errors = change + rounding(problem, point.x)
         if len(self.ways) == 1:
             untold, rates = problem.untold(point.x), point.rates
             doubt = max(untold[CENTRAL_GAP] - errors[CENTRAL_GAP], 0.0)  # the plane goes with it
@@ -318,7 +318,7 @@ class FinestCurve(Valued):
             errors = np.minimum(errors + np.abs(rates) * whole, rest)
         else:
             errors = errors + np.abs(rates) * whole
-        errors[k] = ROUND_OFF * (1 + abs(point.observables[k]))
+        errors[k] = rounding(problem, point.x)[k]
         return errors
 
 
