@@ -33,10 +33,18 @@ from fem_adhesion.greenwood.drawing import (
     theory,
 )
 from fem_adhesion.greenwood.numerics_1997 import Ripple
-from fem_adhesion.greenwood.state_figures import GAP, PRESSURE, PULL_OFF, RADII_AT, maugis_radius, profile_line
+from fem_adhesion.greenwood.state_figures import (
+    GAP,
+    NEAR,
+    PRESSURE,
+    PULL_OFF,
+    RADII_AT,
+    largest_tension,
+    maugis_radius,
+    profile_line,
+)
 from fem_adhesion.greenwood.study import DEVICES_AT, RIPPLE_AT, WINDING_AT, Greenwood1997
 from halfspace.equilibrium.devices import Cycle
-from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import MAUGIS
 from halfspace.theories import dmt
 from halfspace.theories.closed_forms import bradley_load, hertz_load, hertz_radius_at
@@ -48,7 +56,6 @@ DMT_AT = 0.1  # Tabor parameter at which they are shown
 GAPS_AT = (0.5, 1.0, 2.0, 5.0)
 CARPICK_AT = (0.5, 2.0)
 INSIDE = 0.8  # of the contact radius: where the gap is looked at for being flat
-NEAR = 0.01  # relative difference below which two heights are called the same
 STEADY = 5.0  # Tabor parameter from which the scaled gap at jump-on is looked at for being constant
 CONSTANT = 0.01  # relative spread below which it is called so
 PROFILE_LOOKS = (
@@ -161,7 +168,7 @@ def profiles(study: Greenwood1997) -> Plot:
     if touching:
         heights = np.array([-state.pressure.min() for state in touching]) / WINDING_AT
         places = np.array([state.radii[state.pressure.argmin()] for state in touching])
-        strength = -float(LENNARD_JONES.pressure(np.array(LENNARD_JONES.edge_gap), 1.0))
+        strength = largest_tension()
         same = "is" if np.all(np.abs(heights / strength - 1) < NEAR) else "is not"
         outwards = "moves outwards" if rises(places) else "does not always move outwards"
         text = (

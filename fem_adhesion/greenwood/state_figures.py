@@ -75,7 +75,7 @@ def _see_pressures(study: Greenwood1997) -> Iterator[str]:
     before, after = study.profiles
     centre = f"The central pressure goes from {before.pressure[0]:.4f} to {after.pressure[0]:+.4f} dgamma/(mu eps)."
     yield told(centre, before.pressure[0], after.pressure[0])
-    height, strength = -after.pressure.min() / WINDING_AT, -_largest_tension()
+    height, strength = -after.pressure.min() / WINDING_AT, largest_tension()
     same = "is" if abs(height / strength - 1) < NEAR else "is not"
     place = after.radii[after.pressure.argmin()]
     text = (
@@ -85,8 +85,9 @@ def _see_pressures(study: Greenwood1997) -> Iterator[str]:
     yield told(text, height, place)
 
 
-def _largest_tension() -> float:
-    return float(LENNARD_JONES.pressure(np.array(LENNARD_JONES.edge_gap), 1.0))
+def largest_tension() -> float:
+    """Strength of the surface law, in parts of mu."""
+    return -float(LENNARD_JONES.pressure(np.array(LENNARD_JONES.edge_gap), 1.0))
 
 
 def fig_4b(study: Greenwood1997) -> Plot:
