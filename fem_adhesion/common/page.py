@@ -7,17 +7,16 @@ from __future__ import annotations
 
 import csv
 import re
+from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar
-from xml.etree import ElementTree
 
 from markupsafe import Markup
 
 from fem_adhesion.common.facts import machine, versions
-from halfspace.errors import InputError
 
 Item = TypeVar("Item")
 Columns = Mapping[str | tuple[str, ...], Callable[[Item], str | Sequence[str]]]
@@ -34,9 +33,6 @@ SYMBOLS: Mapping[str, str] = {
 WORDS = re.compile(rf"\b({'|'.join(SYMBOLS)})\b")
 NUMBER = re.compile(r"[-+0-9.e]+")
 LONG = 40  # letters of a cell from which on it may be broken
-SVG = "http://www.w3.org/2000/svg"
-XLINK = "http://www.w3.org/1999/xlink"
-REFERENCE = re.compile(r"url\(#([^)]*)\)")
 
 
 @dataclass(frozen=True)
@@ -67,17 +63,27 @@ def _listed(cells: str | Sequence[str]) -> Sequence[str]:
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture as SVG that can stand inside HTML; its caption, what is to be seen, is the text alternative too.
+    """A picture, the bytes of an SVG file; its caption, what is to be seen, is the text alternative too.
 
     The title says what is drawn; `stem` is the name of its files without suffix, empty if there are none, and `files`
     are their suffixes.
     """
 
-    markup: str
+    svg: bytes
     caption: str
     title: str = ""
     stem: str = ""
     files: Sequence[str] = ()
+
+    @property
+    def source(self) -> str:
+        """The picture as an address that holds it: a browser shows it as an image, whose scripts never run."""
+        return f"data:image/svg+xml;base64,{b64encode(self.svg).decode('ascii')}"
+
+    @property
+    def alternative(self) -> str:
+        """What is read in place of the picture."""
+        return f"{self.title}. {self.caption}" if self.title else self.caption
 
 
 @dataclass(frozen=True)
@@ -158,51 +164,3 @@ def markdown(parts: Sequence[str | Table]) -> Iterator[str]:
             yield from (f"| {' | '.join(cells)} |" for cells in (part.columns, ["---"] * len(part.columns), *part.rows))
         else:
             yield part
-
-
-def inlined(svg: bytes, name: str, caption: str, title: str = "", stem: str = "") -> Figure:
-    """A picture, as the bytes of an SVG file, made ready for a page: no identifier, style or script leaks.
-
-    The name, different for each picture of a page, keeps their identifiers apart; the rest is as of `Figure`.
-    InputError if the file is not SVG.
-    """
-    root = _parsed(svg, name)
-    _strip(root)
-    for element in root.iter():
-        _keep_apart(element, name)
-    root.attrib.pop("height", None)  # follows from the width and the view box
-    root.set("role", "img")
-    root.set("aria-label", symbols(f"{title}. {caption}" if title else caption))
-    ElementTree.register_namespace("", SVG)
-    ElementTree.register_namespace("xlink", XLINK)
-    return Figure(Markup(ElementTree.tostring(root, encoding="unicode")), caption, title, stem)
-
-
-def _parsed(svg: bytes, name: str) -> ElementTree.Element:
-    try:
-        root = ElementTree.fromstring(svg)
-    except ElementTree.ParseError as error:
-        raise InputError(f"the picture {name} is not SVG: {error}; write it anew") from error
-    if root.tag != f"{{{SVG}}}svg":
-        raise InputError(f"the picture {name} is not SVG: its first element is {root.tag}; write it anew")
-    return root
-
-
-def _strip(element: ElementTree.Element) -> None:
-    """Leave out metadata, scripts, and styles, which would hold for the whole page; the page has the latter."""
-    for child in list(element):
-        if child.tag.rpartition("}")[2] in ("metadata", "style", "script"):
-            element.remove(child)
-        else:
-            _strip(child)
-
-
-def _keep_apart(element: ElementTree.Element, name: str) -> None:
-    """Put the picture's name before each identifier and each reference to one."""
-    for key, value in element.attrib.items():
-        if key == "id":
-            element.set(key, f"{name}-{value}")
-        elif key in ("href", f"{{{XLINK}}}href") and value.startswith("#"):
-            element.set(key, f"#{name}-{value[1:]}")
-        else:
-            element.set(key, REFERENCE.sub(rf"url(#{name}-\1)", value))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Generic, TextIO, TypeVar
@@ -24,7 +24,7 @@ LOOK: dict[Any, Any] = {
     "axes.spines.right": False,
     "svg.hashsalt": "fem-adhesion",
 }
-ON_PAGES = LOOK | {"svg.fonttype": "none"}  # text that can be read and searched, in the page's fonts
+ON_PAGES = LOOK | {"svg.fonttype": "none"}  # text that can be read and searched in the file
 SUFFIXES = (".png", ".svg", ".pdf")
 DOTS_PER_INCH = 160
 
@@ -150,9 +150,9 @@ def shown(pictures: Sequence[Picture[Results]], results: Results, directory: Pat
     drawn = [picture for picture in pictures if not picture.lacks(results)]
     figures = []
     for one in drawn:
-        files = [directory / f"{one.stem}.{suffix}" for suffix in ("svg", "png", "csv")]
-        figure = page.inlined(files[0].read_bytes(), one.stem, one.see(results), one.title, one.stem)
-        figures.append(replace(figure, files=[file.suffix[1:] for file in files if file.exists()]))
+        files = [suffix for suffix in ("svg", "png", "csv") if (directory / f"{one.stem}.{suffix}").exists()]
+        svg = (directory / f"{one.stem}.svg").read_bytes()
+        figures.append(page.Figure(svg, one.see(results), one.title, one.stem, files))
     return figures
 
 

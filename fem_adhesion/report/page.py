@@ -10,12 +10,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from xml.etree import ElementTree
 
 from matplotlib import rc_context
 
 from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.lines import UNSTABLE, smooth
-from fem_adhesion.common.page import Columns, Section, Table, inlined, render, template_text
+from fem_adhesion.common.page import Columns, Figure, Section, Table, render, template_text
 from fem_adhesion.common.style import laid_out
 from fem_adhesion.crosscheck.comparison import (
     CLOSED_FORM,
@@ -111,7 +112,7 @@ def _curves_section(curves: Curves) -> Section:
         f"{', '.join(curve_figure.named(drawn))}. Pressure and gap at {', '.join(curve_figure.states(curves))}; the "
         f"spike of tension at the contact edge with the nodes of the grid; {last}."
     )
-    return Section("curves", f"The curve by {solvers}", figures=(inlined(stream.getvalue(), "curves", text),))
+    return Section("curves", f"The curve by {solvers}", figures=(Figure(stream.getvalue(), text),))
 
 
 # Sections: the cross-check in its levels, what the solvers chose, and what other commands left
@@ -283,7 +284,7 @@ def section_of(source: Source, directory: Path | None) -> Section:
         return Section(source.name, source.title, missing=source.made_by)
     captions = _captions(source, directory) if source.figures else {}
     figures = tuple(
-        inlined(_require(directory / f"{stem}.svg", source).read_bytes(), f"{source.name}-{stem}", captions[stem])
+        Figure(_svg(_require(directory / f"{stem}.svg", source)), captions[stem])
         for stem in source.figures
         if captions.get(stem)  # those without were not drawn
     )
@@ -302,6 +303,18 @@ def _captions(source: Source, directory: Path) -> dict[str, str]:
     """Captions that the command left beside its figures."""
     file = _require(directory / "captions.csv", source)
     return dict(zip(_column(file, "figure"), _column(file, "caption"), strict=True))
+
+
+def _svg(file: Path) -> bytes:
+    """Contents of an SVG file, InputError if it is none: a browser would show nothing in its place."""
+    contents = file.read_bytes()
+    try:
+        first = ElementTree.fromstring(contents).tag
+    except ElementTree.ParseError as error:
+        raise InputError(f"{file} is no SVG picture: {error}; run its command again") from error
+    if first != "{http://www.w3.org/2000/svg}svg":
+        raise InputError(f"{file} is no SVG picture: its first element is {first}; run its command again")
+    return contents
 
 
 def _column(file: Path, name: str) -> list[str]:
