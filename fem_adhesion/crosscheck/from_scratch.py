@@ -9,20 +9,24 @@ its budget is a part in a thousand, whatever the tolerance.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
+from operator import attrgetter
+from typing import TypeVar
 
 import numpy as np
 
 import halfspace
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
+from fem_adhesion.crosscheck.definitions import apart, numbers
 from fem_adhesion.crosscheck.weak_bodies import SHARP, FineAt, contacts, sharpness
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.newton import Turn, newton, turning_point
+from fem_adhesion.weak_form.newton import Equilibrium, Turn, from_afar, newton, turning_point
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -31,40 +35,22 @@ from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Estimate, Valued
 
+T = TypeVar("T")
 BUDGET = 1e-3  # of each quantity
 ROUND_OFF = 1e-10
 LEAST = BUDGET / 20  # of each number that the weak form knows none better than: both its bodies may err alike
-WORK_LEFT = (0.5, 0.1, 0.01, 1e-4)  # of dgamma, beyond the gaps at which the law's integral is cut
-HALVINGS = 20  # of the cells on which the law's integral is taken, at most
-LITTLE = 1e-12  # dgamma, by which two rules may differ on such a cell
 
 # Closed forms
 
 
 def closed_forms(law: Law = LENNARD_JONES) -> list[Row]:
     """Law and limits of the default: what the shared code makes of them, beside what is known."""
-    adhesion = Estimate(1.0, 0.0), _work(law)
+    adhesion = Estimate(1.0, 0.0), numbers(lambda h: -law.pressure(h - 1, 1.0)).work + Estimate(0.0, ROUND_OFF)
     return [
         Row("limit: integral of tension", "dgamma", *adhesion, difference(*adhesion), 1e-6, CLOSED_FORM),
         _limit("limit: Bradley pull_off load", -2 * np.pi, (1e-9,)),
         _limit("limit: JKR pull_off load", -1.5 * np.pi, (50.0, 100.0)),
     ]
-
-
-def _work(law: Law) -> Estimate:
-    """Integral of the tension from equilibrium to infinity, by Gauss's rule in s = 1/(1 + H) on ever smaller cells."""
-    rules = [np.polynomial.legendre.leggauss(points) for points in (16, 24)]
-    cuts = np.unique(1 / (1 + np.array([0.0, law.edge_gap, *map(law.range, WORK_LEFT), np.inf])))
-    a, b, found = cuts[:-1, None], cuts[1:, None], Estimate(0.0, ROUND_OFF)
-    for halvings in range(HALVINGS + 1):
-        places = [(a + (b - a) * (1 + x) / 2, (b - a) * w / 2) for x, w in rules]
-        coarse, fine = (-(law.pressure(1 / s - 1, 1.0) / s**2 * ds).sum(axis=1) for s, ds in places)
-        off = np.abs(fine - coarse)
-        done = (off < LITTLE) | (halvings == HALVINGS)
-        found += Estimate(float(fine[done].sum()), float(off[done].sum()))
-        a, b = a[~done], b[~done]
-        a, b = np.vstack([a, (a + b) / 2]), np.vstack([(a + b) / 2, b])
-    return found
 
 
 def _limit(quantity: str, value: float, tabors: Sequence[float]) -> Row:
@@ -197,7 +183,7 @@ def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
 def _on_both(scene: Scene, path: EquilibriumPath, on_coarse: FineAt, on_fine: FineAt) -> Iterator[Compared]:
     for name in usual(path.events):
         yield from _of_event(name, scene, path, on_coarse, on_fine)
-    coarse, fine = (_energy_released(contact, path) for contact in (on_coarse, on_fine))
+    coarse, fine = (_energy_released(scene, contact, path) for contact in (on_coarse, on_fine))
     yield Compared("energy released", "R dgamma eps", (coarse, fine), path.energy, abs(path.energy.value))
 
 
@@ -215,18 +201,73 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
         doubt = Estimate(0.0, abs(before.reaction - fine.reaction))
         rounding = coarse.rounding, fine.rounding
         yield Compared(f"{name} reaction", "R dgamma", reactions, load + doubt, force, rounding)
+    a, b = _beside(name, coarse), _beside(name, fine)
+    for quantity, unit in (("central_gap", "eps"), ("contact_radius", "beta")):
+        known, both = event.estimate(quantity), _numbers(a, b, attrgetter(quantity))
+        if not all(value is not None and math.isnan(value) for value in (*both, known.value)):
+            ripples = _numbers(a, b, attrgetter("ripple")) if quantity == "central_gap" else (0.0, 0.0)
+            size = POINTWISE * (1 + abs(known.value))
+            yield Compared(f"{name} {quantity}", unit, both, known, size, (ripples[0] or 0.0, ripples[1] or 0.0))
     # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
     smooth, sharp = name == "jump_on", sharpness(scene, radius) > SHARP
-    a = (_turn if smooth else _beside)(name, coarse)
-    b = (_turn if smooth or not sharp else _beside)(name, fine)
+    if name in FOLDS and (smooth or not sharp):
+        side, _ = _numbers(b, None, _stable_side)
+        yield Compared(f"{name} stable side", "", (side, side), Estimate(FOLDS[name], 0.0), 1.0)
+    a, b = (_from_afar(scene, each) for each in (coarse, fine)) if smooth else (a, b)
+    first = _turn(name, a) if smooth else a
+    second = _turn(name, b) if smooth or (name != "zero_load" and not sharp) else b
     if name != "pull_off":
-        yield Compared(f"{name} approach", "eps", _numbers(a, b, lambda turn: turn.approach), approach, width)
+        yield Compared(f"{name} approach", "eps", _numbers(first, second, lambda turn: turn.approach), approach, width)
     if name in ("pull_off", "jump_on"):
-        yield Compared(f"{name} load", "R dgamma", _numbers(a, b, lambda turn: turn.load), load, force)
+        yield Compared(f"{name} load", "R dgamma", _numbers(first, second, lambda turn: turn.load), load, force)
 
 
-def _numbers(a: Turn | None, b: Turn | None, of: Callable[[Turn], float]) -> tuple[float | None, float | None]:
-    return None if a is None else of(a), None if b is None else of(b)
+POINTWISE = 10  # as of level 3, of numbers at a point
+FOLDS = {"jump_on": 1.0, "jump_off": -1.0}
+"""The side of each jump's load where states are stable under fixed grips: above, coming from afar, or below."""
+
+
+def _stable_side(state: Equilibrium) -> float:
+    """1 if the states beside a fold are stable at loads above and have one way to fall below, -1 if it is reverse.
+
+    So the approach has a maximum there that is reached from stable states, or a minimum that is left to them; anything
+    else is no jump.
+    """
+    step = (1 + abs(state.load)) * min(1.0, 9 / state.contact.sharpness**2)
+    for aside in ASIDE:
+        with suppress(NotConverged):
+            below, above = (state.past(d, under_load=False).unstable for d in (-aside * step, aside * step))
+            return float(below - above) if min(below, above) == 0 else math.nan
+    return math.nan
+
+
+ASIDE = (
+    1e-2,
+    1e-3,
+    1e-4,
+)  # of 1 + the load: more than both sources differ by in that of a fold, or as far as states are found
+
+
+def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
+    """Equilibrium at the load of a fold on the way from undeformed surfaces; None if the way leads past no fold there."""
+    near = state.approach - NEAR * (1 + abs(state.approach))
+    with suppress(NotConverged):
+        found = from_afar(state.contact, apart(scene), near)
+        if abs(found.load - state.load) < AWAY * (1 + abs(state.load)):
+            return newton(state.contact, found.gap, near, load=state.load)
+    return None
+
+
+NEAR, AWAY = 3e-3, 0.2  # of 1 + the approach, where that way ends before a fold; of 1 + the load, how far off that is
+
+
+def _numbers(a: T | None, b: T | None, of: Callable[[T], float]) -> tuple[float | None, float | None]:
+    """Numbers of two states, None where there is none or it has none."""
+    found: list[float | None] = [None, None]
+    for n, state in enumerate((a, b)):
+        with suppress(NotConverged):
+            found[n] = None if state is None else of(state)
+    return found[0], found[1]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -300,44 +341,34 @@ def _gaps(event: Located, contact: Contact) -> Array:
     return np.where((radii < extent) | (not contact.endless), inside, beyond)
 
 
-def _turn(name: str, state: StateInWeakForm) -> Turn | None:
+def _turn(name: str, state: Equilibrium | None) -> Turn | None:
     """Load and approach of the event in the weak form, or None where there is none nearby."""
-    if name == "zero_load":
-        return _beside(name, state)
-    contact, start = state.contact, (state.gap, state.approach, state.load)
-    finer = 1.0 if contact.endless else FINER
-    try:
-        return turning_point(contact, *start, under_load=name == "pull_off", finer=finer)
-    except NotConverged:
+    if state is None:
         return None
+    finer = 1.0 if state.contact.endless else FINER
+    with suppress(NotConverged):
+        return turning_point(state, under_load=name == "pull_off", finer=finer)
+    return None
 
 
 FINER = 3.0  # steps past a turning point where there is a body with a length, which the weak form knows better
 
 
-def _beside(name: str, state: StateInWeakForm) -> Turn | None:
+def _beside(name: str, state: StateInWeakForm) -> Equilibrium | None:
     """Equilibrium at the approach of pull-off, or at the load of another event: what turns there is stationary."""
-    try:
-        found = newton(state.contact, state.gap, state.approach, load=None if name == "pull_off" else state.load)
-    except NotConverged:
-        return None
-    return Turn(found.load, found.approach)
+    load = {"pull_off": None, "zero_load": 0.0}.get(name, state.load)
+    with suppress(NotConverged):
+        return newton(state.contact, state.gap, state.approach, load=load)
+    return None
 
 
-def _energy_released(on: FineAt, path: EquilibriumPath) -> float:
-    """Potential energy between the two states of `EquilibriumPath.energy`; its error is of second order in theirs."""
-    ends = (path.stages[-1][name] for name in ("separated", "zero_approach"))
-    before, after = (_energy(_state(on(*_places(event)), event)) for event in ends)
-    return before - after
-
-
-UNSETTLED = 0.1  # of a load, by which that of the gaps that displacements leave may differ
-
-
-def _energy(state: StateInWeakForm) -> float:
-    """Potential energy of a state, or where a stiff law makes too much of its ripples of the equilibrium nearby."""
-    contact, u, left = state.contact, state.u, state.contact.gap(state.u, state.approach)
-    if abs(contact.load(contact.law.tension(left), state.approach) - state.load) > UNSETTLED * (1 + abs(state.load)):
-        with suppress(NotConverged):
-            u = contact.displacement(newton(contact, state.gap, state.approach).gap)
-    return contact.energy(u, state.approach)
+def _energy_released(scene: Scene, on: FineAt, path: EquilibriumPath) -> float | None:
+    """Potential energy from undeformed surfaces that deform far apart to the equilibrium in contact at no approach."""
+    ends = [
+        _state(on(*_places(path.stages[-1][name])), path.stages[-1][name]) for name in ("separated", "zero_approach")
+    ]
+    far = apart(scene)
+    with suppress(NotConverged):
+        before = newton(ends[0].contact, ends[0].contact.gap(None, far), far)
+        return before.energy - newton(ends[1].contact, ends[1].gap, 0.0).energy
+    return None

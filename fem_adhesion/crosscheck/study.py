@@ -22,7 +22,7 @@ import numpy as np
 
 import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.crosscheck import from_scratch
+from fem_adhesion.crosscheck import definitions, from_scratch
 from fem_adhesion.crosscheck.comparison import (
     SOLVERS,
     TRIANGLES,
@@ -131,7 +131,10 @@ def unsolved(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
         both = reference.operators(rtol), [problem.operator.at(1.0) for problem in problems]
         under = pressures_for(scene).items()
         rows = [_compare_fields(name, pressure, *both, rtol, edge, reference.between) for name, pressure in under]
-    return [*rows, *from_scratch.equations(scene, problems[-2:], edge), *from_scratch.closed_forms(scene.law)]
+    rows += from_scratch.equations(scene, problems[-2:], edge)
+    rows += definitions.rows(scene)
+    rows += from_scratch.closed_forms(scene.law)
+    return rows
 
 
 # Level 1: operators

@@ -17,15 +17,16 @@ from skfem import MeshTri
 from fem_adhesion.bodies.body import Body as ElasticBody
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.bodies.layers import FAR_OUT, Stratified
-from fem_adhesion.discretise import finest_length, layout_of, mesh_of, pair_meshes
+from fem_adhesion.crosscheck.definitions import heights, lengths, numbers_of
+from fem_adhesion.discretise import finest_length
 from fem_adhesion.mesh.file import is_straight, refined
+from fem_adhesion.mesh.spheres import with_contact_to
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.body import TRIANGLES, Body, discretise, fine_within, half_space, on_ground, opposed
-from fem_adhesion.weak_form.contact import Contact, Heights, Law, lennard_jones, paraboloid, sphere
+from fem_adhesion.weak_form.contact import Contact, Law, lennard_jones
 from halfspace.elastic import grid
 from halfspace.elastic.layers import surface_compliance
 from halfspace.laws import LENNARD_JONES
-from halfspace.profiles import Paraboloid, Sphere
 from halfspace.values import Array
 
 FineAt = Callable[[float, float], Contact]
@@ -57,7 +58,8 @@ def law_of(scene: Scene) -> Law:
     if law == LENNARD_JONES:
         return Law(lennard_jones)
     room = float(law.room(np.array(-1.0)))
-    return Law(lambda h: law.energy(h - 1, 1.0), law.stiffness**-0.5, room)
+    known = numbers_of(law)
+    return Law(lambda h: law.energy(h - 1, 1.0), known.stiffness**-0.5, room, 1 + known.edge)
 
 
 def contacts(scene: Scene, load: float | None = None) -> list[FineAt]:
@@ -86,7 +88,7 @@ def _on_half_space(scene: Scene, fineness: tuple[int, float], radius: float, rea
     more = int(sharp > SHARP) + int(sharp > 3 * SHARP) + int(scene.law != LENNARD_JONES or scene.poisson > LOCKING)
     reach = float(2.0 ** np.ceil(np.log2(reach / radius)))
     body = _half_space(_finest(scene, radius), size, degree + more, scene.poisson, _tip(scene, radius), reach)
-    return Contact(body.scaled(radius), scene.tabor, _heights(scene), law=law_of(scene))
+    return Contact(body.scaled(radius), scene.tabor, heights(scene), law=law_of(scene))
 
 
 def _wider(scene: Scene, radius: float) -> float:
@@ -123,7 +125,8 @@ RINGS = 4  # of cells around a corner where the stress is singular
 def _on_given_mesh(scene: Scene, degree: int, *_: float) -> Contact:
     """Contact of a user's mesh."""
     body = discretise(_given_mesh(scene), degree, scene.body.regions, slides=scene.body.held == "sliding")
-    return Contact(body, scene.tabor, lambda _: scene.sphere_radius * body.depths, False, law=law_of(scene))
+    R, _ = lengths(scene)
+    return Contact(body, scene.tabor, lambda _: R * body.depths, False, law=law_of(scene))
 
 
 @lru_cache(maxsize=2)
@@ -132,29 +135,42 @@ def _given_mesh(scene: Scene) -> Any:
 
     So neighbours agree on the places along their sides.
     """
-    mesh = mesh_of(scene, np.zeros(1), Discretisation(DEGREES[0]))
+    mesh = scene.body.mesh(lengths(scene)[0], np.zeros(1), 0.0, Discretisation(DEGREES[0]))
     mesh = refined(mesh) if is_straight(mesh) else mesh
     return type(mesh)(mesh.doflocs, np.sort(mesh.t, axis=0), mesh.boundaries) if isinstance(mesh, MeshTri) else mesh
 
 
 def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) -> Contact:
     """Contact of one body or two, whose cells are finest at a radius."""
-    R = scene.radii[0]
+    R, bodies = _radii(scene)
     radius, reach = (min(r, WIDEST * R) for r in (radius, reach))  # what attracts from afar may be wider
     how = Discretisation(degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, GROWTH, RINGS)
     if isinstance(scene.body, Stratified) and scene.body.held == "substrate":
         how = replace(how, beyond=_clamped(scene, scene.body, load, R, radius))
-    outer, coordinate = layout_of(scene, how)
-    lines = grid.graded(coordinate.of(radius), finest_length(scene, how), float(outer[0]), growth=GROWTH)
+    outer, coordinate = scene.body.layout(R, replace(how, rings=0) if scene.counter else how)
+    length = finest_length(scene, how)
+    lines = grid.graded(coordinate.of(radius), length, float(outer[0]), growth=GROWTH)
     core = fine_within(coordinate.of(reach), lines)
+    mesh = scene.body.mesh(R, core, length, how)
     if scene.counter is None:
-        body = _standing(scene.body, mesh_of(scene, core, how), degree)
-        contact = Contact(body, scene.tabor, _heights(scene), False, law=law_of(scene))
+        body = _standing(scene.body, mesh, degree)
+        contact = Contact(body, scene.tabor, heights(scene), False, law=law_of(scene))
         return replace(contact, rim=_flat_rim(body.rim, R)) if scene.body.layered else contact
-    meshes = pair_meshes(scene, scene.counter, core, how)
-    first, second = (_standing(*one, degree) for one in zip((scene.body, scene.counter), meshes, strict=True))
-    body = opposed(first, second, scene.shares[1])
-    return Contact(body, scene.tabor, _heights(scene), False, _rim(first.rim, R), law_of(scene))
+    end, other = float(coordinate.radius(core[-1:])[0][0]), scene.counter
+    meshes = mesh, other.facing(bodies[1], core, length, R, how)
+    first, second = (
+        _standing(body, with_contact_to(one, end), degree)
+        for body, one in zip((scene.body, other), meshes, strict=True)
+    )
+    body = opposed(first, second, scene.share or 0.0)
+    return Contact(body, scene.tabor, heights(scene), False, _rim(first.rim, R), law_of(scene))
+
+
+def _radii(scene: Scene) -> tuple[float, tuple[float, ...]]:
+    """Radius in beta of the first body, or where what attracts of another ends, and those of all."""
+    R, bodies = lengths(scene)
+    first = bodies[0] if np.isfinite(bodies[0]) else min(R, scene.surface.end)
+    return first, bodies
 
 
 def _clamped(scene: Scene, strata: Stratified, W: float, R: float, radius: float) -> float:
@@ -180,18 +196,6 @@ def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:
         on_surface=material.area == "surface",
     )
     return _ground(body) if elastic.endless else body
-
-
-def _heights(scene: Scene) -> Heights:
-    """Undeformed gap in beta^2/R, of spheres and the paraboloid by formulas of its own; those of two spheres add."""
-    shape, R = scene.shape, scene.sphere_radius
-    if isinstance(shape, Paraboloid):
-        return paraboloid
-    if not isinstance(shape, Sphere):
-        return scene.surface.height
-    over = shape.counter_radius
-    radii = [R * (1 + 1 / over), R * (1 + over)] if np.isfinite(over) else [R]
-    return lambda r: sum((R / each * sphere(r, each) for each in radii), 0 * r)
 
 
 def _ground(block: Body) -> Body:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from fem_adhesion.weak_form.body import Array
 from fem_adhesion.weak_form.contact import LENNARD_JONES, Contact
@@ -58,6 +59,59 @@ class Equilibrium(Valued):
         sign, magnitude = np.linalg.slogdet(self.tangent.matrix)
         return float(sign), float(magnitude)
 
+    @property
+    def unstable(self) -> int:
+        """Number of directions in which the energy falls at this approach: negative eigenvalues of the tangent."""
+        unit = np.sqrt(
+            self.contact.body.surface.diagonal()
+        )  # they keep their signs, and cells of any size their digits
+        return int((np.linalg.eigvalsh(self.tangent.matrix / np.outer(unit, unit)) < 0).sum())
+
+    @property
+    def energy(self) -> float:
+        """Potential energy in R dgamma eps, see `Contact.energy`."""
+        return self.contact.energy(self.contact.displacement(self.gap), self.approach)
+
+    @property
+    def central_gap(self) -> float:
+        """H(0) in eps: the displacement is even and smooth across the axis, as the profile need not be."""
+        return float(even(self.contact.body.radii, self._displaced)(0.0)) - self.approach
+
+    @property
+    def ripple(self) -> float:
+        """What the displacement next to the axis has in eps that a polynomial of the radius squared has not."""
+        first = np.argsort(self.contact.body.radii)[:INNERMOST]
+        x, u = self.contact.body.radii[first] ** 2, self._displaced[first]
+        return float(np.max(np.abs(u - np.polynomial.Polynomial.fit(x, u, 2)(x))))
+
+    @property
+    def _displaced(self) -> Array:
+        """What the points have come down in eps."""
+        return self.gap - self.contact.gap(None, self.approach)
+
+    @property
+    def contact_radius(self) -> float:
+        """Largest radius in beta at which the tension is largest; nan if there is none."""
+        radii = even(self.contact.body.radii, self.gap - self.contact.law.edge).roots(extrapolate=False)
+        return float(radii[-1]) if radii.size and radii[-1] > 0 else float("nan")
+
+    def past(self, step: float, *, under_load: bool) -> Equilibrium:
+        """Equilibrium a step in approach or load farther, from what the tangent nearby predicts."""
+        near, load = self.nearby, None if under_load else self.load + step
+        change = step if under_load else step / near.stiffness
+        start = self.gap + change * near.gap_rate, self.approach + change
+        return newton(self.contact, *start, load=load, tangent=near)
+
+
+INNERMOST = 20  # points, those of about two cells
+
+
+def even(radii: Array, values: Array) -> CubicSpline:
+    """Spline through values at radii, and at these on the other side of the axis."""
+    order = np.argsort(radii)
+    r, f = radii[order], values[order]
+    return CubicSpline(np.concatenate([-r[::-1], r]), np.concatenate([f[::-1], f]))
+
 
 MOST_STEPS, NEAR = 20, 1e-9  # relative change of the gaps by one step more
 KEPT = 0.2  # of the step before: one that is shorter may be followed by one along the same tangent
@@ -100,6 +154,23 @@ def _step(contact: Contact, h: Array, approach: float, load: float | None, tange
     return change + d * tangent.gap_rate, d
 
 
+def from_afar(contact: Contact, far: float, approach: float) -> Equilibrium:
+    """Equilibrium at an approach that is reached from undeformed surfaces at one far apart, by steps in approach.
+
+    In each the gaps change by less than a part of them; NotConverged if that leads nowhere, as past a fold.
+    """
+    state = newton(contact, contact.gap(None, far), far)
+    for _ in range(MOST_STEPS):
+        left, rate = approach - state.approach, state.tangent.gap_rate
+        part = OPENING / max(OPENING, float(np.max(np.abs(left * rate) / contact.law.size(state.gap))))
+        if left == 0:
+            return state
+        state = newton(contact, state.gap + part * left * rate, approach if part == 1 else state.approach + part * left)
+    raise NotConverged(f"no way from afar to alpha = {approach:.4g} eps in {MOST_STEPS} steps of the weak form")
+
+
+OPENING = 0.3  # of each gap, what it may change by in a step of approach
+
 # Turning points
 
 
@@ -116,10 +187,8 @@ FOLLOWED = 0.25  # of the grain of a law, what a gap may change by in one, or Ne
 FARTHEST, TRIES = 50.0, 6  # the farthest in such steps, how many are tried
 
 
-def turning_point(
-    contact: Contact, h: Array, approach: float, load: float, *, under_load: bool, finer: float = 1.0
-) -> Turn | None:
-    """Where the equilibria near a state turn, or None where they do not.
+def turning_point(middle: Equilibrium, *, under_load: bool, finer: float = 1.0) -> Turn | None:
+    """Where the equilibria near one turn, or None where they do not.
 
     Under fixed grips, at the fold of a jump, the determinant of the tangent changes its sign; that is passed at given
     loads. Under a dead load, at an extremum of the load, that of the tangent bordered by the load does, det A times
@@ -127,13 +196,13 @@ def turning_point(
     errs by a power of the steps, which may be that much finer.
     """
     # The extremum of the load is flat; along the load an edge moves by a spike's width soon.
+    contact = middle.contact
     step = FLAT * min(1.0, contact.law.grain / LENNARD_JONES.grain) if under_load else NEARBY
-    step *= (1 + abs(approach if under_load else load)) * min(1.0, 9 / contact.sharpness**2) / finer
-    middle = newton(contact, h, approach, load=None if under_load else load)
+    step *= (1 + abs(middle.approach if under_load else middle.load)) * min(1.0, 9 / contact.sharpness**2) / finer
     if under_load:  # past the edge of a contact that turns early gaps open much faster than the rest
         fastest = float(np.max(np.abs(middle.nearby.gap_rate) / contact.law.size(middle.gap)))
         step = min(step, FOLLOWED * contact.law.grain / fastest)
-    a, b = (_past(middle, d, under_load=under_load) for d in (-step, step))
+    a, b = (middle.past(d, under_load=under_load) for d in (-step, step))
     step = 2 * step
     for _ in range(TRIES):
         signs, logs = np.transpose([a.determinant, b.determinant])
@@ -148,15 +217,8 @@ def turning_point(
         if not abs(part) < FARTHEST:
             return None
         step *= 1.3 * part  # past the root
-        b = _past(a, step, under_load=under_load)
+        b = a.past(step, under_load=under_load)
     return None
-
-
-def _past(state: Equilibrium, step: float, *, under_load: bool) -> Equilibrium:
-    """Equilibrium a step in approach or load past a state, from what the tangent near that predicts."""
-    near, load = state.nearby, None if under_load else state.load + step
-    change = step if under_load else step / near.stiffness
-    return newton(state.contact, state.gap + change * near.gap_rate, state.approach + change, load=load, tangent=near)
 
 
 def _extremum(length: float, a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
