@@ -9,7 +9,7 @@ import pytest
 from scenes import hemisphere, pair
 
 from fem_adhesion import HeldSphere, Hemisphere, LinearElastic, Meshed, Scene, cli, discretise, harmonics
-from fem_adhesion.crosscheck import from_scratch
+from fem_adhesion.crosscheck import definitions, from_scratch
 from fem_adhesion.crosscheck import scenes as comparisons
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
@@ -33,8 +33,9 @@ def facing(*counter, **of_body):
 
 @pytest.fixture
 def _without_limits(monkeypatch):
-    """Closed forms are those of the half-space, whatever the body."""
+    """Closed forms are those of the half-space, whatever the body, and definitions have tests of their own."""
     monkeypatch.setattr(from_scratch, "closed_forms", lambda _: [])
+    monkeypatch.setattr(definitions, "rows", lambda _: [])
 
 
 # --- the command ---
@@ -120,7 +121,7 @@ def test_a_bonded_hemisphere_agrees_with_the_weak_form():
     assert case.verdict == "agree"
     assert list(case.solutions) == ["finite elements"]
     assert {row.between for row in case.rows} == {WEAK_FORM}
-    assert len(case.rows) == 13
+    assert len(case.rows) == 22
     for row in case.rows:  # it knows a body with a length better than its budget
         assert row.first.error < row.budget / 5, row.quantity
 

@@ -1,10 +1,12 @@
 """The fourth level: what both solvers share, against closed forms and against a weak form that shares nothing."""
 
+from copy import copy
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scenes import pair
 from scipy import sparse
 
 import fem_adhesion
@@ -17,14 +19,16 @@ from fem_adhesion.crosscheck.weak_bodies import contacts, law_of
 from fem_adhesion.weak_form.body import fine_within, half_space, half_space_mesh
 from fem_adhesion.weak_form.contact import Contact, lennard_jones
 from fem_adhesion.weak_form.newton import _extremum, newton, turning_point
-from halfspace.accuracy import trace
+from halfspace.accuracy import refinement, trace
 from halfspace.equilibrium import conditions, search
 from halfspace.equilibrium.acting import Acting
 from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.contact import LOAD, ContactProblem
+from halfspace.equilibrium.events import EVENTS
 from halfspace.errors import NotConverged
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
-from halfspace.profiles import Hyperboloid, Paraboloid, Sphere
+from halfspace.profiles import Hyperboloid, Paraboloid, Power, RoundedPunch, Sphere
+from halfspace.scales import Scales
 from halfspace.values import Estimate
 
 # --- the weak form ---
@@ -274,7 +278,7 @@ def test_what_changes_from_stage_to_stage_is_no_mistake_of_a_balance():
 
     def verdict(*stages):
         told = SimpleNamespace(events=path.events, stages=[{"zero_load": stage} for stage in stages])
-        balance, _ = from_scratch._of_event("zero_load", scene, told, *contacts(scene)[:2])
+        balance, *_ = from_scratch._of_event("zero_load", scene, told, *contacts(scene)[:2])
         return balance.row(from_scratch.LEAST).verdict
 
     assert verdict(smooth, smooth) == "agree"
@@ -382,8 +386,7 @@ def _jump_off_is_jump_on(monkeypatch):
         events = find(segments)
         return events | {"jump_off": events["jump_on"]} if "jump_on" in events else events
 
-    for module in (search, *FINDERS):
-        monkeypatch.setattr(module, "find_events", found, raising=False)
+    monkeypatch.setattr(refinement, "find_events", found)
 
 
 def _end_state(monkeypatch):
@@ -394,8 +397,7 @@ def _end_state(monkeypatch):
         bracket = search.brackets_of(segments, later)[-1]
         return find(segments) | {"zero_approach": search._state(bracket, later)}
 
-    for module in (search, *FINDERS):
-        monkeypatch.setattr(module, "find_events", found, raising=False)
+    monkeypatch.setattr(refinement, "find_events", found)
 
 
 def _first_state(monkeypatch):
@@ -410,7 +412,8 @@ SHARED = {
     "energy": (_energy, {"apart: energy released"}),
     "elastic term": (_elastic_term, {"equations: residual"}),
     "slope of the load": (_slope_of_the_load, {"equations: load's slope"}),
-    "contact edge": (_scaled(PowerLaw, "edge_gap", 1.02), {"law: edge", "apart: zero_load contact_radius"}),
+    "contact edge": (_scaled(PowerLaw, "edge_gap", 1.02), {"law: edge"}),
+    "contact radius": (_scaled(Acting, "contact_radius", 1.02), {"apart: zero_load contact_radius"}),
     "central gap": (_central_gap, {f"apart: {name} central_gap" for name in EVENTS}),
     "jump_off is jump_on": (_jump_off_is_jump_on, {"apart: jump_off stable side"}),
     "energy's last state": (_end_state, {"apart: energy released"}),
@@ -427,10 +430,83 @@ def test_a_defect_that_both_solvers_share_is_rejected_by_the_row_that_should(def
     assert shown_by <= rejecting
     assert isinstance(case, Failure) or case.verdict == "disagree"
     # Nothing but the fourth level sees it: the two solvers, which share it, agree.
-    assert {name for name in rejecting if name.split(":")[0] not in ("limit", "equations", "apart")} == set()
+    assert {
+        name for name in rejecting if name.split(":")[0] not in ("limit", "equations", "apart", "law", "profile")
+    } == set()
     monkeypatch.setattr(beside, "run", lambda *_, **__: iter([case]))
     assert cli.main(["compare", "--tabor", "1"]) == 1
     out = capsys.readouterr().out
     if isinstance(case, Failure):
         told = " ".join(out.partition("failed: ")[2].split())  # it may be wider than the terminal
         assert all(f"; {name} disagrees" in told for name in shown_by)
+
+
+# --- parameters of laws, profiles and pairs ---
+
+PARAMETERS = [
+    (PowerLaw(), "attraction"),
+    (PowerLaw(), "repulsion"),
+    (Morse(3.0), "k"),
+    (Exponential(3.0), "k"),
+    (Exponential(3.0, 9), "core"),
+    (Dlvo(0.3, 1.0), "charge"),
+    (Dlvo(0.3, 1.0), "screening"),
+    (Dugdale(0.2), "width"),
+    (Power(3.0), "k"),
+    (Hyperboloid(1.0), "b"),
+    (RoundedPunch(0.6), "flat"),
+]
+
+
+@pytest.mark.parametrize(("part", "name"), PARAMETERS, ids=lambda value: str(value))
+def test_a_parameter_that_acts_with_another_value_is_rejected(part, name, monkeypatch):
+    """2 % off, or a whole power more, where the formulas take it, while the part tells the one that was given."""
+    kind, is_law = type(part), hasattr(part, "pressure")
+    for method in ("pressure", "slope", "energy", "edge_gap", "height"):
+        original = kind.__dict__.get(method)
+        if original is None:
+            continue
+        of = original if callable(original) else getattr(original, "func", getattr(original, "fget", None))
+
+        def wrong(self, *args, of=of):
+            other = copy(self)
+            for known in ("_step_at_rest", "amplitude"):
+                vars(other).pop(known, None)
+            value = getattr(self, name)
+            object.__setattr__(other, name, value + 1 if name == "core" else 1.02 * value)
+            return of(other, *args)
+
+        monkeypatch.setattr(kind, method, wrong if callable(original) else property(wrong))
+    monkeypatch.setattr(scene, "require_law", lambda law: law)
+    monkeypatch.setattr(scene, "require_profile", lambda profile: profile)
+    rows = definitions.rows(Scene(1.0, law=part) if is_law else Scene(1.0, profile=part))
+    rejecting = {row.quantity for row in rows if row.verdict == "disagree"}
+    assert rejecting >= ({"law: stiffness", "law: range"} if is_law else {"profile: height"}) - (
+        {"law: stiffness"} if name == "core" else set()
+    )
+
+
+def test_lengths_of_a_pair_are_its_own(monkeypatch):
+    one = pair(1.0, 30.0, 0.3, 0.45, 2.0)
+    assert {row.verdict for row in definitions.rows(one)} == {"agree"}
+    radius, shares = Scene.sphere_radius.fget, Scene.shares.fget
+    monkeypatch.setattr(Scene, "sphere_radius", property(lambda self: 1.01 * radius(self)))
+    monkeypatch.setattr(Scene, "shares", property(lambda self: shares(self)[::-1]))
+    rejecting = {row.quantity for row in definitions.rows(one) if row.verdict == "disagree"}
+    assert rejecting == {"length: R", "length: R1", "length: R2", "length: share of the second body"}
+
+
+DEFECTS_OF_LENGTHS = {
+    "R/beta": ("sphere_radius", lambda R: 1.01 * R),
+    "shares": ("shares", lambda both: both[::-1]),
+}
+
+
+@pytest.mark.parametrize("defect", DEFECTS_OF_LENGTHS)
+def test_the_weak_form_has_lengths_of_its_own(defect, monkeypatch):
+    name, wrong = DEFECTS_OF_LENGTHS[defect]
+    of = getattr(Scene, name).fget
+    monkeypatch.setattr(Scene, name, property(lambda self: wrong(of(self))))
+    one = pair(1.0, 30.0, 0.3, 0.45, 2.0)
+    rows = from_scratch.equations(one, elements_of(one, 1e-4), radius_of(one))
+    assert "equations: residual" in {row.quantity for row in rows if row.verdict == "disagree"}

@@ -161,7 +161,7 @@ def rows(scene: Scene) -> list[Row]:
 Pairs = Iterator[tuple[str, str, float, float]]
 
 
-def _of_law(law: Law) -> Pairs:
+def _of_law(law: Any) -> Pairs:
     known, made = numbers_of(law), replace(law) if type(law) in TENSIONS else law
     yield "law: depth", "dgamma", 1.0, -float(made.energy(np.array(0.0), 1.0))
     yield "law: stiffness", "dgamma/eps^2", known.stiffness, made.stiffness

@@ -15,7 +15,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from operator import attrgetter
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -35,7 +35,6 @@ from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Estimate, Valued
 
-T = TypeVar("T")
 BUDGET = 1e-3  # of each quantity
 ROUND_OFF = 1e-10
 LEAST = BUDGET / 20  # of each number that the weak form knows none better than: both its bodies may err alike
@@ -217,9 +216,9 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
     first = _turn(name, a) if smooth else a
     second = _turn(name, b) if smooth or (name != "zero_load" and not sharp) else b
     if name != "pull_off":
-        yield Compared(f"{name} approach", "eps", _numbers(first, second, lambda turn: turn.approach), approach, width)
+        yield Compared(f"{name} approach", "eps", _numbers(first, second, attrgetter("approach")), approach, width)
     if name in ("pull_off", "jump_on"):
-        yield Compared(f"{name} load", "R dgamma", _numbers(first, second, lambda turn: turn.load), load, force)
+        yield Compared(f"{name} load", "R dgamma", _numbers(first, second, attrgetter("load")), load, force)
 
 
 POINTWISE = 10  # as of level 3, of numbers at a point
@@ -249,7 +248,7 @@ ASIDE = (
 
 
 def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
-    """Equilibrium at the load of a fold on the way from undeformed surfaces; None if the way leads past no fold there."""
+    """Equilibrium at the load of a fold that is reached from undeformed surfaces; None if no fold is there."""
     near = state.approach - NEAR * (1 + abs(state.approach))
     with suppress(NotConverged):
         found = from_afar(state.contact, apart(scene), near)
@@ -261,7 +260,7 @@ def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
 NEAR, AWAY = 3e-3, 0.2  # of 1 + the approach, where that way ends before a fold; of 1 + the load, how far off that is
 
 
-def _numbers(a: T | None, b: T | None, of: Callable[[T], float]) -> tuple[float | None, float | None]:
+def _numbers(a: object, b: object, of: Callable[[Any], float]) -> tuple[float | None, float | None]:
     """Numbers of two states, None where there is none or it has none."""
     found: list[float | None] = [None, None]
     for n, state in enumerate((a, b)):
