@@ -2,7 +2,8 @@
 
 In the order of reading: `comparison` (two numbers with errors, a budget, a verdict; what is told of them), `study`
 (operators, residuals, events; of spheres, `references`), `from_scratch` (what both share, against
-`fem_adhesion.weak_form`), `definitions` (what law, profile and lengths must be), `scenes` (many of them beside each other), `command`.
+`fem_adhesion.weak_form`), `definitions` (what law, profile and lengths must be), `scenes` (many of them beside each
+other), `command`.
 
 How independent the two solvers are:
 
@@ -42,6 +43,6 @@ Seven defects of one side - no hoop strain, E for E*, 2 pi r forgotten, half the
 wrong exponents, a clamped block of ten beta -, four of the triangles - one half alone, no far side of the ring, the
 modulus for the parameter of K, uniform for linear - and those that both sides share - 1 % on the law, the profile, the
 load, its slope or the elastic term, jumps taken on a spring, jump_on in the place of jump_off, the energy without its
-half or to another state, contact edge, radius or central gap off, each parameter of each law and profile 2 % off, R/beta
-1 % off, the shares of a pair exchanged - are injected in the tests, and each is rejected.
+half or to another state, contact edge, radius or central gap off, each parameter of each law and profile 2 % off,
+R/beta 1 % off, the shares of a pair exchanged - are injected in the tests, and each is rejected.
 """

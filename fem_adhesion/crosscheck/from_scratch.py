@@ -174,7 +174,7 @@ def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
         found = list(_on_both(scene, path, *both))
         doubt = max(LEAST, *(compared.change for compared in found))
         rows = [compared.row(doubt) for compared in found]
-        if doubt <= BUDGET and not any(None in compared.both for compared in found):
+        if all(row.first and row.first.error <= row.budget for row in rows):
             break
     return rows
 

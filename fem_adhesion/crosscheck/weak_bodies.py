@@ -150,7 +150,7 @@ def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) 
     outer, coordinate = scene.body.layout(R, replace(how, rings=0) if scene.counter else how)
     length = finest_length(scene, how)
     lines = grid.graded(coordinate.of(radius), length, float(outer[0]), growth=GROWTH)
-    core = fine_within(coordinate.of(reach), lines)
+    core = fine_within(coordinate.of(reach), grid.towards_axis(lines, scene.surface.first_cell(TIP), GROWTH))
     mesh = scene.body.mesh(R, core, length, how)
     if scene.counter is None:
         body = _standing(scene.body, mesh, degree)

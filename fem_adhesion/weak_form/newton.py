@@ -79,10 +79,15 @@ class Equilibrium(Valued):
 
     @property
     def ripple(self) -> float:
-        """What the displacement next to the axis has in eps that a polynomial of the radius squared has not."""
+        """What gaps next to the axis have in eps that a polynomial of the radius squared has not.
+
+        Or displacements, whichever have less: the gaps are smooth in contact, the displacements apart, where a profile
+        need not be.
+        """
         first = np.argsort(self.contact.body.radii)[:INNERMOST]
-        x, u = self.contact.body.radii[first] ** 2, self._displaced[first]
-        return float(np.max(np.abs(u - np.polynomial.Polynomial.fit(x, u, 2)(x))))
+        x = self.contact.body.radii[first] ** 2
+        fields = self.gap[first], self._displaced[first]
+        return min(float(np.max(np.abs(f - np.polynomial.Polynomial.fit(x, f, 2)(x)))) for f in fields)
 
     @property
     def _displaced(self) -> Array:
