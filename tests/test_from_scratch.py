@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from combinations import SCENES
 from scenes import pair
 from scipy import sparse
 
@@ -442,6 +443,22 @@ def test_a_defect_that_both_solvers_share_is_rejected_by_the_row_that_should(def
 
 
 # --- parameters of laws, profiles and pairs ---
+
+
+def test_sound_scenes_have_the_numbers_of_their_definitions():
+    """Of those that ``tests/honesty.py`` compares on all levels."""
+    found = {each: [row.quantity for row in definitions.rows(each) if row.verdict != "agree"] for each in SCENES}
+    assert {each: names for each, names in found.items() if names} == {}
+    for each in SCENES:
+        assert definitions.apart(each) == pytest.approx(each.scales.separated_approach, rel=1e-5)
+
+
+@pytest.mark.parametrize("place", [1, 3, 5, 10, 28, 40, 42], ids=lambda place: str(SCENES[place].law))
+def test_a_sound_scene_of_any_law_profile_and_body_agrees(place):
+    """Cores, long ranges, tips, layers."""
+    rows = from_scratch.events(SCENES[place], fem_adhesion.trace(SCENES[place], rtol=1e-4))
+    assert {row.quantity: row.verdict for row in rows if row.verdict != "agree"} == {}
+
 
 PARAMETERS = [
     (PowerLaw(), "attraction"),
