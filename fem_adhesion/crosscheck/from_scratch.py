@@ -232,19 +232,15 @@ def _stable_side(state: Equilibrium) -> float:
     So the approach has a maximum there that is reached from stable states, or a minimum that is left to them; anything
     else is no jump.
     """
-    step = (1 + abs(state.load)) * min(1.0, 9 / state.contact.sharpness**2)
-    for aside in ASIDE:
+    for step in ASIDE * (1 + abs(state.load)):
         with suppress(NotConverged):
-            below, above = (state.past(d, under_load=False).unstable for d in (-aside * step, aside * step))
+            below, above = (state.past(d, under_load=False).unstable for d in (-step, step))
             return float(below - above) if min(below, above) == 0 else math.nan
     return math.nan
 
 
-ASIDE = (
-    1e-2,
-    1e-3,
-    1e-4,
-)  # of 1 + the load: more than both sources differ by in that of a fold, or as far as states are found
+# Of 1 + the load: more than both sources differ by in that of a fold, or as far as states are found.
+ASIDE = 1e-2 / 2.0 ** np.arange(8)
 
 
 def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
