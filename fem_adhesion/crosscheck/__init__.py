@@ -29,7 +29,8 @@ How independent the two solvers are:
   tangent are compared at a state made up as well, so that a solver which does not converge is told what is wrong with
   it. It looks for mistakes, not digits: its budget is a part in a thousand, ten of gaps and radii. Beyond a Tabor
   parameter of 6, or at an edge as sharp, it only checks that pull-off and jump-off are equilibria, not that they turn
-  there, nor which jump a fold is. A contact edge that is defined 2 % off moves the radius by less than that budget: the law's numbers show it.
+  there, nor which jump a fold is. A contact edge that is defined 2 % off moves the radius by less than that budget: the
+  law's numbers show it.
 * Parameters of laws and profiles, radii and shares of pairs: closed numbers that each must make (depth, stiffness,
   strength, edge and range of a law; height, slope and curvature of a profile), by the formula that it is named after.
   Laws and profiles from tables or of the user's have no second formula: their numbers are those of what they tell.
