@@ -1,29 +1,90 @@
-"""Contacts on layers, drawn at random: any law and profile on a layer, a coating or strata."""
+"""Contacts drawn at random: any law and profile on layers, and on any body of finite elements."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
+from scenes import pair
 
-from fem_adhesion import Coated, Layer, Layers, Scene
+from fem_adhesion import Block, Coated, HalfSpace, HeldSphere, Hemisphere, Layer, Layers, NeoHookean, Scene
+from fem_adhesion.finite_strain.scene import WIDEST_TABOR
 from halfspace import Stratum, Substrate
 from halfspace.errors import InputError
-from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
+from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Paraboloid, Power, RoundedPunch, Sphere
 
-TABORS, THICKNESSES, MODULI = (0.3, 10.0), (0.05, 100.0), (0.01, 100.0)
+TABORS, WIDE, THICKNESSES, MODULI = (0.3, 10.0), (0.01, 20.0), (0.05, 100.0), (0.01, 100.0)
 
 
 def drawn(seed, count):
-    """Scenes of a seed; what is refused when it is made, as a law that repels on the whole, does not count."""
+    """Scenes on layers of a seed."""
+    return _drawn(seed, count, _on_layers)
+
+
+def elements(seed, count):
+    """Scenes of a seed for the finite elements, with any body."""
+    return _drawn(seed, count, _of_elements)
+
+
+def _drawn(seed, count, make):
+    """Scenes; what is refused when it is made, as a law that repels on the whole, does not count."""
     random = np.random.default_rng(seed)
     scenes = []
     while len(scenes) < count:
         try:
-            tabor, body, profile = _between(random, *TABORS), _body(random), _profile(random)
-            scenes.append(Scene(tabor, body, profile, law=_law(random)))
+            scenes.append(make(random))
         except InputError:
             continue
     return scenes
+
+
+def _on_layers(random):
+    tabor, body, profile = _between(random, *TABORS), _layers(random), _profile(random)
+    return Scene(tabor, body, profile, law=_law(random))
+
+
+def _of_elements(random):
+    """Half with the usual law, and half of the bodies without a surface of their own under a paraboloid."""
+    tabor, body = _between(random, *WIDE), _body(random)
+    law = _one_of(random, lambda: LENNARD_JONES, lambda: _law(random))
+    if isinstance(body, Scene):
+        return replace(body, tabor=tabor, law=law)
+    if body.material.finite:
+        return Scene(min(tabor, WIDEST_TABOR), body, law=law)
+    own = math.isfinite(body.size) or isinstance(body, Block)
+    profile = None if own else _one_of(random, lambda: None, lambda: _profile(random))
+    return Scene(tabor, body, profile, law=law)
+
+
+def _body(random):
+    """A body, or a pair as a scene of its own."""
+    poisson, size = _poisson(random), _between(random, 2, 1e4)
+    grip = _one_of(random, lambda: "sliding", lambda: "bonded")
+    return _one_of(
+        random,
+        lambda: HalfSpace(poisson=poisson),
+        lambda: Hemisphere(radius_ratio=size, grip=grip, poisson=poisson),
+        lambda: HeldSphere(radius_ratio=size, grip=grip, cap_angle=round(random.uniform(5, 90)), poisson=poisson),
+        lambda: Hemisphere(radius_ratio=size, grip=grip, material=NeoHookean(poisson, _traction(random))),
+        lambda: Block(radius=_between(random, 10, 1000), far_field=_far_field(random), poisson=poisson),
+        lambda: pair(
+            1.0, size, round(random.uniform(0, 1), 2), _poisson(random), _larger(random), poisson=poisson, grip=grip
+        ),
+        lambda: _layers(random),
+        lambda: _layers(random),
+    )
+
+
+def _traction(random):
+    return _one_of(random, lambda: "projected", lambda: "vertical", lambda: "reference", lambda: "normal")
+
+
+def _far_field(random):
+    return _one_of(random, lambda: "point_load", lambda: "clamped", lambda: "free")
+
+
+def _larger(random):
+    return _one_of(random, lambda: 1.0, lambda: _between(random, 1, 100), lambda: math.inf)
 
 
 def _between(random, least, most):
@@ -58,7 +119,7 @@ def _profile(random):
     )
 
 
-def _body(random):
+def _layers(random):
     return _one_of(
         random,
         lambda: Layer(_between(random, *THICKNESSES), _foundation(random), poisson=_poisson(random)),

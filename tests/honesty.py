@@ -39,7 +39,7 @@ from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import is_event
 from halfspace.equilibrium.search import energy_released
 from halfspace.equilibrium.states import COORDINATES
-from halfspace.errors import NotConverged
+from halfspace.errors import InputError, NotConverged
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Power
 from halfspace.values import Estimate
@@ -532,6 +532,13 @@ FAMILIES = {
         of_path,
         partial(relocated, truths.layered),
     ),
+    "elements, drawn": Family(
+        Net(partial(drawn_layers.elements, count=12), _decades(2, 4, 6)),
+        Net(partial(drawn_layers.elements, count=1), _decades(3)),
+        _by(fem_adhesion.trace),
+        of_path,
+        partial(relocated, truths.of),
+    ),
     "hemisphere, sliding": _sized(
         (0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (2, 30), truth=truths.harmonics, few=3
     ),
@@ -650,7 +657,7 @@ def judged(item):
     for rtol in rtols:
         try:
             answers[rtol] = family.solve(scene, rtol)
-        except NotConverged as why:
+        except (InputError, NotConverged) as why:
             if not callable(family.full.scenes):
                 raise
             refused.append(f"{_briefly(scene)} at rtol {rtol:g}: {why}")

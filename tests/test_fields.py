@@ -1,5 +1,7 @@
 """Fields inside the body: stress recovery against closed forms, and states solved for again against their curve."""
 
+import math
+
 import numpy as np
 import pytest
 from scenes import hemisphere, pair
@@ -155,13 +157,13 @@ def test_traction_of_the_stress_is_the_laws_pressure_the_spike_included(states):
     ("radius_ratio", "poisson", "grip"), [(40.0, 0.3, "bonded"), (10.0, 0.45, "bonded"), (40.0, 0.3, "sliding")]
 )
 def test_traction_of_the_stress_is_the_laws_up_to_the_equator(radius_ratio, poisson, grip):
-    """Where the surface is upright and what is on its projected area is nothing; not in a singular corner."""
+    """Where the surface is upright and what is on its projected area is nothing; in a singular corner it is none."""
     scene = hemisphere(1.0, radius_ratio, poisson=poisson, grip=grip)
     for state in fields.states_along(scene, fem_adhesion.trace(scene, rtol=1e-3), points=0):
         r, largest = state.surface.radii / scene.sphere_radius, np.max(np.abs(state.pressure))
         error = np.abs(state.recovered_traction() - state.traction) / largest
-        assert error[r < 1 - 2e-5].max() < 5e-4
-        assert error.max() < (5e-4 if grip == "sliding" else 10)
+        assert np.nanmax(error) < 5e-4
+        np.testing.assert_array_equal(np.isnan(error), (r > math.cos(0.0779)) if grip == "bonded" else False)
         np.testing.assert_allclose(state.traction, state.pressure * np.sqrt(1 - r**2), atol=1e-6 * largest)
 
 

@@ -23,6 +23,7 @@ from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.events import numbered
 from halfspace.equilibrium.search import between_jumps, find_events, with_care
+from halfspace.laws import LENNARD_JONES
 from halfspace.profiles.formulas import between_spheres
 from halfspace.scales import Scales
 
@@ -69,9 +70,9 @@ def under_sphere(tabor, radius_ratio, counter_radius=np.inf):
     return under_surface(tabor, between_spheres(float(np.sqrt(radius_ratio / tabor)), counter_radius))
 
 
-def under_surface(tabor, surface):
+def under_surface(tabor, surface, law=LENNARD_JONES):
     """The half-space under a surface that ends."""
-    scales, outer = Scales(tabor, profile=surface), np.array([surface.end])
+    scales, outer = Scales(tabor, law, surface), np.array([surface.end])
     return [
         standing(SizedBody(scales, partial(_panels, nodes), *how, outer, FLAT, last * surface.end))
         for nodes, *how, last in ((14, 0.45, 2.5, 1e-7), (16, 0.35, 2.2, 1e-8))
@@ -113,6 +114,19 @@ def _panels(nodes, lines):
 def elements(scene):
     """The body of a scene by finite elements of high degree."""
     return [standing(discretise.sized_body(scene, Discretisation(*how))) for how in ((8, 0.55, 2.0), (9, 0.5, 2.2))]
+
+
+def of(scene):
+    """Two stages for any scene, by another solver where one knows the body."""
+    if scene.material.finite:
+        return finite_strain(scene)
+    if scene.body.layered:
+        return layered(scene)
+    if scene.checked_by == "harmonics":
+        return harmonics(scene)
+    if scene.checked_by is None:
+        return elements(scene)
+    return under_surface(scene.tabor, scene.surface, scene.law) if scene.sized else half_space_of(scene)
 
 
 def finite_strain(scene):

@@ -101,6 +101,7 @@ class Stages(Valued):
         """Rung of a level: events on meshes of their own, by the degree below on other cells, then by one more.
 
         Where the tension ends by a step, in whichever cell that is, a degree more may gain no more than a factor of 2.
+        One chain has no twin beside it: the shift of an event along the path counts, see `ErrorRule.along`.
         """
         degree = lowest + level
         windows = self.windows(degree)
@@ -110,7 +111,7 @@ class Stages(Valued):
         bodies = self.body(degree - 1, *TWIN[:2]), self.body(degree)
         stages = tuple(Standing(body, self.windows(body.how.degree)) for body in bodies)
         left = REMAINING / self.scene.scales.gradual
-        return Rung(curve, stages, asdict(bodies[1].how), rule=ErrorRule(left, last=OTHER_CELLS))
+        return Rung(curve, stages, asdict(bodies[1].how), rule=ErrorRule(left, along=True, last=OTHER_CELLS))
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""
