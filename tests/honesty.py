@@ -254,6 +254,12 @@ def sprung(stages, scene, path):
     return [{what: n.value for what, n in of_springs(one).items()} for one in on]
 
 
+def _of_any_scene(scene, path):
+    """Of a half-space and what stands for one, as a block, the curve is traced anew; others' events are found again."""
+    endless = scene.checked_by == "half-space" and not (scene.body.layered or scene.surface.end < math.inf)
+    return traced(truths.half_space_of, _itself, scene, path) if endless else relocated(truths.of, scene, path)
+
+
 def assessed(contact, assessment):
     """Events and jumps of each model's scene on the stages of that scene, in SI by formulas of our own."""
     answers = ({}, {})
@@ -537,7 +543,7 @@ FAMILIES = {
         Net(partial(drawn_layers.elements, count=1), _decades(3)),
         _by(fem_adhesion.trace),
         of_path,
-        partial(relocated, truths.of),
+        _of_any_scene,
     ),
     "hemisphere, sliding": _sized(
         (0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (2, 30), truth=truths.harmonics, few=3

@@ -91,8 +91,8 @@ MEANINGS: Mapping[str, str] = {
     "principal_stresses": "descending",
     "region": "of its own material, 0 on top",
     "pressure": "that of the surface law",
-    "traction": "that of the law per area of the surface; traction_from_stress what the stress inside exerts, nan where "
-    "that is singular, at a bonded equator",
+    "traction": "that of the law per area of the surface; traction_from_stress what the stress inside exerts, nan "
+    "where that is singular, at a bonded equator",
     "gap": "h, from surface to surface",
     "H": "h/eps - 1",
     "deflection": "-u_z",
