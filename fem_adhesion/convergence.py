@@ -161,7 +161,8 @@ def _to_infinity(scene: Scene, lines: Array, how: Discretisation) -> Discretised
 def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     """Rung of a level: the events on elements of a degree that suits the tolerance, one more on each level.
 
-    What a degree more does not tell other cells do, a twin; see `fem_adhesion.bodies.body.Doubt`.
+    What a degree more does not tell other cells do, a twin; see `fem_adhesion.bodies.body.Doubt`. A tension that ends
+    by a step does so at one place of a cell, for both degrees: numbers erred by up to fifty times their estimate.
     """
     degree = degree_for(rtol) + level
     how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
@@ -172,7 +173,7 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
         sized_body(scene, curve, to_load).curve,
         (_around_events(scene, how, rtol, level, to_load),),
         asdict(how) | {"curve_degree": curve.degree},
-        other if level and doubt.other_cells else None,
+        other if level and (doubt.other_cells or scene.scales.step_gap) else None,
         ErrorRule(doubt.times * step * REMAINING, along=True, steps=scene.scales.steps),
     )
 
