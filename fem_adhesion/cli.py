@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Sequence
 
@@ -33,7 +34,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 if all is well, 1 if solvers disagree or fail or the disk is full, 2 for bad input or a missing library, 130
         if interrupted by Ctrl-C, 143 if terminated by SIGTERM.
     """
+    arguments = sys.argv[1:] if arguments is None else arguments
     options = make_parser().parse_args(arguments)
+    options.asked = shlex.join(["fem-adhesion", *arguments])
     keep_to_one_thread()
     try:
         with ended_by_signal():

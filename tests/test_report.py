@@ -200,6 +200,8 @@ def test_the_command_writes_the_page_with_what_other_commands_left(contents, tmp
     assert "<td>tabor &lt;50&gt;</td>" in html
     assert "Of 1 cases: 1 converged." in html
     assert "make hard" not in html
+    line = f"fem-adhesion report --out {file} {' '.join(options)}"
+    assert f"<p>To repeat: <code>{line}</code></p>" in html
 
 
 def solved_before(monkeypatch, contents, cases):

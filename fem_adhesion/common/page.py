@@ -103,10 +103,15 @@ class Section:
     tables: Sequence[Table] = ()
 
 
-def write_page(directory: Path, title: str, lead: Sequence[str], sections: Sequence[Section], spent: str) -> None:
-    """Write ``index.html``: title, paragraphs, links to sections, these, and at its foot machine, versions and cost."""
+def write_page(
+    directory: Path, title: str, lead: Sequence[str], sections: Sequence[Section], spent: str, asked: str
+) -> None:
+    """Write ``index.html``: title, paragraphs, links to sections, and these.
+
+    At its foot stand the command line that was `asked`, if any, machine, versions and cost.
+    """
     facts = {**machine(), **versions(), "computed in": spent}
-    text = render("common/page.html.j2", title=title, lead=lead, sections=sections, facts=facts)
+    text = render("common/page.html.j2", title=title, lead=lead, sections=sections, facts=facts, asked=asked)
     (directory / "index.html").write_text(text, encoding="utf-8")
 
 

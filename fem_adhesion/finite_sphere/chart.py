@@ -28,13 +28,11 @@ from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.common.page import data_rows
 from fem_adhesion.common.style import Picture
 from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results, reference_poisson, samples
-from halfspace.errors import InputError
 from halfspace.limits import SMALLEST_SPHERE
 from halfspace.scaling import Units, contact_modulus, spacing_of
 from halfspace.values import Array, Valued
 
 LEVELS = (0.1, 0.01, 0.001)  # relative deviations of the contours
-MISFIT = 0.25  # largest relative difference of a rule from its contour
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -57,20 +55,10 @@ class Field(Valued):
         """Largest size, (m, n), that the deviation can have; nan where there is none."""
         return np.asarray(np.abs(self.deviation) + self.error)
 
-
-@dataclass(frozen=True)
-class Rule:
-    """The half-space errs by less than a level if R/eps > constant + slope mu.
-
-    Constant and slope are fitted to the contour, to two digits; `misfit` is the largest relative difference between
-    contour and rule, `tabor` the least and largest Tabor parameter of the contour.
-    """
-
-    level: float
-    constant: float
-    slope: float
-    misfit: float
-    tabor: tuple[float, float]
+    def at(self, tabor: float) -> Field:
+        """The part at one Tabor parameter."""
+        one = self.tabor == tabor
+        return Field(self.tabor[one], self.radius_ratio, self.deviation[one], self.error[one], self.ending[one])
 
 
 def field_of(rows: Sequence[DeviationRow], quantity: str, poisson: float | None) -> Field:
@@ -115,48 +103,6 @@ def safe_from(field: Field, level: float) -> float:
     above = np.flatnonzero(size >= level)
     first = above[-1] + 1 if above.size else 0
     return float(field.radius_ratio[first]) if known.any() and first < field.radius_ratio.size else np.nan
-
-
-def rule(field: Field, level: float) -> Rule:
-    """Rule in words for a contour, R/eps = a + b mu, by least squares of its relative differences from the contour.
-
-    InputError if the contour passes fewer than three Tabor parameters, or is no line.
-    """
-    ratio = contour(field, level)
-    known = np.isfinite(ratio)
-    if known.sum() < 3:
-        raise InputError(
-            f"the contour of {level:g} passes {known.sum()} Tabor parameters, limit 3; "
-            "take more of tabor or radius_ratio"
-        )
-    mu, ratio = field.tabor[known], ratio[known]
-    fitted = np.linalg.lstsq(np.column_stack([1 / ratio, mu / ratio]), np.ones_like(mu), rcond=None)[0]
-    a, b = (float(f"{value:.2g}") for value in fitted)
-    misfit = float(np.abs((a + b * mu) / ratio - 1).max())
-    if misfit > MISFIT:
-        raise InputError(
-            f"the contour of {level:g} is {100 * misfit:.0f} % off a line, limit {100 * MISFIT:.0f} %; read the chart"
-        )
-    found = Rule(level, a, b, misfit, (float(mu[0]), float(mu[-1])))
-    _require_true(field, found)
-    return found
-
-
-def _require_true(field: Field, found: Rule) -> None:
-    """Refuse a rule that a point of its range contradicts: above the line, and the deviation is not below the level."""
-    rho, mu = field.radius_ratio, field.tabor[:, None]
-    line = found.constant + found.slope * mu
-    within = (mu >= found.tabor[0]) & (mu <= found.tabor[1])
-    above = rho > line * (1 + found.misfit)
-    known = np.isfinite(field.deviation)
-    last = known & (known[:, ::-1].cumsum(axis=1)[:, ::-1] == 1)  # beyond which nothing is known
-    wrong = within & (above | last) & (field.largest >= found.level)
-    if wrong.any():
-        i, j = np.argwhere(wrong)[0]
-        raise InputError(
-            f"the deviation at tabor {field.tabor[i]:g}, R/eps {rho[j]:g} is {field.deviation[i, j]:.2g}, "
-            f"limit {found.level:g} for a rule; read the chart"
-        )
 
 
 @dataclass(frozen=True)

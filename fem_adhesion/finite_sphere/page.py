@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,7 @@ from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.finite_sphere.cases import CAUSES, Record
-from fem_adhesion.finite_sphere.chart import CHART, LEVELS, Field, Rule, field_of, rule, safe_from
+from fem_adhesion.finite_sphere.chart import CHART, LEVELS, Field, field_of, safe_from
 from fem_adhesion.finite_sphere.figures import FIGURES
 from fem_adhesion.finite_sphere.fit import (
     DEVIATIONS,
@@ -48,7 +47,7 @@ def all_tables(results: Results) -> list[Table]:
     rows, records = results.rows, results.study.records
     found = findings(rows, reference_poisson(rows) or 0.0)
     return [
-        _rules(rows),
+        _safe(rows),
         _borders(results.borders),
         _fits(found),
         _theories(rows),
@@ -57,29 +56,27 @@ def all_tables(results: Results) -> list[Table]:
     ]
 
 
-def _rules(rows: Sequence[DeviationRow]) -> Table:
-    poisson = reference_poisson(rows)
-    lines = (_rule(rows, quantity, level, poisson) for quantity in SHOWN for level in LEVELS)
-    columns = ("quantity", "half-space errs less than", "if R/eps >", "rule fits contour within", "mu", "why no rule")
+def _safe(rows: Sequence[DeviationRow]) -> Table:
+    """Least R/eps of the points solved from which on a deviation is below a level, at each Tabor parameter."""
+    fields = {name: field_of(rows, name, reference_poisson(rows)) for name in SHOWN}
+    tabors = sorted({tabor for field in fields.values() for tabor in field.tabor})
+    lines = [
+        (SHOWN[name], f"{100 * level:g} %", *(_safe_at(field, tabor, level) for tabor in tabors))
+        for name, field in fields.items()
+        for level in LEVELS
+    ]
     see = (
-        "Lines a + b mu through the contours of the chart, refused where a point contradicts them: within the range of "
-        "mu, the deviation is below its bound at all points solved that lie above the line by more than its misfit."
+        "Least R/eps of the points solved from which on the deviation, with its error, is below the level at all "
+        "larger ones; 'none' where it is not so at the largest one solved, empty where nothing is known."
     )
-    return Table("rules", "Rules of thumb", see, columns, tuple(lines))
+    columns = ("quantity", "half-space errs less than", *(f"R/eps at mu = {tabor:g}" for tabor in tabors))
+    return Table("safe", "From which R/eps on the half-space will do", see, columns, lines)
 
 
-def line(found: Rule) -> str:
-    """Right-hand side of a rule."""
-    return f"{found.constant:g} {'-' if found.slope < 0 else '+'} {abs(found.slope):g} mu"
-
-
-def _rule(rows: Sequence[DeviationRow], quantity: str, level: float, poisson: float | None) -> tuple[str, ...]:
-    head = (SHOWN[quantity], f"{100 * level:g} %")
-    try:
-        found = rule(field_of(rows, quantity, poisson), level)
-    except InputError as error:
-        return (*head, "", "", "", str(error))
-    return (*head, line(found), f"{100 * found.misfit:.2g} %", f"{found.tabor[0]:g} to {found.tabor[1]:g}", "")
+def _safe_at(field: Field, tabor: float, level: float) -> str:
+    one = field.at(tabor)
+    least = safe_from(one, level)
+    return f"{least:g}" if np.isfinite(least) else "none" if np.isfinite(one.deviation).any() else ""
 
 
 def _fits(found: Sequence[Finding]) -> Table:
@@ -174,11 +171,12 @@ PARTS = ("table", *(f"figure {picture.stem}" for picture in PICTURES), "page")
 """What `write` tells that it begins, in this order."""
 
 
-def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _: None) -> str:
+def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _: None, asked: str = "") -> str:
     """Write the table, every figure as SVG and PNG, the findings as CSV, and ``index.html``, into a directory.
 
     Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none. `begin`
-    is told each of `PARTS` in turn. Returns how to get the Parquet file if there is none, else nothing.
+    is told each of `PARTS` in turn, `asked` is the command line that was run. Returns how to get the Parquet file if
+    there is none, else nothing.
     """
     begin("table")
     found = results(study, bulk_compliance)
@@ -187,7 +185,7 @@ def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _
     begin("page")
     tables = all_tables(found)
     write_csv([*tables, captions(PICTURES, found)], directory)
-    _write_page(found, tables, directory)
+    _write_page(found, tables, directory, asked)
     return note
 
 
@@ -198,17 +196,17 @@ def remove_outdated(directory: Path, written: Path) -> None:
             (directory / name).unlink(missing_ok=True)
 
 
-def _write_page(found: Results, tables: Sequence[Table], directory: Path) -> None:
+def _write_page(found: Results, tables: Sequence[Table], directory: Path, asked: str) -> None:
     records = found.study.records
-    rules, *others = tables
-    chart = _section("where", CHART.title, (CHART,), found, directory, tables=[rules])
+    safe, *others = tables
+    chart = _section("where", CHART.title, (CHART,), found, directory, tables=[safe])
     switched = [Markup("<strong>{}</strong>: {};").format(name, cause.meaning) for name, cause in CAUSES.items()]
     assumptions = Markup("Between the two lie several assumptions, switched one at a time:") + bullets(switched)
     causes = _section("why", "Causes", PICTURES[1:], found, directory, [assumptions])
     lead = [Markup("<strong>{}.</strong>").format(found.study.headline), *_answer(found.rows)]
     sections = [chart, causes, Section("tables", "Tables", tables=others), _settings(records)]
     spent = f"{sum(r.seconds for r in records):.0f} s of work on {len(records)} cases"
-    write_page(directory, "Is the half-space good enough for my sphere?", lead, sections, spent)
+    write_page(directory, "Is the half-space good enough for my sphere?", lead, sections, spent, asked)
 
 
 def _section(
@@ -227,7 +225,7 @@ def _section(
 
 
 def _answer(table: Sequence[DeviationRow]) -> Iterator[str]:
-    """The rules in words."""
+    """From which R/eps on the half-space is good enough, in words."""
     poisson = reference_poisson(table)
     if poisson is None:
         yield "No elastic sphere was solved."
@@ -235,9 +233,7 @@ def _answer(table: Sequence[DeviationRow]) -> Iterator[str]:
     fields = {name: field_of(table, quantity, poisson) for quantity, name in SHOWN.items()}
     yield Markup("By the points solved at Poisson's ratio {:g} it errs by less than {:g} % in").format(
         poisson, 100 * LEVEL
-    ) + bullets(
-        [Markup("the <strong>{}</strong> {};").format(name, _condition(field)) for name, field in fields.items()]
-    )
+    ) + bullets([Markup("the <strong>{}</strong> {};").format(name, _from(field)) for name, field in fields.items()])
     yield (
         "Here mu is the Tabor parameter, mu^3 = R dgamma^2/(E*^2 eps^3), R the radius of the sphere, eps the spacing "
         "of the surface law; the half-space's profile is a paraboloid. The sphere is elastic, its mid-plane slides in "
@@ -245,18 +241,8 @@ def _answer(table: Sequence[DeviationRow]) -> Iterator[str]:
     )
 
 
-def _condition(field: Field) -> str:
-    """Condition under which a deviation is below the level."""
-    try:
-        found = rule(field, LEVEL)
-    except InputError:
-        return _from(field)
-    least, most = found.tabor
-    return f"if R/eps > {line(found)} (right within {ceil(100 * found.misfit)} %, mu from {least:g} to {most:g})"
-
-
 def _from(field: Field) -> str:
-    """Condition where the contour is too short for a line."""
+    """R/eps from which on a deviation is below the level at all points solved."""
     known = field.tabor[np.isfinite(field.deviation).any(axis=1)]
     if not known.size:
         return "nowhere that is known: the study has no point of it"
@@ -272,8 +258,7 @@ def _settings(records: Sequence[Record]) -> Section:
     inputs = {name: sorted({v for r in records if (v := getattr(r.case, name)) is not None}) for name in names}
     asked = bullets([f"{name}: {', '.join(f'{v:g}' for v in values)}" for name, values in inputs.items()])
     again = Markup(
-        'All numbers with their errors are in <a href="finite_sphere.csv">finite_sphere.csv</a>. To repeat, <code>'
-        "fem-adhesion finite-sphere --out DIR</code>; with <code>--resume</code>, what the directory holds is not "
-        "computed again."
+        'All numbers with their errors are in <a href="finite_sphere.csv">finite_sphere.csv</a>. With '
+        "<code>--resume</code>, what the directory holds is not computed again."
     )
     return Section("settings", "Settings", paragraphs=(asked, again))

@@ -42,11 +42,13 @@ def _picture(stem: str) -> Picture[Greenwood1997]:
 FIGURES = tuple(_picture(stem) for stem in PLOTS)
 
 
-def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = lambda _: None) -> None:
+def write(
+    study: Greenwood1997, directory: Path, begin: Callable[[str], None] = lambda _: None, asked: str = ""
+) -> None:
     """Write every figure as SVG, PNG and CSV, every table and the captions as CSV, and ``index.html``.
 
     Give it a directory made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none;
-    `begin` is told what is drawn next, once for each of `FIGURES`.
+    `begin` is told what is drawn next, once for each of `FIGURES`, `asked` is the command line that was run.
     """
     draw(FIGURES, study, directory, begin)
     written, held = tables(study), claims.tables(study.claims)
@@ -59,7 +61,7 @@ def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = 
         Section("held", "Claims of the paper, held against the numbers", tables=held),
         Section("tables", "Tables", tables=written),
     ]
-    write_page(directory, title, list(lead(study)), sections, f"{study.seconds:.1f} s, drawing apart")
+    write_page(directory, title, list(lead(study)), sections, f"{study.seconds:.1f} s, drawing apart", asked)
 
 
 def lead(study: Greenwood1997) -> Iterator[str]:

@@ -49,13 +49,15 @@ def run(options: argparse.Namespace) -> int:
     for source in SOURCES:
         section_of(source, directories.get(source.name))  # refuse a directory before any work
     with written_aside(options.out) as file:
-        verdict, text = _compute(scenes, options.rtol, question, directories)
+        verdict, text = _compute(scenes, options.rtol, question, directories, options.asked)
         file.write(text)
     print(f"verdict: {verdict}; written: {options.out}")
     return AGREE if verdict == "agree" else DISAGREE
 
 
-def _compute(scenes: list[Scene], rtol: float, question: Question, directories: dict[str, Path]) -> tuple[str, str]:
+def _compute(
+    scenes: list[Scene], rtol: float, question: Question, directories: dict[str, Path], asked: str
+) -> tuple[str, str]:
     """Verdict and page."""
     from fem_adhesion.crosscheck import scenes as crosscheck
     from fem_adhesion.crosscheck.comparison import overall_verdict
@@ -70,7 +72,7 @@ def _compute(scenes: list[Scene], rtol: float, question: Question, directories: 
         for case in crosscheck.run(scenes, rtol=rtol):
             cases.append(case)
             step("comparison", len(cases), len(scenes))
-        contents = Contents(cases, None, None, directories)
+        contents = Contents(cases, None, None, directories, asked=asked)
         try:
             curves = solve(question, step)
             walked = walk(question.scene.tabor, rtol=rtol, progress=step)

@@ -51,7 +51,8 @@ WORDS = {
 class Contents:
     """What goes into a report: the cross-check, one curve, by both solvers and state by state, and other results.
 
-    Those are in directories by their commands' names; `lost` says why there is no curve, or is empty.
+    Those are in directories by their commands' names; `lost` says why there is no curve, or is empty;
+    `asked` is the command line that was run, or empty.
     """
 
     cases: Sequence[Case | Failure]
@@ -59,6 +60,7 @@ class Contents:
     walk: Walk | None
     directories: Mapping[str, Path]
     lost: str = ""
+    asked: str = ""
 
 
 def page(contents: Contents) -> str:
@@ -82,6 +84,7 @@ def page(contents: Contents) -> str:
         others=others,
         settings=settings_section(cases, machine()),
         script=template_text("report", "walk.js"),
+        asked=contents.asked,
     )
 
 
@@ -124,6 +127,9 @@ LEVELS = {
     "triangles:": ("The half-space by overlapping triangles, as in 1997", TRIANGLES),
     "equations:": ("What both share, at a state made up, and a weak form that shares nothing", WEAK_FORM),
     "apart:": ("The events of the finite elements in that weak form", WEAK_FORM),
+    "law:": ("The law, by its definition", CLOSED_FORM),
+    "profile:": ("The profile, by its definition", CLOSED_FORM),
+    "length:": ("The lengths, by their definition", CLOSED_FORM),
     "limit:": ("What both share, in closed form", CLOSED_FORM),
     "": ("The events", SOLVERS),
 }
@@ -273,7 +279,10 @@ SOURCES = (
         "Is the half-space good enough for my sphere?",
         "An elastic sphere of finite radius R beside the half-space with a parabolic profile.",
         ("chart", "causes"),
-        (("rules", "Rules of thumb"), ("theories", "Beside the theories of the rigid and of the soft sphere")),
+        (
+            ("safe", "From which R/eps on the half-space will do"),
+            ("theories", "Beside the theories of the rigid and of the soft sphere"),
+        ),
     ),
 )
 
