@@ -137,7 +137,9 @@ def require_radius_ratio(radius_ratio: float, tabor: float = 0.0) -> float:
 
     A contact is 1 to 2 beta wide where it is lost: a smaller sphere is deformed as a whole, and past its equator.
     """
-    radius_ratio = require_between(radius_ratio, "radius_ratio", 2, 1e12, "give R/eps")
+    radius_ratio = require_between(
+        radius_ratio, "radius_ratio", 2, 1e12, "it is the radius over the spacing: change one of the two"
+    )
     least = SMALLEST_SPHERE * tabor
     remedy = "the sphere is as small as its contact, R < 1.5 beta: take a stiffer or larger one"
     limit = f"{SMALLEST_SPHERE:g} tabor = {least:.3g} or more"

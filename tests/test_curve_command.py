@@ -513,7 +513,15 @@ def test_fields_inside_are_written_for_every_event(tmp_path):
         (["--tabor", "2", "--stiffness", "1N/m"], "not a plain number in R dgamma/eps"),
         (["--tabor", "2", "--stiffness", "-1"], "outside 0 < stiffness"),
         (["--tabor", "2", "--plot", "a.gif"], "ends in '.gif', limit: one of .png, .svg, .pdf"),
-        (["--tabor", "2", "--body", "hemisphere"], "radius_ratio = None"),
+        (
+            ["--tabor", "2", "--body", "hemisphere"],
+            'radius_ratio = None for body = "hemisphere", limit: a number; give --radius-ratio',
+        ),
+        (["--tabor", "2", "--profile", "sphere"], "limit: a number; give --radius-ratio"),
+        (
+            [*MATERIAL[:-1], "1m", "--body", "hemisphere"],
+            "1e12; it is the radius over the spacing: change one of the two",
+        ),
         (["--tabor", "2", "--law-parameter", "3"], "--law-parameter would not be heeded, limit: with --law"),
         (["--tabor", "2", "--law", "morse"], "law_parameter = None for law = morse, limit: k; give them in this order"),
         (["--tabor", "2", "--law", "exponential"], "limit: k [core]; give them in this order"),

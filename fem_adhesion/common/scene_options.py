@@ -243,7 +243,9 @@ def _body(options: argparse.Namespace, values: Mapping[str, Any], material: obje
     values = {field: values.get(field, getattr(options, ALIASES.get(field, field))) for field in asked}
     for field, value in values.items():
         if value is None and own[field].default is MISSING:
-            raise InputError(f'{field} = None for body = "{name}", limit: {LACKED.get(field, "a number; give R/eps")}')
+            raise InputError(
+                f'{field} = None for body = "{name}", limit: {LACKED.get(field, "a number; give --radius-ratio")}'
+            )
     given = {field: value for field, value in values.items() if value is not None}
     return class_of("body", name)(material=material, **given)
 
@@ -279,7 +281,7 @@ def _profile(options: argparse.Namespace, body: Body, radius_ratio: float | None
     if own:
         return None
     if takes and radius_ratio is None:
-        raise InputError(f'radius_ratio = None for profile = "{name}", limit: a number; give R/eps')
+        raise InputError(f'radius_ratio = None for profile = "{name}", limit: a number; give --radius-ratio')
     return class_of("profile", name)(*values, *([radius_ratio] if takes else []))
 
 

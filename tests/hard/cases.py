@@ -162,7 +162,7 @@ def _half_space(poisson: float) -> Measured:
 
 
 def _beyond_spheres() -> tuple[Case, ...]:
-    limit, remedy = "2 <= radius_ratio <= 1e12", "give R/eps"
+    limit, remedy = "2 <= radius_ratio <= 1e12", "it is the radius over the spacing: change one of the two"
     small = Refusal(InputError, "radius_ratio = 100", "2.25 tabor = 112 or more", "take a stiffer or larger one")
     return (
         _refused("sphere of R/eps 1e13", partial(against_tighter, radius_ratio=1e13), "= 1e+13", limit, remedy),
