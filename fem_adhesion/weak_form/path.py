@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq, newton
@@ -15,9 +16,11 @@ from halfspace.errors import NotConverged
 from halfspace.values import Valued
 
 MOST_STEPS = 12  # Newton steps, after which a step along the path is halved
-NEAR = 1e-5  # relative change of a gap in the last Newton step; the error after it is about the square
+NEAR = 1e-10  # relative change of a gap that a further Newton step would make
+TANGENT = 1e-9  # relative error of the tangent of the path
+KEPT = 0.1  # of the step before: one that is shorter is followed by one with the same matrix
 CLOSING = 0.75  # part of a gap that one Newton step may close
-USUAL = 5  # Newton steps of a step along the path that suits; the next is longer after fewer
+USUAL = 6  # Newton steps of a step along the path that suits; the next is longer after fewer
 SHORTEST, MOST_POINTS = 1e-6, 1000  # step along the path at which it ends without a curve; points likewise
 OPENING = 0.3  # largest part by which the gap on the axis changes in a step, lest it pass by two folds
 TURN = 0.5  # least cosine between the tangents at both ends of a step
@@ -50,62 +53,108 @@ class Point(Valued):
     stable: bool
 
 
-def bordered_newton(problem: Problem, x: Array, row: Array, value: float) -> tuple[Array, int]:
-    """Solve F(x) = 0 and row x = value, from nearby; also the number of steps taken.
+class Bordered(NamedTuple):
+    """The bordered matrix [[A, b], [row]] at a state, A = dF/du and b = dF/dalpha, in its factors.
 
-    Each step solves [[A, b], [row]] dx = -[F, row x - value] with A = dF/du and b = dF/dalpha, by two
-    back-substitutions. NotConverged if the steps run out.
+    Attributes
+    ----------
+    factors : SuperLU
+        Of A.
+    along : (n + 1,) array
+        Solution of A u + b alpha = 0 with alpha = 1.
+    row : (n + 1,) array
+        The border.
     """
+
+    factors: Any
+    along: Array
+    row: Array
+
+    @classmethod
+    def at(cls, problem: Problem, h: Array, row: Array) -> Bordered:
+        """The matrix at gaps h."""
+        factors = problem.tangent(h)
+        return cls(factors, np.append(factors.solve(-problem.by_approach(h)), 1.0), row)
+
+    @property
+    def negative(self) -> int:
+        """Number of negative eigenvalues of A."""
+        return int((self.factors.U.diagonal() < 0).sum())
+
+    def solve(self, F: Array, value: float) -> Array:
+        """Solve A u + b alpha = F with row x = value, by a back-substitution."""
+        x = np.append(self.factors.solve(F), 0.0)
+        return np.asarray(x + (value - self.row @ x) / (self.row @ self.along) * self.along)
+
+
+def bordered_newton(problem: Problem, x: Array, row: Array, value: float) -> tuple[Array, Bordered, int]:
+    """Solve F(x) = 0 and row x = value, from nearby; also the last matrix and the number of steps taken.
+
+    While each step is much shorter than the one before, the next is taken with the same matrix. NotConverged if the
+    steps run out.
+    """
+    matrix: Bordered | None = None
     for step in range(1, MOST_STEPS + 1):
         h = problem.gap(x)
-        factors = problem.tangent(h)
-        du, by_approach = factors.solve(-problem.residual(x)), factors.solve(-problem.by_approach(h))
-        d = (value - row @ x - row[:-1] @ du) / (row[:-1] @ by_approach + row[-1])
-        dx = np.append(du + d * by_approach, d)
+        if matrix is None:
+            matrix, before = Bordered.at(problem, h, row), 1.0  # its error falls as the square
+        dx = matrix.solve(-problem.residual(x), value - row @ x)
         change = problem.gap_change(dx) / h
         x = x + min(1.0, CLOSING / max(float(-change.min()), CLOSING)) * dx
         largest = float(np.abs(change).max())
         if not np.isfinite(largest):
             break
-        if largest < NEAR:
-            return x, step
+        if largest**2 < NEAR * before:
+            return x, matrix, step
+        matrix, before = (matrix if largest < KEPT * before else None), largest
     raise NotConverged(f"no equilibrium of the weak form in {MOST_STEPS} Newton steps; try another to_load or tabor")
 
 
-def point_at(problem: Problem, x: Array, along: Array | None = None) -> Point:
-    """Point at an equilibrium; the tangent points the way of a row, or towards contact."""
+def equilibrium(problem: Problem, x: Array, row: Array, value: float) -> tuple[Point, int]:
+    """Point of the path where row x = value, from nearby, and the Newton steps that it took; the row points onward."""
+    x, matrix, steps = bordered_newton(problem, x, row, value)
     h = problem.gap(x)
-    factors = problem.tangent(h)
-    direction = np.append(factors.solve(-problem.by_approach(h)), 1.0)
-    row = problem.row(direction)
-    size = np.sqrt(row @ direction)
-    if along is not None and along @ direction < 0:
-        size = -size
-    tangent = direction / size
+    tangent = path_tangent(problem, h, matrix)
+    row = problem.row(tangent)
+    size = np.sqrt(row @ tangent)
+    tangent, row = tangent / size, row / size
     dh = problem.gap_change(tangent)
     rates = np.array([tangent[-1], problem.load_rate(h, dh), problem.central_gap(tangent)])
-    stable = bool((factors.U.diagonal() > 0).all())
-    return Point(x, tangent, row / size, problem.observables(x), rates, stable)
+    # det A has the sign of d(alpha)/ds all along the path; if that matrix has another, a fold lies in between.
+    between = (-1) ** matrix.negative * tangent[-1] < 0
+    negative = (Bordered.at(problem, h, row) if between else matrix).negative
+    return Point(x, tangent, row, problem.observables(x), rates, negative == 0), steps
 
 
-def onward(problem: Problem, a: Point, s: float) -> tuple[Point, int]:
-    """Point of the path on the plane at arclength s past a point, and the Newton steps that it took."""
-    if s == 0:
-        return a, 0
-    x, steps = bordered_newton(problem, a.x + s * a.tangent, a.row, float(a.row @ a.x) + s)
-    return point_at(problem, x, a.row), steps
+def path_tangent(problem: Problem, h: Array, nearby: Bordered) -> Array:
+    """Solve A t = -b d(alpha), row t = 1 at gaps h by corrections with the matrix of a state nearby."""
+    tangent = nearby.solve(np.zeros(nearby.row.size - 1), 1.0)
+    for _ in range(MOST_STEPS):
+        change = nearby.solve(-problem.residual_along(h, tangent), 1 - nearby.row @ tangent)
+        tangent = tangent + change
+        if np.abs(change).max() < TANGENT * np.abs(tangent).max():
+            return tangent
+    raise NotConverged(f"no tangent of the weak form's path in {MOST_STEPS} steps; try another to_load or tabor")
+
+
+def onward(problem: Problem, a: Point, s: float, bend: Array | float = 0.0) -> tuple[Point, int]:
+    """Point of the path on the plane at arclength s past a point, and the Newton steps that it took.
+
+    It is sought on the parabola of that tangent and, if it is given, that curvature.
+    """
+    return equilibrium(problem, a.x + s * (a.tangent + s / 2 * bend), a.row, float(a.row @ a.x) + s)
 
 
 def follow(problem: Problem, approach: float, to_load: float) -> list[Point]:
     """Points of the path from an approach of separated surfaces, through every fold, to a compressive load."""
     start, last = np.zeros(problem.free.size + 1), np.zeros(problem.free.size + 1)
     start[-1], last[-1] = approach, 1.0
-    points, s = [point_at(problem, bordered_newton(problem, start, last, approach)[0])], FIRST
+    points, s = [equilibrium(problem, start, last, approach)[0]], FIRST
     while points[-1].observables[1] < to_load:
         if s < SHORTEST or len(points) > MOST_POINTS:
             raise NotConverged(f"the weak form's path ends at alpha = {points[-1].x[-1]:.4g} eps; try a smaller tabor")
         try:
-            point, steps = onward(problem, points[-1], s)
+            point, steps = onward(problem, points[-1], s, curvature(points[-2:]))
         except NotConverged:
             s /= 2
             continue
@@ -117,6 +166,12 @@ def follow(problem: Problem, approach: float, to_load: float) -> list[Point]:
         points.append(point)
         s *= min(max(USUAL / steps, 0.5), 2.0)
     return points
+
+
+def curvature(points: Sequence[Point]) -> Array | float:
+    """Change of the tangent along the path, by its last two points; 0 at its first."""
+    a, b = points[0], points[-1]
+    return (b.tangent - a.tangent) / float(a.row @ (b.x - a.x)) if len(points) > 1 else 0.0
 
 
 def turns_twice(a: Point, b: Point) -> bool:
@@ -133,8 +188,14 @@ def on_finer(problem: Problem, coarse: Problem, points: Sequence[Point]) -> list
     for point in points:
         x, tangent = (problem.taken_over(coarse, each) for each in (point.x, point.tangent))
         row = problem.row(tangent)
-        found.append(point_at(problem, bordered_newton(problem, x, row, float(row @ x))[0], row))
+        found.append(equilibrium(problem, x, row, float(row @ x))[0])
     return found
+
+
+def arclength(before: tuple[Problem, Point], after: tuple[Problem, Point]) -> float:
+    """Arclength between two points of a path, each on its own elements, by the tangent at that on the finer ones."""
+    (coarse, a), (fine, b) = sorted((before, after), key=lambda each: each[0].degree)
+    return abs(float(b.row @ (b.x - fine.taken_over(coarse, a.x))))
 
 
 # Events

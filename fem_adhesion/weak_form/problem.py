@@ -125,6 +125,10 @@ class Problem(Valued):
         """F(x) = a(u, v) - mu int sigma(h) v_z dA for each free v."""
         return np.asarray(self.stiffness @ x[:-1] - self.tabor * self._work(self.law.tension(self.gap(x))))
 
+    def residual_along(self, h: Array, dx: Array) -> Array:
+        """Change of F(x) along dx."""
+        return np.asarray(self.stiffness @ dx[:-1] - self.tabor * self._work(self.law.slope(h) * self.gap_change(dx)))
+
     def tangent(self, h: Array) -> Any:
         """Factors of dF/du: the form a(u, v) + mu^2 int sigma'(h) u_z v_z dA.
 
