@@ -2,8 +2,8 @@
 
 In the order of reading: `comparison` (two numbers with errors, a budget, a verdict; what is told of them), `study`
 (operators, residuals, events; of spheres, `references`), `from_scratch` (what both share, against
-`fem_adhesion.weak_form`), `definitions` (what law, profile and lengths must be), `scenes` (many of them beside each
-other), `command`.
+`fem_adhesion.weak_form`), `elimination` (condensed or not, the same), `definitions` (what law, profile and lengths must
+be), `scenes` (many of them beside each other), `command`.
 
 How independent the two solvers are:
 
@@ -31,6 +31,8 @@ How independent the two solvers are:
   parameter of 6, or at an edge as sharp, it only checks that pull-off and jump-off are equilibria, not that they turn
   there, nor which jump a fold is. A contact edge that is defined 2 % off moves the radius by less than that budget: the
   law's numbers show it.
+* That the condensed solver eliminates exactly: one small discretisation is solved with every displacement kept by
+  `fem_adhesion.weak_form.trace`'s Newton as well; both agree to rounding. Half-spaces alone.
 * Parameters of laws and profiles, radii and shares of pairs: closed numbers that each must make (depth, stiffness,
   strength, edge and range of a law; height, slope and curvature of a profile), by the formula that it is named after.
   Laws and profiles from tables or of the user's have no second formula: their numbers are those of what they tell.

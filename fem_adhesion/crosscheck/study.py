@@ -22,7 +22,7 @@ import numpy as np
 
 import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.crosscheck import definitions, from_scratch
+from fem_adhesion.crosscheck import definitions, elimination, from_scratch
 from fem_adhesion.crosscheck.comparison import (
     SOLVERS,
     TRIANGLES,
@@ -94,7 +94,8 @@ def compare(
         if rtol > closer * TIGHTEST and case.verdict == "inconclusive" and _left_open(case, reach):
             with suppress(NotConverged):
                 fe, case = _solved(scene, rtol, rtol / closer, solve)
-    return replace(case, rows=(*known, *case.rows, *_by_triangles(scene, fe, rtol), *from_scratch.events(scene, fe)))
+    apart = *_by_triangles(scene, fe, rtol), *elimination.rows(scene, fe), *from_scratch.events(scene, fe)
+    return replace(case, rows=(*known, *case.rows, *apart))
 
 
 def _left_open(case: Case, reach: float) -> bool:

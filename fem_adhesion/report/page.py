@@ -130,6 +130,7 @@ LEVELS = {
     "law:": ("The law, by its definition", CLOSED_FORM),
     "profile:": ("The profile, by its definition", CLOSED_FORM),
     "length:": ("The lengths, by their definition", CLOSED_FORM),
+    "elimination:": ("The same elements condensed and with all displacements kept", WEAK_FORM),
     "limit:": ("What both share, in closed form", CLOSED_FORM),
     "": ("The events", SOLVERS),
 }

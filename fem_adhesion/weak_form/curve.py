@@ -155,7 +155,7 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0) -> Curve:
         told |= {name: _event(name, found[name], point) for name, point in finer.items()}
         found |= finer
         tolerance = Tolerance.on(told, rtol)
-        open_events = list(tolerance.missed(told))
+        open_events = [name for name, event in told.items() if tolerance.missed_by(event) or _rough(event, rtol)]
         for n, point in zip(open_points, on_finer(fine, coarse, [points[n] for n in open_points]), strict=True):
             errors[n] = np.abs(point.observables - points[n].observables)
             points[n], solved_on[n] = point, fine
@@ -177,6 +177,11 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0) -> Curve:
         time.perf_counter() - began,
         {"rtol": rtol, "degree": fine.degree, "cells": mesh.nelements, "far": -float(mesh.p[1].min())},
     )
+
+
+def _rough(event: Event, rtol: float) -> bool:
+    """Whether the contact radius is less accurate than that."""
+    return event.contact_radius_error > rtol * event.contact_radius
 
 
 def _event(name: str, coarse: Point, fine: Point) -> Event:

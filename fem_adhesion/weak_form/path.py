@@ -98,7 +98,7 @@ def bordered_newton(problem: Problem, x: Array, row: Array, value: float) -> tup
         h = problem.gap(x)
         if matrix is None:
             matrix, before = Bordered.at(problem, h, row), 1.0  # its error falls as the square
-        dx = matrix.solve(-problem.residual(x), value - row @ x)
+        dx = matrix.solve(-problem.residual(x), value - float(row @ x))
         change = problem.gap_change(dx) / h
         x = x + min(1.0, CLOSING / max(float(-change.min()), CLOSING)) * dx
         largest = float(np.abs(change).max())
@@ -130,7 +130,7 @@ def path_tangent(problem: Problem, h: Array, nearby: Bordered) -> Array:
     """Solve A t = -b d(alpha), row t = 1 at gaps h by corrections with the matrix of a state nearby."""
     tangent = nearby.solve(np.zeros(nearby.row.size - 1), 1.0)
     for _ in range(MOST_STEPS):
-        change = nearby.solve(-problem.residual_along(h, tangent), 1 - nearby.row @ tangent)
+        change = nearby.solve(-problem.residual_along(h, tangent), 1 - float(nearby.row @ tangent))
         tangent = tangent + change
         if np.abs(change).max() < TANGENT * np.abs(tangent).max():
             return tangent

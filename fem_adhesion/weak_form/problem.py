@@ -10,8 +10,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from scipy import sparse
-from scipy.interpolate import CubicSpline
 from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementQuadP, ElementVector, FacetBasis, Functional, LinearForm, MeshQuad
 
@@ -163,14 +163,20 @@ class Problem(Valued):
 
     def observables(self, x: Array) -> Array:
         """Approach and load, central gap H(0) = h(0) - 1 in eps, contact radius in beta (nan without contact)."""
-        h, edge = self.gap(x), self.law.edge
-        central = self.central_gap(x)
-        order = np.argsort(self._radii, axis=None)
-        radii, gaps = (np.append(first, each.ravel()[order]) for first, each in ((0.0, self._radii), (1 + central, h)))
-        near = radii < 2 * self.disc
-        crossings = CubicSpline(radii[near], gaps[near] - edge).roots(extrapolate=False)
-        radius = float(crossings[-1]) if crossings.size else np.nan  # the outermost
-        return np.array([x[-1], self.load(h), central, radius])
+        h = self.gap(x)
+        return np.array([x[-1], self.load(h), self.central_gap(x), self.contact_radius(h)])
+
+    def contact_radius(self, h: Array) -> float:
+        """Outermost radius at which the gap is that of the largest tension, by its polynomial on the facet there."""
+        inside = np.where(h < self.law.edge, self._radii, -1.0)
+        last = float(inside.max())
+        if last < 0:
+            return np.nan
+        facet = np.argmax(inside.max(axis=1))
+        gap = Polynomial.fit(self._radii[facet], h[facet] - self.law.edge, self.degree)
+        roots = np.asarray(gap.roots(), complex)
+        beyond = roots.real[(roots.real >= last) & (np.abs(roots.imag) < 1e-9 * last)]
+        return float(beyond.min()) if beyond.size else last
 
     def taken_over(self, coarse: Problem, x: Array) -> Array:
         """State with the surface of one on elements of lower degree, whose functions are among these.
