@@ -17,7 +17,7 @@ from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv
 from fem_adhesion.common.style import Picture, captions, draw, shown
 from fem_adhesion.greenwood import beyond, claims, load_figures, state_figures
 from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, closed_ratios
-from fem_adhesion.greenwood.drawing import drawn, rises, table
+from fem_adhesion.greenwood.drawing import Plot, drawn, rises, table
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
 from fem_adhesion.greenwood.study import APPARATUS, JUMPS_AT, WINDING_AT, DeviceStudy, Greenwood1997, PullOff
 from fem_adhesion.greenwood.tables import Printed
@@ -34,12 +34,15 @@ PLOTS = {f"fig_{number}": (f"Fig. {number}: {title}", plot) for number, (title, 
 """Title and plot of each figure by the name of its files: those of the paper in its order, and further ones."""
 
 
-def _picture(stem: str) -> Picture[Greenwood1997]:
-    title, plot = PLOTS[stem]
-    return Picture(stem, title, lambda study: drawn(plot(study)), lambda study: plot(study).see)
+def _picture(stem: str, plot: Callable[[Greenwood1997], Plot]) -> Picture[Greenwood1997]:
+    return Picture(stem, PLOTS[stem][0], lambda study: drawn(plot(study)), lambda study: plot(study).see)
 
 
-FIGURES = tuple(_picture(stem) for stem in PLOTS)
+def _always(made: Plot) -> Callable[[Greenwood1997], Plot]:
+    return lambda _: made
+
+
+FIGURES = tuple(_picture(stem, plot) for stem, (_, plot) in PLOTS.items())
 
 
 def write(
@@ -50,12 +53,14 @@ def write(
     Give it a directory made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none;
     `begin` is told what is drawn next, once for each of `FIGURES`, `asked` is the command line that was run.
     """
-    draw(FIGURES, study, directory, begin)
+    plots = {stem: plot(study) for stem, (_, plot) in PLOTS.items()}
+    pictures = [_picture(stem, _always(made)) for stem, made in plots.items()]
+    draw(pictures, study, directory, begin)
     written, held = tables(study), claims.tables(study.claims)
-    data = [table(stem, title, plot(study)) for stem, (title, plot) in PLOTS.items()]
-    write_csv([*held, *written, *data, captions(FIGURES, study)], directory)
+    data = [table(stem, PLOTS[stem][0], made) for stem, made in plots.items()]
+    write_csv([*held, *written, *data, captions(pictures, study)], directory)
     title = f"Greenwood (1997), computed again{', quick run' if study.quick else ''}"
-    figures = Section("figures", "Figures", figures=shown(FIGURES, study, directory))
+    figures = Section("figures", "Figures", figures=shown(pictures, study, directory))
     sections = [
         figures,
         Section("held", "Claims of the paper, held against the numbers", tables=held),
