@@ -22,6 +22,10 @@ class IllPosed(NotConverged):
     """Nothing holds waves as short as the cells: what is computed belongs to them, on finer ones too."""
 
 
+class GridTooLarge(NotConverged):
+    """The matrices on a grid take more memory than a computation may; the message says how much."""
+
+
 class GridTooCoarse(NotConverged):
     """The grid cannot carry the spike of tension at the contact edge; the message says where and by how much.
 

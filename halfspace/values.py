@@ -7,11 +7,12 @@ The comparison that `dataclasses` writes asks an array for its truth and raises;
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import weakref
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import Field, dataclass, fields, is_dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -209,3 +210,37 @@ def _numbers(line: str) -> list[float] | None:
     except ValueError:
         return None
     return [first, second]
+
+
+Made = TypeVar("Made")
+
+
+class Recent(Generic[Made]):
+    """What was made last for some owners, as much as there is room for; the rest is made again when asked for.
+
+    The size of what was made is counted in the unit of the room. An entry, known by its owner and a key, ends with its
+    owner.
+    """
+
+    def __init__(self, room: float, size: Callable[[Made], float] = lambda _: 1) -> None:
+        self.room, self.size = room, size
+        self._entries: dict[tuple[int, Hashable], tuple[weakref.ref[object], Made]] = {}
+
+    def get(self, owner: object, key: Hashable, make: Callable[[], Made]) -> Made:
+        """Entry of an owner, made unless it is still there."""
+        which = id(owner), key
+        known = self._entries.pop(which, None)
+        if known is None or known[0]() is not owner:
+            known = weakref.ref(owner), make()
+            self._make_room(self.size(known[1]))
+        self._entries[which] = known
+        return known[1]
+
+    def _make_room(self, needed: float) -> None:
+        """Let go of what has lost its owner, and of the oldest entries."""
+        for which, (owner, _) in list(self._entries.items()):
+            if owner() is None:
+                self._entries.pop(which, None)
+        needed += sum(self.size(made) for _, made in self._entries.values())
+        while needed > self.room and self._entries:
+            needed -= self.size(self._entries.pop(next(iter(self._entries)))[1])

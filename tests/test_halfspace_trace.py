@@ -301,7 +301,7 @@ def test_events_under_a_sphere_are_found_first_on_the_operators_of_the_curve(mon
     known = traced[1].operator
     assert sum(made) <= 1 + known.scales.size + 2 * (1 + 4 * path.finest.count) + path.finest.count
     for a in np.sqrt(known.scales[1:] * known.scales[:-1]):
-        (exact,) = integrate(known.grid.lines(a)[None], known.operators[0].cell_nodes.shape[1], known.grid.coordinate.R)
+        (exact,) = integrate(known.grid.lines(a)[None], known.cell_nodes.shape[1], known.grid.coordinate.R)
         pressure = np.exp(-((exact.radii / a) ** 2))
         w, near = exact.compliance @ pressure, known.at(a).compliance @ pressure
         np.testing.assert_allclose(near, w, rtol=rtol)
@@ -450,3 +450,30 @@ def test_a_law_with_a_step_is_told_from_others_however_wide_it_is(width):
     assert Scales(1.0, Dugdale(width)).steps
     others = LENNARD_JONES, Morse(0.5), Morse(8), PowerLaw(5, 14), Dlvo(0.3, 1), Exponential(5, 15), Exponential(0.5, 4)
     assert not any(Scales(1.0, law).steps for law in others)
+
+
+def test_a_grid_that_takes_more_memory_than_there_is_is_refused_by_the_input_that_asks_for_it(monkeypatch):
+    monkeypatch.setattr(halfspace.elastic.kernel, "LARGEST", 2e4)
+    with pytest.raises(NotConverged, match=r"^rtol = 1e-06 takes grids of \d+ nodes, .*, limit: 2e-05 GB; take a lar"):
+        halfspace.trace(2.0, rtol=1e-6)
+
+
+def test_where_memory_ends_the_ladder_the_last_rung_that_fits_is_told_with_its_errors(monkeypatch):
+    asked = {"law": Dugdale(0.1), "profile": Sphere(30.0), "rtol": 1e-4}
+    full = halfspace.trace(5.0, **asked)
+    lowest, highest = (full.settings[rung]["nodes"] for rung in ("curve", "events"))
+    assert highest > lowest + 1
+    monkeypatch.setattr(halfspace.elastic.kernel, "LARGEST", 3.7e6)
+    path = halfspace.trace(5.0, **asked)
+    assert lowest < path.settings["events"]["nodes"] < highest
+    assert path.missed
+    for name, event in full.events.items():
+        assert abs(path.events[name].load - event.load) <= path.events[name].load_error
+
+
+def test_kernels_that_made_room_for_others_are_made_again_as_they_were(monkeypatch):
+    asked = {"profile": Sphere(30.0), "rtol": 1e-5}
+    kept = halfspace.trace(1.0, **asked)
+    monkeypatch.setattr(halfspace.elastic.operators._KERNELS, "room", 0.0)
+    for name, event in halfspace.trace(1.0, **asked).events.items():
+        assert (event.load, event.load_error) == (kept.events[name].load, kept.events[name].load_error)

@@ -21,7 +21,7 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import FOLDS, Event, Tolerance
 from halfspace.equilibrium.search import energy_released, find_events, folds_in_doubt
 from halfspace.equilibrium.states import Ways
-from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
+from halfspace.errors import ContactTooWide, GridTooLarge, IllPosed, InputError, NotConverged
 from halfspace.values import Estimate, Valued
 
 MOST_RUNGS = 4  # above the lowest
@@ -45,6 +45,8 @@ def climb(
         except FoldsLost:  # two folds about to merge exist on one grid but not on the next
             if start == most_rungs - 1:
                 return _climb_from(0, rtol, rung, to_load, most_rungs, folds=False)
+        except GridTooLarge as error:
+            raise GridTooLarge(f"rtol = {rtol:g} takes grids of {error}; take a larger rtol") from error
         except (ContactTooWide, IllPosed):  # for any grid
             raise
         except NotConverged:
@@ -104,11 +106,20 @@ class Ascent(Valued):
 
 
 def ascend(state: State, higher: Rung, rtol: float, rung: Callable[[int], Rung], levels: Sequence[int]) -> Ascent:
-    """Solve for the events of a rung on those of the levels above it, one after the other, until `rtol` is met."""
+    """Solve for the events of a rung on those of the levels above it, one after the other, until `rtol` is met.
+
+    Or as long as there is memory for the next level, where that is not the first.
+    """
     for level in levels:
-        below, higher = higher, rung(level)
-        chains = higher.chains(state)
-        state, events = chains[0][-1], higher.estimates(chains)
+        try:
+            next_rung = rung(level)
+            chains = next_rung.chains(state)
+        except GridTooLarge:
+            if level == levels[0]:
+                raise
+            break
+        below, higher, state = higher, next_rung, chains[0][-1]
+        events = higher.estimates(chains)
         if not Tolerance.on(events, rtol).missed(events):
             break
     return Ascent(below, higher, chains, events)

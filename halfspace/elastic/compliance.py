@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from halfspace.elastic import grid
-from halfspace.elastic.kernel import band_deflection, before_equator, panel_integrals, stereographic_ring
+from halfspace.elastic.kernel import band_deflection, before_equator, panel_integrals, require_room, stereographic_ring
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
@@ -360,6 +360,7 @@ def bands(edges: Array) -> ElasticOperator:
     The edges (q + 1,) are the bands' ends from 0 outwards, in beta.
     """
     middle = (edges[1:] + edges[:-1]) / 2
+    require_room(middle.size, edges.size)
     compliance = np.diff(band_deflection(middle[:, None], edges), axis=1)
     weights = np.pi * np.diff(edges**2)
     cells = np.concatenate([[0], middle[1:-1], edges[-1:]])

@@ -17,6 +17,7 @@ from numpy.polynomial.legendre import legvander
 from scipy.special import ellipe, ellipkm1, elliprd, elliprf
 
 from halfspace.elastic.grid import gauss_legendre
+from halfspace.errors import GridTooLarge
 from halfspace.values import Array
 
 GRADING = 7  # q of the substitution; with NEAR_POINTS it leaves 5e-13 for panels of up to 16 nodes
@@ -96,6 +97,17 @@ def graded_rule(points: int, q: int = GRADING) -> tuple[Array, Array]:
     return t**q, w / 2 * q * t ** (q - 1)
 
 
+# Bytes of the integrals made at once. Of those on one grid there are eight at a time, as the solver's matrices and what
+# they are made from: 3137 triangles take 0.73 GB, 5041 took 1.76 GB, and 1 GB is what a computation may take.
+LARGEST = 1.25e8
+
+
+def require_room(nodes: int, integrals: int) -> None:
+    """Raise GridTooLarge if so many integrals for each node of some grids take more memory than they may."""
+    if (size := 8 * nodes * integrals) > LARGEST:
+        raise GridTooLarge(f"{nodes} nodes, whose integrals take {size / 1e9:.2g} GB, limit: {LARGEST / 1e9:.3g} GB")
+
+
 def panel_integrals(targets: Array, breakpoints: Array, nodes: Array, ring: Ring = flat_ring) -> Array:
     """Integrate G(r_i, s) s l(s) over each panel for each Lagrange polynomial l of the panel's nodes.
 
@@ -105,6 +117,7 @@ def panel_integrals(targets: Array, breakpoints: Array, nodes: Array, ring: Ring
     panel's scale. By another ring all radii are in its coordinate.
     """
     targets = np.asarray(targets, float)
+    require_room(targets.size, (breakpoints.shape[-1] - 1) * nodes.size)
     ends = breakpoints[..., None, :-1], breakpoints[..., None, 1:]
     pairs = np.broadcast_arrays(targets[..., None], *ends)
     shape, batches = pairs[0].shape, -(-pairs[0].size * _points(FAR[-1][1], nodes.size) // BATCH)

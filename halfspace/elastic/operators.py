@@ -9,30 +9,21 @@ the edge keeps its nodes along the whole path, and the contact radius is one mor
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Generic, TypeVar
 
 import numpy as np
 
 from halfspace.elastic.compliance import ElasticOperator, Operator, barycentric, lagrange
 from halfspace.elastic.grid import SurfaceCoordinate, gauss_points
-from halfspace.values import Array, Index, Valued
+from halfspace.values import Array, Index, Recent, Valued
 
-Made = TypeVar("Made")
-
-
-@dataclass
-class _Latest(Generic[Made]):
-    """What was made for the scale asked for last: an equilibrium asks several times for the same."""
-
-    scale: float = np.nan
-    made: Made | None = None
-
-    def get(self, scale: float, make: Callable[[float], Made]) -> Made:
-        if self.made is None or scale != self.scale:
-            self.scale, self.made = scale, make(scale)
-        return self.made
+# Of all grids there are: an equilibrium asks several times for the operator of a state and of the trial beside it.
+_SCALED = Recent[ElasticOperator](3)
+_AT_SCALES: Recent[_AtScale] = Recent(3)
+# Kernels between which operators are interpolated, with places or nodes of theirs, in bytes: the largest scenes stay
+# below 1 GB with it. Curves and events at usual tolerances take less than a tenth.
+_KERNELS = Recent[tuple[Array, Index]](3e8, lambda kept: kept[0].nbytes + kept[1].nbytes)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,7 +31,6 @@ class Homogeneous(Valued, Operator):
     """A body without a length of its own, by its operator at the contact radius 1."""
 
     unit: ElasticOperator
-    _latest: _Latest[ElasticOperator] = field(default_factory=_Latest, compare=False, repr=False, kw_only=True)
     follows_contact = True
 
     @property
@@ -55,7 +45,7 @@ class Homogeneous(Valued, Operator):
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
-        return self._latest.get(scale, self.unit.scaled)
+        return _SCALED.get(self, scale, partial(self.unit.scaled, scale))
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""
@@ -87,7 +77,8 @@ class Beside(Valued):
     """What a body has beside a homogeneous one, a polynomial in the logarithm of the contact radius through some.
 
     `make` gives it at the radii `scales` (m,), over these and the nodes' weights: values (m, n), a number for all
-    entries of the compliance of which places (q, q) are alike. It is asked when one is first needed.
+    entries of the compliance of which places (q, q) are alike. It is asked when one is first needed, and again where
+    these had to make room for others.
     """
 
     scales: Array
@@ -95,12 +86,8 @@ class Beside(Valued):
 
     def at(self, scale: float, derivative: int) -> Array:
         """What it is at a contact radius, or its derivative by the logarithm of that, (q, q)."""
-        values, places = self._made
+        values, places = _KERNELS.get(self, "values", self.make)
         return np.asarray((self._logarithmic.at(scale)[derivative] @ values)[places])
-
-    @cached_property
-    def _made(self) -> tuple[Array, Index]:
-        return self.make()
 
     @cached_property
     def _logarithmic(self) -> _Logarithmic:
@@ -125,7 +112,7 @@ class NearlyHomogeneous(Homogeneous):
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
-        return self._latest.get(scale, self._made)
+        return _SCALED.get(self, scale, partial(self._made, scale))
 
     def _made(self, scale: float) -> ElasticOperator:
         return replace(self.unit, compliance=self.unit.compliance + self._beside(scale, 0)).scaled(scale)
@@ -189,14 +176,15 @@ class Interpolated(Valued, Operator):
     With C = A w the compliance, the symmetric kernel max(r_i, r_j) A_ij, of order one at every radius and exact for a
     homogeneous body, is what is interpolated.
 
-    The scales (m,) are the contact radii in beta, positive and distinct, see `chebyshev_radii`, at which the operators
-    are on the grid, with Gauss's points as nodes.
+    The scales (m,) are the contact radii in beta, positive and distinct, see `chebyshev_radii`, at which operators are
+    known on the grid, with Gauss's points as nodes, k in each cell, whose numbers are `cell_nodes`. `make` gives these
+    operators; it is asked again where their kernels had to make room for others.
     """
 
     scales: Array
-    operators: Sequence[ElasticOperator]
+    cell_nodes: Index
     grid: MovingGrid
-    _latest: _Latest[_AtScale] = field(default_factory=_Latest, compare=False, repr=False)
+    make: Callable[[], Sequence[ElasticOperator]]
     follows_contact, alike = True, False
 
     @property
@@ -207,12 +195,22 @@ class Interpolated(Valued, Operator):
     @cached_property
     def axis_row(self) -> Array:
         """Row (q,) that interpolates nodal values on the axis."""
-        return self.operators[0].axis_row
+        return self._first.axis_row
 
     @cached_property
     def edge_row(self) -> Array:
         """Row (q,) that interpolates nodal values at the contact edge."""
-        return self.operators[0].interpolation(float(self.scales[0]))[0]
+        return self._first.interpolation(float(self.scales[0]))[0]
+
+    @cached_property
+    def _first(self) -> ElasticOperator:
+        """Nodes and cells at the first scale, without a compliance."""
+        return self._on_cells(float(self.scales[0]), np.empty((0, 0)))
+
+    def _on_cells(self, scale: float, compliance: Array) -> ElasticOperator:
+        """Operator with a compliance on the cells at a scale."""
+        nodes, ends = self._nodes(scale), self.grid.coordinate.radius(self.grid.lines(scale))[0]
+        return ElasticOperator(nodes.radii, nodes.weights, compliance, ends, self.cell_nodes)
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
@@ -223,18 +221,13 @@ class Interpolated(Valued, Operator):
         here = self._at(scale)
         nodes, body = here.nodes, here.operator
         by_kernel = here.kernel_rate @ (nodes.weights * pressure)
-        by_radii = (body.compliance * (nodes.d_radii / nodes.radii)[self._larger]) @ pressure
+        farther = np.maximum.outer(np.arange(nodes.radii.size), np.arange(nodes.radii.size))
+        by_radii = (body.compliance * (nodes.d_radii / nodes.radii)[farther]) @ pressure
         by_weights = body.compliance @ (nodes.d_weights / nodes.weights * pressure)
         return nodes.d_radii, nodes.d_weights, by_kernel - by_radii + by_weights
 
     def _at(self, scale: float) -> _AtScale:
-        return self._latest.get(scale, partial(_AtScale, self))
-
-    @cached_property
-    def _larger(self) -> Index:
-        """Which of two nodes is farther out, (q, q)."""
-        order = np.arange(self.operators[0].radii.size)
-        return np.maximum.outer(order, order)
+        return _AT_SCALES.get(self, scale, partial(_AtScale, self, scale))
 
     def _nodes(self, scale: float) -> _Nodes:
         """Gauss's points of the cells at a scale: w = 2 pi r dr/dx dx."""
@@ -246,7 +239,7 @@ class Interpolated(Valued, Operator):
 
     def _gauss_points(self, lines: Array) -> tuple[Array, Array]:
         """Places of Gauss's points between lines and 2 pi times their weights."""
-        places, weights = gauss_points(lines, self.operators[0].cell_nodes.shape[1])
+        places, weights = gauss_points(lines, self.cell_nodes.shape[1])
         return places.ravel(), 2 * np.pi * weights.ravel()
 
     def _rows(self, scale: float) -> tuple[Array, Array]:
@@ -257,15 +250,27 @@ class Interpolated(Valued, Operator):
 
     def _combined(self, weights: Array) -> Array:
         """Weighted sum of the kernels, (q, q)."""
-        q = self.operators[0].radii.size
+        q = self.cell_nodes.size
         return np.asarray((weights @ self._kernels).reshape(q, q))
 
-    @cached_property
+    @property
     def _kernels(self) -> Array:
         """Kernels max(r_i, r_j) C_ij/w_j, (m, q^2)."""
-        return np.array(
-            [(np.maximum.outer(o.radii, o.radii) * o.compliance / o.weights).ravel() for o in self.operators]
-        )
+        return self._taken_from(self.make)
+
+    def knowing(self, operators: Sequence[ElasticOperator]) -> Interpolated:
+        """The same, which need not make its operators at first: they are there."""
+        self._taken_from(lambda: operators)
+        return self
+
+    def _taken_from(self, make: Callable[[], Sequence[ElasticOperator]]) -> Array:
+        """Kernels kept, or those of operators, (m, q^2)."""
+
+        def kernels() -> tuple[Array, Index]:
+            known = [(np.maximum.outer(o.radii, o.radii) * o.compliance / o.weights).ravel() for o in make()]
+            return np.array(known), self.cell_nodes
+
+        return _KERNELS.get(self, "kernels", kernels)[0]
 
     @cached_property
     def _by_edge(self) -> _Logarithmic:
@@ -291,8 +296,7 @@ class _AtScale(Valued):
     def operator(self) -> ElasticOperator:
         body, nodes = self.body, self.nodes
         compliance = body._combined(self._rows[0]) * (nodes.weights / np.maximum.outer(nodes.radii, nodes.radii))
-        ends = body.grid.coordinate.radius(body.grid.lines(self.scale))[0]
-        return ElasticOperator(nodes.radii, nodes.weights, compliance, ends, body.operators[0].cell_nodes)
+        return body._on_cells(self.scale, compliance)
 
     @cached_property
     def kernel_rate(self) -> Array:

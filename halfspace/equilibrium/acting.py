@@ -30,9 +30,9 @@ class Acting(Valued):
         """The state: gaps, approach and scale, (q + 2,)."""
         return np.frombuffer(self.state)
 
-    @cached_property
+    @property
     def body(self) -> ElasticOperator:
-        """Operator at its scale."""
+        """Operator at its scale, which the operator keeps as long as there is room."""
         return self.operator.at(float(self.x[-1]))
 
     @cached_property
