@@ -168,7 +168,7 @@ def test_the_command_writes_what_it_found(tmp_path, capsys):
     assert float(event["load_R_dgamma"]) == solution["events"]["pull_off"]["load"]
     assert float(event["load_R_dgamma"]) == pytest.approx(halfspace.trace(0.5).event("pull_off").load, rel=1e-3)
     assert sum(not row["event"] for row in rows) == len(solution["curve"]["load"])
-    assert "pull-off" in files[2].read_text() or files[2].stat().st_size > 1000
+    assert "stable under fixed grips" in files[2].read_text()
 
 
 @pytest.mark.parametrize("option", [["--vtk", "x"], ["--beside", "morse:3"], ["--points", "9"], ["--stiffness", "1"]])
