@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq, newton
@@ -53,7 +53,8 @@ class Point(Valued):
     stable: bool
 
 
-class Bordered(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False)
+class Bordered(Valued):
     """The bordered matrix [[A, b], [row]] at a state, A = dF/du and b = dF/dalpha, in its factors.
 
     Attributes
