@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -77,7 +78,7 @@ class Bordered(Valued):
         factors = problem.tangent(h)
         return cls(factors, np.append(factors.solve(-problem.by_approach(h)), 1.0), row)
 
-    @property
+    @cached_property
     def negative(self) -> int:
         """Number of negative eigenvalues of A."""
         return int((self.factors.U.diagonal() < 0).sum())
@@ -143,6 +144,8 @@ def onward(problem: Problem, a: Point, s: float, bend: Array | float = 0.0) -> t
 
     It is sought on the parabola of that tangent and, if it is given, that curvature.
     """
+    if s == 0:
+        return a, 0
     return equilibrium(problem, a.x + s * (a.tangent + s / 2 * bend), a.row, float(a.row @ a.x) + s)
 
 
