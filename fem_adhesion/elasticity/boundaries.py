@@ -201,7 +201,7 @@ def point_load(space: Space, poisson: float) -> Exterior:
     boundary goes on the half-space, which stores c^2 k_B / 2 with k_B = -oint u_B . sigma_B n dA. So the
     equation of c says that the body pulls on the boundary with the force of a point load c, in the mean weighted by
     u_B, and the matrix stays symmetric. c tends to the load W as L^-2; the deflection near a pressure that ends
-    within the block is in error by O(L^-5), both measured in tests/test_fem_condensed.py.
+    within the block is in error by O(L^-5), both measured in tests/fem_adhesion/bodies/test_fem_condensed.py.
     """
     far = trace_on(space, "far", space.degree + TRACE_POINTS)
     unknowns = space.components[:, far.functions].ravel()

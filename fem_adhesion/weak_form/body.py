@@ -341,6 +341,6 @@ def _graded(finest: float, size: float, even: int) -> Array:
     return np.asarray(np.cumsum(finest * GROWTH ** np.maximum(np.arange(count) - even + 1, 0)))
 
 
-# Found by trial, as FLAT and NEARBY below: see tests/constants.py for what each decides at half and at double.
+# Found by trial, as FLAT and NEARBY below: see tests/estimates/constants.py.
 EVEN, GROWTH, INNER = 3, 3.0, 0.7  # cells next to the edge, ratio of the others, and how far they go inwards
 WITHIN = 0.3  # of the reach of the attraction, the longest cells in it

@@ -24,7 +24,7 @@ MOST_NODES = 16  # of a panel
 # it. In the first cell n nodes leave n^(-2k) of it, so that its radius is n^2 times that at which u^k is all left. With
 # 2 or 3 in the place of 1.5 two of 427 numbers were outside their estimates.
 TIP = 1.5
-# Found by trial; what each decides at half and at double is in tests/constants.py.
+# Found by trial; what each decides at half and at double is in tests/estimates/constants.py.
 ONE_NODE = 2.0  # of the change by one node more, what may be left: it errs less, but not always by as much
 MOST_WIDTHS = 60  # of a spike of tension that are resolved at once
 TWIN = (0.75, 0.87, 0.8)  # finest cells, growth and extent of a twin, in those of its sibling: no cell is the same

@@ -42,7 +42,7 @@ def widest_interval(nodes: int) -> float:
     """Widest interval between k nodes of a cell that carries the spike, in its widths.
 
     Found by trial: at tabor 1 it leaves 5e-5 to 2e-3 of the pull-off load, ten times more if twice as wide; as every
-    such number it is measured at half and at double by ``tests/constants.py``.
+    such number it is measured at half and at double by ``tests/estimates/constants.py``.
     """
     k = nodes - 1
     return max(0.1, min(0.1 * k, 0.021 * k**2))

@@ -1,0 +1,323 @@
+"""Thin samples: Hertz's and JKR's theories on layers, the published series, and `assess --thickness`."""
+
+import csv
+import io
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+from scipy.optimize import brentq, minimize_scalar
+
+import halfspace
+from fem_adhesion import cli
+from fem_adhesion.assess import study
+from fem_adhesion.assess.predictions import QUANTITIES, WORDS, computed, large_tabor_on, relative
+from fem_adhesion.assess.terminal import enough_table, indentations_table, report
+from fem_adhesion.assess.thin_sample import WRONG, hertz_until
+from fem_adhesion.common.contact import Contact
+from halfspace.elastic import grid
+from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, surface_compliance
+from halfspace.errors import InputError
+from halfspace.scaling import Units
+from halfspace.theories import closed_forms
+from halfspace.theories.layered import OnLayers, hertz_ratio, thin_sample_series
+
+SAMPLE = {"radius": 100e-9, "modulus": 1e9, "poisson": 0.3, "work_of_adhesion": 0.05, "spacing": 0.3e-9}
+GIVEN = ["--radius", "100nm", "--modulus", "1GPa", "--poisson", "0.3", "--work-of-adhesion", "50mJ/m^2"]
+GIVEN += ["--spacing", "0.3nm", "--stiffness", "0.5N/m"]
+ARGUMENTS = ["assess", *GIVEN, "--thickness", "30nm"]
+
+
+def _rows(kind):
+    with (Path(__file__).parents[2] / "data" / "layer_limits.csv").open() as file:
+        return [tuple(map(float, row[1:])) for row in csv.reader(file) if row[0].startswith(kind)]
+
+
+@pytest.mark.parametrize(("poisson", "chi", "ratio"), _rows("hertz"))
+def test_hertz_on_a_layer(poisson, chi, ratio):
+    """The reference is incompressible, and a wide contact on a layer feels a change of 1e-6 by as much as 2e-5."""
+    found = hertz_ratio(Layer(1.0, min(poisson, 0.499999)), chi**2)
+    assert found.value == pytest.approx(ratio, rel=3e-6 if poisson < 0.5 else 2.5e-5)
+    assert found.error < 1e-9 * found.value
+
+
+@pytest.mark.parametrize(("poisson", "thickness", "pull_off"), _rows("jkr"))
+def test_jkr_on_a_layer(poisson, thickness, pull_off):
+    theory = OnLayers(Layer(thickness, min(poisson, 0.499999)))
+    least = minimize_scalar(lambda a: theory.jkr(a).load, bounds=(0.8, 2.0), method="bounded")
+    assert -least.fun / np.pi == pytest.approx(pull_off, rel=5e-7 if poisson < 0.5 else 3e-6)
+
+
+@pytest.mark.parametrize("radius", [0.01, 1.0, 30.0])
+def test_a_coating_like_its_half_space_has_the_closed_forms(radius):
+    body = OnLayers(Coated(1.0, 1.0, 0.3, 0.3))
+    hertz, jkr = body.hertz(radius), body.jkr(radius)
+    assert hertz.approach == pytest.approx(float(closed_forms.hertz_approach(radius, 1.0)), rel=1e-11)
+    assert hertz.load == pytest.approx(float(closed_forms.hertz_load(radius)), rel=1e-11)
+    assert jkr.approach == pytest.approx(float(closed_forms.jkr_approach(radius, 1.0)), rel=1e-11)
+    assert jkr.load == pytest.approx(float(closed_forms.jkr_load(radius)), rel=1e-11)
+
+
+@pytest.mark.parametrize("radius", [0.1, 3.0])
+def test_theories_on_a_stack_do_not_depend_on_nodes_or_on_cuts(radius):
+    whole = Layers([Stratum(0.4, 0.3), Stratum(0.5, 0.45, 0.2)], Substrate(5.0, 0.1))
+    cut = Layers([Stratum(0.4, 0.3), Stratum(0.2, 0.45, 0.2), Stratum(0.3, 0.45, 0.2)], Substrate(5.0, 0.1))
+    states = [OnLayers(whole).jkr(radius), OnLayers(whole, 1.3).jkr(radius), OnLayers(cut).jkr(radius)]
+    for name in ("approach", "load"):
+        values = [getattr(state, name) for state in states]
+        assert values == pytest.approx([values[0]] * 3, rel=1e-9)
+
+
+def test_the_series_has_the_coefficients_that_are_in_use():
+    powers = np.array([1, 0.2, 0.04, 0.008, 0.0016])
+    assert thin_sample_series(0.2, 0.5, "bonded") == pytest.approx(powers @ [1, 1.133, 1.283, 0.769, 0.0975], rel=1e-4)
+    assert thin_sample_series(0.2, 0.5, "sliding") == pytest.approx(powers @ [1, 0.884, 0.781, 0.386, 0.0048], rel=1e-4)
+
+
+def _moments(poisson, foundation):
+    x, w = grid.gauss_legendre(200)
+    left_out = 10 * w * (surface_compliance(Layer(1.0, poisson, foundation), 10 * (1 + x)) - 1)
+    return [float(left_out @ (10 * (1 + x)) ** power) for power in (0, 2)]
+
+
+@pytest.mark.parametrize(("poisson", "foundation"), [(0.0, "bonded"), (0.499999, "bonded"), (0.3, "sliding")])
+def test_the_series_by_moments_of_the_yield_to_waves_is_that_of_the_dual_integral_equation(poisson, foundation):
+    A, B = _moments(poisson, foundation)
+    cubic = -8 * (200 * A**3 - 9 * np.pi**2 * B) / (135 * np.pi**3)
+    quartic = 2 * A * (715 * A**3 - 72 * np.pi**2 * B) / (45 * np.pi**4)
+    body, chi = Layer(1.0, poisson, foundation), np.array([0.01, 0.02, 0.04])
+    series = 1 - 2 * A / np.pi * chi + 14 / 3 * (A / np.pi) ** 2 * chi**2 + cubic * chi**3 + quartic * chi**4
+    off = np.array([hertz_ratio(body, c**2).value for c in chi]) - series
+    assert np.abs(off / chi**5).max() < 2  # the next term; at chi = 0.01 that is 2e-10
+
+
+@pytest.mark.parametrize(
+    ("poisson", "foundation", "part"),
+    [
+        *((0.0, "bonded", 0.0632), (0.2, "bonded", 0.0133), (0.3, "bonded", 0.0046), (0.499999, "bonded", 0.0052)),
+        *((0.0, "sliding", -0.1084), (0.3, "sliding", 0.0190), (0.499999, "sliding", 0.1888)),
+    ],
+)
+def test_the_published_coefficient_is_as_far_from_the_moment_as_is_said(poisson, foundation, part):
+    published = (thin_sample_series(1e-6, poisson, foundation) - 1) / 1e-6
+    assert published / (-2 / np.pi * _moments(poisson, foundation)[0]) - 1 == pytest.approx(part, abs=1e-4)
+
+
+def test_the_series_is_eight_per_cent_low_at_a_half_and_twenty_at_one():
+    low = [hertz_ratio(Layer(1.0, 0.499999), chi**2).value / thin_sample_series(chi, 0.5, "bonded") for chi in (0.5, 1)]
+    assert low == pytest.approx([1.084, 1.194], abs=1e-3)
+
+
+@pytest.mark.parametrize(("poisson", "foundation"), [(0.3, "bonded"), (0.499, "sliding")])
+def test_hertz_is_off_by_a_hundredth_where_that_is_said(poisson, foundation):
+    until = hertz_until(Contact(**SAMPLE | {"poisson": poisson}, thickness=1e-6, foundation=foundation))
+    for chi, sign in ((until.value - until.error, 1), (until.value + until.error, -1)):
+        off = 1 - 1 / hertz_ratio(Layer(1.0, poisson, foundation), chi**2).value
+        assert sign * (WRONG - off) > 0
+
+
+@pytest.fixture(scope="module")
+def said(tmp_path_factory):
+    """What the command printed on 80 columns, its record, and the assessment itself."""
+    folder, found = tmp_path_factory.mktemp("thin"), []
+    with pytest.MonkeyPatch.context() as patch:
+        assess = study.assess
+        patch.setattr(study, "assess", lambda *given: found.append(assess(*given)) or found[0])
+        assert cli.main([*ARGUMENTS, "--json", str(folder / "a.json"), "--plot", str(folder / "a.svg")]) == 0
+    return found[0], json.loads((folder / "a.json").read_text()), (folder / "a.svg").read_text()
+
+
+def _text(part, width=80):
+    console = Console(width=width, file=io.StringIO())
+    console.print(part, crop=False)
+    return console.file.getvalue()
+
+
+def _cells(text, first):
+    """Cells behind that which names their row."""
+    rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in text.splitlines()]
+    (row,) = [row for row in rows if row[:1] == [first]]
+    return row[1:]
+
+
+def test_the_sphere_is_traced_on_its_layer(said):
+    """Against a trace of its own: pull-off, jumps, energy, in SI."""
+    units = Units(100e-9, 1e9 / (1 - 0.3**2), 0.05, 0.3e-9)
+    layer = Layer(30e-9 / units.length, 0.3)
+    profile = halfspace.profiles.Sphere(units.radius_ratio)
+    path = halfspace.trace(units.tabor, body=layer, profile=profile, rtol=1e-6, to_load=2.0)
+    truth = computed("truth", path, 0.5 / units.stiffness, units)
+    assert set(said[0].finite.values) == set(QUANTITIES)
+    for name, value in said[0].finite.values.items():
+        assert abs(value.value - truth.values[name].value) <= value.error + truth.values[name].error, name
+    assert said[0].finite.model == "thin sample"
+
+
+def test_differences_are_parts_of_the_half_space_by_thickness(said):
+    force = next(d for d in said[0].deviations if d.quantity == "pull_off_force")
+    values = [model.values["pull_off_force"].value for model in (said[0].half_space, said[0].profile, said[0].finite)]
+    assert force.total.value == pytest.approx(values[2] / values[0] - 1, rel=1e-9)
+    assert force.body.value == pytest.approx((values[2] - values[1]) / values[0], rel=1e-9)
+    text = _text(report(said[0]))
+    title = "difference from the half-space, in % of it, by cause"
+    cells = _cells(text[text.index(title) :].split("without adhesion")[0], "pull-off force")
+    assert [float(cell.partition("(")[0]) for cell in cells] == pytest.approx(
+        [100 * part.value for part in (force.profile, force.body, force.total)], abs=2e-3
+    )
+
+
+def test_what_is_printed_of_the_sample_is_what_was_found(said):
+    sample = said[0].sample
+    text = _text(indentations_table(sample))
+    for row in sample.indentations:
+        cells = _cells(text, f"{row.indentation * 1e9:.4g}")
+        found = [float(cell.partition("(")[0]) for cell in cells]
+        expected = [row.chi, row.force.value * 1e9, 100 * row.half_space.value, 100 * row.series.value]
+        assert found == pytest.approx(expected, rel=2e-3)
+    text = _text(enough_table(sample))
+    for row in sample.enough:
+        thickness, worst = _cells(text, WORDS.get(row.quantity, row.quantity))[:2]
+        assert float(thickness.partition("(")[0]) == pytest.approx(
+            row.thickness.value * 1e9, abs=row.thickness.error * 1e9
+        )
+        assert worst == WORDS[row.worst]
+
+
+def test_the_reach_of_hertz_is_told_as_an_indentation(said):
+    text, chi = " ".join(_text(report(said[0]), 150).split()), said[0].sample.hertz_until.value
+    told = text[text.index("here an indentation of ") :].split()[4:6]
+    assert told[1] == "pm."
+    assert float(told[0]) == pytest.approx(1e12 * (chi * 30e-9) ** 2 / 100e-9, rel=1e-3)
+
+
+def test_the_record_has_all_of_it(said):
+    record, sample = said[1], said[0].sample
+    for found, row in zip(record["thin_sample"]["indentations"], sample.indentations, strict=True):
+        assert (found["indentation"], found["chi"]) == (row.indentation, row.chi)
+        assert [found[name] for name in ("force", "half_space", "series")] == [
+            vars(getattr(row, name)) for name in ("force", "half_space", "series")
+        ]
+    assert [found["thickness"] for found in record["thin_sample"]["enough"]] == [
+        vars(r.thickness) for r in sample.enough
+    ]
+    assert record["thin_sample"]["hertz_until"] == vars(sample.hertz_until)
+    assert record["input"]["thickness"] == pytest.approx(30e-9)
+    assert record["input"]["foundation"] == "bonded"
+    assert record["thickness_in_beta"] == pytest.approx(30e-9 / said[0].contact.units.length)
+    assert "<!-- thin sample -->" in said[2]
+
+
+def test_the_forces_without_adhesion_are_hertzs_times_the_layers(said):
+    """By the contact radius, whose pressures an operator of images knows too; see `test_layers`."""
+    theory, h = OnLayers(Layer(1.0, 0.3)), 30e-9
+    for row in said[0].sample.indentations:
+        a = brentq(lambda a, row=row: theory.hertz(a).approach - row.chi**2, 1e-3, 3.0)
+        force = theory.hertz(a).load * 1e9 / (1 - 0.3**2) * h**3 / 100e-9
+        assert row.force.value == pytest.approx(force, rel=1e-9)
+        assert row.chi == pytest.approx(math.sqrt(100e-9 * row.indentation) / h)
+        hertz = 4 / 3 * 1e9 / (1 - 0.3**2) * math.sqrt(100e-9) * row.indentation**1.5
+        assert row.half_space.value == pytest.approx(hertz / force - 1, rel=1e-9)
+        series = hertz * thin_sample_series(row.chi, 0.3, "bonded")
+        assert row.series.value == pytest.approx(series / force - 1, rel=1e-8, abs=1e-12)
+
+
+def test_from_the_thickness_that_is_told_on_the_half_space_is_right(said):
+    contact = said[0].contact
+    half_space = study._half_space(contact)
+    force, every = said[0].sample.enough
+    assert (force.quantity, every.quantity) == ("pull_off_force", "every quantity")
+    for row, names in ((force, ["pull_off_force"]), (every, QUANTITIES)):
+        for sign in (-1, 1):
+            thickness = (row.thickness.value + sign * 2 * row.thickness.error) / contact.units.length
+            model = study._on_layer(contact, Layer(thickness, 0.3), halfspace.profiles.Paraboloid())
+            off = max(abs(relative(model, half_space, name, contact.spacing).value) for name in names)
+            assert sign * (WRONG - off) > 0, (row.quantity, sign)
+
+
+@pytest.mark.parametrize("width", [150, 80, 60, 30])
+def test_nothing_is_cut_at_any_width(said, width):
+    text = _text(report(said[0]), width)
+    assert "…" not in text
+    assert max(map(len, text.splitlines())) <= width
+
+
+def test_jkr_on_the_layer_is_as_near_the_truth_as_its_errors_say():
+    units, layer, stiffness = Units(2.0, 3.0, 5.0, 7.0), Layer(0.5, 0.3), 0.006
+    path = halfspace.trace(300.0, body=layer, rtol=1e-4, to_load=2.0)
+    truth = computed("truth", path, stiffness, units)
+    theory = large_tabor_on(layer, 300.0, stiffness, units)
+    assert {"pull_off_force", "zero_load_radius", "jump_off_separation"} <= set(theory.values)
+    for name, value in theory.values.items():
+        assert abs(value.value - truth.values[name].value) < value.error + truth.values[name].error, name
+
+
+def test_a_soft_sample_has_jkrs_contact_on_the_layer():
+    contact = Contact(**SAMPLE | {"modulus": 1e5, "radius": 5e-6}, thickness=10e-6)
+    assert contact.units.tabor > 300
+    found, least = study._finite(contact).values["pull_off_force"], []
+    theory = OnLayers(contact.layer)
+    least = minimize_scalar(lambda a: theory.jkr(a).load, bounds=(0.8, 2.0), method="bounded").fun
+    assert abs(found.value + least * contact.units.load) < found.error < 1e-3 * found.value
+
+
+def test_a_position_on_a_soft_sample_is_judged_by_the_distance_between_jumps():
+    """JKR's theory on the layer has no jump on, so that the distance is the half-space's."""
+    contact = Contact(**SAMPLE | {"modulus": 1e5, "radius": 5e-6}, thickness=10e-6, stiffness=0.05)
+    thin, half_space = study._finite(contact), study._half_space(contact)
+    assert "jump_on_separation" not in thin.values
+    one, other = (
+        relative(*pair, "jump_off_separation", contact.spacing) for pair in ((half_space, thin), (thin, half_space))
+    )
+    assert one.value == pytest.approx(-other.value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (["--foundation", "sliding"], "--foundation would not be heeded, limit: with --thickness"),
+        (["--thickness", "500"], "thickness = 500 has no unit, limit: a multiple of m; write it as 500nm"),
+        (["--thickness", "0nm"], "thickness = 0nm is outside 0 < thickness < inf"),
+        (["--thickness", "1pm"], "m, 0.01 to 1000 beta; give metres or a unit, as 500nm"),
+        (["--thickness", "1m"], "m, 0.01 to 1000 beta; leave it out: it is a half-space"),
+        (["--thickness", "30nm", "--grip", "bonded"], "--grip would not be heeded, limit: without --thickness"),
+        (["--thickness", "30nm", "--counter-radius", "1um"], "--counter-radius would not be heeded, limit: without"),
+        (["--thickness", "30nm", "--foundation", "glued"], "invalid choice: 'glued'"),
+    ],
+)
+def test_what_does_not_go_with_a_thin_sample_is_refused_in_one_line(more, words, capsys):
+    try:
+        code = cli.main(["assess", *GIVEN, *more])
+    except SystemExit as stopped:
+        code = stopped.code
+    error = capsys.readouterr().err
+    assert code == 2
+    assert words in error
+    assert len(error.strip().splitlines()[-1:]) == 1
+
+
+def test_thickness_and_foundation_are_heeded(monkeypatch):
+    asked = []
+    monkeypatch.setattr(study, "assess", lambda contact, _: asked.append(contact))
+    with pytest.raises(AttributeError):
+        cli.main([*ARGUMENTS, "--foundation", "sliding"])
+    layer = asked[0].layer
+    assert (layer.strata[0].poisson, layer.base) == (0.3, "sliding")
+    assert layer.thickness == pytest.approx(30e-9 / asked[0].units.length, rel=1e-12)
+
+
+def test_a_thin_sample_and_another_body_are_no_contact():
+    with pytest.raises(InputError, match="limit: a rigid sphere on a thin sample"):
+        Contact(**SAMPLE, thickness=1e-6, counter_radius=1e-6)
+
+
+def test_a_thickness_is_in_si_with_a_material_and_in_beta_without(tmp_path, capsys):
+    beta, record = Contact(**SAMPLE).units.length, tmp_path / "c.json"
+    asked = ["curve", *GIVEN, "--body", "layer", "--rtol", "1e-2", "--json", str(record)]
+    assert cli.main([*asked, "--thickness", "30nm"]) == 0
+    assert json.loads(record.read_text())["scene"]["body"]["thickness"] == pytest.approx(30e-9 / beta)
+    assert cli.main([*asked, "--thickness", "30"]) == 2
+    assert cli.main(["curve", "--tabor", "1", "--body", "layer", "--thickness", "30nm"]) == 2
+    assert "thickness = 30nm is not a plain number in beta" in capsys.readouterr().err

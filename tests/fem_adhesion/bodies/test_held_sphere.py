@@ -1,0 +1,236 @@
+"""The sphere held over a cap: its mesh, the patch test, the hemisphere, punches as small caps, and its convergence."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import sparse
+from skfem import Basis, ElementQuadP, ElementTriP2
+
+from fem_adhesion.elasticity.boundaries import Exterior, clamped, sliding, trace_on, with_interiors
+from fem_adhesion.elasticity.cells import Cells, cell_stiffness
+from fem_adhesion.elasticity.condensation import Dissection, condense
+from fem_adhesion.elasticity.space import Space, ring_measure
+from fem_adhesion.mesh import spheres as module
+from fem_adhesion.mesh.curved import refined_towards
+from fem_adhesion.mesh.file import read_body
+from fem_adhesion.mesh.spheres import CORE, DEPTH, contact_ends, held_sphere, hemisphere, rings_at_equator
+from halfspace.elastic import grid
+from halfspace.elastic.grid import SurfaceCoordinate
+
+NU, R = 0.3, 30.0
+CAPS = (1.0, 30.0, 75.0, 88.0, 90.0)  # by lines, in the core, beside it, by rings about the equator, at the equator
+
+
+def lines(radius=R, finest=0.6, edge=2.0):
+    x = grid.graded(edge, finest, CORE * radius, growth=2.5)
+    return x, grid.graded(0.0, finest, DEPTH * radius, growth=2.5)
+
+
+def sphere(cap_angle, radius=R, **how):
+    return held_sphere(radius, *lines(radius, **how), cap_angle)
+
+
+def coarse_sphere(cap_angle):
+    """A sphere of four lines, too few to lead to the rim of a small cap."""
+    return sphere(cap_angle, 2.5, finest=0.8, edge=0.0)
+
+
+def gaussian(radii):
+    return np.exp(-((radii / 3.0) ** 2))
+
+
+def pole_compliance(body, pressure=gaussian):
+    """Deflection of the pole per unit load."""
+    operator = body.operator
+    p = pressure(operator.radii)
+    return operator.axis_row @ (operator.compliance @ p) / (operator.weights @ p)
+
+
+def held(mesh, degree, grip=clamped):
+    return condense(Space(mesh, ElementQuadP(degree)), NU, far_field=grip)
+
+
+# --- the mesh ---
+
+
+def surface_area(space, name):
+    trace = trace_on(space, name, 10)
+    return np.sum(ring_measure(trace.places[0]) * trace.lengths)
+
+
+@pytest.mark.parametrize("make", [sphere, coarse_sphere])
+@pytest.mark.parametrize("cap_angle", [*CAPS, 5.0, 89.99])
+def test_volume_and_areas_are_those_of_the_sphere(make, cap_angle):
+    mesh = make(cap_angle)
+    radius, space = -mesh.p[1].min() / 2, Space(mesh, ElementQuadP(6))
+    volume = np.sum(Cells.of(space).measure)
+    cap = 2 * np.pi * radius**2 * (1 - np.cos(np.radians(cap_angle)))
+    assert volume == pytest.approx(4 / 3 * np.pi * radius**3, rel=1e-10)
+    assert surface_area(space, "contact") == pytest.approx(2 * np.pi * radius**2, rel=1e-10)
+    assert surface_area(space, "far") == pytest.approx(cap, rel=1e-10, abs=1e-11 * 4 * np.pi * radius**2)
+
+
+@pytest.mark.parametrize("make", [sphere, coarse_sphere])
+@pytest.mark.parametrize("cap_angle", [*CAPS, 5.0, 89.99])
+def test_no_cell_is_turned_over(make, cap_angle):
+    points = np.array(np.meshgrid(*2 * [np.linspace(0, 1, 7)])).reshape(2, -1)
+    determinants = make(cap_angle).mapping().detDF(points)
+    assert np.all(determinants * np.sign(determinants.mean(axis=1))[:, None] > 0)
+
+
+@pytest.mark.parametrize("cap_angle", CAPS)
+def test_rim_of_the_cap_is_where_its_facets_end(cap_angle):
+    mesh = sphere(cap_angle)
+    ends = mesh.p[:, np.unique(mesh.facets[:, mesh.boundaries["far"]])]
+    angle = np.degrees(np.arctan2(ends[0], -R - ends[1]))
+    assert angle.max() == pytest.approx(cap_angle, rel=1e-12)
+
+
+@pytest.mark.parametrize("cap_angle", CAPS)
+def test_contact_ends_are_those_of_the_cells(cap_angle):
+    surface = trace_on(Space(sphere(cap_angle), ElementQuadP(3)), "contact", 5)
+    x = np.concatenate([lines()[0], contact_ends(R, rings_at_equator(R, cap_angle))[1:]])
+    assert surface.ends == pytest.approx(SurfaceCoordinate(R).radius(x)[0], rel=1e-12, abs=1e-12)
+    assert np.all(surface.weights() > 0)
+
+
+def test_facets_on_the_axis_are_known_whatever_rounding_makes_of_their_radii():
+    """Else they are the cap's or the contact's, and the sphere is held there: by which processor multiplies."""
+    mesh = sphere(1.0)
+    known = {name: np.sort(facets) for name, facets in mesh.boundaries.items()}
+    mesh.p[0, np.unique(mesh.facets[:, known["axis"]])] = 2e-18
+    module.named(
+        mesh, lambda r, z: {"axis": r == 0, "contact": (r > 0) & (z > -R), "far": (r > 0) & (r < 0.6) & (z < -R)}
+    )
+    assert np.array_equal(np.sort(mesh.boundaries["axis"]), known["axis"])
+    assert np.array_equal(np.sort(mesh.boundaries["contact"]), known["contact"])
+    assert np.all(mesh.p[0, mesh.facets[:, mesh.boundaries["axis"]]] == 2e-18)
+    ends = np.hypot(*np.diff(mesh.p[:, mesh.facets[:, known["axis"]]], axis=1)[:, 0])
+    assert ends.sum() == pytest.approx(2 * R)
+
+
+def test_refinement_keeps_the_sides_of_all_other_cells():
+    mesh = hemisphere(R, *lines())
+    for vertex in (0, 30, mesh.t[2, -1]):
+        finer = refined_towards(mesh, vertex, np.array([0.5, 0.1]))
+        around = np.sum(mesh.t == vertex)
+        assert finer.nelements == mesh.nelements + 4 * around
+        assert len(finer.boundary_facets()) == len(mesh.boundary_facets()) + 2 * np.sum(
+            mesh.facets[:, mesh.boundary_facets()] == vertex
+        )
+
+
+@pytest.mark.parametrize("cap_angle", [0.9, 89.995, 91.0])
+def test_caps_out_of_range_are_refused(cap_angle):
+    with pytest.raises(ValueError, match="cap_angle"):
+        sphere(cap_angle)
+
+
+def test_a_single_cell_of_the_core_is_refused():
+    with pytest.raises(ValueError, match="limit 3"):
+        held_sphere(R, np.array([0, CORE * R]), np.array([0, DEPTH * R]), 30.0)
+
+
+# --- elasticity ---
+
+
+@pytest.mark.parametrize("cap_angle", CAPS)
+def test_uniform_tension_is_exact_in_elements_of_the_degree_of_the_cells(cap_angle):
+    """Linear fields are in the space only if neighbours agree on their common side, function by function."""
+    space = Space(coarse_sphere(cap_angle), ElementQuadP(8))
+    basis = Basis(space.mesh, space.element, intorder=18)
+    r, z = basis.global_coordinates()
+    u = np.empty(space.unknowns)
+    for component, field in zip(space.components, (-NU * r, z), strict=True):
+        u[component] = basis.project(field)
+        assert np.max(np.abs(basis.interpolate(u[component]) - field)) < 1e-9
+    cells = u[space.cell_dofs]
+    forces = np.zeros(space.unknowns)
+    np.add.at(forces, space.cell_dofs, np.einsum("cij,jc->ic", cell_stiffness(space, NU), cells))
+    volume = 4 / 3 * np.pi * 2.5**3
+    assert u @ forces == pytest.approx((1 - NU**2) * volume, rel=1e-9)
+
+    surface = space.scalar_dofs.get_facet_dofs(space.mesh.boundary_facets()).all()
+    inside = np.setdiff1d(np.arange(space.scalar_dofs.N), surface)
+    assert np.max(np.abs(forces[space.components[:, inside]])) < 1e-9 * np.max(np.abs(forces))
+
+
+def between_two_walls(degree):
+    """Deflection of the poles per unit load of a free sphere with the same pressure on both, relative to its centre."""
+    space = Space(sphere(90.0), ElementQuadP(degree))
+    surface = trace_on(space, "contact", degree + 4)
+    held = np.concatenate([space.components[0, space.boundary_functions("axis")], space.interior_dofs])
+    vertex = np.argmin(np.hypot(space.mesh.p[0], space.mesh.p[1] + R))
+    centre = space.components[1, space.scalar_dofs.nodal_dofs[0, vertex]]
+    kept = np.setdiff1d(np.arange(space.unknowns), np.append(held, centre))
+    T = sparse.csc_array((np.ones(kept.size), (kept, np.arange(kept.size))), shape=(space.unknowns, kept.size))
+    exterior = with_interiors(Exterior(T, sparse.csc_array(2 * T.shape[1:])), space)
+    K, T = cell_stiffness(space, NU), exterior.reduction
+    factors = Dissection(space, space.cell_dofs, exterior, np.zeros(0, dtype=np.intp)).factorised(K)
+
+    pressed = surface.weights() * gaussian(surface.radii)
+    load, forces = np.sum(pressed), np.zeros(space.unknowns)
+    forces[space.components[1, surface.functions]] -= surface.values.T @ pressed
+    far = trace_on(space, "far", degree + 4)
+    r, normal = far.places[0], far.normals[1]
+    upwards = (-normal * gaussian(r) * ring_measure(r) * far.lengths).ravel()
+    forces[space.components[1, far.functions]] += far.values.T @ upwards
+    u = T @ factors.solve(T.T @ forces)
+    pole = np.argmin(np.hypot(*space.mesh.p))
+    return -u[space.components[1, space.scalar_dofs.nodal_dofs[0, pole]]] / load
+
+
+def test_sphere_between_two_walls_is_a_sliding_hemisphere():
+    """Nothing is singular then: the error falls by a factor for every degree."""
+    exact = pole_compliance(held(hemisphere(R, *lines(finest=0.3)), 9, sliding))
+    errors = [abs(between_two_walls(degree) / exact - 1) for degree in (4, 6, 8)]
+    assert errors[1] < errors[0] / 20
+    assert errors[2] < 1e-8
+
+
+@pytest.mark.parametrize("grip", [clamped, sliding])
+def test_error_falls_with_the_degree_in_spite_of_the_rim(grip):
+    bodies = [held(sphere(30.0), degree, grip) for degree in (3, 4, 5, 9)]
+    values = np.array([pole_compliance(body) for body in bodies])
+    errors = np.abs(values[:-1] / values[-1] - 1)
+    assert np.all(errors[1:] < errors[:-1] / 4)
+    assert errors[2] < 1e-6
+    assert bodies[2].unknowns < 10_000
+
+
+def test_rings_take_the_error_of_the_rim_down_with_their_size(monkeypatch):
+    """The stress is as d^(-1/2): what a cell of size h at the rim gets wrong of the compliance is as h."""
+    rings, values = module.RINGS, []
+    for count in (1, 2, 3, 7):
+        monkeypatch.setattr(module, "RINGS", rings[:count])
+        values.append(pole_compliance(held(sphere(30.0), 5)))
+    errors = np.array(values[-1]) - values[:-1]
+    assert errors[1:] / errors[:-1] == pytest.approx(0.2, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("grip", "stiffer"),
+    [(sliding, 1.0), (clamped, (1 - NU) * np.log(3 - 4 * NU) / (1 - 2 * NU))],
+    ids=["sliding", "bonded"],
+)
+def test_small_cap_gives_like_a_flat_punch(grip, stiffer):
+    """By 1/(2 b E*), bonded by Mossakovskii's factor less (Johnson 1985, section 3.4); a sphere's is ln b away."""
+
+    def gain(cap_angle):
+        first, second = (pole_compliance(held(sphere(cap), 5, grip)) for cap in (cap_angle, 2 * cap_angle))
+        b = R * np.sin(np.radians([cap_angle, 2 * cap_angle]))
+        return (first - second) / -np.diff(1 / (2 * stiffer * b))[0]
+
+    errors = np.abs([gain(1.0) - 1, gain(2.0) - 1])
+    assert errors[0] < 3e-3
+    assert errors[0] < errors[1] / 1.5
+
+
+def test_sphere_of_another_mesh_is_a_little_stiffer():
+    """Quadratic triangles by Gmsh, 0.05 R long at the rim, where they leave 3e-3; graded to 2e-4 R, they leave 3e-5."""
+    mesh = read_body(Path(__file__).parents[3] / "meshes" / "sphere.msh")
+    triangles = condense(Space(mesh, ElementTriP2()), NU, far_field=clamped)
+    quads = held(sphere(30.0, 1.0, finest=0.05, edge=0.2), 6)
+    values = [pole_compliance(body, lambda r: np.exp(-((r / 0.2) ** 2))) for body in (triangles, quads)]
+    assert 0 < 1 - values[0] / values[1] < 4e-3

@@ -1,0 +1,206 @@
+"""`compare` of bodies with a length: each agrees with what shares no operator with it, and a defect is rejected."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scenes import hemisphere, pair
+
+from fem_adhesion import HeldSphere, Hemisphere, LinearElastic, Meshed, Scene, cli, discretise, harmonics
+from fem_adhesion.crosscheck import definitions, from_scratch
+from fem_adhesion.crosscheck import scenes as comparisons
+from fem_adhesion.crosscheck import study as crosscheck
+from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
+from fem_adhesion.crosscheck.weak_bodies import contacts
+from fem_adhesion.elasticity import cells
+from fem_adhesion.weak_form.contact import LENNARD_JONES
+from halfspace.elastic.grid import SurfaceCoordinate
+from halfspace.errors import InputError
+from halfspace.profiles import Paraboloid, Sphere
+
+MESH = Path(__file__).parents[3] / "meshes" / "hemisphere.msh"
+
+
+def sphere(profile=None, **of_body):
+    return hemisphere(1.0, 30.0, profile, **of_body)
+
+
+def facing(*counter, **of_body):
+    return pair(1.0, 30.0, *counter, **of_body)
+
+
+@pytest.fixture
+def _without_limits(monkeypatch):
+    """Closed forms are those of the half-space, whatever the body, and definitions have tests of their own."""
+    monkeypatch.setattr(from_scratch, "closed_forms", lambda _: [])
+    monkeypatch.setattr(definitions, "rows", lambda _: [])
+
+
+# --- the command ---
+
+HEMISPHERE = ["--body", "hemisphere", "--profile", "sphere", "--radius-ratio", "10"]
+
+
+def test_the_command_compares_a_hemisphere_with_the_whole_sphere(tmp_path, capsys):
+    file = tmp_path / "result.json"
+    assert cli.main(["compare", "--tabor", "3", *HEMISPHERE, "--json", str(file)]) == 0
+    (case,), out = json.loads(file.read_text())["cases"], capsys.readouterr().out
+    assert "tabor 3; poisson 0.3; hemisphere; R/eps 10: agree" in out
+    assert "error (ha)" in out
+    rows = {row["quantity"]: row for row in case["comparison"] if row["between"] == list(HARMONICS)}
+    assert {"operator: spike", "cross-residual: pull_off", "jump_off load", "energy released"} <= rows.keys()
+    for quantity, row in rows.items():
+        event, _, number = quantity.partition(" ")
+        if event in case["finite_element"]["events"]:
+            assert row["first"] == pytest.approx(row["second"], rel=1e-4, abs=1e-4)
+            if number in ("load", "approach"):
+                assert row["first"] == case["harmonics"]["events"][event][number]
+                assert row["budget"] <= 1e-4
+    assert {row["verdict"] for row in case["comparison"]} == {"agree"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([*HEMISPHERE, "--strain", "finite"], "is compared with nothing, limit: small strain"),
+        ([*HEMISPHERE, "--cap-angle", "20"], "--cap-angle would not be heeded, limit: with --body held-sphere"),
+        (["--grip", "bonded"], "--grip would not be heeded"),
+        (["--body", "hemisphere"], 'radius_ratio = None for body = "hemisphere"'),
+        (["--counter-radius", "2"], "--counter-radius would not be heeded, limit: with --counter-share"),
+        (["--body", "hemisphere", "--mesh", "a.msh"], "mesh = a.msh with body = hemisphere, limit: one of both"),
+        ([*HEMISPHERE[:-1], "1e6", "--tabor", "5"], "radius_ratio = 1e+06 at tabor 5 takes"),
+    ],
+)
+def test_the_command_refuses_in_one_line(arguments, message, capsys):
+    assert cli.main(["compare", "--tabor", "1", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert message in err
+    assert err.count("\n") == 1
+
+
+def test_a_cap_is_heeded(monkeypatch):
+    asked = []
+    monkeypatch.setattr(comparisons, "run", lambda scenes, **_: asked.extend(scenes) or iter(()))
+    with pytest.raises(StopIteration):
+        cli.main(["compare", "--tabor", "2", "--body", "held-sphere", "--radius-ratio", "50", "--cap-angle", "20"])
+    assert asked == [Scene(2.0, HeldSphere(radius_ratio=50.0, cap_angle=20.0))]
+
+
+# --- what needs no solution ---
+
+BODIES = {
+    "under a sphere": (Scene(1.0, profile=Sphere(30.0)), SOLVERS),
+    "hemisphere": (sphere(), HARMONICS),
+    "nearly incompressible": (sphere(poisson=0.4999), HARMONICS),
+    "under a paraboloid": (sphere(Paraboloid()), HARMONICS),
+    "two spheres": (facing(0.3, 0.45, 2.0), HARMONICS),
+    "sphere on a half-space": (facing(0.5, 0.2), HARMONICS),
+    "traction on the surface": (sphere(material=LinearElastic(traction="surface")), None),
+    "bonded": (sphere(grip="bonded"), None),
+    "bonded pair": (facing(0.3, 0.45, 2.0, grip="bonded"), None),
+    "held over a cap": (Scene(1.0, HeldSphere(radius_ratio=30.0)), None),
+    "a mesh": (Scene(1.0, Meshed(MESH, radius_ratio=30.0, grip="bonded")), None),
+}
+
+
+@pytest.mark.usefixtures("_without_limits")
+@pytest.mark.parametrize("body", BODIES)
+def test_operators_and_equations_agree(body):
+    scene, between = BODIES[body]
+    rows = crosscheck.unsolved(scene, rtol=1e-4)
+    assert {row.quantity: row.verdict for row in rows if row.verdict != "agree"} == {}
+    assert {row.between for row in rows} == {WEAK_FORM} | ({between} if between else set())
+    assert len(rows) == (6 if between else 4)
+
+
+def test_a_bonded_hemisphere_agrees_with_the_weak_form():
+    case = crosscheck.compare(sphere(grip="bonded"), rtol=1e-4, before=())
+    assert case.verdict == "agree"
+    assert list(case.solutions) == ["finite elements"]
+    assert {row.between for row in case.rows} == {WEAK_FORM}
+    assert len(case.rows) == 22
+    for row in case.rows:  # it knows a body with a length better than its budget
+        assert row.first.error < row.budget / 5, row.quantity
+
+
+# --- defects of the finite elements ---
+
+
+def _stiffer(monkeypatch):
+    original = cells.elastic_matrix
+    monkeypatch.setattr(cells, "elastic_matrix", lambda nu: 1.01 * original(nu))
+
+
+def _another(profile=None, **change):
+    """Finite elements that solve another scene."""
+
+    def inject(monkeypatch):
+        def other(scene):
+            return replace(scene, profile=profile, body=replace(scene.body, **change))
+
+        original = discretise.sized_body
+        monkeypatch.setattr(discretise, "sized_body", lambda scene, how: original(other(scene), how))
+
+    return inject
+
+
+DEFECTS = {
+    "1 % stiffer": (_stiffer, {"operator: ring", "equations: residual", "equations: tangent"}),
+    "R/eps 1 % larger": (_another(radius_ratio=30.3), {"operator: ring", "equations: residual"}),
+    "Poisson's ratio 0.31": (_another(material=LinearElastic(0.31)), {"operator: ring", "equations: residual"}),
+    "profile of the paraboloid": (_another(Paraboloid()), {"equations: residual"}),
+    "another grip": (None, {"operator: ring", "equations: residual", "equations: tangent"}),
+}
+
+
+@pytest.mark.usefixtures("_without_limits")
+@pytest.mark.parametrize("grip", ["sliding", "bonded"])
+@pytest.mark.parametrize("defect", DEFECTS)
+def test_a_defect_of_the_finite_elements_is_rejected(defect, grip, monkeypatch):
+    """Bonded by the weak form alone."""
+    inject, shown_by = DEFECTS[defect]
+    inject = inject or _another(grip="sliding" if grip == "bonded" else "bonded")
+    inject(monkeypatch)
+    rows = crosscheck.unsolved(sphere(grip=grip), rtol=1e-4)
+    rejecting = {row.quantity for row in rows if row.verdict == "disagree"}
+    assert {name for name in shown_by if grip == "sliding" or not name.startswith("operator")} <= rejecting
+
+
+# --- the solvers they are compared with ---
+
+
+def test_harmonics_take_the_rim_of_a_pair_as_the_finite_elements_do():
+    from fem_adhesion.mesh.spheres import CORE
+
+    assert SurfaceCoordinate(3.0).radius(np.array(3.0 * CORE))[0] == pytest.approx(3.0 * harmonics.RIM, rel=1e-12)
+
+
+def test_harmonics_refuse_a_spike_that_takes_too_many():
+    with pytest.raises(InputError, match="harmonics of the sphere, limit 5000; take a smaller one"):
+        harmonics.trace(Scene(5.0, Hemisphere(radius_ratio=1e5)))
+
+
+@pytest.mark.parametrize("counter", [None, (0.4, 0.3, 3.0)])
+def test_the_weak_form_of_a_body_with_a_length_has_its_whole_surface(counter):
+    scene = sphere() if counter is None else facing(*counter)
+    R = scene.sphere_radius * (1 if counter is None else 1 + 1 / 3)
+    for contact in (make(1.2, 1.2) for make in contacts(scene)):
+        area = contact.body.integral(np.ones_like(contact.body.radii)) + contact.rigid[1].sum()
+        assert area == pytest.approx(np.pi * R**2, rel=1e-9)
+        assert contact.load(0 * contact.body.radii, -5.0) == contact.load_beyond(-5.0)
+        assert (contact.load_beyond(-5.0) < 0) == (counter is not None)
+
+
+HELD = [sphere(), Scene(1.0, HeldSphere(radius_ratio=30.0)), facing(0.4, 0.3, 3.0), BODIES["a mesh"][0]]
+
+
+@pytest.mark.parametrize("scene", HELD)
+def test_what_holds_a_body_bears_the_whole_load(scene):
+    """Also the tension at the corner where the surface is held, which deforms nothing."""
+    contact = contacts(scene)[0](1.2, 1.2)
+    h = 1.1 + 0.2 * contact.body.radii
+    load = contact.load(LENNARD_JONES.tension(h), -5.0) - contact.load_beyond(-5.0)
+    assert contact.far_reaction(contact.displacement(h), h) == pytest.approx(load, rel=1e-9)

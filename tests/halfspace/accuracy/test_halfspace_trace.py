@@ -1,0 +1,479 @@
+"""The half-space curve and its events against converged references, limits, and itself."""
+
+import csv
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hard.references import charted_rung
+
+import halfspace
+from halfspace.accuracy.fold_birth import critical_stiffness
+from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for, resolutions_for, rule_for
+from halfspace.accuracy.refinement import MOST_RUNGS, climb
+from halfspace.elastic import compliance
+from halfspace.equilibrium.charts import metric_for, trace_charts
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets, locate
+from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.equilibrium.devices import cycle
+from halfspace.equilibrium.path import Metric, Point, Steps, _hides_turning_points, correct
+from halfspace.equilibrium.search import find_events
+from halfspace.errors import InputError, NotConverged
+from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Morse, PowerLaw
+from halfspace.profiles import Sphere
+from halfspace.scales import Scales
+from halfspace.theories import closed_forms
+
+DATA = Path(__file__).parents[2] / "data"
+
+
+def _reference():
+    with (DATA / "reference_events.csv").open() as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return [{key: value if key == "event" else float(value or "nan") for key, value in row.items()} for row in rows]
+
+
+@pytest.fixture(scope="module")
+def curves():
+    return {tabor: halfspace.trace(tabor) for tabor in (0.02, 0.05, 0.5, 0.69, 0.7, 0.71, 1, 2, 3, 5, 10)}
+
+
+@pytest.mark.parametrize("tabor", [0.02, 0.71, 2, 10])
+def test_the_curve_goes_on_where_one_grid_hands_it_over_to_another(curves, tabor):
+    """The same state on two grids, of which each is right to some 1e-5 where the edge leaves the one for the other."""
+    separated, contact = curves[tabor].segments
+    last, first = separated.points[-1], contact.points[0]
+    assert first.arclength == last.arclength
+    assert first.observables[CONTACT_RADIUS] == pytest.approx(last.observables[CONTACT_RADIUS], rel=1e-9, abs=0)
+    np.testing.assert_allclose(first.observables, last.observables, rtol=2e-4)
+    np.testing.assert_allclose(first.rates, last.rates, rtol=1e-2, atol=1e-3)
+
+
+@pytest.mark.parametrize("row", _reference(), ids=lambda row: f"{row['tabor']:g}-{row['event']}")
+def test_events_against_the_converged_reference(curves, row):
+    event = curves[row["tabor"]].event(row["event"])
+    load_error = abs(event.load - row["load"])
+    approach_error = abs(event.approach - row["approach"])
+    assert load_error <= 1e-6 * abs(row["load"])
+    if row["event"] != "pull_off":  # a flat extremum, whose place is less certain than its depth
+        assert approach_error <= 1e-6 * abs(row["approach"])
+    assert load_error <= event.load_error + row["err_load"]
+    assert approach_error <= event.approach_error + row["err_approach"]
+
+
+@pytest.mark.parametrize("rtol", [1e-2, 1e-4, 1e-8])
+@pytest.mark.parametrize("tabor", [0.5, 1, 5])
+def test_estimates_hold_the_truth_at_other_tolerances(rtol, tabor):
+    path = halfspace.trace(tabor, rtol=rtol)
+    for row in _reference():
+        if row["tabor"] == tabor:
+            event = path.event(row["event"])
+            assert abs(event.load - row["load"]) <= event.load_error + row["err_load"]
+            assert event.load_error <= rtol * abs(event.load)
+
+
+def test_table_2_to_its_printed_digits(curves):
+    """Printed rows that were controlled by the central gap; those controlled by the approach err by up to 1.2 %."""
+    assert -curves[1].event("jump_on").approach == pytest.approx(1.628, abs=2e-3)
+    assert curves[5].event("jump_on").central_gap == pytest.approx(2.361, abs=2e-3)
+    assert curves[3].event("jump_off").contact_radius == pytest.approx(0.650, abs=3e-3)
+
+
+def test_the_curve_folds_only_above_the_critical_tabor_parameter(curves):
+    for tabor, path in curves.items():
+        assert (path.event("jump_on") is None) == (path.event("jump_off") is None) == (tabor < 0.697)
+
+
+def test_four_folds_at_tabor_5(curves):
+    rates = np.array([point.rates[0] for point in curves[5].points])
+    assert np.sum(rates[:-1] * rates[1:] < 0) == 4
+
+
+def test_the_unstable_branch_lies_between_the_jumps(curves):
+    path = curves[5]
+    unstable = np.flatnonzero(~path.stable)
+    assert np.all(np.diff(unstable) == 1)
+    on, off = path.event("jump_on"), path.event("jump_off")
+    assert path.approach[unstable].max() <= on.approach
+    assert path.approach[unstable].min() >= off.approach
+    assert not path.stable_under_dead_load[~path.stable].any()
+    assert path.stable_under_dead_load[-1]
+    pull_off = path.event("pull_off").load
+    assert path.load.min() >= pull_off
+    falling = np.diff(path.load) < 0
+    assert not (path.stable_under_dead_load[1:] & path.stable_under_dead_load[:-1])[falling].any()
+
+
+def test_an_event_gives_each_of_its_numbers_with_its_own_error(curves):
+    event = curves[2.0].event("jump_off")
+    for name in ("approach", "load", "central_gap", "contact_radius"):
+        estimate = event.estimate(name)
+        assert (estimate.value, estimate.error) == (getattr(event, name), getattr(event, f"{name}_error"))
+    assert len({event.estimate(name) for name in ("approach", "load", "central_gap")}) == 3
+
+
+def test_the_states_of_a_path_that_meet_a_condition_come_in_order(curves):
+    path = curves[2.0]
+    on, off = path.states(FOLD)
+    assert on.point.arclength < off.point.arclength
+    for fold, name in ((on, "jump_on"), (off, "jump_off")):
+        assert fold.point.observables[0] == pytest.approx(path.event(name).approach, abs=1e-3)
+
+
+def test_between_its_points_a_segment_is_drawn_with_their_tangents(curves):
+    for segment in curves[2.0].segments:
+        values, rates = segment.between(4)
+        assert values.shape == rates.shape == (4 * (len(segment.points) - 1) + 1, 4)
+        ends = np.array([point.observables[:3] for point in segment.points])
+        assert values[::4, :3] == pytest.approx(ends, rel=1e-12, abs=1e-12)
+        slopes = np.array([point.rates[:3] for point in segment.points])
+        assert rates[::4, :3] == pytest.approx(slopes, rel=1e-9, abs=1e-9)
+        apart = any(np.isnan(point.observables[CONTACT_RADIUS]) for point in segment.points)
+        assert np.isnan(values[:, CONTACT_RADIUS]).all() == apart
+
+
+def test_the_curve_runs_from_separation_to_compression(curves):
+    for tabor, path in curves.items():
+        assert abs(path.load[0]) < 0.03
+        assert path.load[-1] >= 5
+        assert path.central_gap[0] > 19
+        assert np.isnan(path.contact_radius[0])
+        touching = np.isfinite(path.contact_radius)
+        radius, error = path.contact_radius[touching], path.contact_radius_error[touching]
+        assert np.all(np.diff(radius) >= -error[1:] - error[:-1]), tabor  # where one grid hands over to the next
+        assert np.all(np.diff(path.arclength) >= 0)
+
+
+def test_arclength_does_not_depend_on_the_grid():
+    def length(rtol):
+        """Length of the polyline from far separation to zero load."""
+        segments = trace_charts(
+            half_space_charts(Scales(1.0), resolution_for(Scales(1.0), rtol)), steps=Steps(longest=0.2, turn=0.05)
+        )
+        values = np.array([point.observables[:3] for segment in segments for point in segment.points])
+        lengths = np.sqrt(np.diff(values, axis=0) ** 2 @ metric_for(segments[0].problem).weights[:3])
+        return np.interp(0.0, values[-10:, 1], np.cumsum(lengths)[-10:])
+
+    assert length(1e-3) == pytest.approx(length(1e-7), rel=2e-4)
+
+
+def test_the_work_along_the_curve_is_the_energy_between_its_ends():
+    """Trapezoidal rule with end corrections on a finely stepped curve, against the energies of the two end states."""
+    segments = trace_charts(
+        half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-8)), steps=Steps(longest=0.05, turn=0.02)
+    )
+    points = [point for segment in segments for point in segment.points]
+    first, last = segments[0].points[0], segments[-1].points[-1]
+    work = 0.0
+    for a, b in pairwise(points):
+        h = b.arclength - a.arclength
+        f, g = (p.observables[1] * p.rates[0] for p in (a, b))
+        work += h * (f + g) / 2
+    released = segments[0].problem.energy(first.x) - segments[-1].problem.energy(last.x)
+    assert -work == pytest.approx(released, rel=3e-4)
+    assert find_events(segments)["pull_off"].point.observables[1] == pytest.approx(-4.97501137, abs=1e-7)
+
+
+def test_jkr_limit():
+    path = halfspace.trace(50, rtol=1e-4)
+    assert path.event("pull_off").load == pytest.approx(closed_forms.JKR_PULL_OFF, rel=2e-3)
+    assert path.event("jump_off").approach / 50 == pytest.approx(-0.75 * np.pi ** (2 / 3), rel=0.01)
+    zero = path.event("zero_load")
+    assert zero.contact_radius == pytest.approx(float(closed_forms.jkr_radius(0.0)), rel=2e-3)
+    assert zero.approach == pytest.approx(float(closed_forms.jkr_approach(zero.contact_radius, 50)), rel=0.02)
+
+
+def test_the_neck_outside_a_soft_contact_is_jkrs():
+    """Gap outside the contact: Hertz's and that of a flat punch pulled by sqrt(2 pi a dgamma/E*)."""
+    mu = 100.0
+    state = halfspace.trace(mu, rtol=1e-4).stages[-1]["zero_load"]
+    a = float(closed_forms.jkr_radius(0.0))
+    r = np.linspace(1.1, 2.0, 10) * a
+    gap = state.problem.operator_at(state.point.x).values_at(r, state.point.x[:-2])
+    jkr = closed_forms.hertz_gap(r, a, mu) + mu * np.sqrt(2 * np.pi * a) * 2 / np.pi * np.arccos(a / r)
+    np.testing.assert_allclose(gap, jkr, rtol=0.02)
+
+
+def test_jkr_forms_agree_with_each_other():
+    radius = closed_forms.jkr_radius(np.array([-4.0, 0.0, 10.0]))
+    np.testing.assert_allclose(closed_forms.jkr_load(radius), [-4.0, 0.0, 10.0], atol=1e-12)
+    s = np.linspace(0.3, 1.5, 400001) * np.cbrt(9 * np.pi / 2)
+    assert closed_forms.jkr_load(s).min() == pytest.approx(closed_forms.JKR_PULL_OFF, rel=1e-9)
+    assert closed_forms.jkr_approach(s, 1.0).min() == pytest.approx(-0.75 * np.pi ** (2 / 3), rel=1e-9)
+    assert closed_forms.hertz_load(closed_forms.jkr_radius(1e6)) == pytest.approx(1e6, rel=0.01)
+
+
+def test_pull_off_lies_between_bradley_and_jkr_and_falls_with_tabor(curves):
+    loads = [path.event("pull_off").load for path in curves.values()]
+    assert min(loads) > closed_forms.BRADLEY_PULL_OFF
+    assert max(loads) < closed_forms.JKR_PULL_OFF
+    assert np.all(np.diff(loads) > 0)
+
+
+@pytest.mark.parametrize(
+    ("kwargs", "message"),
+    [
+        ({"tabor": 0}, r"tabor = 0 is outside 0 < tabor"),
+        ({"tabor": float("nan")}, r"tabor = nan"),
+        ({"tabor": float("inf")}, r"tabor = inf"),
+        ({"tabor": 1, "rtol": 1e-12}, r"rtol = 1e-12 is outside 1e-9 <= rtol <= 0.1; take"),
+        ({"tabor": 1, "rtol": float("nan")}, r"rtol = nan"),
+    ],
+)
+def test_bad_input_is_refused(kwargs, message):
+    tabor = kwargs.pop("tabor")
+    with pytest.raises(ValueError, match=message):
+        halfspace.trace(tabor, **kwargs)
+
+
+def test_the_half_space_needs_only_numpy_and_scipy():
+    code = "import sys, halfspace; print([m for m in ('skfem', 'meshio', 'rich', 'fem_adhesion') if m in sys.modules])"
+    assert (
+        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == "[]"
+    )
+
+
+@pytest.mark.parametrize(
+    ("code", "unneeded"),
+    [
+        ("", ("scipy",)),
+        ("halfspace.trace(1.0)", ("scipy.optimize", "scipy.interpolate", "scipy.sparse", "scipy.spatial")),
+    ],
+    ids=["import", "trace"],
+)
+def test_what_takes_long_to_load_is_not_loaded_unless_it_is_needed(code, unneeded):
+    """By the modules that are there afterwards, not by the clock."""
+    code = f"import sys, halfspace; {code or None}; print([m for m in {unneeded} if m in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
+@pytest.mark.parametrize("tabor", [0.6973, 0.698])
+def test_a_pair_of_folds_between_two_points_is_found_though_their_tangents_do_not_tell(tabor):
+    segment = trace_charts(half_space_charts(Scales(tabor), resolution_for(Scales(tabor), 1e-6)))[0]
+    metric = metric_for(segment.problem)
+    folds = [fold.point for fold in locate(segment.problem, segment.points, metric, FOLD)]
+    assert len(folds) == 2
+    before = [point for point in segment.points if point.arclength < folds[0].arclength][-1]
+    after = next(point for point in segment.points if point.arclength > folds[1].arclength)
+    step = float((metric.weights * before.rates)[:3] @ (after.observables - before.observables)[:3])
+    reached = correct(segment.problem, before, step, after.x, metric, 20)
+    assert FOLD.of(before) * FOLD.of(reached) > 0
+    found = [fold.point for fold in locate(segment.problem, [before, reached], metric, FOLD)]
+    for one, other in zip(found, folds, strict=True):
+        np.testing.assert_allclose(one.observables[:3], other.observables[:3], atol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("tabor", "law", "points", "factorisations"),
+    [
+        (0.05, LENNARD_JONES, 35, 80),
+        (1, LENNARD_JONES, 35, 105),
+        (50, LENNARD_JONES, 75, 210),
+        (300, LENNARD_JONES, 95, 240),
+        (1, Dugdale(0.1), 55, 155),
+    ],
+)
+def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, points, factorisations):
+    """A fold is found in three or four, a state in two: the last step and the tangent use the factors at hand."""
+    made = []
+    factorise = ContactProblem.bordered_solver
+    monkeypatch.setattr(ContactProblem, "bordered_solver", lambda *args: made.append(1) or factorise(*args))
+    path = halfspace.trace(tabor, law=law)
+    assert path.count <= points
+    assert len(made) <= factorisations
+
+
+@pytest.mark.parametrize(("tabor", "ratio", "rtol"), [(1.0, 100.0, 1e-6), (0.3, 30.0, 1e-4), (5.0, 1000.0, 1e-8)])
+def test_events_under_a_sphere_are_found_first_on_the_operators_of_the_curve(monkeypatch, tabor, ratio, rtol):
+    """They err by less than rtol from those made for a radius between, and are all that the lowest rung takes."""
+    made = []
+    integrate = compliance.stacked_panels
+    monkeypatch.setattr(compliance, "stacked_panels", lambda *args: made.append(len(args[0])) or integrate(*args))
+    path = halfspace.trace(tabor, profile=Sphere(ratio), rtol=rtol)
+    assert path.met
+    traced = [segment.problem for segment in path.segments]
+    least = traced[1].operator.least_radius
+    on_curve = [e for e in path.stages[0].values() if not e.point.observables[CONTACT_RADIUS] < least]
+    assert all(any(event.problem is problem for problem in traced) for event in on_curve)
+    known = traced[1].operator
+    assert sum(made) <= 1 + known.scales.size + 2 * (1 + 4 * path.finest.count) + path.finest.count
+    for a in np.sqrt(known.scales[1:] * known.scales[:-1]):
+        (exact,) = integrate(known.grid.lines(a)[None], known.cell_nodes.shape[1], known.grid.coordinate.R)
+        pressure = np.exp(-((exact.radii / a) ** 2))
+        w, near = exact.compliance @ pressure, known.at(a).compliance @ pressure
+        np.testing.assert_allclose(near, w, rtol=rtol)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("growth", [3.0, 1e3, 1e-2])
+def test_a_faint_load_that_grows_as_an_exponential_hides_no_extremum(sign, growth):
+    """Nor is one told from a load that grows by less than that, or one that counts: there a step may leap over it."""
+    metric, length = Metric(1.0, 1.0, 1.0), 0.5
+
+    def point(load, rate, arclength):
+        rates = sign * np.array([1.0, rate, -1.0, 0.0])
+        return Point(
+            np.zeros(3), np.array([arclength, sign * load, 0.0, np.nan]), np.zeros(3), rates, arclength, 1, 0.0
+        )
+
+    def hidden(largest, of_mean):
+        first, last = (largest * rate / max(1.0, growth) for rate in (1.0, growth))
+        mean = (last - first) / np.log(growth)
+        return _hides_turning_points(point(0.0, first, 0.0), point(of_mean * mean * length, last, length), LOAD, metric)
+
+    assert not hidden(0.05, 1.0)
+    assert not hidden(0.05, 0.9)
+    assert hidden(0.05, 0.3)
+    assert hidden(0.5, 1.0) == (growth != 3.0)
+
+
+def test_factors_that_serve_twice_leave_points_and_tangents_exact():
+    """Against factors made anew at each point."""
+    for segment in trace_charts(half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-6))):
+        problem = segment.problem
+        for point in segment.points:
+            assert problem.misfit(point.x, problem.residual(point.x)) < 1e-10
+            row = problem.gradient(point.x, np.array([1.0, 1.0, -1.0, 0.0]))
+            exact = problem.bordered_solver(point.x, row)(np.eye(1, row.size, row.size - 1)[0])
+            exact *= point.tangent[0] / exact[0]
+            np.testing.assert_allclose(point.tangent[:-2], exact[:-2], rtol=1e-7, atol=1e-9)
+
+
+@pytest.mark.parametrize("condition", [FOLD, EXTREMUM], ids=["fold", "extremum"])
+def test_newtons_method_finds_the_turning_points_that_halving_finds(condition):
+    """At tabor 50 the curve winds, in folds of 0.01 eps at loads that change by 1e-4."""
+    segments = trace_charts(half_space_charts(Scales(50.0), resolution_for(Scales(50.0), 1e-6)))
+    metric = metric_for(segments[0].problem)
+    found = 0
+    for segment in segments:
+        for a, b in brackets(segment.problem, segment.points, metric, condition):
+            fast, sure = (find(segment.problem, a, b, condition, metric) for find in (between, bracketed))
+            np.testing.assert_allclose(fast.point.observables[:3], sure.point.observables[:3], rtol=1e-9, atol=1e-9)
+            assert abs(condition.of(fast.point)) < 1e-10
+            found += 1
+    assert found >= 6
+
+
+def test_a_curve_that_the_lowest_grid_cannot_carry_is_traced_on_the_next():
+    """As where two folds about to merge exist on one grid, but not on another."""
+    asked = []
+
+    def rung(level):
+        asked.append(level)
+        if level == 0:
+            raise NotConverged("the event is not found again; refine both grids")
+        return charted_rung(half_space_charts(Scales(1.0), resolution_for(Scales(1.0), 1e-3, level)))
+
+    path = climb(1e-2, rung)
+    assert asked == [0, 1, 2]
+    assert path.event("jump_on").approach == pytest.approx(-1.629216712, abs=1e-4)
+
+
+def test_a_curve_that_no_grid_can_carry_is_given_up_and_says_why():
+    def rung(level):
+        raise NotConverged(f"no level {level}; refine the grid")
+
+    with pytest.raises(NotConverged, match=f"no level {MOST_RUNGS - 1}; refine the grid"):
+        climb(1e-2, rung)
+    with pytest.raises(InputError, match="most_rungs = 0 leaves nothing to climb; allow 1 or more"):
+        climb(1e-2, rung, most_rungs=0)
+
+
+# --- near the Tabor parameter at which the curve begins to fold ---
+
+CRITICAL = 0.69721461383  # `halfspace.accuracy.fold_birth` at rtol 1e-10
+BY_TABOR = 0.459  # R dgamma/eps by which the margin falls with the Tabor parameter there
+
+
+@pytest.mark.parametrize("rtol", [1e-1, 1e-2, 1e-4, 1e-8])
+@pytest.mark.parametrize(
+    "tabor",
+    [0.6970, 0.69715, 0.6972, 0.69721, 0.6972145, 0.6972146, 0.69721461, 0.697214614, 0.69721462, 0.69722, 0.6974],
+)
+def test_a_curve_about_to_fold_is_traced_and_says_how_far_the_folds_are(tabor, rtol):
+    path = halfspace.trace(tabor, rtol=rtol)
+    margin, truth = path.margin, BY_TABOR * (CRITICAL - tabor)
+    assert abs(margin.value - truth) <= margin.error + 0.01 * abs(truth)
+    certain = abs(margin.value) > margin.error
+    assert path.jumps is ((tabor > CRITICAL) if certain else None)
+    assert margin.error < 1e-4
+    if rtol == 1e-8:
+        assert certain is (tabor != 0.697214614)  # which is 1.7e-10 from it
+
+
+def test_the_margin_is_the_compliance_of_the_stiffest_apparatus_that_jumps():
+    """By a golden search under prescribed central gaps, in `halfspace.accuracy.fold_birth`."""
+    path = halfspace.trace(0.69, rtol=1e-8)
+    assert path.margin.value == pytest.approx(1 / critical_stiffness(0.69), rel=1e-5, abs=0)
+    assert cycle(path, 1 / (path.margin.value * 1.01)) is not None
+    assert cycle(path, 1 / (path.margin.value * 0.99)) is None
+    assert halfspace.trace(0.5).margin is halfspace.trace(1.0).margin is None
+    assert (halfspace.trace(0.5).jumps, halfspace.trace(1.0).jumps) == (False, True)
+
+
+def test_folds_that_a_finer_grid_loses_are_left_in_doubt():
+    """On the lowest rung two folds, on all above none: nobody is told to refine a grid."""
+    tabor = CRITICAL - 1e-5  # on the finer grid folds are born 4e-6 below the exact place
+
+    def rung(level):
+        resolution = resolution_for(Scales(tabor), 1e-1, level)
+        return charted_rung(half_space_charts(Scales(tabor if level else tabor + 1e-4), resolution))
+
+    path = climb(1e-2, rung, most_rungs=1)
+    assert "jump_on" not in path.events
+    assert path.jumps is None
+    assert path.margin.error > 1e-5
+    assert cycle(path) is None
+
+
+@pytest.mark.parametrize(("tabor", "nodes", "growth", "extent"), [(0.0394754, 5, 3.0, 16.11), (0.0603, 5, 2.5, 15.2)])
+def test_a_step_does_not_leap_over_the_end_of_a_chart_into_cells_too_coarse(tabor, nodes, growth, extent):
+    charts = half_space_charts(Scales(tabor), Resolution(nodes, 0.6, growth, extent))
+    segments = trace_charts(charts, 0.5)
+    last = segments[0].points[-1]
+    assert last.observables[CONTACT_RADIUS] > charts[0].until
+    segments[0].problem.require_resolution(last.x)
+
+
+def test_a_level_for_which_there_are_not_nodes_enough_is_trusted_no_more_than_one_node():
+    """The fourth at 1e-6 has two more, not four: a fold on a stiff coating changed by less than its error."""
+    scales = Scales(1.0)
+    parts = [rule_for(scales, resolutions_for(scales, 1e-6, level), level).remaining for level in (1, 2, 3, 4)]
+    assert parts[0] == parts[3] > 1 > parts[1] == parts[2]
+
+
+@pytest.mark.parametrize("width", [0.15, 0.274, 0.399, 0.5])
+def test_a_law_with_a_step_is_told_from_others_however_wide_it_is(width):
+    assert Scales(1.0, Dugdale(width)).steps
+    others = LENNARD_JONES, Morse(0.5), Morse(8), PowerLaw(5, 14), Dlvo(0.3, 1), Exponential(5, 15), Exponential(0.5, 4)
+    assert not any(Scales(1.0, law).steps for law in others)
+
+
+def test_a_grid_that_takes_more_memory_than_there_is_is_refused_by_the_input_that_asks_for_it(monkeypatch):
+    monkeypatch.setattr(halfspace.elastic.kernel, "LARGEST", 2e4)
+    with pytest.raises(NotConverged, match=r"^rtol = 1e-06 takes grids of \d+ nodes, .*, limit: 2e-05 GB; take a lar"):
+        halfspace.trace(2.0, rtol=1e-6)
+
+
+def test_where_memory_ends_the_ladder_the_last_rung_that_fits_is_told_with_its_errors(monkeypatch):
+    asked = {"law": Dugdale(0.1), "profile": Sphere(30.0), "rtol": 1e-4}
+    full = halfspace.trace(5.0, **asked)
+    lowest, highest = (full.settings[rung]["nodes"] for rung in ("curve", "events"))
+    assert highest > lowest + 1
+    monkeypatch.setattr(halfspace.elastic.kernel, "LARGEST", 3.7e6)
+    path = halfspace.trace(5.0, **asked)
+    assert lowest < path.settings["events"]["nodes"] < highest
+    assert path.missed
+    for name, event in full.events.items():
+        assert abs(path.events[name].load - event.load) <= path.events[name].load_error
+
+
+def test_kernels_that_made_room_for_others_are_made_again_as_they_were(monkeypatch):
+    asked = {"profile": Sphere(30.0), "rtol": 1e-5}
+    kept = halfspace.trace(1.0, **asked)
+    monkeypatch.setattr(halfspace.elastic.operators._KERNELS, "room", 0.0)
+    for name, event in halfspace.trace(1.0, **asked).events.items():
+        assert (event.load, event.load_error) == (kept.events[name].load, kept.events[name].load_error)

@@ -1,0 +1,297 @@
+"""Results as values: pickled and read back, compared, shown in a few lines; and what the packages show."""
+
+import ast
+import importlib
+import itertools
+import pickle
+import pkgutil
+import re
+from dataclasses import FrozenInstanceError, dataclass, fields, is_dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scenes import hemisphere, pair
+from scipy import sparse
+from skfem import ElementQuadP, Mesh
+
+import fem_adhesion
+import halfspace
+from fem_adhesion import Block, HeldSphere, Meshed, NeoHookean, Scene, share_of
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.space import Space
+from fem_adhesion.finite_strain.problem import assemble
+from fem_adhesion.finite_strain.scene import LITTLE
+from fem_adhesion.mesh.block import block_grid
+from halfspace.errors import InputError
+from halfspace.profiles import Sphere
+from halfspace.values import Estimate, Valued, same, shown
+
+ROOT = Path(__file__).parents[3]
+
+PATHS = {
+    "half-space": partial(halfspace.trace, 1.0, rtol=1e-2),
+    "half-space under a sphere": partial(halfspace.trace, 0.1, rtol=1e-1, profile=Sphere(10.0)),
+    "block": partial(fem_adhesion.trace, Scene(0.1), rtol=1e-1),
+    "clamped block": partial(fem_adhesion.trace, Scene(0.3, Block(radius=20.0, far_field="clamped")), rtol=1e-1),
+    "block under a sphere": partial(fem_adhesion.trace, Scene(0.1, profile=Sphere(10.0)), rtol=1e-1),
+    "hemisphere": partial(fem_adhesion.trace, hemisphere(0.1, 10.0), rtol=1e-1),
+    "held sphere": partial(fem_adhesion.trace, Scene(0.1, HeldSphere(radius_ratio=10.0)), rtol=1e-1),
+    "pair": partial(fem_adhesion.trace, pair(0.1, 10.0, 0.3, 0.3, 2.0), rtol=1e-1),
+    "mesh": partial(
+        fem_adhesion.trace, Scene(0.1, Meshed(ROOT / "meshes" / "hemisphere.msh", radius_ratio=2.0)), rtol=1e-1
+    ),
+    "finite strain": partial(
+        fem_adhesion.trace, hemisphere(0.1, 2.0, material=NeoHookean()), rtol=1e-1, to_load=LITTLE
+    ),
+}
+
+
+@pytest.fixture(scope="module", params=PATHS)
+def path(request):
+    return PATHS[request.param]()
+
+
+# --- results of every body ---
+
+
+def test_a_result_is_the_same_after_it_was_pickled(path):
+    again = pickle.loads(pickle.dumps(path))
+    assert again == path
+    assert hash(again) == hash(path)
+    assert again.events.keys() == path.events.keys()
+    np.testing.assert_array_equal(again.load, path.load)
+    for name, event in again.events.items():
+        assert same(event, path.events[name])
+
+
+def test_a_result_that_was_pickled_goes_on_to_work(path):
+    """Its factors and operators are made again: stability, and the event on the discretisation it was found on."""
+    again = pickle.loads(pickle.dumps(path))
+    few = [segment.problem.negative_directions(segment.points[-1].x) for segment in path.segments]
+    assert [segment.problem.negative_directions(segment.points[-1].x) for segment in again.segments] == few
+    event = again.stages[-1]["pull_off"]
+    residual = event.problem.residual(event.point.x)
+    np.testing.assert_array_equal(residual, path.stages[-1]["pull_off"].problem.residual(event.point.x))
+    assert again.finest(event).unknowns == path.finest(event).unknowns > 0
+
+
+def test_another_result_is_another_value(path):
+    event = path.stages[-1]["pull_off"]
+    moved = replace(event.point, x=np.nextafter(event.point.x, np.inf))
+    others = [
+        replace(path, tabor=2 * path.tabor),
+        replace(path, stages=({"pull_off": replace(event, point=moved)},)),
+        replace(path, settings={**path.settings, "rtol": 1e-9}),
+        replace(path, segments=path.segments[:-1] or (replace(path.segments[0], points=()),)),
+        "a curve",
+    ]
+    assert not any(path == other for other in others)
+    assert replace(path, seconds=1e9) == path
+
+
+def test_a_result_is_shown_in_a_few_lines_that_say_what_it_is(path):
+    text = repr(path)
+    assert len(text) < 1000
+    pull_off = path.events["pull_off"]
+    assert f"pull_off at approach {pull_off.approach:.6g} +- {pull_off.approach_error:.1g} eps, load" in text
+    assert f"load {pull_off.load:.6g} +- {pull_off.load_error:.1g} R dgamma" in text
+    assert f"tabor {path.tabor:g}: {len(path.points)} points" in text
+    assert f"; rtol {path.rtol:g} met; {path.unknowns} unknowns" in text
+    missed = replace(path, settings={**path.settings, "rtol": 0.5 * pull_off.load_error / abs(pull_off.load)})
+    assert re.search(rf"; rtol {missed.rtol:g} not met by pull_off (approach and )?load", repr(missed))
+    found = path.stages[-1]["pull_off"]
+    for part in (found, found.point, found.problem, path.segments[0], path.finest, found.problem.interface.operator):
+        assert len(repr(part)) < 2000
+        assert repr(part).startswith(type(part).__name__ + "(")
+
+
+def test_an_event_is_asked_for_by_its_name(path):
+    assert path.event("pull_off") is path.events["pull_off"]
+    assert path.event("jump_on") is path.events.get("jump_on")
+    with pytest.raises(InputError, match=r'event = "pulloff" is none of .*jump_on.*zero_load; did you mean "pull_off"'):
+        path.event("pulloff")
+    with pytest.raises(InputError, match=r'event = "xyz" is none of pull_off, jump_on, jump_off, zero_load; take one'):
+        path.event("xyz")
+
+
+def test_problems_and_bodies_are_values_too():
+    space = Space(block_grid(0.5, 1.5, 10.0), ElementQuadP(3))
+    one, other = (condense(Space(block_grid(0.5, 1.5, 10.0), ElementQuadP(3)), nu) for nu in (0.3, 0.2))
+    again = pickle.loads(pickle.dumps(one))
+    assert one == again == condense(space, 0.3)
+    assert one != other
+    pressure = np.linspace(1, 0, one.operator.radii.size)
+    np.testing.assert_array_equal(again.displacement(pressure), one.displacement(pressure))
+    whole = assemble(space, 0.3, 1.0)
+    whole.negative_directions(whole.undeformed(-3.0))  # leaves its factors behind
+    assert pickle.loads(pickle.dumps(whole)).interface == whole.interface
+
+
+# --- how values are compared ---
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sample(Valued):
+    """A value that holds anything."""
+
+    array: object
+    scalar: float = 0.0
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: np.array([1.0, np.nan]),
+        lambda: np.arange(3),
+        lambda: sparse.csr_array(np.eye(3)),
+        lambda: (np.ones(2), [np.zeros(3)], {"a": np.ones(1)}),
+        lambda: partial(max, np.ones(2), key=float),
+        lambda: ElementQuadP(3),
+        lambda: block_grid(0.5, 1.5, 10.0),
+        lambda: Sample(np.ones(2)),
+    ],
+)
+def test_equal_parts_make_equal_values(make):
+    assert Sample(make()) == Sample(make())
+    assert Sample(make(), float("nan")) == Sample(make(), float("nan"))
+    assert Sample(make()) != Sample(make(), 1.0)
+    assert Sample(make()) in {Sample(make())}
+    assert len(repr(Sample(make()))) < 300
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (np.ones(2), np.ones(3)),
+        (np.ones(2), np.array([1.0, 2.0])),
+        (np.ones(2), np.ones(2, dtype=int)),
+        (sparse.csr_array(np.eye(3)), sparse.csr_array(np.eye(4))),
+        (sparse.csr_array(np.eye(3)), 2 * sparse.csr_array(np.eye(3))),
+        ([np.ones(2)], (np.ones(2),)),
+        ([np.ones(2)], [np.ones(2)] * 2),
+        ({"a": 1.0}, {"b": 1.0}),
+        (partial(max, 1), partial(min, 1)),
+        (ElementQuadP(3), ElementQuadP(4)),
+        (block_grid(0.5, 1.5, 10.0), block_grid(0.5, 1.5, 11.0)),
+    ],
+)
+def test_other_parts_make_other_values(one, other):
+    assert not same(one, other)
+    assert Sample(one) != Sample(other)
+
+
+def test_long_things_are_shown_by_their_size():
+    assert shown(np.zeros((9, 7))) == "array of shape (9, 7)"
+    assert shown(np.array([1.5, 2.0])) == "array[1.5, 2.0]"
+    assert shown(sparse.csr_array(np.eye(3))) == "sparse array of shape (3, 3)"
+    assert shown([np.zeros(9)] * 9) == "9 times ndarray"
+    assert shown(Sample(np.zeros(9))) == "Sample(...)"
+    assert len(shown("x" * 1000)) < 70
+    with pytest.raises(FrozenInstanceError):
+        Sample(1.0).scalar = 2.0
+
+
+def _solver_dataclasses():
+    for package in (halfspace, fem_adhesion):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if not module.ispkg and module.name != "fem_adhesion.__main__":
+                for value in vars(importlib.import_module(module.name)).values():
+                    if isinstance(value, type) and is_dataclass(value) and value.__module__ == module.name:
+                        yield value
+
+
+@pytest.mark.parametrize("kind", list(_solver_dataclasses()), ids=lambda k: f"{k.__module__}.{k.__name__}")
+def test_whatever_holds_an_array_compares_as_a_value(kind):
+    """The comparison that dataclasses write would raise."""
+    held = [text for field in fields(kind) if field.compare and not (text := str(field.type)).startswith("Callable")]
+    arrays = any(word in text for text in held for word in ("Array", "Index", "sparse", "ndarray", "Problem", "Chart"))
+    assert issubclass(kind, (Valued, Mesh)) or not arrays  # a mesh is scikit-fem's
+
+
+# --- what the packages show ---
+
+
+@pytest.mark.parametrize("package", [halfspace, fem_adhesion])
+def test_what_is_public_is_listed_found_and_typed(package):
+    assert sorted(dir(package)) == sorted(package.__all__)
+    tree = ast.parse(Path(package.__file__).read_text())
+    typed = {
+        alias.name: node.module
+        for block in tree.body
+        if isinstance(block, ast.If)
+        for node in block.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    assert typed.keys() == set(package.__all__)
+    for name, module in typed.items():
+        assert getattr(package, name) is getattr(importlib.import_module(module), name)
+    with pytest.raises(AttributeError, match="nothing"):
+        _ = package.nothing
+
+
+def test_the_interpreters_optimisation_changes_nothing():
+    """No check of the program is an assertion, and nothing asks whether there are any."""
+    files = [file for package in (halfspace, fem_adhesion) for file in Path(package.__file__).parent.rglob("*.py")]
+    found = [
+        f"{file.name}:{node.lineno}"
+        for file in files
+        for node in ast.walk(ast.parse(file.read_bytes()))
+        if isinstance(node, ast.Assert) or getattr(node, "id", "") == "__debug__"
+    ]
+    assert found == []
+
+
+# --- a counter-body from its moduli ---
+
+
+@pytest.mark.parametrize(
+    ("E1", "nu1", "E2", "nu2"), [(70e9, 0.17, 160e9, 0.28), (1.0, 0.3, 1.0, 0.3), (2e6, 0.49, 5e5, 0.4)]
+)
+def test_the_share_of_a_counter_body_is_its_part_of_the_compliance(E1, nu1, E2, nu2):
+    effective = 1 / ((1 - nu1**2) / E1 + (1 - nu2**2) / E2)
+    assert share_of(E1, nu1, E2, nu2) == pytest.approx((1 - nu2**2) * effective / E2, rel=1e-14, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("moduli", "message"),
+    [
+        ((0.0, 0.3, 1.0, 0.3), "modulus = 0 is outside 0 < modulus"),
+        ((1.0, 0.3, np.inf, 0.3), "modulus = inf is outside 0 < modulus"),
+        ((1.0, 0.5, 1.0, 0.3), "poisson = 0.5 is outside"),
+        ((1.0, 0.3, 1.0, -0.1), "poisson = -0.1 is outside"),
+    ],
+)
+def test_moduli_that_cannot_be_are_refused(moduli, message):
+    with pytest.raises(InputError, match=message):
+        share_of(*moduli)
+
+
+def test_estimates_agree_within_both_errors_and_a_number_that_is_none_with_nothing():
+    near, far = Estimate(1.0, 0.25), Estimate(1.75, 0.5)
+    assert near.agrees(far)
+    assert far.agrees(near)
+    assert not near.agrees(Estimate(1.75, 0.25))
+    assert not near.agrees(Estimate(float("nan"), 1.0))
+    assert Estimate.refined(2.0, 1.5) == Estimate(1.5, 0.5)
+
+
+@pytest.mark.parametrize("signs", [*itertools.product((-1, 1), repeat=2)], ids=str)
+def test_bounds_of_sums_hold_and_those_of_products_to_the_first_order(signs):
+    """At the ends of both intervals; what products leave out is the product of both errors."""
+    a, b = Estimate(3.0, 1e-4), Estimate(-0.5, 2e-5)
+    x, y = (number.value + sign * number.error for number, sign in zip((a, b), signs, strict=True))
+    left_out = 10 * a.error * b.error
+    for found, exact, more in (
+        (a + b, x + y, 1e-15),
+        (a - b, x - y, 1e-15),
+        (a - 2.0, x - 2.0, 1e-15),
+        (abs(b), abs(y), 1e-15),
+        (a * b, x * y, left_out),
+        (b * -4.0, -4.0 * y, 1e-15),
+        (a / b, x / y, 100 * left_out),
+    ):
+        assert abs(found.value - exact) <= found.error + more
+    assert max(abs((a + b).error - (a.error + b.error)), abs((a * b).error - 1.1e-4)) < 1e-16

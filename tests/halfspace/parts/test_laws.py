@@ -1,0 +1,699 @@
+"""Laws and profiles as parts: what each states of itself, and what a contact makes of it, against closed forms."""
+
+import csv
+from dataclasses import dataclass
+from itertools import pairwise, product
+from pathlib import Path
+
+import combinations
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq, minimize_scalar
+from scipy.special import beta
+
+import fem_adhesion
+import halfspace
+from fem_adhesion.scene import Scene
+from halfspace import Coated
+from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for
+from halfspace.accuracy.stages import Charted
+from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import moved, transfer
+from halfspace.equilibrium.conditions import FOLD, Located
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
+from halfspace.equilibrium.events import usual
+from halfspace.errors import InputError, NotConverged
+from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Law, LennardJones, Morse, PowerLaw
+from halfspace.laws.law import require_law
+from halfspace.profiles import PARABOLOID, Endless, Hyperboloid, Paraboloid, Power, RoundedPunch, Sphere
+from halfspace.profiles.indentation import hertz_approach, hertz_load, hertz_radius, jkr_approach, jkr_load, jkr_radius
+from halfspace.roots import rising_root
+from halfspace.scales import Scales
+from halfspace.theories import closed_forms
+from halfspace.theories.maugis import TENSION_TO_MAUGIS, MaugisDugdale
+
+LAWS = [
+    LennardJones(),
+    PowerLaw(2.1, 2.5),
+    PowerLaw(2.5, 9.5),
+    PowerLaw(4, 10),
+    PowerLaw(20, 60),
+    Morse(0.3),
+    Morse(3),
+    Morse(20),
+    Exponential(3),
+    Exponential(0.5, 4),
+    Dlvo(0.3, 1.0),
+    Dlvo(-0.5, 0.3),
+    Dugdale(0.2),
+]
+named = pytest.mark.parametrize("law", LAWS, ids=str)
+
+
+def tension(law, H):
+    return -float(law.pressure(np.array(H), 1.0))
+
+
+@named
+def test_a_law_adheres_with_dgamma(law):
+    ends = (0, 0.1, 1, 10, 100, np.inf)
+    work = sum(quad(lambda H: tension(law, H), a, b, epsabs=0, epsrel=1e-10)[0] for a, b in pairwise(ends))
+    assert work == pytest.approx(1, rel=1e-8)
+    assert law.energy(np.array(0.0), 2.5) == pytest.approx(-2.5, rel=1e-12)
+    assert require_law(law) is law
+
+
+@named
+def test_the_contact_ends_where_the_tension_is_largest(law):
+    found = minimize_scalar(lambda H: -tension(law, H), bounds=(0, 20 * law.edge_gap), method="bounded")
+    assert tension(law, law.edge_gap) == pytest.approx(-found.fun, rel=1e-9)
+    assert law.strength == tension(law, law.edge_gap)
+    assert law.slope(np.array(law.edge_gap), 1.0) == pytest.approx(0, abs=1e-9 * law.stiffness)
+    assert -law.energy(np.array(law.range(0.01)), 1.0) == pytest.approx(0.01, rel=1e-8)
+
+
+def test_the_default_is_lennard_jones():
+    assert PowerLaw() == LENNARD_JONES == LennardJones() == PowerLaw(attraction=3, repulsion=9)
+    assert LENNARD_JONES.decay == pytest.approx(3, rel=1e-12)
+    assert LENNARD_JONES.stiffness == pytest.approx(16, rel=1e-14)
+    assert LENNARD_JONES.range(0.01) == pytest.approx(Law.range(LENNARD_JONES, 0.01), rel=1e-12)
+    assert Law.edge_gap.func(LENNARD_JONES) == pytest.approx(LENNARD_JONES.edge_gap, rel=1e-12)
+    assert np.isinf(Morse(1).decay)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: PowerLaw(2, 9), "attraction = 2 of the power law is outside 2 < attraction"),
+        (lambda: PowerLaw(4, 4), "repulsion = 4 of the power law is outside attraction = 4 < repulsion <= 60"),
+        (lambda: PowerLaw("3"), "attraction = '3' of type str, limit: a real number"),
+        (lambda: Morse(0), "k = 0 of Morse's law is outside 0.1 <= k <= 50"),
+        (lambda: Exponential(100), "k = 100 of the exponential law is outside 0.1 <= k <= 50"),
+        (lambda: Exponential(3, 2.5), "core = 2.5 of the exponential law is outside a whole number, 2 <= core <= 60"),
+        (lambda: Dlvo(0.5, 1.0), "charge = 0.5 leaves no work of adhesion, limit: charge < 0.429 at this screening"),
+        (lambda: Dlvo(2, 1.0), "charge = 2 leaves no core"),
+        (lambda: Dlvo(0.1, 0), "screening = 0 is outside 0.02 <= screening <= 50"),
+        (lambda: Dugdale(0.01), "width = 0.01 of Dugdale's law is outside 0.07 <= width <= 0.5; extrapolate from"),
+        (lambda: Power(1), "k = 1 of the profile is outside 1.5 <= k <= 10; round a cone's tip"),
+        (lambda: Power(30), "k = 30 of the profile is outside 1.5 <= k <= 10"),
+        (lambda: RoundedPunch(20), "flat = 20 of the punch is outside 0.1 <= flat <= 5"),
+        (lambda: Hyperboloid(0), "b = 0 of the hyperboloid is outside 0.01 <= b < inf"),
+    ],
+)
+def test_a_part_that_cannot_be_is_refused_in_one_line(make, message):
+    with pytest.raises(InputError) as refused:
+        make()
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@dataclass(frozen=True)
+class Yukawa(Law):
+    """A law of one's own: screened attraction and core, c (e^(-H) - e^(-3 H)), 1/c = 1 - 1/3."""
+
+    work: float = 1.0
+    slip: float = 0.0
+    drift: float = 0.0
+
+    def pressure(self, gap, tabor):
+        """P."""
+        return 1.5 * self.work * tabor * (np.exp(-3 * gap) - np.exp(-gap)) + self.drift * tabor
+
+    def slope(self, gap, tabor):
+        """dP/dH."""
+        return 1.5 * self.work * (1 + self.slip) * tabor * (np.exp(-gap) - 3 * np.exp(-3 * gap))
+
+    def energy(self, gap, tabor):
+        """Phi."""
+        return 1.5 * self.work * tabor * (np.exp(-3 * gap) / 3 - np.exp(-gap))
+
+    def room(self, gap):
+        """No core."""
+        return np.maximum(gap + 1, 1.0)
+
+
+@dataclass(frozen=True)
+class Blunt(Endless):
+    """A profile of one's own: a paraboloid that grows as a quartic further out."""
+
+    def height(self, radii):
+        """Return z."""
+        return radii**2 / 2 + radii**4 / 20
+
+    def slope(self, radii):
+        """Return dz/du."""
+        return radii + radii**3 / 5
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        (Yukawa(work=0.9), "the energy at H = 0 is -0.9 dgamma, limit: -1; divide the law by it"),
+        (Yukawa(work=-1), "the largest tension is 1e-09 dgamma/eps, limit: above 0; let the surfaces attract"),
+        (Yukawa(slip=0.01), "the slope is off by 0.0099 from the pressure's, limit: 0.0001; mend either"),
+        (Yukawa(drift=-0.01), "the pressure at H = 0 is -0.01 dgamma/eps, limit: 0; move its gaps"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_a_law_that_is_none_is_refused_before_any_work(law, message):
+    with pytest.raises(InputError) as refused:
+        halfspace.trace(1.0, law=law)
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+REFERENCES = list(csv.DictReader((Path(__file__).parents[2] / "data" / "laws_events.csv").read_text().splitlines()))
+PARTS = {
+    "power n=4 m=10": {"law": PowerLaw(4, 10)},
+    "power n=3 m=9": {},
+    "Morse k=3": {"law": Morse(3)},
+    "r^4/4 (height in beta^2/R)": {"profile": Power(4)},
+    "paraboloid": {},
+}
+
+
+@pytest.mark.parametrize(("law", "profile"), sorted({(row["law"], row["profile"]) for row in REFERENCES}))
+def test_other_laws_and_profiles_hit_the_references(law, profile):
+    path = halfspace.trace(1.0, **PARTS[law], **PARTS[profile], rtol=1e-6)
+    rows = [row for row in REFERENCES if (row["law"], row["profile"]) == (law, profile)]
+    assert len(rows) == 3
+    for row in rows:
+        event = path.event(row["event"])
+        off = abs(event.approach - float(row["approach"])), abs(event.load - float(row["load"]))
+        known = float(row["uncertainty_approach"]), float(row["uncertainty_load"])
+        assert off[0] <= min(1e-6 * path.approach_scale, event.approach_error + known[0])
+        assert off[1] <= min(1e-6 * abs(event.load), event.load_error + known[1])
+
+
+def test_slow_tails_under_cones_are_followed_as_far_as_their_load_asks():
+    """On a rigid hyperboloid by a 2.5-9.5 law a thousandth of the load lies beyond eight extents of the cells."""
+    tabor, law, profile = 1e-9, PowerLaw(2.5, 9.5), Hyperboloid(0.3)
+    pull_off = halfspace.trace(tabor, law=law, profile=profile, rtol=1e-6).event("pull_off")
+
+    def ring(t):
+        u = np.exp(t)
+        gap = -pull_off.approach + tabor * profile.height(u)
+        return 2 * np.pi * u**2 * float(law.pressure(gap, tabor))
+
+    parts = (quad(ring, a, a + 5, epsrel=1e-11, limit=400)[0] for a in range(-30, 200, 5))
+    assert pull_off.load == pytest.approx(sum(parts), rel=1e-6)
+
+
+def assert_same(ours, theirs, approaches=1.0, loads=1.0):
+    """Compare the events of two curves within their errors, one's times factors."""
+    assert ours.events.keys() == theirs.events.keys()
+    for name, event in ours.events.items():
+        other = theirs.event(name)
+        error = event.approach_error + approaches * other.approach_error
+        assert abs(event.approach - approaches * other.approach) <= error
+        assert abs(event.load - loads * other.load) <= event.load_error + loads * other.load_error
+
+
+@pytest.mark.parametrize(("k", "tabor"), [(3.0, 0.2), (0.1, 3.0), (0.5, 4.0), (10.0, 1.0)])
+def test_morse_knows_k_and_tabor_by_their_product_alone(k, tabor):
+    """Gaps in ranges of the potential in the place of eps: neither eps nor k is in the equations any more."""
+    ours, unit = halfspace.trace(tabor, law=Morse(k)), halfspace.trace(k * tabor, law=Morse(1))
+    assert_same(ours, unit, approaches=1 / k)
+
+
+def test_surfaces_too_far_apart_for_an_exponential_law_are_passed_in_long_steps():
+    """Where it is all but nothing no load has a turning point to look for; else it takes 357 points, or 1204."""
+    assert halfspace.trace(50.0, law=Morse(3), rtol=1e-3).count < 250
+
+
+def test_cells_grow_from_a_rounded_tip_no_faster_than_they_carry_the_deflection_there():
+    """At zero load the contact is ten thousand times as wide as the tip: gaps in the equations of a much finer grid."""
+    path, scales = halfspace.trace(1.0, profile=Hyperboloid(0.1), rtol=1e-4), Scales(1.0, profile=Hyperboloid(0.1))
+    finer, state = half_space_charts(scales, resolution_for(scales, 1e-9))[1].problem, path.stages[-1]["zero_load"]
+    x = transfer(state.problem, state.point.x, finer)
+    weight = finer.operator_at(x).weights * np.abs(finer.pressure(x))
+    assert weight @ np.abs(finer.residual(x)[:-1]) / weight.sum() < 1e-4
+
+
+def test_a_quadratic_power_and_a_wide_hyperboloid_are_paraboloids():
+    paraboloid = halfspace.trace(0.8)
+    assert_same(halfspace.trace(0.8, profile=Power(2)), paraboloid)
+    wide = halfspace.trace(0.8, profile=Hyperboloid(1e5))
+    assert wide.event("pull_off").load == pytest.approx(paraboloid.event("pull_off").load, rel=1e-6)
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize(("tabor", "k"), [(1e-6, 40), (1e-6, 50), (0.03, 20), (1e-4, 30), (0.01, 40)])
+def test_a_tension_of_short_range_is_followed_to_where_the_curve_falls_most_steeply(tabor, k, rtol):
+    """By the cubics between points that was next to the least load, in whose plane 0.1 of arclength on nothing is."""
+    law = Exponential(k)
+    path, truth = (halfspace.trace(tabor, law=law, rtol=to) for to in (rtol, rtol / 100))
+    for name, quantity in product(["pull_off", "zero_load"], ["approach", "load"]):
+        found = path.event(name).estimate(quantity)
+        assert abs(found.value - truth.event(name).estimate(quantity).value) <= found.error
+    assert abs(path.margin.value - truth.margin.value) <= path.margin.error
+    if tabor == 1e-6:  # rigid: the load falls as 2 pi R times the tension, [G97] 1.3
+        gaps = np.linspace(0, 0.1, 100001)
+        largest = np.max(-law.pressure(gaps, tabor)) / tabor
+        assert 2 * np.pi * largest * path.margin.value == pytest.approx(1, abs=3e-4)
+
+
+@pytest.mark.parametrize("law", [PowerLaw(2.5, 9.5), Morse(3), Exponential(3), Dlvo(0.3, 1.0)], ids=str)
+def test_a_rigid_paraboloid_adheres_with_two_pi_by_any_law(law):
+    """Bradley: the load is 2 pi times the energy across the gap on the axis, whatever the law."""
+    path = halfspace.trace(1e-7, law=law)
+    assert path.event("pull_off").load == pytest.approx(-2 * np.pi, rel=3e-6)
+    states = path.at(approach=[-3.0, -0.5], branch=None)
+    expected = 2 * np.pi * law.energy(-np.array([-3.0, -0.5]), 1.0)
+    np.testing.assert_allclose(states.load, expected, rtol=3e-6)
+
+
+@pytest.mark.parametrize("profile", [Power(1.5), Power(3), Power(6), Hyperboloid(1), RoundedPunch(1)], ids=str)
+def test_a_rigid_profile_adheres_with_the_integral_of_the_law(profile):
+    tabor, approach = 1e-4, -0.5
+    state = halfspace.trace(tabor, profile=profile).at(approach=approach)
+
+    def ring(x):
+        r = np.exp(x)
+        return 2 * np.pi * r**2 * float(LENNARD_JONES.pressure(tabor * profile.height(r) - approach, tabor))
+
+    middle = np.log(Scales(tabor, profile=profile).radius_at(1.0))
+    parts = [quad(ring, middle + a, middle + b, epsrel=1e-11)[0] for a, b in ((-25, -2), (-2, 2), (2, 30))]
+    assert float(state.load) == pytest.approx(sum(parts), rel=1e-4)
+    assert abs(float(state.load) - sum(parts)) < 20 * tabor * abs(sum(parts)) + float(state.load_error)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [{"law": PowerLaw(2.5, 9.5)}, {"law": Morse(1)}, {"profile": Power(1.5)}, {"profile": Power(4)}],
+    ids=str,
+)
+def test_a_soft_contact_is_jkrs_by_any_law_on_any_profile(parts):
+    """Pull-off under dead load and least approach, as the Tabor parameter grows, with the order seen at three."""
+    profile = parts.get("profile", PARABOLOID)
+    least = minimize_scalar(lambda a: jkr_load(profile, a), bounds=(0.1, 4), method="bounded", options={"xatol": 1e-10})
+    nearest = minimize_scalar(lambda a: jkr_approach(profile, a), bounds=(0.05, 4), method="bounded")
+    off = []
+    for tabor in (8.0, 16.0, 32.0):
+        path = halfspace.trace(tabor, **parts, rtol=1e-5)
+        fold = path.event("jump_off").approach / tabor
+        off.append([path.event("pull_off").load / least.fun - 1, fold / nearest.fun - 1])
+    first, second, third = np.array(off)
+    assert np.all(np.abs(third) < 0.05)
+    assert np.all(np.abs(third) < 0.75 * np.abs(second))
+    assert np.all(np.abs(second) < 0.75 * np.abs(first))
+
+
+@pytest.mark.parametrize("tabor", [0.5, 1.0])
+def test_dugdales_law_tends_to_maugiss_as_its_steps_narrow(tabor):
+    """Pull-off, and approach and radius under no load, by terms in w^2 and w^4 to a part in ten thousand.
+
+    The radius not at the law's own edge, whose gap is about w, but where the gap has opened to 0.2 eps, less the
+    distance over which Maugis's opens as far. At the law's edge it errs as w^(2/3).
+    """
+    widths = 0.16 * 2.0 ** -np.array([0.0, 0.5, 1.0])
+    paths = [halfspace.trace(tabor, law=Dugdale(width)) for width in widths]
+    theory = MaugisDugdale(TENSION_TO_MAUGIS * tabor, tabor)
+    radius = brentq(theory.load, 1, 3, xtol=1e-14)
+    opening = _opens_to(0.2, tabor, radius, float(theory.approach(radius)) / tabor) - radius
+    found = []
+    for path in paths:
+        free = path.stages[-1]["zero_load"]
+        found.append(
+            [path.event("pull_off").load, path.event("zero_load").approach, _radius_at(0.2, free, radius) - opening]
+        )
+    by_squares = np.linalg.solve(widths[:, None] ** [0, 2, 4], found)[0]
+    assert by_squares == pytest.approx([theory.pull_off().load, float(theory.approach(radius)), radius], rel=1e-4)
+    off = np.array([path.event("zero_load").contact_radius for path in paths]) - radius
+    np.testing.assert_allclose(off[1:] / off[:-1], 2 ** (-1 / 3), rtol=0.03)
+
+
+def _opens_to(gap, tabor, a, approach):
+    """Radius at which Maugis's gap has opened, under a tension of 1 dgamma/eps from a to c.
+
+    It is (4/pi) int_a^r [f(t) - (alpha - t^2)/2] dt/(r^2 - t^2)^(1/2), f = -mu (c^2 - t^2)^(1/2), which is the second
+    term at a; lengths in beta, heights in beta^2/R.
+    """
+    c = np.hypot(a, (a**2 - approach) / (2 * tabor))
+
+    def gap_at(r):
+        def beyond(angle):
+            t = r * np.sin(angle)
+            return -tabor * np.sqrt(max(c**2 - t**2, 0.0)) - (approach - t**2) / 2
+
+        return 4 / np.pi * tabor * quad(beyond, np.arcsin(a / r), np.pi / 2, epsabs=1e-12)[0]
+
+    assert gap_at(c) == pytest.approx(1, rel=1e-9)  # where the tension ends
+    return brentq(lambda r: gap_at(r) - gap, a * (1 + 1e-9), c, xtol=1e-13)
+
+
+def _radius_at(gap, event, inside):
+    """Radius at which the gap of an event has opened so far."""
+    body, gaps = event.problem.operator_at(event.point.x), event.point.x[:-2]
+    return brentq(lambda r: body.continuous(r)[0] @ gaps - gap, inside, 2 * inside, xtol=1e-13)
+
+
+def test_only_a_law_that_ends_by_a_step_or_attracts_once_more_has_cells_that_grow_more_slowly():
+    beyond_a_barrier = Dlvo(0.3, 1.0)  # it attracts again beyond H = 3, by a third of the load in each part of ln H
+    for law in LAWS[:-1]:
+        assert (Scales(1.0, law).growth(3.0) == 3) == (law != beyond_a_barrier)
+    assert 1.5 < Scales(1.0, beyond_a_barrier).growth(3.0) < 2
+    sharper, softer = (Scales(1.0, Dugdale(width)).growth(3.0) - 1 for width in (0.1, 0.2))
+    assert sharper < softer / 2 < 1
+
+
+def test_a_sharp_step_is_resolved():
+    """On cells that grow as fast as where a law ends less sharply, 16 nodes in each missed the tolerance."""
+    contact = {"tabor": 1.0, "law": Dugdale(0.1)}
+    rough, fine = (halfspace.trace(**contact, rtol=rtol) for rtol in (1e-4, 1e-6))
+    assert rough.met
+    assert fine.met
+    assert_same(rough, fine)
+
+
+@pytest.mark.parametrize("tabor", [0.3, 3.0])
+def test_a_sharp_step_has_short_cells_where_it_stands_alone(tabor):
+    """Events are those of a chart fine wherever it may stand, on other cells, of two to four times the unknowns."""
+    law = Dugdale(0.1)
+    scales, path = Scales(tabor, law), halfspace.trace(tabor, law=law)
+    throughout = Charted(half_space_charts(scales, Resolution(12, 0.45, 2.5, 9.0)))
+    assert path.unknowns < throughout.unknowns / 2
+    for name, event in usual(path.events).items():
+        found = moved(path.stages[-1][name], throughout(path.stages[-1][name]).problem).point.observables
+        told = [(event.approach, event.approach_error), (event.load, event.load_error)]
+        told += [(event.central_gap, event.central_gap_error), (event.contact_radius, event.contact_radius_error)]
+        for (value, error), other in zip(told, found, strict=True):
+            assert np.isnan(other) or abs(value - other) < error + 1e-8
+
+
+def test_a_curve_goes_on_where_the_step_leaves_a_chart():
+    path = halfspace.trace(1.0, law=Dugdale(0.1), rtol=1e-4)
+    assert len(path.segments) > 4
+    for before, after in pairwise(path.segments):
+        np.testing.assert_allclose(before.points[-1].observables, after.points[0].observables, rtol=1e-4, atol=1e-5)
+    followed = [segment for segment in path.segments if segment.problem.follows_contact]
+    for surface, point in ((segment.problem, point) for segment in followed for point in segment.points[:-1]):
+        radius, edge = surface.radius_at_gap(point.x, surface.scales.step_gap), point.observables[CONTACT_RADIUS]
+        cell = np.searchsorted(ends := surface.operator_at(point.x).cells, radius)
+        assert ends[cell] - ends[cell - 1] < 0.25 * (radius - edge)  # 1 by other laws
+
+
+def test_states_are_known_along_a_curve_of_many_charts():
+    """A stretch that was traced on one chart is solved for on one: a fold on it is not lost between two."""
+    path, fine = (halfspace.trace(1.0, law=Dugdale(0.1), rtol=rtol) for rtol in (1e-4, 1e-7))
+    assert list(path.branches("approach")) == ["separated", "unstable", "contact"]
+    assert len(path.finest_curve.segments) == len(path.segments)
+    for asked in ({"approach": -1.5, "branch": "contact"}, {"approach": -1.4, "branch": "unstable"}, {"load": 2.0}):
+        assert_same_state(path.at(**asked), fine.at(**asked))
+
+
+def assert_same_state(ours, truth):
+    for name in ("approach", "load", "central_gap"):
+        budget = getattr(ours, f"{name}_error") + getattr(truth, f"{name}_error")
+        assert abs(getattr(ours, name) - getattr(truth, name)) <= budget
+        assert budget < 1e-3
+
+
+def folds_of(path):
+    return [name for name in path.events if name.startswith(("jump", "fold"))]
+
+
+@pytest.mark.parametrize("tabor", [0.3, 1.0, 3.0])
+@pytest.mark.parametrize("profile", [Power(1.5), Power(3.0)], ids=str)
+def test_states_are_known_along_the_curve_of_a_tip(profile, tabor):
+    """Cells towards a tip depend on the nodes in each: by them no chart of the finer rung was that of the curve."""
+    path, fine = (halfspace.trace(tabor, law=Dugdale(0.1), profile=profile, rtol=rtol) for rtol in (1e-4, 1e-6))
+    assert [len(part.points) for part in path.finest_curve.segments] == [len(part.points) for part in path.segments]
+    assert len(path.branches("approach")) == len(folds_of(path)) + 1
+    for gap in (0.1, 0.7, 2.0):
+        assert_same_state(path.at(central_gap=gap), fine.at(central_gap=gap))
+
+
+def test_a_gap_that_opens_slowly_is_pulled_as_far_as_the_law_acts():
+    """A gap nearly flat opens as no root of the distance: cells that ended where one would lost 3 % of the load."""
+    contact = {"tabor": 20.0, "law": Dugdale(0.2)}
+    rough, fine = (halfspace.trace(**contact, rtol=rtol) for rtol in (1e-4, 1e-6))
+    throughout = Charted(half_space_charts(Scales(**contact), Resolution(10, 0.45, 2.5, 9.0)))
+    for gap in (0.09491, 0.12, 0.3):
+        state = rough.at(central_gap=gap)
+        assert_same_state(state, fine.at(central_gap=gap))
+        points = [(segment.problem, point) for segment in rough.segments for point in segment.points]
+        source, point = min(points, key=lambda one: abs(one[1].observables[CENTRAL_GAP] - gap))
+        problem = throughout(Located(FOLD, source, point, 1.0)).problem
+        found = newton.solve(problem, transfer(source, point.x, problem), newton.central_gap(gap)).observables
+        assert abs(state.approach - found[APPROACH]) < state.approach_error + 1e-8
+        assert abs(state.load - found[LOAD]) < state.load_error + 1e-8
+
+
+def test_no_fold_of_a_soft_punch_is_lost():
+    """Of six, four were found on cells that ended nearer than the law."""
+    contact = {"tabor": 50.0, "law": Dugdale(0.2), "profile": RoundedPunch(2.0)}
+    rough, fine = (halfspace.trace(**contact, rtol=rtol) for rtol in (1e-4, 1e-6))
+    for path in (rough, fine):
+        assert len(folds_of(path)) == 6
+        assert not path.unconfirmed
+    for name, event in rough.events.items():
+        assert event.approach == pytest.approx(fine.events[name].approach, abs=1e-4)
+
+
+def test_branches_are_told_where_the_finest_curve_winds_between_two_of_its_points():
+    """Halfway between two Newton's method does not end, where it does by shorter steps."""
+    contact = {"tabor": 20.0, "law": Dugdale(0.3), "profile": Power(4.0)}
+    rough, fine = (halfspace.trace(**contact, rtol=rtol) for rtol in (1e-4, 1e-6))
+    for coordinate in ("approach", "load"):
+        ours, truth = rough.branches(coordinate), fine.branches(coordinate)
+        assert ours.keys() == truth.keys()
+        assert len(ours) > 4
+        for name in list(truth)[1:-1]:  # the outermost end where the curves do
+            np.testing.assert_allclose(ours[name], truth[name], rtol=1e-4, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("profile", "width", "tabor"),
+    [(RoundedPunch(5.0), 0.1, 2.0), (RoundedPunch(5.0), 0.2, 20.0), (RoundedPunch(2.0), 0.2, 50.0)],
+    ids=str,
+)
+def test_a_flat_tip_is_resolved_before_the_step_is_reached(profile, width, tabor):
+    """On cells that grew threefold outside the step, loads and approaches erred by 4 to 13 times their estimates."""
+    contact = {"tabor": tabor, "law": Dugdale(width), "profile": profile}
+    assert_same(*(halfspace.trace(**contact, rtol=rtol) for rtol in (1e-4, 1e-7)))
+
+
+@pytest.mark.parametrize("profile", [Hyperboloid(0.3), RoundedPunch(1.0)], ids=str)
+def test_a_sharp_step_is_resolved_under_any_tip(profile):
+    """Without short cells on the axis the central gap erred by 14 times its estimate, and by half the range."""
+    contact = {"tabor": 3.0, "law": Dugdale(0.2), "profile": profile}
+    assert_same(*(halfspace.trace(**contact, rtol=rtol) for rtol in (1e-5, 1e-7)))
+
+
+def test_a_tip_takes_a_hundred_unknowns_more_than_a_paraboloid():
+    """With cells of one ratio towards it it took 160, and had the same digits."""
+    tip, finer = (halfspace.trace(1.0, profile=Power(1.5), rtol=rtol) for rtol in (1e-6, 1e-8))
+    assert tip.unknowns <= halfspace.trace(1.0).unknowns + 100
+    assert_same(tip, finer)
+
+
+def test_a_soft_contact_of_a_tip_like_a_punch_is_followed():
+    """Its gaps far out are 1e27 eps, in one matrix with those of the contact."""
+    contact = {"tabor": 3.0, "profile": Power(8)}
+    assert_same(*(halfspace.trace(**contact, rtol=rtol) for rtol in (1e-5, 1e-7)))
+
+
+def test_a_law_that_ends_by_a_step_is_met_on_a_sphere_by_fewer_nodes():
+    """With cells that grow threefold it took 16."""
+    rough, fine = (halfspace.trace(1.0, law=Dugdale(0.2), profile=Sphere(30), rtol=rtol) for rtol in (1e-4, 1e-6))
+    assert not rough.missed
+    assert not fine.missed
+    assert fine.settings["events"]["nodes"] <= 12
+    assert_same(rough, fine)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"law": Exponential(3)},
+        {"law": Dlvo(0.3, 1)},
+        {"law": PowerLaw(2.1, 2.5)},
+        {"profile": Power(2.5)},
+        {"profile": Hyperboloid(1)},
+    ],
+    ids=str,
+)
+def test_the_energys_derivative_is_the_load(parts):
+    """Along the contact branch, by differences of the energy over the approach on one grid."""
+    segment = halfspace.trace(0.5, **parts, rtol=1e-8).segments[-1]
+    problem, x, h = segment.problem, segment.points[-3].x, 1e-3
+    states = [newton.solve(problem, x, newton.approach(x[-2] + h * n)).x for n in (-2, -1, 1, 2)]
+    before, less, more, after = (problem.energy(state) for state in states)
+    assert (before - 8 * less + 8 * more - after) / (12 * h) == pytest.approx(problem.load(x), rel=1e-6)
+
+
+def test_contact_with_a_profile_against_closed_forms():
+    """Sneddon's integrals: Hertz's and JKR's on the paraboloid, Galin's on powers."""
+    for a in (0.3, 1.7):
+        assert hertz_load(PARABOLOID, a) == pytest.approx(4 * a**3 / 3, rel=1e-13)
+        assert jkr_load(PARABOLOID, a) == pytest.approx(float(closed_forms.jkr_load(a)), rel=1e-12)
+        assert jkr_approach(PARABOLOID, a) == pytest.approx(float(closed_forms.jkr_approach(a, 1.0)), rel=1e-12)
+        for k in (1.5, 1.7, 3, 10):
+            assert hertz_load(Power(k), a) == pytest.approx(beta((k + 2) / 2, 0.5) * a ** (k + 1), rel=1e-12)
+            assert hertz_approach(Power(k), a) == pytest.approx(beta(k / 2, 0.5) / 2 * a**k, rel=1e-12)
+    for load in (0.0, 5.0, 100.0):
+        assert jkr_radius(PARABOLOID, load) == pytest.approx(float(closed_forms.jkr_radius(load)), rel=1e-13)
+
+
+@pytest.mark.parametrize("softness", [0.1, 1.0, 9.9])
+def test_contacts_of_a_softer_body_are_those_in_lengths_of_its_own(softness):
+    """Whose beta is wider by s^(1/3); by that alone a cone's contact was taken for a quarter of what it is."""
+    wider = np.cbrt(softness)
+    for k in (1.5, 2.0, 7.0):
+        factor = wider ** (k - 2)  # of the same profile's heights, in its own lengths
+        for a in (0.5, 3.0):
+            own = factor * hertz_load(Power(k), a) - np.sqrt(8 * np.pi * a**3)
+            assert jkr_load(Power(k), a * wider, softness) == pytest.approx(own, rel=1e-12)
+    assert jkr_radius(PARABOLOID, 5.0, softness) == pytest.approx(wider * jkr_radius(PARABOLOID, 5.0), rel=1e-12)
+    assert hertz_radius(PARABOLOID, 5.0, softness) == pytest.approx(wider * hertz_radius(PARABOLOID, 5.0), rel=1e-12)
+
+
+def test_a_cone_on_a_soft_base_is_traced_to_its_end():
+    """No end within 2000 points: its contact grew out of the radii that the operator was known for."""
+    film, law = Coated(0.31, modulus_ratio=9.463, poisson=0.225, substrate_poisson=0.05), PowerLaw(3.03, 13.9)
+    path = halfspace.trace(0.5084, law=law, profile=Hyperboloid(0.42), body=film, rtol=1e-3)
+    assert path.met
+    widest = Scales(0.5084, law, Hyperboloid(0.42), film).widest_radius(5.0)
+    assert path.segments[-1].points[-2].observables[CONTACT_RADIUS] < widest  # as traced: no point is solved for again
+    assert path.event("zero_load").contact_radius > 0.9 * widest
+
+
+@pytest.mark.parametrize(
+    "profile", [Paraboloid(), Power(1.5), Power(7), Hyperboloid(0.3), RoundedPunch(2), Blunt()], ids=str
+)
+def test_a_profiles_slope_is_that_of_its_height(profile):
+    r = np.geomspace(0.01, 20, 40)
+    by_differences = (profile.height(r * (1 + 1e-6)) - profile.height(r * (1 - 1e-6))) / (2e-6 * r)
+    np.testing.assert_allclose(profile.slope(r), by_differences, rtol=1e-8)
+    assert 0.7 * profile.height(Scales(0.7, profile=profile).radius_at(3.0)) == pytest.approx(3.0, rel=1e-12)
+    assert Scales(0.7, profile=profile).radius_at(0.0) == 0
+
+
+def test_the_default_lengths_are_those_that_were_tried():
+    """Spike, attraction and widest contact of the 3-9 law on a paraboloid."""
+    for tabor in (0.01, 0.5, 3.0, 100.0):
+        scales = Scales(tabor)
+        assert scales.spike_width == pytest.approx(min(tabor**-2, 0.7 * tabor**-0.5), rel=1e-12)
+        assert scales.outer_radius(32.0) == pytest.approx(8 / np.sqrt(tabor), rel=1e-12)
+        assert scales.widened == pytest.approx(max(1, tabor) ** (3 / 14), rel=1e-12)
+        widest = np.hypot(closed_forms.jkr_radius(5.0), 0.7 / np.sqrt(tabor))
+        assert scales.widest_radius(5.0) == pytest.approx(widest, rel=1e-12)
+        assert (scales.tail_reach, scales.separated_approach) == (1.0, -10 - 2 * tabor)
+        assert scales.rigid_tension == pytest.approx(2 * np.pi, rel=1e-12)
+        assert scales.largest_load == 2 * np.pi
+
+
+@pytest.mark.parametrize(("law", "profile"), sorted({(row["law"], row["profile"]) for row in REFERENCES}))
+def test_finite_elements_hit_the_references(law, profile):
+    path = fem_adhesion.trace(Scene(1.0, **PARTS[law], **PARTS[profile]), rtol=1e-5)
+    for row in (row for row in REFERENCES if (row["law"], row["profile"]) == (law, profile)):
+        event = path.event(row["event"])
+        assert abs(event.approach - float(row["approach"])) <= min(1e-5 * path.approach_scale, event.approach_error)
+        assert abs(event.load - float(row["load"])) <= min(1e-5 * abs(event.load), event.load_error)
+
+
+@pytest.mark.parametrize(
+    ("tabor", "parts"),
+    [
+        (1.0, {"law": Yukawa(), "profile": Blunt()}),
+        (1.0, {"profile": Power(1.5)}),
+        (3.0, {"profile": Power(3)}),
+        (0.3, {"law": Exponential(3), "profile": Hyperboloid(0.3)}),
+        (1.0, {"profile": RoundedPunch(2)}),
+        (1.0, {"law": PowerLaw(2.5, 9.5)}),
+        (0.5, {"law": Dlvo(0.3, 1.0), "profile": Power(4)}),
+    ],
+    ids=str,
+)
+def test_both_solvers_agree_on_any_law_and_profile(tabor, parts):
+    """Of one's own, too: nothing but a class with its formulas."""
+    ours, theirs = halfspace.trace(tabor, **parts), fem_adhesion.trace(Scene(tabor, **parts), rtol=1e-4)
+    assert not ours.missed
+    assert not theirs.missed
+    assert_same(ours, theirs)
+
+
+@pytest.mark.parametrize("number", [1, 26])
+def test_hard_combinations_agree(number):
+    """Two of those that `make honesty` compares: short in range with a hard core, a thin layer under a tip."""
+    assert combinations.verdict(combinations.SCENES[number]) == ("agree", "")
+
+
+@dataclass(frozen=True)
+class Slack(Yukawa):
+    """One whose potential is wrong between the gaps at which laws are looked at."""
+
+    def energy(self, gap, tabor):
+        """Phi, 2 % too small about H = 0.17."""
+        return super().energy(gap, tabor) * (1 - 0.02 * np.exp(-(((gap - 0.17) / 0.03) ** 2)))
+
+
+def test_a_law_whose_potential_and_pressure_differ_is_refused():
+    with pytest.raises(InputError, match=r"the pressure is off by .* from the energy's derivative"):
+        Scene(1.0, law=Slack())
+
+
+@dataclass(frozen=True)
+class Half(Yukawa):
+    """One whose slope is wrong by half between two gaps."""
+
+    def slope(self, gap, tabor):
+        """dP/dH."""
+        return super().slope(gap, tabor) * np.where((gap > 0.4) & (gap < 0.8), 0.5, 1.0)
+
+
+def test_a_law_whose_slope_is_wrong_between_some_gaps_is_refused_by_its_name():
+    with pytest.raises(InputError, match=r"^Half\(.*the slope is off by .* from the pressure's"):
+        halfspace.trace(1.0, law=Half())
+
+
+@dataclass(frozen=True)
+class Own(Endless):
+    """A paraboloid that is lifted, bends down, or has another slope."""
+
+    lift: float = 0.0
+    bend: float = 0.0
+    steeper: float = 1.0
+
+    def height(self, radii):
+        """In beta^2/R."""
+        return self.lift + radii**2 / 2 - self.bend * radii**4
+
+    def slope(self, radii):
+        """Its derivative."""
+        return self.steeper * radii - 4 * self.bend * radii**3
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"lift": 0.3}, "the height on the axis is 0.3 beta"),
+        ({"bend": 0.02}, "the height falls by"),
+        ({"steeper": 1.01}, "the slope is off by 0.00"),
+    ],
+)
+def test_a_profile_of_ones_own_is_checked_as_laws_are(wrong, message):
+    assert halfspace.trace(1.0, profile=Own(), rtol=1e-2).met
+    for ask in (lambda: halfspace.trace(1.0, profile=Own(**wrong)), lambda: Scene(1.0, profile=Own(**wrong))):
+        with pytest.raises(InputError, match=message):
+            ask()
+
+
+def test_a_search_for_a_length_ends():
+    with pytest.raises(NotConverged, match="a length is below"):
+        rising_root(lambda r: r + 0.3, "a length; let it begin at zero")
+
+
+def test_a_scene_tells_the_tabor_parameters_of_the_3_9_law_as_strong_and_as_stiff():
+    """Morse's law is as stiff at k = sqrt 8 and as strong at k/2 = 16/(9 sqrt 3), with which both are told."""
+    told = Scene(2.0, law=Morse(np.sqrt(8))).told[-1]
+    strength = 2 * np.sqrt(2) / (16 / 9 / np.sqrt(3))
+    assert told == f"law morse k 2.82843, as strong as the 3-9 law at tabor {strength:.4g}, as stiff at 2"
+    assert Scene(2.0).told == ["tabor 2", "poisson 0.3"]
+
+
+def test_a_scene_refuses_what_is_no_law():
+    with pytest.raises(InputError, match=r"the energy at H = 0 is -0\.9 dgamma"):
+        Scene(1.0, law=Yukawa(work=0.9))

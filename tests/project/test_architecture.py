@@ -1,0 +1,62 @@
+"""Every import goes down the floors of the house, as pyproject.toml has them, and every module has its floor."""
+
+import ast
+import itertools
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from importlinter.cli import lint_imports
+
+ROOT = Path(__file__).parents[2]
+CONTRACTS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+FLOORS = next(contract["layers"] for contract in CONTRACTS if contract["type"] == "layers")
+
+
+def test_imports_keep_the_contracts(capsys, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    assert lint_imports(config_filename=str(ROOT / "pyproject.toml"), cache_dir=None) == 0, capsys.readouterr().out
+
+
+def _rooms():
+    for package in ("halfspace", "fem_adhesion"):
+        for path in (ROOT / package).iterdir():
+            if path.suffix == ".py" and path.name != "__init__.py":
+                yield f"{package}.{path.stem}"
+            elif (path / "__init__.py").exists():
+                yield f"{package}.{path.name}"
+
+
+@pytest.mark.parametrize("room", sorted(_rooms()))
+def test_every_room_has_its_floor(room):
+    assert sum(room in re.split(r"[\s|:]+", floor) for floor in FLOORS) == 1
+
+
+def test_the_floors_are_few():
+    assert len(FLOORS) <= 12
+
+
+def _imports(module):
+    path = ROOT / Path(*module.split("."))
+    files = [path.with_suffix(".py")] if not path.is_dir() else path.rglob("*.py")
+    for node in itertools.chain.from_iterable(ast.walk(ast.parse(file.read_text())) for file in files):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield f"{node.module}.{node.names[0].name}"
+
+
+def test_the_fourth_level_imports_nothing_of_the_solvers_it_checks():
+    """No physics, no numbers: exceptions, containers of results, limits, and the parts by which a scene is known."""
+    own = {name for name in _imports("fem_adhesion.weak_form") if name.split(".")[0] in ("halfspace", "fem_adhesion")}
+    own = {name for name in own if not name.startswith("fem_adhesion.weak_form.")}
+    scene = {"fem_adhesion.scene.Scene", "halfspace.laws.LENNARD_JONES", "halfspace.profiles.Paraboloid"}
+    results = {"halfspace.equilibrium.events.Event", "halfspace.values.Valued"}
+    refusals = {"halfspace.errors.InputError", "halfspace.errors.NotConverged", "halfspace.limits.require_between"}
+    assert own == scene | results | refusals
+
+
+def test_the_harmonics_import_nothing_of_the_finite_elements_they_check():
+    own = {name for name in _imports("fem_adhesion.harmonics") if name.split(".")[0] in ("skfem", "fem_adhesion")}
+    assert own == {"fem_adhesion.scene.Scene"}

@@ -1,0 +1,97 @@
+"""The solvers need four libraries; what the commands need besides comes with an extra, and they say with which."""
+
+import subprocess
+import sys
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from fem_adhesion import cli
+from fem_adhesion.speed import command as speed
+
+PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
+EXTRA = {  # what each library of the extra is imported as
+    "rich": "rich",
+    "matplotlib": "matplotlib",
+    "loky": "loky",
+    "plotille": "plotille",
+    "Pint": "pint",
+    "Jinja2": "jinja2",
+    "MarkupSafe": "markupsafe",  # comes with Jinja2
+    "pillow": "PIL",
+}
+BLOCKED = f"""
+import sys
+
+class Blocked:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {tuple(EXTRA.values())}:
+            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+
+sys.meta_path.insert(0, Blocked())
+"""
+
+
+def without_the_extra(code):
+    return subprocess.run([sys.executable, "-c", BLOCKED + code], capture_output=True, text=True)
+
+
+def names(requirements):
+    return {requirement.split(">")[0] for requirement in requirements}
+
+
+def test_the_solvers_need_four_libraries():
+    assert names(PROJECT["dependencies"]) == {"numpy", "scipy", "scikit-fem", "meshio"}
+    assert names(PROJECT["optional-dependencies"]["studies"]) == set(EXTRA) - {"MarkupSafe"}
+
+
+@pytest.mark.parametrize("library", EXTRA.values())
+def test_each_library_of_the_extra_is_named_with_it(library, monkeypatch, capsys):
+    def missing(_):
+        raise ModuleNotFoundError(f"No module named {library!r}", name=f"{library}.part")
+
+    monkeypatch.setattr(cli, "COMMANDS", (replace(speed.COMMAND, run=missing),))
+    assert cli.main(["speed", "--out", "out"]) == 2
+    assert capsys.readouterr().err == (
+        f"fem-adhesion: {library}.part is not installed; pip install 'fem-adhesion[studies]'\n"
+    )
+
+
+def test_a_curve_is_traced_without_the_extra():
+    done = without_the_extra(
+        "import halfspace, fem_adhesion\n"
+        "path = fem_adhesion.trace(fem_adhesion.Scene(1.0), rtol=1e-2)\n"
+        "print(abs(path.event('pull_off').load - halfspace.trace(1.0, rtol=1e-2).event('pull_off').load) < 0.02)"
+    )
+    assert (done.stdout, done.stderr) == ("True\n", "")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["curve", "--tabor", "1"],
+        ["compare", "--tabor", "1"],
+        ["assess", "--radius", "100nm", "--modulus", "1GPa", "--poisson", "0.3", "--work-of-adhesion", "0.1J/m^2",
+         "--spacing", "0.2nm"],
+        ["finite-sphere", "--out", "out", "--quick"],
+        ["speed", "--out", "out"],
+        ["greenwood", "--out", "out"],
+        ["report", "--out", "out.html"],
+    ],
+    ids=lambda arguments: arguments[0],
+)  # fmt: skip
+def test_a_command_without_the_extra_says_what_to_install(arguments, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = without_the_extra(f"from fem_adhesion import cli\nsys.exit(cli.main({arguments}))")
+    assert done.returncode == 2
+    assert done.stderr.startswith("fem-adhesion: ")
+    assert done.stderr.endswith(" is not installed; pip install 'fem-adhesion[studies]'\n")
+    assert done.stderr.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_any_other_missing_module_is_a_defect():
+    done = without_the_extra("from fem_adhesion import cli\ncli.STUDIES = ()\ncli.main(['speed', '--out', 'out'])")
+    assert "Traceback" in done.stderr

@@ -1,0 +1,178 @@
+"""Every target of the Makefile does what `make help` says, in the environment that the tests run in.
+
+No target installs anything here: the stamps that say that the environment is complete are given.
+"""
+
+import os
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+from unittest.mock import ANY
+
+import honesty
+import pytest
+import side_by_side
+from conftest import LONGEST
+from whole_runs import BIN, ROOT, tables_in
+
+MAKEFILE_AT = ROOT / "Makefile"
+MAKEFILE = MAKEFILE_AT.read_text()
+
+# How each target is run; `test` is what runs this, `check` is run beside it, and `clean` works on a copy.
+COMPARE = "make compare"
+HARD = "make hard OUT=hard"
+TARGETS = {
+    "help": "make help",
+    "compare": COMPARE,
+    "test": "make --dry-run test",
+    "check": "make --dry-run check",
+    "bench": "make bench QUICK=1",
+    "honesty": "make honesty QUICK=1 SEED=77",  # a new seed each time finds what is not known yet: no test's verdict
+    "hard": HARD,  # test_hard reads what it writes
+    "docs": "make docs OUT=docs QUICK=1",
+    "clean": "make clean",
+}
+
+
+@pytest.fixture(scope="module")
+def made(whole):
+    return lambda target: whole(TARGETS[target])
+
+
+def test_every_target_is_run():
+    (phony,) = re.findall(r"^\.PHONY: (.*)$", MAKEFILE, re.M)
+    assert sorted(phony.split()) == sorted(TARGETS)
+
+
+def test_help_lists_the_targets_with_what_they_do(made):
+    run = made("help")
+    assert run.code == 0
+    listed = dict(line.split(maxsplit=1) for line in run.out.splitlines())
+    assert listed.keys() == TARGETS.keys()
+    assert listed["check"] == "check format, style and types"
+
+
+def test_compare_prints_six_tables_and_agrees(made):
+    run = made("compare")
+    assert run.code == 0, run.err
+    titles = [line.strip() for line in run.out.splitlines() if line.startswith("tabor")]
+    assert titles == [f"tabor {tabor}; poisson 0.3: agree" for tabor in ("0.05", "0.5", "1", "2", "3", "5")]
+    assert run.out.rstrip().endswith("verdict: agree")
+    for table in tables_in(run.out):
+        for row in table:
+            assert row["verdict"] == "agree"
+            error = sum(float(cell) for name, cell in row.items() if name.startswith("error"))
+            assert float(row["difference"]) <= error * 1.1  # two digits are printed
+            assert error <= float(row["budget"]) * 1.1
+
+
+def test_check_asks_every_tool_about_all_there_is(made):
+    """A rehearsal: what decides whether work lands runs it, and would read all sources here a second time."""
+    run = made("check")
+    assert run.code == 0
+    assert run.out.splitlines() == [f"{BIN}/ruff format --check .", f"{BIN}/ruff check .", f"{BIN}/mypy"]
+    landing = (ROOT / ".ci/run").read_text().splitlines()
+    assert "set -euo pipefail" in landing
+    assert landing[-4:-1] == [
+        "make check & checked=$!",
+        """trap 'kill %1 2> /dev/null || true' EXIT""",
+        "make test",
+    ]
+    assert landing[-1].startswith('wait "$checked" || {')
+    assert tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"] == {
+        "strict": True,
+        "files": ["halfspace", "fem_adhesion"],
+        "overrides": ANY,
+    }
+
+
+def test_test_runs_all_tests_on_all_processors(made):
+    """A rehearsal: the real one is what runs this."""
+    run = made("test")
+    assert run.code == 0
+    program, *arguments = run.out.split()
+    assert program == f"{BIN}/python"
+    assert arguments == ["-m", "pytest", "--numprocesses", "auto", "--dist", "loadfile", "--no-loadscope-reorder"]
+
+
+def test_the_files_that_take_longest_are_there():
+    assert set(LONGEST) <= {path.name for path in (ROOT / "tests").rglob("test_*.py")}
+
+
+def test_bench_times_every_solver_beside_the_yardstick(made):
+    run = made("bench")
+    assert run.code == 0, run.out + run.err
+    (section,) = re.findall(r"medians, in seconds and in yardsticks.*?\n(.*?)\n\n", run.out, re.S)
+    lines = [re.fullmatch(r"(\S+) +([\d.]+) s +(\d+)", line).groups() for line in section.splitlines()]
+    medians = {name.split("[")[0]: (float(seconds), int(yardsticks)) for name, seconds, yardsticks in lines}
+    tests = (ROOT / "tests/benchmarks/test_wall_times.py").read_text()
+    assert sorted(medians) == sorted(re.findall(r"^def (test_\w+)", tests, re.M))
+    assert medians["test_yardstick_dgesv_of_200"][1] == 1
+    for seconds, yardsticks in medians.values():
+        assert seconds > 0
+        assert yardsticks >= 1
+    assert re.search(r"peak memory of one process: \d+ MiB", run.out)
+
+
+def test_docs_shows_every_module_without_a_warning(made):
+    run = made("docs")
+    assert run.code == 0, run.err
+    assert not run.err
+    pages = {str(file.relative_to(run / "docs").with_suffix("")) for file in (run / "docs").rglob("*.html")}
+    modules = {
+        str(file.relative_to(ROOT).with_suffix("")).removesuffix("/__init__")
+        for package in ("halfspace", "fem_adhesion")
+        for file in (ROOT / package).rglob("*.py")
+    }
+    assert pages - {"index"} == modules - {"fem_adhesion/__main__"}
+    assert "beta = (R^2 dgamma/E*)^(1/3)" in (run / "docs/halfspace.html").read_text()
+
+
+def test_honesty_judges_every_family_and_both_solvers_side_by_side(made):
+    run = made("honesty")
+    assert run.code == 0, run.out + run.err
+    judged = dict(re.findall(r"^(\S.*?) +(\d+) +[\d.]+% +[\d.]+% +\d+$", run.out, re.M))
+    assert judged.keys() == {name for name, family in honesty.FAMILIES.items() if family.quick.scenes}
+    assert all(int(count) >= 8 for count in judged.values())  # those of a curve without folds
+    assert re.search(r"both solvers side by side, \d+ scenes of seed \d+", run.out)
+    compared = dict(re.findall(r"^(\w+) +(\d+) +\d+ +\S+$", run.out, re.M))
+    assert compared.keys() == {*side_by_side.QUANTITIES, "energy"}
+    assert all(int(count) > 0 for count in compared.values())
+
+
+def test_clean_removes_what_was_made_and_nothing_else(tmp_path):
+    (tmp_path / "Makefile").write_text(MAKEFILE)
+    for name in (".venv/bin", "build/lib", "fem_adhesion.egg-info", ".mypy_cache", "halfspace", "meshes"):
+        (tmp_path / name).mkdir(parents=True)
+        (tmp_path / name / "file").touch()
+    subprocess.run(["make", "clean"], cwd=tmp_path, check=True, capture_output=True)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["Makefile", "halfspace", "meshes"]
+
+
+def test_the_environment_of_a_target_is_made_once_and_from_what_is_pinned():
+    """Rehearsed in a directory without one; a second run finds the stamps and makes nothing."""
+    rehearsed = subprocess.run(
+        ["make", "--no-print-directory", "--dry-run", "compare", "VENV=no-such-environment"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.splitlines()
+    assert rehearsed[0].endswith("-m venv no-such-environment")
+    assert "--constraint constraints.txt --editable '.[studies]'" in rehearsed[1]
+    assert rehearsed[-1] == "no-such-environment/bin/fem-adhesion compare"
+    assert not Path(ROOT / "no-such-environment").exists()
+
+
+def test_processes_of_a_target_share_bytecode_in_the_environment_even_where_none_is_to_be_written(tmp_path):
+    (tmp_path / "told").write_text("told:\n\t@echo $$PYTHONPYCACHEPREFIX [$$PYTHONDONTWRITEBYTECODE]\n")
+    outside = {name: value for name, value in os.environ.items() if name not in ("PYTHONPYCACHEPREFIX", "MAKEFLAGS")}
+    told = subprocess.run(
+        ["make", "--no-print-directory", f"--file={MAKEFILE_AT}", f"--file={tmp_path}/told", "told", "VENV=/some"],
+        env=outside | {"PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert told.stdout.split() == ["/some/bytecode", "[]"]
