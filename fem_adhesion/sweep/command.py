@@ -16,7 +16,7 @@ from halfspace.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from halfspace.accuracy.following import Summary
+    from halfspace.accuracy.sweep import Summary
 
 MOST = 10**5  # Tabor parameters of one FROM:TO:COUNT: over seven decades neighbours then differ by 2e-4
 
@@ -33,9 +33,7 @@ def add_options(command: Parser) -> None:
     command.add_argument(
         "--csv", type=Path, required=True, help="write the table; - for standard output", metavar="FILE"
     )
-    resume = (
-        "keep curves in the directory as soon as they are there, neighbours together, and go on with those it holds"
-    )
+    resume = "keep curves in the directory as soon as they are there, and go on with those it holds"
     command.add_argument("--resume", type=Path, help=resume, metavar="DIR")
     add_workers(command)
 

@@ -13,11 +13,9 @@ from fem_adhesion.common.facts import code_digest, plain
 from fem_adhesion.common.files import Plain, Store
 from fem_adhesion.common.jobs import Kept, solve_all
 from fem_adhesion.registry import record_of
-from halfspace.accuracy.following import UNKNOWN, Summary, families
-from halfspace.accuracy.sweep import summaries
+from halfspace.accuracy.sweep import UNKNOWN, Summary, summary
 from halfspace.equilibrium.events import EVENTS, Event
 from halfspace.errors import InputError
-from halfspace.profiles import PARABOLOID
 from halfspace.values import Estimate
 
 UNITS = {"approach": "eps", "load": "R_dgamma", "central_gap": "eps", "contact_radius": "beta"}
@@ -34,20 +32,18 @@ def run(
     asked: Mapping[str, Any],
     store: Store | None = None,
     *,
-    work: Callable[..., list[Summary]] = summaries,
+    work: Callable[..., Summary] = summary,
     **how: Any,
 ) -> tuple[Summary, ...]:
     """Trace the curves at Tabor parameters, each once, that the store does not hold, and store each at once.
 
     What is asked of every curve are the relative accuracy `rtol`, the load `to_load` in R dgamma at which it ends, and
     the `law`. What could not be traced says why; where a worker died it is not stored. The work, a function of a
-    module, solves for neighbouring curves; `how` are further keywords of `fem_adhesion.common.jobs.solve_all`: jobs,
-    dask, progress.
+    module, solves for one curve; `how` are further keywords of `fem_adhesion.common.jobs.solve_all`: jobs, dask,
+    progress.
     """
     kept = Kept(partial(_inputs, asked=asked), "tabor {:g}".format, _to_plain, _from_plain, Summary.failed)
-    parts = partial(families, law=asked["law"], profile=PARABOLOID, body=None)
-    work = partial(work, profile=PARABOLOID, body=None, **asked)
-    return solve_all(tabors, store, work=work, kept=kept, parts=parts, **how)
+    return solve_all(tabors, store, work=partial(work, **asked), kept=kept, **how)
 
 
 def _inputs(tabor: float, asked: Mapping[str, Any]) -> Plain:

@@ -1,4 +1,7 @@
-"""Curves at many Tabor parameters: their events, energies and losses as arrays, each number with its error."""
+"""Curves at many Tabor parameters: their events, energies and losses as arrays, each number with its error.
+
+Each curve is traced by itself, so that its numbers do not depend on which others are asked for.
+"""
 
 from __future__ import annotations
 
@@ -6,29 +9,60 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from halfspace.accuracy.following import Summary, curves, families, family_of
 from halfspace.accuracy.trace import trace
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.charts import COMPRESSION
-from halfspace.equilibrium.devices import staged_jumps
-from halfspace.equilibrium.events import EVENTS, Event
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.devices import cycle
+from halfspace.equilibrium.events import EVENTS, Event, usual
 from halfspace.equilibrium.states import States
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
 from halfspace.limits import require_load, require_rtol, require_tabor
 from halfspace.profiles import PARABOLOID, Profile, require_profile
-from halfspace.values import Array, Valued
-
-Tabors = tuple[float, ...]
-Map = Callable[[Callable[[Tabors], list[Summary]], Sequence[Tabors]], Iterable[list[Summary]]]
-"""Does the same work on many items and gives the results in their order, as the built-in `map` does."""
+from halfspace.values import Array, Estimate, Valued
 
 NUMBERS = tuple(field.name for field in fields(States))
+UNKNOWN = Estimate(math.nan, math.nan)
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a sweep keeps of one curve, or why it could not be traced, then without events and with energies of nan.
+
+    The energies, in R dgamma eps, are released from separation to zero approach in contact, and lost in a cycle under
+    fixed grips: zero if the curve does not fold, nan if its error estimate leaves open whether it does. `missed` are,
+    by event, the numbers whose estimated errors exceed the tolerance.
+    """
+
+    tabor: float
+    events: Mapping[str, Event]
+    energy: Estimate
+    energy_lost: Estimate
+    missed: Mapping[str, tuple[str, ...]]
+    reason: str = ""
+
+    @classmethod
+    def of(cls, path: EquilibriumPath) -> Summary:
+        """Keep the numbers of a curve."""
+        jumps = cycle(path)
+        lost = jumps.energy_lost if jumps else (UNKNOWN if path.jumps is None else Estimate(0.0, 0.0))
+        return cls(path.tabor, usual(path.events), path.energy, lost, path.missed)
+
+    @classmethod
+    def failed(cls, tabor: float, reason: str) -> Summary:
+        """Say why there is no curve."""
+        return cls(tabor, {}, UNKNOWN, UNKNOWN, {}, reason)
+
+
+Map = Callable[[Callable[[float], Summary], Sequence[float]], Iterable[Summary]]
+"""Does the same work on many items and gives the results in their order, as the built-in `map` does."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,10 +108,7 @@ def sweep(
 ) -> Sweep:
     """Solve for the curves at many Tabor parameters, and keep their events, energies and losses with their errors.
 
-    Of neighbours some are traced, and those between followed from them, all on the same grids: numbers differ from
-    those of `halfspace.trace`, or of curves asked for together with others, as errors do. That between three curves
-    which fold equally often, at Tabor parameters within 1.5 times, none folds otherwise is an assumption, see
-    `halfspace.accuracy.following`. A curve that cannot be traced leaves nan, and its reason; the others are not lost.
+    A curve that cannot be traced leaves nan, and its reason; the others are not lost.
 
     Parameters
     ----------
@@ -86,8 +117,8 @@ def sweep(
     law, profile, body, rtol, to_load
         As of `halfspace.trace`, the same for all curves.
     map : callable
-        Does the work on all groups of neighbours and gives the results in their order: the built-in one, group after
-        group, or that of a pool of processes, as ``concurrent.futures.ProcessPoolExecutor().map``.
+        Traces all curves and gives the results in their order: the built-in one, curve after curve, or that of a pool
+        of processes, as ``concurrent.futures.ProcessPoolExecutor().map``.
 
     Raises
     ------
@@ -99,27 +130,17 @@ def sweep(
         raise InputError("tabors is empty, limit: at least one; give a list of Tabor parameters")
     rtol, to_load, law = require_rtol(rtol), require_load(to_load), require_law(law)
     profile = require_profile(profile)
-    work = partial(summaries, law=law, profile=profile, body=body, rtol=rtol, to_load=to_load)
-    found = {curve.tabor: curve for part in map(work, families(asked, law, profile, body)) for curve in part}
+    work = partial(summary, law=law, profile=profile, body=body, rtol=rtol, to_load=to_load)
+    found = {curve.tabor: curve for curve in map(work, list(dict.fromkeys(asked)))}
     return collected([found[tabor] for tabor in asked])
 
 
-def summaries(
-    tabors: Tabors, *, law: Law, profile: Profile, body: LayeredBody | None, rtol: float, to_load: float
-) -> list[Summary]:
-    """Curves of one of the `families` of a sweep; what cannot be traced, also on grids of its own, says why."""
-
-    def by_itself(tabor: float) -> Summary:
-        try:
-            path = trace(tabor, law=law, profile=profile, body=body, rtol=rtol, to_load=to_load)
-            return Summary.of(path, staged_jumps(path))
-        except NotConverged as error:
-            return Summary.failed(tabor, str(error))
-
-    if len(tabors) == 1:
-        return [by_itself(tabors[0])]
-    together = curves(tabors, family_of(tabors, law=law, profile=profile, rtol=rtol, to_load=to_load))
-    return [by_itself(curve.tabor) if curve.reason else curve for curve in together]
+def summary(tabor: float, **asked: Any) -> Summary:
+    """Trace one curve of a sweep, asked as of `halfspace.trace`; a curve that cannot be traced says why."""
+    try:
+        return Summary.of(trace(tabor, **asked))
+    except NotConverged as error:
+        return Summary.failed(tabor, str(error))
 
 
 def collected(summaries: Sequence[Summary]) -> Sweep:

@@ -13,13 +13,11 @@ from fem_adhesion import cli
 from fem_adhesion.common.files import open_store
 from fem_adhesion.common.jobs import WorkerDied
 from fem_adhesion.sweep import study
-from halfspace.accuracy import following
 from halfspace.accuracy import sweep as sweeping
-from halfspace.accuracy.following import RATIO, UNKNOWN, Known, Summary, families
-from halfspace.accuracy.sweep import NUMBERS, summaries
+from halfspace.accuracy.sweep import NUMBERS, UNKNOWN, Summary, summary
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Morse
+from halfspace.laws import LENNARD_JONES, Morse
 
 TABORS = (2.0, 0.3, 1.0)  # of which the second does not fold
 RTOL = 1e-3
@@ -110,156 +108,9 @@ def test_a_curve_that_cannot_be_traced_leaves_the_others(monkeypatch, found):
     ],
 )
 def test_what_is_out_of_range_is_refused_before_any_work(monkeypatch, asked, why):
-    for name in ("trace", "curves"):
-        monkeypatch.setattr(sweeping, name, lambda *_, **__: pytest.fail("it has begun"))
+    monkeypatch.setattr(sweeping, "trace", lambda *_, **__: pytest.fail("it has begun"))
     with pytest.raises(InputError, match=why):
         halfspace.sweep(**asked)
-
-
-# --- neighbours ---
-
-
-def family(first, last, count):
-    """Tabor parameters between two that share their grids."""
-    (tabors,) = families(np.geomspace(first, last, count).tolist(), LENNARD_JONES, halfspace.profiles.PARABOLOID, None)
-    return tabors
-
-
-def numbers_of(swept, i):
-    """All numbers of a curve of a sweep, and their errors, by name."""
-    of_events = {
-        (name, number): (getattr(series, number)[i], getattr(series, f"{number}_error")[i])
-        for name, series in swept.events.items()
-        for number in study.UNITS
-    }
-    lost = {("energy", "lost"): (swept.energy_lost[i], swept.energy_lost_error[i])}
-    return of_events | lost | {("energy", ""): (swept.energy[i], swept.energy_error[i])}
-
-
-@pytest.fixture
-def traced(monkeypatch):
-    """Tabor parameters that are traced among neighbours, in turn."""
-    found = []
-    trace = following.Family.traced
-
-    def counting(self, tabor):
-        found.append(tabor)
-        return trace(self, tabor)
-
-    monkeypatch.setattr(following.Family, "traced", counting)
-    return found
-
-
-@pytest.mark.parametrize(
-    ("between", "expected"),
-    [
-        pytest.param((1.55, 2.2), 3, id="nothing but the ends and the middle"),
-        pytest.param((0.675, 0.9), 5, id="around the birth of the jumps"),
-        pytest.param((3.5, 5.0), 5, id="around the birth of the next folds"),
-        pytest.param((0.06, 0.08), 3, id="nearly rigid"),
-        pytest.param((26.0, 38.0), 3, id="soft"),
-    ],
-)
-def test_what_is_followed_is_what_would_be_traced(between, expected, traced):
-    tabors = family(*between, 7)
-    swept = halfspace.sweep(tabors, rtol=1e-5)
-    assert len(traced) == expected
-    assert swept.met.all()
-    off = []
-    for i, tabor in enumerate(tabors):
-        path = halfspace.trace(tabor, rtol=1e-7)
-        lost = cycle(path)
-        true = {(name, number): event.estimate(number) for name, event in path.events.items() for number in study.UNITS}
-        true |= {
-            ("energy", ""): path.energy,
-            ("energy", "lost"): lost.energy_lost if lost else halfspace.Estimate(0, 0),
-        }
-        for name, (value, error) in numbers_of(swept, i).items():
-            assert np.isnan(value) == (name not in true or np.isnan(true[name].value)), name
-            if not np.isnan(value):
-                off.append(abs(value - true[name].value) / max(error + true[name].error, 1e-300))  # no loss: 0 +- 0
-    assert np.mean(np.array(off) > 1) < 0.02
-    assert max(off) < 3
-
-
-def test_numbers_do_not_depend_on_which_neighbours_they_are_followed_from(traced):
-    many = family(1.55, 2.2, 9)
-    whole, part = halfspace.sweep(many, rtol=1e-5), halfspace.sweep(many[2:7], rtol=1e-5)
-    assert traced == [many[0], many[4], many[8], many[2], many[4], many[6]]
-    for i in range(5):
-        for name, (value, error) in numbers_of(part, i).items():
-            other, other_error = numbers_of(whole, i + 2)[name]
-            assert value == pytest.approx(other, rel=1e-9, abs=1e-9, nan_ok=True), name
-            assert error == pytest.approx(other_error, rel=1e-2, abs=2e-10, nan_ok=True), name
-
-
-def test_what_is_not_where_it_is_expected_is_traced(monkeypatch, traced):
-    tabors = family(1.55, 2.2, 5)
-    followed = halfspace.sweep(tabors, rtol=RTOL)
-    assert len(traced) == 3
-    monkeypatch.setattr(following, "OFF", 0.0)
-    again = halfspace.sweep(tabors, rtol=RTOL)
-    assert sorted(traced[3:]) == list(tabors)
-    for name, series in again.events.items():
-        np.testing.assert_allclose(series.approach, followed.events[name].approach, rtol=1e-9, atol=1e-9)
-
-
-def test_between_curves_of_which_one_cannot_be_traced_all_are_and_it_is_by_itself(monkeypatch, traced):
-    tabors = family(1.55, 2.2, 5)
-    climb = following.climb
-
-    def failing(rtol, rung, **settings):
-        if len(traced) == 1:
-            raise NotConverged("it ends here; take another")
-        return climb(rtol, rung, **settings)
-
-    monkeypatch.setattr(following, "climb", failing)
-    swept = halfspace.sweep(tabors, rtol=RTOL)
-    assert len(traced) == 4  # the last is followed
-    assert not swept.reasons
-    assert swept.energy[0] == halfspace.trace(tabors[0], rtol=RTOL).energy.value
-
-    def ending(*_, **__):
-        raise NotConverged("it ends here; take another")
-
-    monkeypatch.setattr(sweeping, "trace", ending)
-    monkeypatch.setattr(following.Family, "traced", lambda _, tabor: Known(Summary.failed(tabor, "on these grids")))
-    assert halfspace.sweep(tabors, rtol=RTOL).reasons == dict.fromkeys(tabors, "it ends here; take another")
-
-
-def test_families_are_near_neighbours_on_the_same_grids_the_largest_first():
-    tabors = np.geomspace(0.05, 50, 200).tolist()
-    found = families(tabors[::-1], LENNARD_JONES, halfspace.profiles.PARABOLOID, None)
-    assert sorted(tabor for part in found for tabor in part) == tabors
-    assert found == sorted(found, reverse=True)
-    assert all(part[-1] / part[0] <= RATIO for part in found)
-    assert max(map(len, found)) > 10
-
-
-def test_many_of_a_family_are_cut_for_many_cores_and_keep_its_grids():
-    tabors = np.geomspace(1.55, 2.2, 40).tolist()
-    parts = families(tabors, LENNARD_JONES, halfspace.profiles.PARABOLOID, None)
-    assert [len(part) for part in parts] == [14, 13, 13]
-    assert sorted(tabor for part in parts for tabor in part) == tabors
-    settings = {"law": LENNARD_JONES, "profile": halfspace.profiles.PARABOLOID, "rtol": 1e-6, "to_load": 10.0}
-    (grids,) = {(one.least, one.largest) for part in parts for one in [following.family_of(part, **settings)]}
-    assert grids[0] < tabors[0] < tabors[-1] < grids[1]
-
-
-@pytest.mark.parametrize(
-    "parts",
-    [
-        {"profile": halfspace.profiles.Sphere(100.0)},
-        {"body": halfspace.Layer(1.0)},
-        {"law": Dlvo(0.6, 1.5)},
-        {"law": Dugdale(0.1)},
-        {"tabors": (1.6, 1.9)},
-    ],
-    ids=["a sphere", "a layer", "a second minimum", "a step", "two alone"],
-)
-def test_what_is_not_alike_is_traced_by_itself(parts):
-    usual = {"tabors": (1.6, 1.8, 2.0), "law": LENNARD_JONES, "profile": halfspace.profiles.PARABOLOID, "body": None}
-    assert set(map(len, families(**(usual | parts)))) == {1}
 
 
 # --- the command ---
@@ -319,9 +170,9 @@ def test_a_range_of_more_parameters_than_a_table_is_for_is_refused(capsys, tmp_p
     assert "COUNT 2 to 100000; write 0.05:50:200, say\n" in capsys.readouterr().err
 
 
-def counted(tabors, **asked):
-    counted.calls.extend(tabors)
-    return summaries(tabors, **asked)
+def counted(tabor, **asked):
+    counted.calls.append(tabor)
+    return summary(tabor, **asked)
 
 
 counted.calls = []
@@ -345,7 +196,7 @@ def test_what_is_kept_is_not_traced_again(tmp_path):
 def test_what_missed_its_tolerance_comes_back_from_the_disk_as_it_was(tmp_path):
     store = open_store(tmp_path / "kept", "code", resume=True)
     missed = Summary(1.0, {}, UNKNOWN, UNKNOWN, {"jump_on": ("approach", "load")}, "")
-    (kept,) = study.run([1.0], ASKED, store, jobs=1, work=lambda *_, **__: [missed])
+    (kept,) = study.run([1.0], ASKED, store, jobs=1, work=lambda *_, **__: missed)
     (again,) = study.run([1.0], ASKED, store, jobs=1, work=counted)
     assert again.missed == kept.missed == {"jump_on": ("approach", "load")}
 
@@ -353,27 +204,11 @@ def test_what_missed_its_tolerance_comes_back_from_the_disk_as_it_was(tmp_path):
 def test_a_curve_whose_worker_died_is_tried_again(monkeypatch, tmp_path):
     store = open_store(tmp_path / "kept", "code", resume=True)
     monkeypatch.setattr(
-        "fem_adhesion.common.jobs.stream", lambda *_, **__: (item for item in [((1.0,), WorkerDied("killed"))])
+        "fem_adhesion.common.jobs.stream", lambda *_, **__: (item for item in [(1.0, WorkerDied("killed"))])
     )
     (died,) = study.run([1.0], ASKED, store)
     assert died == Summary(1.0, {}, UNKNOWN, UNKNOWN, {}, "killed")
     assert store.get(study._inputs(1.0, ASKED)) is None
-
-
-def test_of_neighbours_whose_worker_died_each_is_tried_alone(monkeypatch):
-    asked = []
-
-    def dying(work, parts, **_):
-        for part in parts:
-            asked.append(part)
-            yield part, WorkerDied("killed") if len(part) > 1 else work(part)
-
-    monkeypatch.setattr("fem_adhesion.common.jobs.stream", dying)
-    tabors = (1.6, 1.8, 2.0, 2.2)
-    curves = study.run(tabors, ASKED)
-    assert asked == [tabors, *((tabor,) for tabor in tabors)]
-    assert [curve.tabor for curve in curves] == list(tabors)
-    assert not any(curve.reason for curve in curves)
 
 
 def test_the_exit_code_says_that_a_curve_is_missing(monkeypatch, capsys, tmp_path):
