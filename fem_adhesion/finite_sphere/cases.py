@@ -16,12 +16,12 @@ from typing import Literal
 import halfspace
 from fem_adhesion.bodies.body import Discretisation, GripName
 from fem_adhesion.bodies.held import Hemisphere
+from fem_adhesion.common.fold_birth import FIRST, Birth, NoBirth, born, tabor_of
 from fem_adhesion.convergence import trace
 from fem_adhesion.discretise import sized_body
 from fem_adhesion.finite_strain.scene import find_jumps, require_well_posed
 from fem_adhesion.materials import AreaName, LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.fold_birth import FIRST, Birth, NoBirth, born, tabor_of
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import Event, usual

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fem_adhesion.common.fold_birth import count_folds
 from fem_adhesion.greenwood.claims_model import AFTER, BEFORE, as_printed, pressure_at
 from fem_adhesion.greenwood.facts import (
     DEEP,
@@ -22,7 +23,6 @@ from fem_adhesion.greenwood.facts import (
 )
 from fem_adhesion.greenwood.tables import PROFILE_CHECKS
 from fem_adhesion.greenwood.verdicts import Claim, above, below, between, digits, formula, within
-from halfspace.accuracy.fold_birth import count_folds
 from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD
 from halfspace.laws import LENNARD_JONES

@@ -10,6 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 from scipy.special import ellipe, ellipk
 
+from fem_adhesion.common.fold_birth import count_folds
 from fem_adhesion.greenwood.facts import (
     JUMPING,
     SOFT,
@@ -22,7 +23,6 @@ from fem_adhesion.greenwood.facts import (
 from fem_adhesion.greenwood.tables import PROFILE_CHECKS
 from fem_adhesion.greenwood.verdicts import Allowed, Claim, Reading, above, below, digits, formula
 from halfspace import scaling
-from halfspace.accuracy.fold_birth import count_folds
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.kernel import ring_kernel
 from halfspace.laws import LENNARD_JONES

@@ -9,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 import halfspace
+from fem_adhesion.common.fold_birth import critical_stiffness
 from fem_adhesion.greenwood.criteria import CriteriaStudy
 from fem_adhesion.greenwood.numerics_1997 import Attempt, Rise, false_rise, ripple, without_singular_point
 from fem_adhesion.greenwood.tables import PROFILE_CHECKS, Tables
-from halfspace.accuracy.fold_birth import critical_stiffness
 from halfspace.elastic.compliance import triangles
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle

@@ -16,10 +16,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fem_adhesion.common import relaxation
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.kernel import ring_kernel
-from halfspace.equilibrium import newton, relaxation
+from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath

@@ -14,6 +14,7 @@ import numpy as np
 
 import halfspace
 from fem_adhesion import convergence
+from fem_adhesion.common.fold_birth import FIRST, critical_stiffness, tabor_of
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.greenwood import claims, facts, tables
 from fem_adhesion.greenwood.claims import Claims
@@ -21,7 +22,6 @@ from fem_adhesion.greenwood.criteria import CriteriaStudy, fit, jump_on
 from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple, Rise, attempts, false_rise, ripple
 from fem_adhesion.greenwood.tables import Tables
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.fold_birth import FIRST, critical_stiffness, tabor_of
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import CENTRAL_GAP, CONTACT_RADIUS

@@ -18,6 +18,8 @@ from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, Elemen
 import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.bodies.half_space import HalfSpace
+from fem_adhesion.common import relaxation
+from fem_adhesion.common.relaxation import Relaxed
 from fem_adhesion.elasticity.boundaries import FarField, clamped, point_load
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.space import Space
@@ -26,13 +28,12 @@ from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 from fem_adhesion.scene import Scene
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import ElasticOperator
-from halfspace.equilibrium import newton, relaxation
+from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import COMPRESSION, Chart, trace_charts
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle, energy_lost
 from halfspace.equilibrium.newton import Control, Traceable
-from halfspace.equilibrium.relaxation import Relaxed
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import InputError
 from halfspace.scales import Scales

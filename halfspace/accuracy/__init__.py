@@ -5,8 +5,7 @@ In the order of reading: `trace` (from a tolerance to a curve), `grids` (of the 
 what their changes say of the error), `refinement` (the ladder of ever finer stages), `further_folds` (those between the
 jumps, when they are asked for), `finite_bodies` (the same for bodies with a length, whose operator changes with the
 contact), `layered` (for layers and coatings, most of which is the half-space's), `windows` (and for laws that end by a
-step, which moves beside the contact), `sweep` (many curves as arrays), `fold_birth` (the Tabor parameter at which a
-pair of folds is born).
+step, which moves beside the contact), `sweep` (many curves as arrays).
 
 An elastic body without a length of its own is homogeneous, so one compliance matrix serves every contact radius: the
 grid breathes with the contact, the radius joins the unknowns, and the spike of tension at the contact edge, whose width

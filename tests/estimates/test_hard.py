@@ -17,8 +17,8 @@ from hard.table import cases_table, locking_table, summary, write_hard
 from rich.console import Console
 from skfem import MeshTri
 
+from fem_adhesion.common.fold_birth import FIRST, SECOND, tabor_of
 from fem_adhesion.mesh.block import graded_size, quarter_disc
-from halfspace.accuracy.fold_birth import FIRST, SECOND, tabor_of
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 
 CASES = {case.name: case for case in hard_cases.cases()}

@@ -8,8 +8,8 @@ from functools import partial
 from typing import Any
 
 from fem_adhesion import Block, HalfSpace
+from fem_adhesion.common.fold_birth import FIRST, SECOND
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.fold_birth import FIRST, SECOND
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from hard.bodies import obtuse, solved, stretched, too_coarse
 from hard.contacts import (

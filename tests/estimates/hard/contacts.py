@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 import halfspace
-from halfspace.accuracy.fold_birth import Birth, approached, at_gap, count_folds, tabor_of
+from fem_adhesion.common.fold_birth import Birth, approached, at_gap, count_folds, tabor_of
 from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung

@@ -14,7 +14,7 @@ from numpy.polynomial.legendre import leggauss
 import fem_adhesion
 import halfspace
 from fem_adhesion import HalfSpace, Hemisphere, cli, convergence
-from fem_adhesion.common import style
+from fem_adhesion.common import relaxation, style
 from fem_adhesion.common.files import directory_written_aside
 from fem_adhesion.common.page import markdown
 from fem_adhesion.elasticity.space import Space
@@ -48,7 +48,7 @@ from fem_adhesion.speed.study import (
     timed,
 )
 from halfspace.elastic import compliance
-from halfspace.equilibrium import newton, relaxation
+from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged

@@ -11,7 +11,7 @@ import pytest
 from hard.references import charted_rung
 
 import halfspace
-from halfspace.accuracy.fold_birth import critical_stiffness
+from fem_adhesion.common.fold_birth import critical_stiffness
 from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for, resolutions_for, rule_for
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.elastic import compliance
@@ -384,7 +384,7 @@ def test_a_curve_that_no_grid_can_carry_is_given_up_and_says_why():
 
 # --- near the Tabor parameter at which the curve begins to fold ---
 
-CRITICAL = 0.69721461383  # `halfspace.accuracy.fold_birth` at rtol 1e-10
+CRITICAL = 0.69721461383  # `fem_adhesion.common.fold_birth` at rtol 1e-10
 BY_TABOR = 0.459  # R dgamma/eps by which the margin falls with the Tabor parameter there
 
 
@@ -405,7 +405,7 @@ def test_a_curve_about_to_fold_is_traced_and_says_how_far_the_folds_are(tabor, r
 
 
 def test_the_margin_is_the_compliance_of_the_stiffest_apparatus_that_jumps():
-    """By a golden search under prescribed central gaps, in `halfspace.accuracy.fold_birth`."""
+    """By a golden search under prescribed central gaps, in `fem_adhesion.common.fold_birth`."""
     path = halfspace.trace(0.69, rtol=1e-8)
     assert path.margin.value == pytest.approx(1 / critical_stiffness(0.69), rel=1e-5, abs=0)
     assert cycle(path, 1 / (path.margin.value * 1.01)) is not None

@@ -7,7 +7,7 @@ from scipy.integrate import quad
 from truths import relocated, under_sphere
 
 import halfspace
-from halfspace.accuracy.fold_birth import approached
+from fem_adhesion.common.fold_birth import approached
 from halfspace.accuracy.grids import half_space_charts, resolution_for, rings
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous

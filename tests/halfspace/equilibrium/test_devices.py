@@ -10,8 +10,8 @@ from numpy.polynomial.legendre import leggauss
 from scipy.optimize import brentq
 
 import halfspace
+from fem_adhesion.common.fold_birth import critical_stiffness
 from halfspace import Layer
-from halfspace.accuracy.fold_birth import critical_stiffness
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import moved
 from halfspace.equilibrium.contact import LOAD

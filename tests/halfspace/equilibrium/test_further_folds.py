@@ -17,12 +17,12 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Scene, convergence
 from fem_adhesion.common import lines
+from fem_adhesion.common.fold_birth import count_folds
 from fem_adhesion.crosscheck.study import _compare_events
 from fem_adhesion.curve import record, terminal
 from fem_adhesion.curve.pictures import experiment
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace import Layer
-from halfspace.accuracy.fold_birth import count_folds
 from halfspace.accuracy.grids import half_space_charts, resolution_for, rings
 from halfspace.accuracy.stages import Rung, on_all
 from halfspace.accuracy.trace import under_sphere

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from fem_adhesion.common.relaxation import CHECKED_EVERY, greenwood, simple
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import ContactProblem
-from halfspace.equilibrium.relaxation import CHECKED_EVERY, greenwood, simple
 from halfspace.errors import NotConverged
 
 
