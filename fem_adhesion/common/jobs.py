@@ -1,9 +1,12 @@
-"""Long work: how far it is, for those who wait; and the same on many items at once, by loky or on a Dask cluster.
+"""Long work: a bar that shows progress, and the same work on many items at once, by local processes or on a cluster.
 
-`stream` works on items of any kind, `solve_all` on the cases of a study, leaving out those whose results are there.
+`stream` works on items of any kind; `solve_all` on the cases of a study, without those whose results are stored.
 
-Results come as they are ready. A worker that dies takes no other item with it: each that was handed out and lost so
-runs again when nothing else does, so that one that kills its worker is known for certain.
+Results come as they are ready. A worker that dies costs no other item: the items that were lost with it run again when
+nothing else runs, one at a time, so that the item that kills its worker is known for certain.
+
+joblib 1.6 was tried in the place of this module. Where a worker dies it ends the whole stream, and its workers outlive
+a study that was killed. The second attempts, the watch over the study and the words to the user would all remain.
 """
 
 from __future__ import annotations
@@ -17,7 +20,7 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -32,41 +35,51 @@ from halfspace.errors import InputError
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-ATTEMPTS = 3  # at an item whose worker dies
-CONNECTION_SECONDS = 30  # a scheduler that is busy answers late; one that is not there is known at once
-WATCH_SECONDS = 1  # between two looks of a local worker at whether its study is still alive
-IDLE_SECONDS = 300  # after which a local worker without work ends
-GROWN = 1e9  # bytes, by which a local worker may grow before it is made anew; to load all again takes a second
 BLAS = ("OPENBLAS", "OMP", "MKL", "BLIS")
 ONE_THREAD = {**{f"{name}_NUM_THREADS": "1" for name in BLAS}, "VECLIB_MAXIMUM_THREADS": "1"}
-"""Each process keeps to one thread of BLAS: on systems as small as ours others cost up to seven times what one does."""
+"""Each process keeps to one thread of BLAS: on systems as small as ours more threads take up to seven times as long."""
+
+
+@dataclass(frozen=True)
+class Patience:
+    """How long workers are waited for, in seconds, and how much they may grow."""
+
+    attempts: int = 3  # at an item whose worker dies; one more only if the machine itself kills at random
+    connection: float = 30.0  # for the answer of a scheduler; one that is not there is known at once
+    quiet: float = 20.0  # without a result before a cluster is asked whether it has workers
+    watch: float = 1.0  # between two looks of a local worker at whether its study is alive
+    idle: float = 300.0  # after which a local worker without work ends
+    grown: float = 1e9  # bytes by which a local worker may grow before it is replaced, which takes a second
+
+
+PATIENCE = Patience()
 
 
 def keep_to_one_thread() -> None:
-    """Have BLAS use one thread in this process unless its environment says how many; it is read as NumPy is loaded."""
+    """Let BLAS use one thread in this process unless the environment says how many. Call it before NumPy is loaded."""
     if "numpy" not in sys.modules and not ONE_THREAD.keys() & os.environ.keys():
         os.environ.update(ONE_THREAD)
 
 
-# How far it is
+# Progress
 
 Progress = Callable[[str, int, int], None]
-"""Told what is under way, how much is done and of how much."""
+"""Takes what is under way, how many parts are done, and of how many."""
 
 
 def unheard(_name: str, _done: int, _total: int) -> None:
-    """Progress of which nobody wants to know."""
+    """Progress that nobody wants to see."""
 
 
 def in_turn(progress: Progress, total: int) -> Callable[[str], None]:
-    """What is told the name of each of so many parts, in order, as its work begins."""
+    """Function to call with the name of each part, in order, as its work begins."""
     done = count()
     return lambda name: progress(name, next(done), total)
 
 
 @contextmanager
 def progress_bar() -> Iterator[Progress]:
-    """Bar on standard error if that is a terminal, with the time that has gone and what is expected to be left."""
+    """Bar on standard error if that is a terminal, with the time spent and the time expected to remain."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
@@ -84,16 +97,17 @@ def progress_bar() -> Iterator[Progress]:
 
 @dataclass(frozen=True)
 class WorkerDied:
-    """The end of an item whose worker died at every attempt, and why it is thought to have."""
+    """End of an item whose worker died at every attempt, and the likely reason."""
 
     reason: str
 
 
 @dataclass(frozen=True)
 class Pool:
-    """Where work is done: how it is handed out, to how many items at once, and how all is stopped, at work or idle.
+    """Workers. `submit` hands out a call, `width` calls at once; `stop` ends them, at work or idle.
 
-    What a future raises whose worker `died`; so often an item runs alone then, and what is said if that is in vain.
+    A future raises `died` if its worker died; then its item runs alone `alone` times, and `lost` says that all failed.
+    `ask` is called where no result has come for a while.
     """
 
     submit: Callable[..., Future[Any]]
@@ -102,6 +116,7 @@ class Pool:
     died: type[Exception]
     alone: int
     lost: str
+    ask: Callable[[], None] = lambda: None
 
 
 def stream(
@@ -109,12 +124,12 @@ def stream(
 ) -> Generator[tuple[Item, Result | WorkerDied], None, None]:
     """Do the work on all items and give each with its result, in the order in which they end.
 
-    The work is a function of a module: it is sent to other processes by name; what it raises ends the stream. Items are
-    picklable. `jobs` are local processes, as many as there are cores unless given; one works without any process but
-    this, in which a crash is not survived. `dask` is the address of the scheduler of a Dask cluster, whose workers must
-    have this package; then `jobs` is unused. Close the generator to stop the workers before their time.
+    The work is a function of a module: it is sent to other processes by name; an error that it raises ends the stream.
+    Items are picklable. `jobs` is the number of local processes, by default that of the cores; with one the work is
+    done in this process, which does not survive a crash. `dask` is the address of the scheduler of a Dask cluster,
+    whose workers have this package; `jobs` is unused then. Close the generator to stop the workers early.
 
-    InputError at once, if jobs is not positive, distributed is not installed, or the scheduler does not answer.
+    InputError at once if jobs is not positive, distributed is not installed, or the scheduler does not answer.
     """
     if dask is not None:
         return _on_pool(work, items, _cluster(dask, len(items)))
@@ -127,28 +142,10 @@ def workers(jobs: int | None) -> int:
     if jobs is not None and jobs < 1:
         raise InputError(f"jobs = {jobs} is outside 1 <= jobs; leave it out to use all cores")
     if jobs is None:
-        from loky import cpu_count  # here, as all commands tell how far they are, and few need processes
+        from loky import cpu_count  # here, as every command shows progress and few need processes
 
         return int(cpu_count())
     return jobs
-
-
-@contextmanager
-def loaded_ahead(module: str, *, jobs: int | None = None, dask: str | None = None) -> Iterator[None]:
-    """Let the local workers load a module while their study loads it too, and wait for them."""
-    number = workers(jobs) if dask is None else 1
-    if number == 1 or module in sys.modules:
-        yield
-        return
-    futures = [_processes(number).submit(_load, module) for _ in range(number)]
-    try:
-        yield
-    finally:
-        wait(futures)  # of what one raises `stream` or the study itself tells
-
-
-def _load(module: str) -> None:
-    importlib.import_module(module)
 
 
 def _on_pool(
@@ -161,7 +158,7 @@ def _on_pool(
             given |= {pool.submit(work, item): item for item in islice(waiting, pool.width - len(given))}
             if not given:
                 break
-            for future in wait(given, return_when=FIRST_COMPLETED).done:
+            for future in _ended(given, pool):
                 item = given.pop(future)
                 if isinstance(future.exception(), pool.died):
                     lost.append(item)
@@ -173,83 +170,103 @@ def _on_pool(
         pool.stop(bool(given))
 
 
+def _ended(given: dict[Future[Result], Item], pool: Pool) -> set[Future[Result]]:
+    """Futures that have ended, one at least."""
+    while not (done := wait(given, PATIENCE.quiet, FIRST_COMPLETED).done):
+        pool.ask()
+    return done
+
+
 def _alone(work: Callable[[Item], Result], item: Item, pool: Pool) -> Result | WorkerDied:
-    """Result of an item in a pool that works on nothing else, tried again while the worker dies."""
+    """Result of an item while no other runs, tried again if the worker dies."""
     for _ in range(pool.alone):
-        try:
-            result: Result = pool.submit(work, item).result()
-            return result
-        except pool.died as error:
-            last = error
-    return WorkerDied(f"{pool.lost}: {str(last).strip().partition(chr(10))[0]}")
+        future: Future[Result] = pool.submit(work, item)
+        _ended({future: item}, pool)
+        error = future.exception()
+        if not isinstance(error, pool.died):
+            return future.result()
+    return WorkerDied(f"{pool.lost}: {str(error).strip().partition(chr(10))[0]}")
 
 
 def _processes(number: int) -> Pool:
-    """So many local processes, made anew when one has died."""
+    """Local processes, started anew when one has died."""
     from loky import get_reusable_executor
     from loky.backend.process import LokyProcess
     from loky.process_executor import TerminatedWorkerError
 
-    # That one is made anew where loky can tell how much it holds is no trouble of the user's.
-    of_workers = "A worker (stopped|was restarted) while some jobs were given"
-    warnings.filterwarnings("ignore", message=of_workers, category=UserWarning)
-
-    def executor() -> Any:
-        env = {**ONE_THREAD, "LOKY_MAX_MEMORY_LEAK_SIZE": str(GROWN)}
-        settings = {"timeout": IDLE_SECONDS, "initializer": _watch, "initargs": (os.getpid(),), "env": env}
-        return get_reusable_executor(number, **settings)
+    # loky warns where it replaces a worker that has grown, which is no trouble of the user's.
+    replaced = "A worker (stopped|was restarted) while some jobs were given"
+    warnings.filterwarnings("ignore", message=replaced, category=UserWarning)
+    settings = {
+        "timeout": PATIENCE.idle,
+        "initializer": _watch,
+        "initargs": (os.getpid(),),
+        "env": {**ONE_THREAD, "LOKY_MAX_MEMORY_LEAK_SIZE": str(PATIENCE.grown)},
+    }
 
     def submit(*call: Any) -> Future[Any]:
         future: Future[Any]
         try:
-            future = executor().submit(*call)
+            future = get_reusable_executor(number, **settings).submit(*call)
         except TerminatedWorkerError:  # it has died just now
-            future = executor().submit(*call)
+            future = get_reusable_executor(number, **settings).submit(*call)
         return future
 
     def stop(at_work: bool) -> None:
         if not at_work:
-            return  # they wait for more
-        for worker in active_children():  # loky's own way stumbles over what it was given and has not handed out yet
+            return  # the workers wait for more
+        for worker in active_children():  # loky's own way fails on items that it has taken and not yet handed out
             if isinstance(worker, LokyProcess):
                 worker.terminate()
-        executor().shutdown()
+        get_reusable_executor(number, **settings).shutdown()
 
-    return Pool(submit, stop, 2 * number, TerminatedWorkerError, ATTEMPTS - 1, f"its worker died {ATTEMPTS} times")
+    tries = PATIENCE.attempts
+    return Pool(submit, stop, 2 * number, TerminatedWorkerError, tries - 1, f"its worker died {tries} times")
 
 
 def _watch(study: int) -> None:
-    """Let a worker look for the process of its study, without which it would wait for work for minutes.
+    """End this worker soon after its study, without which it would wait for work for minutes.
 
-    What interrupts the study is its own to heed, though a terminal sends it to the workers too: it ends them.
+    Ctrl-C in a terminal reaches the workers too; they leave it to the study, which stops them.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch() -> None:
         while os.getppid() == study:
-            time.sleep(WATCH_SECONDS)
+            time.sleep(PATIENCE.watch)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
 
 
 def _cluster(address: str, width: int) -> Pool:
-    """Cluster of the scheduler at an address, which is given all items at once: it may grow with them."""
+    """Cluster of the scheduler at an address. It takes all items at once, so that it may grow with them."""
     try:
         distributed = importlib.import_module("distributed")
     except ModuleNotFoundError as error:
         raise InputError(f"dask = {address} needs the extra cluster; pip install 'fem-adhesion[cluster]'") from error
-    found = address if "://" in address else f"tcp://{address}"
+    found, seconds = address if "://" in address else f"tcp://{address}", PATIENCE.connection
     try:
         _knock(found)
-        client = distributed.Client(found, timeout=CONNECTION_SECONDS, set_as_default=False)
+        client = distributed.Client(found, timeout=seconds, set_as_default=False)
     except (OSError, ValueError) as error:
         raise InputError(
-            f"dask = {address} does not answer within {CONNECTION_SECONDS} s; give the scheduler's, as tcp://host:8786"
+            f"dask = {address} does not answer within {seconds:g} s; give the scheduler's, as tcp://host:8786"
         ) from error
-    if not client.nthreads():
-        idle = f"dask = {address} has no workers yet and is waited for"
-        sys.stderr.write(f"fem-adhesion: {idle}; start one with dask worker {found}\n")
+    missing = False
+
+    def ask() -> None:
+        nonlocal missing
+        try:
+            _knock(found)
+        except OSError:
+            raise InputError(f"dask = {address} has stopped answering; start it and run the command again") from None
+        was_missing, missing = missing, not client.nthreads()
+        if missing and not was_missing:
+            idle = f"dask = {address} has no workers and is waited for; start one with dask worker {found}"
+            sys.stderr.write(f"fem-adhesion: {idle}\n")
+
+    ask()
 
     def submit(*call: Any) -> Future[Any]:
         future: Future[Any] = Future()
@@ -259,27 +276,29 @@ def _cluster(address: str, width: int) -> Pool:
     def stop(at_work: bool) -> None:  # noqa: ARG001 (the client goes in any case)
         client.close()
 
-    # The scheduler gives up what died with a worker too often, also what only waited there: that runs alone, once.
-    return Pool(submit, stop, width, distributed.KilledWorker, 1, "its worker died")
+    # The scheduler gives up an item that was on too many dying workers, even if it only waited there: that runs alone.
+    return Pool(submit, stop, width, distributed.KilledWorker, 1, "its worker died", ask)
 
 
 def _hand_on(future: Future[Any], done: Any) -> None:
-    """Give a future what one of the cluster's has come to.
+    """Give a future the result of one of the cluster's, or its error.
 
     The client's own executor asks for the status after the result, and fails if the worker has died in between.
     """
     try:
         future.set_result(done.result())
+    except CancelledError:
+        future.set_exception(InputError("dask: the scheduler has gone; start it and run the command again"))
     except BaseException as error:
         future.set_exception(error)
 
 
 def _knock(address: str) -> None:
-    """Raise OSError or InputError unless somebody listens: a client that fails to connect does not die quietly."""
+    """Raise OSError or InputError unless somebody listens: a client that fails to connect writes to the terminal."""
     parts = urlsplit(address)
     if not parts.hostname or not parts.port:
         raise InputError("no host or no port")
-    socket.create_connection((parts.hostname, parts.port), timeout=CONNECTION_SECONDS).close()
+    socket.create_connection((parts.hostname, parts.port), timeout=PATIENCE.connection).close()
 
 
 # The cases of a study
@@ -287,11 +306,11 @@ def _knock(address: str) -> None:
 
 @dataclass(frozen=True)
 class Kept(Generic[Item, Result]):
-    """How the results of a study are kept.
+    """How the results of a study are stored.
 
-    Of an item, `inputs` are what its result depends on, and `name` what it is called for the eye. `write` goes from a
-    result to plain data and `read`, with the item, back, or to InputError if they are none of a result; `died` is the
-    result of an item whose worker died, for a reason.
+    `inputs` are what the result of an item depends on, `name` what the item is called on the screen. `write` makes
+    plain data of a result; `read` takes the item and such data, and raises InputError if they hold no result. `died`
+    makes the result of an item whose worker died.
     """
 
     inputs: Callable[[Item], Plain]
@@ -313,14 +332,13 @@ def solve_all(
     dask: str | None = None,
     progress: Progress = unheard,
 ) -> tuple[Result, ...]:
-    """Results of all items in their order: what the store holds, and the others, computed and stored at once.
+    """Results of all items in their order: those in the store, and the others, each stored as soon as it is computed.
 
-    The work, a function of a module, computes the result of an item, each of which is given once, and `kept` says
-    how results are kept. Where items are best worked on together, `parts` says which, and the work turns such a
-    part into a list; its results are stored together. If `fresh`, all are computed, whatever the store holds. What
-    a worker died of is not stored: it is tried again when the study is resumed. `jobs` and `dask` are those of
-    `stream`; `progress` is called with the last item's name, how many are done, and of how many. InputError before
-    any work, if jobs is not positive or the cluster does not answer.
+    The work, a function of a module, computes the result of an item; each item is given once. Where items are best
+    worked on together, `parts` groups them, and the work makes a list of such a group. If `fresh`, all are computed,
+    whatever the store holds. An item whose worker died is not stored: it is tried again when the study is resumed.
+    `jobs` and `dask` are those of `stream`; `progress` is called with the last item's name, how many are done, and of
+    how many. InputError before any work if jobs is not positive or the cluster does not answer.
     """
     found = dict(_stored(items, store, kept)) if store and not fresh else {}
     todo = [item for item in items if item not in found]
@@ -341,7 +359,7 @@ def solve_all(
 def _one_by_one(
     where: Callable[..., Generator[tuple[tuple[Item, ...], Any], None, None]], parts: Sequence[tuple[Item, ...]]
 ) -> Generator[tuple[Item, Any], None, None]:
-    """Items of parts with their results, as these come; each by itself of what a worker died of."""
+    """Items of groups with their results as these come. The items of a group whose worker died run one by one."""
     died: list[tuple[Item, ...]] = []
     with closing(where(parts)) as done:
         for part, results in done:

@@ -37,18 +37,14 @@ def add_options(command: Parser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Compare all scenes asked for, print a table each, and write the record."""
-    from fem_adhesion.common.jobs import loaded_ahead
+    from fem_adhesion.crosscheck.comparison import require_comparable
     from halfspace.limits import require_rtol
 
     require_rtol(options.rtol)
-    jobs = options.jobs if len(options.tabor) > 1 else 1
-    with loaded_ahead("fem_adhesion.crosscheck.study", jobs=jobs, dask=options.dask):
-        from fem_adhesion.crosscheck.comparison import require_comparable
-
-        parts = counter_of(options)
-        scenes = [scene_of(options, mu, options.poisson, *parts) for mu in options.tabor]
-        for scene in scenes:
-            require_comparable(scene, options.rtol)
+    parts = counter_of(options)
+    scenes = [scene_of(options, mu, options.poisson, *parts) for mu in options.tabor]
+    for scene in scenes:
+        require_comparable(scene, options.rtol)
     console = console_beside(options.json)
     with written(options.json) as file:
         cases = _compare_with_progress(scenes, options, console)

@@ -289,21 +289,30 @@ def test_standard_output_by_name_is_written_to_where_it_leads(tmp_path):
     assert all(Path(name).is_symlink() for name in names)
 
 
-def test_two_that_store_the_same_case_at_once_both_succeed(tmp_path, monkeypatch):
-    first, second = (open_store(tmp_path / "study", "code", resume=True) for _ in range(2))
-    sync, asked = os.fsync, []
+STORING = """
+import sys, time, pathlib
+from fem_adhesion.common.files import open_store
+place, name = pathlib.Path(sys.argv[1]), sys.argv[2]
+store = open_store(place / "study", "code", resume=True)
+(place / name).touch()
+while not all((place / each).exists() for each in "ab"):
+    time.sleep(0.001)
+for number in range(100):
+    store.put({"shared": number}, {"by": "either"})
+    store.put({name: number}, {"by": name})
+"""
 
-    def meanwhile(descriptor):
-        if not asked:
-            asked.append(descriptor)
-            second.put({"a": 1}, {"b": "second"})
-        sync(descriptor)
 
-    monkeypatch.setattr(os, "fsync", meanwhile)
-    first.put({"a": 1}, {"b": "first"})
-    assert first.get({"a": 1}) == {"b": "first"}
-    assert len(list((tmp_path / "study" / "cases").iterdir())) == 1
-    assert not first.notes
+def test_two_processes_that_store_at_once_lose_no_case(tmp_path):
+    """Half of the cases are the same for both, the others their own."""
+    processes = [subprocess.Popen([sys.executable, "-c", STORING, str(tmp_path), name]) for name in "ab"]
+    assert [process.wait() for process in processes] == [0, 0]
+    store = open_store(tmp_path / "study", "code", resume=True)
+    for number in range(100):
+        assert store.get({"shared": number}) == {"by": "either"}
+        assert [store.get({name: number}) for name in "ab"] == [{"by": "a"}, {"by": "b"}]
+    assert not store.notes
+    assert len(list((tmp_path / "study" / "cases").iterdir())) == 300
 
 
 def test_what_is_not_about_writing_passes_through(tmp_path):

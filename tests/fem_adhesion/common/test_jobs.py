@@ -6,15 +6,18 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 import warnings
 from pathlib import Path
 
 import numpy as np
+import processes
 import pytest
+from processes import wait_until
 
 from fem_adhesion.common import jobs as parallel
-from fem_adhesion.common.jobs import ATTEMPTS, CONNECTION_SECONDS, WorkerDied, stream
+from fem_adhesion.common.jobs import Patience, WorkerDied, stream
 from halfspace.errors import InputError
 
 
@@ -67,30 +70,12 @@ def grown(x):
     return x
 
 
-def test_a_worker_that_has_grown_is_made_anew_without_a_word_to_the_user(monkeypatch):
-    monkeypatch.setattr(parallel, "GROWN", 3e8)
+def test_a_worker_that_has_grown_is_replaced_in_silence(monkeypatch):
+    monkeypatch.setattr(parallel, "PATIENCE", Patience(grown=3e8))
     with warnings.catch_warnings(record=True) as seen:
         warnings.simplefilter("always")
         assert sorted(x for x, _ in stream(grown, range(6), jobs=2)) == list(range(6))
     assert [str(warning.message) for warning in seen] == []
-
-
-def loaded(module):
-    time.sleep(0.2)  # a worker that starts late may come to it when another has loaded it twice
-    return module in sys.modules
-
-
-def test_workers_load_a_module_while_their_study_does():
-    module = "wave"  # of the standard library, and none that anything here needs
-    with parallel.loaded_ahead(module, jobs=2):
-        assert module not in sys.modules
-    assert any(there for _, there in stream(loaded, [module] * 6, jobs=2))
-    assert module not in sys.modules
-
-
-def test_what_their_study_is_refused_for_is_told_by_it():
-    with pytest.raises(InputError, match="on purpose"), parallel.loaded_ahead("wave", jobs=2):
-        raise InputError("on purpose")
 
 
 def test_results_come_as_they_are_ready(tmp_path):
@@ -113,9 +98,9 @@ def test_an_item_that_always_kills_its_worker_is_given_up_and_no_other(tmp_path)
     results = {item[0]: result for item, result in stream(deadly, items, jobs=2)}
     died = results.pop(3)
     assert isinstance(died, WorkerDied)
-    assert f"died {ATTEMPTS} times" in died.reason
+    assert "died 3 times" in died.reason
     assert results == {x: x * x for x in range(8) if x != 3}
-    assert len(list(tmp_path.iterdir())) == ATTEMPTS
+    assert len(list(tmp_path.iterdir())) == 3
 
 
 def test_an_unforeseen_error_is_not_hidden():
@@ -146,63 +131,52 @@ needs_cluster = pytest.mark.skipif(importlib.util.find_spec("distributed") is No
 @needs_cluster
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
 def test_a_scheduler_that_does_not_answer_is_refused_at_once(address):
-    with pytest.raises(InputError, match=f"dask = {address} does not answer within {CONNECTION_SECONDS} s; "):
+    with pytest.raises(InputError, match=f"dask = {address} does not answer within 30 s; "):
         stream(square, [1], dask=address)
 
 
-def free_port():
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return listener.getsockname()[1]
+LONG = 600  # s: the end is for what never comes, not for what is slow
 
 
-PATIENCE = 600  # s: the end is for what never comes, not for what is slow
+class Cluster:
+    """A scheduler on loopback and its workers, which can import this module."""
 
+    def __init__(self, folder):
+        with socket.socket() as listener:
+            listener.bind(("127.0.0.1", 0))
+            port = str(listener.getsockname()[1])
+        self.folder, self.address, self.workers = folder, f"tcp://127.0.0.1:{port}", []
+        self.scheduler = self._start("dask_scheduler", "--host", "127.0.0.1", "--port", port)
+        while not listens(self.address):
+            assert self.scheduler.poll() is None, "the scheduler has ended"
+            time.sleep(0.05)
 
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory):
-    """Address of a scheduler on loopback with two workers that can import this module."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(parallel, "CONNECTION_SECONDS", PATIENCE)
-        yield from started_cluster(tmp_path_factory)
+    def _start(self, program, *options):
+        places = (str(Path(module.__file__).parent) for module in (sys.modules[__name__], processes))
+        path = os.pathsep.join([*places, os.environ.get("PYTHONPATH", "")])
+        command = [sys.executable, "-m", f"distributed.cli.{program}", *options, "--no-dashboard"]
+        with (self.folder / "log").open("a") as log:
+            own = {**os.environ, "PYTHONPATH": path}
+            return subprocess.Popen(command, env=own, stdout=log, stderr=log, start_new_session=True)
 
+    def add_worker(self):
+        """Start one more."""
+        options = ("--nthreads", "1", "--local-directory", str(self.folder))
+        self.workers.append(self._start("dask_worker", self.address, *options))
 
-def started_cluster(tmp_path_factory):
-    scratch = tmp_path_factory.mktemp("dask")
-    address = f"tcp://127.0.0.1:{free_port()}"
-    path = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
-    environment = {**os.environ, "PYTHONPATH": path}
-    worker = ["dask_worker", address, "--nthreads", "1", "--no-dashboard", "--local-directory", str(scratch)]
-    scheduler = ["dask_scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2], "--no-dashboard"]
-    with (scratch / "log").open("w") as log:
-        processes = [
-            subprocess.Popen(
-                [sys.executable, "-m", f"distributed.cli.{program}", *options],
-                env=environment,
-                stdout=log,
-                stderr=log,
-                start_new_session=True,
-            )
-            for program, *options in (scheduler, worker, worker)
-        ]
-        try:
-            yield wait_for(address, processes[0])
-        finally:
-            for process in processes:  # with what each has started
+    def wait_for(self, number):
+        """Wait until the scheduler knows so many workers."""
+        from distributed import Client
+
+        with Client(self.address, set_as_default=False, timeout=LONG) as client:
+            client.wait_for_workers(number, timeout=LONG)
+
+    def end(self, *processes):
+        """Kill them, each with all that it has started."""
+        for process in processes:
+            if process.poll() is None:
                 os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
-
-
-def wait_for(address, scheduler):
-    """Wait until the scheduler listens and knows both workers."""
-    from distributed import Client
-
-    while not listens(address):
-        assert scheduler.poll() is None, "the scheduler has ended"
-        time.sleep(0.05)
-    with Client(address, set_as_default=False, timeout=PATIENCE) as client:
-        client.wait_for_workers(2, timeout=PATIENCE)
-    return address
 
 
 def listens(address):
@@ -214,20 +188,73 @@ def listens(address):
     return True
 
 
-@needs_cluster
-def test_a_scheduler_is_found_by_host_and_port_and_said_to_be_waited_for_only_without_workers(
-    cluster, capsys, monkeypatch
-):
-    """That the scheduler knows of none is made up: the work is done all the same."""
-    from distributed import Client
+def started(folder, workers):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(parallel, "PATIENCE", Patience(connection=LONG, quiet=0.5))
+        cluster = Cluster(folder)
+        try:
+            for _ in range(workers):
+                cluster.add_worker()
+            cluster.wait_for(workers)
+            yield cluster
+        finally:
+            cluster.end(cluster.scheduler, *cluster.workers)
 
-    address = cluster.removeprefix("tcp://")
-    said = f"dask = {address} has no workers yet and is waited for; start one with dask worker {cluster}"
-    assert list(stream(square, [3], dask=address)) == [(3, 9)]
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """Address of a scheduler with two workers."""
+    for one in started(tmp_path_factory.mktemp("dask"), 2):
+        yield one.address
+
+
+@pytest.fixture
+def leaving(tmp_path):
+    """A cluster of one worker, of which the test takes parts away."""
+    (tmp_path / "dask").mkdir()
+    yield from started(tmp_path / "dask", 1)
+
+
+def marking(item):
+    """Leave a sign of having begun, and end when there is a file `go` beside it."""
+    directory = Path(item)
+    (directory / "begun").touch()
+    while not (directory / "go").exists():
+        time.sleep(0.05)
+    return "done"
+
+
+@needs_cluster
+def test_workers_that_leave_later_are_said_to_be_missing(leaving, tmp_path, capsys):
+    """The work waits, with one line, and ends when another worker comes."""
+    results = []
+    at_work = threading.Thread(target=lambda: results.extend(stream(marking, [str(tmp_path)], dask=leaving.address)))
+    at_work.start()
+    wait_until((tmp_path / "begun").exists)
+    leaving.end(*leaving.workers)
+    said = []
+    wait_until(lambda: said.append(capsys.readouterr().err) or "no workers" in "".join(said))
+    time.sleep(2)  # it is not said again
+    (tmp_path / "go").touch()
+    leaving.add_worker()
+    at_work.join(LONG)
+    assert results == [(str(tmp_path), "done")]
+    line = f"dask = {leaving.address} has no workers and is waited for; start one with dask worker {leaving.address}"
+    assert "".join([*said, capsys.readouterr().err]).count(line) == 1
+
+
+@needs_cluster
+def test_a_scheduler_that_has_gone_ends_the_work_in_one_line(leaving, tmp_path):
+    at_work = stream(marking, [str(tmp_path)], dask=leaving.address)
+    threading.Thread(target=lambda: (wait_until((tmp_path / "begun").exists), leaving.end(leaving.scheduler))).start()
+    with pytest.raises(InputError, match=r"^dask[^\n]*; start it and run the command again$"):
+        next(at_work)
+
+
+@needs_cluster
+def test_a_scheduler_is_found_by_host_and_port_alone(cluster, capsys):
+    assert list(stream(square, [3], dask=cluster.removeprefix("tcp://"))) == [(3, 9)]
     assert "no workers" not in capsys.readouterr().err
-    monkeypatch.setattr(Client, "nthreads", lambda _: {})
-    assert list(stream(square, [3], dask=address)) == [(3, 9)]
-    assert said in capsys.readouterr().err
 
 
 @needs_cluster
@@ -236,13 +263,13 @@ def test_a_dask_cluster_does_the_work(cluster):
 
 
 @needs_cluster
-def test_an_unforeseen_error_on_the_cluster_is_not_taken_for_a_dead_worker(cluster):
+def test_an_error_on_the_cluster_is_not_taken_for_a_dead_worker(cluster):
     with pytest.raises(ZeroDivisionError, match="item 0"):
         list(stream(failing, [0], dask=cluster))
 
 
 @needs_cluster
-def test_a_worker_of_the_cluster_that_dies_is_replaced_and_its_item_done(cluster, tmp_path):
+def test_an_item_whose_worker_of_the_cluster_dies_is_done_by_another(cluster, tmp_path):
     items = [(x, 1, str(tmp_path)) for x in range(6)]
     assert sorted(result for _, result in stream(deadly, items, dask=cluster)) == [x * x for x in range(6)]
     assert len(list(tmp_path.iterdir())) == 1
