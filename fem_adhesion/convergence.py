@@ -14,7 +14,6 @@ from fem_adhesion.bodies.body import MOST_RINGS, Discretisation
 from fem_adhesion.discretise import (
     CURVE_DEGREE,
     Discretised,
-    block_size,
     discretise,
     finest_length,
     size_for,
@@ -95,7 +94,7 @@ def trace(scene: Scene, *, rtol: float = 1e-5, to_load: float = COMPRESSION) -> 
     if scene.body.file:
         return _trace_on_given_mesh(scene, scene.body.file, rtol, to_load)
     steps = sized_ladder if scene.sized else ladder
-    most_rungs = MOST_RUNGS if scene.sized or block_size(scene) is None else 1
+    most_rungs = MOST_RUNGS if scene.sized or scene.body.cut_off is None else 1
     return climb(rtol, partial(steps, scene, rtol, to_load), to_load=to_load, most_rungs=most_rungs)
 
 
@@ -117,7 +116,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     charted = tuple(Charted(block_charts(scene, stage, to_load)) for stage in stages)
     curve = partial(block_charts, scene, above, to_load)
     # A block of given size is compared with one other size only, and if both are small most of the error is left.
-    rule = ErrorRule(1.0 if block_size(scene) is None else 2.0)
+    rule = ErrorRule(1.0 if scene.body.cut_off is None else 2.0)
     settings = {name: getattr(above.how, name) for name in ("degree", "finest", "growth")}
     return Rung(curve, charted, settings | {"radius": above.radius}, rule=rule)
 
@@ -125,7 +124,7 @@ def ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
 def resolution_for(scene: Scene, rtol: float, level: int) -> BlockResolution:
     """Resolution of a level, whose events are right to about `rtol` at level 0 and a decade better at each above it."""
     degree = int(np.clip(np.ceil(-np.log10(rtol)), 3, 9)) + level
-    larger, size = LARGER_ENDLESS if scene.body.endless else LARGER_HELD, block_size(scene)
+    larger, size = LARGER_ENDLESS if scene.body.endless else LARGER_HELD, scene.body.cut_off
     if size is None:
         return BlockResolution(Discretisation(degree), size_for(scene.scales, rtol) * larger**level)
     return BlockResolution(Discretisation(degree), size if level else size / larger)
@@ -256,10 +255,7 @@ QUADRATIC = Discretisation(2)
 
 def on_given_mesh(scene: Scene, times_refined: int = 0) -> Discretised:
     """The mesh, each cell cut into four so many times."""
-    made = discretise(scene, np.zeros(1), QUADRATIC)
-    for _ in range(times_refined):
-        made = discretise(scene, np.zeros(len(made.operator.cells) + 1), QUADRATIC)
-    return made
+    return discretise(scene, np.empty(0), replace(QUADRATIC, refined=times_refined))
 
 
 def _in_the_files_unit(error: GridTooCoarse, scene: Scene, unit: float) -> GridTooCoarse:

@@ -6,23 +6,20 @@ The nodes of a pair are those of the first, smaller sphere. Beyond its core, 0.9
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache, partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 from skfem import ElementQuadP, ElementTriP2, MeshTri
 
 from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout
-from fem_adhesion.elasticity import boundaries
-from fem_adhesion.elasticity.boundaries import FarField
+from fem_adhesion.elasticity import exterior
 from fem_adhesion.elasticity.cells import cell_stiffness, stiffness_of
 from fem_adhesion.elasticity.condensation import CondensedBody, condense
+from fem_adhesion.elasticity.exterior import FarField
 from fem_adhesion.elasticity.space import Space
-from fem_adhesion.materials import LinearElastic
 from fem_adhesion.mesh.spheres import with_contact_to
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import Made, SizedBody, at_equator, at_tip, of_sequence
@@ -37,18 +34,17 @@ from halfspace.scales import Scales
 from halfspace.values import Array, Valued
 
 FAR_FIELDS: Mapping[FarFieldName, FarField] = {
-    "point_load": boundaries.point_load,
-    "substrate": boundaries.point_load,
-    "clamped": boundaries.clamped,
-    "free": boundaries.free,
-    "sliding": boundaries.sliding,
-    "sheet": boundaries.sheet,
+    "point_load": exterior.point_load,
+    "substrate": exterior.point_load,
+    "clamped": exterior.clamped,
+    "free": exterior.free,
+    "sliding": exterior.sliding,
+    "sheet": exterior.sheet,
 }
 
 
 TRIANGLE, quadrilateral = ElementTriP2(), cache(ElementQuadP)  # one of each, lest they be evaluated for every mesh
 LENGTHS = 50  # of the cells at the contact edge, to a factor of e
-KEPT = 60  # operators, more than a curve with its events takes, some 40 at most; of some 100 nodes each
 CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated to some 1e-4
 
 
@@ -76,17 +72,24 @@ class Discretised(Valued):
 def discretise(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
     """Discretise the bodies of a scene at small strain, as finely as `how` says.
 
-    Lines (m + 1,) are the ends of the cells of the contact surface, in its coordinate; of a mesh that is given their
-    number counts.
+    Lines (m + 1,) are the ends of the cells of the contact surface, in its coordinate; a given mesh has its own.
     """
     outer, coordinate = layout_of(scene, how)
     core = lines[: len(lines) - len(outer) + 1] if scene.sized else lines
-    if scene.counter:
-        return _pair(scene, scene.counter, core, lines[len(core) - 1 :], coordinate, how)
-    first = _condensed(scene.body, mesh_of(scene, core, how), how)
-    surface = _own_surface(first, scene.sphere_radius) if scene.body.file else scene.surface
-    operator = _with_strata_beyond(scene, first.operator, lines[len(core) - 1 :])
-    return Discretised(first, operator, surface, scene, first.unknowns)
+    rim, counter = lines[len(core) - 1 :], scene.counter
+    if counter is None:
+        first = _condensed(scene.body, mesh_of(scene, core, how), how)
+        surface = _own_surface(first, scene.sphere_radius) if scene.body.file else scene.surface
+        operator = first.operator
+        if scene.body.layered and len(rim) > 1:  # strata that are far out and rigid
+            operator = with_rigid_rim(operator, rim, FLAT)
+        return Discretised(first, operator, surface, scene, first.unknowns)
+    meshes = pair_meshes(scene, counter, core, how)
+    first, second = (_condensed(body, mesh, how) for body, mesh in zip((scene.body, counter), meshes, strict=True))
+    part, rest = scene.shares
+    both = replace(first.operator, compliance=part * first.operator.compliance + rest * second.operator.compliance)
+    operator = with_rigid_rim(both, rim, coordinate)
+    return Discretised(first, operator, scene.surface, scene, first.unknowns + second.unknowns)
 
 
 def mesh_of(scene: Scene, core: Array, how: Discretisation) -> Any:
@@ -95,7 +98,7 @@ def mesh_of(scene: Scene, core: Array, how: Discretisation) -> Any:
 
 
 def finest_length(scene: Scene, how: Discretisation) -> float:
-    """Length of the cells at the contact edge in beta; of bodies with a length the nearest of a sequence, to share."""
+    """Length of the cells at the contact edge in beta; of bodies with a length the nearest of a sequence."""
     length = scene.scales.edge_cell(how.finest)
     return of_sequence(length, LENGTHS, np.round) if scene.sized else length
 
@@ -108,40 +111,39 @@ def layout_of(scene: Scene, how: Discretisation) -> Layout:
 def sized_body(scene: Scene, how: Discretisation, to_load: float = COMPRESSION) -> SizedBody:
     """Bodies of a scene with a length, to be discretised on any grid of their surface, see `SizedBody`."""
     outer, coordinate = layout_of(scene, how)
-    flat = coordinate == FLAT
-    last = at_equator(scene.tabor, scene.surface, how.degree + 2) if flat else np.inf
+    last = at_equator(scene.tabor, scene.surface, how.degree + 2) if coordinate == FLAT else np.inf
     first = at_tip(scene.surface, how.degree + 2)
-    make = partial(_made, scene, how)
     finest = finest_length(scene, how) / scene.scales.edge_cell(1.0)
-    return SizedBody(scene.scales, make, finest, how.growth, outer, coordinate, last, to_load, first)
+    return SizedBody(
+        scene.scales, partial(_made, scene, how), finest, how.growth, outer, coordinate, last, to_load, first
+    )
 
 
-def discretised_about(scene: Scene, contact_radius: float, how: Discretisation, source: ContactProblem) -> Discretised:
+def _made(scene: Scene, how: Discretisation, lines: Array) -> Made:
+    found = discretise(scene, lines, how)
+    return found.operator, found.unknowns
+
+
+def discretised_about(scene: Scene, contact_radius: float, how: Discretisation) -> Discretised:
     """Discretise the bodies of a scene finest about a contact radius, with all that fields inside them need.
 
-    The radius is in beta, nan without contact, where the mesh is finest on the axis. The source is another
-    discretisation of the scene: a mesh that is given, to which `how` means nothing, is cut as often as there.
+    The radius is in beta, nan without contact, where the mesh is finest on the axis. A mesh that is given, to which
+    `how` means nothing, is cut as often as for the events.
     """
-    how = replace(how, beyond=BEYOND)
+    how = replace(how, beyond=FIELDS_BEYOND, refined=1)
     if scene.body.file:
-        return discretise(scene, source.operator.at(1.0).cells, how)
+        return discretise(scene, np.empty(0), how)
     radius, length = 0.0 if np.isnan(contact_radius) else contact_radius, finest_length(scene, how)
     if scene.sized:
         body = sized_body(scene, how)
         edge = body.coordinate.of(radius)
         return discretise(scene, body.lines(edge if edge > length else 0.0), how)
-    size = block_size(scene) or size_for(scene.scales, LEFT_OUT)
+    size = scene.body.cut_off or size_for(scene.scales, LEFT_OUT)
     return discretise(scene, grid.graded(radius if radius > length else 0.0, length, size, growth=how.growth), how)
 
 
-LEFT_OUT = 1e-5  # of the load, beyond a block that goes on as a half-space: it is then 15 to 80 beta wide
-BEYOND = 10.0  # size of a half-space under a sphere, in R: its far field errs by O(L^-5)
-
-
-def block_size(scene: Scene) -> float | None:
-    """Size in beta of a body that is cut off, None if it is to be chosen."""
-    size = layout_of(scene, Discretisation(1))[0][0]
-    return None if np.isinf(size) else float(size)
+LEFT_OUT = 1e-5  # part of the load beyond a block that goes on as a half-space, for fields: it is 15 to 80 beta wide
+FIELDS_BEYOND = 10.0  # `Discretisation.beyond` for fields inside a half-space under a sphere
 
 
 def size_for(scales: Scales, rtol: float) -> float:
@@ -149,52 +151,12 @@ def size_for(scales: Scales, rtol: float) -> float:
     return scales.outer_radius((2.5 * min(rtol, 0.01) ** -0.25 * scales.widened) ** 2 / 2)
 
 
-def _made(scene: Scene, how: Discretisation, lines: Array) -> Made:
-    if scene.counter:
-        found = discretise(scene, lines, how)
-        return found.operator, found.unknowns
-    outer, _ = layout_of(scene, how)
-    cells = len(lines) - len(outer)
-    core = lines[: cells + 1].tobytes()
-    if not scene.body.curved or scene.material.area == "projected":
-        operator, unknowns, _ = _maker.get()(scene.body, scene.radii[0], core, finest_length(scene, how), how)
-        return _with_strata_beyond(scene, operator, lines[cells:]), unknowns
-    body = scene.made_of(LinearElastic(scene.poisson)).body
-    a, unknowns, slopes = _maker.get()(body, scene.radii[0], core, finest_length(scene, how), how)
-    wider = np.hypot(1.0, slopes)
-    return ElasticOperator(a.radii, a.weights * wider, a.compliance * wider, a.cells, a.cell_nodes), unknowns
-
-
-def _with_strata_beyond(scene: Scene, operator: ElasticOperator, lines: Array) -> ElasticOperator:
-    """Extend the operator of strata by those that are far out and rigid, if there are any."""
-    return with_rigid_rim(operator, lines, FLAT) if scene.body.layered and len(lines) > 1 else operator
-
-
-def _alone(body: Body, R: float, core: bytes, length: float, how: Discretisation) -> tuple[ElasticOperator, int, Array]:
-    """Operator of a body, its unknowns and the slopes of its surface, whatever profile and law act on it."""
-    found = _condensed(body, body.mesh(R, np.frombuffer(core).copy(), length, how), how)
-    return found.operator, found.unknowns, found.surface.slopes
-
-
-_maker: ContextVar[Callable[..., tuple[ElasticOperator, int, Array]]] = ContextVar("_maker", default=_alone)
-
-
-@contextmanager
-def operators_shared() -> Iterator[None]:
-    """Let all that is solved within make the operator of a body on the same cells once."""
-    token = _maker.set(lru_cache(maxsize=KEPT)(_alone))
-    try:
-        yield
-    finally:
-        _maker.reset(token)
-
-
 def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:
     """Condense a body; quadratic triangles, which have no projected dilatation, lose accuracy from poisson 0.45 on."""
     triangles, material = isinstance(mesh, MeshTri), body.material
     space = Space(mesh, TRIANGLE if triangles else quadrilateral(how.degree))
     stiffness = cell_stiffness if triangles else stiffness_of(body.regions)
-    held = boundaries.made_of(FAR_FIELDS[body.held], body.beyond)
+    held = exterior.made_of(FAR_FIELDS[body.held], body.beyond)
     return condense(space, material.poisson, far_field=held, stiffness=stiffness, traction=material.area)
 
 
@@ -210,18 +172,6 @@ def pair_meshes(scene: Scene, counter: Body, core: Array, how: Discretisation) -
     end = float(coordinate.radius(core[-1:])[0][0])
     meshes = mesh_of(scene, core, how), counter.facing(R2, core, finest_length(scene, how), R1, how)
     return with_contact_to(meshes[0], end), with_contact_to(meshes[1], end)
-
-
-def _pair(
-    scene: Scene, counter: Body, core: Array, rim: Array, coordinate: SurfaceCoordinate, how: Discretisation
-) -> Discretised:
-    """Both bodies, and beyond their cells the rigid rim."""
-    bodies, meshes = (scene.body, counter), pair_meshes(scene, counter, core, how)
-    one, other = (_condensed(body, mesh, how) for body, mesh in zip(bodies, meshes, strict=True))
-    a, (part, rest) = one.operator, scene.shares
-    compliance = part * a.compliance + rest * other.operator.compliance
-    both = ElasticOperator(a.radii, a.weights, compliance, a.cells, a.cell_nodes)
-    return Discretised(one, with_rigid_rim(both, rim, coordinate), scene.surface, scene, one.unknowns + other.unknowns)
 
 
 def with_rigid_rim(operator: ElasticOperator, lines: Array, coordinate: SurfaceCoordinate) -> ElasticOperator:

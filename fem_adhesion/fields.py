@@ -18,10 +18,10 @@ from functools import cached_property
 import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation
-from fem_adhesion.discretise import Discretised, discretised_about, layout_of
-from fem_adhesion.elasticity.boundaries import Trace
+from fem_adhesion.discretise import Discretised, discretised_about
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.elasticity.stress import recovered_stresses
+from fem_adhesion.elasticity.surface import BoundaryPoints
 from fem_adhesion.scene import Scene
 from halfspace.elastic.layered import panels_of
 from halfspace.equilibrium import newton
@@ -33,7 +33,7 @@ from halfspace.equilibrium.events import EVENTS
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Point
 from halfspace.errors import InputError
-from halfspace.values import Array, Valued
+from halfspace.values import Array, Mask, Valued
 
 FIELDS = Discretisation(degree=6)
 """Cells of the fields: displacement and stress differ from those of degree 9 by 5e-5 and 1e-3 of their maxima."""
@@ -56,7 +56,7 @@ class State(Valued):
     stress : (4, functions) array
         Coefficients of the recovered stress (rr, zz, hoop, rz), in E* beta/R, tension positive; for
         `fem_adhesion.elasticity.stress.sampled`.
-    surface : Trace
+    surface : BoundaryPoints
         Quadrature points of the contact surface, by their radii, ascending, q in all.
     problem : ContactProblem
         The surface law on this body.
@@ -69,7 +69,7 @@ class State(Valued):
     space: Space
     displacement: Array
     stress: Array
-    surface: Trace
+    surface: BoundaryPoints
     problem: ContactProblem
     point: Point
 
@@ -124,21 +124,29 @@ class State(Valued):
     def recovered_traction(self) -> Array:
         """Traction that the stress inside exerts, shape (q,): to be compared with the law's.
 
-        In the layer of cells at the equator of a bonded body it is nan: the stress is infinite there, and polynomials
-        leave up to 20 times the largest pressure, beyond that layer 2e-4 of it at most.
+        It is nan on the facets at a singular corner, see `_at_corner`: the stress is infinite there, and polynomials
+        err by up to 20 times the largest pressure. On other facets they err by 2e-4 of the largest pressure, and on a
+        user's mesh of quadratic cells by 3e-3.
         """
         functions = self.space.boundary_functions("contact")
         _, zz, _, rz = (self.surface.values @ self.stress[:, functions].T).T
         n_r, n_z = self.surface.normals.reshape(2, -1)
-        return np.where(self.surface.radii < self._regular, -(rz * n_r + zz * n_z), np.nan)
+        corner = np.repeat(self._at_corner, self.surface.lengths.shape[1])
+        return np.where(corner, np.nan, -(rz * n_r + zz * n_z))
 
     @property
-    def _regular(self) -> float:
-        """Radius in beta within which the stress is that of no singular corner."""
-        if not self.scene.body.singular:
-            return np.inf
-        outer, coordinate = layout_of(self.scene, replace(FIELDS, rings=0))
-        return float(coordinate.radius(outer[-2:-1])[0][0])
+    def _at_corner(self) -> Mask:
+        """Facets of the contact, outwards, whose stress is spoiled where the contact meets a clamped boundary.
+
+        They are the facet that ends at this corner and the rings that lead to it: there each facet is less than half as
+        long as the one before.
+        """
+        lengths, mesh = self.surface.lengths.sum(axis=1), self.space.mesh
+        contact, far = (mesh.facets[:, mesh.boundaries[name]] for name in ("contact", "far"))
+        if self.scene.body.held != "clamped" or not np.intersect1d(contact, far).size:
+            return np.zeros(lengths.size, dtype=bool)
+        shrinking = np.append(lengths[:-1] > 2 * lengths[1:], True)
+        return np.asarray(np.logical_and.accumulate(shrinking[::-1])[::-1])
 
 
 def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", how: Discretisation = FIELDS) -> State:
@@ -150,7 +158,7 @@ def state_at(scene: Scene, problem: Traceable, point: Point, *, name: str = "", 
     mesh, as GridTooCoarse if a user's mesh does not carry the spike of tension at the contact edge.
     """
     require_fields(scene)
-    made = discretised_about(scene, float(point.observables[CONTACT_RADIUS]), how, problem.interface)
+    made = discretised_about(scene, float(point.observables[CONTACT_RADIUS]), how)
     return _solved(made, problem, point, name)
 
 

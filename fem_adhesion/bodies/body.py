@@ -21,8 +21,7 @@ FarFieldName = Literal["point_load", "substrate", "clamped", "free", "sliding", 
 GripName = Literal["sliding", "bonded"]
 SolverName = Literal["half-space", "harmonics"]
 
-FINEST, GROWTH = 0.6, 2.5  # of the cells: at the contact edge in widths of the spike of tension, and of their lengths
-MOST_RINGS = 6  # around a singular corner: as many as rounding allows
+MOST_RINGS = 6  # rings around a singular corner: as many as rounding allows
 USUAL = LinearElastic()
 
 Layout = tuple[Array, SurfaceCoordinate]
@@ -46,16 +45,17 @@ class Discretisation:
 
     `finest` is the length of the cells at the contact edge, in widths of the spike of tension there, `growth` the ratio
     of neighbouring cells, and `rings` the number of rings of cells around the corner where a mid-plane meets the free
-    surface, if it is bonded. `beyond` is the size of what is meshed of a half-space under a surface that ends, in the
-    radius where that does: nothing acts beyond that, and the far field errs by O(L^-5). Under strata it is in ten
-    times the length over which they spread a load.
+    surface, if it is bonded. `beyond` is the size L of what is meshed of a half-space under a surface that ends, in the
+    length over which the load on it is spread, see `Body.spread`: the far field errs by O(L^-5). Each cell of a mesh
+    that is given is cut into four as often as `refined` says.
     """
 
     degree: int
-    finest: float = FINEST
-    growth: float = GROWTH
+    finest: float = 0.6
+    growth: float = 2.5
     rings: int = MOST_RINGS - 1
     beyond: float = 1e3
+    refined: int = 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,6 +178,15 @@ class Body(ABC):
     def layered(self) -> LayeredBody | None:
         """Strata on a base, if it is one; see `halfspace.elastic.layers`."""
         return None
+
+    @property
+    def cut_off(self) -> float | None:
+        """Size in beta of a body that is cut off under an endless surface; None where the size is to be chosen."""
+        return None
+
+    def spread(self, R: float) -> float:
+        """Length in beta over which a half-space beyond is loaded, where the surface over it ends at R."""
+        return R
 
     def extent(self, scales: Scales) -> float:  # noqa: ARG002 (few are cut off)
         """Radius in beta at which its contact surface is cut off, where nothing attracts any more."""

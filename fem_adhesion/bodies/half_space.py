@@ -17,7 +17,6 @@ from halfspace.values import Array, keep
 
 BlockFarField = Literal["point_load", "clamped", "free"]
 
-BEYOND = 1e3  # size of the mesh in radii of a sphere that meets it
 PAST_END = 0.02  # length of the first cell beyond the end of the surface over it, in the radius there
 
 
@@ -61,8 +60,8 @@ class HalfSpace(Body):
         """Block whose cells end where those of the sphere do, and beyond at ever larger distances."""
         from fem_adhesion.mesh.spheres import block_under
 
-        depths = grid.graded(0.0, length, BEYOND * smaller, growth=how.growth)
-        return block_under(lines, depths, smaller, BEYOND * smaller)
+        depths = grid.graded(0.0, length, how.beyond * smaller, growth=how.growth)
+        return block_under(lines, depths, smaller, how.beyond * smaller)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,6 +105,11 @@ class Block(Body):
         require_radius(self.radius, tabor)
         if not self.endless:
             require_fixed_mesh(tabor)
+
+    @property
+    def cut_off(self) -> float:
+        """Its size."""
+        return self.radius
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (one for all)
         """Its surface ends where it does."""

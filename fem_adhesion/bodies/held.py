@@ -137,10 +137,10 @@ class Meshed(Held):
         return np.array([R]), FLAT
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:  # noqa: ARG002
-        """Mesh of the file, every cell cut into four until the contact has as many as there are between the lines."""
+        """Mesh of the file, every cell cut into four as often as `how` says."""
         from fem_adhesion.mesh.file import read_body, refined
 
         mesh = read_body(self.file).scaled(R)
-        while len(mesh.boundaries["contact"]) < len(lines) - 1:
+        for _ in range(how.refined):
             mesh = refined(mesh)
         return mesh

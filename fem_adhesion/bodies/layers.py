@@ -116,12 +116,12 @@ class Stratified(Body):
         moduli = [modulus for _, modulus in self.regions]
         if self.held != "substrate":
             return R + DIED_OUT * math.sqrt(max(moduli) / min(moduli)) * self.interfaces[-1]
-        return max(2 * R, how.beyond * self.unit(R))
+        return max(2 * R, how.beyond * self.spread(R))
 
-    def unit(self, R: float) -> float:
-        """Length in beta by which a half-space below is measured, `Discretisation.beyond` times it.
+    def spread(self, R: float) -> float:
+        """Length in beta over which a half-space below is loaded: where strata spread what pulls at them within R.
 
-        It is so many times that over which the strata spread what pulls at them within R.
+        It is some times longer than that of the strata, see `FAR_OUT`.
         """
         moduli = [modulus / self.beyond.modulus for _, modulus in self.regions]
         stiffness = sum(max(1.0, E) * part.thickness for E, part in zip(moduli, self.strata, strict=False))

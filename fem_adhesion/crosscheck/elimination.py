@@ -11,8 +11,8 @@ import numpy as np
 from skfem import ElementQuadP
 
 from fem_adhesion.crosscheck.comparison import WEAK_FORM, Row
-from fem_adhesion.elasticity.boundaries import clamped
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import clamped
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh.block import block_grid
 from fem_adhesion.scene import Scene

@@ -14,7 +14,6 @@ from fem_adhesion import convergence, discretise, harmonics
 from fem_adhesion.bodies.body import Discretisation, SolverName
 from fem_adhesion.convergence import on_given_mesh
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, Pair
-from fem_adhesion.discretise import block_size
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import SizedBody, at_equator
 from halfspace.elastic import grid
@@ -85,7 +84,7 @@ def _lines(scene: Scene) -> Array:
     if scene.sized:
         last = at_equator(scene.tabor, scene.surface, 8)
         return _about(radius_of(scene), np.array([scene.surface.end]), last)
-    return grid.graded(1.0, FINEST, block_size(scene) or 40.0)
+    return grid.graded(1.0, FINEST, scene.body.cut_off or 40.0)
 
 
 def _about(edge: float, outer: Array, last: float) -> Array:

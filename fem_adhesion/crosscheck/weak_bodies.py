@@ -181,7 +181,7 @@ def _clamped(scene: Scene, strata: Stratified, W: float, R: float, radius: float
     """
     yielding = float(surface_compliance(strata, np.array([1 / radius]))[0]) / (2 * radius)
     far = 1 / (np.pi * strata.beyond.modulus * CLAMPED * (1 / (scene.tabor * W) + yielding))
-    return max(1 / FAR_OUT, far / strata.unit(R))
+    return max(1 / FAR_OUT, far / strata.spread(R))
 
 
 def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:

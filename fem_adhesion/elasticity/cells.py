@@ -39,7 +39,7 @@ CellStiffness = Callable[[Space, float], Array]
 STRAINS = np.array([[0.0, 1, 0, 0, 0], [0, 0, 0, 0, 1], [1, 0, 0, 0, 0], [0, 0, 1, 1, 0]])
 """Strains (rr, zz, hoop, rz) from the components of grad u."""
 
-TRACE = np.array([1.0, 1.0, 0.0, 0.0, 1.0])  # of grad u: the relative change of volume
+DILATATION = np.array([1.0, 1.0, 0.0, 0.0, 1.0])  # of grad u: the relative change of volume
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -110,7 +110,7 @@ class Cells(Valued):
 
     def dilatations(self) -> Array:
         """Relative change of volume at each point by each unit displacement of its cell, (c, 2 n, q)."""
-        return self.densities(np.broadcast_to(TRACE[:, None, None], (5, *self.radii.shape)))
+        return self.densities(np.broadcast_to(DILATATION[:, None, None], (5, *self.radii.shape)))
 
     def stiffness(self, moduli: Array) -> Array:
         """Matrices (c, 2 n, 2 n) by moduli, the symmetric derivative of the stress by grad u.

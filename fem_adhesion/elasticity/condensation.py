@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg.blas import dtrsm
 
-from fem_adhesion.elasticity.boundaries import Exterior, FarField, Trace, point_load, trace_on, with_interiors
 from fem_adhesion.elasticity.cells import CellStiffness, cell_stiffness
 from fem_adhesion.elasticity.elimination import (
     Factors,
@@ -21,7 +20,9 @@ from fem_adhesion.elasticity.elimination import (
     reduced_cells,
     reduced_unknowns,
 )
+from fem_adhesion.elasticity.exterior import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space
+from fem_adhesion.elasticity.surface import BoundaryPoints, boundary_points
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -84,7 +85,7 @@ class CondensedBody(Valued):
     stiffness: CellStiffness
     cells: Array
     exterior: Exterior
-    surface: Trace
+    surface: BoundaryPoints
 
     @cached_property
     def factors(self) -> Factors:
@@ -139,7 +140,7 @@ def condense(
     The compliance is N K^-1 N' diag(w): N evaluates the surface deflection -u_z at the Gauss points of the contact
     facets and w are the weights of 2 pi r dr, so a surface law assembled by quadrature at them is condensed exactly.
 
-    The far field is `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.boundaries`. Gauss's points are
+    The far field is `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.exterior`. Gauss's points are
     more than the degree p of the element on a contact facet, p + 2 unless given. Of the stiffnesses of the cells
     `fem_adhesion.elasticity.cells.projected_stiffness` does not lock. With the traction "projected" the
     pressure, which is vertical, acts on the area projected on the plane of the contact, with "surface" on that of the
@@ -148,7 +149,11 @@ def condense(
     points = space.degree + 2 if points is None else points
     if points <= space.degree:
         raise InputError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
-    surface, exterior, cells = trace_on(space, "contact", points), far_field(space, poisson), stiffness(space, poisson)
+    surface, exterior, cells = (
+        boundary_points(space, "contact", points),
+        far_field(space, poisson),
+        stiffness(space, poisson),
+    )
     yielding = flexibility(space, cells, exterior, space.components[1, surface.functions])
     operator = surface_operator(surface, exterior, yielding, traction)
     return CondensedBody(operator, space, poisson, stiffness, cells, exterior, surface)
@@ -203,7 +208,7 @@ def with_exterior(region: Region, stiffness: Array, exterior: Exterior) -> Array
 
 
 def surface_operator(
-    surface: Trace, exterior: Exterior, flexibility: Array, traction: str = "projected"
+    surface: BoundaryPoints, exterior: Exterior, flexibility: Array, traction: str = "projected"
 ) -> ElasticOperator:
     """Return the compliance of the surface, from the displacements of its vertical unknowns under unit forces."""
     N, weights = surface.values, surface.weights(traction)

@@ -15,7 +15,7 @@ from scipy.sparse.linalg import splu
 from skfem import CellBasis
 
 from fem_adhesion.elasticity.cells import (
-    TRACE,
+    DILATATION,
     Cells,
     cell_quadrature,
     elastic_matrix,
@@ -133,7 +133,7 @@ def projection(space: Space, values: Array) -> Array:
 def _projected_dilatation(space: Space, displacement: Array, places: Array) -> Array:
     """Projection of div u, cell by cell, on `pressure_modes`, at points (2, k): (cells, k)."""
     cells = Cells.of(space)
-    root, dilatation = np.sqrt(cells.measure), np.tensordot(TRACE, cells.gradient(displacement), 1)
+    root, dilatation = np.sqrt(cells.measure), np.tensordot(DILATATION, cells.gradient(displacement), 1)
     Q, triangle = np.linalg.qr(root[:, :, None] * pressure_modes(space))
     parts = np.einsum("ckm,ck->cm", Q, root * dilatation)
     coefficients = np.linalg.solve(triangle, parts[:, :, None])[:, :, 0]

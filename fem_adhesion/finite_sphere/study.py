@@ -17,7 +17,6 @@ from fem_adhesion.common.facts import code_digest
 from fem_adhesion.common.files import Store
 from fem_adhesion.common.jobs import Kept, solve_all
 from fem_adhesion.common.numbers import counted
-from fem_adhesion.discretise import operators_shared
 from fem_adhesion.finite_sphere.cases import MODELS, Record, SphereCase, case_of, compute, from_plain, to_plain
 from halfspace.errors import InputError
 from halfspace.limits import require_poisson, require_radius_ratio, require_tabor
@@ -167,8 +166,7 @@ def run(
 
 
 def _in_turn(part: Sequence[SphereCase], work: Callable[[SphereCase], Record]) -> list[Record]:
-    with operators_shared():
-        return [work(case) for case in part]
+    return [work(case) for case in part]
 
 
 def _of_one_body(cases: Sequence[SphereCase]) -> list[tuple[SphereCase, ...]]:

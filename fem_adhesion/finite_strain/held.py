@@ -22,9 +22,9 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg.lapack import dgetrf, dgetrs
 
-from fem_adhesion.elasticity.boundaries import Exterior
 from fem_adhesion.elasticity.condensation import Dissection
 from fem_adhesion.elasticity.elimination import Factors
+from fem_adhesion.elasticity.exterior import Exterior
 from fem_adhesion.finite_strain.body import Body
 from halfspace.equilibrium.contact import Solver, count_negative
 from halfspace.errors import NotConverged

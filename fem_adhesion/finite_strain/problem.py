@@ -1,6 +1,6 @@
 """The contact problem at finite strain: Newton's method on every unknown of a neo-Hookean body at once.
 
-Unknowns x = (y, alpha*): reduced unknowns y with u = T y, see `fem_adhesion.elasticity.boundaries`, and the approach in
+Unknowns x = (y, alpha*): reduced unknowns y with u = T y, see `fem_adhesion.elasticity.exterior`, and the approach in
 eps. Displacements are in mu eps = beta^2/R, so that a point X moves to X + delta u, delta = beta/R = sqrt(mu/rho). The
 surface law, of pressure P and energy Phi, acts on the deformed surface: at its height and on its area. With z the
 height of the undeformed surface in beta^2/R and r_d = r + delta u_r, the work it does in a displacement v is
@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_adhesion.elasticity.boundaries import Exterior, FarField, point_load, with_interiors
+from fem_adhesion.elasticity.exterior import Exterior, FarField, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.body import Body, displacement_body
 from fem_adhesion.finite_strain.held import HeldBody, Tangent
@@ -318,7 +318,7 @@ def finite_strain_problem(
     """Put a body under a rigid flat wall that attracts it.
 
     The body is a `displacement_body` or `mixed_body` of `fem_adhesion.finite_strain.body`, the exterior one of
-    `fem_adhesion.elasticity.boundaries` on its space; tabor and law are as in
+    `fem_adhesion.elasticity.exterior` on its space; tabor and law are as in
     `halfspace.equilibrium.contact.ContactProblem`. The profile is the height of the body's undeformed surface over its
     pole, carried along by its points; that of a block is a perturbation of its flat surface, as in the linear body. The
     convention says what the law's traction is counted per, and its direction. Of Gauss's points there are p + 2 on each

@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from fem_adhesion.bodies.body import FINEST, GROWTH, Discretisation
+from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import (
     CURVE_DEGREE,
     FAR_FIELDS,
@@ -119,7 +119,9 @@ class Stages(Valued):
 
     def body(self, degree: int, finest: float = 1.0, growth: float = 1.0) -> ScenesBody:
         """For events, in cells of other lengths and growth by these factors: stiff surfaces have wide spikes."""
-        how = Discretisation(degree, finest * (1 - softening(self.scene)) * FINEST, growth * GROWTH)
+        how = Discretisation(
+            degree, finest * (1 - softening(self.scene)) * Discretisation.finest, growth * Discretisation.growth
+        )
         return ScenesBody(self.scene, how)
 
 

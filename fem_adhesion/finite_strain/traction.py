@@ -54,8 +54,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from fem_adhesion.elasticity.boundaries import Exterior, Trace, trace_on
+from fem_adhesion.elasticity.exterior import Exterior
 from fem_adhesion.elasticity.space import Space
+from fem_adhesion.elasticity.surface import BoundaryPoints, boundary_points
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Index, Valued
@@ -175,7 +176,7 @@ class ContactSurface(Valued):
     these.
     """
 
-    points: Trace
+    points: BoundaryPoints
     unknowns: Index
     radial: Array
     vertical: Array
@@ -219,7 +220,7 @@ class ContactSurface(Valued):
 
 def contact_surface(space: Space, exterior: Exterior, points: int) -> ContactSurface:
     """Evaluate the contact surface and the reduced unknowns at `points` Gauss points a facet."""
-    trace = trace_on(space, "contact", points)
+    trace = boundary_points(space, "contact", points)
     parts = [exterior.reduction.tocsr()[components[trace.functions]] for components in space.components]
     moved = np.unique(np.concatenate([part.nonzero()[1] for part in parts]))
     radial, vertical = (part[:, moved].toarray() for part in parts)

@@ -20,8 +20,8 @@ from fem_adhesion import convergence
 from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.common import relaxation
 from fem_adhesion.common.relaxation import Relaxed
-from fem_adhesion.elasticity.boundaries import FarField, clamped, point_load
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import FarField, clamped, point_load
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.problem import assemble
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc

@@ -7,11 +7,12 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 from skfem import Dofs
 
-from fem_adhesion.elasticity.boundaries import FarField, point_load, trace_on, with_interiors
 from fem_adhesion.elasticity.cells import Cells, cell_quadrature, of_gradient, shear_matrix
 from fem_adhesion.elasticity.condensation import CondensedBody, surface_operator
+from fem_adhesion.elasticity.exterior import FarField, point_load, with_interiors
 from fem_adhesion.elasticity.reference import reference_functions
 from fem_adhesion.elasticity.space import Space, lame_parameters, scatter, scatter_pairs
+from fem_adhesion.elasticity.surface import boundary_points
 from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.errors import InputError
@@ -51,7 +52,7 @@ def taylor_hood(
     # Symmetric and quasi-definite: it can be factorised in any order without pivoting.
     saddle = sparse.block_array([[A, (coupling @ T).T], [coupling @ T, -volume / lam]], format="csc")
     factors = splu(saddle, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    surface = trace_on(space, "contact", space.degree + 2 if points is None else points)
+    surface = boundary_points(space, "contact", space.degree + 2 if points is None else points)
     rows = T.tocsr()[space.components[1, surface.functions]]
     forces = sparse.vstack([rows.T, sparse.csr_array((volume.shape[0], len(surface.functions)))]).toarray()
     return surface_operator(surface, exterior, rows @ factors.solve(forces)[: T.shape[1]])

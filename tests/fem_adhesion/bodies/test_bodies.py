@@ -7,9 +7,9 @@ from hard.references import strain_energy
 from skfem import CellBasis, ElementQuadP
 from whole_sphere import sphere_operator, surface_deflection
 
-from fem_adhesion.elasticity.boundaries import clamped, sliding
 from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, stiffness_for
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import clamped, sliding
 from fem_adhesion.elasticity.space import Space, ring_measure, scatter
 from fem_adhesion.harmonics import legendre
 from fem_adhesion.mesh import curved, spheres

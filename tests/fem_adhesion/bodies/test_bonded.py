@@ -12,9 +12,9 @@ from truths import on, standing
 import fem_adhesion
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
-from fem_adhesion.elasticity.boundaries import clamped
 from fem_adhesion.elasticity.cells import stiffness_for
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import clamped
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
 from halfspace.elastic import grid

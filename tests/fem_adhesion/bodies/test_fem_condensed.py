@@ -9,10 +9,11 @@ from scipy.special import ellipe, ellipk, j0, kv
 from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
 from fem_adhesion.elasticity import cells as elasticity
-from fem_adhesion.elasticity.boundaries import boussinesq_displacement, clamped, free, point_load, trace_on
 from fem_adhesion.elasticity.cells import cell_stiffness
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import boussinesq_displacement, clamped, free, point_load
 from fem_adhesion.elasticity.space import Space, ring_measure, scatter
+from fem_adhesion.elasticity.surface import boundary_points
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
 from halfspace.elastic import grid
 
@@ -146,7 +147,7 @@ def test_point_load_unknown_tends_to_the_load():
 def test_free_block_keeps_its_mean_height():
     space = Space(block_grid(0.3, 1.5, 10.0), ElementQuadP(4))
     body = condense(space, NU, far_field=free)
-    far = trace_on(space, "far", 8)
+    far = boundary_points(space, "far", 8)
     u_z = far.values @ body.displacement(bump(body.operator.radii))[space.components[1, far.functions]]
     dA = (ring_measure(far.places[0]) * far.lengths).ravel()
     assert abs(dA @ u_z) / dA.sum() < 1e-12

@@ -21,9 +21,10 @@ from skfem import (
 )
 from skfem.helpers import ddot, div, sym_grad
 
-from fem_adhesion.elasticity.boundaries import boussinesq_displacement, boussinesq_stress, trace_on, trace_projection
 from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, elastic_matrix
+from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure, scatter
+from fem_adhesion.elasticity.surface import boundary_points
 from fem_adhesion.mesh.block import (
     block_grid,
     graded_size,
@@ -226,7 +227,7 @@ def solve_manufactured(space):
     f = loads(space, cells, body_force(*cells.global_coordinates())) + loads(space, surface, np.array([rz, zz]))
     u = np.zeros(space.unknowns)
     far = space.components[:, space.boundary_functions("far")]
-    u[far] = trace_projection(trace_on(space, "far", space.degree + 6), exact_displacement)
+    u[far] = boundary_points(space, "far", space.degree + 6).projection(exact_displacement)
     axis = space.components[0, space.boundary_functions("axis")]
     u[axis] = 0.0
     free = np.setdiff1d(np.arange(space.unknowns), np.union1d(far, axis))
@@ -318,10 +319,10 @@ def test_boussinesq_hemisphere_carries_the_load_and_the_surface_none():
 
 
 @pytest.mark.parametrize("element", [ElementTriP3(), ElementTriP1()])
-def test_trace_projection_reproduces_linear_fields(element):
+def test_projection_reproduces_linear_fields(element):
     space = Space(quarter_disc(5.0, graded_size(0.7, 1.0, 0.5)), element)
-    coefficients = trace_projection(trace_on(space, "far", 9), lambda r, z: np.array([2.0 * r - z, 1.0 + z]))
-    trace = trace_on(space, "far", 3)
+    coefficients = boundary_points(space, "far", 9).projection(lambda r, z: np.array([2.0 * r - z, 1.0 + z]))
+    trace = boundary_points(space, "far", 3)
     r, z = trace.places.reshape(2, -1)
     values = trace.values @ coefficients.T
     np.testing.assert_allclose(values.T, [2.0 * r - z, 1.0 + z], atol=1e-13)
@@ -338,8 +339,8 @@ def test_trace_projection_reproduces_linear_fields(element):
     ],
     ids=["triangles", "curved triangles", "rectangles", "held sphere"],
 )
-def test_traces_are_those_of_scikit_fem(space, name):
-    basis, trace = boundary_basis(space, name, 4), trace_on(space, name, 4)
+def test_boundary_points_are_those_of_scikit_fem(space, name):
+    basis, trace = boundary_basis(space, name, 4), boundary_points(space, name, 4)
     places, normals = (np.reshape(vectors, (2, -1)) for vectors in (basis.global_coordinates(), basis.normals))
     same = cdist(trace.places.reshape(2, -1).T, places.T).argmin(axis=1)  # scikit-fem has them in another order
     assert np.array_equal(np.sort(same), np.arange(same.size))

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from skfem import ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
-from fem_adhesion.elasticity.boundaries import clamped, free, point_load
 from fem_adhesion.elasticity.cells import cell_stiffness
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import clamped, free, point_load
 from fem_adhesion.elasticity.space import Space, scatter
 from fem_adhesion.finite_strain.body import displacement_body
 from fem_adhesion.finite_strain.problem import assemble

@@ -11,16 +11,11 @@ from skfem import CellBasis, ElementQuad2, ElementQuadP
 import fem_adhesion
 from fem_adhesion import HeldSphere, Hemisphere, Layer, LinearElastic, NeoHookean, fields
 from fem_adhesion.elasticity import stress
-from fem_adhesion.elasticity.boundaries import (
-    boussinesq_displacement,
-    boussinesq_stress,
-    point_load,
-    trace_on,
-    trace_projection,
-)
 from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, elastic_matrix, projected_stiffness
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress, point_load
 from fem_adhesion.elasticity.space import Space, ring_measure, scatter
+from fem_adhesion.elasticity.surface import boundary_points
 from fem_adhesion.fields import half_space_beside
 from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh.block import tensor_grid
@@ -37,8 +32,8 @@ def buried(space, poisson, stiffness=cell_stiffness):
     u, held = np.zeros(space.unknowns), np.zeros(space.unknowns, bool)
     for name in ("contact", "far"):
         unknowns = space.components[:, space.boundary_functions(name)]
-        trace = trace_on(space, name, space.degree + 6)
-        u[unknowns] = trace_projection(trace, lambda r, z: boussinesq_displacement(r, z - 1, poisson))
+        trace = boundary_points(space, name, space.degree + 6)
+        u[unknowns] = trace.projection(lambda r, z: boussinesq_displacement(r, z - 1, poisson))
         held[unknowns] = True
     axis = space.components[0, space.boundary_functions("axis")]
     u[axis], held[axis] = 0, True

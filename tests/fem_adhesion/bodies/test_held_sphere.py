@@ -7,10 +7,11 @@ import pytest
 from scipy import sparse
 from skfem import Basis, ElementQuadP, ElementTriP2
 
-from fem_adhesion.elasticity.boundaries import Exterior, clamped, sliding, trace_on, with_interiors
 from fem_adhesion.elasticity.cells import Cells, cell_stiffness
 from fem_adhesion.elasticity.condensation import Dissection, condense
+from fem_adhesion.elasticity.exterior import Exterior, clamped, sliding, with_interiors
 from fem_adhesion.elasticity.space import Space, ring_measure
+from fem_adhesion.elasticity.surface import boundary_points
 from fem_adhesion.mesh import spheres as module
 from fem_adhesion.mesh.curved import refined_towards
 from fem_adhesion.mesh.file import read_body
@@ -55,7 +56,7 @@ def held(mesh, degree, grip=clamped):
 
 
 def surface_area(space, name):
-    trace = trace_on(space, name, 10)
+    trace = boundary_points(space, name, 10)
     return np.sum(ring_measure(trace.places[0]) * trace.lengths)
 
 
@@ -89,7 +90,7 @@ def test_rim_of_the_cap_is_where_its_facets_end(cap_angle):
 
 @pytest.mark.parametrize("cap_angle", CAPS)
 def test_contact_ends_are_those_of_the_cells(cap_angle):
-    surface = trace_on(Space(sphere(cap_angle), ElementQuadP(3)), "contact", 5)
+    surface = boundary_points(Space(sphere(cap_angle), ElementQuadP(3)), "contact", 5)
     x = np.concatenate([lines()[0], contact_ends(R, rings_at_equator(R, cap_angle))[1:]])
     assert surface.ends == pytest.approx(SurfaceCoordinate(R).radius(x)[0], rel=1e-12, abs=1e-12)
     assert np.all(surface.weights() > 0)
@@ -159,7 +160,7 @@ def test_uniform_tension_is_exact_in_elements_of_the_degree_of_the_cells(cap_ang
 def between_two_walls(degree):
     """Deflection of the poles per unit load of a free sphere with the same pressure on both, relative to its centre."""
     space = Space(sphere(90.0), ElementQuadP(degree))
-    surface = trace_on(space, "contact", degree + 4)
+    surface = boundary_points(space, "contact", degree + 4)
     held = np.concatenate([space.components[0, space.boundary_functions("axis")], space.interior_dofs])
     vertex = np.argmin(np.hypot(space.mesh.p[0], space.mesh.p[1] + R))
     centre = space.components[1, space.scalar_dofs.nodal_dofs[0, vertex]]
@@ -172,7 +173,7 @@ def between_two_walls(degree):
     pressed = surface.weights() * gaussian(surface.radii)
     load, forces = np.sum(pressed), np.zeros(space.unknowns)
     forces[space.components[1, surface.functions]] -= surface.values.T @ pressed
-    far = trace_on(space, "far", degree + 4)
+    far = boundary_points(space, "far", degree + 4)
     r, normal = far.places[0], far.normals[1]
     upwards = (-normal * gaussian(r) * ring_measure(r) * far.lengths).ravel()
     forces[space.components[1, far.functions]] += far.values.T @ upwards

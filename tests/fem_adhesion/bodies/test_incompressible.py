@@ -11,7 +11,6 @@ from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 import fem_adhesion
 import halfspace
 from fem_adhesion import HalfSpace, Scene
-from fem_adhesion.elasticity.boundaries import clamped, free, point_load, with_interiors
 from fem_adhesion.elasticity.cells import (
     REMEDY_FROM,
     Cells,
@@ -24,6 +23,7 @@ from fem_adhesion.elasticity.cells import (
     stiffness_for,
 )
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import clamped, free, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space, scatter, scatter_pairs
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
 from halfspace.elastic import grid

@@ -12,8 +12,8 @@ from facets import boundary_basis
 from scipy.spatial import cKDTree
 from skfem import CellBasis, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2, MeshTri, MeshTri2
 
-from fem_adhesion.elasticity.boundaries import clamped
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import clamped
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh.checks import facet_nodes
 from fem_adhesion.mesh.file import read_body, read_scaled

@@ -9,7 +9,7 @@ import pytest
 from skfem import CellBasis, ElementQuad2, MeshQuad, MeshQuad2
 
 import fem_adhesion
-from fem_adhesion import Hemisphere, Meshed, Scene
+from fem_adhesion import Hemisphere, Meshed, Scene, fields
 from fem_adhesion.mesh.file import read_body, refined
 from halfspace.equilibrium.conditions import rounding
 from halfspace.errors import GridTooCoarse
@@ -38,6 +38,19 @@ def test_a_tip_pulls_as_its_cap_does_and_yields_more():
     cap = fem_adhesion.trace(meshed("hemisphere", 100.0, grip="bonded"), rtol=1e-3).events
     assert tip["pull_off"].load == pytest.approx(cap["pull_off"].load, rel=5e-3)
     assert tip["jump_off"].approach < cap["jump_off"].approach - 0.1
+
+
+@pytest.mark.parametrize("name", ["hemisphere", "tip"])
+def test_traction_of_the_stress_is_left_out_at_the_corner_alone(name):
+    """The last facet ends where the grip begins; the same mesh that slides has all."""
+    scenes = [meshed(name, 20.0, grip=grip) for grip in ("bonded", "sliding")]
+    for scene in scenes:
+        path = fem_adhesion.trace(scene, rtol=1e-2)
+        for state in fields.states_along(scene, path, points=0):
+            off = np.abs(state.recovered_traction() - state.traction) / np.max(np.abs(state.pressure))
+            corner = state.surface.radii > state.surface.ends[-2]
+            np.testing.assert_array_equal(np.isnan(off), corner & (scene is scenes[0]))
+            assert np.nanmax(off) < 1e-2
 
 
 # --- the range of the examples: what meshes/README.md names ---

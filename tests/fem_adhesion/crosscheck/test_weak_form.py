@@ -11,8 +11,8 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Coated, Hemisphere, Scene, cli
 from fem_adhesion.crosscheck import elimination
-from fem_adhesion.elasticity.boundaries import clamped
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import clamped
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh.block import block_grid
 from fem_adhesion.weak_form import path, trace

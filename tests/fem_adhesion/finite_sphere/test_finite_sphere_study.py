@@ -19,7 +19,7 @@ from processes import alive, wait_until
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene, discretise
+from fem_adhesion import Hemisphere, LinearElastic, NeoHookean, Scene
 from fem_adhesion.common import files
 from fem_adhesion.common.files import NotWritten, open_store
 from fem_adhesion.finite_sphere import cases as finite_sphere_cases
@@ -204,21 +204,6 @@ def test_a_study_killed_under_way_goes_on_without_computing_anything_twice(tmp_p
     assert all(record.status == "solved" for record in records)
     assert len(list(log.iterdir())) - begun == len(CASES) - len(kept)
     assert {tabor: stored_cases(directory)[tabor].stat().st_mtime_ns for tabor in times} == times
-
-
-def test_cases_of_one_body_share_its_operators_and_are_what_they_are_alone(monkeypatch):
-    """To the last digit."""
-    made, condensed = [], discretise._condensed
-    monkeypatch.setattr(discretise, "_condensed", lambda *body: made.append(1) or condensed(*body))
-    cases = [case_of(name, 1.0, 1e4, 0.3, 1e-3) for name in ("finite_body", "sphere", "surface_traction")]
-    alone = [finite_sphere_cases.compute(case).values for case in cases]
-    count = len(made)
-    assert [record.values for record in run(cases, None, jobs=1)] == alone
-    assert len(made) - count < 0.7 * count
-    made.clear()
-    for case in cases:
-        finite_sphere_cases.compute(case)
-    assert len(made) == count  # nothing is kept beyond
 
 
 def test_a_study_that_is_complete_computes_nothing(tmp_path):

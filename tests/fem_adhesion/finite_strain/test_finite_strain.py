@@ -11,9 +11,9 @@ from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2
 
 from fem_adhesion.elasticity import cells
-from fem_adhesion.elasticity.boundaries import clamped, free, point_load, sliding
 from fem_adhesion.elasticity.cells import Cells, cell_stiffness
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import clamped, free, point_load, sliding
 from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.finite_strain import body as material
 from fem_adhesion.finite_strain.body import displacement_body, mixed_body

@@ -9,9 +9,9 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 from skfem import ElementQuadP
 
-from fem_adhesion.elasticity.boundaries import sliding
 from fem_adhesion.elasticity.cells import cell_quadrature
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import sliding
 from fem_adhesion.elasticity.reference import reference_functions
 from fem_adhesion.elasticity.space import Space, scatter
 from fem_adhesion.finite_strain.body import displacement_body

@@ -14,8 +14,8 @@ from fem_adhesion import HalfSpace, Hemisphere, Scene
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common.files import directory_written_aside
 from fem_adhesion.elasticity import stress
-from fem_adhesion.elasticity.boundaries import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.cells import cell_quadrature
+from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.stress import sampled
 from fem_adhesion.fields import states_along
 from fem_adhesion.paraview.arrays import COMPONENTS, MEANINGS, UNITS, in_si, inside, numbers, unit_of

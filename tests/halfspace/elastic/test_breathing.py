@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from skfem import ElementQuadP
 
-from fem_adhesion.elasticity.boundaries import sliding
 from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import sliding
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh import spheres
 from halfspace.accuracy.grids import half_space_charts, resolution_for

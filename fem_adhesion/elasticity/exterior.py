@@ -1,8 +1,8 @@
-"""Boundaries of a mesh: Gauss's points on a named one and the functions there, and what holds the far one.
+"""What holds the far boundary of a body: a clamp, a plane without friction, what goes on beyond, or nothing.
 
-That is a clamp, a plane without friction, what goes on beyond, or nothing: each a linear map u = T x from the reduced
-unknowns x to all of them and a stiffness S on x, so that the body's stiffness K becomes T' K T + S. T also imposes
-u_r = 0 on the axis, and leaves out the unknowns interior to a cell, which are eliminated before.
+Each is a linear map u = T x from the reduced unknowns x to all unknowns u and a stiffness S on x, so that the body's
+stiffness K becomes T' K T + S. T also imposes u_r = 0 on the axis, and leaves out the unknowns interior to a cell,
+which are eliminated before.
 """
 
 from __future__ import annotations
@@ -12,116 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
-from skfem.refdom import RefLine
 
-from fem_adhesion.elasticity.reference import quadrature, reference_functions
 from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure
+from fem_adhesion.elasticity.surface import BoundaryPoints, boundary_points
 from fem_adhesion.materials import Elastic
 from halfspace.values import Array, Index, Valued
 
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Trace(Valued):
-    """Gauss's points of a named boundary, k on each of its facets, outwards, and the scalar functions there.
-
-    Places and normals (2, facets, k) are r and z of the points, and of the outward normal there; lengths (facets, k)
-    are the weights of the length along the boundary, and the ends (facets + 1,) radii of the facets' ends. Of the
-    functions (m,), those that do not vanish on it, ascending, the values (q, m) are at all q = facets k points. Of the
-    n functions of each facet's cell, whose numbers are (n, facets), the derivatives (n, facets, k) are by the arclength
-    along (n_z, -n_r): on the contact surface, whose normal is upwards at the pole, that is outwards from it.
-    """
-
-    places: Array
-    normals: Array
-    lengths: Array
-    ends: Array
-    functions: Index
-    values: sparse.csr_array
-    cell_functions: Index
-    derivatives: Array
-
-    @property
-    def rates(self) -> sparse.csr_array:
-        """Derivatives of the functions at the points, (q, m)."""
-        return _rows(self.derivatives, self.cell_functions, self.functions)
-
-    @property
-    def radii(self) -> Array:
-        """Of the points in beta, (q,); ascending on the contact surface."""
-        return np.asarray(self.places[0].ravel())
-
-    @property
-    def depths(self) -> Array:
-        """Of the points under z = 0, in beta, (q,)."""
-        return np.asarray(-self.places[1].ravel())
-
-    @property
-    def slopes(self) -> Array:
-        """Derivative of the depth by the radius, (q,)."""
-        n_r, n_z = self.normals
-        return np.asarray((n_r / n_z).ravel())
-
-    @property
-    def facet_points(self) -> Index:
-        """Points of each facet, (facets, k)."""
-        return np.arange(self.lengths.size).reshape(self.lengths.shape)
-
-    def weights(self, traction: str = "projected") -> Array:
-        """Of 2 pi r dr, or of the area of the boundary itself with the traction "surface", in beta^2, (q,)."""
-        lengths = self.lengths if traction == "surface" else self.normals[1] * self.lengths
-        return ring_measure(self.radii) * lengths.ravel()
-
-
-def trace_on(space: Space, name: str, points: int) -> Trace:
-    """Evaluate a space at so many Gauss points on each facet of a named boundary."""
-    mesh, functions = space.mesh, space.boundary_functions(name)
-    facets = mesh.boundaries[name]
-    facets = facets[np.argsort(mesh.p[0, mesh.facets[:, facets]].min(axis=0), kind="stable")]
-    cells, (X, weights) = mesh.f2t[0, facets], quadrature(RefLine, 2 * points - 1)
-    corners = mesh.facets[:, facets]
-    corners = np.take_along_axis(corners, np.argsort(mesh.p[0, corners], axis=0, kind="stable"), axis=0)
-    ends = [np.argmax(mesh.t[:, cells] == vertex, axis=0) for vertex in corners]
-    places, normals = np.empty((2, 2, cells.size, points))
-    lengths = np.empty((cells.size, points))
-    values, rates = np.empty((2, len(space.scalar_dofs.element_dofs), *lengths.shape))
-    for side in np.unique(ends, axis=1).T:  # all facets between the same corners at once
-        alike = np.all(np.transpose(ends) == side, axis=1)
-        Y, along, outwards = _side(space.element.refdom.p, side[0], side[1], X[0])
-        J = np.asarray(mesh.mapping().DF(Y, tind=cells[alike]))
-        tangents = np.einsum("ijfk,j->ifk", J, along)
-        lengths[alike] = np.hypot(*tangents)
-        turned = outwards * np.sign(J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0])
-        normals[:, alike] = turned * np.array([tangents[1], -tangents[0]]) / lengths[alike]
-        places[:, alike] = mesh.mapping().F(Y, tind=cells[alike])
-        value, slopes = reference_functions(space.element, Y)
-        values[:, alike] = value[:, None]
-        rates[:, alike] = np.einsum("nik,i->nk", slopes, along)[:, None] * -turned / lengths[alike]
-    dofs = np.asarray(space.scalar_dofs.element_dofs)[:, cells]
-    radii, values = np.sort(mesh.p[0, np.unique(corners)]), _rows(values, dofs, functions)
-    return Trace(places, normals, lengths * weights, radii, functions, values, dofs, rates)
-
-
-def _side(corners: Array, first: int, second: int, X: Array) -> tuple[Array, Array, float]:
-    """Points of the reference cell on a side, its direction, and 1 if outwards is to the right of that, -1 if not."""
-    along, inwards = corners[:, second] - corners[:, first], corners.mean(axis=1) - corners[:, first]
-    Y = corners[:, first, None] + along[:, None] * X
-    return Y, along, float(np.sign(along[0] * inwards[1] - along[1] * inwards[0]))
-
-
-def _rows(values: Array, dofs: Index, functions: Index) -> sparse.csr_array:
-    """Rows of the values (n, facets, k) of the unknowns dofs (n, facets), for some functions."""
-    k, found = values.shape[2], np.isin(dofs, functions)
-    columns = np.broadcast_to(np.searchsorted(functions, dofs)[:, :, None], values.shape)
-    rows = np.broadcast_to(np.arange(values[0].size).reshape(-1, k), values.shape)
-    entries = values[found].ravel(), (rows[found].ravel(), columns[found].ravel())
-    return sparse.csr_array(entries, shape=(values[0].size, len(functions)))
-
-
-# What holds the far boundary
-
-
-TRACE_POINTS = 6
+MORE_POINTS = 6
 """Gauss points on a facet beyond the degree p where a smooth field that is no polynomial is integrated."""
 
 
@@ -203,9 +100,9 @@ def point_load(space: Space, poisson: float) -> Exterior:
     u_B, and the matrix stays symmetric. c tends to the load W as L^-2; the deflection near a pressure that ends
     within the block is in error by O(L^-5), both measured in tests/fem_adhesion/bodies/test_fem_condensed.py.
     """
-    far = trace_on(space, "far", space.degree + TRACE_POINTS)
+    far = boundary_points(space, "far", space.degree + MORE_POINTS)
     unknowns = space.components[:, far.functions].ravel()
-    u_B = trace_projection(far, lambda r, z: boussinesq_displacement(r, z, poisson)).ravel()
+    u_B = far.projection(lambda r, z: boussinesq_displacement(r, z, poisson)).ravel()
     u_B[np.isin(unknowns, _axis_unknowns(space))] = 0.0
 
     column = sparse.csc_array((u_B, (unknowns, 0 * unknowns)), shape=(space.unknowns, 1))
@@ -214,7 +111,7 @@ def point_load(space: Space, poisson: float) -> Exterior:
     return Exterior(T, sparse.csc_array(([exterior_stiffness(far, poisson)], ([n - 1], [n - 1])), shape=(n, n)))
 
 
-def exterior_stiffness(far: Trace, poisson: float) -> float:
+def exterior_stiffness(far: BoundaryPoints, poisson: float) -> float:
     """Return k_B = -oint u_B . sigma_B n dA over the far boundary, n pointing out of the block, in 1/(E* beta)."""
     (r, z), (n_r, n_z) = far.places, far.normals
     u_r, u_z = boussinesq_displacement(r, z, poisson)
@@ -229,7 +126,7 @@ def free(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (nothing is 
     A spring on the mean of u_z holds the body; it carries the whole load, so that its deflection is known and
     taken off: the result does not depend on the spring's stiffness.
     """
-    far = trace_on(space, "far", space.degree + 1)
+    far = boundary_points(space, "far", space.degree + 1)
     r = far.places[0]
     area = (ring_measure(r) * far.lengths).ravel()
     parts = far.values.T @ area / np.sum(area)
@@ -237,18 +134,6 @@ def free(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (nothing is 
     T = _selection(space, dropped=np.array([], dtype=np.intp))
     spring = float(np.max(r))  # of the order of the block's own stiffness E* L
     return Exterior(T, sparse.csc_array(spring * (T.T @ mean) @ (T.T @ mean).T), 1.0 / spring)
-
-
-def trace_projection(trace: Trace, field: Callable[[Array, Array], Array]) -> Array:
-    """Return the coefficients (2, m), u_r first, of the best approximation to a vector field on a boundary.
-
-    field(r, z) returns its components (2, ...) at the given points, of which the trace, of m functions, has enough for
-    it.
-    """
-    weighted = trace.values.T * trace.lengths.ravel()
-    values = field(*trace.places).reshape(2, -1)
-    coefficients: Array = splu(sparse.csc_array(weighted @ trace.values)).solve(weighted @ values.T).T
-    return coefficients
 
 
 def boussinesq_displacement(r: Array, z: Array, poisson: float) -> Array:
