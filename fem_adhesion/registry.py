@@ -1,79 +1,92 @@
 """Names of the parts of a scene, as the command line and files have them, and their classes: one table, both ways.
 
-A class is imported when it is first asked for. A new part is a class and a line here.
+A new part is a class and a line here.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-PARTS: dict[str, dict[str, Any]] = {
+
+@dataclass(frozen=True)
+class Part:
+    """Class of a part and the parameters that one word on the command line gives, in their order.
+
+    Parameters
+    ----------
+    module, name : str
+        Where the class is; it is imported when it is first asked for.
+    parameters : dict
+        Units by the names of the parameters, "file" for a path, "this or that" for a choice of words.
+    """
+
+    module: str
+    name: str
+    parameters: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def made_by(self) -> Any:
+        """The class."""
+        return getattr(import_module(self.module), self.name)
+
+
+RATIO, GRIP = {"radius_ratio": "R/eps"}, {"grip": "sliding or bonded"}
+SHEAR = {"foundation": "bonded or sliding"}
+HELD, FLAT, STRATA = (f"fem_adhesion.bodies.{module}" for module in ("held", "half_space", "layers"))
+LAWS, PROFILES = "halfspace.laws.formulas", "halfspace.profiles.formulas"
+
+PARTS: dict[str, dict[str, Part]] = {
     "body": {
-        "half-space": "fem_adhesion.bodies.half_space:HalfSpace",
-        "block": "fem_adhesion.bodies.half_space:Block",
-        "hemisphere": "fem_adhesion.bodies.held:Hemisphere",
-        "held-sphere": "fem_adhesion.bodies.held:HeldSphere",
-        "layer": "fem_adhesion.bodies.layers:Layer",
-        "coated": "fem_adhesion.bodies.layers:Coated",
-        "layers": "fem_adhesion.bodies.layers:Layers",
-        "meshed": "fem_adhesion.bodies.held:Meshed",
+        "half-space": Part(FLAT, "HalfSpace"),
+        "block": Part(FLAT, "Block", {"radius": "beta", "far_field": "point_load or clamped or free"}),
+        "hemisphere": Part(HELD, "Hemisphere", RATIO | GRIP),
+        "held-sphere": Part(HELD, "HeldSphere", RATIO | {"cap_angle": "degrees"} | GRIP),
+        "layer": Part(STRATA, "Layer", {"thickness": "beta"} | SHEAR),
+        "coated": Part(STRATA, "Coated", {"thickness": "beta", "modulus_ratio": "E/E below", "substrate_poisson": ""}),
+        "layers": Part(STRATA, "Layers"),
+        "meshed": Part(HELD, "Meshed", {"path": "file"} | RATIO | GRIP),
     },
-    "strata": {"stratum": "halfspace.elastic.layers:Stratum"},
-    "base": {"substrate": "halfspace.elastic.layers:Substrate"},
+    "strata": {"stratum": Part("halfspace.elastic.layers", "Stratum")},
+    "base": {"substrate": Part("halfspace.elastic.layers", "Substrate")},
     "material": {
-        "linear-elastic": "fem_adhesion.materials:LinearElastic",
-        "neo-hookean": "fem_adhesion.materials:NeoHookean",
+        "linear-elastic": Part("fem_adhesion.materials", "LinearElastic"),
+        "neo-hookean": Part("fem_adhesion.materials", "NeoHookean"),
     },
     "law": {
-        "power-law": "halfspace.laws.formulas:PowerLaw(attraction, repulsion)",
-        "morse": "halfspace.laws.formulas:Morse(k)",
-        "exponential": "halfspace.laws.formulas:Exponential(k, core)",
-        "dlvo": "halfspace.laws.formulas:Dlvo(charge, screening)",
-        "dugdale": "halfspace.laws.formulas:Dugdale(width)",
-        "tabulated": "halfspace.laws.tabulated:Tabulated(path)",
+        "power-law": Part(LAWS, "PowerLaw", {"attraction": "power", "repulsion": "power"}),
+        "morse": Part(LAWS, "Morse", {"k": "1/eps"}),
+        "exponential": Part(LAWS, "Exponential", {"k": "1/eps", "core": "power"}),
+        "dlvo": Part(LAWS, "Dlvo", {"charge": "", "screening": "1/eps"}),
+        "dugdale": Part(LAWS, "Dugdale", {"width": "eps"}),
+        "tabulated": Part("halfspace.laws.tabulated", "Tabulated", {"path": "file"}),
     },
     "profile": {
-        "paraboloid": "halfspace.profiles.formulas:Paraboloid",
-        "sphere": "halfspace.profiles.formulas:Sphere",
-        "power": "halfspace.profiles.formulas:Power(k)",
-        "hyperboloid": "halfspace.profiles.formulas:Hyperboloid(b)",
-        "rounded-punch": "halfspace.profiles.formulas:RoundedPunch(flat)",
-        "tabulated": "halfspace.profiles.tabulated:Tabulated(path)",
+        "paraboloid": Part(PROFILES, "Paraboloid"),
+        "sphere": Part(PROFILES, "Sphere", RATIO | {"counter_radius": "R2/R1"}),
+        "power": Part(PROFILES, "Power", {"k": "power"}),
+        "hyperboloid": Part(PROFILES, "Hyperboloid", {"b": "beta"}),
+        "rounded-punch": Part(PROFILES, "RoundedPunch", {"flat": "beta"}),
+        "tabulated": Part("halfspace.profiles.tabulated", "Tabulated", {"path": "file"} | RATIO),
     },
 }
-"""Classes, or where they are, by their names; in brackets the numbers that a law or a profile takes, for its help."""
+"""Parts by the name of their kind and their own."""
 
 
 def class_of(kind: str, name: str) -> Any:
     """Class of a part by the name of its kind and its own."""
-    found = PARTS[kind][name]
-    if isinstance(found, str):
-        module, _, attribute = _place(found).partition(":")
-        found = getattr(import_module(module), attribute)
-    return found
-
-
-def _place(home: Any) -> str:
-    return home.partition("(")[0] if isinstance(home, str) else ""
-
-
-def numbers_told(kind: str) -> dict[str, str]:
-    """What numbers the parts of a kind take, in their order, by the parts' names; nothing is imported for it."""
-    homes = {name: home for name, home in PARTS[kind].items() if isinstance(home, str)}
-    return {name: home.partition("(")[2].rstrip(")").replace(",", "") for name, home in homes.items() if "(" in home}
+    return PARTS[kind][name].made_by
 
 
 def name_of(part: object) -> str:
     """Name of a part; that of its class if it is not in the table."""
     own = type(part)
-    place = f"{own.__module__}:{own.__qualname__}"
-    names = (name for table in PARTS.values() for name, home in table.items() if home is own or _place(home) == place)
-    return next(names, own.__qualname__)
+    known = {(made.module, made.name): name for table in PARTS.values() for name, made in table.items()}
+    return known.get((own.__module__, own.__qualname__), own.__qualname__)
 
 
 def told(part: Any) -> str:
@@ -98,11 +111,11 @@ def record_of(part: Any) -> Any:
 
 def part_from(kind: str, record: Mapping[str, Any]) -> Any:
     """Part of a kind from plain data: `record_of` the other way."""
-    given = {name: value for name, value in record.items() if name != "name"}
-    parts: dict[str, Any] = {
-        name: part_from(name, value) for name, value in given.items() if isinstance(value, Mapping)
-    }
-    parts |= {
-        name: tuple(part_from(name, each) for each in value) for name, value in given.items() if isinstance(value, list)
-    }
-    return class_of(kind, record["name"])(**(given | parts))
+
+    def made(name: str, value: Any) -> Any:
+        if isinstance(value, list):
+            return tuple(part_from(name, each) for each in value)
+        return part_from(name, value) if isinstance(value, Mapping) else value
+
+    given = {name: made(name, value) for name, value in record.items() if name != "name"}
+    return class_of(kind, record["name"])(**given)

@@ -13,7 +13,7 @@ from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_adhesion.registry import PARTS, class_of, name_of, numbers_told
+from fem_adhesion.registry import PARTS, class_of, name_of
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -109,7 +109,8 @@ def add_law(group: Group) -> None:
 def _add_part(group: Group, kind: str, what: str) -> None:
     """Add the options of a law or a profile: its name, and its parameters in their order."""
     group.add_argument(f"--{kind}", choices=tuple(PARTS[kind]), help=what)
-    taken = "; ".join(f"{name}: {numbers}" for name, numbers in numbers_told(kind).items())
+    numbers = {name: [n for n in part.parameters if n not in GIVEN_OTHERWISE] for name, part in PARTS[kind].items()}
+    taken = "; ".join(f"{name}: {' '.join(own)}" for name, own in numbers.items() if own)
     group.add_argument(f"--{kind}-parameter", nargs="+", help=f"its own, in order ({taken})", metavar="X")
 
 
