@@ -19,10 +19,10 @@ from halfspace.accuracy.stages import Charted, Standing
 from halfspace.elastic import compliance
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import images_of, layered_panels
-from halfspace.equilibrium.charts import moved, trace_charts
+from halfspace.equilibrium.charts import moved, placed, trace_charts
 from halfspace.equilibrium.conditions import FOLD
-from halfspace.equilibrium.events import numbered
-from halfspace.equilibrium.search import between_jumps, find_events, with_care
+from halfspace.equilibrium.events import is_event, numbered
+from halfspace.equilibrium.search import between_jumps, energy_released, find_events, with_care
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles.formulas import between_spheres
 from halfspace.scales import Scales
@@ -144,3 +144,20 @@ def harmonics(scene):
     """The whole sphere by spherical harmonics, whose upper half is the hemisphere in the sliding grip."""
     hows = [Series(nodes, number, finest=0.35, growth=1.8) for nodes, number in ((13, 30.0), (15, 40.0))]
     return [standing(series(scene, how)) for how in hows]
+
+
+QUANTITIES = ("approach", "load", "central_gap", "contact_radius")
+
+
+def of_state(state):
+    """Numbers of located events, and the energy."""
+    found = {name: state[name].point.observables for name in state if is_event(name)}
+    told = {f"{name} {q}": float(v) for name, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}
+    return told | {"energy": energy_released(state)}
+
+
+def points_on(stage, path, places):
+    """Points of a curve at some places, solved for on a stage in the plane across the path."""
+    points = [(part.problem, point) for part in path.finest_curve.segments for point in part.points]
+    found = {k: placed(stage, *points[k])[1].observables for k in places}
+    return {f"point {k} {q}": float(v) for k, all_ in found.items() for q, v in zip(QUANTITIES, all_, strict=True)}

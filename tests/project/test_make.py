@@ -6,14 +6,11 @@ No target installs anything here: the stamps that say that the environment is co
 import os
 import re
 import subprocess
-import tomllib
 from pathlib import Path
-from unittest.mock import ANY
 
-import honesty
 import pytest
-import side_by_side
 from conftest import LONGEST
+from families import FAMILIES
 from whole_runs import BIN, ROOT, tables_in
 
 MAKEFILE_AT = ROOT / "Makefile"
@@ -72,19 +69,6 @@ def test_check_asks_every_tool_about_all_there_is(made):
     run = made("check")
     assert run.code == 0
     assert run.out.splitlines() == [f"{BIN}/ruff format --check .", f"{BIN}/ruff check .", f"{BIN}/mypy"]
-    landing = (ROOT / ".ci/run").read_text().splitlines()
-    assert "set -euo pipefail" in landing
-    assert landing[-4:-1] == [
-        "make check & checked=$!",
-        """trap 'kill %1 2> /dev/null || true' EXIT""",
-        "make test",
-    ]
-    assert landing[-1].startswith('wait "$checked" || {')
-    assert tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"] == {
-        "strict": True,
-        "files": ["halfspace", "fem_adhesion"],
-        "overrides": ANY,
-    }
 
 
 def test_test_runs_all_tests_on_all_processors(made):
@@ -129,16 +113,12 @@ def test_docs_shows_every_module_without_a_warning(made):
     assert "beta = (R^2 dgamma/E*)^(1/3)" in (run / "docs/halfspace.html").read_text()
 
 
-def test_honesty_judges_every_family_and_both_solvers_side_by_side(made):
+def test_honesty_judges_every_family(made):
     run = made("honesty")
     assert run.code == 0, run.out + run.err
-    judged = dict(re.findall(r"^(\S.*?) +(\d+) +[\d.]+% +[\d.]+% +\d+$", run.out, re.M))
-    assert judged.keys() == {name for name, family in honesty.FAMILIES.items() if family.quick.scenes}
+    judged = dict(re.findall(r"^(\S.*?) +(\d+) +[\d.]+% .*\d$", run.out, re.M))
+    assert judged.keys() == {name for name, family in FAMILIES.items() if family.quick.scenes}
     assert all(int(count) >= 8 for count in judged.values())  # those of a curve without folds
-    assert re.search(r"both solvers side by side, \d+ scenes of seed \d+", run.out)
-    compared = dict(re.findall(r"^(\w+) +(\d+) +\d+ +\S+$", run.out, re.M))
-    assert compared.keys() == {*side_by_side.QUANTITIES, "energy"}
-    assert all(int(count) > 0 for count in compared.values())
 
 
 def test_clean_removes_what_was_made_and_nothing_else(tmp_path):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from facets import boundary_basis, far_reaction
-from hard.references import strain_energy
+from references import strain_energy
 from skfem import CellBasis, ElementQuadP
 from whole_sphere import sphere_operator, surface_deflection
 

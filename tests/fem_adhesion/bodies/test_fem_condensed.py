@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from facets import far_reaction
-from hard.references import strain_energy
+from references import strain_energy
 from scipy.sparse.linalg import spsolve
 from scipy.special import ellipe, ellipk, j0, kv
 from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from attempts import smooth_deflection, smooth_pressure
 from facets import far_reaction
-from hard.bodies import smooth_deflection, smooth_pressure
-from hard.references import strain_energy, taylor_hood
 from numpy.polynomial.legendre import legvander2d
+from references import strain_energy, taylor_hood
 from skfem import ElementQuadP, ElementTriP1, ElementTriP2, ElementTriP3
 
 import fem_adhesion

@@ -12,9 +12,8 @@ import termios
 from dataclasses import replace
 
 import pytest
-from hard import table as hard_table
-from hard.bodies import Locking
-from hard.run import Row as HardRow
+from hard import Locking, cases_table, locking_table
+from hard import Row as HardRow
 from rich.console import Console
 
 from fem_adhesion.common.jobs import progress_bar
@@ -167,7 +166,7 @@ def test_the_hard_cases_are_whole_at_any_width(width):
         HardRow("odd", "refused", "GridTooCoarse or InputError", "GridTooCoarse", long, 1.0, 1.0, 0, 5.5),
         HardRow("a wrong one", "wrong", "converged", "beyond the estimate", "against: Hertz", 6.6e-2, 7.7e-9, 88, 9.99),
     ]
-    text = shown(hard_table.cases_table(rows), width)
+    text = shown(cases_table(rows), width)
     assert len(re.findall(r"spacing\b", text)) == len(re.findall(r"\bwide,", text)) == 9
     for word in ("converged", "InputError", "beyond", "estimate", "0.25;", "decades"):
         assert re.search(rf"(?<!\w){re.escape(word)}", text)
@@ -175,7 +174,7 @@ def test_the_hard_cases_are_whole_at_any_width(width):
     assert kept != ("error" in text.partition("left out")[2])
     if width >= 80:
         assert kept
-    text = shown(hard_table.locking_table([Locking(0.49, "P2", "mixed elements", 1.2e-3, 3.4e-5)]), width)
+    text = shown(locking_table([Locking(0.49, "P2", "mixed elements", 1.2e-3, 3.4e-5)]), width)
     assert all(word in text for word in ("0.49", "P2", "mixed", "1.2e-03", "3.4e-05"))
 
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from combinations import SCENES
+from families import TOGETHER as SCENES
 from scenes import pair
 from scipy import sparse
 
@@ -445,7 +445,7 @@ def test_a_defect_that_both_solvers_share_is_rejected_by_the_row_that_should(def
 
 
 def test_sound_scenes_have_the_numbers_of_their_definitions():
-    """Of those that ``tests/estimates/honesty.py`` compares on all levels."""
+    """Of those that ``tests/estimates`` compares on all levels."""
     found = {each: [row.quantity for row in definitions.rows(each) if row.verdict != "agree"] for each in SCENES}
     assert {each: names for each, names in found.items() if names} == {}
     for each in SCENES:

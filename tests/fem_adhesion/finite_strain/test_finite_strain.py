@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from hard.references import taylor_hood
+from references import taylor_hood
 from scipy.optimize import brentq
 from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementQuad1, ElementQuad2, ElementQuadP, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2

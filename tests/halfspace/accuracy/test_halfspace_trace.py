@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hard.references import charted_rung
+from references import charted_rung
 
 import halfspace
 from fem_adhesion.common.fold_birth import critical_stiffness

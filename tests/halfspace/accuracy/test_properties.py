@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 from facets import far_reaction
-from hard.references import strain_energy
 from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
+from references import strain_energy
 from skfem import ElementQuadP
 
 import fem_adhesion

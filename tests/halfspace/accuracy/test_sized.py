@@ -5,10 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
-import honesty
 import numpy as np
 import pytest
 import truths
+from families import of_path
 from scenes import pair
 
 import fem_adhesion
@@ -200,8 +200,8 @@ def small():
 def test_the_vertical_tangent_at_the_equator_leaves_no_more_than_the_estimates(small):
     """At rtol 1e-9 cells that were long beside the equator left four times as much."""
     path, states = small
-    rough, best = map(honesty.of_state, states)
-    told = honesty.of_path(path)
+    rough, best = map(truths.of_state, states)
+    told = of_path(path)
     assert len(told) == 15
     for what, number in told.items():
         assert abs(number.value - best[what]) <= number.error + abs(rough[what] - best[what]), what

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from itertools import pairwise, product
 from pathlib import Path
 
-import combinations
 import numpy as np
 import pytest
+from families import TOGETHER, compared
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import beta
@@ -618,7 +618,7 @@ def test_both_solvers_agree_on_any_law_and_profile(tabor, parts):
 @pytest.mark.parametrize("number", [1, 26])
 def test_hard_combinations_agree(number):
     """Two of those that `make honesty` compares: short in range with a hard core, a thin layer under a tip."""
-    assert combinations.verdict(combinations.SCENES[number]) == ("agree", "")
+    assert compared(TOGETHER[number], 1e-4).verdict == "agree"
 
 
 @dataclass(frozen=True)
