@@ -1,8 +1,7 @@
 """Greenwood (1997), computed again. The command ``greenwood``.
 
-Computation: `study`, which calls `tables`, `criteria` and `numerics_1997`. Claims of the paper: `verdicts` has the rule
-that decides them, `facts` what they are measured on, `claims_model`, `claims_curves`, `claims_theories` and
-`claims_jumps` the claims by the paper's sections, `claims` their table. Figures are data that `drawing` draws and
-writes as CSV: `load_figures` and `state_figures` under the paper's numbers, `beyond` for what the paper does not draw.
-All is shown on `page`. And `command`.
+`settings` say what is computed, `study` computes it with `tables`, `criteria` and `numerics_1997`. The claims of the
+paper stand in ``data/claims.csv``; `claims` has the rule that decides them, `formulas` and `measures` the numbers that
+test them, `facts` what these are measured on. Figures are lines of data, which `drawing` draws and writes as CSV:
+`figures` under the paper's numbers, `beyond` for what the paper does not draw. All is shown on `page`. And `command`.
 """

@@ -1,35 +1,121 @@
-"""All claims of the paper in its order, decided; and their table on the page."""
+"""The claims of the paper, the numbers that test them, and the rule by which a number decides.
+
+A claim allows its number an interval, which the paper's own words give: the last printed digit, "within 2 %", "below".
+Where the words give no number, the interval is ours and says so. The verdict follows from the interval and from the
+computed number with its error, and from nothing else. The claims stand in ``data/claims.csv``, their measures are
+functions of `formulas` and `measures`.
+"""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from fem_adhesion.common.numbers import counted, digits, listed
-from fem_adhesion.common.page import Columns, Table
-from fem_adhesion.greenwood.claims_curves import SECTION_3, SECTION_5
-from fem_adhesion.greenwood.claims_jumps import APPENDIX_C, SECTION_4C, over_bulge, rigid_bulge
-from fem_adhesion.greenwood.claims_model import ABSTRACT, APPENDIX_A, APPENDIX_B, SECTION_1, SECTION_2
-from fem_adhesion.greenwood.claims_theories import SECTION_4A, SECTION_4B
-from fem_adhesion.greenwood.facts import JUMPING, Facts, exact
-from fem_adhesion.greenwood.verdicts import FAILS, HOLDS, MISPRINT, OPEN, Claim, Judged, judge
+from fem_adhesion.common.page import Columns, Table, data_rows
+from fem_adhesion.greenwood import formulas, measures
+from fem_adhesion.greenwood.facts import Facts, exact
+from fem_adhesion.greenwood.tables import TABORS, last_digit
 from halfspace.values import Estimate
 
-CLAIMS: tuple[Claim[Facts], ...] = (
-    *ABSTRACT,
-    *SECTION_1,
-    *SECTION_2,
-    *SECTION_3,
-    *SECTION_4A,
-    *SECTION_4B,
-    *SECTION_4C,
-    *SECTION_5,
-    *APPENDIX_A,
-    *APPENDIX_B,
-    *APPENDIX_C,
-)
+HOLDS, FAILS, MISPRINT, OPEN = "holds", "does not hold", "misprint", "open"
+FORMULA = 1e-9  # relative tolerance of a printed formula, which is exact
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """Interval in which a claim holds: its ends, in the unit of the number, and the words that give it.
+
+    `printed` is the number or the words of the paper. With an `aim`, not zero, a relative deviation is stated from it;
+    without, the distance from the nearer end.
+    """
+
+    low: float
+    high: float
+    printed: str
+    words: str
+    aim: float | None = None
+
+    @classmethod
+    def of(cls, row: Mapping[str, str]) -> Allowed:
+        """Interval of a row of the claims."""
+        printed, words = row["printed"], row["words"]
+        if row["aim"]:
+            aim = float(row["aim"])
+            half, words = (float(row["part"]) * abs(aim), words) if words else (FORMULA * abs(aim), "a formula")
+        elif row["low"] or row["high"]:
+            ends = float(row["low"] or "-inf"), float(row["high"] or "inf")
+            limits = "limits" if row["low"] and row["high"] else "limit"
+            return cls(*ends, printed, words or f"the claim's own {limits}")
+        else:
+            aim, half, words = float(printed), last_digit(printed) / 2 * (1 + FORMULA), "last printed digit"
+        return cls(aim - half, aim + half, printed, words, aim)
+
+    @property
+    def interval(self) -> str:
+        """The interval and the words that give it."""
+        if math.isinf(self.low):
+            ends = f"up to {self.high:.6g}"
+        elif math.isinf(self.high):
+            ends = f"from {self.low:.6g} on"
+        elif self.high - self.low <= 3 * FORMULA * abs(self.high):
+            ends = f"{self.high:.6g}"
+        else:
+            ends = f"{self.low:.6g} to {self.high:.6g}"
+        return f"{ends}: {self.words}"
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A statement of the paper in our words, and the number that tests it.
+
+    Section, the measure with its arguments, the unit of the number, and the figures, tables or files where it is seen.
+    A reading is what the statement may mean, should it fail as printed: its unit is the verdict that it then has.
+    """
+
+    section: str
+    words: str
+    allowed: Allowed
+    measure: str
+    unit: str
+    shown: str
+    reading: Claim | None = None
+
+    def measured(self, facts: Facts) -> Estimate:
+        """The number that tests it."""
+        name, *words = self.measure.split()
+        arguments = [word if word[0].isalpha() else float(word) for word in words]
+        if hasattr(formulas, name):
+            found: Estimate = getattr(formulas, name)(*arguments)
+        else:
+            found = getattr(measures, name)(facts, *arguments)
+        return found
+
+
+def read_claims() -> Iterator[Claim]:
+    """Claims in the order of the paper."""
+    reading = None
+    for row in reversed(data_rows("greenwood", "claims.csv")):
+        texts = row["measure"], row["unit"], row["shown"]
+        claim = Claim(row["section"], row["claim"], Allowed.of(row), *texts, reading)
+        if row["section"]:
+            yield claim
+        reading = None if row["section"] else claim
+
+
+CLAIMS = tuple(read_claims())[::-1]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A claim with its number and verdict, one of HOLDS, FAILS, MISPRINT and OPEN, and how far it holds or does not."""
+
+    claim: Claim
+    computed: Estimate
+    verdict: str
+    how: str
 
 
 @dataclass(frozen=True)
@@ -39,7 +125,7 @@ class Number:
     what: str
     tabor: float
     computed: Estimate
-    unit: str
+    unit: str = "1"
 
 
 @dataclass(frozen=True)
@@ -56,11 +142,11 @@ def examined(facts: Facts) -> Claims:
 
 
 def _numbers(facts: Facts) -> Iterator[Number]:
-    for mu in JUMPING:
-        yield Number("w(0) sigma'/sigma, (4.3), at the jump on", mu, facts.criterion(mu, "jump_on"), "1")
-        yield Number("w(0) sigma'/sigma, (4.3), at the jump off", mu, facts.criterion(mu, "jump_off"), "1")
-        yield Number("h0/w(0) at the jump on", mu, over_bulge(facts, mu), "1")
-        yield Number("w(0) over that of undeformed surfaces", mu, facts.bulge(mu) / rigid_bulge(facts, mu), "1")
+    for mu in TABORS:
+        for event, words in (("jump_on", "jump on"), ("jump_off", "jump off")):
+            yield Number(f"w(0) sigma'/sigma, (4.3), at the {words}", mu, measures.criterion(facts, mu, event))
+        yield Number("h0/w(0) at the jump on", mu, measures.gap_over_displacement(facts, mu))
+        yield Number("w(0) over that of undeformed surfaces", mu, measures.displacement_over_rigid(facts, mu))
     for gap, moved in facts.cores.items():
         name = f"jump-on approach less that of the 3-9 law, dgamma raised at gaps below {gap:.4g} eps"
         yield Number(name, 5.0, moved, "eps")
@@ -68,21 +154,57 @@ def _numbers(facts: Facts) -> Iterator[Number]:
         yield Number(f"pull-off force, uniform triangles of {spacing:g} beta", mu, exact(force), "R dgamma")
     for rise, name in zip(facts.omitted, ("without the kernel's singular point", "by triangles"), strict=True):
         for r in rise.ripples:
-            yield Number(
-                f"pull-off force {name}, nodes {r.spacing:g} beta apart", r.tabor, exact(-r.pull_off), "R dgamma"
-            )
+            what = f"pull-off force {name}, nodes {r.spacing:g} beta apart"
+            yield Number(what, r.tabor, exact(-r.pull_off), "R dgamma")
+
+
+def judge(claim: Claim, facts: Facts) -> Judged:
+    """Measure the number of a claim and decide."""
+    computed = claim.measured(facts)
+    verdict = decide(computed, claim.allowed)
+    how = [distance(computed, claim.allowed, claim.unit)]
+    if verdict == FAILS and (reading := claim.reading):
+        read = reading.measured(facts)
+        if decide(read, reading.allowed) == HOLDS:
+            verdict = reading.unit
+            how += [f"but holds {reading.words}", distance(read, reading.allowed, claim.unit)]
+    return Judged(claim, computed, verdict, ", ".join(filter(None, how)))
+
+
+def decide(computed: Estimate, allowed: Allowed) -> str:
+    """Whether a number is in an interval with its error: HOLDS, FAILS, or OPEN if the error leaves both possible."""
+    low, high = computed.value - computed.error, computed.value + computed.error
+    if allowed.low <= low and high <= allowed.high:
+        return HOLDS
+    return FAILS if high < allowed.low or low > allowed.high else OPEN
+
+
+def distance(computed: Estimate, allowed: Allowed, unit: str) -> str:
+    """How far a number is from what a claim says, in words; nothing of a limit that is just met."""
+    if not math.isfinite(computed.value):
+        return "no number"
+    if allowed.aim:
+        part = (computed.value - allowed.aim) / abs(allowed.aim)
+        far = f"{100 * part:+.3g} %" if abs(part) < 10 else f"a factor of {1 + part:.3g}"
+        return "to rounding" if abs(part) < FORMULA else f"off by {far}"
+    beyond = max(allowed.low - computed.value, computed.value - allowed.high)
+    words = f"{abs(beyond):.3g}{'' if unit == '1' else ' ' + unit}"
+    return f"{words} beyond the limit" if beyond > 0 else f"{words} to spare" if beyond < 0 else ""
+
+
+# Tables and captions
 
 
 def tables(claims: Claims) -> list[Table]:
     """Claims with printed and computed numbers, verdicts and where each is seen; and what else they rest on."""
     columns: Columns[Judged] = {
-        "section": lambda c: c.section,
-        "claim (what is measured)": lambda c: c.words,
-        "printed": lambda c: c.allowed.printed,
-        ("computed", "error", "unit"): lambda c: (*_cells(c.computed), c.unit),
+        "section": lambda c: c.claim.section,
+        "claim (what is measured)": lambda c: c.claim.words,
+        "printed": lambda c: c.claim.allowed.printed,
+        ("computed", "error", "unit"): lambda c: (*_cells(c.computed), c.claim.unit),
         "verdict": lambda c: f"{c.verdict}: {c.how}" if c.how else c.verdict,
-        "holds for": lambda c: c.allowed.interval,
-        "shown by": lambda c: c.shown,
+        "holds for": lambda c: c.claim.allowed.interval,
+        "shown by": lambda c: c.claim.shown,
     }
     rest: Columns[Number] = {
         "quantity": lambda n: n.what,
@@ -116,3 +238,13 @@ def words(claims: Sequence[Judged]) -> str:
         "holds if the computed number lies with its error in the interval that the paper's words give; where they give "
         "no number, the interval is ours and says so. A misprint fails as printed and holds as it is read here."
     )
+
+
+def caption(stem: str, claims: Sequence[Judged]) -> str:
+    """How many of the claims that name a figure hold there, and what of the others does not."""
+    shown = [judged for judged in claims if stem in judged.claim.shown.split(", ")]
+    if not shown:
+        return ""
+    held = sum(judged.verdict == HOLDS for judged in shown)
+    rest = (f"{c.claim.words.rstrip('.')}: {c.verdict}, {c.how}." for c in shown if c.verdict != HOLDS)
+    return " ".join([f"{held} of {counted(len(shown), 'claim')} of the paper on it hold.", *rest])

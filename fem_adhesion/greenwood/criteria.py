@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 
@@ -10,12 +10,15 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 import halfspace
-from fem_adhesion.common.numbers import told
 from halfspace.theories import criteria
 from halfspace.values import Array, Estimate, Valued
 
-CLOSED = ("Attard & Parker", "Pethica & Sutton", "App. C")
-RTOL = 1e-6  # of the jumps
+CLOSED = {
+    "Attard & Parker": criteria.ATTARD_PARKER,
+    "Pethica & Sutton": float(criteria.PETHICA_SUTTON),
+    "App. C": criteria.APPENDIX_C,
+}
+"""Factors k of the criteria that were derived, and not fitted."""
 REPULSION_GONE = 10.0  # Tabor parameter above which the exponent is fitted
 
 
@@ -75,7 +78,7 @@ class CriteriaStudy:
 
 def jump_on(tabor: float) -> JumpOn:
     """Solve for a true jump; above the critical Tabor parameter."""
-    event = halfspace.trace(tabor, rtol=RTOL).events["jump_on"]
+    event = halfspace.trace(tabor, rtol=1e-6).events["jump_on"]
     return JumpOn(tabor, event.estimate("approach"), event.estimate("central_gap"))
 
 
@@ -83,34 +86,28 @@ def fit(jumps: Iterable[JumpOn]) -> CriteriaStudy:
     """Refit every criterion by least squares of logarithms."""
     bare = CriteriaStudy(tuple(jumps), ())
     mu, y, z = bare.tabor, bare.central_gap + 1, 1 - bare.approach
-    return CriteriaStudy(bare.jumps, (*_closed(mu, y), _repulsion(mu, y), _of_approach(mu, z), *_powers(mu, y, z)))
-
-
-def _closed(mu: Array, y: Array) -> list[Criterion]:
-    """Criteria (H0 + 1)^(7/2) = k pi sqrt2 mu^(3/2): one constant, printed in three values."""
     k, scatter = _mean(np.log(y**3.5 / (np.pi * np.sqrt(2) * mu**1.5)))
-    printed = zip(CLOSED, (criteria.ATTARD_PARKER, float(criteria.PETHICA_SUTTON), criteria.APPENDIX_C), strict=True)
     formula = "(H0 + 1)^(7/2) = k pi sqrt2 mu^(3/2)"
-    return [
+    found = [
         Criterion(name, formula, partial(criteria.closed_gap, k=value), False, (("k", value, k),), scatter)
-        for name, value in printed
+        for name, value in CLOSED.items()
     ]
-
-
-def _repulsion(mu: Array, y: Array) -> Criterion:
-    """Fit (4.5), which allows for the repulsion at small mu."""
-    ratio = np.log(y**3.5 / mu**1.5)
-    start = (np.log(criteria.FIT), criteria.FIT_REPULSION)
-    values, covariance = curve_fit(_log_repulsion, y, ratio, start)
-    errors = np.sqrt(np.diag(covariance))
-    c = float(np.exp(values[0]))
-    scatter = np.std(ratio - _log_repulsion(y, *values), ddof=2)
-    constants = (
-        ("c", criteria.FIT, Estimate(c, c * float(errors[0]))),
-        ("n", criteria.FIT_REPULSION, Estimate(float(values[1]), float(errors[1]))),
-    )
+    (log_c, n), scatter = _fitted(_log_repulsion, y, np.log(y**3.5 / mu**1.5), (np.log(6.0), 1.5))
+    constants = ("c", criteria.FIT, _exponential(log_c)), ("n", criteria.FIT_REPULSION, n)
     formula = "(H0 + 1)^(7/2) = c mu^(3/2) [1 - n/(H0 + 1)^6]"
-    return Criterion("fit (4.5)", formula, criteria.fitted_gap, False, constants, float(scatter))
+    found.append(Criterion("fit (4.5)", formula, criteria.fitted_gap, False, constants, scatter))
+    c, scatter = _mean(np.log(z**3.5 / mu**1.5))
+    formula = "(|alpha*| + 1)^(7/2) = c mu^(3/2)"
+    constant = ("c", 3 * np.pi**2, c)
+    found.append(Criterion("fit of App. C", formula, criteria.fitted_approach, True, (constant,), scatter))
+    far = mu >= REPULSION_GONE
+    if far.sum() >= 4:  # 3/7 by every theory, which no one fitted
+        for name, left, values in (("gap", "H0", y), ("approach", "|alpha*|", z)):
+            (log_c, n), scatter = _fitted(_line, np.log(mu[far]), np.log(values[far]), (1.0, 0.4))
+            name, formula = f"power of mu, {name}, mu >= {REPULSION_GONE:g}", f"{left} + 1 = c mu^n"
+            powers = ("n", 3 / 7, n), ("c", None, _exponential(log_c))
+            found.append(Criterion(name, formula, None, "alpha" in formula, powers, scatter))
+    return CriteriaStudy(bare.jumps, tuple(found))
 
 
 def _log_repulsion(y: Array, log_c: float, n: float) -> Array:
@@ -118,35 +115,23 @@ def _log_repulsion(y: Array, log_c: float, n: float) -> Array:
     return np.asarray(log_c + np.log(np.maximum(1 - n / y**6, 1e-6)))
 
 
-def _of_approach(mu: Array, z: Array) -> Criterion:
-    """Fit of App. C for the approach."""
-    c, scatter = _mean(np.log(z**3.5 / mu**1.5))
-    constants = (("c", 3 * np.pi**2, c),)
-    formula = "(|alpha*| + 1)^(7/2) = c mu^(3/2)"
-    return Criterion("fit of App. C", formula, criteria.fitted_approach, True, constants, scatter)
+def _line(x: Array, log_c: float, n: float) -> Array:
+    return np.asarray(log_c + n * x)
 
 
-def _powers(mu: Array, y: Array, z: Array) -> list[Criterion]:
-    """Free powers of mu where repulsion no longer matters: 3/7 by every theory, which no one fitted."""
-    far = mu >= REPULSION_GONE
-    if far.sum() < 4:
-        return []
-    return [
-        _power("power of mu, gap", "H0 + 1 = c mu^n", mu[far], y[far]),
-        _power("power of mu, approach", "|alpha*| + 1 = c mu^n", mu[far], z[far]),
-    ]
-
-
-def _power(name: str, formula: str, mu: Array, y: Array) -> Criterion:
-    values, covariance = np.polyfit(np.log(mu), np.log(y), 1, cov=True)
+def _fitted(
+    formula: Callable[..., Array], x: Array, y: Array, start: tuple[float, float]
+) -> tuple[list[Estimate], float]:
+    """Two constants with their standard errors, and the scatter of one value."""
+    values, covariance = curve_fit(formula, x, y, start)
     errors = np.sqrt(np.diag(covariance))
-    scatter = float(np.std(np.log(y) - np.polyval(values, np.log(mu)), ddof=2))
-    c = float(np.exp(values[1]))
-    constants = (
-        ("n", 3 / 7, Estimate(float(values[0]), float(errors[0]))),
-        ("c", None, Estimate(c, c * float(errors[1]))),
-    )
-    return Criterion(f"{name}, mu >= {REPULSION_GONE:g}", formula, None, "alpha" in formula, constants, scatter)
+    scatter = float(np.std(y - formula(x, *values), ddof=2))
+    return [Estimate(float(v), float(e)) for v, e in zip(values, errors, strict=True)], scatter
+
+
+def _exponential(logarithm: Estimate) -> Estimate:
+    c = float(np.exp(logarithm.value))
+    return Estimate(c, c * logarithm.error)
 
 
 def _mean(logarithms: Array) -> tuple[Estimate, float]:
@@ -154,43 +139,3 @@ def _mean(logarithms: Array) -> tuple[Estimate, float]:
     scatter = float(np.std(logarithms, ddof=1))
     value = float(np.exp(np.mean(logarithms)))
     return Estimate(value, value * scatter / float(np.sqrt(logarithms.size))), scatter
-
-
-def is_closed(criterion: Criterion) -> bool:
-    """Whether a criterion was derived, and not fitted."""
-    return criterion.name in CLOSED
-
-
-def closed_ratios(study: CriteriaStudy) -> Array:
-    """(H0 + 1)^(7/2) by each closed criterion over that of the true jumps; shape (criteria, jumps)."""
-    predicted = [c.predict(study.tabor) for c in study.criteria if is_closed(c) and c.predict]
-    return (np.reshape(predicted, (len(predicted), study.tabor.size)) + 1) ** 3.5 / (study.central_gap + 1) ** 3.5
-
-
-def words_on(study: CriteriaStudy) -> Iterator[str]:
-    """How far the criteria are from the true jumps, a sentence each."""
-    yield _closed_words(study)
-    yield from (_fit_words(study, criterion) for criterion in study.criteria)
-
-
-def _closed_words(study: CriteriaStudy) -> str:
-    ratio = closed_ratios(study)
-    if not ratio.size:
-        return ""
-    wide = "too wide" if ratio.min() > 1 else "too narrow" if ratio.max() < 1 else "now too wide, now too narrow"
-    text = (
-        f"Attard & Parker, Pethica & Sutton and App. C expect the jump at {wide} a gap, by factors of "
-        f"{ratio.min():.2f} to {ratio.max():.2f} in (H0 + 1)^(7/2)."
-    )
-    return told(text, ratio)
-
-
-def _fit_words(study: CriteriaStudy, criterion: Criterion) -> str:
-    """Largest deviation of an empirical fit as printed."""
-    if criterion.predict is None or is_closed(criterion):
-        return ""
-    use = study.tabor >= criteria.FIT_LEAST_TABOR
-    true = study.approach if criterion.of_approach else study.central_gap
-    off = np.abs(criterion.predict(study.tabor[use]) - true[use])
-    what = "approach" if criterion.of_approach else "gap"
-    return told(f"The {criterion.name} is off by up to {np.max(off, initial=0):.1g} eps in the {what}.", off)

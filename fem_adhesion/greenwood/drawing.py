@@ -6,7 +6,7 @@ Each Tabor parameter and each theory has a look of its own; a figure shows no tw
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,14 +19,16 @@ from fem_adhesion.common.numbers import told
 from fem_adhesion.common.page import Table
 from fem_adhesion.common.style import BLUE, CHAIN, DASHED, DOTTED, GREEN, LONG, ORANGE, PINK, RED, SKY
 from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.devices import Jump
 from halfspace.equilibrium.states import States
 from halfspace.values import Array, Valued
 
+Look = Mapping[str, Any]
 OF_TABOR = {
     0.02: SKY, 0.05: SKY, 0.1: BLUE, 0.2: GREEN, 0.5: ORANGE, 0.7: SKY, 1.0: RED, 2.0: BLUE, 3.0: PINK, 5.0: GREEN,
 }  # fmt: skip
 DASHES_OF_TABOR = dict(zip(OF_TABOR, ("-", "-", DASHED, CHAIN, LONG, DASHED, "-", DASHED, CHAIN, LONG), strict=True))
-THEORIES: Mapping[str, Mapping[str, Any]] = {
+THEORIES: Mapping[str, Look] = {
     "Bradley": {"color": "black", "linestyle": DOTTED, "linewidth": 1.8},
     "JKR": {"color": "black", "linestyle": DASHED, "linewidth": 1.5},
     "Hertz": {"color": "0.45", "linestyle": CHAIN, "linewidth": 1.5},
@@ -34,7 +36,7 @@ THEORIES: Mapping[str, Mapping[str, Any]] = {
     "DMT force method": {"color": PINK, "linestyle": DASHED, "linewidth": 1.5},
     "DMT thermodynamic": {"color": RED, "linestyle": CHAIN, "linewidth": 1.5},
 }
-MARKS: Mapping[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 5, "markerfacecolor": "white"}
+MARKS: Look = {"linestyle": "none", "marker": "o", "markersize": 5, "markerfacecolor": "white"}
 HALF_SPACE, ELEMENTS = "half-space", "finite elements"
 
 
@@ -63,13 +65,11 @@ class Axis:
 
     def values(self, states: EquilibriumPath | States, tabor: float) -> tuple[Array, Array]:
         """Numbers of states along the axis, and their errors, (n,) arrays."""
-        names, size = (self.quantity, f"{self.quantity}_error"), SIZES[self.unit](tabor) if self.unit in SIZES else 1.0
+        size = {"mu_eps": tabor, "2_pi_R_dgamma": 2 * math.pi}.get(self.unit, 1.0)
+        names = self.quantity, f"{self.quantity}_error"
         value, error = (np.atleast_1d(getattr(states, name)) / size for name in names)
         return value, error
 
-
-SIZES: Mapping[str, Callable[[float], float]] = {"mu_eps": lambda tabor: tabor, "2_pi_R_dgamma": lambda _: 2 * math.pi}
-"""Sizes of units, at a Tabor parameter, in those of a computed curve; of others 1."""
 
 LOAD = Axis("load", "R_dgamma", r"load $W/R\Delta\gamma$")
 LOAD_OF_RIGID = Axis("load", "2_pi_R_dgamma", r"load $W/2\pi R\Delta\gamma$")
@@ -93,7 +93,7 @@ class Line(Valued):
     tabor: float | None
     x: Array
     y: Array
-    look: Mapping[str, Any]
+    look: Look
     x_error: Array | None = None
     y_error: Array | None = None
     dotted: NDArray[np.bool_] | None = None
@@ -114,7 +114,7 @@ class Arrow:
 
     tail: tuple[float, float]
     head: tuple[float, float]
-    look: Mapping[str, Any]
+    look: Look
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class Note:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Plot(Valued):
-    """A figure: what is drawn, and sentences on what is to be seen, measured on it; empty ones are left out.
+    """A figure: what is drawn, and sentences on what is to be seen; empty ones are left out.
 
     The legend is at a place of Matplotlib's, or below. `above` is another scale of the horizontal axis: its label, and
     the factor to it.
@@ -137,7 +137,7 @@ class Plot(Valued):
     x: Axis
     y: Axis
     lines: Sequence[Line]
-    see: Sequence[str]
+    see: Sequence[str] = ()
     arrows: Sequence[Arrow] = ()
     notes: Sequence[Note] = ()
     title: str = ""
@@ -145,28 +145,29 @@ class Plot(Valued):
     above: tuple[str, float] | None = None
 
 
+def points(curve: str, states: EquilibriumPath | States, tabor: float, x: Axis, y: Axis, look: Look = MARKS) -> Line:
+    """States of a curve, as markers unless they look otherwise."""
+    (u, u_error), (v, v_error) = x.values(states, tabor), y.values(states, tabor)
+    return Line(curve, tabor, u, v, {"color": OF_TABOR[tabor], **look}, u_error, v_error)
+
+
 def half_space(path: EquilibriumPath, x: Axis, y: Axis) -> Line:
     """A computed curve; stretches that are unstable under fixed grips are dotted."""
-    mu = path.tabor
-    look = {"color": OF_TABOR[mu], "linestyle": DASHES_OF_TABOR[mu], "linewidth": 1.9}
-    (u, u_error), (v, v_error) = x.values(path, mu), y.values(path, mu)
-    return Line(HALF_SPACE, mu, u, v, look, u_error, v_error, ~path.stable)
-
-
-def marked(states: EquilibriumPath | States, tabor: float, curve: str, x: Axis, y: Axis) -> Line:
-    """States of a curve as markers."""
-    (u, u_error), (v, v_error) = x.values(states, tabor), y.values(states, tabor)
-    return Line(curve, tabor, u, v, {"color": OF_TABOR[tabor], **MARKS}, u_error, v_error)
-
-
-def by_elements(elements: Mapping[float, EquilibriumPath], tabors: Sequence[float], x: Axis, y: Axis) -> list[Line]:
-    """Finite-element points at those of the Tabor parameters for which there are any."""
-    return [marked(elements[mu], mu, ELEMENTS, x, y) for mu in tabors if mu in elements]
+    look = {"linestyle": DASHES_OF_TABOR[path.tabor], "linewidth": 1.9}
+    return replace(points(HALF_SPACE, path, path.tabor, x, y, look), dotted=~path.stable)
 
 
 def theory(name: str, x: Array, y: Array, tabor: float | None = None, **look: Any) -> Line:
     """Curve of a closed theory, in the units of the axes."""
     return Line(name, tabor, x, y, {**THEORIES.get(name, {}), **look})
+
+
+def ends(name: str, tabor: float, jump: Jump, look: Look, label: str = "") -> tuple[Line, Arrow]:
+    """A jump as a line and as the arrow over it."""
+    columns = [(s.approach, s.load, s.approach_error, s.load_error) for s in jump.ends]
+    approach, load, dx, dy = np.transpose(columns)
+    line = Line(name, tabor, approach, load, look, dx, dy, label=label)
+    return line, Arrow(columns[0][:2], columns[1][:2], look)
 
 
 # What becomes of a plot
@@ -234,11 +235,6 @@ def _rows(line: Line) -> Iterator[list[str]]:
 # What is to be seen
 
 
-def rises(values: Array) -> bool:
-    """Whether each value exceeds the one before it; there must be two."""
-    return values.size > 1 and bool(np.all(np.diff(values) > 0))
-
-
 def elements_beside(lines: Sequence[Line]) -> str:
     """How far finite-element points lie from the half-space's curve at the same Tabor parameter."""
     curves = {line.tabor: line for line in lines if line.curve == HALF_SPACE}
@@ -263,16 +259,3 @@ def _farthest(points: Line, line: Line) -> float:
     offsets = at[:, :, None] - start[:, None]
     t = np.clip(np.sum(offsets * step[:, None], axis=0) / length, 0, 1)
     return float(np.hypot(*(offsets - t * step[:, None])).min(axis=1).max())
-
-
-def crossings(line: Line, other: Line) -> Array:
-    """Points (n, 2) where two polygons cross, in the order of the first."""
-    a, b = (np.column_stack([one.x, one.y]) for one in (line, other))
-    da, db = np.diff(a, axis=0), np.diff(b, axis=0)
-    apart = b[None, :-1] - a[:-1, None]
-    cross = da[:, None, 0] * db[None, :, 1] - da[:, None, 1] * db[None, :, 0]
-    with np.errstate(divide="ignore", invalid="ignore"):  # parallel pieces do not cross
-        s = (apart[..., 0] * db[None, :, 1] - apart[..., 1] * db[None, :, 0]) / cross
-        t = (apart[..., 0] * da[:, None, 1] - apart[..., 1] * da[:, None, 0]) / cross
-    pieces, others = np.nonzero((s >= 0) & (s < 1) & (t >= 0) & (t < 1))
-    return np.asarray(a[pieces] + s[pieces, others][:, None] * da[pieces])

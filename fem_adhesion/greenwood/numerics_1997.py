@@ -13,6 +13,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -27,11 +28,8 @@ from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued
 
-EXTENT = 6.0  # beta: less than 0.6 % of the pull-off load is lost beyond it for mu >= 1
-WINDOW = 2.0  # spacings, on both sides of the contact radius at pull-off: the ripple's period is one
-STEPS = 12  # of the contact radius to a spacing, where only the least load matters
-STEPS_DRAWN = 30
-ENOUGH = -7.5  # load in R dgamma below which the rise is proved
+EXTENT = 6.0  # radius of uniform grids in beta: less than 0.6 % of the pull-off load is lost beyond it for mu >= 1
+NODES = 200  # of the iterations' uniform triangles, to EXTENT, or to EXTENT/sqrt(mu) below mu = 1
 
 
 class Unguarded(ContactProblem):
@@ -83,7 +81,7 @@ def ripple(
     path: EquilibriumPath,
     spacing: float,
     window: float,
-    steps: int = STEPS_DRAWN,
+    steps: int = 30,
     body: Callable[[Array], ElasticOperator] = compliance.triangles,
 ) -> Ripple:
     """Separate the surfaces through pull-off on uniform nodes, from a resolved path's state in contact.
@@ -106,28 +104,33 @@ def ripple(
 
 
 def false_rise(
-    paths: Sequence[EquilibriumPath], spacing: float, body: Callable[[Array], ElasticOperator] = compliance.triangles
+    paths: Sequence[EquilibriumPath],
+    spacing: float,
+    body: Callable[[Array], ElasticOperator] = compliance.triangles,
+    *,
+    window: float = 2.0,
+    steps: int = 12,
+    enough: float = -7.5,
 ) -> Rise:
-    """Pull-off at rising Tabor parameters on one spacing, until the rise is proved or the grid has no solution."""
+    """Pull-off at rising Tabor parameters on one spacing, until the rise is proved or the grid has no solution.
+
+    The window is in spacings: the period of the ripple is one. Only the least load matters, so that a dozen steps of
+    the contact radius to a spacing do. A load below `enough`, in R dgamma, proves the rise.
+    """
     found: list[Ripple] = []
     for path in paths:
         try:
-            found.append(ripple(path, spacing, WINDOW * spacing, STEPS, body))
+            found.append(ripple(path, spacing, window * spacing, steps, body))
         except NotConverged as error:
             return Rise(tuple(found), f"no solution at mu = {path.tabor:.3g}: {error}")
-        if found[-1].pull_off < ENOUGH:
-            return Rise(tuple(found), f"the load is below {ENOUGH:g} R dgamma")
+        if found[-1].pull_off < enough:
+            return Rise(tuple(found), f"the load is below {enough:g} R dgamma")
     return Rise(tuple(found), "no larger mu was asked for")
 
 
 # Iterations
 
-NODES, OUTER = 200, 6.0  # uniform triangles, to this radius in beta, or in beta/sqrt(mu) below mu = 1
-TABORS = (0.05, 0.2, 0.5, 1.0, 2.0, 3.0)
-GREENWOOD_TABORS = (0.05, 1.0, 3.0)  # five seconds each
-GREENWOOD_TOLERANCE = 1e-5  # relative misfit of the pressure
 CONTACT = newton.central_gap(0.0)
-
 Iteration = Callable[[ContactProblem, Array], relaxation.Relaxed]
 
 
@@ -147,45 +150,38 @@ class Attempt:
     newton_seconds: float
 
 
-def attempts(most_sweeps: int) -> Iterator[Attempt]:
-    """Each iteration at several Tabor parameters; Greenwood's may take `most_sweeps`."""
-
-    def simple(c: float) -> Iteration:
-        return lambda problem, x: relaxation.simple(problem, x, CONTACT, relaxation=c)
-
-    def greenwood(problem: ContactProblem, x: Array) -> relaxation.Relaxed:
-        return relaxation.greenwood(
-            problem, x, CONTACT, relaxation=1.5, tolerance=GREENWOOD_TOLERANCE, most_sweeps=most_sweeps
-        )
-
-    every: dict[str, Iteration] = {f"simple relaxation, c = {c:g}": simple(c) for c in (0.05, 0.005)}
-    for tabor in TABORS:
-        methods = every | ({"Greenwood's, relaxation 1.5": greenwood} if tabor in GREENWOOD_TABORS else {})
-        outer = OUTER / np.sqrt(min(tabor, 1.0))
+def attempts(
+    most_sweeps: int,
+    tabors: Sequence[float] = (0.05, 0.2, 0.5, 1.0, 2.0, 3.0),
+    slow: Sequence[float] = (0.05, 1.0, 3.0),
+) -> Iterator[Attempt]:
+    """Each iteration at several Tabor parameters; Greenwood's, which may take `most_sweeps`, at a few, for its time."""
+    every: dict[str, Iteration] = {
+        f"simple relaxation, c = {c:g}": partial(relaxation.simple, control=CONTACT, relaxation=c)
+        for c in (0.05, 0.005)
+    }
+    greenwood = partial(relaxation.greenwood, control=CONTACT, relaxation=1.5, tolerance=1e-5, most_sweeps=most_sweeps)
+    for tabor in tabors:
+        outer = EXTENT / np.sqrt(min(tabor, 1.0))
         problem = ContactProblem(compliance.triangles(grid.uniform(outer, outer / (NODES - 1))), tabor)
         began = time.perf_counter()
-        load = _by_newton(problem)
-        newton_seconds = time.perf_counter() - began
-        for name, iterate in methods.items():
-            yield _attempt(problem, name, iterate, load, newton_seconds)
-
-
-def _by_newton(problem: ContactProblem) -> float:
-    """Load at H(0) = 0, by way of larger gaps."""
-    x = problem.undeformed(-6.0)
-    for gap in (5, 3, 2, 1.5, 1, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02):
-        x = newton.solve(problem, x, newton.central_gap(gap)).x
-    return float(newton.solve(problem, x, CONTACT).observables[LOAD])
+        x = problem.undeformed(-6.0)
+        for gap in (5, 3, 2, 1.5, 1, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.0):
+            solution = newton.solve(problem, x, newton.central_gap(gap))
+            x = solution.x
+        spent, load = time.perf_counter() - began, float(solution.observables[LOAD])
+        for name, iterate in (every | ({"Greenwood's, relaxation 1.5": greenwood} if tabor in slow else {})).items():
+            yield _attempt(problem, name, iterate, load, spent)
 
 
 def _attempt(problem: ContactProblem, name: str, iterate: Iteration, load: float, newton_seconds: float) -> Attempt:
     start = problem.undeformed(1.0)
     start[:-2] = np.maximum(start[:-2], 0.0)
-    began = time.perf_counter()
+    began, sweeps = time.perf_counter(), None
     try:
         found = iterate(problem, start)
     except NotConverged as error:
-        return Attempt(problem.tabor, name, None, str(error), time.perf_counter() - began, newton_seconds)
-    seconds = time.perf_counter() - began
-    outcome = f"load within {abs(found.observables[LOAD] - load):.0e} R dgamma of Newton's"
-    return Attempt(problem.tabor, name, found.sweeps, outcome, seconds, newton_seconds)
+        outcome = str(error)
+    else:
+        sweeps, outcome = found.sweeps, f"load within {abs(found.observables[LOAD] - load):.0e} R dgamma of Newton's"
+    return Attempt(problem.tabor, name, sweeps, outcome, time.perf_counter() - began, newton_seconds)

@@ -1,7 +1,4 @@
-"""The Greenwood study as a directory: figures, tables, and a page that shows them all.
-
-What is to be seen in each table is counted and measured on its entries.
-"""
+"""The Greenwood study as a directory: figures, tables, and a page that shows them all."""
 
 from __future__ import annotations
 
@@ -15,34 +12,22 @@ from markupsafe import Markup
 from fem_adhesion.common.numbers import digits, joined, plus_minus, told
 from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
 from fem_adhesion.common.style import Picture, captions, draw, shown
-from fem_adhesion.greenwood import beyond, claims, load_figures, state_figures
-from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, closed_ratios
-from fem_adhesion.greenwood.drawing import Plot, drawn, rises, table
+from fem_adhesion.greenwood import beyond, claims, figures
+from fem_adhesion.greenwood.criteria import JumpOn
+from fem_adhesion.greenwood.drawing import Plot, drawn, elements_beside, table
+from fem_adhesion.greenwood.figures import Made
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
-from fem_adhesion.greenwood.study import APPARATUS, JUMPS_AT, WINDING_AT, DeviceStudy, Greenwood1997, PullOff
+from fem_adhesion.greenwood.study import Greenwood1997, PullOff
 from fem_adhesion.greenwood.tables import Printed
 from halfspace.equilibrium.devices import Cycle
-from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 from halfspace.values import Estimate
 
 PAPER = "J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1277-1297"
 DOI = "10.1098/rspa.1997.0070"
-OF_PAPER = dict(sorted((load_figures.FIGURES | state_figures.FIGURES).items()))
-PLOTS = {f"fig_{number}": (f"Fig. {number}: {title}", plot) for number, (title, plot) in OF_PAPER.items()} | {
-    f"beyond_{name}": (f"Beyond the paper: {title}", plot) for name, (title, plot) in beyond.FIGURES.items()
-}
-"""Title and plot of each figure by the name of its files: those of the paper in its order, and further ones."""
-
-
-def _picture(stem: str, plot: Callable[[Greenwood1997], Plot]) -> Picture[Greenwood1997]:
-    return Picture(stem, PLOTS[stem][0], lambda study: drawn(plot(study)), lambda study: plot(study).see)
-
-
-def _always(made: Plot) -> Callable[[Greenwood1997], Plot]:
-    return lambda _: made
-
-
-FIGURES = tuple(_picture(stem, plot) for stem, (_, plot) in PLOTS.items())
+FIGURES: dict[str, tuple[str, Made]] = {
+    f"fig_{number}": (f"Fig. {number}: {title}", made) for number, (title, made) in figures.FIGURES.items()
+} | {f"beyond_{name}": (f"Beyond the paper: {title}", made) for name, (title, made) in beyond.FIGURES.items()}
+"""Title of each figure, and what makes its plot, by the name of its files: those of the paper, and further ones."""
 
 
 def write(
@@ -51,30 +36,34 @@ def write(
     """Write every figure as SVG, PNG and CSV, every table and the captions as CSV, and ``index.html``.
 
     Give it a directory made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none;
-    `begin` is told what is drawn next, once for each of `FIGURES`, `asked` is the command line that was run.
+    `begin` is called with what is drawn next, once for each of `FIGURES`, `asked` is the command line that was run.
     """
-    plots = {stem: plot(study) for stem, (_, plot) in PLOTS.items()}
-    pictures = [_picture(stem, _always(made)) for stem, made in plots.items()]
+    plots = {stem: made(study) for stem, (_, made) in FIGURES.items()}
+    pictures = [_picture(study, stem, plot) for stem, plot in plots.items()]
     draw(pictures, study, directory, begin)
-    written, held = tables(study), claims.tables(study.claims)
-    data = [table(stem, PLOTS[stem][0], made) for stem, made in plots.items()]
+    written, held = list(tables(study)), claims.tables(study.claims)
+    data = [table(stem, FIGURES[stem][0], plot) for stem, plot in plots.items()]
     write_csv([*held, *written, *data, captions(pictures, study)], directory)
-    title = f"Greenwood (1997), computed again{', quick run' if study.quick else ''}"
-    figures = Section("figures", "Figures", figures=shown(pictures, study, directory))
     sections = [
-        figures,
+        Section("figures", "Figures", figures=shown(pictures, study, directory)),
         Section("held", "Claims of the paper, held against the numbers", tables=held),
         Section("tables", "Tables", tables=written),
     ]
+    title = f"Greenwood (1997), computed again{', quick run' if study.quick else ''}"
     write_page(directory, title, list(lead(study)), sections, f"{study.seconds:.1f} s, drawing apart", asked)
+
+
+def _picture(study: Greenwood1997, stem: str, plot: Plot) -> Picture[Greenwood1997]:
+    """A plot with what is to be seen: its own sentences, how near finite elements are, and the claims it shows."""
+    see = [*plot.see, elements_beside(plot.lines), claims.caption(stem, study.claims.judged)]
+    return Picture(stem, FIGURES[stem][0], lambda _: drawn(plot), lambda _: see)
 
 
 def lead(study: Greenwood1997) -> Iterator[str]:
     """What kind of run it was, what failed that should not have, and what all figures have in common."""
     if study.quick:
         yield "A quick run: fewer points, coarser tolerances, fewer sweeps allowed to Greenwood's iteration."
-    troubles = list(study.troubles())
-    if troubles:
+    if troubles := list(study.troubles()):
         failed = Markup("<strong>FAILED where it should not have, {} times:</strong>").format(len(troubles))
         yield failed + bullets(troubles)
     link = Markup('<a href="https://doi.org/{}">{}</a>').format(DOI, DOI)
@@ -89,36 +78,39 @@ def lead(study: Greenwood1997) -> Iterator[str]:
         yield first.format(critical)
 
 
-EMPTY = "Nothing was computed."
-
-
-def tables(study: Greenwood1997) -> list[Table]:
+def tables(study: Greenwood1997) -> Iterator[Table]:
     """All tables in the order of the page."""
-    return [
-        *_printed_tables(study),
-        _jumps(study),
-        _cycles(study.devices),
-        _relaxations(study.relaxations),
-        _pull_offs(study.pull_offs),
-        _rises(study),
-        _true_jumps(study.criteria),
-        _constants(study.criteria),
-    ]
-
-
-def _printed_tables(study: Greenwood1997) -> Iterator[Table]:
-    printed = study.tables
-    title = "Table 1: f(alpha*)/alpha*^(3/2) of the DMT force method"
-    see = _see_table_1(printed.table_1, printed.asymptote)
-    yield _printed("table_1", title, see, "alpha*", printed.table_1)
+    a, b = study.tables.asymptote
+    fit = (
+        f"The asymptote f = a alpha*^(3/2) - b alpha*^2, fitted between 2e-5 and 1e-4, has a = {plus_minus(a)} and b = "
+        f"{plus_minus(b)} (standard errors of the fit; the paper: 1.84 and 7.7)."
+    )
+    title, fit = "Table 1: f(alpha*)/alpha*^(3/2) of the DMT force method", told(fit, a.value, b.value)
+    yield _printed("table_1", title, fit, "alpha*", study.tables.table_1)
     title = "Table 2: jumping on and off under fixed grips"
-    see = f"{_agreement(printed.table_2)} The notes say what explains the others, or that nothing does."
-    yield _printed("table_2", title, see, "mu", printed.table_2)
-    title, see = f"Pressures printed with Fig. 4, mu = {WINDING_AT:g}", _see_profile_checks(printed.profile_checks)
-    yield _printed("fig_4_checks", title, see, "gap H", printed.profile_checks)
+    notes = "The notes say what explains the others, or that nothing does."
+    yield _printed("table_2", title, notes, "mu", study.tables.table_2)
+    title = f"Pressures printed with Fig. 4, mu = {study.settings.winding_at:g}"
+    law = "The law is the corrected one, compression positive; the error is that of the rounded gap."
+    yield _printed("fig_4_checks", title, law, "gap H", study.tables.profile_checks)
+    yield _jumps(study)
+    yield _cycles(study)
+    yield _relaxations(study.relaxations)
+    pull_offs: Columns[PullOff] = {
+        "mu": lambda p: f"{p.tabor:.6g}",
+        ("half-space, R dgamma", "half-space, error, R dgamma"): lambda p: _cells(p.half_space),
+        ("finite elements, R dgamma", "finite elements, error, R dgamma"): lambda p: _cells(p.finite_element),
+    }
+    both = [p.agree for p in study.pull_offs if p.finite_element]
+    see = f"Finite elements agree within both errors at {sum(both)} of {len(both)} Tabor parameters."
+    yield Table.of("pull_off", "Load at pull-off, Fig. 7", see, study.pull_offs, pull_offs)
+    yield _rises(study)
+    yield _true_jumps(study)
+    yield _constants(study)
 
 
 def _printed(stem: str, title: str, see: str, column: str, entries: Sequence[Printed]) -> Table:
+    """Printed and computed numbers; how many agree to their last digit, and which is off most."""
     columns: Columns[Printed] = {
         "row": lambda p: p.row,
         column: lambda p: f"{p.column:g}",
@@ -128,87 +120,53 @@ def _printed(stem: str, title: str, see: str, column: str, entries: Sequence[Pri
         "relative deviation": lambda p: f"{p.deviation:+.1e}",
         "note": lambda p: p.note,
     }
-    return Table.of(stem, title, see, entries, columns)
-
-
-def _agreement(entries: Sequence[Printed]) -> str:
-    """How many entries agree to their last digit, and which is off most."""
-    if not entries:
-        return EMPTY
-    exact = sum(entry.to_last_digit for entry in entries)
     known = [entry for entry in entries if math.isfinite(entry.deviation)]
     worst = max(known, key=lambda entry: abs(entry.deviation), default=None)
-    return joined(
-        f"{exact} of {len(entries)} values agree to their last printed digit.",
+    agreement = (
+        f"{sum(entry.to_last_digit for entry in entries)} of {len(entries)} values agree to their last printed digit.",
         f"The largest relative deviation is {abs(worst.deviation):.1e}, in {worst.row} at {worst.column:g}."
         if worst
         else "",
         "" if len(known) == len(entries) else f"{len(entries) - len(known)} are not numbers.",
     )
-
-
-def _see_table_1(entries: Sequence[Printed], asymptote: tuple[Estimate, Estimate]) -> str:
-    """Agreement, and the constants of the asymptote."""
-    a, b = asymptote
-    fit = (
-        f"The asymptote f = a alpha*^(3/2) - b alpha*^2, fitted between 2e-5 and 1e-4, has a = {plus_minus(a)} and b = "
-        f"{plus_minus(b)} (standard errors of the fit; the paper: 1.84 and 7.7)."
-    )
-    return joined(_agreement(entries), told(fit, a.value, b.value))
-
-
-def _see_profile_checks(entries: Sequence[Printed]) -> str:
-    """Whether the printed pressures have the sign and size of the corrected law."""
-    if not entries:
-        return EMPTY
-    same = sum(float(entry.printed) * entry.computed.value > 0 for entry in entries)
-    within = sum(entry.to_last_digit for entry in entries)
-    return (
-        f"{same} of {len(entries)} printed pressures have the sign of the corrected law, compression positive, and "
-        f"{within} its value within the error, which is that of the rounded gap."
-    )
+    return Table.of(stem, title, joined(*agreement, see), entries, columns)
 
 
 def _jumps(study: Greenwood1997) -> Table:
+    def of(end: str, quantity: str) -> Callable[[tuple[str, str]], tuple[str, str]]:
+        return lambda ends: _cells(getattr(study.jumps[ends], end).estimate(quantity))
+
     columns: Columns[tuple[str, str]] = {
         "jump": " to ".join,
-        ("alpha*, eps", "error of alpha*, eps"): lambda ends: _cells(study.jumps[ends].take_off.estimate("approach")),
-        ("W before, R dgamma", "error of W before, R dgamma"): lambda ends: _cells(
-            study.jumps[ends].take_off.estimate("load")
-        ),
-        ("W after, R dgamma", "error of W after, R dgamma"): lambda ends: _cells(
-            study.jumps[ends].landing.estimate("load")
-        ),
+        ("alpha*, eps", "error of alpha*, eps"): of("take_off", "approach"),
+        ("W before, R dgamma", "error of W before, R dgamma"): of("take_off", "load"),
+        ("W after, R dgamma", "error of W after, R dgamma"): of("landing", "load"),
     }
+    given = study.settings
+    title = f"Jumps of Fig. 2a, mu = {given.jumps_at:g}, primed in an apparatus of {given.apparatus:g} R dgamma/eps"
     see = "Where each jump takes off and lands." if study.jumps else "No jump was found."
-    return Table.of(
-        "jumps",
-        f"Jumps of Fig. 2a, mu = {JUMPS_AT:g}, primed in an apparatus of {APPARATUS:g} R dgamma/eps",
-        see,
-        study.jumps,
-        columns,
-    )
+    return Table.of("jumps", title, see, study.jumps, columns)
 
 
-def _cycles(devices: DeviceStudy) -> Table:
+def _cycles(study: Greenwood1997) -> Table:
     """Both jumps and the loss of every apparatus."""
     ends = ("jump on", "landing in contact", "jump off", "landing apart")
     quantities = ("alpha*, eps", "error, eps", "W, R dgamma", "error, R dgamma")
+
+    def cells(cycle: Cycle) -> list[str]:
+        states = [state for jump in (cycle.jump_on, cycle.jump_off) for state in jump.ends]
+        return [cell for state in states for name in ("approach", "load") for cell in _cells(state.estimate(name))]
+
     columns: Columns[Cycle] = {
         "stiffness, R dgamma/eps": lambda c: "fixed grips" if math.isinf(c.stiffness) else f"{c.stiffness:g}",
-        tuple(f"{end}: {what}" for end in ends for what in quantities): _cycle_cells,
+        tuple(f"{end}: {what}" for end in ends for what in quantities): cells,
         ("energy lost, R dgamma eps", "error, R dgamma eps"): lambda c: _cells(c.energy_lost),
     }
-    lost = np.array([cycle.energy_lost.value for cycle in devices.cycles])
-    grows = "the more energy a cycle loses" if rises(lost) else "the energy that a cycle loses does not always grow"
-    see = joined(told(f"The softer the apparatus, {grows}.", lost), "The loss is the work of the base round the loop.")
-    return Table.of("devices", f"Cycles of an apparatus, mu = {devices.tabor:g}", see, devices.cycles, columns)
-
-
-def _cycle_cells(cycle: Cycle) -> list[str]:
-    """Approach and load of the four ends of both jumps."""
-    states = [state for jump in (cycle.jump_on, cycle.jump_off) for state in jump.ends]
-    return [cell for state in states for name in ("approach", "load") for cell in _cells(state.estimate(name))]
+    title, see = (
+        f"Cycles of an apparatus, mu = {study.settings.devices_at:g}",
+        "The loss is the work of the base round the loop.",
+    )
+    return Table.of("devices", title, see, study.cycles, columns)
 
 
 def _relaxations(attempts: Sequence[Attempt]) -> Table:
@@ -221,38 +179,14 @@ def _relaxations(attempts: Sequence[Attempt]) -> Table:
         "Newton, seconds": lambda a: f"{a.newton_seconds:.3f}",
         "outcome": lambda a: a.outcome,
     }
-    names = dict.fromkeys(attempt.method for attempt in attempts)
-    see = joined(*(_iteration(name, [a for a in attempts if a.method == name]) for name in names))
+    see = []
+    for name in dict.fromkeys(attempt.method for attempt in attempts):
+        sweeps = [a.sweeps for a in attempts if a.method == name]
+        done = [n for n in sweeps if n is not None]
+        span = f", in {min(done)} to {max(done)} sweeps" if done else ""
+        see.append(f"{name}: {len(done)} of {len(sweeps)} converged{span}.")
     title = f"The iterations of 1997 on {NODES} uniform nodes, from the undeformed surfaces to H(0) = 0"
-    return Table.of("relaxation", title, see, attempts, columns)
-
-
-def _iteration(name: str, attempts: Sequence[Attempt]) -> str:
-    """How many attempts of an iteration ended, and in how many sweeps."""
-    sweeps = [attempt.sweeps for attempt in attempts if attempt.sweeps is not None]
-    ended = f"{name}: {len(sweeps)} of {len(attempts)} converged"
-    return f"{ended}, in {min(sweeps)} to {max(sweeps)} sweeps." if sweeps else f"{ended}."
-
-
-def _pull_offs(found: Sequence[PullOff]) -> Table:
-    columns: Columns[PullOff] = {
-        "mu": lambda p: f"{p.tabor:.6g}",
-        ("half-space, R dgamma", "half-space, error, R dgamma"): lambda p: _cells(p.half_space),
-        ("finite elements, R dgamma", "finite elements, error, R dgamma"): lambda p: _cells(p.finite_element),
-    }
-    return Table.of("pull_off", "Load at pull-off, Fig. 7", _see_pull_offs(found), found, columns)
-
-
-def _see_pull_offs(found: Sequence[PullOff]) -> str:
-    """The ends beside their limits."""
-    if not found:
-        return EMPTY
-    first, last = found[0], found[-1]
-    text = (
-        f"From {first.half_space.value:.4f} at mu = {first.tabor:.3g} to {last.half_space.value:.4f} at mu = "
-        f"{last.tabor:.3g}; Bradley's is -2 pi = {BRADLEY_PULL_OFF:.4f}, JKR's -3 pi/2 = {JKR_PULL_OFF:.4f}."
-    )
-    return told(text, first.half_space.value, last.half_space.value) or joined()
+    return Table.of("relaxation", title, joined(*see), attempts, columns)
 
 
 def _rises(study: Greenwood1997) -> Table:
@@ -267,9 +201,10 @@ def _rises(study: Greenwood1997) -> Table:
     return Table("coarse_grids", title, see, ("spacing, beta", "mu", "least load, R dgamma"), rows)
 
 
-def _true_jumps(study: CriteriaStudy) -> Table:
+def _true_jumps(study: Greenwood1997) -> Table:
     """True jumps beside what the criteria predict for them."""
-    usable = {f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps": c.predict for c in study.criteria if c.predict}
+    criteria = [c for c in study.criteria.criteria if c.predict]
+    usable = {f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps": c.predict for c in criteria if c.predict}
     columns: Columns[JumpOn] = {
         "mu": lambda jump: f"{jump.tabor:.6g}",
         ("alpha*, eps", "error of alpha*, eps"): lambda jump: _cells(jump.approach),
@@ -277,24 +212,13 @@ def _true_jumps(study: CriteriaStudy) -> Table:
         "b sigma'/sigma": lambda jump: f"{jump.fundamental:.5f}",
         tuple(usable): lambda jump: [f"{predict(np.array(jump.tabor)):.5f}" for predict in usable.values()],
     }
+    see = "The fundamental criterion (4.3) expects b sigma'/sigma = -1 at the jump."
     title = "True jumps on and the criteria's predictions"
-    return Table.of("criteria", title, _see_true_jumps(study), study.jumps, columns)
+    return Table.of("criteria", title, see, study.criteria.jumps, columns)
 
 
-def _see_true_jumps(study: CriteriaStudy) -> str:
-    """What the fundamental criterion reads at the true jumps."""
-    read = np.array([jump.fundamental for jump in study.jumps])
-    if not read.size:
-        return EMPTY
-    verdict = "states that it calls unstable are stable" if read.max() < -1 else "it does not always come too soon"
-    text = (
-        f"The fundamental criterion (4.3) expects b sigma'/sigma = -1 at the jump, where the solution has "
-        f"{read.max():.2f} to {read.min():.2f}: {verdict}."
-    )
-    return told(text, read) or joined()
-
-
-def _constants(criteria: CriteriaStudy) -> Table:
+def _constants(study: Greenwood1997) -> Table:
+    criteria = study.criteria
     columns = ("criterion", "formula", "constant", "printed", "refitted", "standard error", "scatter of ln(left side)")
     rows = [
         (c.name, c.formula, name, "" if printed is None else f"{printed:.6g}", *_cells(fitted), f"{c.scatter:.1e}")
@@ -303,24 +227,7 @@ def _constants(criteria: CriteriaStudy) -> Table:
     ]
     span = f" for mu = {criteria.tabor[0]:g} to {criteria.tabor[-1]:g}" if criteria.jumps else ""
     title = f"Constants of the criteria, refitted{span}"
-    return Table("criteria_constants", title, _see_constants(criteria), columns, rows)
-
-
-def _see_constants(study: CriteriaStudy) -> str:
-    """How far the closed criteria's printed constants are from the refitted ones."""
-    printed = [
-        (criterion.name, value / fitted.value)
-        for criterion in study.criteria
-        for name, value, fitted in criterion.constants
-        if name == "k" and value is not None
-    ]
-    ratios = np.array([ratio for _, ratio in printed])
-    if not ratios.size:
-        return "Least squares of logarithms."
-    low, high = min(printed, key=lambda item: item[1]), max(printed, key=lambda item: item[1])
-    size = "too large" if low[1] > 1 else "too small" if high[1] < 1 else "too small and too large"
-    text = f"The closed criteria's are {size}: {low[1]:.2f} times the refitted ({low[0]}) to {high[1]:.2f} ({high[0]})."
-    return joined("Least squares of logarithms.", told(text, ratios, closed_ratios(study)))
+    return Table("criteria_constants", title, "Least squares of logarithms.", columns, rows)
 
 
 def _cells(estimate: Estimate | None) -> tuple[str, str]:

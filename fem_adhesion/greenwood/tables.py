@@ -77,16 +77,13 @@ class Tables:
 
 def table_1() -> list[Printed]:
     """Table 1: f(alpha*)/alpha*^(3/2) of the force method."""
-    return [
-        _excess(float(row["alpha_star"]), row["f_over_alpha_star_1_5"])
-        for row in data_rows("greenwood", "greenwood1997_table1.csv")
-    ]
-
-
-def _excess(alpha: float, printed: str) -> Printed:
-    computed = Estimate(float(dmt.force_excess(alpha)) / alpha**1.5, ROUNDING / alpha**1.5)
-    note = LAST_DIGIT if is_rounded(printed, computed) else UNEXPLAINED
-    return Printed("f_over_alpha_star_1_5", alpha, "1", printed, computed, note)
+    entries = []
+    for row in data_rows("greenwood", "greenwood1997_table1.csv"):
+        alpha, printed = float(row["alpha_star"]), row["f_over_alpha_star_1_5"]
+        computed = Estimate(float(dmt.force_excess(alpha)) / alpha**1.5, ROUNDING / alpha**1.5)
+        note = LAST_DIGIT if is_rounded(printed, computed) else UNEXPLAINED
+        entries.append(Printed("f_over_alpha_star_1_5", alpha, "1", printed, computed, note))
+    return entries
 
 
 def excess_asymptote() -> tuple[Estimate, Estimate]:
@@ -153,7 +150,7 @@ def printed_column(name: str, tabor: float) -> dict[str, str]:
 def _follows_from_gap(column: Mapping[str, str], tabor: float) -> str:
     """Whether (H0 + 1)/mu^(3/7) is what the printed H0 gives."""
     gap, scale = column["H0"], tabor ** (3 / 7)
-    given = Estimate((float(gap) + 1) / scale, _last_digit(gap) / 2 / scale)
+    given = Estimate((float(gap) + 1) / scale, last_digit(gap) / 2 / scale)
     return f"follows from the printed H0 = {gap}" if is_rounded(column["H0_plus_1_over_mu_3_7"], given) else ""
 
 
@@ -167,7 +164,7 @@ def _follows_from_approach(column: Mapping[str, str], tabor: float) -> str:
 
 
 def _divides(approach: str, tabor: float, ratio: str) -> bool:
-    return is_rounded(ratio, Estimate(float(approach) / tabor, _last_digit(approach) / 2 / tabor))
+    return is_rounded(ratio, Estimate(float(approach) / tabor, last_digit(approach) / 2 / tabor))
 
 
 def _exchanged(approach: str, tabor: float, ratio: str) -> str:
@@ -182,7 +179,7 @@ def _beyond_the_fold(name: str, computed: Estimate, column: Mapping[str, str], t
     digits = ""
     if ratio and not _divides(approach, tabor, ratio) and (other := _exchanged(approach, tabor, ratio)):
         digits = f"digits exchanged, as {other}/{tabor:g} is the {ratio} of the next row; "
-    if float(approach) + _last_digit(approach) / 2 >= computed.value - computed.error:
+    if float(approach) + last_digit(approach) / 2 >= computed.value - computed.error:
         return digits.rstrip("; ")
     if name == "jump_on":
         return f"{digits}no separated state exists at the printed approach: the fold comes before it"
@@ -214,26 +211,24 @@ def _beside(name: str, quantity: str, column: Mapping[str, str], path: Equilibri
 
 
 def profile_checks() -> list[Printed]:
-    """Printed pressures of Fig. 4 at mu = 5, which settle the sign of [G97] (2.9)."""
-    return [_profile_check(*check) for check in PROFILE_CHECKS]
-
-
-def _profile_check(gap: str, printed: str) -> Printed:
-    """Pressure at a printed gap, whose own last digit is the error."""
-    H = np.array(float(gap))
-    half_digit = _last_digit(gap) / 2
-    error = abs(float(LENNARD_JONES.slope(H, 5.0))) * half_digit
-    computed = Estimate(float(LENNARD_JONES.pressure(H, 5.0)), error)
-    note = ROUNDED if is_rounded(printed, computed) else UNEXPLAINED
-    return Printed("P at gap H", float(gap), "dgamma/(mu eps)", printed, computed, note)
+    """Printed pressures of Fig. 4 at mu = 5, which settle the sign of (2.9); the gap's last digit is the error."""
+    entries = []
+    for gap, printed in PROFILE_CHECKS:
+        H = np.array(float(gap))
+        error = abs(float(LENNARD_JONES.slope(H, 5.0))) * last_digit(gap) / 2
+        computed = Estimate(float(LENNARD_JONES.pressure(H, 5.0)), error)
+        note = ROUNDED if is_rounded(printed, computed) else UNEXPLAINED
+        entries.append(Printed("P at gap H", float(gap), "dgamma/(mu eps)", printed, computed, note))
+    return entries
 
 
 def is_rounded(printed: str, computed: Estimate) -> bool:
     """Whether the printed value is the computed one rounded, within its error."""
-    return abs(computed.value - float(printed)) <= _last_digit(printed) * (0.5 + 1e-9) + computed.error
+    return abs(computed.value - float(printed)) <= last_digit(printed) * (0.5 + 1e-9) + computed.error
 
 
-def _last_digit(printed: str) -> float:
+def last_digit(printed: str) -> float:
+    """One unit of the last digit of a printed number."""
     return float(10.0 ** -_decimals(printed))
 
 

@@ -1,0 +1,30 @@
+"""The whole study as a user runs it, once, for all tests of this folder."""
+
+import csv
+
+import pytest
+from whole_runs import GREENWOOD
+
+
+@pytest.fixture(scope="session")
+def ran(whole):
+    """The command line, and what it wrote."""
+    return whole(GREENWOOD)
+
+
+@pytest.fixture(scope="session")
+def study(ran):
+    """What it computed."""
+    return ran.kept[0]
+
+
+@pytest.fixture(scope="session")
+def report(ran):
+    """The directory that it wrote."""
+    return ran / "greenwood"
+
+
+@pytest.fixture(scope="session")
+def rows(report):
+    """Read a table of the directory."""
+    return lambda stem: list(csv.DictReader((report / f"{stem}.csv").read_text().splitlines()))
