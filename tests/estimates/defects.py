@@ -95,8 +95,8 @@ DEFECTS = (
     Defect(
         "factor of a power has the error of its logarithm",
         "fem_adhesion/greenwood/criteria.py",
-        "Estimate(c, c * float(errors[1]))",
-        "Estimate(c, float(errors[1]))",
+        "Estimate(c, c * logarithm.error)",
+        "Estimate(c, logarithm.error)",
         (
             "tests/fem_adhesion/greenwood/test_greenwood.py::test_the_errors_of_refitted_constants_are_the_spread_of_fits_to_scattered_jumps",
         ),

@@ -690,7 +690,7 @@ def test_what_was_not_found_is_a_trouble_and_the_page_is_made(study, tmp_path, m
 def test_what_is_off_is_told_first_with_exit_code_1(study, monkeypatch, tmp_path, capsys):
     wrong = with_elements(with_table_1(study, 1.179), 2.0)
     monkeypatch.setattr(greenwood, "compute", lambda **_: wrong)
-    monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
+    monkeypatch.setattr(greenwood_page, "FIGURES", {})  # not drawn again
     assert cli.main(["greenwood", "--out", str(tmp_path / "out")]) == 1
     first = capsys.readouterr().out.splitlines()[0]
     assert first.startswith(
