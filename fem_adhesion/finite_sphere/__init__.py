@@ -1,5 +1,5 @@
 """Is the half-space good enough for a sphere? The command ``finite-sphere``.
 
-Computation: `cases`, `study`, and of its `table` the leading terms and what the body yields (`fit`). What is seen: the
-`chart` with its materials and `figures`, captions with them, and `page`. And `command`.
+Computation: `cases`, `study`, its `table` with what the body yields (`bulk`), the leading terms (`fit`), deviations
+and materials over the `plane`. What is seen: the `chart`, `figures`, captions with them, and `page`. And `command`.
 """

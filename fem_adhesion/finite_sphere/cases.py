@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
-from typing import Literal
+from typing import Any, Literal
 
 import halfspace
 from fem_adhesion.bodies.body import Discretisation, GripName
@@ -133,11 +133,7 @@ def _estimate(name: str, pair: object) -> Estimate:
     raise InputError(f"its {name} is no number with an error")
 
 
-FINITE_STRAIN_RTOL = 1e-4  # the tightest: a finer one is dear, and the effect is of the order of beta/R
 TO_LOAD = 0.5  # R dgamma: past every event, and little, since a sphere is no wider than it is
-FEWEST, MOST = 0.4, 1.25  # Tabor parameters between which the first jump of every sphere is, small or bonded
-LARGEST = 1 - 1e-9  # of the Tabor parameter up to which a sphere is large enough: not beyond it by rounding
-DEGREES = (5, 6)  # of the elements on which it is solved for
 
 
 @dataclass(frozen=True)
@@ -215,26 +211,34 @@ def hemisphere(
     return Scene(case.given("tabor"), body, profile)
 
 
-def _elastic(case: SphereCase, made: Callable[[SphereCase], Scene] = hemisphere) -> Values:
-    """A linear hemisphere."""
-    return quantities_of(trace(made(case), rtol=case.rtol, to_load=TO_LOAD))
+def _elastic(case: SphereCase, **how: Any) -> Values:
+    """A linear hemisphere; `how` as of `hemisphere`."""
+    return quantities_of(trace(hemisphere(case, **how), rtol=case.rtol, to_load=TO_LOAD))
 
 
 def _neo_hookean(case: SphereCase, traction: TractionName) -> Scene:
     return hemisphere(case).made_of(NeoHookean(case.given("poisson"), traction))
 
 
-def _finite_strain(case: SphereCase, traction: TractionName) -> Values:
-    """A neo-Hookean hemisphere: pull-off and jumps only, to a tolerance of 1e-4 or more."""
-    events = find_jumps(_neo_hookean(case, traction), max(case.rtol, FINITE_STRAIN_RTOL))
-    pull_off = events["pull_off"]
-    return {"pull_off_load": pull_off.estimate("load")} | _jumps(events)
+def _finite_strain(case: SphereCase, traction: TractionName, tightest: float = 1e-4) -> Values:
+    """A neo-Hookean hemisphere: pull-off and jumps only; a finer tolerance is dear, and the effect is some beta/R."""
+    events = find_jumps(_neo_hookean(case, traction), max(case.rtol, tightest))
+    return {"pull_off_load": events["pull_off"].estimate("load")} | _jumps(events)
 
 
-def _first_jump(case: SphereCase) -> Values:
-    """Tabor parameter from which on a hemisphere jumps under fixed grips; none if none that is large enough does."""
-    ratio = case.given("radius_ratio")
-    birth = Birth((FEWEST, min(MOST, LARGEST * ratio / SMALLEST_SPHERE)), FIRST.gaps, FIRST.falling)
+def _well_posed(case: SphereCase, traction: TractionName) -> None:
+    """InputError unless the equations are, for a way to count the traction and for the default beside it."""
+    for name in (traction, NeoHookean().traction):
+        require_well_posed(_neo_hookean(case, name))
+
+
+def _first_jump(case: SphereCase, degrees: tuple[int, int] = (5, 6)) -> Values:
+    """Tabor parameter from which on a hemisphere jumps under fixed grips; none if none that is large enough does.
+
+    That of every sphere, small or bonded, is between 0.4 and 1.25. It is solved for with elements of two degrees.
+    """
+    largest = (1 - 1e-9) * case.given("radius_ratio") / SMALLEST_SPHERE  # not beyond it by rounding
+    birth = Birth((0.4, min(1.25, largest)), FIRST.gaps, FIRST.falling)
 
     def at(degree: int) -> float:
         def problem(mu: float) -> Traceable:  # its elements fine on the axis
@@ -243,7 +247,7 @@ def _first_jump(case: SphereCase) -> Values:
         return born(birth, problem)
 
     try:
-        return {CRITICAL: Estimate.refined(*map(at, DEGREES))}
+        return {CRITICAL: Estimate.refined(*map(at, degrees))}
     except NoBirth:
         return {}
 
@@ -255,28 +259,24 @@ def _first_jump_half_space(case: SphereCase) -> Values:
 
 
 SPHERE: tuple[InputName, ...] = ("tabor", "radius_ratio", "poisson")
-
-
-def _model_of(traction: TractionName) -> Model:
-    """Finite strain, its traction counted in one way; with a case of the default beside it."""
-
-    def check(case: SphereCase) -> None:
-        for name in (traction, NeoHookean().traction):
-            require_well_posed(_neo_hookean(case, name))
-
-    return Model(partial(_finite_strain, traction=traction), SPHERE, "sliding", check)
-
-
+TRACTIONS: Mapping[str, TractionName] = {
+    "finite_strain": "projected",
+    "finite_strain_normal": "normal",
+    "finite_strain_reference": "reference",
+}
 MODELS: Mapping[str, Model] = {
     "half_space": Model(_half_space, ("tabor",)),
     "true_profile": Model(partial(_half_space, true_profile=True), ("tabor", "radius_ratio")),
-    "finite_body": Model(partial(_elastic, made=partial(hemisphere, profile=PARABOLOID)), SPHERE, "sliding"),
+    "finite_body": Model(partial(_elastic, profile=PARABOLOID), SPHERE, "sliding"),
     "sphere": Model(_elastic, SPHERE, "sliding"),
-    "bonded": Model(partial(_elastic, made=partial(hemisphere, grip="bonded")), SPHERE, "bonded"),
-    "surface_traction": Model(partial(_elastic, made=partial(hemisphere, traction="surface")), SPHERE, "sliding"),
-    "finite_strain": _model_of("projected"),
-    "finite_strain_normal": _model_of("normal"),
-    "finite_strain_reference": _model_of("reference"),
+    "bonded": Model(partial(_elastic, grip="bonded"), SPHERE, "bonded"),
+    "surface_traction": Model(partial(_elastic, traction="surface"), SPHERE, "sliding"),
+    **{
+        name: Model(
+            partial(_finite_strain, traction=traction), SPHERE, "sliding", partial(_well_posed, traction=traction)
+        )
+        for name, traction in TRACTIONS.items()
+    },
     "first_jump": Model(_first_jump, ("radius_ratio", "poisson"), "sliding"),
     "first_jump_half_space": Model(_first_jump_half_space, ()),
 }

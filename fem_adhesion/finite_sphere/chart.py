@@ -1,160 +1,41 @@
 """The chart of the finite sphere: where in the plane of Tabor parameter and R/eps the half-space errs by how much.
 
 Drawn are contours of that error, with real materials placed among them.
-
-Along R/eps at each Tabor parameter the deviation is a power law between neighbouring points, or where its sign changes
-linear in ln(R/eps). A contour is the largest R/eps at which the deviation has a given size, above which it is smaller.
-
-Of the materials on it the work of adhesion and the Hamaker constant A are what is known. The spacing of the surface law
-follows, eps^2 = A/(16 pi dgamma), so that law and source have the same attraction from afar: 0.14 to 0.15 nm, near the
-cut-off D0 = 0.165 nm between two continua and not the diameter of an atom, of which the law between planes knows
-nothing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from numpy.typing import NDArray
 
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import plus_minus
-from fem_adhesion.common.page import data_rows
 from fem_adhesion.common.style import Picture
+from fem_adhesion.finite_sphere.plane import Field, contour, field_of, materials
 from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results, reference_poisson, samples
 from halfspace.limits import SMALLEST_SPHERE
-from halfspace.scaling import Units, contact_modulus, spacing_of
-from halfspace.values import Array, Valued
+from halfspace.values import Array
 
-LEVELS = (0.1, 0.01, 0.001)  # relative deviations of the contours
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Field(Valued):
-    """A deviation over the plane of Tabor parameter and R/eps, (m,) and (n,), both ascending.
-
-    Deviation and error (m, n) are those of the sphere from the half-space, relative to it, and its bound; nan where
-    there is none. The ending (m, n) says how each contact on the sphere ended: ``solved``, ``absent`` if it does not
-    have the quantity, ``died``, the kind of error that refused it, ``left out``, or empty where none was asked for.
-    """
-
-    tabor: Array
-    radius_ratio: Array
-    deviation: Array
-    error: Array
-    ending: NDArray[np.str_]
-
-    @property
-    def largest(self) -> Array:
-        """Largest size, (m, n), that the deviation can have; nan where there is none."""
-        return np.asarray(np.abs(self.deviation) + self.error)
-
-    def at(self, tabor: float) -> Field:
-        """The part at one Tabor parameter."""
-        one = self.tabor == tabor
-        return Field(self.tabor[one], self.radius_ratio, self.deviation[one], self.error[one], self.ending[one])
-
-
-def field_of(rows: Sequence[DeviationRow], quantity: str, poisson: float | None) -> Field:
-    """Whole deviation of a quantity at a Poisson's ratio, from the table."""
-    chosen = [r for r in rows if (r.cause, r.quantity, r.poisson) == ("all", quantity, poisson) and r.radius_ratio]
-    tabor = np.unique([row.tabor for row in chosen])
-    ratio = np.unique([float(row.radius_ratio or 0) for row in chosen])
-    deviation, error = np.full((2, tabor.size, ratio.size), np.nan)
-    ending = np.full(deviation.shape, "", dtype="<U40")
-    for row in chosen:
-        at = np.searchsorted(tabor, row.tabor), np.searchsorted(ratio, float(row.radius_ratio or 0))
-        ending[at] = row.kind if row.status == "refused" else row.status
-        if row.deviation and np.isfinite([row.deviation.value, row.deviation.error]).all():
-            deviation[at], error[at] = row.deviation.value, row.deviation.error
-    return Field(tabor, ratio, deviation, error, ending)
-
-
-def contour(field: Field, level: float) -> Array:
-    """R/eps at which a deviation has a level, (m,); nan where no two neighbours of the points have it between them."""
-    return np.array([_last_crossing(field.radius_ratio, deviation, level) for deviation in field.deviation])
-
-
-def _last_crossing(ratio: Array, deviation: Array, level: float) -> float:
-    known = np.isfinite(deviation)
-    x, y = np.log(ratio[known]), deviation[known]
-    size = np.abs(y)
-    crossed = np.flatnonzero((size[:-1] >= level) & (size[1:] < level))
-    if not crossed.size or size[-1] >= level:
-        return np.nan
-    i = crossed[-1]
-    a, b, goal = (y[i], y[i + 1], np.sign(y[i]) * level) if y[i] * y[i + 1] <= 0 else np.log([*size[i : i + 2], level])
-    return float(np.exp(x[i] + (x[i + 1] - x[i]) * (goal - a) / (b - a)))
-
-
-def safe_from(field: Field, level: float) -> float:
-    """Least R/eps of the points from which on all deviations are known to be below a level; nan if the last are not.
-
-    Tabor parameters without any deviation, as those without jumps, do not count.
-    """
-    known = np.isfinite(field.deviation)
-    size = np.where(known, field.largest, np.inf)[known.any(axis=1)].max(axis=0, initial=0.0)
-    above = np.flatnonzero(size >= level)
-    first = above[-1] + 1 if above.size else 0
-    return float(field.radius_ratio[first]) if known.any() and first < field.radius_ratio.size else np.nan
-
-
-@dataclass(frozen=True)
-class Material:
-    """An elastic sphere against a rigid wall: what it is, and how large; its Poisson's ratio.
-
-    Its units have the Tabor parameter, R/eps and the Hamaker constant; source and note say where the values are from,
-    and what was assumed.
-    """
-
-    name: str
-    units: Units
-    poisson: float
-    source: str
-    note: str
-
-
-def materials() -> tuple[Material, ...]:
-    """All materials of the file ``data/materials.csv``."""
-    return tuple(map(_material, data_rows("finite_sphere", "materials.csv")))
-
-
-def _material(line: dict[str, str]) -> Material:
-    poisson = float(line["poisson"])
-    modulus = contact_modulus(float(line["young_Pa"]), poisson)
-    adhesion = float(line["work_of_adhesion_J_per_m2"])
-    spacing = spacing_of(float(line["hamaker_J"]), adhesion)
-    units = Units(float(line["radius_m"]), modulus, adhesion, spacing)
-    return Material(line["name"], units, poisson, line["source"], line["note"])
-
-
-# How it is drawn
-
-TABOR = r"Tabor parameter $\mu$"
-RATIO = r"radius over spacing $R/\epsilon$"
 LEFT, RIGHT = 0.028, 25.0  # Tabor parameters of the chart's edges
 BOTTOM, TOP = 4.0, 2e5  # R/eps of its edges
 
 PANELS = {"pull_off_load": "error of the pull-off force", "jump_on_approach": "error of the approach at jump-on"}
-LINES: Mapping[float, tuple[str, Any, float]] = {
-    0.1: (style.RED, "-", 2.6),
-    0.01: (style.BLUE, style.DASHED, 2.2),
-    0.001: ("black", style.DOTTED, 2.0),
+LINES: Mapping[float, tuple[str, Any, float, str]] = {  # relative deviations of the contours, and how they look
+    0.1: (style.RED, "-", 2.6, "0.80"),
+    0.01: (style.BLUE, style.DASHED, 2.2, "0.90"),
+    0.001: ("black", style.DOTTED, 2.0, "0.96"),
 }
-SHADES = ("0.80", "0.90", "0.96")
 WHITE = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
 UNSOLVED: Mapping[str, tuple[str, str]] = {  # by how a contact ended: hatching, and what it means
     "ContactTooWide": ("///", "no solution: contact as wide as the sphere"),
     "left out": ("|||", rf"not tried: $R < {SMALLEST_SPHERE**0.5:g}\,\beta$"),
     "died": ("xxx", "not solved: its process died"),
 }
-OTHERWISE = "..."  # hatching of any other end
 MARKERS: Mapping[str, tuple[str, str]] = {
     "silica": ("o", style.BLUE),
     "gold": ("s", style.ORANGE),
@@ -172,11 +53,14 @@ def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence
     """
     figure, panels = style.panels(2, height=7.4)
     for axes, (quantity, title) in zip(panels, PANELS.items(), strict=True):
-        _panel(axes, field_of(rows, quantity, poisson))
-        axes.set_title(f"half-space's {title}")
+        axes.set(xscale="log", yscale="log", xlim=(LEFT, RIGHT), ylim=(BOTTOM, TOP), title=f"half-space's {title}")
+        field = field_of(rows, quantity, poisson)
+        if field.tabor.size:
+            _contours(axes, field)
+            _unsolved(axes, field)
         _materials(axes)
         style.plain_ticks(axes.xaxis, (0.1, 0.3, 1, 3, 10))
-        axes.set(xlabel=TABOR, ylabel=RATIO, axisbelow=True)
+        axes.set(xlabel=r"Tabor parameter $\mu$", ylabel=r"radius over spacing $R/\epsilon$", axisbelow=True)
         axes.grid(True, color="0.9", linewidth=0.6)
     _no_jump(panels[1], [border for border in borders if border.poisson == poisson])
     if heading:
@@ -185,39 +69,29 @@ def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence
     return figure
 
 
-def _panel(axes: Any, field: Field) -> None:
-    axes.set(xscale="log", yscale="log", xlim=(LEFT, RIGHT), ylim=(BOTTOM, TOP))
-    if field.tabor.size:
-        _contours(axes, field)
-        _unsolved(axes, field)
-        _points(axes, field)
-
-
 def _contours(axes: Any, field: Field) -> None:
-    for shade, level in zip(SHADES, LEVELS, strict=True):
+    """Contours, each with its error beside its right end, and dots where the deviation was solved for."""
+    for level, (colour, dashes, width, shade) in LINES.items():
         ratio = contour(field, level)
-        if not np.isfinite(ratio).any():
+        known = np.flatnonzero(np.isfinite(ratio))
+        if not known.size:
             continue
-        colour, dashes, width = LINES[level]
         axes.fill_between(field.tabor, BOTTOM, ratio, color=shade, linewidth=0, zorder=level - 1)
         look = {"color": colour, "linestyle": dashes, "linewidth": width, "marker": "_", "markersize": 7}  # if alone
         axes.plot(field.tabor, ratio, **look, label=f"{100 * level:g} %")
-        _name(axes, field.tabor, ratio, level)
-
-
-def _name(axes: Any, tabor: Array, ratio: Array, level: float) -> None:
-    """The contour's error beside its right end."""
-    known = np.flatnonzero(np.isfinite(ratio))
-    if known.size:
-        at = float(tabor[known[-1]]), float(ratio[known[-1]])
-        style.note(axes, f"{100 * level:g} %", at, (5, -3), color=LINES[level][0], fontweight="bold", bbox=WHITE)
+        at = float(field.tabor[known[-1]]), float(ratio[known[-1]])
+        style.note(axes, f"{100 * level:g} %", at, (5, -3), color=colour, fontweight="bold", bbox=WHITE)
+    solved = np.isfinite(field.deviation)
+    if solved.any():
+        mu, rho = np.meshgrid(field.tabor, field.radius_ratio, indexing="ij")
+        axes.plot(mu[solved], rho[solved], ".", color="0.4", markersize=4, zorder=1.8, label="solved")
 
 
 def _unsolved(axes: Any, field: Field) -> None:
     """Hatch what is nearest to the points that were not solved, each by how it ended."""
     across, along = (_midways(values) for values in (field.tabor, field.radius_ratio))
     for ending in sorted(set(field.ending.flat) - {"solved", "absent", ""}):
-        hatch, label = UNSOLVED.get(ending, (OTHERWISE, f"not solved: {ending}"))
+        hatch, label = UNSOLVED.get(ending, ("...", f"not solved: {ending}"))
         look: Any = {"facecolor": "white", "edgecolor": "0.45", "hatch": hatch, "linewidth": 0.0, "zorder": 1.5}
         for i, j in np.argwhere(field.ending == ending):
             width, height = across[i + 1] - across[i], along[j + 1] - along[j]
@@ -245,15 +119,8 @@ def _no_jump(axes: Any, borders: Sequence[Border]) -> None:
     style.note(axes, "no jump", at, (-6, -12), ha="right", color="0.35")
 
 
-def _points(axes: Any, field: Field) -> None:
-    """Dots where the deviation was solved for."""
-    solved = np.isfinite(field.deviation)
-    if solved.any():
-        mu, rho = np.meshgrid(field.tabor, field.radius_ratio, indexing="ij")
-        axes.plot(mu[solved], rho[solved], ".", color="0.4", markersize=4, zorder=1.8, label="solved")
-
-
 def _materials(axes: Any) -> None:
+    """Points with their sizes: of beads beside them, of tips at the left edge, an arrow beyond the right edge."""
     for name, sizes in groupby(materials(), key=lambda material: material.name.split(",")[0]):
         listed = list(sizes)
         marker, colour = MARKERS[name]
@@ -262,37 +129,30 @@ def _materials(axes: Any) -> None:
         if inside:
             axes.plot([u.tabor for u in inside], [u.radius_ratio for u in inside], label=name, zorder=3, **look)
         for material in listed:
-            _label(axes, material, name)
-
-
-def _label(axes: Any, material: Material, name: str) -> None:
-    """Size: of a bead beside its point, of all tips at the left edge, with an arrow for one beyond the right edge."""
-    mu, rho = material.units.tabor, material.units.radius_ratio
-    size = (
-        f"{1e9 * material.units.radius:g} nm" if material.units.radius < 1e-6 else f"{1e6 * material.units.radius:g} µm"
-    )
-    if mu > RIGHT:
-        arrow = {"arrowstyle": "-|>", "color": "black"}
-        text = f"{name}, {size},\n" rf"$\mu = {mu:.0f}$"
-        place = {"xytext": (-104, 0), "textcoords": "offset points", "va": "center", "fontsize": 9.5}
-        axes.annotate(text, (RIGHT, rho), arrowprops=arrow, **place)
-    elif "tip" not in material.name:
-        style.note(axes, size, (mu, rho), (7, 4), zorder=4)
-    elif name == "silica":
-        axes.text(LEFT * 1.06, rho, size, color="0.25", fontsize=9.5, va="center")
+            mu, rho, radius = material.units.tabor, material.units.radius_ratio, material.units.radius
+            size = f"{1e9 * radius:g} nm" if radius < 1e-6 else f"{1e6 * radius:g} µm"
+            if mu > RIGHT:
+                arrow = {"arrowstyle": "-|>", "color": "black"}
+                text = f"{name}, {size},\n" rf"$\mu = {mu:.0f}$"
+                place = {"xytext": (-104, 0), "textcoords": "offset points", "va": "center", "fontsize": 9.5}
+                axes.annotate(text, (RIGHT, rho), arrowprops=arrow, **place)
+            elif "tip" not in material.name:
+                style.note(axes, size, (mu, rho), (7, 4), zorder=4)
+            elif name == "silica":
+                axes.text(LEFT * 1.06, rho, size, color="0.25", fontsize=9.5, va="center")
 
 
 def _caption(results: Results) -> Iterator[str]:
     """What is to be seen."""
     poisson = reference_poisson(results.rows)
-    fields = [field_of(results.rows, quantity, poisson) for quantity in ("pull_off_load", "jump_on_approach")]
-    if any(np.isfinite(contour(field, level)).any() for field in fields for level in LEVELS):
+    fields = [field_of(results.rows, quantity, poisson) for quantity in PANELS]
+    if any(np.isfinite(contour(field, level)).any() for field in fields for level in LINES):
         yield (
             "A line is where the half-space under a paraboloid errs by as much as it says, between the points solved; "
             "at the points above it, it errs by less; what is below it is grey."
         )
     else:
-        yield f"No deviation passes {', '.join(f'{100 * level:g}' for level in LEVELS)} % between the points solved."
+        yield f"No deviation passes {', '.join(f'{100 * level:g}' for level in LINES)} % between the points solved."
     yield from _borders([border for border in results.borders if border.poisson in (None, poisson)])
     if any(set(field.ending.flat) - {"solved", "absent", ""} for field in fields):
         yield "Hatched: nearest to points that were not solved."

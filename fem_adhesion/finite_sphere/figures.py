@@ -21,7 +21,6 @@ from fem_adhesion.finite_sphere.table import (
     DeviationRow,
     Results,
     Samples,
-    by_poisson,
     jumping_tabors,
     panel_tabors,
     points_by_poisson,
@@ -33,9 +32,7 @@ from halfspace.values import Array
 
 STRETCH = r"$\beta/R = \sqrt{\mu\,\epsilon/R}$"
 SIZE = "|relative deviation from the half-space|"
-SMALLEST = 1e-7  # deviation that is shown
-WHOLE, PART = 8.0, 5.5  # sizes of markers: that of the whole shows round that of its largest part
-PARTS = ("profile", "body")  # causes of which the whole deviation is made; the others change what is held fixed in it
+SMALLEST = 1e-7  # least deviation that is shown
 CAUSES: Mapping[str, tuple[str, str, str]] = {
     "all": ("black", "o", "all: elastic sphere, sliding mid-plane"),
     "profile": (style.BLUE, "s", "profile: sphere for paraboloid"),
@@ -84,7 +81,7 @@ def _plain(axis: Any, write: Callable[[float], str] = "{:g}".format) -> None:
 def _cause(axes: Any, rows: Sequence[DeviationRow], cause: str, tabor: float, poisson: float | None) -> None:
     data = _pull_off(rows, cause, poisson, tabor=tabor)
     colour, marker, label = CAUSES[cause]
-    size = WHOLE if cause == "all" else PART
+    size = 8.0 if cause == "all" else 5.5  # the whole shows round its largest part
     signed(axes, data, color=colour, marker=marker, markersize=size, label=label)
     try:
         found = fit(data, terms := leading_terms(cause, "pull_off_load", one_tabor=True))
@@ -102,7 +99,7 @@ def signed(axes: Any, data: Samples, **look: Any) -> None:
         chosen = known.where(np.sign(known.deviation) == sign)
         if chosen.tabor.size:
             x, y = chosen.stretch, np.abs(chosen.deviation)
-            axes.plot(x, y, **{"markersize": PART, **look}, linestyle="none", markerfacecolor=face)
+            axes.plot(x, y, **{"markersize": 5.5, **look}, linestyle="none", markerfacecolor=face)
             look["label"] = None  # once is enough
 
 
@@ -118,89 +115,40 @@ def _theories(axes: Any, tabor: float) -> None:
 
 
 def _caption(results: Results) -> Iterator[str]:
+    """Which part is the larger on the smallest and on the largest sphere, and what grip, strain and area change."""
     rows, poisson = results.rows, reference_poisson(results.rows)
     yield "Filled markers: the force is weakened; hollow: strengthened; only what exceeds its error has one."
     for tabor in panel_tabors(rows):
-        found = {cause: _pull_off(rows, cause, poisson, tabor=tabor).significant for cause in PARTS}
-        yield from _largest(found, tabor)
-    yield from _exponents(rows, poisson)
-    yield from _changes(rows, poisson)
-    yield from _given_back(rows, poisson)
+        found = {cause: _pull_off(rows, cause, poisson, tabor=tabor).significant for cause in ("profile", "body")}
+        both = np.intersect1d(found["profile"].radius_ratio, found["body"].radius_ratio)
+        ends = []
+        for ratio in np.unique(both[[0, -1]]) if both.size else ():
+            sizes = {c: abs(data.deviation[data.radius_ratio == ratio][0]) for c, data in found.items()}
+            most = max(sizes, key=sizes.__getitem__)
+            ends.append(f"the {most}'s at R/eps = {ratio:g} ({100 * sizes[most]:.2g} %)")
+        if ends:
+            yield f"At mu = {tabor:g} the larger part is {', and '.join(ends)}."
+    changes = (
+        (("grip",), "all", "The grip changes the force by {} % of the whole deviation"),
+        (("strain",), "all", "Finite strain changes the force by {} % of the whole deviation"),
+        (
+            ("reference", "normal"),
+            "all",
+            "What its traction is counted per, a model uncertainty, leaves {} % of it open",
+        ),
+        (("traction",), "profile", "The law per true area changes it by {} % of what the profile does"),
+    )
+    for causes, whole, text in changes:
+        ratios = [_ratios(_pull_off(rows, c, poisson), _pull_off(rows, whole, poisson)) for c in causes]
+        shares = 100 * np.concatenate(ratios)
+        if shares.size:
+            shown = shares if causes == ("traction",) else np.abs(shares)
+            yield f"{text.format(span(shown))} ({counted(shares.size, 'point')})."
 
 
 def _pull_off(rows: Sequence[DeviationRow], cause: str, poisson: float | None, **at: float) -> Samples:
     """Deviations of the pull-off, those by the profile whatever Poisson's ratio."""
     return samples(rows, cause, "pull_off_load", poisson=None if cause == "profile" else poisson, **at)
-
-
-def _largest(found: Mapping[str, Samples], tabor: float) -> Iterator[str]:
-    """Which part is the larger on the smallest and on the largest sphere on which profile and body are both known."""
-    both = np.intersect1d(found["profile"].radius_ratio, found["body"].radius_ratio)
-    ends = []
-    for ratio in dict.fromkeys(float(value) for value in both[[0, -1]]) if both.size else ():
-        sizes = {cause: _size_at(data, ratio) for cause, data in found.items()}
-        known = {cause: size for cause, size in sizes.items() if np.isfinite(size)}
-        most = max(known, key=lambda cause: known[cause])
-        ends.append(f"the {most}'s at R/eps = {ratio:g} ({100 * known[most]:.2g} %)")
-    if ends:
-        yield f"At mu = {tabor:g} the larger part is {', and '.join(ends)}."
-
-
-def _size_at(data: Samples, ratio: float) -> float:
-    size = np.abs(data.deviation[data.radius_ratio == ratio])
-    return float(size[0]) if size.size else float("nan")
-
-
-def _exponents(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[str]:
-    """Powers of beta/R in which profile and body go between the two largest spheres, of the middle panel."""
-    for tabor in panel_tabors(rows)[1:2]:
-        found = {cause: _pull_off(rows, cause, poisson, tabor=tabor).significant for cause in PARTS}
-        powers = [
-            f"the {cause}'s as (beta/R)^{_power(data):.2g}" for cause, data in found.items() if data.stretch.size > 1
-        ]
-        if powers:
-            yield f"Between the two largest R/eps at mu = {tabor:g} the parts go: {', '.join(powers)}."
-
-
-def _power(data: Samples) -> float:
-    order = np.argsort(data.stretch)[:2]
-    x, y = np.log(data.stretch[order]), np.log(np.abs(data.deviation[order]))
-    return float((y[1] - y[0]) / (x[1] - x[0]))
-
-
-def _changes(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[str]:
-    """What grip and strain change beside the whole."""
-    whole = _pull_off(rows, "all", poisson)
-    for cause, name in (("grip", "The grip"), ("strain", "Finite strain")):
-        shares = np.abs(_ratios(_pull_off(rows, cause, poisson), whole))
-        if shares.size:
-            yield f"{name} changes the force by {span(100 * shares)} % of the whole deviation{_at_points(shares.size)}."
-    others = [_ratios(_pull_off(rows, cause, poisson), whole) for cause in ("reference", "normal")]
-    spread = np.abs(np.concatenate(others))
-    if spread.size:
-        yield (
-            f"What its traction is counted per, a model uncertainty, leaves {span(100 * spread)} % of it "
-            f"open{_at_points(spread.size)}."
-        )
-
-
-def _given_back(rows: Sequence[DeviationRow], poisson: float | None) -> Iterator[str]:
-    """Whether the law per true area undoes what the profile does."""
-    shares = _ratios(_pull_off(rows, "traction", poisson), _pull_off(rows, "profile", poisson))
-    if not shares.size:
-        return
-    where = _at_points(shares.size)
-    if np.all(shares < 0):
-        yield f"The law per true area gives back {span(-100 * shares)} % of what the profile takes{where}."
-    elif np.all(shares > 0):
-        yield f"The law per true area adds {span(100 * shares)} % to what the profile does{where}."
-    else:
-        yield f"The law per true area works against the profile at {np.sum(shares < 0)} of {shares.size} points."
-
-
-def _at_points(count: int) -> str:
-    """At how many points something was found."""
-    return f" ({counted(count, 'point')})"
 
 
 def _ratios(part: Samples, whole: Samples) -> Array:
@@ -216,15 +164,8 @@ def _over(points: Samples, values: Array, whole: Samples) -> Array:
     return np.array([value / sizes[mu, rho] for mu, rho, value in each if (mu, rho) in sizes], float)
 
 
-MOST_LINES = 4
+LOOKS = tuple(zip((style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PINK, style.SKY), "os^DvP", strict=True))
 DASHES = ("-", style.DASHED, style.DOTTED)  # one after the other when colours and markers come again
-JUMPS = {"jump_on_approach": "jump-on", "jump_off_approach": "jump-off"}
-COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PINK, style.SKY)
-MARKERS = ("o", "s", "^", "D", "v", "P")
-APPROACHES = (
-    "Deviations of approaches, which have no natural zero, are parts of the spacing and the range of the approaches at "
-    "all events on the half-space."
-)
 
 
 def _figure_poisson(results: Results) -> Figure:
@@ -232,7 +173,15 @@ def _figure_poisson(results: Results) -> Figure:
     quantities = {"pull_off_load": "pull-off force", "jump_on_approach": "approach at jump-on"}
     for axes, (quantity, title) in zip(panels, quantities.items(), strict=True):
         for number, (tabor, ratio) in enumerate(points_by_poisson(results.rows)):
-            _by_poisson(axes, by_poisson(results.rows, quantity, tabor, ratio), tabor, ratio, number)
+            data = samples(results.rows, "all", quantity, tabor=tabor, radius_ratio=ratio)
+            if data.poisson.size:
+                order = np.argsort(data.poisson)
+                nu, y = data.poisson[order], data.deviation[order]
+                colour, marker = LOOKS[number % 6]
+                look = {"color": colour, "marker": marker, "markersize": 5.5, "linewidth": 1.2}
+                look["linestyle"] = DASHES[number // 6 % len(DASHES)]
+                axes.plot(nu, np.abs(y), label=rf"$\mu = {tabor:g}$, $R/\epsilon = {ratio:g}$", **look)
+                axes.plot(nu[y > 0], np.abs(y[y > 0]), **look | {"linestyle": "none", "markerfacecolor": "white"})
         axes.set(title=title, yscale="log")
         _plain(axes.yaxis, lambda y: f"{100 * y:g} %")
         style.dress(axes, r"Poisson's ratio $\nu$", SIZE, legend=None)
@@ -240,104 +189,60 @@ def _figure_poisson(results: Results) -> Figure:
     return figure
 
 
-def _by_poisson(axes: Any, points: tuple[Array, Array], tabor: float, ratio: float, number: int) -> None:
-    nu, y = points
-    if not nu.size:
-        return
-    look = {"color": COLOURS[number % 6], "marker": MARKERS[number % 6], "markersize": PART, "linewidth": 1.2}
-    look["linestyle"] = DASHES[number // 6 % len(DASHES)]
-    axes.plot(nu, np.abs(y), label=rf"$\mu = {tabor:g}$, $R/\epsilon = {ratio:g}$", **look)
-    axes.plot(nu[y > 0], np.abs(y[y > 0]), **look | {"linestyle": "none", "markerfacecolor": "white"})
-
-
-def _see_poisson(results: Results) -> Iterator[str]:
-    yield "Hollow markers: the force is strengthened, or the jump is from nearer."
-    yield from _trend(results.rows)
-    yield from _signs(results.rows)
-
-
-def _trend(rows: Sequence[DeviationRow]) -> Iterator[str]:
-    """Which way the size of the pull-off's deviation goes from the least to the largest Poisson's ratio."""
-    ends = []
-    for mu, rho in points_by_poisson(rows):
-        nu, deviation = by_poisson(rows, "pull_off_load", mu, rho)
-        ends.append((float(nu[0]), float(nu[-1]), *np.abs(deviation[[0, -1]])))
-    falling = sum(last < first for _, _, first, last in ends)
-    if ends:
-        least, most = min(end[0] for end in ends), max(end[1] for end in ends)
-        yield (
-            f"From Poisson's ratio {least:g} to {most:g} the size of the pull-off's deviation falls at {falling} of "
-            f"{counted(len(ends), 'point')}."
-        )
-
-
-def _signs(rows: Sequence[DeviationRow]) -> Iterator[str]:
-    """Where the deviation of the jump-on changes its sign with Poisson's ratio."""
-    found = [by_poisson(rows, "jump_on_approach", mu, rho)[1] for mu, rho in points_by_poisson(rows)]
-    known = [deviation for deviation in found if deviation.size > 1]
-    changing = sum(bool(deviation.min() < 0 < deviation.max()) for deviation in known)
-    if known:
-        yield f"That of the approach at jump-on changes its sign at {changing} of {counted(len(known), 'point')}."
-
-
 def _figure_bulk(results: Results) -> Figure:
-    rows = results.rows
+    """Deviations of approaches at up to four Tabor parameters joined by lines, with markers where they are certain."""
+    rows, poisson = results.rows, reference_poisson(results.rows)
     figure, panels = style.panels(2, height=6.4)
-    for axes, (quantity, name) in zip(panels, JUMPS.items(), strict=True):
-        for number, tabor in enumerate(jumping_tabors(rows)[:MOST_LINES]):
+    for axes, way in zip(panels, ("on", "off"), strict=True):
+        for (colour, marker), tabor in zip(LOOKS, jumping_tabors(rows)[:4], strict=False):
             for suffix, how, dashes in (("", "raw", "-"), ("_less_bulk", "bulk yield taken out", style.DASHED)):
-                data = samples(rows, "all", quantity + suffix, poisson=reference_poisson(rows), tabor=tabor)
-                _line(axes, data, number, dashes, rf"$\mu = {tabor:g}$, {how}")
-        axes.set_title(f"approach at {name}")
+                data = samples(rows, "all", f"jump_{way}_approach{suffix}", poisson=poisson, tabor=tabor)
+                if data.tabor.size:
+                    look, order = {"color": colour, "linestyle": dashes, "linewidth": 1.1}, np.argsort(data.stretch)
+                    axes.plot(data.stretch[order], np.abs(data.deviation[order]), **look)
+                    signed(axes, data, color=colour, marker=marker)
+                    axes.plot([], [], marker=marker, label=rf"$\mu = {tabor:g}$, {how}", **look)
+        axes.set_title(f"approach at jump-{way}")
     finish(figure, panels, columns=4)
     return figure
 
 
-def _line(axes: Any, data: Samples, number: int, dashes: Any, label: str) -> None:
-    """Deviations joined by a line, with markers where they exceed their errors."""
-    if not data.tabor.size:
-        return
-    colour, marker = COLOURS[number % 6], MARKERS[number % 6]
-    order = np.argsort(data.stretch)
-    axes.plot(data.stretch[order], np.abs(data.deviation[order]), color=colour, linestyle=dashes, linewidth=1.1)
-    signed(axes, data, color=colour, marker=marker)
-    axes.plot([], [], color=colour, marker=marker, linestyle=dashes, linewidth=1.1, label=label)
-
-
 def _see_bulk(results: Results) -> Iterator[str]:
+    """What the figure shows, and how much of the deviation, at most, is left without the yield."""
     rows, poisson = results.rows, reference_poisson(results.rows)
     yield (
         "The yield of the body as a whole is kappa W/(E* R), which can be taken out by hand. Filled markers: from "
         "farther away than on the half-space; hollow: from nearer. Where a line has no marker, the deviation is within "
-        f"its error. {APPROACHES}"
+        "its error. Deviations of approaches, which have no natural zero, are parts of the spacing and the range of "
+        "the approaches at all events on the half-space."
     )
-    shares = np.concatenate([_left(rows, f"jump_{way}_approach", poisson) for way in ("on", "off")])
-    if not jumping_tabors(rows) or not shares.size:
-        return
-    most = int(np.sum(shares < 0.5))
-    yield (
-        f"Without it {span(100 * shares)} % of the deviation is left{_at_points(shares.size)}: the yield is most of it "
-        f"at {most if most < shares.size else 'all'} of them."
-    )
+    left = []
+    for quantity in ("jump_on_approach", "jump_off_approach"):
+        whole, rest = (samples(rows, "all", quantity + suffix, poisson=poisson) for suffix in ("", "_less_bulk"))
+        left.append(np.abs(_over(rest, np.abs(rest.deviation) + rest.error, whole.significant)))
+    shares = np.concatenate(left)
+    if jumping_tabors(rows) and shares.size:
+        most = int(np.sum(shares < 0.5))
+        yield (
+            f"Without it {span(100 * shares)} % of the deviation is left ({counted(shares.size, 'point')}): the yield "
+            f"is most of it at {most if most < shares.size else 'all'} of them."
+        )
 
 
-def _left(rows: Sequence[DeviationRow], quantity: str, poisson: float | None) -> Array:
-    """Part of an approach's deviation, at most, that is left without the yield, where the whole exceeds its error."""
-    whole, rest = (samples(rows, "all", quantity + suffix, poisson=poisson) for suffix in ("", "_less_bulk"))
-    return np.abs(_over(rest, np.abs(rest.deviation) + rest.error, whole.significant))
-
-
-def _no_poissons(results: Results) -> str:
-    return "" if points_by_poisson(results.rows) else "no point was solved at two Poisson's ratios"
-
-
-def _no_jumps(results: Results) -> str:
-    return "" if jumping_tabors(results.rows) else "no Tabor parameter jumps on spheres of two sizes"
-
-
-WITHOUT_YIELD = "The approach at the jumps, raw and without the body's linear yield"
 FIGURES = (
     Picture("causes", "What makes the pull-off force deviate", _draw, _caption, no_sphere),
-    Picture("poisson", "How the deviations depend on Poisson's ratio", _figure_poisson, _see_poisson, _no_poissons),
-    Picture("bulk", WITHOUT_YIELD, _figure_bulk, _see_bulk, _no_jumps),
+    Picture(
+        "poisson",
+        "How the deviations depend on Poisson's ratio",
+        _figure_poisson,
+        lambda _: ("Hollow markers: the force is strengthened, or the jump is from nearer.",),
+        lambda results: "" if points_by_poisson(results.rows) else "no point was solved at two Poisson's ratios",
+    ),
+    Picture(
+        "bulk",
+        "The approach at the jumps, raw and without the body's linear yield",
+        _figure_bulk,
+        _see_bulk,
+        lambda results: "" if jumping_tabors(results.rows) else "no Tabor parameter jumps on spheres of two sizes",
+    ),
 )

@@ -11,21 +11,13 @@ from markupsafe import Markup
 from fem_adhesion.bodies.body import GripName
 from fem_adhesion.common.numbers import plus_minus
 from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
-from fem_adhesion.common.style import Picture, captions, draw, shown
+from fem_adhesion.common.style import captions, draw, shown
+from fem_adhesion.finite_sphere.bulk import Bulk, coefficients
 from fem_adhesion.finite_sphere.cases import CAUSES, Record
-from fem_adhesion.finite_sphere.chart import CHART, LEVELS, Field, field_of, safe_from
+from fem_adhesion.finite_sphere.chart import CHART, LINES
 from fem_adhesion.finite_sphere.figures import FIGURES
-from fem_adhesion.finite_sphere.fit import (
-    DEVIATIONS,
-    TOLERANCE,
-    Bulk,
-    Finding,
-    Fit,
-    bulk_compliance,
-    coefficients,
-    compare,
-    findings,
-)
+from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, compare, findings
+from fem_adhesion.finite_sphere.plane import Field, field_of, safe_from
 from fem_adhesion.finite_sphere.study import Study
 from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results, reference_poisson, results, write_tables
 from halfspace.errors import InputError
@@ -43,27 +35,24 @@ SHOWN = {
 
 
 def all_tables(results: Results) -> list[Table]:
-    """All tables in the order of the page, of results that have the approaches less the bulk yield."""
+    """All tables in the order of the page."""
     rows, records = results.rows, results.study.records
-    found = findings(rows, reference_poisson(rows) or 0.0)
-    return [
-        _safe(rows),
-        _borders(results.borders),
-        _fits(found),
-        _theories(rows),
-        _bulk(records),
-        _failures(records),
-    ]
+    return [_safe(rows), _borders(results.borders), _fits(rows), _theories(rows), _bulk(records), _failures(records)]
 
 
 def _safe(rows: Sequence[DeviationRow]) -> Table:
     """Least R/eps of the points solved from which on a deviation is below a level, at each Tabor parameter."""
     fields = {name: field_of(rows, name, reference_poisson(rows)) for name in SHOWN}
     tabors = sorted({tabor for field in fields.values() for tabor in field.tabor})
+
+    def cell(field: Field, level: float) -> str:
+        least = safe_from(field, level)
+        return f"{least:g}" if np.isfinite(least) else "none" if np.isfinite(field.deviation).any() else ""
+
     lines = [
-        (SHOWN[name], f"{100 * level:g} %", *(_safe_at(field, tabor, level) for tabor in tabors))
+        (SHOWN[name], f"{100 * level:g} %", *(cell(field.at(tabor), level) for tabor in tabors))
         for name, field in fields.items()
-        for level in LEVELS
+        for level in LINES
     ]
     see = (
         "Least R/eps of the points solved from which on the deviation, with its error, is below the level at all "
@@ -73,33 +62,28 @@ def _safe(rows: Sequence[DeviationRow]) -> Table:
     return Table("safe", "From which R/eps on the half-space will do", see, columns, lines)
 
 
-def _safe_at(field: Field, tabor: float, level: float) -> str:
-    one = field.at(tabor)
-    least = safe_from(one, level)
-    return f"{least:g}" if np.isfinite(least) else "none" if np.isfinite(one.deviation).any() else ""
-
-
-def _fits(found: Sequence[Finding]) -> Table:
+def _fits(rows: Sequence[DeviationRow]) -> Table:
     see = (
         f"Errors are {DEVIATIONS:g} standard deviations and the change when the points farther than half-way are left "
         f"out; up to the beta/R stated, every point is within {100 * TOLERANCE:g} % of the terms beside its own error."
     )
+
+    def cells(one: Finding) -> tuple[str, ...]:
+        if not (fit := one.fit):
+            return ("", "", "", "")
+        terms = "; ".join(f"({plus_minus(c)}) {name}" for name, c in fit.coefficients.items())
+        return (terms, f"{fit.holds_to:.2g}", str(fit.points), f"{fit.worst:.1e}")
+
     columns: Columns[Finding] = {
         "quantity": lambda one: SHOWN[one.quantity],
         "cause": lambda one: one.cause,
         "mu": lambda one: "all" if one.tabor is None else f"{one.tabor:g}",
-        ("leading terms", "up to beta/R", "points", "largest residual"): lambda one: _fit(one.fit),
+        ("leading terms", "up to beta/R", "points", "largest residual"): cells,
         "why no fit": lambda one: one.reason,
     }
-    shown = (f for f in found if f.quantity in SHOWN and (f.cause == "all" or f.quantity == "pull_off_load"))
-    return Table.of("fits", "Leading terms of the relative deviations", see, shown, columns)
-
-
-def _fit(fit: Fit | None) -> tuple[str, ...]:
-    if fit is None:
-        return ("", "", "", "")
-    terms = "; ".join(f"({plus_minus(c)}) {name}" for name, c in fit.coefficients.items())
-    return (terms, f"{fit.holds_to:.2g}", str(fit.points), f"{fit.worst:.1e}")
+    wanted = [row for row in rows if row.quantity in SHOWN and (row.cause == "all" or row.quantity == "pull_off_load")]
+    found = findings(wanted, reference_poisson(rows) or 0.0)
+    return Table.of("fits", "Leading terms of the relative deviations", see, found, columns)
 
 
 def _theories(rows: Sequence[DeviationRow]) -> Table:
@@ -110,8 +94,8 @@ def _theories(rows: Sequence[DeviationRow]) -> Table:
     )
     try:
         lines = tuple(
-            (c.theory, f"{c.expected:.4f}", f"{c.fitted.value:.4f}", f"{c.fitted.error:.1e}", f"{c.tabor:g}", "")
-            for c in compare(rows)
+            (theory, f"{expected:.4f}", f"{fitted.value:.4f}", f"{fitted.error:.1e}", f"{tabor:g}", "")
+            for theory, expected, tabor, fitted in compare(rows)
         )
     except InputError as error:
         lines = (("", "", "", "", "", str(error)),)
@@ -166,26 +150,36 @@ def _borders(borders: Sequence[Border]) -> Table:
 
 
 PICTURES = (CHART, *FIGURES)
-LEVEL = 0.01  # of the answer on top
 PARTS = ("table", *(f"figure {picture.stem}" for picture in PICTURES), "page")
-"""What `write` tells that it begins, in this order."""
+"""What `write` begins, in this order."""
 
 
 def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _: None, asked: str = "") -> str:
     """Write the table, every figure as SVG and PNG, the findings as CSV, and ``index.html``, into a directory.
 
     Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none. `begin`
-    is told each of `PARTS` in turn, `asked` is the command line that was run. Returns how to get the Parquet file if
-    there is none, else nothing.
+    is called with each of `PARTS` in turn, `asked` is the command line that was run. Returns how to get the Parquet
+    file if there is none, else nothing.
     """
     begin("table")
-    found = results(study, bulk_compliance)
+    found, records = results(study), study.records
     note = write_tables(found.rows, directory)
     draw(PICTURES, found, directory, begin)
     begin("page")
-    tables = all_tables(found)
+    safe, *others = tables = all_tables(found)
     write_csv([*tables, captions(PICTURES, found)], directory)
-    _write_page(found, tables, directory, asked)
+    switched = [Markup("<strong>{}</strong>: {};").format(name, cause.meaning) for name, cause in CAUSES.items()]
+    assumptions = Markup("Between the two lie several assumptions, switched one at a time:") + bullets(switched)
+    parts = (("where", CHART.title, PICTURES[:1], (), [safe]), ("why", "Causes", PICTURES[1:], (assumptions,), ()))
+    sections = []
+    for name, title, pictures, paragraphs, shown_tables in parts:
+        lacking = [f"{one.title}. Not drawn: {lack}." for one in pictures if (lack := one.lacks(found))]
+        figures = shown(pictures, found, directory)
+        sections.append(Section(name, title, "", "", (*paragraphs, *lacking), figures, shown_tables))
+    sections += [Section("tables", "Tables", tables=others), _settings(records)]
+    lead = [Markup("<strong>{}.</strong>").format(study.headline), *_answer(found.rows)]
+    spent = f"{sum(r.seconds for r in records):.0f} s of work on {len(records)} cases"
+    write_page(directory, "Is the half-space good enough for my sphere?", lead, sections, spent, asked)
     return note
 
 
@@ -196,60 +190,30 @@ def remove_outdated(directory: Path, written: Path) -> None:
             (directory / name).unlink(missing_ok=True)
 
 
-def _write_page(found: Results, tables: Sequence[Table], directory: Path, asked: str) -> None:
-    records = found.study.records
-    safe, *others = tables
-    chart = _section("where", CHART.title, (CHART,), found, directory, tables=[safe])
-    switched = [Markup("<strong>{}</strong>: {};").format(name, cause.meaning) for name, cause in CAUSES.items()]
-    assumptions = Markup("Between the two lie several assumptions, switched one at a time:") + bullets(switched)
-    causes = _section("why", "Causes", PICTURES[1:], found, directory, [assumptions])
-    lead = [Markup("<strong>{}.</strong>").format(found.study.headline), *_answer(found.rows)]
-    sections = [chart, causes, Section("tables", "Tables", tables=others), _settings(records)]
-    spent = f"{sum(r.seconds for r in records):.0f} s of work on {len(records)} cases"
-    write_page(directory, "Is the half-space good enough for my sphere?", lead, sections, spent, asked)
-
-
-def _section(
-    name: str,
-    title: str,
-    pictures: Sequence[Picture[Results]],
-    found: Results,
-    directory: Path,
-    paragraphs: Sequence[str] = (),
-    tables: Sequence[Table] = (),
-) -> Section:
-    """Section with its figures, and what those that are not drawn lack."""
-    lacking = [f"{one.title}. Not drawn: {lack}." for one in pictures if (lack := one.lacks(found))]
-    figures = shown(pictures, found, directory)
-    return Section(name, title, paragraphs=(*paragraphs, *lacking), figures=figures, tables=tables)
-
-
-def _answer(table: Sequence[DeviationRow]) -> Iterator[str]:
-    """From which R/eps on the half-space is good enough, in words."""
+def _answer(table: Sequence[DeviationRow], level: float = 0.01) -> Iterator[str]:
+    """From which R/eps on the half-space errs by less than a level at all points solved, in words."""
     poisson = reference_poisson(table)
     if poisson is None:
         yield "No elastic sphere was solved."
         return
-    fields = {name: field_of(table, quantity, poisson) for quantity, name in SHOWN.items()}
-    yield Markup("By the points solved at Poisson's ratio {:g} it errs by less than {:g} % in").format(
-        poisson, 100 * LEVEL
-    ) + bullets([Markup("the <strong>{}</strong> {};").format(name, _from(field)) for name, field in fields.items()])
+    answers = []
+    for quantity, name in SHOWN.items():
+        field = field_of(table, quantity, poisson)
+        known, least = field.tabor[np.isfinite(field.deviation).any(axis=1)], safe_from(field, level)
+        if not known.size:
+            where = "nowhere that is known: the study has no point of it"
+        elif np.isnan(least):
+            where = f"at no R/eps up to {field.radius_ratio[-1]:g} for all mu from {known[0]:g} to {known[-1]:g}"
+        else:
+            where = f"if R/eps is {least:g} or more (points solved, mu from {known[0]:g} to {known[-1]:g})"
+        answers.append(Markup("the <strong>{}</strong> {};").format(name, where))
+    said = Markup("By the points solved at Poisson's ratio {:g} it errs by less than {:g} % in")
+    yield said.format(poisson, 100 * level) + bullets(answers)
     yield (
         "Here mu is the Tabor parameter, mu^3 = R dgamma^2/(E*^2 eps^3), R the radius of the sphere, eps the spacing "
         "of the surface law; the half-space's profile is a paraboloid. The sphere is elastic, its mid-plane slides in "
         "its grip, the wall is rigid and the strains are small. Nothing is said of points beyond the range given."
     )
-
-
-def _from(field: Field) -> str:
-    """R/eps from which on a deviation is below the level at all points solved."""
-    known = field.tabor[np.isfinite(field.deviation).any(axis=1)]
-    if not known.size:
-        return "nowhere that is known: the study has no point of it"
-    least = safe_from(field, LEVEL)
-    if np.isnan(least):
-        return f"at no R/eps up to {field.radius_ratio[-1]:g} for all mu from {known[0]:g} to {known[-1]:g}"
-    return f"if R/eps is {least:g} or more (points solved, mu from {known[0]:g} to {known[-1]:g})"
 
 
 def _settings(records: Sequence[Record]) -> Section:

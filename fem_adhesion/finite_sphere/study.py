@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
-from functools import partial
+from dataclasses import asdict, dataclass
 from itertools import product
 from typing import Any
 
@@ -20,16 +19,6 @@ from fem_adhesion.common.numbers import counted
 from fem_adhesion.finite_sphere.cases import MODELS, Record, SphereCase, case_of, compute, from_plain, to_plain
 from halfspace.errors import InputError
 from halfspace.limits import require_poisson, require_radius_ratio, require_tabor
-
-TABORS = (0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0)
-RADIUS_RATIOS = (5.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5)
-POISSON = 0.3
-POISSONS = (0.0, 0.17, 0.45, 0.499)  # besides, at fewer points
-FINITE_STRAIN = ("finite_strain", "finite_strain_normal", "finite_strain_reference")
-SPARSE = ("surface_traction", *FINITE_STRAIN)  # models solved at fewer points
-ONE_BODY = ("finite_body", "sphere", "surface_traction")  # models that differ by what acts on the same body
-QUICK_SPARSE = ("finite_body", "bonded")  # and in a quick study, which has none of the others
-RTOL, QUICK_RTOL = 1e-5, 1e-4
 
 
 @dataclass(frozen=True)
@@ -68,10 +57,25 @@ class Study:
 class Combinations:
     """All combinations of these inputs, under these models."""
 
-    tabors: Sequence[float]
-    radius_ratios: Sequence[float]
-    poissons: Sequence[float]
+    tabors: Sequence[float] = (0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0)
+    radius_ratios: Sequence[float] = (5.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5)
+    poissons: Sequence[float] = (0.3,)
     models: Sequence[str] = tuple(MODELS)
+
+
+FAVOURED = (0.3, 1.0, 3.0)  # Tabor parameters of what takes long
+FINITE_STRAIN = ("finite_strain", "finite_strain_normal", "finite_strain_reference")
+DENSE = tuple(name for name in MODELS if name not in ("surface_traction", *FINITE_STRAIN))
+USUAL = (  # some four minutes on two cores
+    Combinations(models=DENSE),
+    Combinations(FAVOURED, models=("surface_traction",)),
+    Combinations(FAVOURED, (30.0, 100.0, 1e3, 1e4), models=FINITE_STRAIN),
+    Combinations(FAVOURED, (30.0, 1e3), (0.0, 0.17, 0.45, 0.499), DENSE),
+)
+QUICK = (  # 20 s
+    Combinations((0.3, 1.0, 2.0), (30.0, 300.0, 3e3), models=[n for n in DENSE if n not in ("finite_body", "bonded")]),
+    Combinations((1.0,), (30.0, 3e3), models=("finite_body", "bonded")),
+)
 
 
 @dataclass(frozen=True)
@@ -95,39 +99,20 @@ def plan(
     quick study has three by three points unless given, and a lower accuracy. InputError if an input is out of range, or
     a sphere is too small for every Tabor parameter.
     """
-    asked = any(values is not None for values in (tabors, radius_ratios, poissons))
-    usual = ((0.3, 1.0, 2.0), (30.0, 300.0, 3e3)) if quick else (TABORS, RADIUS_RATIOS)
-    main = Combinations(tabors or usual[0], radius_ratios or usual[1], poissons or (POISSON,))
-    _require_inputs(main)
-    grids = [main] if asked else _usual_grids(main, quick)
-    rtol = QUICK_RTOL if quick else RTOL
-    cases = tuple(dict.fromkeys(case for grid in grids for case in _cases(grid, rtol)))
+    grids: Sequence[Combinations] = QUICK if quick else USUAL
+    if tabors or radius_ratios or poissons:
+        main = grids[0]
+        asked = tabors or main.tabors, radius_ratios or main.radius_ratios, poissons or main.poissons
+        grids = [Combinations(*asked)]
+        for tabor in asked[0]:
+            require_tabor(tabor)
+        for poisson in asked[2]:
+            require_poisson(poisson)
+        for ratio in asked[1]:
+            require_radius_ratio(ratio, min(asked[0]))
+    cases = tuple(dict.fromkeys(case for grid in grids for case in _cases(grid, 1e-4 if quick else 1e-5)))
     left_out = {case: record for case in cases if (record := _left_out(case))}
     return Plan(tuple(case for case in cases if case not in left_out), tuple(left_out.values()))
-
-
-def _usual_grids(main: Combinations, quick: bool) -> list[Combinations]:
-    """All of a study that nothing particular is asked of: some four minutes on two cores, or 20 s if quick."""
-    dense = tuple(name for name in MODELS if name not in SPARSE)
-    if quick:
-        few = tuple(name for name in dense if name not in QUICK_SPARSE)
-        return [replace(main, models=few), Combinations((1.0,), (30.0, 3e3), main.poissons, QUICK_SPARSE)]
-    favoured = (0.3, 1.0, 3.0)
-    return [
-        replace(main, models=dense),
-        Combinations(favoured, RADIUS_RATIOS, (POISSON,), ("surface_traction",)),
-        Combinations(favoured, (30.0, 100.0, 1e3, 1e4), (POISSON,), FINITE_STRAIN),
-        Combinations(favoured, (30.0, 1e3), POISSONS, dense),
-    ]
-
-
-def _require_inputs(grid: Combinations) -> None:
-    for tabor in grid.tabors:
-        require_tabor(tabor)
-    for poisson in grid.poissons:
-        require_poisson(poisson)
-    for ratio in grid.radius_ratios:
-        require_radius_ratio(ratio, min(grid.tabors))
 
 
 def _cases(grid: Combinations, rtol: float) -> Iterator[SphereCase]:
@@ -158,21 +143,5 @@ KEPT = Kept(asdict, lambda case: case.name, to_plain, from_plain, lambda case, w
 def run(
     cases: Sequence[SphereCase], store: Store | None, *, work: Callable[[SphereCase], Record] = compute, **how: Any
 ) -> tuple[Record, ...]:
-    """Records of cases of a plan, of each by the work: `fem_adhesion.common.jobs.solve_all`, whose keywords are `how`.
-
-    Cases of one body are worked on one after the other by one process: their operators are mostly the same.
-    """
-    return solve_all(cases, store, work=partial(_in_turn, work=work), kept=KEPT, parts=_of_one_body, **how)
-
-
-def _in_turn(part: Sequence[SphereCase], work: Callable[[SphereCase], Record]) -> list[Record]:
-    return [work(case) for case in part]
-
-
-def _of_one_body(cases: Sequence[SphereCase]) -> list[tuple[SphereCase, ...]]:
-    """Cases in parts of one body each, in the order of their first ones."""
-    parts: dict[object, tuple[SphereCase, ...]] = {}
-    for case in cases:
-        key = (case.tabor, case.radius_ratio, case.poisson, case.rtol) if case.model in ONE_BODY else case
-        parts[key] = (*parts.get(key, ()), case)
-    return list(parts.values())
+    """Records of cases of a plan, by the work: `fem_adhesion.common.jobs.solve_all`, whose keywords are `how`."""
+    return solve_all(cases, store, work=work, kept=KEPT, **how)

@@ -11,12 +11,12 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fem_adhesion.bodies.body import GripName
+from fem_adhesion.finite_sphere.bulk import bulk_compliance
 from fem_adhesion.finite_sphere.cases import (
     APPROACH_SCALE,
     CAUSES,
@@ -69,16 +69,15 @@ class DeviationRow:
     kind: str = ""
 
 
-def rows(records: Sequence[Record], bulk: BulkCompliance | None = None) -> tuple[DeviationRow, ...]:
-    """Lines of the table, of records in any order; with `bulk` approaches of jumps also less the body's yield."""
+def rows(records: Sequence[Record], bulk: BulkCompliance = bulk_compliance) -> tuple[DeviationRow, ...]:
+    """Lines of the table, of records in any order; approaches of jumps also less the body's yield."""
     found = {record.case: record for record in records}
-    quantities = [name for name in UNITS if bulk or name not in LESS_BULK]
     return tuple(
         row
         for record in records
         for cause in CAUSES
         if CAUSES[cause].model == record.case.model
-        for row in _rows_of(record, cause, found, quantities, bulk)
+        for row in _rows_of(record, cause, found, bulk)
     )
 
 
@@ -86,42 +85,33 @@ def _rows_of(
     record: Record,
     cause: str,
     found: Mapping[SphereCase, Record],
-    quantities: Sequence[str],
-    bulk: BulkCompliance | None,
+    bulk: BulkCompliance,
 ) -> Iterator[DeviationRow]:
     case = record.case
     point = case.tabor, case.radius_ratio, case.poisson, case.rtol
     others = [found.get(case_of(model, *point)) for model in (CAUSES[cause].baseline, "half_space")]
     tables = [{**one.values, **less_bulk(one, bulk)} if one else {} for one in (record, *others)]
-    for name in quantities:
+    for name, unit in UNITS.items():
         value, baseline, half_space = three = [table.get(name) for table in tables]
-        scale = half_space and tables[-1].get(APPROACH_SCALE) if UNITS[name] == "eps" else half_space
+        scale = half_space and tables[-1].get(APPROACH_SCALE) if unit == "eps" else half_space
         deviation = (value - baseline) / scale if value and baseline and scale else None
-        head = (case.given("tabor"), case.radius_ratio, case.poisson, cause, name, UNITS[name])
+        head = (case.given("tabor"), case.radius_ratio, case.poisson, cause, name, unit)
         ending = (*_ending(record, others, three), record.seconds, record.kind)
         yield DeviationRow(*head, value, baseline, half_space, deviation, *ending)
 
 
-def less_bulk(record: Record, bulk: BulkCompliance | None) -> dict[str, Estimate]:
-    """Approaches of the jumps without the linear yield of the body, alpha* - kappa mu W/(R/beta); none without it."""
-    if bulk is None:
-        return {}
-    values, yielding = record.values, _yielding(record.case, bulk)
+def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
+    """Approaches of the jumps without the linear yield of the body, alpha* - kappa mu W/(R/beta)."""
+    case, values, yielding = record.case, record.values, Estimate(0.0, 0.0)
+    if grip := MODELS[case.model].grip:
+        tabor = case.given("tabor")
+        R = math.sqrt(case.given("radius_ratio") / tabor)
+        yielding = bulk(grip, case.given("poisson"), R) * (tabor / R)
     return {
         name: values[f"{event}_approach"] - yielding * values[f"{event}_load"]
         for name, event in LESS_BULK.items()
         if f"{event}_approach" in values
     }
-
-
-def _yielding(case: SphereCase, bulk: BulkCompliance) -> Estimate:
-    """Approach per load, kappa mu/(R/beta), of a body that is held; none of the half-space."""
-    grip = MODELS[case.model].grip
-    if grip is None:
-        return Estimate(0.0, 0.0)
-    tabor = case.given("tabor")
-    R = math.sqrt(case.given("radius_ratio") / tabor)
-    return bulk(grip, case.given("poisson"), R) * (tabor / R)
 
 
 def _ending(record: Record, others: Sequence[Record | None], three: Sequence[Estimate | None]) -> tuple[str, str]:
@@ -172,9 +162,9 @@ class Results:
     borders: Sequence[Border]
 
 
-def results(study: Study, bulk: BulkCompliance | None = None) -> Results:
-    """Set the records of a study beside each other; `bulk` as of `rows`."""
-    return Results(study, rows(study.records, bulk), borders(study.records))
+def results(study: Study) -> Results:
+    """Set the records of a study beside each other."""
+    return Results(study, rows(study.records), borders(study.records))
 
 
 # Files: CSV for all, Parquet for those who have the library
@@ -193,17 +183,13 @@ def write_tables(rows: Sequence[DeviationRow], directory: Path) -> str:
         writer.writeheader()
         writer.writerows(_cells(row) for row in rows)
     try:
-        parquet = importlib.import_module("pyarrow.parquet")
+        arrow, parquet = importlib.import_module("pyarrow"), importlib.import_module("pyarrow.parquet")
     except ModuleNotFoundError:
         return NO_PARQUET
-    parquet.write_table(_arrow(rows), directory / "finite_sphere.parquet")
-    return ""
-
-
-def _arrow(rows: Sequence[DeviationRow]) -> Any:
-    arrow = importlib.import_module("pyarrow")
     schema = arrow.schema([(name, arrow.string() if name in TEXTS else arrow.float64()) for name in COLUMNS])
-    return arrow.Table.from_pylist([_cells(row) for row in rows], schema=schema)
+    table = arrow.Table.from_pylist([_cells(row) for row in rows], schema=schema)
+    parquet.write_table(table, directory / "finite_sphere.parquet")
+    return ""
 
 
 def _cells(row: DeviationRow) -> dict[str, object]:
@@ -215,8 +201,7 @@ def _cells(row: DeviationRow) -> dict[str, object]:
     return cells
 
 
-FAVOURED = (0.3, 1.0, 3.0)  # Tabor parameters of a panel each
-POISSON = 0.3
+# What figures and sentences speak of
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -262,13 +247,15 @@ def samples(rows: Iterable[DeviationRow], cause: str, quantity: str, **at: float
 def reference_poisson(rows: Sequence[DeviationRow]) -> float | None:
     """Poisson's ratio of the figures that show one: 0.3, or the nearest to it in the table."""
     known = {row.poisson for row in rows if row.poisson is not None}
-    return min(known, key=lambda nu: abs(nu - POISSON), default=None)
+    return min(known, key=lambda nu: abs(nu - 0.3), default=None)
 
 
 def panel_tabors(rows: Sequence[DeviationRow]) -> list[float]:
     """Tabor parameters that have a panel: those nearest to 0.3, 1 and 3 in the table."""
     known = {row.tabor for row in rows if row.cause == "all" and row.deviation}
-    return sorted({min(known, key=lambda mu: abs(np.log(mu / wanted))) for wanted in FAVOURED} if known else set())
+    return sorted(
+        {min(known, key=lambda mu: abs(np.log(mu / wanted))) for wanted in (0.3, 1.0, 3.0)} if known else set()
+    )
 
 
 def points_by_poisson(rows: Sequence[DeviationRow]) -> list[tuple[float, float]]:
@@ -276,13 +263,6 @@ def points_by_poisson(rows: Sequence[DeviationRow]) -> list[tuple[float, float]]
     data = samples(rows, "all", "pull_off_load")
     points, counts = np.unique([data.radius_ratio, data.tabor], axis=1, return_counts=True)
     return [(float(mu), float(rho)) for rho, mu in points[:, counts > 1].T]
-
-
-def by_poisson(rows: Sequence[DeviationRow], quantity: str, tabor: float, ratio: float) -> tuple[Array, Array]:
-    """Poisson's ratios, ascending, and the deviations at a point."""
-    data = samples(rows, "all", quantity, tabor=tabor, radius_ratio=ratio)
-    order = np.argsort(data.poisson)
-    return data.poisson[order], data.deviation[order]
 
 
 def jumping_tabors(rows: Sequence[DeviationRow]) -> list[float]:

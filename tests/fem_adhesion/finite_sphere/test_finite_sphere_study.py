@@ -24,7 +24,6 @@ from fem_adhesion.common import files
 from fem_adhesion.common.files import NotWritten, open_store
 from fem_adhesion.finite_sphere import cases as finite_sphere_cases
 from fem_adhesion.finite_sphere import fit as finite_sphere_fit
-from fem_adhesion.finite_sphere import study as finite_sphere
 from fem_adhesion.finite_sphere.cases import (
     APPROACH_SCALE,
     CAUSES,
@@ -38,13 +37,14 @@ from fem_adhesion.finite_sphere.cases import (
     quantities_of,
     to_plain,
 )
-from fem_adhesion.finite_sphere.chart import materials
-from fem_adhesion.finite_sphere.fit import SOFT_PULL_OFF, fit
-from fem_adhesion.finite_sphere.study import plan, run
+from fem_adhesion.finite_sphere.fit import SOFT_PULL_OFF, leading_terms
+from fem_adhesion.finite_sphere.plane import materials
+from fem_adhesion.finite_sphere.study import Combinations, plan, run
 from fem_adhesion.finite_sphere.table import (
     COLUMNS,
     NO_PARQUET,
     TEXTS,
+    UNITS,
     DeviationRow,
     Samples,
     borders,
@@ -103,8 +103,8 @@ def solved(case, **values):
 def test_each_case_is_solved_once_though_many_points_need_it():
     cases = plan().cases
     assert len(set(cases)) == len(cases)
-    assert {case.tabor for case in cases if case.model == "half_space"} == set(finite_sphere.TABORS)
-    assert sum(case.model == "half_space" for case in cases) == len(finite_sphere.TABORS)
+    assert {case.tabor for case in cases if case.model == "half_space"} == set(Combinations.tabors)
+    assert sum(case.model == "half_space" for case in cases) == len(Combinations.tabors)
 
 
 def test_every_cause_finds_its_baseline_in_the_plan():
@@ -137,7 +137,7 @@ def test_inputs_out_of_range_are_refused(inputs, message):
         plan(*inputs)
 
 
-def test_spheres_too_small_for_their_tabor_parameter_are_left_out_with_the_limit():
+def test_spheres_too_small_for_their_tabor_parameter_are_left_out():
     found = plan([1.0, 10.0], [5.0, 100.0])
     assert {(r.status, r.kind) for r in found.left_out} == {("left out", "InputError")}
     ill_posed = [r for r in found.left_out if "the equations are ill-posed" in r.reason]
@@ -161,7 +161,7 @@ def start_study(directory, log):
         "from pathlib import Path; import test_finite_sphere_study as t; "
         f"t.run(t.CASES, t.opened(Path({str(directory)!r})), jobs=2, work=t.cheap)"
     )
-    path = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
+    path = os.pathsep.join([str(Path(__file__).parent), *filter(None, sys.path)])  # the helpers, too
     environment = {**os.environ, "PYTHONPATH": path, "STUDY_LOG": str(log), "STUDY_GATE": str(log.parent / "never")}
     return subprocess.Popen(
         [sys.executable, "-c", code],
@@ -191,7 +191,7 @@ def killed_study(directory, log):
     return stored_cases(directory)
 
 
-def test_a_study_killed_under_way_goes_on_without_computing_anything_twice(tmp_path, monkeypatch):
+def test_a_study_killed_under_way_computes_nothing_twice(tmp_path, monkeypatch):
     log, directory = tmp_path / "log", tmp_path / "study"
     log.mkdir()
     kept = killed_study(directory, log)
@@ -212,7 +212,7 @@ def test_a_study_that_is_complete_computes_nothing(tmp_path):
     assert again == first
 
 
-def test_a_case_whose_worker_dies_is_recorded_and_tried_again_when_resumed(tmp_path):
+def test_a_case_whose_worker_died_is_tried_again_when_resumed(tmp_path):
     records = run(CASES[:4], opened(tmp_path), jobs=2, work=deadly)
     died = records[1]
     assert (died.status, died.values) == ("died", {})
@@ -222,7 +222,7 @@ def test_a_case_whose_worker_dies_is_recorded_and_tried_again_when_resumed(tmp_p
 
 
 @pytest.mark.parametrize("kind", [InputError, NotConverged, ContactTooWide, GridTooCoarse])
-def test_a_case_that_is_refused_is_recorded_with_its_kind_and_reason(tmp_path, monkeypatch, kind):
+def test_a_refused_case_is_recorded_with_kind_and_reason(tmp_path, monkeypatch, kind):
     def refused(case):
         raise kind(f"tabor {case.tabor:g} is stuck; try another")
 
@@ -315,47 +315,32 @@ def changed(value, keys, content):
 LOAD = ("values", "pull_off_load")
 TAMPERED = [
     ((*LOAD, "value"), "-5"),
-    ((*LOAD, "value"), math.nan),
-    ((*LOAD, "value"), -math.inf),
     ((*LOAD, "value"), True),
-    ((*LOAD, "value"), None),
     ((*LOAD, "error"), None),
     ((*LOAD, "error"), -1e-3),
-    ((*LOAD, "error"), [1.0]),
     (LOAD, 3.0),
     (("values",), None),
-    (("values",), 3),
     (("values", "weight"), {"value": 1.0, "error": 0.0}),
-    (("status",), None),
     (("status",), "died"),
     (("status",), "refused"),
-    (("status",), ["solved"]),
     (("seconds",), "long"),
-    (("reason",), 3),
     (("kind",), None),
 ]
 
 
-@pytest.mark.parametrize(("keys", "value"), TAMPERED)
-def test_a_value_that_was_changed_is_computed_again_with_a_note(tmp_path, keys, value):
+@pytest.mark.parametrize(("keys", "value"), [*TAMPERED, ((*LOAD, "value"), math.nan), ((*LOAD, "value"), -5.000001)])
+def test_a_value_that_was_changed_is_computed_again(tmp_path, keys, value):
     file, record = one_stored(tmp_path)
     file.write_text(json.dumps(changed(value, ("result", *keys), json.loads(file.read_text()))))
     computed_again(tmp_path, record, f"{file} is computed again: it has been changed")
 
 
-@pytest.mark.parametrize(("keys", "value"), [entry for entry in TAMPERED if entry[1] not in (math.nan, -math.inf)])
-def test_a_result_that_is_no_record_is_computed_again_though_it_is_as_it_was_stored(tmp_path, keys, value):
-    file, record = one_stored(tmp_path)
-    plain = changed(value, keys, to_plain(record))
-    opened(tmp_path, force=True).put(asdict(CASES[0]), plain)
+@pytest.mark.parametrize(("keys", "value"), TAMPERED)
+def test_a_result_stored_that_is_no_record_is_computed_again(tmp_path, keys, value):
+    _, record = one_stored(tmp_path)
+    opened(tmp_path, force=True).put(asdict(CASES[0]), changed(value, keys, to_plain(record)))
+    (file,) = stored_cases(tmp_path).values()
     computed_again(tmp_path, record, f"{file} is computed again: it")
-
-
-@pytest.mark.parametrize("value", [-5.000001, 0.0])
-def test_a_number_exchanged_for_another_is_noticed(tmp_path, value):
-    file, record = one_stored(tmp_path)
-    file.write_text(json.dumps(changed(value, ("result", *LOAD, "value"), json.loads(file.read_text()))))
-    computed_again(tmp_path, record, f"{file} is computed again: it has been changed")
 
 
 def test_the_file_of_another_case_is_computed_again(tmp_path):
@@ -364,7 +349,7 @@ def test_the_file_of_another_case_is_computed_again(tmp_path):
     computed_again(tmp_path, record, f"{file} is computed again: it has been changed")
 
 
-def test_results_of_other_code_or_another_format_are_computed_again_and_counted(tmp_path, monkeypatch):
+def test_results_of_other_code_or_format_are_computed_again(tmp_path, monkeypatch):
     records = run(CASES[:3], opened(tmp_path), jobs=1)
     later = open_store(tmp_path, "edited code", resume=True)
     again = run(CASES[:3], later, jobs=1)
@@ -456,7 +441,7 @@ def row_of(table, cause, quantity):
     return row
 
 
-def test_a_cause_is_the_difference_it_makes_relative_to_the_half_space():
+def test_a_cause_is_the_difference_it_makes():
     table = rows(study_records())
     assert row_of(table, "all", "pull_off_load").deviation.value == pytest.approx(-4.8 / -5.0 - 1)
     grip = row_of(table, "grip", "pull_off_load")
@@ -503,7 +488,7 @@ def test_csv_and_parquet_hold_the_same_table(tmp_path):
             if name not in TEXTS:
                 line[name] = float(line[name]) if line[name] else None
     assert parquet.read_table(tmp_path / "finite_sphere.parquet").to_pylist() == text
-    assert len(text) == 4 * len(QUANTITIES)
+    assert len(text) == 4 * len(UNITS)
 
 
 def test_without_the_library_the_csv_alone_is_written(tmp_path, monkeypatch):
@@ -514,6 +499,11 @@ def test_without_the_library_the_csv_alone_is_written(tmp_path, monkeypatch):
 
 
 # --- the fits ---
+
+
+def fit(data):
+    """Leading terms of the whole deviation of the pull-off load."""
+    return finite_sphere_fit.fit(data, leading_terms("all", "pull_off_load"))
 
 
 def synthetic(law, noise=0.0, tabors=(0.1, 0.3, 1.0, 3.0, 10.0)):
@@ -557,15 +547,15 @@ def made_rows(law, tabors=(0.1, 10.0), cause="profile"):
     ]
 
 
-def test_the_pull_off_is_compared_with_the_rigid_sphere_and_with_maugis():
+def test_the_pull_off_is_compared_with_both_theories():
     def law(mu, rho):
         return np.where(mu < 1, -9 / 7 / rho, maugis_deviation(mu, rho)) * (1 + 0.3 / rho)
 
     hard, soft = finite_sphere_fit.compare(made_rows(law))
-    assert (hard.tabor, soft.tabor) == (0.1, 10.0)
-    assert hard.fitted.value == pytest.approx(-9 / 7, rel=1e-3)
-    assert soft.fitted.value == pytest.approx(soft.expected, rel=1e-2)
-    assert abs(soft.fitted.value - soft.expected) <= soft.fitted.error
+    assert (hard[2], soft[2]) == (0.1, 10.0)
+    assert hard[3].value == pytest.approx(-9 / 7, rel=1e-3)
+    assert soft[3].value == pytest.approx(soft[1], rel=1e-2)
+    assert abs(soft[3].value - soft[1]) <= soft[3].error
 
 
 def maugis_deviation(mu, rho):
@@ -580,7 +570,7 @@ def test_maugis_coefficient_is_that_of_his_theory():
 
 
 def test_findings_cover_all_and_each_tabor_parameter():
-    found = finite_sphere_fit.findings(made_rows(lambda mu, rho: 0.2 * np.sqrt(mu / rho) + mu / rho, cause="all"))
+    found = list(finite_sphere_fit.findings(made_rows(lambda mu, rho: 0.2 * np.sqrt(mu / rho) + mu / rho, cause="all")))
     assert [finding.tabor for finding in found] == [None, 0.1, 10.0]
     for finding in found:
         assert finding.fit.coefficients["beta/R"].value == pytest.approx(0.2, rel=1e-2)
@@ -659,14 +649,14 @@ def test_every_model_has_a_pull_off_of_its_own(solved_once):
     assert min(np.diff(loads)) > 1e-5
 
 
-def test_the_grip_of_a_model_is_that_by_which_its_yield_is_taken_out():
+def test_the_grip_of_a_model_is_that_of_its_yield():
     grips = {name: scene.body.grip for name, scene in SCENES.items()} | dict.fromkeys(TRACTIONS, "sliding")
     for name, model in MODELS.items():
         if not name.startswith("first_jump"):
             assert model.grip == grips.get(name)
 
 
-def test_the_first_jump_of_a_large_sphere_is_that_of_the_half_space_and_one_that_never_jumps_says_so():
+def test_the_first_jump_of_a_large_sphere_is_the_half_space_s():
     found = [
         finite_sphere_cases.compute(case_of("first_jump", None, ratio, 0.3, 1e-4)).values for ratio in (1e5, 1e7, 2.0)
     ]
@@ -679,7 +669,7 @@ def test_the_first_jump_of_a_large_sphere_is_that_of_the_half_space_and_one_that
     assert (border.tabor, bool(border.reason)) == (None, True)
 
 
-def test_the_border_of_the_jumps_divides_the_curves_that_jump_from_those_that_do_not():
+def test_the_border_of_the_jumps_divides_the_curves():
     """The curve's own folds, of the study's own solver, on either side."""
     border = finite_sphere_cases.compute(case_of("first_jump", None, 30.0, 0.2, 1e-4)).values[CRITICAL].value
     for tabor, jumps in ((border - 5e-3, False), (border + 5e-3, True)):
@@ -687,11 +677,10 @@ def test_the_border_of_the_jumps_divides_the_curves_that_jump_from_those_that_do
         assert ("jump_on" in fem_adhesion.trace(scene, rtol=1e-3, to_load=0.5).events) == jumps
 
 
-def test_the_error_of_the_border_holds_what_finer_elements_change(monkeypatch):
+def test_the_border_s_error_holds_what_finer_elements_change():
     case = case_of("first_jump", None, 30.0, 0.2, 1e-4)
     found = finite_sphere_cases.compute(case).values[CRITICAL]
-    monkeypatch.setattr(finite_sphere_cases, "DEGREES", (7, 8))
-    finer = finite_sphere_cases.compute(case).values[CRITICAL]
+    finer = MODELS["first_jump"].solve(case, degrees=(7, 8))[CRITICAL]
     assert abs(finer.value - found.value) <= found.error
     assert finer.error < found.error < 1e-4
 
@@ -714,14 +703,7 @@ def _kind(material):
     return material.name.split(",")[0]
 
 
-def test_materials_are_those_promised_and_sourced():
-    assert {_kind(material) for material in materials()} == set(HANDBOOK)
-    for material in materials():
-        assert material.source
-        assert "typical" in material.note
-
-
-@pytest.mark.parametrize("material", materials(), ids=lambda material: material.name)
+@pytest.mark.parametrize("material", list(materials()), ids=lambda material: material.name)
 def test_a_material_is_within_the_ranges_of_handbooks(material):
     modulus, hamaker = HANDBOOK[_kind(material)]
     assert modulus[0] <= material.units.modulus * (1 - material.poisson**2) <= modulus[1]
@@ -733,8 +715,8 @@ def test_a_material_is_within_the_ranges_of_handbooks(material):
     assert material.units.radius == pytest.approx(across, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize("material", materials(), ids=lambda material: material.name)
-def test_adhesion_spacing_and_hamaker_constant_of_a_material_agree(material):
+@pytest.mark.parametrize("material", list(materials()), ids=lambda material: material.name)
+def test_adhesion_spacing_and_hamaker_constant_agree(material):
     """The attraction from afar of the surface law, read off the law itself, is the one of the Hamaker constant."""
     units, gap = material.units, 1e3
     tension = -float(LENNARD_JONES.pressure(np.array(gap - 1), units.tabor)) * units.pressure
@@ -743,14 +725,8 @@ def test_adhesion_spacing_and_hamaker_constant_of_a_material_agree(material):
     assert units.spacing == pytest.approx(math.sqrt(0.75) * CUTOFF, rel=0.05, abs=0)
 
 
-def test_one_material_has_one_stiffness_and_one_surface_at_every_size():
-    for kind in HANDBOOK:
-        sizes = [material for material in materials() if _kind(material) == kind]
-        assert len({(m.units.modulus, m.poisson, m.units.work_of_adhesion, m.units.spacing) for m in sizes}) == 1
-
-
-def test_a_material_stands_on_the_chart_where_its_own_numbers_put_it():
-    silica = materials()[0]
+def test_a_material_stands_where_its_own_numbers_put_it():
+    silica = next(materials())
     assert silica.units.tabor == pytest.approx(
         np.cbrt(1e-8 * (0.063 * (1 - 0.17**2) / 7.2e10) ** 2) / silica.units.spacing, rel=1e-12
     )
