@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 import re
 import reprlib
+from collections.abc import Callable
 from numbers import Integral, Real
 
+import numpy as np
+
 from halfspace.errors import InputError
+from halfspace.values import Array
 
 SMALLEST_SPHERE = 1.5**2
 """Least R/eps over the Tabor parameter, (R/beta)^2."""
@@ -60,6 +64,28 @@ def require_part(value: object, name: str, trait: str, example: str) -> None:
     if isinstance(value, type) or not hasattr(value, trait):
         shown = " ".join(reprlib.repr(value).split())
         raise InputError(f"{name} = {shown} of type {type(value).__name__} is no {name}; take {example}, say")
+
+
+def require_all(part: object, *findings: tuple[str, bool, str, str]) -> None:
+    """Raise InputError for the first finding about a part that does not hold.
+
+    A finding is a value in words, whether it will do, its limit and the remedy.
+    """
+    for value, holds, limit, remedy in findings:
+        if not holds:
+            raise InputError(f"{part}: {value}, limit: {limit}; {remedy}")
+
+
+def off_derivative(derivative: Array, of: Callable[[Array], Array], x: Array, size: Array, scale: Array) -> float:
+    """Largest distance of a derivative at places x from differences of its function, in parts of a scale.
+
+    Differences are over 1e-4 of a size of the places. The distance at two neighbouring places counts: at one alone a
+    law or a profile may have a corner or a step.
+    """
+    d = 1e-4 * size
+    one, two = (of(x + k * d) - of(x - k * d) for k in (1, 2))
+    off = np.abs(derivative - (8 * one - two) / (12 * d)) / scale
+    return float(np.max(np.minimum(off[1:], off[:-1])))
 
 
 def require_tabor(tabor: float) -> float:

@@ -10,7 +10,7 @@ from typing import Any
 from halfspace.errors import NotConverged
 
 EPSILON = sys.float_info.epsilon
-MOST_ITERATIONS = 100  # of Brent's method, which halves its interval at worst every third
+MOST_ITERATIONS = 100  # iterations of Brent's method, which halves its interval at worst every third
 
 
 def root(function: Callable[[float], float], first: float, last: float, what: str, **tolerances: Any) -> float:

@@ -17,34 +17,45 @@ import numpy as np
 from halfspace.elastic.layers import LayeredBody, softest, stiff_as
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
-from halfspace.laws.law import NEAR, TINY
+from halfspace.laws.law import GAPS, TINY
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.profiles.indentation import hertz_radius, jkr_fold, jkr_least_load, jkr_radius
 from halfspace.roots import rising_root, root
 from halfspace.values import Array
 
-RISE = 0.245  # eps, over which the tension of the 3-9 law rises: a rigid paraboloid does so in 0.7 beta/sqrt(mu)
-NOTHING = 1e-15  # of the work of adhesion: what the tail of a law without an exponent may leave beyond the finite cells
-FARTHER = 8.0  # extents, up to which the infinite cell is cut where the tail is no polynomial, at least
-# Of the largest tension, by which it may fall within a gap as wide as that from the edge; and how much more slowly the
-# cells grow where it falls by more. With 0.7 and 1 the sharper of Dugdale's laws did not meet 1e-6, and at 1e-8 it
-# erred by twice the estimates.
-SUDDEN, SLOWER = 0.65, 1.5
-STEPPED = 0.55  # of it, above which laws with a step are, however wide it is; all others are below
-# Of the most load in a part of ln H, how deep a valley may lie in it; with which power of deeper ones cells grow less.
-# With cells that grew threefold curves rippled, and 15 nodes in each left 1e-4 in the load of a fold on a coating.
-SHALLOW, BROKEN = 0.05, 0.5
-# Of the load, what cells with no infinite one should leave beyond, and may at most; how much farther they go for it: by
-# elements that are longer still, beside as thin ones, the stiffness is singular.
-LEFT, MOST_LEFT, FARTHEST = 1e-9, 1e-6, 1e5
-UNTOLD, CROWD = 1e-7, 64.0  # of the load beyond, what the last cell may leave of it; how much nearer its nodes are
-FLATTEST = 6.0  # times as many widths of its edge as a contact on a paraboloid: on a flat punch there is no end to them
-STEP = 0.1  # of the trapezoidal rule in ln r for the tension of undeformed surfaces
+BRADLEY = 2 * math.pi  # largest tension of a rigid sphere, R dgamma
+STEP = 0.1  # step of the trapezoidal rule in ln r for the tension of undeformed surfaces
 LOGARITHMS = np.arange(-16.0, 16.0, STEP)
-LEAST_LOAD = 0.1  # R dgamma, below which curves that end at loads of 5 would take too many steps
-BRADLEY = 2 * math.pi  # R dgamma, the largest tension of a rigid sphere
-OUT = 1e6  # beta, far out on a profile
-SEPARATED = 10.0  # eps: the least at which surfaces count as separated, beside what the contact draws out
+
+
+@dataclass(frozen=True)
+class ScaleSettings:
+    """Numbers by which lengths of a contact are chosen.
+
+    Of those on steps: with ``sudden`` 0.7 and ``slower`` 1 the sharper of Dugdale's laws did not meet 1e-6, and at 1e-8
+    it erred by twice the estimates. Of those on valleys: with cells that grew threefold curves rippled, and 15 nodes in
+    each cell left 1e-4 in the load of a fold on a coating.
+    """
+
+    rise: float = 0.245  # eps over which the tension of the 3-9 law rises: 0.7 beta mu^-1/2 of a rigid paraboloid
+    nothing: float = 1e-15  # part of the work of adhesion beyond the finite cells of a law without an exponent
+    sudden: float = 0.65  # part of its maximum that a tension may fall by within one edge gap while cells grow as usual
+    slower: float = 1.5  # power of the excess over that part by which cells grow more slowly
+    stepped: float = 0.55  # part of its maximum by which the tension of a law with a step falls within one edge gap
+    shallow: float = 0.05  # depth of a valley of the load in ln H, in its largest, to which cells grow as usual
+    broken: float = 0.5  # power of deeper valleys by which cells grow more slowly
+    left: float = (
+        1e-9  # part of the load beyond the cells of a layer, none of which is infinite; they go farther for it
+    )
+    most_left: float = 1e-6  # part of the load beyond those cells at which a scene is refused
+    farthest: float = 1e5  # extents that those cells go farther; longer elements, as thin, make the stiffness singular
+    farther: float = 8.0  # least extents up to which the infinite cell is cut where the tail is no polynomial
+    untold: float = 1e-7  # part of the load beyond the finite cells that the last of these cells may leave
+    crowd: float = 64.0  # times as near to infinity as its ends the nodes of the last cell are
+    flattest: float = 6.0  # most widths of its edge that a rigid contact is wide, in those on a paraboloid
+    least_load: float = 0.1  # R dgamma, least size of the tensions: curves that end at loads of 5 take too many steps
+    far_out: float = 1e6  # beta, where the exponent of a profile is read off
+    separated: float = 10.0  # eps, least gap at which surfaces count as separated
 
 
 @dataclass(frozen=True)
@@ -61,12 +72,15 @@ class Scales:
         Of the undeformed surfaces.
     body : LayeredBody, optional
         Strata on a base; what else is elastic yields as a half-space of E* to waves as short as the attraction is wide.
+    how : ScaleSettings, optional
+        Numbers by which the lengths are chosen.
     """
 
     tabor: float
     law: Law = LENNARD_JONES
     profile: Surface = PARABOLOID
     body: LayeredBody | None = None
+    how: ScaleSettings = ScaleSettings()
 
     @cached_property
     def of_contact(self) -> Scales:
@@ -123,7 +137,7 @@ class Scales:
         A gap beyond the edge by H has opened over some distance d, so that a tension which falls within a part of H
         does within that part of d.
         """
-        return float(min(1.0, SUDDEN / self._steepness[1].max()) ** SLOWER)
+        return float(min(1.0, self.how.sudden / self._steepness[1].max()) ** self.how.slower)
 
     @cached_property
     def _unbroken(self) -> float:
@@ -132,14 +146,14 @@ class Scales:
         The area over which a paraboloid is H apart or less grows as H, so that H times the tension is the load in each
         part of ln H, in which cells that grow are as long. What counts is its valley, below the lower of its two tops.
         """
-        load = -NEAR * self.law.pressure(NEAR, 1.0)
+        load = -GAPS * self.law.pressure(GAPS, 1.0)
         top = np.minimum(np.maximum.accumulate(load), np.maximum.accumulate(load[::-1])[::-1])
-        return float(min(1.0, SHALLOW * load.max() / max((top - load).max(), TINY)) ** BROKEN)
+        return float(min(1.0, self.how.shallow * load.max() / max((top - load).max(), TINY)) ** self.how.broken)
 
     @cached_property
     def _steepness(self) -> tuple[Array, Array]:
         """Gaps beyond the edge, and how fast the tension falls there, in parts of the largest in such a distance."""
-        beyond = NEAR[self.law.edge_gap < NEAR]
+        beyond = GAPS[self.law.edge_gap < GAPS]
         return beyond, (beyond - self.law.edge_gap) * np.abs(self.law.slope(beyond, 1.0)) / self.law.strength
 
     @cached_property
@@ -151,7 +165,7 @@ class Scales:
     @property
     def steps(self) -> bool:
         """Whether the tension ends by a step, if only by one so wide that cells grow as by any other law."""
-        return bool(self._steepness[1].max() > STEPPED)
+        return bool(self._steepness[1].max() > self.how.stepped)
 
     @property
     def _rigid_width(self) -> float:
@@ -162,12 +176,12 @@ class Scales:
     @cached_property
     def flat(self) -> float:
         """How many times as many widths of its edge as on a paraboloid a rigid contact is wide: k/2 on u^k."""
-        return min(max(1.0, self._touching_radius / self._rigid_width), FLATTEST)
+        return min(max(1.0, self._touching_radius / self._rigid_width), self.how.flattest)
 
     @cached_property
     def _touching_radius(self) -> float:
         """Radius of a rigid contact: where the undeformed gap has opened by as much as the tension rises over."""
-        return self.radius_at(RISE * math.sqrt(LENNARD_JONES.stiffness / self.law.stiffness))
+        return self.radius_at(self.how.rise * math.sqrt(LENNARD_JONES.stiffness / self.law.stiffness))
 
     def widest_radius(self, to_load: float) -> float:
         """Contact radius that a curve up to a load hardly exceeds: a soft and a rigid contact's together."""
@@ -197,7 +211,7 @@ class Scales:
 
     def _undeformed(self, density: Callable[[Array, float], Array], gap: float) -> float:
         """Integral of the law's pressure or slope over undeformed surfaces at a central gap, in R dgamma."""
-        r = self.radius_at(max(gap, RISE)) * np.exp(LOGARITHMS)
+        r = self.radius_at(max(gap, self.how.rise)) * np.exp(LOGARITHMS)
         r = r[r < self.profile.end]
         return 2 * np.pi * STEP * float(r**2 @ density(gap + self.tabor * self.profile.height(r), self.tabor))
 
@@ -205,11 +219,11 @@ class Scales:
     def largest_load(self) -> float:
         """Size of the tensions in R dgamma: Bradley's 2 pi, but what others a profile has."""
         found = self.rigid_tension if self.tabor < 1 else -4 / 3 * jkr_least_load(self.profile)
-        return max(found, LEAST_LOAD) if abs(math.log2(found / BRADLEY)) > 1 else BRADLEY
+        return max(found, self.how.least_load) if abs(math.log2(found / BRADLEY)) > 1 else BRADLEY
 
     def outer_radius(self, height: float) -> float:
         """Radius at which finite cells end: the undeformed gap opens by `height`, or by a tail without an exponent."""
-        return self.radius_at(max(height, self.law.range(NOTHING)) if math.isinf(self.law.decay) else height)
+        return self.radius_at(self.law.outer_gap(height, self.how.nothing))
 
     def whole_radius(self, height: float) -> float:
         """Radius at which cells end beyond which nothing acts: `outer_radius`, or farther if too much load is there.
@@ -221,11 +235,12 @@ class Scales:
             return r
         tension = abs(float(self.law.pressure(self.tabor * self.profile.height(np.array(r)), self.tabor)))
         beyond = 2 * math.pi * r**2 * tension / power / self.rigid_tension
-        farther = min(max(1.0, beyond / LEFT) ** (1 / power), FARTHEST)
-        if beyond > MOST_LEFT * farther**power:
+        farther = min(max(1.0, beyond / self.how.left) ** (1 / power), self.how.farthest)
+        if beyond > self.how.most_left * farther**power:
+            least = math.log(beyond / self.how.most_left) / math.log(self.how.farthest)
             raise InputError(
                 f"{self.law} on {self.profile}: the load beyond r falls as r^-{power:.2g} alone, limit on layers: "
-                f"r^-{math.log(beyond / MOST_LEFT) / math.log(FARTHEST):.2g}; take a law or a profile that rises faster"
+                f"r^-{least:.2g}; take a law or a profile that rises faster"
             )
         return float(r * farther)
 
@@ -248,12 +263,12 @@ class Scales:
         powers = np.array([self.law.decay, 1.0]) * self._growth
         if np.allclose(powers, np.round(powers), rtol=0, atol=1e-4):
             return 1.0
-        return float(max(FARTHER, UNTOLD ** (-1 / (powers[0] - 2)) / CROWD))
+        return float(max(self.how.farther, self.how.untold ** (-1 / (powers[0] - 2)) / self.how.crowd))
 
     @property
     def _growth(self) -> float:
         """Exponent of the profile's height far out."""
-        r = np.array(OUT)
+        r = np.array(self.how.far_out)
         return float(r * self.profile.slope(r) / self.profile.height(r))
 
     @cached_property
@@ -264,7 +279,7 @@ class Scales:
     @cached_property
     def separated_approach(self) -> float:
         """Approach in eps at which only the separated branch exists; left of jump_off, -1.64 mu in the JKR limit."""
-        apart = max(SEPARATED, 3 * self.law.range(0.1))
+        apart = max(self.how.separated, 3 * self.law.range(0.1))
         return -apart - self.tabor * max(2.0, -1.2 * jkr_fold(self.profile))
 
     def radius_at(self, height: float) -> float:
@@ -278,4 +293,4 @@ class Scales:
 
 def _steepest(law: Law) -> float:
     """Steepest fall of a law's tension beyond its edge, in dgamma/eps^2."""
-    return float(law.slope(NEAR[law.edge_gap < NEAR], 1.0).max())
+    return float(law.slope(GAPS[law.edge_gap < GAPS], 1.0).max())

@@ -12,7 +12,7 @@ from collections.abc import Callable, Hashable, Mapping
 from dataclasses import Field, dataclass, fields, is_dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,11 +23,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-FEW = 4
-"""Items of a sequence, and numbers of an array, that are shown one by one."""
-
-LONGEST = 60
-"""Characters shown of anything else."""
+FEW = 4  # items of a sequence, and numbers of an array, that are shown one by one
 
 
 @dataclass(frozen=True)
@@ -138,7 +134,7 @@ def shown(value: Any) -> str:
     if isinstance(value, Valued):
         return f"{type(value).__name__}(...)"
     text = repr(value)
-    return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
+    return text if len(text) <= 60 else f"{text[:60]}..."
 
 
 def _is_sparse(value: Any) -> bool:
@@ -212,35 +208,42 @@ def _numbers(line: str) -> list[float] | None:
     return [first, second]
 
 
-Made = TypeVar("Made")
+class Sized(Protocol):
+    """What knows how many bytes it takes."""
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes."""
+        ...
 
 
-class Recent(Generic[Made]):
-    """What was made last for some owners, as much as there is room for; the rest is made again when asked for.
+Kept = TypeVar("Kept", bound=Sized)
 
-    The size of what was made is counted in the unit of the room. An entry, known by its owner and a key, ends with its
-    owner.
+
+class Recent:
+    """What was made last for some owners, as many bytes as there is room for; the rest is made again when asked for.
+
+    An entry is known by its owner and a name, and has a version, of which the latest is kept. It ends with its owner.
     """
 
-    def __init__(self, room: float, size: Callable[[Made], float] = lambda _: 1) -> None:
-        self.room, self.size = room, size
-        self._entries: dict[tuple[int, Hashable], tuple[weakref.ref[object], Made]] = {}
+    def __init__(self, room: float) -> None:
+        self.room = room
+        self._entries: dict[tuple[int, str], tuple[weakref.ref[object], Hashable, Any]] = {}
 
-    def get(self, owner: object, key: Hashable, make: Callable[[], Made]) -> Made:
-        """Entry of an owner, made unless it is still there."""
-        which = id(owner), key
+    def get(self, owner: object, name: str, make: Callable[[], Kept], version: Hashable = None) -> Kept:
+        """Entry of an owner in a version, made unless it is still there."""
+        which = id(owner), name
         known = self._entries.pop(which, None)
-        if known is None or known[0]() is not owner:
-            known = weakref.ref(owner), make()
-            self._make_room(self.size(known[1]))
+        if known is None or known[0]() is not owner or known[1] != version:
+            known = weakref.ref(owner), version, make()
+            self._make_room(known[2].nbytes)
         self._entries[which] = known
-        return known[1]
+        kept: Kept = known[2]
+        return kept
 
     def _make_room(self, needed: float) -> None:
         """Let go of what has lost its owner, and of the oldest entries."""
-        for which, (owner, _) in list(self._entries.items()):
-            if owner() is None:
-                self._entries.pop(which, None)
-        needed += sum(self.size(made) for _, made in self._entries.values())
+        self._entries = {which: entry for which, entry in self._entries.items() if entry[0]() is not None}
+        needed += sum(made.nbytes for *_, made in self._entries.values())
         while needed > self.room and self._entries:
-            needed -= self.size(self._entries.pop(next(iter(self._entries)))[1])
+            needed -= self._entries.pop(next(iter(self._entries)))[2].nbytes

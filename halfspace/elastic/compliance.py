@@ -83,6 +83,11 @@ class ElasticOperator(Valued, Operator):
     cell_nodes: Index
 
     @property
+    def nbytes(self) -> int:
+        """Bytes of its compliance."""
+        return self.compliance.nbytes
+
+    @property
     def extent(self) -> float:
         """Radius in beta at which the last finite cell ends."""
         return float(self.cells[-1])
@@ -301,9 +306,6 @@ def collocated(radii: Array, lengths: Array, compliance: Array, cells: Array) ->
     )
 
 
-NEXT_TO_AXIS = 1e-9  # of the extent: a node on the axis, which inversion maps to infinity, sinks by what one there does
-
-
 def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> ElasticOperator:
     """Let the surface law act on a half-space beyond the extent U of an operator, in cells up to infinity.
 
@@ -321,7 +323,7 @@ def to_infinity(operator: ElasticOperator, nodes: int, reach: float = 1.0) -> El
     t, w = (part.ravel() for part in grid.gauss_points(ends, nodes))
     U, inner = operator.extent, operator.finite
     radii, weights = U / t, 2 * np.pi * U**2 * w / t**3
-    tau = U / np.append(np.maximum(inner.radii, NEXT_TO_AXIS * U), radii)
+    tau = U / np.append(np.maximum(inner.radii, 1e-9 * U), radii)  # inversion maps the axis to infinity
     integrals = panel_integrals(tau, ends, grid.gauss_legendre(nodes)[0]).reshape(tau.size, t.size)
     order = np.argsort(radii)
     deflection = (U * tau[:, None] * integrals / t**3)[:, order]

@@ -9,6 +9,7 @@ point nearest to the target: the powers of t smother the logarithm, on the panel
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
@@ -20,13 +21,26 @@ from halfspace.elastic.grid import gauss_legendre
 from halfspace.errors import GridTooLarge
 from halfspace.values import Array
 
-GRADING = 7  # q of the substitution; with NEAR_POINTS it leaves 5e-13 for panels of up to 16 nodes
-NEAR_POINTS = 48
-# From so many panel lengths away Gauss's rule serves with so many points, and half as many as a panel has nodes: they
-# leave 3e-14 of polynomials; the other rule, next to the target, is then a decade worse.
-FAR = ((0.25, 16), (1.0, 8))
-ROUNDED = 1e-10  # of a panel, by which a target may be off its node
-BATCH = 2_000_000  # points at which the kernel is evaluated at a time: 16 MB an array
+
+@dataclass(frozen=True)
+class RingRules:
+    """Rules by which a ring's kernel is integrated over panels of up to 16 nodes.
+
+    From so many panel lengths away, the first of ``far``, Gauss's rule serves with so many points, the second, and half
+    as many as a panel has nodes. These leave 3e-14 of polynomials; the graded rule, next to the target, is then a
+    decade worse. As many bytes as ``largest`` are made at once. Of the integrals on one grid there are eight at a time,
+    as the solver's matrices and what they are made from: 3137 triangles take 0.73 GB, 5041 took 1.76 GB, and 1 GB is
+    what a computation may take.
+    """
+
+    near: tuple[int, int] = (48, 7)  # points and power q of the rule near a target: they leave 5e-13
+    far: tuple[tuple[float, int], ...] = ((0.25, 16), (1.0, 8))
+    rounded: float = 1e-10  # lengths of a panel by which a target may be off its node
+    batch: int = 2_000_000  # points at which the kernel is evaluated at a time: 16 MB an array
+    largest: float = 1.25e8  # bytes of the integrals made at once
+
+
+RULES = RingRules()
 
 # Deflection at x by unit pressure on a ring at y, by y: of x, y and |y - x|, which are broadcast. Both are radii, or in
 # the coordinate in which the pressure of a panel is a polynomial.
@@ -90,22 +104,19 @@ def _elliptic_b(k: Array) -> Array:
 
 
 @cache
-def graded_rule(points: int, q: int = GRADING) -> tuple[Array, Array]:
+def graded_rule(points: int, q: int) -> tuple[Array, Array]:
     """Points and weights on (0, 1) for integrands with a logarithm at, or just below, 0."""
     x, w = gauss_legendre(points)
     t = (1 + x) / 2
     return t**q, w / 2 * q * t ** (q - 1)
 
 
-# Bytes of the integrals made at once. Of those on one grid there are eight at a time, as the solver's matrices and what
-# they are made from: 3137 triangles take 0.73 GB, 5041 took 1.76 GB, and 1 GB is what a computation may take.
-LARGEST = 1.25e8
-
-
 def require_room(nodes: int, integrals: int) -> None:
     """Raise GridTooLarge if so many integrals for each node of some grids take more memory than they may."""
-    if (size := 8 * nodes * integrals) > LARGEST:
-        raise GridTooLarge(f"{nodes} nodes, whose integrals take {size / 1e9:.2g} GB, limit: {LARGEST / 1e9:.3g} GB")
+    if (size := 8 * nodes * integrals) > RULES.largest:
+        raise GridTooLarge(
+            f"{nodes} nodes, whose integrals take {size / 1e9:.2g} GB, limit: {RULES.largest / 1e9:.3g} GB"
+        )
 
 
 def panel_integrals(targets: Array, breakpoints: Array, nodes: Array, ring: Ring = flat_ring) -> Array:
@@ -120,7 +131,7 @@ def panel_integrals(targets: Array, breakpoints: Array, nodes: Array, ring: Ring
     require_room(targets.size, (breakpoints.shape[-1] - 1) * nodes.size)
     ends = breakpoints[..., None, :-1], breakpoints[..., None, 1:]
     pairs = np.broadcast_arrays(targets[..., None], *ends)
-    shape, batches = pairs[0].shape, -(-pairs[0].size * _points(FAR[-1][1], nodes.size) // BATCH)
+    shape, batches = pairs[0].shape, -(-pairs[0].size * _points(RULES.far[-1][1], nodes.size) // RULES.batch)
     some = zip(*(np.array_split(part.ravel(), batches) for part in pairs), strict=True)
     moments = np.concatenate([_moments(ring, r, left, right, nodes.size) for r, left, right in some])
     return _of_lagrange(moments, nodes).reshape(*shape, nodes.size)
@@ -133,7 +144,7 @@ def before_equator(targets: Array, lines: Array, nodes: Array, R: float) -> Arra
     the equator have the same radius: what is between is cut into halves, the rule of the one from the target on, of the
     other from the equator.
     """
-    ring, k, rule = stereographic_ring(R), nodes.size, (NEAR_POINTS, GRADING)
+    ring, k, rule = stereographic_ring(R), nodes.size, RULES.near
     t, polynomials = _graded_polynomials(*rule, k)
     shape, (left, right) = targets.shape, (np.repeat(lines[..., end], k) for end in (-2, -1))
     targets = targets.ravel()
@@ -141,7 +152,7 @@ def before_equator(targets: Array, lines: Array, nodes: Array, R: float) -> Arra
     y = right[:, None] - (right - middle)[:, None] * t
     last = ring(targets[:, None], y, y - targets[:, None]) @ polynomials * (right - middle)[:, None]
     last[:, 1::2] *= -1  # odd polynomials, seen from the right end
-    first = (beside(ring, targets, *ends, k, rule) for ends in ((left, targets), (targets, middle)))
+    first = (off_moments(ring, targets, *ends, k, rule) for ends in ((left, targets), (targets, middle)))
     parts = [np.tile(part, (targets.size // k, 1, 1)) for part in _at_nodes(k, mirrored=True)]
     return _of_lagrange(_of_parts([*first, last], parts), nodes).reshape(*shape, k)
 
@@ -159,11 +170,11 @@ def _to_lagrange(nodes: bytes) -> Array:
 
 def _moments(ring: Ring, r: Array, left: Array, right: Array, k: int) -> Array:
     """Integrals of G(r, s) s against the first k Legendre polynomials of a panel for each target, (n, k)."""
-    distance = np.searchsorted([least for least, _ in FAR], np.maximum(left - r, r - right) / (right - left))
+    distance = np.searchsorted([least for least, _ in RULES.far], np.maximum(left - r, r - right) / (right - left))
     moments = np.empty((r.size, k))
-    for i in range(len(FAR) + 1):
+    for i in range(len(RULES.far) + 1):
         some = np.flatnonzero(distance == i)
-        integrals, rule = (beside, (_points(FAR[i - 1][1], k), 1)) if i else (near_moments, (NEAR_POINTS, GRADING))
+        integrals, rule = (off_moments, (_points(RULES.far[i - 1][1], k), 1)) if i else (near_moments, RULES.near)
         moments[some] = integrals(ring, r[some], left[some], right[some], k, rule)
     return moments
 
@@ -179,11 +190,11 @@ def near_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: 
     the end of the panel next to it. Return (..., n, k), with the leading axes that the ring's values have.
     """
     on = (left < r) & (r < right)
-    off = beside(ring, r[~on], left[~on], right[~on], k, rule)
+    off = off_moments(ring, r[~on], left[~on], right[~on], k, rule)
     moments = np.empty((*off.shape[:-2], r.size, k))
     moments[..., ~on, :] = off
     r, left, right = r[on], left[on], right[on]
-    parts = [beside(ring, r, left, r, k, rule), beside(ring, r, r, right, k, rule)]
+    parts = [off_moments(ring, r, left, r, k, rule), off_moments(ring, r, r, right, k, rule)]
     moments[..., on, :] = _of_parts(parts, _halves(np.asarray((r - left) / (right - left)), k))
     return moments
 
@@ -197,7 +208,7 @@ def _halves(cuts: Array, k: int) -> Sequence[Array]:
     """Polynomials of the parts before and after cuts (n,); mostly these are a panel's own nodes, but for rounding."""
     own = (1 + gauss_legendre(k)[0]) / 2
     nearest = np.abs(cuts[:, None] - own).argmin(axis=1)
-    if np.all(np.abs(cuts - own[nearest]) < ROUNDED):
+    if np.all(np.abs(cuts - own[nearest]) < RULES.rounded):
         return [part[nearest] for part in _at_nodes(k, mirrored=False)]
     return _of_a_part(0 * cuts, cuts, k), _of_a_part(cuts, 1 + 0 * cuts, k)
 
@@ -210,7 +221,7 @@ def _at_nodes(k: int, *, mirrored: bool) -> list[Array]:
     return [_of_a_part(*between, k) for between in pairwise(ends)]
 
 
-def beside(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: tuple[int, int]) -> Array:
+def off_moments(ring: Ring, r: Array, left: Array, right: Array, k: int, rule: tuple[int, int]) -> Array:
     """Moments as of `near_moments` on panels that have none of the targets within."""
     t, polynomials = _graded_polynomials(*rule, k)
     above = r <= left

@@ -30,26 +30,39 @@ from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
 from halfspace.elastic.grid import gauss_legendre, polynomial
 from halfspace.elastic.kernel import near_moments
 from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
-from halfspace.elastic.operators import Beside, NearlyHomogeneous, chebyshev_radii, nodes_beside
+from halfspace.elastic.operators import Kernels, NearlyHomogeneous, Remainder, chebyshev_radii, nodes_beside
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
 Complex = NDArray[np.complex128]
 
-SHALLOWEST, DEEPEST = 1.0, 60.0  # images, in thicknesses of the first stratum and of all
-DEEPER = (1.0, 10.0, 100.0, 1000.0)  # times as deep they go if need be: stiff strata spread a load as widely
-SPACING = 1.14  # ratio of neighbouring depths: with 1.2 the fit is a decade worse, with 1.1 no better
-CLOSE = 0.14  # most logarithm of the ratio of lengths between which images are interpolated, half if they are tilted
-WIDE = 3.5  # most logarithm of the ratio of contact radii between which what images deflect is one polynomial
-SAMPLES = 500  # wave numbers at which S is fitted
-# Rule for the nodes near a cell that is longer than the first stratum is thick: with 6 nodes a cell a bell of pressure
-# deflects the surface to 1e-8 as by a rule of 64 points, q = 5, up to two lengths away, with 8 nodes to 2e-9.
-NEAR = 0.5  # lengths of the cell
-NEAR_POINTS, GRADING = 24, 2  # see `halfspace.elastic.kernel.graded_rule`
-APART, APART_POINTS = 0.3, 14  # lengths from which Gauss's rule serves: it leaves 5e-11 of a kernel, the other 1e-9
-AT_ONCE = 10**6  # numbers that are integrated at once
-ALIKE = 1e-8  # relative difference of two numbers of which the mean errs by a sixteenth of its square
-FITTED, AT_WORST = 3e-8, 1e-6  # of the largest S, or of 1: where deeper images are tried no more, and what is refused
+
+@dataclass(frozen=True)
+class ImageSettings:
+    """Numbers by which images are fitted and their kernels integrated.
+
+    Of the rule near cells that are longer than the first stratum is thick: with 6 nodes a cell a bell of pressure
+    deflects the surface to 1e-8 as by a rule of 64 points, q = 5, up to two lengths away, with 8 nodes to 2e-9.
+    """
+
+    shallowest: float = 1.0  # thicknesses of the first stratum at which the first image is
+    deepest: float = 60.0  # thicknesses of all strata at which the last image is
+    deeper: tuple[float, ...] = (1.0, 10.0, 100.0, 1e3)  # times as deep they go if need be: stiff strata spread a load
+    spacing: float = 1.14  # ratio of neighbouring depths: with 1.2 the fit is a decade worse, with 1.1 no better
+    close: float = 0.14  # most logarithm of the ratio of lengths between which images are interpolated
+    wide: float = 3.5  # most logarithm of the ratio of contact radii between which a remainder is one polynomial
+    samples: int = 500  # wave numbers at which S is fitted
+    fitted: float = 3e-8  # misfit, in parts of the largest S or 1, at which no deeper images are tried
+    at_worst: float = 1e-6  # misfit at which strata are refused
+    near: float = 0.5  # lengths of a long cell around it where nodes need a rule of their own
+    adjacent: tuple[int, int] = (24, 2)  # points and grading of the rule next to a long cell, as of `graded_rule`
+    apart: float = 0.3  # lengths of a long cell from which Gauss's rule leaves 5e-11 of a kernel
+    apart_points: int = 14  # points of that rule
+    at_once: int = 10**6  # numbers that are integrated at once
+    alike: float = 1e-8  # relative difference of two numbers at which their mean is the arithmetic-geometric one
+
+
+HOW = ImageSettings()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -86,7 +99,7 @@ class Images(Valued):
         """
         real, tilted = self.depths.real, self.depths.imag > 0
         ratio = float(np.log(real[1] / real[0]))
-        parts = int(np.ceil(ratio / (CLOSE / 2 if tilted.any() else CLOSE)))
+        parts = int(np.ceil(ratio / (HOW.close / 2 if tilted.any() else HOW.close)))
         step = ratio / parts
         near = 2 * nodes_beside(step * (2 if tilted.any() else 1), left)
         shallowest = np.log(real[0] / lengths)
@@ -113,12 +126,12 @@ def _ring(z: complex, sums: Array, differences: Array) -> Array | Complex:
 
 def _mean(a: Complex, b: Complex) -> Complex:
     """Arithmetic-geometric mean of numbers with positive real parts; the digits double from step to step."""
-    while np.any(np.abs(a - b) > ALIKE * np.abs(a)):
+    while np.any(np.abs(a - b) > HOW.alike * np.abs(a)):
         a, b = (a + b) / 2, np.sqrt(a * b)
     return (a + b) / 2
 
 
-def images_of(body: LayeredBody, spacing: float = SPACING) -> Images:
+def images_of(body: LayeredBody, spacing: float = HOW.spacing) -> Images:
     """Fit the images of a layered body at depths of a given ratio of neighbours; another one errs otherwise.
 
     InputError if the body is not made of layers, NotConverged if the strata differ so much in stiffness or thickness
@@ -126,22 +139,22 @@ def images_of(body: LayeredBody, spacing: float = SPACING) -> Images:
     """
     body = require_layered(body)
     thin, all_of_it = body.strata[0].thickness, total_thickness(body)
-    k = np.geomspace(1e-4 / all_of_it / DEEPER[-1], 30 / thin, SAMPLES)
+    k = np.geomspace(1e-4 / all_of_it / HOW.deeper[-1], 30 / thin, HOW.samples)
     wanted = surface_compliance(body, k) - 1
     largest = max(1.0, float(np.abs(wanted).max()))
     fits: list[tuple[float, Complex, Complex]] = []
-    for tilted, deeper in product((False, True), DEEPER):
-        if tilted and min(misfit for misfit, *_ in fits) <= AT_WORST * largest:
+    for tilted, deeper in product((False, True), HOW.deeper):
+        if tilted and min(misfit for misfit, *_ in fits) <= HOW.at_worst * largest:
             break
-        depths = _depths(SHALLOWEST * thin, DEEPEST * all_of_it * deeper, spacing, tilted=tilted)
+        depths = _depths(HOW.shallowest * thin, HOW.deepest * all_of_it * deeper, spacing, tilted=tilted)
         fits.append(_fitted(k, wanted, depths))
-        if fits[-1][0] <= FITTED * largest:
+        if fits[-1][0] <= HOW.fitted * largest:
             break
     misfit, depths, strengths = min(fits, key=lambda fit: fit[0])
-    if misfit > AT_WORST * largest:
+    if misfit > HOW.at_worst * largest:
         raise NotConverged(
             f"the yield of the strata to waves is missed by {misfit:.1g} of a half-space's, limit "
-            f"{AT_WORST * largest:.1g}; they differ too much in stiffness or thickness: take thin ones together"
+            f"{HOW.at_worst * largest:.1g}; they differ too much in stiffness or thickness: take thin ones together"
         )
     return Images(depths, strengths, thin)
 
@@ -201,11 +214,11 @@ def layered(images: Images, half_space: ElasticOperator, until: float, known: in
 
 def image_compliance(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> Array:
     """What the images of a layered body deflect the nodes of a half-space's panels by pressures there, (..., q, q)."""
-    values, places = image_kernels(images, body, until, known)
-    return np.asarray(values[..., places] * body.weights)
+    kernels = image_kernels(images, body, until, known)
+    return np.asarray(kernels.values[..., kernels.places] * body.weights)
 
 
-def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> tuple[Array, Index]:
+def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, known: int = 0) -> Kernels:
     """The same but for the weights, as values (..., n) and their places (q, q) among these: the kernel is symmetric.
 
     Cells that begin beyond a radius, in beta, and an infinite one are integrated by their nodes even where they are
@@ -229,7 +242,7 @@ def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, 
             here = end + np.arange(nodes.size).reshape(nodes.shape)
             places[to[some, None], nodes], values[..., here] = here, moments @ at_nodes / body.weights[nodes]
             end += nodes.size
-    return values, places
+    return Kernels(values, places)
 
 
 def nearly_homogeneous(
@@ -240,22 +253,22 @@ def nearly_homogeneous(
     Polynomials in the logarithm of the radius leave a part `left` of a kernel at a depth, whose first poles, where the
     distance vanishes, lie pi/2 beside the real axis, or pi/4 at a complex one; the rest is as of `image_kernels`.
     """
-    count = int(np.ceil(np.log(between[1] / between[0]) / WIDE))
+    count = int(np.ceil(np.log(between[1] / between[0]) / HOW.wide))
     ends = np.geomspace(*between, count + 1)
     pole = np.pi / (4 if images.depths.imag.any() else 2) / (np.log(ends[1] / ends[0]) / 2)
     degree = int(np.ceil(np.log(2 / left) / np.arcsinh(pole)))
     parts = [chebyshev_radii(least, most, degree) for least, most in pairwise(ends.tolist())]
     make = partial(_in_units, images, unit, until, left)
-    return NearlyHomogeneous(unit, ends, [Beside(radii, partial(make, radii)) for radii in parts])
+    return NearlyHomogeneous(unit, ends, [Remainder(radii, partial(make, radii)) for radii in parts])
 
 
-def _in_units(images: Images, unit: ElasticOperator, until: float, left: float, radii: Array) -> tuple[Array, Index]:
+def _in_units(images: Images, unit: ElasticOperator, until: float, left: float, radii: Array) -> Kernels:
     return image_kernels(images.in_units(radii, left), unit, until / float(radii.min()))
 
 
 def _blocks(count: int, size: int) -> list[slice]:
-    """Parts of so many items, of a size each, of no more than `AT_ONCE` in all, or one."""
-    several = max(1, AT_ONCE // size)
+    """Parts of so many items, of a size each, of no more than `ImageSettings.at_once` in all, or one."""
+    several = max(1, HOW.at_once // size)
     return [slice(first, min(first + several, count)) for first in range(0, count, several)]
 
 
@@ -264,6 +277,6 @@ def _near(
 ) -> list[tuple[Index, Index, tuple[int, int]]]:
     """Nodes, but for the first that are known, and long cells near them, by their numbers, for each rule."""
     distance = np.maximum(left - radii[:, None], radii[:, None] - right) / (right - left)
-    near = (distance < NEAR) & long & (np.arange(radii.size) >= known)[:, None]
-    adjacent, apart = np.nonzero(near & (distance < APART)), np.nonzero(near & (distance >= APART))
-    return [(adjacent[0], adjacent[1], (NEAR_POINTS, GRADING)), (apart[0], apart[1], (APART_POINTS, 1))]
+    near = (distance < HOW.near) & long & (np.arange(radii.size) >= known)[:, None]
+    adjacent, apart = np.nonzero(near & (distance < HOW.apart)), np.nonzero(near & (distance >= HOW.apart))
+    return [(adjacent[0], adjacent[1], HOW.adjacent), (apart[0], apart[1], (HOW.apart_points, 1))]

@@ -32,9 +32,8 @@ from halfspace.values import Array, keep
 
 Foundation = Literal["bonded", "sliding"]
 
-DEEP = 30.0  # wave numbers times depth: what is below moves the surface by e^-60
-WAVES = 300  # lengths of waves among which the one that a body yields to most is looked for
-SHORTEST = 1e-4  # of a length, over which strata may yield as a half-space does over the whole of it
+DEEP = 30.0  # wave number times depth from which what is below moves the surface by e^-60
+WAVES = 300  # lengths of waves at which the yield of a body is looked at
 
 
 @dataclass(frozen=True)
@@ -180,7 +179,7 @@ def stiff_as(body: LayeredBody, length: float) -> float:
     A pressure p deflects them by 2 p l S(1/l)/E*. A thin stiff film on something softer bends over a shorter one, as a
     plate on it: t^3/(12 l^4) + E_2/(2 l) = 1/(2 l_0), moduli in those of the film.
     """
-    lengths = length * np.geomspace(SHORTEST, 1, WAVES)
+    lengths = length * np.geomspace(1e-4, 1, WAVES)
     soft = lengths * surface_compliance(body, 1 / lengths) >= length
     return float(lengths[np.argmax(soft)]) if soft.any() else length
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,12 +19,28 @@ from halfspace.elastic.compliance import ElasticOperator, Operator, barycentric,
 from halfspace.elastic.grid import SurfaceCoordinate, gauss_points
 from halfspace.values import Array, Index, Recent, Valued
 
-# Of all grids there are: an equilibrium asks several times for the operator of a state and of the trial beside it.
-_SCALED = Recent[ElasticOperator](3)
-_AT_SCALES: Recent[_AtScale] = Recent(3)
-# Kernels between which operators are interpolated, with places or nodes of theirs, in bytes: the largest scenes stay
-# below 1 GB with it. Curves and events at usual tolerances take less than a tenth.
-_KERNELS = Recent[tuple[Array, Index]](3e8, lambda kept: kept[0].nbytes + kept[1].nbytes)
+STORE = Recent(3e8)
+"""Operators at the latest contact radius, and the kernels between which operators are interpolated, in bytes.
+
+With this room the largest scenes stay below 1 GB. Curves and events at usual tolerances take less than a tenth.
+"""
+
+
+class Kernels(NamedTuple):
+    """Values (m, ...) at m contact radii: matrices (q, q), or n numbers and where a matrix has each, (q, q)."""
+
+    values: Array
+    places: Index | None = None
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes."""
+        return self.values.nbytes + (0 if self.places is None else self.places.nbytes)
+
+    def combined(self, weights: Array) -> Array:
+        """Matrix (q, q) of the values summed with weights (m,)."""
+        summed = np.tensordot(weights, self.values, 1)
+        return np.asarray(summed if self.places is None else summed[self.places])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,7 +62,7 @@ class Homogeneous(Valued, Operator):
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
-        return _SCALED.get(self, scale, partial(self.unit.scaled, scale))
+        return STORE.get(self, "at", partial(self.unit.scaled, scale), scale)
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""
@@ -56,54 +73,39 @@ class Homogeneous(Valued, Operator):
         return np.asarray(np.sqrt(scale) * self.unit.compliance_root)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class _Logarithmic(Valued):
-    """Polynomials in the logarithm of a length through their values at some, log x (m,)."""
-
-    nodes: Array
-
-    def at(self, x: float) -> tuple[Array, Array]:
-        """Weights of the values at x, and of those in its derivative by log x, each (m,)."""
-        values, slopes = lagrange(self.nodes, self._barycentric, float(np.log(x)))
-        return np.array(values), np.array(slopes)
-
-    @cached_property
-    def _barycentric(self) -> Array:
-        return barycentric(self.nodes)
+def by_logarithm(lengths: Array, x: float) -> tuple[Array, Array]:
+    """Weights (m,) of values at lengths (m,) in their polynomial of log x, and in its derivative by log x."""
+    nodes = np.log(lengths)
+    values, slopes = lagrange(nodes, barycentric(nodes), float(np.log(x)))
+    return np.array(values), np.array(slopes)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Beside(Valued):
-    """What a body has beside a homogeneous one, a polynomial in the logarithm of the contact radius through some.
+class Remainder(Valued):
+    """Compliance of a body less that of a homogeneous one, a polynomial in the logarithm of the contact radius.
 
-    `make` gives it at the radii `scales` (m,), over these and the nodes' weights: values (m, n), a number for all
-    entries of the compliance of which places (q, q) are alike. It is asked when one is first needed, and again where
-    these had to make room for others.
+    `make` gives it at the radii `scales` (m,), over these and the nodes' weights. It is asked when it is first needed,
+    and again where the kernels had to make room for others.
     """
 
     scales: Array
-    make: Callable[[], tuple[Array, Index]]
+    make: Callable[[], Kernels]
 
     def at(self, scale: float, derivative: int) -> Array:
-        """What it is at a contact radius, or its derivative by the logarithm of that, (q, q)."""
-        values, places = _KERNELS.get(self, "values", self.make)
-        return np.asarray((self._logarithmic.at(scale)[derivative] @ values)[places])
-
-    @cached_property
-    def _logarithmic(self) -> _Logarithmic:
-        return _Logarithmic(np.log(self.scales))
+        """Remainder at a contact radius, or its derivative by the logarithm of that, (q, q)."""
+        return STORE.get(self, "kernels", self.make).combined(by_logarithm(self.scales, scale)[derivative])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class NearlyHomogeneous(Homogeneous):
-    """A homogeneous body and what another one has beside it, on a grid that is scaled with the contact.
+    """A homogeneous body and the remainder of another one, on a grid that is scaled with the contact.
 
     Each of the parts (k,) serves contact radii from one of the ends (k + 1,), ascending, in beta, to the next. The
     singular part of the kernel is that of the homogeneous body: only what is smooth is interpolated.
     """
 
     ends: Array
-    parts: Sequence[Beside]
+    parts: Sequence[Remainder]
 
     @property
     def least_radius(self) -> float:
@@ -112,23 +114,23 @@ class NearlyHomogeneous(Homogeneous):
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
-        return _SCALED.get(self, scale, partial(self._made, scale))
+        return STORE.get(self, "at", partial(self._made, scale), scale)
 
     def _made(self, scale: float) -> ElasticOperator:
-        return replace(self.unit, compliance=self.unit.compliance + self._beside(scale, 0)).scaled(scale)
+        return replace(self.unit, compliance=self.unit.compliance + self._remainder(scale, 0)).scaled(scale)
 
     def rates(self, scale: float, pressure: Array) -> tuple[Array, Array, Array]:
         """Derivatives by the scale of radii, weights and the deflection under a pressure."""
         radii, weights, _ = super().rates(scale, pressure)
-        rate = self._beside(scale, 1) @ pressure
+        rate = self._remainder(scale, 1) @ pressure
         return radii, weights, self.at(scale).compliance @ pressure / scale + rate
 
     def root(self, scale: float) -> Array:
         """Square root of the balanced compliance."""
         return self.at(scale).compliance_root
 
-    def _beside(self, scale: float, derivative: int) -> Array:
-        """What it has beside at a contact radius, or its derivative by the logarithm of that."""
+    def _remainder(self, scale: float, derivative: int) -> Array:
+        """Remainder at a contact radius, or its derivative by the logarithm of that."""
         part = self.parts[int(np.searchsorted(self.ends[1:-1], scale))]
         return part.at(scale, derivative) * self.unit.weights
 
@@ -227,7 +229,7 @@ class Interpolated(Valued, Operator):
         return nodes.d_radii, nodes.d_weights, by_kernel - by_radii + by_weights
 
     def _at(self, scale: float) -> _AtScale:
-        return _AT_SCALES.get(self, scale, partial(_AtScale, self, scale))
+        return STORE.get(self, "at", partial(_AtScale, self, scale), scale)
 
     def _nodes(self, scale: float) -> _Nodes:
         """Gauss's points of the cells at a scale: w = 2 pi r dr/dx dx."""
@@ -242,39 +244,21 @@ class Interpolated(Valued, Operator):
         places, weights = gauss_points(lines, self.cell_nodes.shape[1])
         return places.ravel(), 2 * np.pi * weights.ravel()
 
-    def _rows(self, scale: float) -> tuple[Array, Array]:
-        """Weights of the operators at a scale, and their derivatives by the scale."""
-        x = self.grid.edge(scale)
-        values, slopes = self._by_edge.at(x)
-        return values, slopes * (self.grid.edge_rate(scale) / x)
+    def _combined(self, scale: float, derivative: int) -> Array:
+        """Kernel (q, q) at a scale, or its derivative by the scale but for that of the radii."""
+        x, edges = self.grid.edge(scale), np.array([self.grid.edge(float(known)) for known in self.scales])
+        rate = self.grid.edge_rate(scale) / x if derivative else 1.0
+        kernels = STORE.get(self, "kernels", lambda: self._kernels_of(self.make()))
+        return kernels.combined(by_logarithm(edges, x)[derivative] * rate)
 
-    def _combined(self, weights: Array) -> Array:
-        """Weighted sum of the kernels, (q, q)."""
-        q = self.cell_nodes.size
-        return np.asarray((weights @ self._kernels).reshape(q, q))
-
-    @property
-    def _kernels(self) -> Array:
-        """Kernels max(r_i, r_j) C_ij/w_j, (m, q^2)."""
-        return self._taken_from(self.make)
+    def _kernels_of(self, operators: Sequence[ElasticOperator]) -> Kernels:
+        """Kernels max(r_i, r_j) C_ij/w_j of operators."""
+        return Kernels(np.array([np.maximum.outer(o.radii, o.radii) * o.compliance / o.weights for o in operators]))
 
     def knowing(self, operators: Sequence[ElasticOperator]) -> Interpolated:
         """The same, which need not make its operators at first: they are there."""
-        self._taken_from(lambda: operators)
+        STORE.get(self, "kernels", partial(self._kernels_of, operators))
         return self
-
-    def _taken_from(self, make: Callable[[], Sequence[ElasticOperator]]) -> Array:
-        """Kernels kept, or those of operators, (m, q^2)."""
-
-        def kernels() -> tuple[Array, Index]:
-            known = [(np.maximum.outer(o.radii, o.radii) * o.compliance / o.weights).ravel() for o in make()]
-            return np.array(known), self.cell_nodes
-
-        return _KERNELS.get(self, "kernels", kernels)[0]
-
-    @cached_property
-    def _by_edge(self) -> _Logarithmic:
-        return _Logarithmic(np.log([self.grid.edge(float(scale)) for scale in self.scales]))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -288,24 +272,24 @@ class _AtScale(Valued):
     def nodes(self) -> _Nodes:
         return self.body._nodes(self.scale)
 
-    @cached_property
-    def _rows(self) -> tuple[Array, Array]:
-        return self.body._rows(self.scale)
+    @property
+    def nbytes(self) -> int:
+        """Bytes of its two matrices."""
+        return 16 * self.body.cell_nodes.size**2
 
     @cached_property
     def operator(self) -> ElasticOperator:
         body, nodes = self.body, self.nodes
-        compliance = body._combined(self._rows[0]) * (nodes.weights / np.maximum.outer(nodes.radii, nodes.radii))
+        compliance = body._combined(self.scale, 0) * (nodes.weights / np.maximum.outer(nodes.radii, nodes.radii))
         return body._on_cells(self.scale, compliance)
 
     @cached_property
     def kernel_rate(self) -> Array:
         """Derivative of the kernel by the scale, but for that of the radii, (q, q)."""
-        return self.body._combined(self._rows[1]) / np.maximum.outer(self.nodes.radii, self.nodes.radii)
+        return self.body._combined(self.scale, 1) / np.maximum.outer(self.nodes.radii, self.nodes.radii)
 
 
-MOST_BESIDE = 20  # lengths on either side: 0.13 apart they leave 1e-13
-OUTSIDE = 1.3  # of the least radius: as far as the curve's own are apart there, and a step more
+OUTSIDE = 1.3  # ratio of the least radius known to the least served: as far apart as radii of a curve, and a step more
 
 
 def nodes_beside(step: float, left: float) -> int:
@@ -314,7 +298,7 @@ def nodes_beside(step: float, left: float) -> int:
     So many that it leaves a part `left` of a kernel at a depth, whose first poles, where the distance vanishes, lie
     pi/2 beside the real axis: in their middle prod x_j^2/(x_j^2 + pi^2/4), x_j from there to the lengths.
     """
-    x2 = (step * (np.arange(MOST_BESIDE) + 0.5)) ** 2
+    x2 = (step * (np.arange(20) + 0.5)) ** 2  # lengths that are 0.13 apart leave 1e-13 by then
     return 1 + int(np.count_nonzero(np.cumprod(x2 / (x2 + np.pi**2 / 4))[:-1] > left))
 
 

@@ -13,8 +13,7 @@ from halfspace.laws.law import Law
 from halfspace.limits import require_between, require_number
 from halfspace.values import Array, keep
 
-HARDEST = 60
-"""Largest power of a core."""
+HARDEST = 60  # largest power of a core
 
 
 @dataclass(frozen=True)

@@ -12,14 +12,12 @@ from functools import cached_property
 
 import numpy as np
 
-from halfspace.errors import InputError
-from halfspace.limits import require_part
+from halfspace.limits import off_derivative, require_all, require_part
 from halfspace.roots import root
 from halfspace.values import Array
 
-FAR = 1e5  # gap at which a law's exponent is read off
-NEAR = 10.0 ** np.arange(-4, 8, 0.01)  # gaps among which a law's largest tension is looked for
-AGAIN = 0.05  # of the largest tension: what it may rise by once more, or fall by before, without being another edge
+GAPS = 10.0 ** np.arange(-4, 8, 0.01)  # gaps H at which a law is looked at
+TINY = 1e-9  # tension that counts as none, dgamma/eps
 
 
 class Law:
@@ -53,8 +51,8 @@ class Law:
     @cached_property
     def edge_gap(self) -> float:
         """H at which the tension is largest: it defines the contact edge."""
-        i = int(np.argmin(self.pressure(NEAR, 1.0)))
-        around = float(NEAR[max(i - 1, 0)]), float(NEAR[i + 1])
+        i = int(np.argmin(self.pressure(GAPS, 1.0)))
+        around = float(GAPS[max(i - 1, 0)]), float(GAPS[i + 1])
         return root(lambda H: float(self.slope(np.array(H), 1.0)), *around, "the largest tension; mend the law")
 
     @property
@@ -70,14 +68,14 @@ class Law:
     @cached_property
     def decay(self) -> float:
         """Exponent n of a tension that falls as h^-n far apart; infinite where it falls faster than any power."""
-        H = np.array(FAR)
+        H = np.array(1e5)
         tension = -float(self.pressure(H, 1.0))
         return float((H + 1) * self.slope(H, 1.0)) / tension if tension > 0 else np.inf
 
     @cached_property
     def innermost(self) -> float:
         """H up to which the tension rises from the core outwards."""
-        return float(NEAR[int(np.argmin(np.diff(self.pressure(NEAR, 1.0)) < 0))])
+        return float(GAPS[int(np.argmin(np.diff(self.pressure(GAPS, 1.0)) < 0))])
 
     @cached_property
     def outermost(self) -> float:
@@ -85,65 +83,49 @@ class Law:
 
         0 for a tension that rises to its largest and falls from there on, as most do.
         """
-        tension = -self.pressure(NEAR, 1.0)
+        tension = -self.pressure(GAPS, 1.0)
         i = int(np.argmax(tension))
         before, beyond = tension[: i + 1], tension[i:]
         before, beyond = np.maximum.accumulate(before) - before, beyond - np.minimum.accumulate(beyond)
-        if beyond.max() > AGAIN * tension[i]:
-            return float(NEAR[i + int(np.argmax(beyond))])
-        return self.edge_gap if before.max() > AGAIN * tension[i] else 0.0
+        again = 0.05 * tension[i]  # a fall before the maximum, or a rise beyond it, that makes an edge of its own
+        if beyond.max() > again:
+            return float(GAPS[i + int(np.argmax(beyond))])
+        return self.edge_gap if before.max() > again else 0.0
+
+    def outer_gap(self, gap: float, left: float) -> float:
+        """Gap at which finite cells end: as given, or where a part `left` of the work is, if the tail is no power."""
+        return max(gap, self.range(left)) if np.isinf(self.decay) else gap
 
     def range(self, part: float) -> float:
         """H beyond which a part of the work of adhesion is left."""
         return root(lambda H: -float(self.energy(np.array(H), 1.0)) - part, 0.0, 1e12, "the law's range; mend the law")
 
 
-CORE = np.array([-0.3, -0.1])  # gaps H at which the pressure rises inwards
-PROBES = np.concatenate(
-    [np.arange(-0.3, 0.0, 0.01), np.geomspace(0.01, 10.0, 350)]
-)  # at which derivatives are compared
-STEP, CLOSE = 1e-4, 1e-4  # of a gap, for differences; what they may be off by, in parts of the largest value around
-TINY = 1e-9  # dgamma/eps, no tension
-REACH = 1e-2  # of the largest tension: what may be left of it at the largest of the gaps looked at
-
-
 def require_law(law: Law) -> Law:
     """Return a law, or raise InputError unless it adheres with dgamma, repels closer by and lets go farther away."""
     require_part(law, "law", "pressure", "halfspace.laws.Morse(3)")
-    for value, holds, limit, remedy in _found(law):
-        if not holds:
-            raise InputError(f"{law}: {value}, limit: {limit}; {remedy}")
-    return law
-
-
-def _found(law: Law) -> list[tuple[str, bool, str, str]]:
-    """What the law has of each that is asked, whether it will do, the limit and the remedy."""
-    tension, core = -law.pressure(NEAR, 1.0), law.pressure(CORE, 1.0)
+    tension, (core, nearer) = -law.pressure(GAPS, 1.0), law.pressure(np.array([-0.3, -0.1]), 1.0)
     strength = max(float(tension.max()), TINY)
     rest, energy = (float(value(np.array(0.0), 1.0)) for value in (law.pressure, law.energy))
     left = float(tension[-1]) / strength
     by_energy = _apart(law.pressure, lambda H: -law.energy(H, 1.0))
     by_pressure = _apart(law.slope, lambda H: law.pressure(H, 1.0))
-    return [
+    mend = "mend either, or smooth the table"
+    require_all(
+        law,
         (f"the largest tension is {strength:.3g} dgamma/eps", strength > TINY, "above 0", "let the surfaces attract"),
         (f"the pressure at H = 0 is {rest:.3g} dgamma/eps", abs(rest) < 1e-9 * strength, "0", "move its gaps"),
         (f"the energy at H = 0 is {energy:.7g} dgamma", abs(energy + 1) < 1e-6, "-1", "divide the law by it"),
-        (f"the pressure at H = -0.3 is {core[0]:.3g} dgamma/eps", core[0] > core[1] > 0, "rising", "give it a core"),
-        (f"the tension far apart is {left:.3g} of its largest", left < REACH, f"{REACH:g}", "let it decay"),
-        (f"the pressure is off by {by_energy:.2g} from the energy's derivative", by_energy < CLOSE, f"{CLOSE:g}", MEND),
-        (f"the slope is off by {by_pressure:.2g} from the pressure's", by_pressure < CLOSE, f"{CLOSE:g}", MEND),
-    ]
-
-
-MEND = "mend either, or smooth the table"
+        (f"the pressure at H = -0.3 is {core:.3g} dgamma/eps", core > nearer > 0, "rising", "give it a core"),
+        (f"the tension far apart is {left:.3g} of its largest", left < 0.01, "0.01", "let it decay"),
+        (f"the pressure is off by {by_energy:.2g} from the energy's derivative", by_energy < 1e-4, "0.0001", mend),
+        (f"the slope is off by {by_pressure:.2g} from the pressure's", by_pressure < 1e-4, "0.0001", mend),
+    )
+    return law
 
 
 def _apart(derivative: Callable[[Array, float], Array], of: Callable[[Array], Array]) -> float:
-    """Largest distance of a derivative from differences of what it is of, in parts of its size at each gap.
-
-    That at two gaps next to each other counts: at one alone a law may have a corner or a step.
-    """
-    values, d = derivative(PROBES, 1.0), STEP * (1 + PROBES)
-    found = (8 * (of(PROBES + d) - of(PROBES - d)) - (of(PROBES + 2 * d) - of(PROBES - 2 * d))) / (12 * d)
-    off = np.abs(values - found) / (np.abs(values) + 1e-3 * np.max(np.abs(values[PROBES > 0])))
-    return float(np.max(np.minimum(off[1:], off[:-1])))
+    """Largest distance of a derivative from differences of what it is of, in parts of its size at each gap."""
+    H = np.concatenate([np.arange(-0.3, 0.0, 0.01), np.geomspace(0.01, 10.0, 350)])
+    values = derivative(H, 1.0)
+    return off_derivative(values, of, H, 1 + H, np.abs(values) + 1e-3 * np.max(np.abs(values[H > 0])))

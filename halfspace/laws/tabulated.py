@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from halfspace.errors import InputError
 from halfspace.laws.law import Law
+from halfspace.limits import require_all
 from halfspace.roots import root
 from halfspace.values import Array, keep, read_columns
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
-FEWEST = 12
-HOLE = 0.1  # of the largest tension, or of a larger pressure there, by which the spline may leave a straight line
-SLOWEST = 2.0  # decay as a power of the gap, which must be faster
+FEWEST = 12  # rows of a table
 
 
 @dataclass(frozen=True)
@@ -37,37 +35,36 @@ class Tabulated(Law):
     def __post_init__(self) -> None:
         keep(self, path=Path(self.path))
         h, tension = self._table
-        strength = float(tension.max())
-        for value, holds, limit, remedy in (
+        strength, core = float(tension.max()), "begin in the core, where the surfaces repel and the tension is negative"
+        require_all(
+            self.path,
             (f"the largest tension is {strength:g}", strength > 0, "above 0", "let the surfaces attract"),
-            (f"the first tension is {tension[0]:g}", tension[0] <= -strength, f"{-strength:g}", CORE),
-            (f"the last tension is {tension[-1]:g}", tension[-1] >= 0, "0 or above", "end where they attract"),
-        ):
-            self._require(holds, value, limit, remedy)
-        signs = np.sign(tension[tension != 0])
-        self._require(np.count_nonzero(np.diff(signs)) == 1, "the tension changes sign again", "once", MEND)
-        core, attraction = self._beside_equilibrium
-        flat = f"there is no tension from gap {h[core + 1]:g} to {h[attraction - 1]:g}"
-        self._require(attraction - core <= 2, flat, "one gap in equilibrium", "give more digits there")
-        self._require(
-            self._fall > SLOWEST, f"it ends as gap^{-self._fall:.3g}", f"below {-SLOWEST:g}", "give it a tail"
+            (f"the first tension is {tension[0]:g}", bool(tension[0] <= -strength), f"{-strength:g}", core),
+            (f"the last tension is {tension[-1]:g}", bool(tension[-1] >= 0), "0 or above", "end where they attract"),
         )
+        signs = np.sign(tension[tension != 0])
+        own = "a table with a barrier or two minima is served by a law of one's own"
+        require_all(self.path, ("the tension changes sign again", np.count_nonzero(np.diff(signs)) == 1, "once", own))
+        before, beyond = self._beside_equilibrium
+        flat = f"there is no tension from gap {h[before + 1]:g} to {h[beyond - 1]:g}"
         middle, straight = (h[1:] + h[:-1]) / 2, (tension[1:] + tension[:-1]) / 2
-        size = np.maximum(strength, np.abs(straight))
-        apart = np.abs(self._spline(middle) - straight) / size
-        worst = int(np.argmax(apart))
-        place = f"{apart[worst]:.2g} of the tension between gaps {h[worst]:g} and {h[worst + 1]:g}"
-        self._require(bool(apart[worst] < HOLE), f"the spline bends by {place}", f"{HOLE:g}", "give more points there")
-
-    def _require(self, holds: bool, value: str, limit: str, remedy: str) -> None:
-        if not holds:
-            raise InputError(f"{self.path}: {value}, limit: {limit}; {remedy}")
+        bend = np.abs(self._spline(middle) - straight) / np.maximum(strength, np.abs(straight))
+        worst = int(np.argmax(bend))
+        place = f"{bend[worst]:.2g} of the tension between gaps {h[worst]:g} and {h[worst + 1]:g}"
+        tail = f"it ends as gap^{-self._fall:.3g}"
+        require_all(
+            self.path,
+            (flat, beyond - before <= 2, "one gap in equilibrium", "give more digits there"),
+            (tail, self._fall > 2, "below -2", "give it a tail"),
+            (f"the spline bends by {place}", bool(bend[worst] < 0.1), "0.1", "give more points there"),
+        )
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
         """Gaps and tensions, but for zeros beyond the first of those that end them."""
         h, tension = read_columns(self.path, FEWEST)
-        self._require(bool(h[0] > 0), f"the first gap is {h[0]:g}", "above 0", "gaps are distances of the surfaces")
+        first = f"the first gap is {h[0]:g}"
+        require_all(self.path, (first, bool(h[0] > 0), "above 0", "gaps are distances of the surfaces"))
         until = int(np.flatnonzero(tension).max(initial=-1)) + 2
         return h[:until], tension[:until]
 
@@ -180,7 +177,3 @@ class Tabulated(Law):
     def room(self, gap: Array) -> Array:
         """As for other laws, but over four lengths of the core at least."""
         return np.maximum(gap + 1, 4 / (self._rise * self.spacing))
-
-
-CORE = "begin in the core, where the surfaces repel and the tension is negative"
-MEND = "a table with a barrier or two minima is served by a law of one's own"

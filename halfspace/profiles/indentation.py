@@ -22,13 +22,11 @@ from halfspace.profiles.profile import Surface
 from halfspace.roots import rising_root
 from halfspace.values import Array
 
-POINTS = 64
-
 
 @cache
 def _quarter() -> tuple[Array, Array]:
     """Sines and weights of a rule over a quarter turn, which crowds to the axis as t^3 where a slope may be a root."""
-    x, w = np.polynomial.legendre.leggauss(POINTS)
+    x, w = np.polynomial.legendre.leggauss(64)
     t = (1 + x) / 2
     return np.sin(np.pi / 2 * t**3), np.pi / 2 * 3 * t**2 * w / 2
 

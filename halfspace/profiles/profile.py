@@ -10,8 +10,7 @@ from typing import Protocol, Self
 
 import numpy as np
 
-from halfspace.errors import InputError
-from halfspace.limits import require_part
+from halfspace.limits import off_derivative, require_all, require_part
 from halfspace.values import Array
 
 
@@ -58,30 +57,17 @@ def require_profile(profile: Profile) -> Profile:
     """Return a profile, or raise InputError for what is none; one of its own length is checked where that is given."""
     require_part(profile, "profile", "surface", "halfspace.profiles.Sphere(100)")
     if isinstance(profile, Endless):
-        for value, holds, limit, remedy in _found(profile):
-            if not holds:
-                raise InputError(f"{profile}: {value}, limit: {limit}; {remedy}")
+        r = np.geomspace(0.01, 10.0, 700)
+        rest, heights, slopes = float(profile.height(np.array(0.0))), profile.height(r), profile.slope(r)
+        least = float(np.min(np.diff(heights, prepend=0.0)))
+        off = off_derivative(slopes, profile.height, r, r, np.abs(slopes) + np.abs(heights) / r + 1e-12)
+        require_all(
+            profile,
+            (f"the height on the axis is {rest:.3g} beta^2/R", abs(rest) < 1e-12, "0", "subtract it"),
+            (f"the height falls by {-least:.3g} beta^2/R", least >= 0 < heights[-1], "rising", "let it rise outwards"),
+            (f"the slope is off by {off:.2g} from the height's derivative", off < 1e-4, "0.0001", "mend either"),
+        )
     return profile
-
-
-PROBES = np.geomspace(0.01, 10.0, 700)  # radii in beta at which a profile is looked at
-STEP, CLOSE = 1e-4, 1e-4  # of a radius, for differences; what a slope may be off by, in parts of the height over radius
-
-
-def _found(profile: Endless) -> list[tuple[str, bool, str, str]]:
-    """What the profile has of each that is asked, whether it will do, the limit and the remedy."""
-    rest, heights = float(profile.height(np.array(0.0))), profile.height(PROBES)
-    least, d = float(np.min(np.diff(heights, prepend=0.0))), STEP * PROBES
-    one, two = (profile.height(PROBES + k * d) - profile.height(PROBES - k * d) for k in (1, 2))
-    slopes = profile.slope(PROBES)
-    sizes = np.abs(slopes) + np.abs(heights) / PROBES + 1e-12
-    off = np.abs(slopes - (8 * one - two) / (12 * d)) / sizes
-    apart = float(np.max(np.minimum(off[1:], off[:-1])))  # at one radius alone it may have a corner
-    return [
-        (f"the height on the axis is {rest:.3g} beta^2/R", abs(rest) < 1e-12, "0", "subtract it"),
-        (f"the height falls by {-least:.3g} beta^2/R", least >= 0 < heights[-1], "rising", "let it rise outwards"),
-        (f"the slope is off by {apart:.2g} from the height's derivative", apart < CLOSE, f"{CLOSE:g}", "mend either"),
-    ]
 
 
 class Dimensionless:

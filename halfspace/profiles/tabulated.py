@@ -19,9 +19,8 @@ if TYPE_CHECKING:
     from scipy.interpolate import BSpline, CubicHermiteSpline
 
 
-FEWEST, MOST, DEGREE = 12, 30, 5  # points of a piece; pieces, and their degree in the square of the radius
-INNER = 0.25  # of the radii, within which no rounded tip is steeper than 45 degrees and than on the whole
-CHECKED = 1000  # radii at which it must rise
+FEWEST = 12  # points of a piece of the spline, at least
+DEGREE = 5  # degree of the spline in the square of the radius
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ class Tabulated:
             value = f"it rises by {near:.3g} for each unit of radius near the axis, {whole:.3g} on the whole"
             remedy = "give the radius in the first column, the height in the second"
             raise InputError(f"{self.path}: {value}, limit: less near a rounded apex; {remedy}")
-        r = np.linspace(0, 1, CHECKED) * self.end
+        r = np.linspace(0, 1, 1000) * self.end
         falls = r[self._spline(r**2, 1) <= 0]
         if falls.size:
             where = f"{self.path} turns back at radius {falls[0]:.4g}"
@@ -74,7 +73,7 @@ class Tabulated:
     def _steepness(self) -> tuple[float, float]:
         """Mean slope near the axis and of all; a table whose columns are exchanged is a root, steepest on the axis."""
         r, z = self._table
-        near = max(int(np.searchsorted(r, r[0] + INNER * (r[-1] - r[0]), side="right")), 3)
+        near = max(int(np.searchsorted(r, r[0] + 0.25 * (r[-1] - r[0]), side="right")), 3)
         return float(np.polyfit(r[:near], z[:near], 1)[0]), float(np.polyfit(r, z, 1)[0])
 
     @cached_property
@@ -85,7 +84,7 @@ class Tabulated:
         the axis, where two squares of radii are closest, then gives any radius.
         """
         r, z = self._table
-        splines = [_fitted(r**2, z, pieces) for pieces in range(1, min(r.size // FEWEST, MOST) + 2)]
+        splines = [_fitted(r**2, z, pieces) for pieces in range(1, min(r.size // FEWEST, 30) + 2)]
         squares = [float(np.mean((s(r**2) - z) ** 2)) + np.finfo(float).tiny for s in splines[:-1]]
         told = [
             math.log(left) + len(s.c) * math.log(r.size) / r.size for left, s in zip(squares, splines, strict=False)

@@ -28,7 +28,6 @@ FIT = 6.233  # [G97] (4.5): (H0 + 1)^(7/2) = 6.233 mu^(3/2) [1 - 1.6/(H0 + 1)^6]
 FIT_REPULSION = 1.6
 FIT_MEETING = 19 / 7 * FIT_REPULSION  # (H0 + 1)^6 where its two roots meet, at the least mu that it serves
 FIT_LEAST_TABOR = (FIT_MEETING ** (19 / 12) / (FIT_MEETING - FIT_REPULSION) / FIT) ** (2 / 3)
-NEWTON_STEPS = 60  # at the end of the fit's range its roots coincide, and a step gains but one bit
 
 
 def fundamental_criterion(approach: ArrayLike, central_gap: ArrayLike) -> Array:
@@ -69,7 +68,7 @@ def fitted_gap(tabor: ArrayLike) -> Array:
     mu = np.asarray(tabor, float)
     C = FIT * np.where(mu < FIT_LEAST_TABOR, np.nan, mu) ** 1.5
     y = C ** (2 / 7)
-    for _ in range(NEWTON_STEPS):
+    for _ in range(60):  # at the end of the fit's range its roots coincide, and a step gains but one bit
         p = y**3.5 - C * (1 - FIT_REPULSION / y**6)
         y = y - p / (3.5 * y**2.5 - 6 * C * FIT_REPULSION / y**7)
     return np.asarray(y - 1)

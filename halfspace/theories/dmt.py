@@ -26,7 +26,6 @@ from halfspace.values import Array
 # that a step of 0.15 leaves exp(-2 pi^2/(3 0.15)) = 1e-19.
 STEP = 0.15
 LOGARITHMS = np.arange(-9.0, 11.0, STEP)
-LEAST_APPROACH = 1e-12  # below, f = 1.84 alpha*^(3/2) is lost in the rounding of 1 + f
 
 
 def force_load(approach: ArrayLike, tabor: float) -> Array:
@@ -70,7 +69,7 @@ def _tension(approach: ArrayLike, rate: Callable[[Array], Array]) -> Array:
     has opened by about eps: H is about (alpha*/pi) times 4/3 z^3 close to the edge, times pi/2 z^2 far from it.
     """
     alpha = np.asarray(approach, float)[..., None]
-    alpha = np.where(alpha < 0, np.nan, np.maximum(alpha, LEAST_APPROACH))
+    alpha = np.where(alpha < 0, np.nan, np.maximum(alpha, 1e-12))  # below, f is lost in the rounding of 1 + f
     z = np.maximum(np.sqrt(2 / alpha), np.cbrt(3 * np.pi / (4 * alpha))) * np.exp(LOGARITHMS)
     sigma = -LENNARD_JONES.pressure(alpha / np.pi * gap_shape(z), 1.0)
     return np.asarray(2 * np.pi * STEP * np.sum(alpha * sigma * rate(z) * z**2, axis=-1))

@@ -20,10 +20,8 @@ from halfspace.roots import root
 from halfspace.theories.closed_forms import ContactState
 from halfspace.values import Array
 
-LEAST_RATIO = 1e-3  # of rho; the tension of smaller spheres is a small difference of large numbers
-SERIES_BELOW = 0.5  # of a/X: below it arctanh x - x is summed as a series, above it nothing cancels
-SERIES_TERMS = 30
-OUTERMOST = 1 - 1e-12  # of a/X, where the logarithm of the soft sphere still is a number
+SERIES_BELOW = 0.5  # a/X below which arctanh x - x is summed as a series; above it nothing cancels
+OUTERMOST = 1 - 1e-12  # largest a/X at which the logarithm of the soft sphere is a number
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,7 @@ class RigidSphere:
     whole: bool = False
 
     def __post_init__(self) -> None:
-        _require_ratio(self.radius_ratio, LEAST_RATIO)
+        _require_ratio(self.radius_ratio, 1e-3)  # a smaller sphere's tension is lost to rounding
 
     def load(self, approach: ArrayLike) -> Array:
         """Load at an approach alpha* below 1, the law acting on the projected area.
@@ -179,7 +177,7 @@ def _punch_slope(x: Array) -> Array:
 def _relative_excess(x: Array) -> Array:
     """Return (arctanh x - x)/x^3 = 1/3 + x^2/5 + x^4/7 + ..., free of cancellation; nan from x = 1 on."""
     low, high = np.minimum(x, SERIES_BELOW), np.clip(x, SERIES_BELOW, OUTERMOST)
-    series = np.polynomial.polynomial.polyval(low**2, 1 / (2 * np.arange(SERIES_TERMS) + 3.0))
+    series = np.polynomial.polynomial.polyval(low**2, 1 / (2 * np.arange(30) + 3.0))
     closed = (np.arctanh(high) - high) / high**3
     return np.where(x < SERIES_BELOW, series, np.where(x < 1, closed, np.nan))
 

@@ -30,13 +30,6 @@ from halfspace.roots import rising_root
 from halfspace.theories.closed_forms import ContactState, hertz_load
 from halfspace.values import Array, Estimate
 
-DECAYED = 20.0  # wave numbers in thicknesses of the first stratum, beyond which S - 1 is below e^-40
-LONGEST = 1e-4  # wave number in all strata's thickness below which S does not change
-POINTS = 24  # of a panel of wave numbers
-PHASE = 12.0  # by which the waves within a contact turn across a panel, at most
-NODES, NODES_A_THICKNESS = 24, 8  # of the density, and more of them where the contact is wide
-FINER, ROUNDING = 1.3, 1e-10
-
 
 @dataclass(frozen=True)
 class OnLayers:
@@ -47,11 +40,17 @@ class OnLayers:
     body : LayeredBody
         Its strata and base.
     fineness : float
-        Nodes, in those that serve; another one tells the error.
+        Nodes, in those that serve; the change by other ones is the error.
     """
 
     body: LayeredBody
     fineness: float = 1.0
+    decayed: float = 20.0  # wave number times the first thickness beyond which S - 1 is below e^-40
+    longest: float = 1e-4  # wave number times the thickness of all strata below which S does not change
+    points: int = 24  # points of a panel of wave numbers
+    phase: float = 12.0  # most phase by which the waves within a contact turn across a panel
+    nodes: int = 24  # nodes of the density
+    more_nodes: int = 8  # nodes of the density more for each first thickness in the contact radius
 
     def hertz(self, radius: float) -> ContactState:
         """State of a contact radius without attraction; the approach in beta^2/R."""
@@ -77,15 +76,15 @@ class OnLayers:
     def _nodes(self, a: float) -> tuple[Array, Array]:
         """Gauss's points within the contact."""
         thin = self.body.strata[0].thickness
-        count = math.ceil(self.fineness * (NODES + NODES_A_THICKNESS * a / thin))
+        count = math.ceil(self.fineness * (self.nodes + self.more_nodes * a / thin))
         (points,), (weights,) = grid.gauss_points(np.array([0.0, a]), count)
         return points, weights
 
     def _wave_numbers(self, a: float) -> tuple[Array, Array]:
         """Wave numbers, and S - 1 times their weights."""
-        first, last = LONGEST / total_thickness(self.body), DECAYED / self.body.strata[0].thickness
-        lines = grid.towards_axis(grid.uniform(last, min(PHASE / (2 * a * self.fineness), last)), first, 2.0)
-        k, w = (part.ravel() for part in grid.gauss_points(lines, POINTS))
+        first, last = self.longest / total_thickness(self.body), self.decayed / self.body.strata[0].thickness
+        lines = grid.towards_axis(grid.uniform(last, min(self.phase / (2 * a * self.fineness), last)), first, 2.0)
+        k, w = (part.ravel() for part in grid.gauss_points(lines, self.points))
         return k, w * (surface_compliance(self.body, k) - 1)
 
     def hertz_at(self, approach: float) -> ContactState:
@@ -97,8 +96,8 @@ class OnLayers:
 def hertz_ratio(body: LayeredBody, approach: float) -> Estimate:
     """Load at an approach in beta^2/R without attraction, over Hertz's on a half-space; with its error."""
     whole = float(hertz_load(math.sqrt(approach)))
-    found, finer = (OnLayers(body, fineness).hertz_at(approach).load / whole for fineness in (1.0, FINER))
-    return Estimate(finer, abs(finer - found) + ROUNDING * finer)
+    found, finer = (OnLayers(body, fineness).hertz_at(approach).load / whole for fineness in (1.0, 1.3))
+    return Estimate(finer, abs(finer - found) + 1e-10 * finer)
 
 
 def thin_sample_series(chi: float, poisson: float, foundation: Foundation) -> float:

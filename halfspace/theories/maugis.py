@@ -32,7 +32,6 @@ from halfspace.values import Array
 TENSION_TO_MAUGIS = float(np.cbrt(9 / (2 * np.pi)))  # lambda/s, from lambda = sigma0 (9 R/(2 pi E*^2 dgamma))^(1/3)
 MAUGIS_UNIT = float(np.cbrt(3 * np.pi / 4))  # his unit of radius (3 pi R^2 dgamma/(4 E*))^(1/3), in beta
 ROUNDING = 1 + 1e-12  # leeway for radii that are equal but for rounding
-NEWTON_STEPS = 8  # five give ten digits at any lambda and radius
 
 
 @dataclass(frozen=True)
@@ -161,7 +160,7 @@ class MaugisDugdale:
         """Return z at a contact radius: Newton's method in logarithms, where the opening is nearly a power of z."""
         s = self.tension
         z = np.minimum(np.sqrt(np.pi / (2 * s**2 * a)), np.cbrt(3 * np.pi / (4 * s * a**2)))
-        for _ in range(NEWTON_STEPS):
+        for _ in range(8):  # five give ten digits at any lambda and radius
             opening = s * a / np.pi * (a * gap_shape(z) + 4 * s * _closing_shape(z))
             t, m = np.arctan(z), np.hypot(1, z)
             slope = s * a / np.pi * (a * 2 * z * (t + z / m**2) + 4 * s * (t + z / m**2 - z / m))

@@ -15,6 +15,7 @@ from fem_adhesion.common.fold_birth import critical_stiffness
 from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for, resolutions_for, rule_for
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.elastic import compliance
+from halfspace.elastic.kernel import RingRules
 from halfspace.equilibrium.charts import metric_for, trace_charts
 from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets, locate
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem
@@ -453,7 +454,7 @@ def test_a_law_with_a_step_is_told_from_others_however_wide_it_is(width):
 
 
 def test_a_grid_that_takes_more_memory_than_there_is_is_refused_by_the_input_that_asks_for_it(monkeypatch):
-    monkeypatch.setattr(halfspace.elastic.kernel, "LARGEST", 2e4)
+    monkeypatch.setattr(halfspace.elastic.kernel, "RULES", RingRules(largest=2e4))
     with pytest.raises(NotConverged, match=r"^rtol = 1e-06 takes grids of \d+ nodes, .*, limit: 2e-05 GB; take a lar"):
         halfspace.trace(2.0, rtol=1e-6)
 
@@ -463,7 +464,7 @@ def test_where_memory_ends_the_ladder_the_last_rung_that_fits_is_told_with_its_e
     full = halfspace.trace(5.0, **asked)
     lowest, highest = (full.settings[rung]["nodes"] for rung in ("curve", "events"))
     assert highest > lowest + 1
-    monkeypatch.setattr(halfspace.elastic.kernel, "LARGEST", 3.7e6)
+    monkeypatch.setattr(halfspace.elastic.kernel, "RULES", RingRules(largest=3.7e6))
     path = halfspace.trace(5.0, **asked)
     assert lowest < path.settings["events"]["nodes"] < highest
     assert path.missed
@@ -474,6 +475,6 @@ def test_where_memory_ends_the_ladder_the_last_rung_that_fits_is_told_with_its_e
 def test_kernels_that_made_room_for_others_are_made_again_as_they_were(monkeypatch):
     asked = {"profile": Sphere(30.0), "rtol": 1e-5}
     kept = halfspace.trace(1.0, **asked)
-    monkeypatch.setattr(halfspace.elastic.operators._KERNELS, "room", 0.0)
+    monkeypatch.setattr(halfspace.elastic.operators.STORE, "room", 0.0)
     for name, event in halfspace.trace(1.0, **asked).events.items():
         assert (event.load, event.load_error) == (kept.events[name].load, kept.events[name].load_error)

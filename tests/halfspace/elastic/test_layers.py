@@ -135,9 +135,7 @@ def test_few_nodes_a_cell_deflect_a_thin_film_as_many_do(body, monkeypatch):
         return operator.compliance @ np.exp(-((operator.radii / 0.6) ** 2))
 
     few = deflection()
-    monkeypatch.setattr(layered, "NEAR", 4.0)
-    monkeypatch.setattr(layered, "NEAR_POINTS", 96)
-    monkeypatch.setattr(layered, "GRADING", 5)
+    monkeypatch.setattr(layered, "HOW", replace(layered.HOW, near=4.0, adjacent=(96, 5)))
     many = deflection()
     assert few == pytest.approx(many, rel=0, abs=2e-8 * np.abs(many).max())
     assert not np.array_equal(few, many)
@@ -478,7 +476,7 @@ def test_images_deflect_alike_in_however_many_parts_they_are_integrated(monkeypa
     images = images_of(SOFT_BETWEEN)
     unit = compliance.panels(grid.graded(1.0, 0.1, 20.0, growth=3.0), 6)
     at_once = image_compliance(images, unit)
-    monkeypatch.setattr(layered, "AT_ONCE", 100 * images.depths.size)
+    monkeypatch.setattr(layered, "HOW", replace(layered.HOW, at_once=100 * images.depths.size))
     assert image_compliance(images, unit) == pytest.approx(at_once, rel=0, abs=1e-15 * np.abs(images.strengths).sum())
 
 
