@@ -9,7 +9,16 @@ from collections.abc import Sequence
 from fem_adhesion.assess.command import COMMAND as ASSESS
 from fem_adhesion.common.files import NotWritten
 from fem_adhesion.common.jobs import keep_to_one_thread
-from fem_adhesion.common.options import BAD_INPUT, DISAGREE, NOT_WRITTEN, Parser, Version, ended, ended_by_signal
+from fem_adhesion.common.options import (
+    BAD_INPUT,
+    COMMAND,
+    DISAGREE,
+    NOT_WRITTEN,
+    Parser,
+    Version,
+    ended,
+    ended_by_signal,
+)
 from fem_adhesion.crosscheck.command import COMMAND as COMPARE
 from fem_adhesion.curve.command import COMMAND as CURVE
 from fem_adhesion.finite_sphere.command import COMMAND as FINITE_SPHERE
@@ -37,6 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     options = make_parser().parse_args(arguments)
     options.asked = shlex.join(["fem-adhesion", *arguments])
+    asked = COMMAND.set(options.asked)
     keep_to_one_thread()
     try:
         with ended_by_signal():
@@ -53,6 +63,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _told(error, NOT_WRITTEN)
     except KeyboardInterrupt as how:
         return ended(how, "nothing was written")
+    finally:
+        COMMAND.reset(asked)
 
 
 def _told(why: object, code: int) -> int:

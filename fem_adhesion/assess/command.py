@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_adhesion.common.jobs import progress_bar
-from fem_adhesion.common.options import AGREE, Command, Parser, console_beside, require_distinct, written
+from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside
 from fem_adhesion.common.scene_options import COUNTER, add_contact, add_law, add_layer, material_of, refuse
 
 if TYPE_CHECKING:
@@ -34,18 +33,16 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.assess import figure, terminal
     from fem_adhesion.assess.study import assess
     from fem_adhesion.common import style
-    from fem_adhesion.common.files import written_aside
 
     contact = _contact(options)
-    require_distinct(options.json, options.plot)
     form = style.require_suffix(options.plot) if options.plot else ""
-    with written(options.json) as record, written_aside(options.plot) if options.plot else nullcontext() as plot:
+    with all_written(json=options.json, plot=options.plot) as files:
         with progress_bar() as step:
             assessment = assess(contact, step)
-        if record:
-            json.dump(terminal.record(assessment), record, indent=1, allow_nan=False)
-        if plot:
-            style.write(lambda: figure.draw(assessment), plot, form)
+        if "json" in files:
+            json.dump(terminal.record(assessment), files["json"], indent=1, allow_nan=False)
+        if "plot" in files:
+            style.write(lambda: figure.draw(assessment), files["plot"], form)
         report = terminal.report(assessment)  # before the files take their places
     console_beside(options.json).print(report)
     return AGREE

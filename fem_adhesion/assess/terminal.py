@@ -12,9 +12,10 @@ from rich.text import Text
 from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction, Quantity
 from fem_adhesion.assess.study import Assessment
 from fem_adhesion.assess.thin_sample import WRONG, ThinSample
+from fem_adhesion.common import record as common
 from fem_adhesion.common.contact import Contact, edge_told
-from fem_adhesion.common.facts import plain, versions
-from fem_adhesion.common.numbers import PREFIXES, engineering, exponent_of, with_error
+from fem_adhesion.common.facts import plain
+from fem_adhesion.common.numbers import KINDS, PREFIXES, engineering, exponent_of, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.registry import record_of, told
 from halfspace.laws import LENNARD_JONES
@@ -191,10 +192,17 @@ def enough_table(sample: ThinSample) -> Fitted:
     return Fitted(columns, [f"from which thickness on the half-space is right to {100 * WRONG:g} %"])
 
 
+UNITS = {name: unit for name, (unit, _) in KINDS.items()} | {
+    "equivalent_radius": "m",
+    "contact_modulus": "Pa",
+    "thickness_in_beta": "beta",
+    "indentation": "m",
+}
+
+
 def record(assessment: Assessment) -> dict[str, object]:
-    """Everything as plain data for JSON, without infinities: a quantity is a value, an error and a unit in SI."""
+    """Everything as plain data for JSON: a quantity is a value, an error and a unit in SI; see `UNITS` for others."""
     contact = assessment.contact
-    models = [{"model": m.model, "values": m.values, "missed": m.missed} for m in assessment.models]
     found = {
         "input": {**asdict(contact), "law": record_of(contact.law)},
         "thickness_in_beta": contact.layer.thickness if contact.layer else None,
@@ -204,7 +212,7 @@ def record(assessment: Assessment) -> dict[str, object]:
         "radius_ratio": contact.units.radius_ratio,
         "parameters": assessment.parameters,
         "regime": assessment.regime,
-        "models": models,
+        "models": [{"model": m.model, "values": m.values, "missed": m.missed} for m in assessment.models],
         "thin_sample": assessment.sample,
         "deviations": assessment.deviations,
         "distances": assessment.distances,
@@ -212,6 +220,5 @@ def record(assessment: Assessment) -> dict[str, object]:
         "cautions": assessment.cautions,
         "verdict": assessment.verdict,
         "seconds": assessment.seconds,
-        "versions": versions(),
     }
-    return {name: plain(part) for name, part in found.items()}
+    return common.record(units=UNITS) | {name: plain(part) for name, part in found.items()}

@@ -7,7 +7,8 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
@@ -23,6 +24,8 @@ NOT_WRITTEN = DISAGREE
 
 
 STANDARD = Path("-")  # stands for standard output
+COMMAND: ContextVar[str] = ContextVar("command", default="")
+"""Command line that is being run, for the records of its files."""
 
 
 class Help(argparse.HelpFormatter):
@@ -174,6 +177,25 @@ def written(path: Path | None) -> Iterator[TextIO | None]:
     else:
         with written_aside(path) as file:
             yield file
+
+
+@contextmanager
+def all_written(**paths: Path | None) -> Iterator[dict[str, TextIO]]:
+    """Open the files of all outputs that are given, by name: all appear or none. A table gets a file for its record.
+
+    The record's file is named ``metadata``; what is written to standard output has none.
+    """
+    require_distinct(*paths.values())
+    table = paths.get("csv")
+    if table and table != STANDARD:
+        from fem_adhesion.common.record import beside
+
+        paths["metadata"] = beside(table)
+    with ExitStack() as stack:
+        opened = {name: stack.enter_context(written(path)) for name, path in paths.items()}
+        yield {name: file for name, file in opened.items() if file}
+        for file in filter(None, opened.values()):
+            file.flush()  # all are on disk before the first takes its place
 
 
 def console_beside(*paths: Path | None) -> Console:

@@ -17,6 +17,8 @@ from typing import Any, TypeVar
 from markupsafe import Markup
 
 from fem_adhesion.common.facts import machine, versions
+from fem_adhesion.common.options import COMMAND
+from fem_adhesion.common.record import beside, record, write_beside
 
 Item = TypeVar("Item")
 Columns = Mapping[str | tuple[str, ...], Callable[[Item], str | Sequence[str]]]
@@ -104,14 +106,15 @@ class Section:
 
 
 def write_page(
-    directory: Path, title: str, lead: Sequence[str], sections: Sequence[Section], spent: str, asked: str
+    directory: Path, title: str, lead: Sequence[str], sections: Sequence[Section], spent: str, asked: str = ""
 ) -> None:
     """Write ``index.html``: title, paragraphs, links to sections, and these.
 
-    At its foot stand the command line that was `asked`, if any, machine, versions and cost.
+    At its foot stand the command line that is being run, if any, machine, versions and cost.
     """
+    del asked  # the record has it
     facts = {**machine(), **versions(), "computed in": spent}
-    text = render("common/page.html.j2", title=title, lead=lead, sections=sections, facts=facts, asked=asked)
+    text = render("common/page.html.j2", title=title, lead=lead, sections=sections, facts=facts)
     (directory / "index.html").write_text(text, encoding="utf-8")
 
 
@@ -125,7 +128,8 @@ def render(template: str, **contents: Any) -> str:
         loader=PrefixLoader(folders), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters |= {"symbols": symbols, "kind": kind}
-    return environment.get_template(template).render(style=template_text("common", "page.css"), **contents) + "\n"
+    shared = {"style": template_text("common", "page.css"), "asked": COMMAND.get()}
+    return environment.get_template(template).render(shared | contents) + "\n"
 
 
 def template_text(folder: str, name: str) -> str:
@@ -155,7 +159,9 @@ def bullets(items: Sequence[str]) -> Markup:
 
 
 def write_csv(tables: Iterable[Table], directory: Path) -> None:
-    """Write each table as a CSV file."""
+    """Write each table as a CSV file, and the record that serves them all."""
+    with beside(directory).open("w", encoding="utf-8") as file:
+        write_beside(file, "*.csv", record(units={}))
     for table in tables:
         with (directory / f"{table.stem}.csv").open("w", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows([table.columns, *table.rows])

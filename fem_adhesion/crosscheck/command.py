@@ -37,6 +37,7 @@ def add_options(command: Parser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Compare all scenes asked for, print a table each, and write the record."""
+    from fem_adhesion.common.record import record as run_record
     from fem_adhesion.crosscheck.comparison import require_comparable
     from halfspace.limits import require_rtol
 
@@ -50,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
         cases = _compare_with_progress(scenes, options, console)
         from fem_adhesion.crosscheck.comparison import crosscheck_record
 
-        record = crosscheck_record(cases)
+        record = run_record(rtol=options.rtol) | crosscheck_record(cases)
         if file:
             json.dump(record, file, indent=1, allow_nan=False)
     console.print(f"verdict: {record['verdict']}", highlight=False)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from fem_adhesion.common.jobs import progress_bar
-from fem_adhesion.common.options import AGREE, Command, Parser, console_beside, require_distinct, written
+from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside, require_distinct
 from fem_adhesion.common.scene_options import (
     POISSON,
     add_body,
@@ -26,14 +26,10 @@ from fem_adhesion.common.scene_options import (
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from fem_adhesion.common.contact import Contact
-    from fem_adhesion.common.jobs import Progress
     from fem_adhesion.curve.beside import EquallyStrong
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
-    from halfspace.laws import Law
     from halfspace.profiles import Profile
 
 POINTS = 20  # of a curve for ParaView
@@ -84,40 +80,39 @@ def _add_results(curve: Parser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Trace the curve, write what is asked for and print the events."""
-    from fem_adhesion.common.files import directory_written_aside, written_aside
+    from fem_adhesion.common.files import directory_written_aside
+    from fem_adhesion.common.record import write_beside
     from fem_adhesion.common.terminal import prose
     from fem_adhesion.curve import record, terminal
     from fem_adhesion.curve.solve import solve
 
-    question = _question(options)
-    if question.solver == "weak-form":
-        return _run_weak_form(options, question)
-    collapse = _beside(question, [law_named(text) for text in options.beside or ()])
+    question, laws = _question(options), [law_named(text) for text in options.beside or ()]
+    if laws:
+        from fem_adhesion.curve import beside
+
+        beside.require(question.scene, laws)
     form = _form_of(options.plot)
-    require_distinct(options.json, options.csv, options.plot, options.render, options.movie, options.vtk)
+    names = ("json", "csv", "plot", "render", "movie")
+    require_distinct(*(getattr(options, name) for name in (*names, "vtk")))
     with ExitStack() as stack:
         fields = options.vtk and stack.enter_context(directory_written_aside(options.vtk, force=bool(options.force)))
-        data, points = (stack.enter_context(written(path)) for path in (options.json, options.csv))
-        plot, picture, movie = (
-            stack.enter_context(written_aside(path)) if path else None
-            for path in (options.plot, options.render, options.movie)
-        )
+        files = stack.enter_context(all_written(**{name: getattr(options, name) for name in names}))
         with progress_bar() as step:
             curves = solve(question, step)
-            collapsed = collapse(curves, step) if collapse else None
-        if data:
+            collapsed = beside.solve(curves, laws, step) if laws else None
+        if "json" in files:
             told = {"beside": collapsed.record} if collapsed else {}
-            json.dump(record.record(curves) | told, data, indent=1, allow_nan=False)
-        if points:
-            record.write_csv(curves, points)
-        if plot:
-            _draw(collapsed or curves, plot, form)
+            json.dump(record.record(curves) | told, files["json"], indent=1, allow_nan=False)
+        if "csv" in files:
+            record.write_csv(curves, files["csv"])
+        if "metadata" in files:
+            write_beside(files["metadata"], options.csv.name, record.head(curves))
+        if "plot" in files:
+            _draw(collapsed or curves, files["plot"], form)
         if fields:
             _write_vtk(options, curves, fields)
-        if picture or movie:
-            _draw_body(curves, picture, options.at or "pull_off", movie)
-        for file in filter(None, (data, points, plot, picture, movie)):
-            file.flush()  # all on disk before the first takes its place
+        if "render" in files or "movie" in files:
+            _draw_body(curves, files.get("render"), options.at or "pull_off", files.get("movie"))
     console = console_beside(options.json, options.csv)
     terminal.show(curves, console)
     if collapsed:
@@ -125,47 +120,16 @@ def run(options: argparse.Namespace) -> int:
     return AGREE
 
 
-def _run_weak_form(options: argparse.Namespace, question: Question) -> int:
-    """The same by full Newton on the weak form, whose curve has points and events alone."""
-    from fem_adhesion.common import style
-    from fem_adhesion.common.files import written_aside
-    from fem_adhesion.curve import weak_form
-
-    form = _form_of(options.plot)
-    require_distinct(options.json, options.csv, options.plot)
-    with ExitStack() as stack:
-        data, points = (stack.enter_context(written(path)) for path in (options.json, options.csv))
-        plot = stack.enter_context(written_aside(options.plot)) if options.plot else None
-        found = weak_form.solve(question)
-        if data:
-            json.dump(weak_form.as_record(found), data, indent=1, allow_nan=False)
-        if points:
-            weak_form.write_csv(found, points)
-        if plot:
-            style.write(lambda: weak_form.draw(found), plot, form)
-        for file in filter(None, (data, points, plot)):
-            file.flush()
-    weak_form.show(found, console_beside(options.json, options.csv))
-    return AGREE
-
-
-def _beside(question: Question, laws: Sequence[Law]) -> Callable[[Curves, Progress], EquallyStrong] | None:
-    """What traces the curves by other laws, if there are, after a check before any work."""
-    if not laws:
-        return None
-    from fem_adhesion.curve import beside
-
-    beside.require(question.scene, laws)
-    return lambda curves, step: beside.solve(curves, laws, step)
-
-
 def _draw(found: Curves | EquallyStrong, file: TextIO, form: str) -> None:
     """The page about one curve, or in its place that of several laws."""
     from fem_adhesion.common import style
-    from fem_adhesion.curve import beside, figure
+    from fem_adhesion.curve import beside, figure, weak_form
+    from fem_adhesion.curve.solve import WEAK_FORM
 
     if isinstance(found, beside.EquallyStrong):
         style.write(lambda: beside.draw(found), file, form)
+    elif found.solver == WEAK_FORM:
+        style.write(lambda: weak_form.draw(found), file, form)
     else:
         style.write(lambda: figure.draw(found), file, form, figure.LOOK)
 

@@ -1,7 +1,4 @@
-"""The load-approach curve of one contact by one solver or both, the jumps of an apparatus, and the units both have.
-
-Units are the paper's, or SI where the material is known.
-"""
+"""The load-approach curve of one contact by the solvers asked for, its jumps, and the units in which it is shown."""
 
 from __future__ import annotations
 
@@ -15,20 +12,26 @@ import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.common.numbers import PREFIXES, exponent_of
+from fem_adhesion.common.record import UNITS
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.kernels import require_kernel
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
-from halfspace.equilibrium.events import Event
 from halfspace.errors import InputError
 from halfspace.limits import require_load, require_points, require_rtol
 from halfspace.scales import Scales
 from halfspace.scaling import Units
 from halfspace.values import Array
 
-HALF_SPACE, FINITE_ELEMENTS = "half-space", "finite elements"
+HALF_SPACE, FINITE_ELEMENTS, WEAK_FORM = "half-space", "finite elements", "weak form"
 SolverName = Literal["half-space", "fem", "both", "weak-form"]
+SOLVERS: Mapping[SolverName, tuple[str, ...]] = {
+    "half-space": (HALF_SPACE,),
+    "fem": (FINITE_ELEMENTS,),
+    "both": (FINITE_ELEMENTS, HALF_SPACE),
+    "weak-form": (WEAK_FORM,),
+}
 
 
 @dataclass(frozen=True)
@@ -78,21 +81,22 @@ class Question:
 class Curves:
     """Curves of what was asked of a contact.
 
-    The paths are by solver, `FINITE_ELEMENTS` first if it was asked; `grips` and `apparatus` are the jumps on the first
-    path under fixed grips and with the apparatus, if the contact jumps; with fixed grips there is no apparatus. Others
-    are events shown that are on no path here.
+    The paths are by solver, `FINITE_ELEMENTS` first if it was asked: each an `EquilibriumPath`, or by the weak form a
+    `fem_adhesion.weak_form.curve.Curve`, which has points and events alone. `grips` and `apparatus` are the jumps on
+    the first path under fixed grips and with the apparatus, if the contact jumps; with fixed grips there is no
+    apparatus.
     """
 
     question: Question
-    paths: Mapping[str, EquilibriumPath]
-    grips: Cycle | None
-    apparatus: Cycle | None
-    others: tuple[Event, ...] = ()
+    paths: Mapping[str, Any]
+    grips: Cycle | None = None
+    apparatus: Cycle | None = None
 
     @property
     def path(self) -> EquilibriumPath:
         """The first path, whose states and jumps are shown."""
-        return next(iter(self.paths.values()))
+        path: EquilibriumPath = next(iter(self.paths.values()))
+        return path
 
     @property
     def solver(self) -> str:
@@ -100,12 +104,13 @@ class Curves:
         return next(iter(self.paths))
 
     @property
-    def sampled(self) -> Mapping[str, EquilibriumPath]:
+    def sampled(self) -> Mapping[str, Any]:
         """The paths with the number of points asked for."""
-        if self.question.points is None:
-            return self.paths
         points = self.question.points
-        return {name: path if path.count == points else path.resampled(points) for name, path in self.paths.items()}
+        return {
+            name: path if points is None or path.count == points else path.resampled(points)
+            for name, path in self.paths.items()
+        }
 
     def left_out(self, solver: str) -> list[str]:
         """What a solver was not given of the scene, in words."""
@@ -115,7 +120,8 @@ class Curves:
         """By event, and by end of a jump on the first path, the numbers that miss the tolerance."""
         cycles = {"fixed grips": self.grips, "apparatus": self.apparatus} if solver == self.solver else {}
         jumps = {f"{name}, {device},": m for device, c in cycles.items() if c for name, m in c.missed.items()}
-        return self.paths[solver].missed | jumps
+        missed: dict[str, tuple[str, ...]] = self.paths[solver].missed | jumps
+        return missed
 
     @property
     def other(self) -> EquilibriumPath | None:
@@ -138,8 +144,11 @@ class Curves:
 
 def solve(question: Question, progress: Progress = unheard) -> Curves:
     """Trace the curve by each solver asked for, and find its jumps, or raise NotConverged."""
-    solvers = {"fem": (FINITE_ELEMENTS,), "half-space": (HALF_SPACE,), "both": (FINITE_ELEMENTS, HALF_SPACE)}
-    names, points = solvers[question.solver], question.points
+    names, points = SOLVERS[question.solver], question.points
+    if names == (WEAK_FORM,):
+        from fem_adhesion.weak_form.curve import trace as by_weak_form  # here, as few curves need it
+
+        return Curves(question, {WEAK_FORM: by_weak_form(question.scene, question.rtol, to_load=question.to_load)})
     paths = {}
     for done, name in enumerate(names):
         progress(name, done, len(names) + 1)
@@ -172,16 +181,20 @@ class Scale:
     size: float = 1.0
 
 
+LABELS = {
+    "approach": (r"approach $\alpha^* = \alpha/\epsilon$", r"approach $\alpha$"),
+    "load": (r"load $W/R\Delta\gamma$", "load $W$"),
+    "central_gap": (r"central gap $H(0)$", r"central gap $h(0) - \epsilon$"),
+    "gap": (r"gap $H = h/\epsilon - 1$", r"gap $h - \epsilon$"),
+    "contact_radius": (r"contact radius $a/\beta$", "contact radius $a$"),
+    "radius": (r"radius $u = r/\beta$", "radius $r$"),
+    "pressure": (r"pressure $P = \mu\epsilon p/\Delta\gamma$", "pressure $p$"),
+    "energy": (r"energy $E/R\Delta\gamma\epsilon$", "energy $E$"),
+    "stiffness": (r"stiffness $k\epsilon/R\Delta\gamma$", "stiffness $k$"),
+}
+ONLY_SHOWN = {"gap": "eps", "radius": "beta", "pressure": "dgamma/(mu eps)"}  # units of what no file has
 PAPER: Mapping[str, Scale] = {
-    "approach": Scale(r"approach $\alpha^* = \alpha/\epsilon$", "eps", r"approach $\alpha$"),
-    "load": Scale(r"load $W/R\Delta\gamma$", "R dgamma", "load $W$"),
-    "central_gap": Scale(r"central gap $H(0)$", "eps", r"central gap $h(0) - \epsilon$"),
-    "gap": Scale(r"gap $H = h/\epsilon - 1$", "eps", r"gap $h - \epsilon$"),
-    "contact_radius": Scale(r"contact radius $a/\beta$", "beta", "contact radius $a$"),
-    "radius": Scale(r"radius $u = r/\beta$", "beta", "radius $r$"),
-    "pressure": Scale(r"pressure $P = \mu\epsilon p/\Delta\gamma$", "dgamma/(mu eps)", "pressure $p$"),
-    "energy": Scale(r"energy $E/R\Delta\gamma\epsilon$", "R dgamma eps", "energy $E$"),
-    "stiffness": Scale(r"stiffness $k\epsilon/R\Delta\gamma$", "R dgamma/eps", "stiffness $k$"),
+    name: Scale(label, {**UNITS, **ONLY_SHOWN}[name], in_si) for name, (label, in_si) in LABELS.items()
 }
 
 ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}  # quantities with the prefix of another
@@ -189,7 +202,7 @@ ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}  #
 
 def _largest(curves: Curves) -> Mapping[str, float]:
     """Largest size of what a table of events shows, in dimensionless units; what is not known is left out."""
-    states = [*curves.others, *(event for path in curves.paths.values() for event in path.events.values())]
+    states = [event for path in curves.paths.values() for event in path.events.values()]
     cycles = [cycle for cycle in (curves.grips, curves.apparatus) if cycle]
     states += [state for cycle in cycles for jump in cycle.jumps.values() for state in jump.ends]
     sizes = {name: [abs(getattr(state, name)) for state in states] for name in OBSERVABLES}

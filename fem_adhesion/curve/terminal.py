@@ -14,7 +14,7 @@ from fem_adhesion.common import lines
 from fem_adhesion.common.contact import edge_told
 from fem_adhesion.common.numbers import engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
-from fem_adhesion.curve.solve import Curves, Scale
+from fem_adhesion.curve.solve import WEAK_FORM, Curves, Scale
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.devices import Cycle, reaching
 from halfspace.equilibrium.events import Event, tolerance_told
@@ -42,7 +42,7 @@ def show(curves: Curves, console: Console) -> None:
     console.print(table(curves))
     for line in notes(curves):
         console.print(prose(line), highlight=False)
-    if console.is_terminal:
+    if console.is_terminal and curves.solver != WEAK_FORM:
         console.print(plot(curves, min(WIDTH, console.width - MARGIN)))
         console.print(Flow(_key(curves), ", "))
 
@@ -53,12 +53,12 @@ def table(curves: Curves) -> Fitted:
     words = Column("state", [words for words, *_ in rows], text=True, wraps=True)
     # The solver tells rows apart only where there are two.
     solver = Column("solver", [name for _, name, *_ in rows], 0 if len(curves.paths) > 1 else 3, text=True, wraps=True)
-    numbers = zip(*(cells(event, units, missed) for _, _, event, missed in rows), strict=True)
+    numbers = zip(*(_cells(event, units, missed) for _, _, event, missed in rows), strict=True)
     columns = [
         Column(f"{name.replace('_', ' ')}\n{units[name].unit}", texts, RANKS[name])
         for name, texts in zip(OBSERVABLES, numbers, strict=True)
     ]
-    return Fitted([words, solver, *columns], list(title(curves)))
+    return Fitted([words, solver, *columns], list(_title(curves)))
 
 
 def _rows(curves: Curves) -> Iterator[tuple[str, str, Event, Sequence[str]]]:
@@ -82,7 +82,7 @@ def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str
         yield f"{words} lands", jump.landing, cycle.missed_by(name, "landing")
 
 
-def cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> Iterator[str]:
+def _cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> Iterator[str]:
     """Numbers of an event, each with the error of its last digit in brackets, and a mark if it is missed."""
     for name in OBSERVABLES:
         found = event.estimate(name)
@@ -94,7 +94,7 @@ def cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> It
             yield with_error(found, units[name].size, DIGITS) + (MISSED if name in missed else "")
 
 
-def title(curves: Curves) -> Iterator[str]:
+def _title(curves: Curves) -> Iterator[str]:
     """What was solved, in rich's markup."""
     scene, units = curves.question.scene, curves.question.units
     yield from map(escape, scene.told)
@@ -107,29 +107,18 @@ def title(curves: Curves) -> Iterator[str]:
 
 def notes(curves: Curves) -> Iterator[str]:
     """Energies lost, how the curve is told to be smooth, cost, and how to read the table."""
-    energy = curves.scales["energy"]
-    devices = [("fixed grips", curves.grips)]
-    if not np.isinf(curves.question.stiffness):
-        devices.append((_apparatus(curves), curves.apparatus))
-    for device, cycle in devices:
-        if cycle:
-            lost = with_error(cycle.energy_lost, energy.size, DIGITS)
-            yield f"energy lost in a cycle, {device}: {lost} {energy.unit}"
-        elif device == "fixed grips" and curves.path.jumps is None:
-            yield "jumps, fixed grips: cannot be told from a contact that follows smoothly"
-        else:
-            yield f"no jumps, {device}: the contact follows smoothly"
-    yield from _uncertainty(curves)
+    if curves.solver != WEAK_FORM:
+        yield from _jumps(curves)
     for solver, path in curves.paths.items():
         if missing := curves.left_out(solver):
             yield f"{solver}: another body under the same profile, which leaves out: {', '.join(missing)}"
-        if path.margin:
-            yield f"{solver}: {_how_far(path.margin)}"
-        for fold in path.unconfirmed:
+        if margin := getattr(path, "margin", None):
+            yield f"{solver}: {_how_far(margin)}"
+        for fold in getattr(path, "unconfirmed", ()):
             where = f"approach {fold.approach:.3g} eps, load {fold.load:.3g} R dgamma"
             yield f"{solver}: a fold near {where} cannot be told, no finer grid has it; a smaller rtol may"
         told = tolerance_told(path.rtol, curves.missed(solver))
-        yield f"{solver}: {path.unknowns} unknowns, {path.count} points, {path.seconds:.2f} s; {told}"
+        yield f"{solver}: {path.unknowns} unknowns, {len(path.load)} points, {path.seconds:.2f} s; {told}"
     if any(missed for *_, missed in _rows(curves)):
         size = "of eps and the range of all approaches"
         yield f"{MISSED}: the error is above rtol = {curves.question.rtol:g} of the load, of an approach {size}."
@@ -137,6 +126,28 @@ def notes(curves: Curves) -> Iterator[str]:
         "In brackets: error of the last digit. Compression and approach are positive. Contact radius: "
         f"{edge_told(curves.question.scene.law)}; -: no contact."
     )
+
+
+def _jumps(curves: Curves) -> Iterator[str]:
+    """Energy lost by each device, and how far models lie apart between which the assumptions leave a choice."""
+    units, energy, k = curves.scales, curves.scales["energy"], curves.question.stiffness
+    devices = {"fixed grips": curves.grips} | ({} if np.isinf(k) else {_apparatus(curves): curves.apparatus})
+    for device, cycle in devices.items():
+        if cycle:
+            lost = with_error(cycle.energy_lost, energy.size, DIGITS)
+            yield f"energy lost in a cycle, {device}: {lost} {energy.unit}"
+        elif device == "fixed grips" and curves.path.jumps is None:
+            yield "jumps, fixed grips: cannot be told from a contact that follows smoothly"
+        else:
+            yield f"no jumps, {device}: the contact follows smoothly"
+    for name, spread in curves.path.spread.items():
+        numbers = (
+            f"{number.replace('_', ' ')} {value * units[number].size:.2g} {units[number].unit}"
+            for number, value in spread.items()
+            if np.isfinite(value) and not (name == "zero_load" and number == "load")
+        )
+        words = ", ".join(numbers) or "unknown, as one of them has none"
+        yield f"model uncertainty of {EVENTS[name]}, by what the traction at finite strain is counted per: {words}"
 
 
 def _how_far(margin: Estimate) -> str:
@@ -147,19 +158,6 @@ def _how_far(margin: Estimate) -> str:
     if margin.value < 0:
         return f"its folds are about to merge, by a margin of {known}"
     return f"close to folding: it jumps with an apparatus of a compliance above {known}"
-
-
-def _uncertainty(curves: Curves) -> Iterator[str]:
-    """How far models lie apart between which the assumptions leave a choice."""
-    units = curves.scales
-    for name, spread in curves.path.spread.items():
-        numbers = (
-            f"{number.replace('_', ' ')} {value * units[number].size:.2g} {units[number].unit}"
-            for number, value in spread.items()
-            if np.isfinite(value) and not (name == "zero_load" and number == "load")
-        )
-        words = ", ".join(numbers) or "unknown, as one of them has none"
-        yield f"model uncertainty of {EVENTS[name]}, by what the traction at finite strain is counted per: {words}"
 
 
 def _apparatus(curves: Curves) -> str:

@@ -6,10 +6,10 @@ import argparse
 import math
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fem_adhesion.common.jobs import progress_bar
-from fem_adhesion.common.options import AGREE, DISAGREE, STANDARD, Command, Parser, add_workers, ended, written
+from fem_adhesion.common.options import AGREE, DISAGREE, STANDARD, Command, Parser, add_workers, all_written, ended
 from fem_adhesion.common.scene_options import add_law, law_of
 from halfspace.errors import InputError
 
@@ -72,18 +72,20 @@ def run(options: argparse.Namespace) -> int:
         1 if any curve could not be traced, else 0.
     """
     from fem_adhesion.common.files import open_store
+    from fem_adhesion.common.record import record, write_beside
     from fem_adhesion.sweep import study
     from halfspace.limits import require_load, require_rtol
 
     tabors = tabors_of(options.tabor)
     rtol, to_load = require_rtol(options.rtol), require_load(options.to_load)
-    asked = {"rtol": rtol, "to_load": to_load, "law": law_of(options)}
+    asked: dict[str, Any] = {"rtol": rtol, "to_load": to_load, "law": law_of(options)}
     store = open_store(options.resume, study.code(), resume=True, force=None) if options.resume else None
     try:
-        with written(options.csv) as file, progress_bar() as step:
+        with all_written(csv=options.csv) as files, progress_bar() as step:
             curves = study.run(tabors, asked, store, jobs=options.jobs, dask=options.dask, progress=step)
-            if file:
-                study.write_csv(curves, file)
+            study.write_csv(curves, files["csv"])
+            if "metadata" in files:
+                write_beside(files["metadata"], options.csv.name, record(tabor=tabors, **asked))
     except KeyboardInterrupt as how:
         kept = f"what is done is kept in {options.resume}, the same command goes on" if store else "nothing was written"
         return ended(how, kept)

@@ -12,14 +12,13 @@ from typing import IO, Any
 from fem_adhesion.common.facts import code_digest, plain
 from fem_adhesion.common.files import Plain, Store
 from fem_adhesion.common.jobs import Kept, solve_all
+from fem_adhesion.common.record import UNITS, column
 from fem_adhesion.registry import record_of
 from halfspace.accuracy.sweep import UNKNOWN, Summary, summary
+from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.events import EVENTS, Event
 from halfspace.errors import InputError
 from halfspace.values import Estimate
-
-UNITS = {"approach": "eps", "load": "R_dgamma", "central_gap": "eps", "contact_radius": "beta"}
-ENERGY_UNIT = "R_dgamma_eps"
 
 
 def code() -> str:
@@ -85,15 +84,15 @@ def _row(curve: Summary) -> dict[str, str]:
     """Columns of a curve."""
     numbers = {"tabor": curve.tabor}
     for name in EVENTS:
-        for quantity, unit in UNITS.items():
+        for quantity in OBSERVABLES:
             event = curve.events.get(name)
-            estimate = event.estimate(quantity) if event else UNKNOWN
-            numbers |= _named(f"{name}_{quantity}", unit, estimate)
-    numbers |= _named("energy", ENERGY_UNIT, curve.energy) | _named("energy_lost", ENERGY_UNIT, curve.energy_lost)
+            numbers |= _named(f"{name}_{quantity}", quantity, event.estimate(quantity) if event else UNKNOWN)
+    numbers |= _named("energy", "energy", curve.energy) | _named("energy_lost", "energy", curve.energy_lost)
     missed = "; ".join(f"{name} {' '.join(quantities)}" for name, quantities in curve.missed.items())
     written = {name: repr(float(value)) if math.isfinite(value) else "" for name, value in numbers.items()}
     return {**written, "missed_rtol": missed, "reason": curve.reason}
 
 
-def _named(name: str, unit: str, estimate: Estimate) -> dict[str, float]:
-    return {f"{name}_{unit}": estimate.value, f"{name}_error_{unit}": estimate.error}
+def _named(name: str, quantity: str, estimate: Estimate) -> dict[str, float]:
+    unit = UNITS[quantity]
+    return {column(name, unit): estimate.value, column(f"{name}_error", unit): estimate.error}

@@ -328,7 +328,7 @@ def test_the_command_of_the_readme_writes_every_kind_of_file_whole(tmp_path, mon
     assert cli.main(["curve", "--tabor", "2", "--rtol", "1e-3", *files, *pictures]) == 0
     captured = capsys.readouterr()
     assert captured.err == ""
-    made = {"curve.json", "curve.csv", "curve.png", "curve", "body.png", "jump.gif"}
+    made = {"curve.json", "curve.csv", "curve.csv-metadata.json", "curve.png", "curve", "body.png", "jump.gif"}
     assert {file.name for file in tmp_path.iterdir()} == made
     (solution,) = json.loads((tmp_path / "curve.json").read_text())["solutions"].values()
     load = solution["events"]["pull_off"]["load"]
@@ -432,7 +432,7 @@ def test_the_plot_in_characters_has_the_events_where_they_are(both):
 def test_all_files_are_written_and_nothing_else(tmp_path, capsys):
     files = [tmp_path / name for name in ("a.json", "a.csv", "a.svg")]
     assert _run("--tabor", 0.3, "--rtol", 1e-3, "--json", files[0], "--csv", files[1], "--plot", files[2]) == 0
-    assert sorted(tmp_path.iterdir()) == sorted(files)
+    assert sorted(tmp_path.iterdir()) == sorted([*files, tmp_path / "a.csv-metadata.json"])
     assert files[2].read_text().startswith("<?xml")
     assert json.loads(files[0].read_text())["jumps"]["fixed_grips"] is None
     assert "no jumps, fixed grips" in capsys.readouterr().out

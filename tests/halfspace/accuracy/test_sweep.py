@@ -37,6 +37,7 @@ class _Doubled(halfspace.laws.PowerLaw):
         return 2 * super().energy(gap, tabor)
 
 
+UNITS = {"approach": "eps", "load": "R_dgamma", "central_gap": "eps", "contact_radius": "beta"}
 ASKED = {"rtol": RTOL, "to_load": 5.0, "law": LENNARD_JONES}
 
 
@@ -130,7 +131,7 @@ def test_the_table_has_the_numbers_of_the_sweep(capsys, found):
         assert float(row["energy_R_dgamma_eps"]) == found.energy[i]
         assert float(row["energy_lost_error_R_dgamma_eps"]) == found.energy_lost_error[i]
         for name, series in found.events.items():
-            for number, unit in study.UNITS.items():
+            for number, unit in UNITS.items():
                 for column, values in ((number, number), (f"{number}_error", f"{number}_error")):
                     told, value = row[f"{name}_{column}_{unit}"], getattr(series, values)[i]
                     assert told == ("" if np.isnan(value) else repr(float(value)))

@@ -1,0 +1,72 @@
+"""Every file of results says what it is: the contact, the command line, versions, units."""
+
+import csv
+import json
+import shlex
+
+import pytest
+
+from fem_adhesion import cli
+from fem_adhesion.common import page
+from fem_adhesion.common.record import SCHEMA, column, read
+from fem_adhesion.registry import part_from
+from halfspace.laws import Morse
+
+KEYS = {"schema", "command", "versions", "scene", "options", "units"}
+BEAD = "--radius 50um --modulus 2MPa --poisson 0.49 --work-of-adhesion 0.05J/m^2 --spacing 0.3nm"
+
+
+@pytest.mark.parametrize(
+    ("line", "option", "value"),
+    [
+        ("curve --tabor 0.3 --rtol 1e-2 --csv 'a table.csv' --json a.json", "rtol", 1e-2),
+        ("sweep --tabor 0.3 0.4 --rtol 1e-2 --csv a.csv --jobs 1", "tabor", [0.3, 0.4]),
+        ("compare --tabor 0.3 --rtol 1e-2 --json a.json", "rtol", 1e-2),
+        (f"assess {BEAD} --json a.json", None, None),
+    ],
+)
+def test_each_file_of_a_command_has_the_record_that_repeats_it(line, option, value, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(shlex.split(line)) == 0
+    written = [file for file in tmp_path.iterdir() if not file.name.endswith("-metadata.json")]
+    assert written
+    for file in written:
+        found = read(file)
+        assert found.keys() >= KEYS
+        assert found["schema"] == SCHEMA
+        assert shlex.split(found["command"]) == ["fem-adhesion", *shlex.split(line)]
+        assert found["options"].get(option) == value
+        assert found["versions"].keys() >= {"python", "fem-adhesion", "numpy"}
+    first = capsys.readouterr().out
+    assert cli.main(shlex.split(found["command"])[1:]) == 0
+    assert capsys.readouterr().out.split()[:20] == first.split()[:20]
+
+
+def test_the_scene_of_a_record_is_read_back_and_units_are_those_of_its_numbers(tmp_path):
+    file = tmp_path / "a.csv"
+    assert (
+        cli.main(
+            ["curve", "--tabor", "0.3", "--law", "morse", "--law-parameter", "3", "--rtol", "1e-2", "--csv", str(file)]
+        )
+        == 0
+    )
+    found = read(file)
+    assert part_from("law", found["scene"]["law"]) == Morse(3)
+    with file.open() as lines:
+        header = next(csv.reader(lines))
+    assert {column(name, found["units"][name]) for name in ("approach", "load", "central_gap")} <= set(header)
+    assert "load_error_R_dgamma" in header
+
+
+def test_tables_of_a_directory_share_one_record(tmp_path):
+    page.write_csv([page.Table("one", "", "", ["a"], [["1"]]), page.Table("two", "", "", ["b"], [["2"]])], tmp_path)
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["csv-metadata.json", "one.csv", "two.csv"]
+    assert read(tmp_path / "one.csv") == read(tmp_path / "two.csv") == read(tmp_path) != {}
+    assert json.loads((tmp_path / "csv-metadata.json").read_text())["@context"] == "http://www.w3.org/ns/csvw"
+
+
+def test_a_table_without_a_record_has_none(tmp_path):
+    (tmp_path / "a.csv").write_text("x\n1\n")
+    assert read(tmp_path / "a.csv") == {}
+    (tmp_path / "csv-metadata.json").write_text("[1")
+    assert read(tmp_path / "a.csv") == {}
