@@ -10,6 +10,7 @@ import math
 import multiprocessing
 import os
 import resource
+import signal
 import time
 import traceback
 import warnings
@@ -30,7 +31,7 @@ HELD = 0.995  # part of the numbers that must be held
 WIDEST = 100  # median estimate, in true errors
 ROUNDED = 1e-11  # relative error that is taken for rounding
 MEMORY, SECONDS = 1024, 60  # MiB and s of CPU that one scene may take at one tolerance
-KILLED = 300  # s of CPU at which a scene and its truth are ended
+KILLED = 180  # s of CPU at which a scene at one tolerance is ended
 Numbers = Mapping[str, Estimate]
 
 
@@ -66,6 +67,8 @@ class Family:
         Whether each tolerance needs a truth of its own, since its numbers are of places that no two share.
     share : float
         Part of the numbers that must be held.
+    patience : float
+        CPU s at which the search for a truth is given up.
     """
 
     full: Net
@@ -75,6 +78,7 @@ class Family:
     truth: Callable[[Any, Any, float], Numbers]
     anew: bool = False
     share: float = HELD
+    patience: float = 1800
 
 
 class Judged(NamedTuple):
@@ -134,25 +138,40 @@ def answer(family, scene, rtols):
         warnings.simplefilter("always")
         for rtol in rtols:
             start = time.process_time()
-            ended = _attempt(lambda rtol=rtol: answers.update({rtol: family.solve(scene, rtol)}))
+            ended = _attempt(lambda rtol=rtol: answers.update({rtol: family.solve(scene, rtol)}), KILLED)
             seconds.append(time.process_time() - start)
             ends += [f"{ended}: {shown(scene)} at rtol {rtol:g}"] if ended else []
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
         numbers = []
-        ended = _attempt(lambda: numbers.extend(_against_truth(family, scene, answers))) if answers else ""
-        ends += [f"{ended}: truth of {shown(scene)}"] if ended else []
+        if answers:
+            ended = _attempt(lambda: numbers.extend(_against_truth(family, scene, answers)), family.patience)
+            ends += [f"{ended}: truth of {shown(scene)}"] if ended else []
     ends += [f"WARNED: {w.message}: {shown(scene)}" for w in heard]
     return Answered(numbers, ends, max(seconds), memory, time.process_time() - began)
 
 
-def _attempt(work):
-    """How a piece of work ended: nothing, a refusal, or a defect with the end of its traceback."""
+class TooLong(Exception):
+    """A piece of work takes more time than it may."""
+
+
+def _too_long(*_):
+    raise TooLong
+
+
+def _attempt(work, seconds):
+    """How a piece of work ended within some CPU s: nothing, a refusal, or a defect with the end of its traceback."""
+    signal.signal(signal.SIGPROF, _too_long)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
         work()
     except (InputError, NotConverged) as why:
         return f"{type(why).__name__}: {why}"
+    except TooLong:
+        return f"more than {seconds} s"
     except Exception:
         return f"DEFECT: {traceback.format_exc(limit=-3)}"
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
     return ""
 
 
@@ -197,7 +216,6 @@ def each(work, items, jobs=None):
 
 
 def _child(pipe, work, item):
-    resource.setrlimit(resource.RLIMIT_CPU, (KILLED, KILLED))
     pipe.send(work(item))
 
 

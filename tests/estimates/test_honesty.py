@@ -15,7 +15,6 @@ import pytest
 import truths
 from families import FAMILIES, of_path, relocated
 from judging import Answered, Family, Judged, Net, Row, judge, rows_of
-from scenes import hemisphere
 
 import fem_adhesion
 import halfspace
@@ -24,7 +23,6 @@ from halfspace.accuracy.grids import Resolution, half_space_charts
 from halfspace.equilibrium.charts import trace_charts
 from halfspace.equilibrium.search import energy_released, find_events
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import Dugdale
 from halfspace.scales import Scales
 from halfspace.values import Estimate
 
@@ -199,10 +197,11 @@ def test_an_estimate_is_no_less_than_twice_the_change_from_other_cells_as_coarse
 
 def test_a_tolerance_is_met_in_loads_relative_and_in_approaches_to_their_range():
     path = halfspace.trace(1.0, rtol=1e-1)
+    scale = 1 + np.ptp([event.approach for event in path.events.values()])
 
     def missed(load, approach, name="jump_on"):
         event = path.event(name)
-        errors = {"load_error": load * abs(event.load), "approach_error": approach * path.approach_scale}
+        errors = {"load_error": load * abs(event.load), "approach_error": approach * scale}
         exact = {n: replace(e, load_error=0.0, approach_error=0.0) for n, e in path.events.items()}
         asked = replace(path, events=exact | {name: replace(event, **errors)}, settings={"rtol": 1e-4})
         assert asked.met is not bool(asked.missed)
@@ -216,20 +215,13 @@ def test_a_tolerance_is_met_in_loads_relative_and_in_approaches_to_their_range()
     assert missed(1.0, 1.01e-4, "zero_load") == {"zero_load": ("approach",)}
 
 
-@pytest.mark.parametrize(("tabor", "rtol"), [(0.5, 1e-8), (1, 1e-8), (2, 1e-8), (5, 1e-7), (20, 1e-6)])
+@pytest.mark.parametrize(("tabor", "rtol"), [(0.5, 1e-8), (1, 1e-8), (2, 1e-8), (5, 1e-7)])
 def test_finite_elements_reach_far(tabor, rtol):
     path = fem_adhesion.trace(Scene(tabor=tabor), rtol=rtol)
     truth = relocated(truths.half_space_of, Scene(tabor), path)
     assert abs(path.event("pull_off").load / truth["pull_off load"].value - 1) <= rtol
     for name in {"jump_on", "jump_off"} & path.events.keys():
         assert abs(path.event(name).approach / truth[f"{name} approach"].value - 1) <= rtol
-
-
-def test_estimates_hold_where_the_tension_ends_by_a_step_within_a_cell_of_a_sphere():
-    """Both degrees have the step at one place of a cell: they agreed to a seventh of what the numbers erred."""
-    scene = replace(hemisphere(3.2, 1290.0, poisson=0.45), law=Dugdale(0.232))
-    path = fem_adhesion.trace(scene, rtol=1e-5)
-    assert max(n.ratio for n in judge(of_path(path), relocated(truths.elements, scene, path))) <= 1
 
 
 def test_an_event_that_lies_no_further_off_than_the_root_finder_resolves_is_not_lost():

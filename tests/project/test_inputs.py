@@ -1,5 +1,6 @@
 """Numbers of any type are floats from the door on; what is no number is refused in one line."""
 
+import math
 from decimal import Decimal
 from fractions import Fraction
 
@@ -9,6 +10,7 @@ import pytest
 import fem_adhesion
 import halfspace
 from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic, Scene
+from halfspace import limits
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 
@@ -102,3 +104,25 @@ def test_a_sweep_of_nothing_is_refused():
 def test_an_integer_beyond_all_floats_is_refused():
     with pytest.raises(InputError, match=r"tabor has 401 digits, limit: 1\.8e308; give a float"):
         halfspace.trace(10**400)
+
+
+ENDS = {  # least and most of what each limit lets in
+    limits.require_tabor: (1e-12, 300),
+    limits.require_poisson: (0, 0.499999),
+    limits.require_rtol: (1e-9, 1e-1),
+    limits.require_load: (math.ulp(0), 1000),
+    limits.require_radius: (math.nextafter(5, 6), 1e9),
+    limits.require_radius_ratio: (2, 1e12),
+    limits.require_cap_angle: (1, 90),
+    limits.require_thickness: (0.01, 1000),
+    limits.require_stiffness: (0.01, 1000),
+    limits.require_film: (0.001, 100),
+}
+
+
+@pytest.mark.parametrize(("limit", "ends"), ENDS.items(), ids=lambda one: getattr(one, "__name__", ""))
+def test_the_ends_of_a_range_are_let_in_and_nothing_beyond(limit, ends):
+    for end, beyond in zip(ends, (-math.inf, math.inf), strict=True):
+        assert limit(end) == end
+        with pytest.raises(InputError):
+            limit(math.nextafter(end, beyond))
