@@ -25,7 +25,6 @@ What it is good for, and what not:
 * Blocks with a ``far_field`` of "clamped" or "free" need a fixed mesh, up to a Tabor parameter of 3.
 """
 
-import logging
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -37,7 +36,6 @@ if TYPE_CHECKING:
     from fem_adhesion.crosscheck.study import compare
     from fem_adhesion.materials import LinearElastic, NeoHookean
     from fem_adhesion.scene import Scene, share_of
-logging.getLogger("skfem").addHandler(logging.NullHandler())  # its advice on performance is for us, not for users
 
 __all__ = [
     "Block",

@@ -12,7 +12,7 @@ from functools import cache, partial
 from typing import Any
 
 import numpy as np
-from skfem import ElementQuadP, ElementTriP2, MeshTri
+from skfem import ElementQuad2, ElementQuadP, ElementTriP2, MeshTri
 
 from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout
 from fem_adhesion.elasticity import exterior
@@ -43,9 +43,15 @@ FAR_FIELDS: Mapping[FarFieldName, FarField] = {
 }
 
 
-TRIANGLE, quadrilateral = ElementTriP2(), cache(ElementQuadP)  # one of each, lest they be evaluated for every mesh
-LENGTHS = 50  # of the cells at the contact edge, to a factor of e
+TRIANGLE = ElementTriP2()
+LENGTHS = 50  # lengths of the cells at the contact edge to a factor of e, so that charts of like contacts share
 CURVE_DEGREE = 4  # of the elements for a curve, whose operator is interpolated to some 1e-4
+
+
+@cache
+def quadrilateral(degree: int) -> Any:
+    """Element of a degree, one for all meshes, so that its functions are evaluated once."""
+    return ElementQuad2() if degree == 2 else ElementQuadP(degree)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -35,8 +35,7 @@ from halfspace.equilibrium.path import Point
 from halfspace.errors import InputError
 from halfspace.values import Array, Mask, Valued
 
-FIELDS = Discretisation(degree=6)
-"""Cells of the fields: displacement and stress differ from those of degree 9 by 5e-5 and 1e-3 of their maxima."""
+FIELDS = Discretisation(degree=6)  # displacement and stress are those of degree 9 to 5e-5 and 1e-3 of their maxima
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -215,9 +214,6 @@ def _solved(made: Discretised, source: Traceable, point: Point, name: str) -> St
     return State(scene, name, space, scene.shares[0] * u, stress, body.surface, problem, new)
 
 
-MOST_NODES = 16  # of a ring of the half-space
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Beside(Valued):
     """The half-space beside a state: P and H at its radii, (q,), and the half-space's own observables.
@@ -240,7 +236,7 @@ def half_space_beside(state: State) -> Beside:
     """
     source, tabor = state.problem.operator.at(1.0), state.scene.tabor
     cells = _clear_of(source.cells, float(state.observables[CONTACT_RADIUS]))
-    operator = panels_of(state.scene.body.layered, cells, min(source.cell_nodes.shape[1], MOST_NODES))
+    operator = panels_of(state.scene.body.layered, cells, min(source.cell_nodes.shape[1], 16))
     problem = ContactProblem(operator, tabor, state.problem.law, state.problem.profile)
     start = np.append(source.values_at(operator.radii, state.gap), state.point.x[-2:])
     solution = newton.solve(problem, start, _same(state.observables))

@@ -111,25 +111,19 @@ def coefficients(lines: Array, nodes: int, R: float, harmonics: int) -> Array:
     ]
     cuts = np.cumsum([len(points) for points, _ in rules])[:-1]
     rows, found = _even(np.cos(theta)), []
-    for first in range(0, harmonics + 1, BLOCK):
-        block = np.array([P for P, _ in islice(rows, min(BLOCK, harmonics + 1 - first))])
+    for first in range(0, harmonics + 1, 256):
+        block = np.array([P for P, _ in islice(rows, min(256, harmonics + 1 - first))])
         of_cells = np.split(block, cuts, axis=1)
         found.append(np.hstack([values @ part for values, part in zip(of_cells, parts, strict=True)]))
     return np.concatenate(found)
 
 
-BLOCK = 256  # harmonics at a time
-
-
 def _gauss(a: float, b: float, nodes: int, harmonics: int) -> tuple[Array, Array]:
     """Gauss's points and weights from a to b, for polynomials of so many nodes times the harmonics."""
-    pieces = 1 + int(harmonics * (b - a) / PIECE)
-    count = nodes + MORE + math.ceil(harmonics * (b - a) / pieces)
+    pieces = 1 + int(harmonics * (b - a) / 30.0)  # the phase of the last harmonic over a rule is 60 rad at most
+    count = nodes + 8 + math.ceil(harmonics * (b - a) / pieces)
     points, weights = grid.gauss_points(np.linspace(a, b, pieces + 1), count)
     return points.ravel(), weights.ravel()
-
-
-PIECE, MORE = 30.0, 8  # largest phase of the last harmonic over a rule, in 2 rad, and points that make it converge
 
 
 def sphere_compliance(
@@ -146,10 +140,7 @@ def sphere_compliance(
 
 # The solver
 
-# Harmonics in R over the width of the spike of tension: for each digit asked for, for each rung more, of the curve
-PER_DIGIT, PER_RUNG, OF_CURVE = 2.5, 6.0, 10.0
-MOST = 5000  # harmonics on the first rung above the lowest
-FINEST, GROWTH = 0.4, 2.0  # of the cells: at the contact edge in widths of the spike of tension, and of their lengths
+MOST = 5000  # most harmonics on the first rung above the lowest
 
 
 @dataclass(frozen=True)
@@ -162,8 +153,8 @@ class Fineness:
 
     nodes: int
     harmonics: float
-    finest: float = FINEST
-    growth: float = GROWTH
+    finest: float = 0.4
+    growth: float = 2.0
 
 
 def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> EquilibriumPath:
@@ -188,8 +179,8 @@ def trace(scene: Scene, *, rtol: float = 1e-6, to_load: float = COMPRESSION) -> 
 
     def rung(level: int) -> Rung:
         above, below = (resolution_for(rtol, max(n, 0)) for n in (level, level - 1))
-        twin = Fineness(below.nodes, below.harmonics, FINEST * TWIN[0], GROWTH * TWIN[1])
-        curve = sized_body(scene, Fineness(above.nodes, OF_CURVE), to_load)
+        twin = Fineness(below.nodes, below.harmonics, above.finest * TWIN[0], above.growth * TWIN[1])
+        curve = sized_body(scene, Fineness(above.nodes, 10.0), to_load)
         body, other = (sized_body(scene, how, to_load) for how in (above, twin))
         settings = {"nodes": above.nodes, "harmonics": counts(scene, above)}
         return Rung(curve.curve, (standing(body),), settings, standing(other) if level else None)
@@ -201,7 +192,7 @@ def resolution_for(rtol: float, level: int) -> Fineness:
     """Fineness of a level, whose events are right to about `rtol` at level 0 and a decade better at each above it."""
     digits = -math.log10(rtol)
     nodes = min(math.ceil(3 + digits - 1e-9) + 2 * level, 16)
-    return Fineness(nodes, PER_DIGIT * digits + PER_RUNG * level)
+    return Fineness(nodes, 2.5 * digits + 6.0 * level)
 
 
 def counts(scene: Scene, how: Fineness) -> list[int]:
@@ -224,10 +215,8 @@ def require_few(scene: Scene, rtol: float) -> None:
         )
 
 
-RIM = 1.7 / (1 + 1.7**2 / 4)
-"""Part of the smaller sphere's radius beyond which both bodies of a pair are taken as rigid."""
-CROWDED = 0.3 ** np.arange(5)
-"""Cells crowd to the equator, where the profile of a sphere has a vertical tangent, in parts of the last six."""
+RIM = 1.7 / (1 + 1.7**2 / 4)  # part of the smaller sphere's radius beyond which both bodies of a pair are rigid
+CROWDED = 0.3 ** np.arange(5)  # cells crowd to the equator, where a sphere's profile has a vertical tangent
 
 
 def sized_body(scene: Scene, how: Fineness, to_load: float = COMPRESSION) -> SizedBody:

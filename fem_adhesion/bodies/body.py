@@ -69,23 +69,12 @@ class Body(ABC):
     material: Material = USUAL
     poisson: InitVar[float | None] = None
 
-    stretches: ClassVar[bool] = False
-    """Whether it may be neo-Hookean."""
-
-    curved: ClassVar[bool] = False
-    """Whether the area of its surface differs from the projected one."""
-
-    meets: ClassVar[bool] = False
-    """Whether it may have a counter-body, and be one if it is not the smaller."""
-
-    faces: ClassVar[bool] = False
-    """Whether it may be a counter-body."""
-
-    has_fields: ClassVar[bool] = True
-    """Whether the fields inside it are to be had."""
-
-    looks: ClassVar[str] = "elastic body"
-    """What a picture of it shows."""
+    stretches: ClassVar[bool] = False  # whether it may be neo-Hookean
+    curved: ClassVar[bool] = False  # whether the area of its surface differs from the projected one
+    meets: ClassVar[bool] = False  # whether it may have a counter-body, and be one if it is not the smaller
+    faces: ClassVar[bool] = False  # whether it may be a counter-body
+    has_fields: ClassVar[bool] = True  # whether the fields inside it are to be had
+    looks: ClassVar[str] = "elastic body"  # what a picture of it shows
 
     def __post_init__(self, poisson: float | None) -> None:
         self._take(poisson)

@@ -17,8 +17,6 @@ from halfspace.values import Array, keep
 
 BlockFarField = Literal["point_load", "clamped", "free"]
 
-PAST_END = 0.02  # length of the first cell beyond the end of the surface over it, in the radius there
-
 
 @dataclass(frozen=True)
 class HalfSpace(Body):
@@ -45,7 +43,7 @@ class HalfSpace(Body):
 
         if np.isinf(R):
             return _as_deep_as_wide(lines, how)
-        past = grid.geometric((how.beyond - 1) * R, PAST_END * R, how.growth)[1:]
+        past = grid.geometric((how.beyond - 1) * R, 0.02 * R, how.growth)[1:]
         depths = grid.graded(0.0, length, how.beyond * R, growth=how.growth)
         return with_contact_to(tensor_grid(np.concatenate([lines, R + past]), depths), R)
 

@@ -13,8 +13,6 @@ from halfspace.elastic.grid import FLAT, SurfaceCoordinate
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, keep
 
-RINGS = 0.2  # ratio of the rings around a singular corner
-
 
 @dataclass(frozen=True, kw_only=True)
 class Hemisphere(Held):
@@ -45,7 +43,7 @@ class Hemisphere(Held):
         There u ~ d^s, with d the distance and sin^2(s pi/2) = [4 (1 - nu)^2 - s^2]/(3 - 4 nu) (Williams 1952): s falls
         from 1 at nu = 0 to 0.6 at 1/2; each ring takes the error it leaves, as d^(2 s), down by a factor of 25 to 7.
         """
-        return np.asarray(RINGS ** np.arange(1.0, (how.rings if self.singular else 0) + 1))
+        return np.asarray(0.2 ** np.arange(1.0, (how.rings if self.singular else 0) + 1))
 
     def layout(self, R: float, how: Discretisation) -> Layout:
         """Layers and rings beyond the core."""

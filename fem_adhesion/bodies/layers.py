@@ -19,14 +19,13 @@ from halfspace.limits import require_film, require_poisson, require_thickness
 from halfspace.scales import Scales
 from halfspace.values import Array, keep
 
-# Stiff strata spread what pulls at them over a length along the half-space below, whose far field is that without them:
-# at 100, 1e3 and 1e4 such lengths the deflection of a stiff film errs by 6e-7, 2e-8 and less than 1e-9 of itself. So a
-# half-space under strata ends so many times as far out, in these lengths, as one without in its own.
+# Lengths of their spread that a half-space under strata ends farther out than one without in its own: at 100, 1e3 and
+# 1e4 of these the deflection of a stiff film errs by 6e-7, 2e-8 and less than 1e-9 of itself.
 FAR_OUT = 10.0
-SPREAD = 0.01  # the least such length, in what attracts
-WIDTH = 800.0  # of the mesh, in widths of a rigid attraction: the load left out beyond is 1e-10 R dgamma
-# Thicknesses that it is wider: what dies out falls by e^(-0.74 r/t) at least, there and back again to 1e-13. From the
-# roots of what its yield is divided by, (3 - 4 nu) cosh 2x + 2 x^2 + 5 - 12 nu + 8 nu^2, the first at nu = 1/2.
+SPREAD = 0.01  # least length over which strata spread a load, in the radius of what attracts
+WIDTH = 800.0  # width of the mesh in widths of a rigid attraction: the load left out beyond is 1e-10 R dgamma
+# Thicknesses that the mesh is wider: what dies out falls by e^(-0.74 r/t) at least, there and back again to 1e-13. From
+# the roots of the denominator of the yield, (3 - 4 nu) cosh 2x + 2 x^2 + 5 - 12 nu + 8 nu^2, the first at nu = 1/2.
 DIED_OUT = 20.0
 # Thicknesses up to which strata on a rigid base yield to an attraction that reaches farther: its gap is wide there, and
 # they move by a part of their thickness; the stiffness along them falls short of that across by the square of this.

@@ -22,8 +22,8 @@ from scipy.linalg.lapack import dpotrf
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
-LEAST = 8  # cells of the smallest regions: with fewer there are more steps, with more they are longer
-FAR = 2**29  # a place beyond all, where a zero is read; twice as far is a place, too
+LEAST = 8  # cells of the smallest regions: with fewer there are more steps, with more the steps are longer
+NOWHERE = 2**29  # a place beyond all others, where a zero is read; twice as far is a place, too
 SINGULAR = "the stiffness is singular; hold the body, and mesh it without empty cells"
 
 
@@ -315,9 +315,9 @@ def _places(parts: list[Region], rank: Index, own: Index, ranks: Index, c: int) 
 
 def _places_in(part: Region, ranks: Index, size: int, c: int) -> Places:
     """Where the entries of a region of some size are in a part, whose unknowns have these ranks among the region's."""
-    if size**2 >= FAR:
+    if size**2 >= NOWHERE:
         raise NotConverged(f"{size} unknowns meet between parts of the body, with more products than are numbered")
-    at, rows = np.full((2, size), FAR, dtype=np.int32)
+    at, rows = np.full((2, size), NOWHERE, dtype=np.int32)
     at[ranks] = np.arange(ranks.size)
     rows[ranks] = ranks.size * at[ranks] + part.complete.size * (part.complete.size + ranks.size)
     places: Places = np.empty(c * size + (size - c) ** 2 + 1, dtype=np.int32)
@@ -325,7 +325,7 @@ def _places_in(part: Region, ranks: Index, size: int, c: int) -> Places:
     np.add.outer(rows[:c], at[:c], out=done.reshape(c, c))
     np.add.outer(rows[:c], at[c:], out=beside.reshape(c, size - c))
     np.add.outer(rows[c:], at[c:], out=left.reshape(size - c, size - c))
-    places[-1] = FAR
+    places[-1] = NOWHERE
     return places
 
 

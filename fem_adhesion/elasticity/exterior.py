@@ -18,8 +18,7 @@ from fem_adhesion.elasticity.surface import BoundaryPoints, boundary_points
 from fem_adhesion.materials import Elastic
 from halfspace.values import Array, Index, Valued
 
-MORE_POINTS = 6
-"""Gauss points on a facet beyond the degree p where a smooth field that is no polynomial is integrated."""
+MORE_POINTS = 6  # Gauss points on a facet beyond the degree where a smooth field that is no polynomial is integrated
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -28,9 +28,6 @@ from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.materials import Elastic
 from halfspace.values import Array, Index
 
-ON_AXIS = 1e-12
-"""Radius, in the largest of the points given, below which the hoop strain is its limit du_r/dr."""
-
 
 def sampled(space: Space, coefficients: Array, places: Array) -> Array:
     """Return the values (..., cells, k) of scalar fields at points of each cell.
@@ -57,7 +54,7 @@ def strains(space: Space, displacement: Array, places: Array) -> Array:
     basis = _basis(space, places)
     u_r, u_z = (basis.interpolate(displacement[row]) for row in space.components)
     r = np.asarray(basis.global_coordinates())[0]
-    off_axis = r > ON_AXIS * r.max()
+    off_axis = r > 1e-12 * r.max()
     hoop = np.where(off_axis, np.asarray(u_r) / np.where(off_axis, r, 1.0), u_r.grad[0])
     return np.array([u_r.grad[0], u_z.grad[1], hoop, u_r.grad[1] + u_z.grad[0]])
 

@@ -16,26 +16,14 @@ from scipy.sparse.csgraph import connected_components
 from halfspace.errors import InputError
 from halfspace.values import Array, Index
 
-GROUPS = {"axis": "axis", "contact": "contact", "grip": "far"}
-"""Groups of lines of a file, and what the boundaries are called inside."""
-
-TOLERANCE = 1e-8
-"""Of places, in sizes of the body. A file in single precision has fewer digits, but its zeros are zero."""
-
-FLATNESS = 1e-9
-"""Of a cell: least Jacobian determinant over the square of its longest edge."""
-
-POLE_SLOPE = 0.15
-"""Depth over radius where the points end that give the curvature at the pole: at 0.3 R on a sphere."""
-
-POLE_POINTS = (4, 12)
-"""Fewest and most points on the contact line, beside the pole, that give the curvature there."""
-
-RADIUS_ERROR, ROUNDNESS = 0.05, 0.02
-"""Limits of the pole's radius, about 1, and of the misfit of its points to a round pole, over their depth."""
-
-ROUND, NEARLY_ROUND = 3, 2
-"""Even powers of r in the fit to the pole: for its radius, to some 1e-5 at worst, and for what counts as round."""
+GROUPS = {"axis": "axis", "contact": "contact", "grip": "far"}  # groups of lines of a file, and the boundaries inside
+TOLERANCE = 1e-8  # tolerance of places in sizes of the body; in single precision digits are fewer, but zeros are zero
+FLATNESS = 1e-9  # least Jacobian determinant of a cell over the square of its longest edge
+POLE_SLOPE = 0.15  # depth over radius up to which points give the curvature at the pole: 0.3 R on a sphere
+POLE_POINTS = (4, 12)  # fewest and most points on the contact line, without the pole, that give the curvature there
+RADIUS_ERROR = 0.05  # largest distance of the pole's radius from 1
+ROUNDNESS = 0.02  # largest misfit of the pole's points to a round pole, over their depth
+ROUND, NEARLY_ROUND = 3, 2  # even powers of r in the fit of the radius, to 1e-5 at worst, and of what counts as round
 
 
 def require_body(mesh: Any) -> None:

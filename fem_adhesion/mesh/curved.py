@@ -18,8 +18,7 @@ from skfem.mapping import MappingIsoparametric
 
 from halfspace.values import Array, Index, Valued
 
-DEGREE = 8
-"""Of the cells' shape: an arc of one radian deviates from the circle by 1e-10 of its radius."""
+DEGREE = 8  # degree of the cells' shape: an arc of one radian deviates from the circle by 1e-10 of its radius
 
 CORNERS = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]])  # of the reference square, in scikit-fem's order
 

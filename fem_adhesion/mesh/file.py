@@ -29,8 +29,6 @@ from halfspace.values import Array, Index
 CORNERS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
 """Vertices of the cells that are read, by meshio's name."""
 
-LINES = ("line", "line3")
-
 PARSER_ERRORS = (
     *(OSError, EOFError, StopIteration, ImportError, ArithmeticError, AssertionError, AttributeError, LookupError),
     *(MemoryError, NameError, RuntimeError, SyntaxError, TypeError, ValueError, struct.error, zlib.error),
@@ -163,7 +161,7 @@ def _line_groups(raw: Any) -> dict[str, Index]:
     """Return the ends of the lines in each named group, (lines, 2), numbered as in the file."""
     groups: dict[str, list[Index]] = {}
     for k, block in enumerate(raw.cells):
-        if block.type in LINES:
+        if block.type in ("line", "line3"):
             for name, members in _members(raw, k):
                 groups.setdefault(name, []).append(block.data[members, :2].astype(np.intp))
     return {name: np.concatenate(lines) for name, lines in groups.items()}

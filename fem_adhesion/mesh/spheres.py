@@ -23,12 +23,8 @@ from halfspace.errors import InputError
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, Index, Valued
 
-CORE, DEPTH = 1.7, 0.9
-"""Radius and depth of the tensor grid about the pole, in R on the flat plane; its corner stays inside that of 2R."""
-
-LAYERS = 2
-"""Cells between the tensor grid and the mid-plane."""
-
+CORE, DEPTH = 1.7, 0.9  # radius and depth of the core, a tensor grid about the pole, in R on the flat plane
+LAYERS = 2  # cells between the core and the mid-plane
 NO_RINGS = np.empty(0)
 
 
@@ -137,9 +133,6 @@ def with_contact_to(mesh: Any, radius: float) -> Any:
     return mesh.with_boundaries({"contact": facets[inside]})
 
 
-ON_AXIS = 1e-6  # distance from the axis in lengths of a facet: rounding on the axis, about half a length beside it
-
-
 def named(mesh: CurvedQuads, where: Callable[[Array, Array], dict[str, Any]]) -> CurvedQuads:
     """Name in place the boundary facets for which the masks, by name, hold at r and z of their middles.
 
@@ -148,7 +141,7 @@ def named(mesh: CurvedQuads, where: Callable[[Array, Array], dict[str, Any]]) ->
     facets = mesh.boundary_facets()
     ends = mesh.p[:, mesh.facets[:, facets]]
     r, z = ends.mean(axis=1)
-    masks = where(np.where(r < ON_AXIS * np.hypot(*np.diff(ends, axis=1)[:, 0]), 0.0, r), z)
+    masks = where(np.where(r < 1e-6 * np.hypot(*np.diff(ends, axis=1)[:, 0]), 0.0, r), z)
     mesh.name_boundaries({name: facets[mask] for name, mask in masks.items()})
     return mesh
 
@@ -160,8 +153,6 @@ def vertex_at(mesh: CurvedQuads, r: float, z: float) -> int:
 
 # A body that faces a smaller sphere: its cells end at the same radii and have their nodes there too. The smaller sphere
 # is given by its coordinate s, and its cells by their ends in it.
-
-GROWTH = 2.5  # ratio of neighbouring cells beyond those of the smaller body
 
 
 def hemisphere_over(lines: Array, depths: Array, R1: float, R2: float, rings: Array) -> Any:
@@ -182,7 +173,7 @@ def block_under(lines: Array, depths: Array, R1: float, size: float) -> Any:
 
 def _beyond(lines: Array, length: float) -> Array:
     """Ends of more cells."""
-    return np.asarray(lines[-1] + grid.geometric(length, float(lines[-1] - lines[-2]), GROWTH)[1:])
+    return np.asarray(lines[-1] + grid.geometric(length, float(lines[-1] - lines[-2]), 2.5)[1:])
 
 
 def _coordinate_on(R1: float, R2: float) -> Callable[[Array], Array]:
@@ -202,29 +193,24 @@ def _along(s: Array, *, coordinate: Callable[[Array], Array], last: float) -> Ar
 # it; there the cells are cut into rings.
 
 
-RINGS = 0.2 ** np.arange(1.0, 8.0)
-"""Sizes of the rings around the rim of the cap, in parts of the cells there; what is left errs by some 1e-9."""
+RINGS = 0.2 ** np.arange(1.0, 8.0)  # sizes of the rings around the rim, in parts of the cells there; they err by 1e-9
+COARSE = RINGS[:5]  # rings at the equator, which err by 1e-7: in smaller cells the slope of the contact is rounded off
 
-COARSE = RINGS[:5]
-"""The same around the equator: in smaller cells of the contact, its slope there is lost to rounding; errs by 1e-7."""
 
-IN_CORE = 1.4
-"""Largest rim, in R on the flat plane, that lies in the core of the far half; a larger one lies between its layers."""
+@dataclass(frozen=True)
+class CapSettings:
+    """Where the lines of the half with the cap are, in R on the flat plane unless said otherwise."""
 
-NARROW = 1.2
-"""Radius of the core in R where the rim is outside."""
+    in_core: float = 1.4  # largest rim that lies in the core; a larger one lies between its layers
+    narrow: float = 1.2  # radius of the core where the rim is outside
+    shallow: float = 0.25  # least depth of the cells under the surface where the rim is outside the core
+    reach: float = 0.5  # distance from the rim where lines are evenly spaced, in parts of that to the nearer end
+    steepest: float = 2.5  # largest growth of lines on their way to the rim of a small cap; otherwise rings lead there
+    nearest: float = 0.7  # largest distance in cells of the rim from the axis, or the equator, to which rings lead
+    nested: float = 0.4  # ratio of the sizes of these rings
 
-SHALLOW = 0.25
-"""Least depth of the cells under the surface in R where the rim is outside the core."""
 
-REACH = 0.5
-"""Distance from the rim within which lines are evenly spaced, in parts of that to the nearer end of the core."""
-
-STEEPEST = 2.5
-"""Most that lines grow from one to the next on their way to the rim of a small cap; rings lead to it otherwise."""
-
-NEAREST, NESTED = 0.7, 0.4
-"""Most that its rim is from the axis then, or else from the equator, in cells; and ratio of the rings' sizes."""
+CAP = CapSettings()
 
 
 def held_sphere(R: float, x_lines: Array, depths: Array, cap_angle: float) -> CurvedQuads:
@@ -249,7 +235,7 @@ def held_sphere(R: float, x_lines: Array, depths: Array, cap_angle: float) -> Cu
     mesh = joined(patches, [*half_vertices(m, n, 0, 2 * own), *half_vertices(m, n, own, 2 * own)])
     if len(past := _past(R, rim)):
         mesh = refined_towards(mesh, vertex_at(mesh, R, -R), past)
-    elif rim < NEAREST * far.x[1]:
+    elif rim < CAP.nearest * far.x[1]:
         mesh = refined_towards(mesh, vertex_at(mesh, 0, -2 * R), _leading(rim / far.x[1]))
     rim_vertex = vertex_at(mesh, R * float(np.sin(angle)), -R * (1 + float(np.cos(angle))))
     return named(
@@ -276,15 +262,15 @@ def _far_lines(R: float, m: int, n: int, rim: float) -> Lines:
     If the lines are too few for a small cap, they are evenly spaced.
     """
     plain = even(R, m, n)
-    if rim < NEAREST * plain.x[1] and _steps(rim, CORE * R).sum() > m * np.log(STEEPEST):
+    if rim < CAP.nearest * plain.x[1] and _steps(rim, CORE * R).sum() > m * np.log(CAP.steepest):
         return plain
-    if rim <= IN_CORE * R:
+    if rim <= CAP.in_core * R:
         return replace(plain, x=_about(rim, CORE * R, m), depths=_spread(DEPTH * R, n, _reach(rim, CORE * R)))
-    depths = np.append(0, np.linspace(max(DEPTH / n, SHALLOW), DEPTH, n)) * R
+    depths = np.append(0, np.linspace(max(DEPTH / n, CAP.shallow), DEPTH, n)) * R
     if rim == 2 * R or len(_past(R, rim)):
         return replace(plain, depths=depths)
-    layers = np.append(np.linspace(0, (rim / R - NARROW) / (2 - NARROW), LAYERS), 1.0)
-    return Lines(np.linspace(0, NARROW * R, m + 1), depths, layers)
+    layers = np.append(np.linspace(0, (rim / R - CAP.narrow) / (2 - CAP.narrow), LAYERS), 1.0)
+    return Lines(np.linspace(0, CAP.narrow * R, m + 1), depths, layers)
 
 
 def _rim(R: float, cap_angle: float) -> float:
@@ -295,12 +281,12 @@ def _rim(R: float, cap_angle: float) -> float:
 def _past(R: float, rim: float) -> Array:
     """Sizes of rings around the equator, the last of which ends at a rim close to it; none if it is not."""
     part = (2 - rim / R) * LAYERS / (2 - CORE)
-    return _leading(part) if 0 < part < NEAREST else np.empty(0)
+    return _leading(part) if 0 < part < CAP.nearest else np.empty(0)
 
 
 def _leading(part: float) -> Array:
     """Sizes of rings in parts of a cell, the last of the size given."""
-    count = int(np.ceil(np.log(part) / np.log(NESTED)))
+    count = int(np.ceil(np.log(part) / np.log(CAP.nested)))
     return np.asarray(part ** (np.arange(1.0, count + 1) / count))
 
 
@@ -320,7 +306,7 @@ def _steps(rim: float, end: float) -> Array:
 
 def _reach(rim: float, end: float) -> float:
     """Distance from the rim within which lines are evenly spaced."""
-    return REACH * min(rim, end - rim)
+    return CAP.reach * min(rim, end - rim)
 
 
 def _spread(length: float, count: int, reach: float) -> Array:
