@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from fem_adhesion.common.facts import plain
+from fem_adhesion.common.page import data_rows
 from fem_adhesion.elasticity import stress as stresses
 from fem_adhesion.fields import Beside, State
 from fem_adhesion.paraview.cells import Cut, Solid
@@ -22,24 +23,9 @@ from halfspace.values import Array
 Named = dict[str, Array]
 Numbers = TypeVar("Numbers", float, Array)
 
-LARGEST_STRAIN = 0.5  # drawn at most: the cells stay far from turning inside out
-STRAIN_PLACES = np.stack(np.meshgrid(np.linspace(0, 0.5, 3), np.linspace(0, 0.5, 3))).reshape(2, -1)
-"""Points of the reference element, triangle or square, at which the largest strain is looked for."""
-
-TO_SCALE = 5.0  # magnification of the true displacement below which it is not worth its distortion
-SAME_TABOR = 1e-6  # relative difference of two Tabor parameters that are one
-COMPONENTS = {
-    "displacement": ("r", "theta", "z"),
-    "displacement_in_beta": ("r", "theta", "z"),
-    "displacement_magnified": ("r", "theta", "z"),
-    "stress_cylindrical": ("rr", "tt", "zz", "rt", "tz", "rz"),
-    "stress": ("xx", "yy", "zz", "xy", "yz", "xz"),
-    "principal_stresses": ("largest", "middle", "least"),
-}
-"""Names of the components, in VTK's order of a symmetric tensor's; in a section x, y, z are r, theta, z."""
-
 VECTORS = ("displacement", "displacement_in_beta", "displacement_magnified")
-COMPONENTS_OF_SOLID = COMPONENTS | dict.fromkeys(VECTORS, ("x", "y", "z"))  # the same in the solid of revolution
+LARGEST_STRAIN = 0.5  # drawn at most: the cells stay far from turning inside out
+TO_SCALE = 5.0  # magnification of the true displacement below which it is not worth its distortion
 
 
 @dataclass(frozen=True)
@@ -57,49 +43,12 @@ class Unit:
         return size, "_" + unit.replace("/", "_per_").replace("^", "")
 
 
-_LENGTH = Unit("beta = (R^2 dgamma/E*)^(1/3)", "radius")
-_DISPLACEMENT = Unit("beta^2/R = mu eps", "displacement")
-_GAP = Unit("eps", "gap")
-_STRESS = Unit("E* beta/R = dgamma/(mu eps)", "pressure")
-
-
-UNITS: Mapping[str, Unit] = {
-    "points": _LENGTH,
-    "displacement": _DISPLACEMENT,
-    "displacement_in_beta": Unit(_LENGTH.words),  # in SI it would be the displacement again
-    "displacement_magnified": _LENGTH,
-    **dict.fromkeys(("stress_cylindrical", "stress", "von_mises", "hydrostatic", "principal_stresses"), _STRESS),
-    "strain_energy_density": Unit("E* (beta/R)^2", "energy_density"),
-    "region": Unit("1"),
-    **dict.fromkeys(("pressure", "traction"), _STRESS),
-    "gap": _GAP,
-    "H": Unit("1"),
-    "deflection": _DISPLACEMENT,
-    "approach": _GAP,
-    "load": Unit("R dgamma", "load"),
-    "central_gap": _GAP,
-    "contact_radius": _LENGTH,
-}
-"""Of the arrays, and of the numbers in the field data."""
-
-MEANINGS: Mapping[str, str] = {
-    "displacement": "u_r, u_theta, u_z; in the solid u_x, u_y, u_z",
-    "displacement_magnified": "displacement, not to scale",
-    "stress_cylindrical": "in VTK's order of xx yy zz xy yz xz: rr tt zz rt tz rz",
-    "stress": "Cartesian, in the solid",
-    "hydrostatic": "mean of the three normal stresses",
-    "principal_stresses": "descending",
-    "region": "of its own material, 0 on top",
-    "pressure": "that of the surface law",
-    "traction": "that of the law per area of the surface; traction_from_stress what the stress inside exerts, nan "
-    "where that is singular, at a bonded equator",
-    "gap": "h, from surface to surface",
-    "H": "h/eps - 1",
-    "deflection": "-u_z",
-    "central_gap": "H(0) = h(0)/eps - 1, in SI h(0) - eps",
-    "contact_radius": "where h is that of the law's largest tension; nan without contact",
-    "arclength": "of the load-approach curve in units of its metric; the time of the .pvd",
-}
+ARRAYS = data_rows("paraview", "arrays.csv")
+UNITS = {row["array"]: Unit(row["unit"], row["quantity"]) for row in ARRAYS if row["unit"]}
+MEANINGS = {row["array"]: row["meaning"] for row in ARRAYS if row["meaning"]}
+COMPONENTS = {row["array"]: tuple(row["components"].split()) for row in ARRAYS if row["components"]}
+COMPONENTS_OF_SOLID = COMPONENTS | dict.fromkeys(VECTORS, ("x", "y", "z"))  # the same in the solid of revolution
+"""Units of the arrays and of the numbers in the field data, what they are, and names of their components."""
 
 SIGNS = (
     "pressure, traction and load positive in compression, stress in tension; approach positive when pressed together; "
@@ -130,20 +79,15 @@ def inside(state: State, cut: Cut, scale: float) -> Named:
     rr, zz, hoop, rz = stress
     none = np.zeros_like(rr)
     displacement = np.stack([u_r, none, u_z], axis=1)
+    by_region = np.array([stresses.energy_density(stress, *material) for material in state.scene.body.regions])
     return _displacements(state, displacement, scale) | {
         "stress_cylindrical": np.stack([rr, hoop, zz, none, none, rz], axis=1),
         "von_mises": stresses.von_mises(stress),
         "hydrostatic": stresses.hydrostatic(stress),
         "principal_stresses": np.ascontiguousarray(stresses.principal(stress).T),
-        "strain_energy_density": state.share * _energy_density(state, cut, stress),
+        "strain_energy_density": state.share * by_region[cut.node_regions, np.arange(stress.shape[1])],
         **({"region": cut.node_regions.astype(float)} if len(state.scene.body.regions) > 1 else {}),
     }
-
-
-def _energy_density(state: State, cut: Cut, stress: Array) -> Array:
-    """Strain energy per volume at the nodes, each of the material of its region."""
-    by_region = np.array([stresses.energy_density(stress, *material) for material in state.scene.body.regions])
-    return np.asarray(by_region[cut.node_regions, np.arange(stress.shape[1])])
 
 
 def turned(arrays: Named, solid: Solid) -> Named:
@@ -184,9 +128,9 @@ def magnification_for(states: Sequence[State]) -> float:
     The largest at which no strain is drawn as more than `LARGEST_STRAIN`; or to scale, 1/R, if that is little less, so
     that a sphere is drawn as flat as it is where it touches the wall.
     """
-    largest = max(
-        float(np.abs(stresses.strains(state.space, state.displacement, STRAIN_PLACES)).max()) for state in states
-    )
+    places = np.stack(np.meshgrid(np.linspace(0, 0.5, 3), np.linspace(0, 0.5, 3))).reshape(2, -1)
+    strains = (stresses.strains(state.space, state.displacement, places) for state in states)
+    largest = max(float(np.abs(strain).max()) for strain in strains)
     allowed = LARGEST_STRAIN / largest
     power = 10.0 ** np.floor(np.log10(allowed))
     scale = float(max(step for step in (1.0, 2.0, 5.0) if step * power <= allowed) * power)
@@ -217,11 +161,11 @@ def numbers(state: State, scale: float, units: Units | None) -> dict[str, float]
     return found
 
 
-def half_space_numbers(beside: Beside, units: Units | None) -> dict[str, float]:
-    """Field data on the half-space's approach and load."""
-    alpha, load = map(float, beside.observables[:2])
-    own = {"approach_of_half_space": alpha, "load_of_half_space": load}
-    return own | (in_si(own, units) if units else {})
+HOW_MAGNIFIED = (
+    "displacement_magnified is displacement times magnified_beta_per_displacement_unit, in all states alike: the "
+    f"largest of 1, 2, 5 times a power of ten at which no strain is drawn as more than {LARGEST_STRAIN:g}, or to scale "
+    f"if that is less than {TO_SCALE:g} times the true displacement"
+)
 
 
 def words(scene: Scene) -> dict[str, object]:
@@ -240,13 +184,6 @@ def words(scene: Scene) -> dict[str, object]:
     }
 
 
-HOW_MAGNIFIED = (
-    "displacement_magnified is displacement times magnified_beta_per_displacement_unit, in all states alike: the "
-    f"largest of 1, 2, 5 times a power of ten at which no strain is drawn as more than {LARGEST_STRAIN:g}, or to scale "
-    f"if that is less than {TO_SCALE:g} times the true displacement"
-)
-
-
 def require_same_scene(states: Sequence[State], units: Units | None) -> None:
     """Raise InputError unless there are states, all of one scene, with the Tabor parameter of the material."""
     if not states:
@@ -254,7 +191,7 @@ def require_same_scene(states: Sequence[State], units: Units | None) -> None:
     scene = states[0].scene
     if any(state.scene != scene for state in states):
         raise InputError("states of several scenes, limit: one scene; write each to a directory of its own")
-    if units is not None and abs(units.tabor - scene.tabor) > SAME_TABOR * scene.tabor:
+    if units is not None and abs(units.tabor - scene.tabor) > 1e-6 * scene.tabor:
         raise InputError(
             f"the material's tabor = {units.tabor:.9g} is not the scene's {scene.tabor:.9g}; "
             "take units.tabor for the scene"

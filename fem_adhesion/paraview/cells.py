@@ -7,6 +7,7 @@ over `SEGMENT` they leave the circle by less than 2e-4 of its radius, so that no
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -178,35 +179,25 @@ HEXAHEDRON27, WEDGE18 = 29, 32  # VTK's numbers of cell types
 ON_AXIS = 1e-12  # radius, in the largest, below which a node does not move with the angle
 
 
-def _on_layer(layer: int, nodes: range) -> list[tuple[int, int]]:
-    return [(layer, node) for node in nodes]
+def _layered(*groups: tuple[int, Sequence[int]]) -> Index:
+    """Layer in the angle, and node of the section's cell, of each node of the solid's, in VTK's order, by groups."""
+    return np.array([(layer, node) for layer, nodes in groups for node in nodes])
 
 
-def _wedge_on_axis() -> list[tuple[int, int]]:
-    """Wedge of a quadrilateral whose side from its first to its last corner is on the axis: its rows are triangles."""
-    bottom, top, middle = (3, 6, 2), (0, 4, 1), (7, 8, 5)  # rows, from the axis outwards; the axis points to the top
-    corners, sides = ((0, 0), (0, 2), (2, 2)), ((0, 1), (1, 2), (2, 1))  # layer, and place in the row
-    ends = [(layer, row[place]) for part in (corners, sides) for row in (bottom, top) for layer, place in part]
-    return ends + [(layer, middle[place]) for part in (corners, sides) for layer, place in part]
-
-
-_HEXAHEDRON_OF_QUAD9 = np.array(
-    [
-        *(*_on_layer(0, range(4)), *_on_layer(2, range(4))),
-        *(*_on_layer(0, range(4, 8)), *_on_layer(2, range(4, 8)), *_on_layer(1, range(4))),
-        *((1, 7), (1, 5), (1, 4), (1, 6), (0, 8), (2, 8), (1, 8)),
-    ]
+_HEXAHEDRON_OF_QUAD9 = _layered(
+    *((0, range(4)), (2, range(4)), (0, range(4, 8)), (2, range(4, 8)), (1, range(4))),
+    *((1, (7, 5, 4, 6)), (0, (8,)), (2, (8,)), (1, (8,))),
 )
-"""Layer in the angle, and node of the section's cell, of each node of the solid's, in VTK's order."""
-
-_WEDGE_OF_TRIANGLE6 = np.array(
-    [
-        *(*_on_layer(0, range(3)), *_on_layer(2, range(3))),
-        *(*_on_layer(0, range(3, 6)), *_on_layer(2, range(3, 6)), *_on_layer(1, range(6))),
-    ]
+_WEDGE_OF_TRIANGLE6 = _layered(
+    *((0, range(3)), (2, range(3)), (0, range(3, 6)), (2, range(3, 6)), (1, range(6))),
 )
-
-_WEDGE_ON_AXIS = np.array(_wedge_on_axis())
+# A quadrilateral whose side from its first to its last corner is on the axis: its rows (3, 6, 2), (0, 4, 1) and between
+# them (7, 8, 5), from the axis outwards, are triangles, and the axis points to the top.
+_WEDGE_ON_AXIS = _layered(
+    *((0, (3, 2)), (2, (2,)), (0, (0, 1)), (2, (1,))),
+    *((0, (6,)), (1, (2,)), (2, (6,)), (0, (4,)), (1, (1,)), (2, (4,))),
+    *((0, (7, 5)), (2, (5,)), (0, (8,)), (1, (5,)), (2, (8,))),
+)
 
 _MIRRORED = {6: [0, 2, 1, 5, 4, 3], 9: [0, 3, 2, 1, 7, 6, 5, 4, 8]}  # nodes of a cell in the opposite sense
 

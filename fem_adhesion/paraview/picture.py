@@ -24,13 +24,28 @@ from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
-TOLERANCE = 1e-2  # largest error of the stress as drawn, of its maximum
-WIDER = 1.7  # radius of what is shown, in that of the widest contact
-STEEPEST = 0.5  # height of the undeformed sphere at the rim of what is shown, of that radius, as drawn
-TO_SCALE = 2.0  # magnification of true heights below which they are not magnified at all
-WHOLE = 0.8  # part of a body's radius from which on the whole of it is shown, if to scale
-DEEP = 0.6  # depth of what is shown under the rim of the surface, of the radius shown
-STRONGEST = 1.0  # stress in E* beta/R at the ends of the colours at most: under a stiff spike the rest would be pale
+
+@dataclass(frozen=True)
+class Look:
+    """How the solid is drawn, and from where it is seen; lengths in the radius of what is shown, angles in degrees."""
+
+    tolerance: float = 1e-2  # largest error of the stress as drawn, of its maximum
+    wider: float = 1.7  # radius of what is shown, in that of the widest contact
+    steepest: float = 0.5  # height of the undeformed sphere at the rim, as drawn
+    to_scale: float = 2.0  # magnification of true heights below which they are not magnified at all
+    whole: float = 0.8  # part of a body's radius from which on the whole of it is shown, if to scale
+    deep: float = 0.6  # depth under the rim of the surface
+    strongest: float = 1.0  # stress in E* beta/R at the ends of the colours at most: a spike would leave the rest pale
+    open: float = 270.0  # angle of the solid that is left: a quarter is cut away
+    sides: int = 120  # plane pieces that the solid is round with
+    upwards: float = 16.0  # angle of the camera over the wall
+    away: float = 10.0  # distance of the camera
+    light: tuple[float, float, float] = (0.0, 1.0, 1.0)  # above the camera, seen from there
+    room: tuple[float, float] = (0.55, 0.78)  # part of the picture's width and height that the solid may take
+    off_centre: tuple[float, float] = (-0.14, 0.04)  # where, in halves of the picture
+
+
+LOOK = Look()
 _QUARTERS = np.array([[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]])
 _HALVES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 LINEAR = {9: _QUARTERS, 6: _HALVES}  # linear cells into which those of a section are cut, by their nodes
@@ -79,23 +94,23 @@ def view_of(states: Sequence[State]) -> View:
     first = states[0]
     widest = np.nanmax([first.scene.tabor**-0.5, *(state.observables[CONTACT_RADIUS] for state in states)])
     end, R = float(first.surface.radii[-1]), first.scene.sphere_radius
-    reach = min(WIDER * float(widest), end)
-    heights = STEEPEST * reach / float(first.problem.profile.height(np.array([reach]))[0])
-    to_scale = heights * R < TO_SCALE
+    reach = min(LOOK.wider * float(widest), end)
+    heights = LOOK.steepest * reach / float(first.problem.profile.height(np.array([reach]))[0])
+    to_scale = heights * R < LOOK.to_scale
     if to_scale:
         heights = 1 / R
-        reach = end if reach > WHOLE * end else reach
-    depth = heights * float(_own_height(first, np.array([reach]))[0]) + DEEP * reach
+        reach = end if reach > LOOK.whole * end else reach
+    depth = heights * float(_own_height(first, np.array([reach]))[0]) + LOOK.deep * reach
     if to_scale:
         depth = min(depth, -float(first.space.mesh.p[1].min()))
     largest = max(float(np.abs(state.pressure).max()) for state in states)
     top = max(float(surfaces(state, reach, heights).wall[1].max()) for state in states)
-    return View(reach, depth, top, heights, min(STRONGEST, largest))
+    return View(reach, depth, top, heights, min(LOOK.strongest, largest))
 
 
 def section(state: State, view: View) -> MeridianSection:
     """MeridianSection of the whole body as a view draws it."""
-    cut = cut_for(state.space, state.stress, TOLERANCE)
+    cut = cut_for(state.space, state.stress, LOOK.tolerance)
     u_r, u_z = cut.values(state.components)
     r, z = cut.points
     scene, own = state.scene, _own_height(state, r)
@@ -135,13 +150,6 @@ Pixels = NDArray[np.uint8]
 COLOURS = "RdBu_r"
 """Blue in compression, red in tension: told apart by every kind of colour-blind eye, and white where there is none."""
 
-OPEN = 270.0  # degrees of the solid that are left: a quarter is cut away
-SIDES = 120  # plane pieces that the solid is round with
-UPWARDS, AWAY = 16.0, 10.0  # where the camera is: degrees over the wall, and its distance in radii of what is shown
-LIGHT = (0.0, 1.0, 1.0)  # where the light is, seen from the camera: above it
-ROOM, OFF_CENTRE = (0.55, 0.78), (-0.14, 0.04)
-"""Part of the picture's width and height that the solid may take, and where: centre, in halves of the picture."""
-
 OSMESA = ("libOSMesa.so", "libOSMesa.so.8", "libOSMesa.so.6")
 """What VTK draws with where it finds neither a display nor EGL."""
 
@@ -154,7 +162,7 @@ def solid_image(state: State, view: View, size: tuple[int, int]) -> Pixels:
     pyvista = require_drawing()
     with _quiet():
         plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
-        plotter.add_light(pyvista.Light(position=LIGHT, light_type="camera light"))
+        plotter.add_light(pyvista.Light(position=LOOK.light, light_type="camera light"))
         plotter.set_background("white")
         _add_body(pyvista, plotter, state, view)
         _add_surfaces(pyvista, plotter, state, view)
@@ -210,7 +218,7 @@ def _add_body(pyvista: Any, plotter: Any, state: State, view: View) -> None:
     plane = _plane(pyvista, shown, view)
     colours = {"scalars": "stress", "cmap": COLOURS, "clim": (-view.limit, view.limit), "show_scalar_bar": False}
     outline = plane.extract_feature_edges(feature_edges=False, manifold_edges=False, non_manifold_edges=False)
-    for angle in (0.0, OPEN):
+    for angle in (0.0, LOOK.open):
         plotter.add_mesh(plane.rotate_z(angle), lighting=False, **colours)
         plotter.add_mesh(outline.rotate_z(angle), color=OUTLINE, line_width=2)
         for line in shown.interfaces:
@@ -242,22 +250,22 @@ def _add_surfaces(pyvista: Any, plotter: Any, state: State, view: View) -> None:
         (shown.deformed, {"color": BODY, "line_width": 6}),
         (shown.wall, {"color": WALL, "line_width": 6}),
     ):
-        for angle in (0.0, OPEN):
+        for angle in (0.0, LOOK.open):
             plotter.add_mesh(line_through(pyvista, in_plane(*line)).rotate_z(angle), lighting=False, **look)
 
 
 def _turned(plane: Any) -> Any:
-    return plane.extrude_rotate(angle=OPEN, resolution=SIDES, capping=False, rotation_axis=(0, 0, 1))
+    return plane.extrude_rotate(angle=LOOK.open, resolution=LOOK.sides, capping=False, rotation_axis=(0, 0, 1))
 
 
 def _look(plotter: Any, view: View, size: tuple[int, int]) -> None:
     """Look into the quarter that is cut away, a little from above, and leave room for words, bar and curve."""
-    away, up = np.radians(OPEN / 2 + 180), np.radians(UPWARDS)
+    away, up = np.radians(LOOK.open / 2 + 180), np.radians(LOOK.upwards)
     direction = np.array([np.cos(away) * np.cos(up), np.sin(away) * np.cos(up), np.sin(up)])
     middle = np.array([0.0, 0.0, (view.top - view.depth) / 2])
-    high = ((view.top + view.depth) * np.cos(up) + 2 * view.reach * np.sin(up)) / ROOM[1]
-    wide = 2 * view.reach / ROOM[0] * size[1] / size[0]
-    camera, distance = plotter.camera, AWAY * view.reach
+    high = ((view.top + view.depth) * np.cos(up) + 2 * view.reach * np.sin(up)) / LOOK.room[1]
+    wide = 2 * view.reach / LOOK.room[0] * size[1] / size[0]
+    camera, distance = plotter.camera, LOOK.away * view.reach
     plotter.camera_position = [middle + distance * direction, middle, (0, 0, 1)]
     camera.view_angle = np.degrees(2 * np.arctan(max(high, wide) / 2 / distance))
-    camera.SetWindowCenter(*OFF_CENTRE)
+    camera.SetWindowCenter(*LOOK.off_centre)

@@ -21,7 +21,6 @@ from fem_adhesion.paraview.arrays import (
     COMPONENTS,
     COMPONENTS_OF_SOLID,
     Named,
-    half_space_numbers,
     in_si,
     inside,
     magnification_for,
@@ -137,7 +136,9 @@ def _surface(pyvista: Any, state: State, scale: float, units: Units | None) -> A
     """Contact surface as one line through its nodes."""
     points, beside = in_plane(state.surface.radii, -state.surface.depths), half_space_beside(state)
     grid = line_through(pyvista, _placed(points, units))
-    _annotate(grid, half_space_numbers(beside, units))
+    alpha, load = map(float, beside.observables[:2])
+    own = {"approach_of_half_space": alpha, "load_of_half_space": load}
+    _annotate(grid, own | (in_si(own, units) if units else {}))
     return _with_arrays(grid, on_surface(state, beside, scale), units)
 
 

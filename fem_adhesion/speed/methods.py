@@ -109,8 +109,7 @@ def from_chart(problem: Traceable, unknowns: int) -> Solved:
     segments = trace_charts([Chart(problem, unknowns)])
     found = find_events(segments)
     values = {"pull_off": float(found["pull_off"].point.observables[LOAD])}
-    loss = energy_lost(segments, found)
-    if loss is not None:
+    if (loss := energy_lost(segments, found)) is not None:
         values |= {"jump_on": float(found["jump_on"].point.observables[APPROACH]), "hysteresis": loss}
     return Solved(unknowns, values)
 
@@ -154,12 +153,15 @@ def halfspace_methods() -> list[Method]:
 def ladder(solve: Callable[..., Solved], names: str, rungs: Sequence[tuple[Any, ...]]) -> list[Step]:
     """Rungs of settings, each solved by `solve(tabor, *settings)`; as many of the settings are told as have names."""
 
-    def step(settings: tuple[Any, ...]) -> Step:
+    def told(settings: tuple[Any, ...]) -> str:
         named = zip(names.split(), settings, strict=False)
-        told = (f"{name}={value:.0e}" if name == "rtol" else f"{name}={value:g}" for name, value in named)
-        return Step(" ".join(told), lambda tabor: solve(tabor, *settings))
+        return " ".join(f"{name}={value:.0e}" if name == "rtol" else f"{name}={value:g}" for name, value in named)
 
-    return list(map(step, rungs))
+    return [Step(told(settings), partial(_solved, solve, settings)) for settings in rungs]
+
+
+def _solved(solve: Callable[..., Solved], settings: tuple[Any, ...], tabor: float) -> Solved:
+    return solve(tabor, *settings)
 
 
 def adaptive(trace: Callable[..., EquilibriumPath], digits: Iterable[int]) -> list[Step]:
@@ -175,31 +177,25 @@ def adaptive(trace: Callable[..., EquilibriumPath], digits: Iterable[int]) -> li
 def _graded(tabor: float, f: float, U: float, growth: float, fine_radius: float | None = None) -> Array:
     fine = widest(tabor) if fine_radius is None else fine_radius
     finest, extent = f * Scales(tabor).spike_width, fine + U * unit(tabor)
-    return _affordable(grid.graded(0.0, finest, extent, growth=growth, until=fine))
-
-
-def _affordable(nodes: Array) -> Array:
-    """Nodes of a grid, or raise InputError if they are too many for a dense operator."""
-    if nodes.size > MOST_NODES:
-        raise InputError(f"{nodes.size} nodes exceed {MOST_NODES} of a dense operator; take another Tabor parameter")
-    return nodes
+    return grid.graded(0.0, finest, extent, growth=growth, until=fine)
 
 
 def _on_grid(
     make: Callable[[Array], ElasticOperator], tabor: float, f: float, U: float, growth: float | None = None
 ) -> Solved:
-    """Uniform grid, or one that grows beyond the contact."""
+    """Uniform grid, or one that grows beyond the contact; InputError if it has too many nodes for a dense operator."""
     if growth is not None:
-        return _fixed(make(_graded(tabor, f, U, growth)), tabor)
-    nodes = grid.uniform(max(U * unit(tabor), 1.5 * widest(tabor)), f * Scales(tabor).spike_width)
-    return _fixed(make(_affordable(nodes)), tabor)
+        nodes = _graded(tabor, f, U, growth)
+    else:
+        nodes = grid.uniform(max(U * unit(tabor), 1.5 * widest(tabor)), f * Scales(tabor).spike_width)
+    if nodes.size > MOST_NODES:
+        raise InputError(f"{nodes.size} nodes exceed {MOST_NODES} of a dense operator; take another Tabor parameter")
+    operator = make(nodes)
+    return from_chart(ContactProblem(operator, tabor), operator.radii.size)
 
 
 def _on_panels(tabor: float, nodes: int, U: float) -> Solved:
-    return _fixed(compliance.panels(_graded(tabor, 0.8, U, 2.0), nodes), tabor)
-
-
-def _fixed(operator: ElasticOperator, tabor: float) -> Solved:
+    operator = compliance.panels(_graded(tabor, 0.8, U, 2.0), nodes)
     return from_chart(ContactProblem(operator, tabor), operator.radii.size)
 
 
@@ -238,19 +234,15 @@ def pull_off_by_sweep(problem: ContactProblem, relax: Relaxation) -> float:
         return float(state.observables[LOAD])
 
     step = 0.2 * (1 + problem.tabor)
-    bounds = _downhill(load, next(iter(states)), step)
-    return float(minimize_scalar(load, bounds=bounds, method="bounded", options={"xatol": 1e-2 * step}).fun)
-
-
-def _downhill(function: Callable[[float], float], start: float, step: float) -> tuple[float, float]:
-    """Bounds of a minimum, found by equal steps downhill."""
-    before, here = function(start), function(start + step)
+    at = next(iter(states))
+    before, here = load(at), load(at + step)
     if here > before:
-        start, step, before, here = start + step, -step, here, before
-    at = start + step
-    while (after := function(at + step)) < here:
+        at, step, here = at + step, -step, before
+    at += step
+    while (after := load(at + step)) < here:
         at, here = at + step, after
-    return min(at - step, at + step), max(at - step, at + step)
+    bounds = min(at - step, at + step), max(at - step, at + step)
+    return float(minimize_scalar(load, bounds=bounds, method="bounded", options={"xatol": 1e-2 * abs(step)}).fun)
 
 
 # Finite elements
@@ -296,15 +288,11 @@ def _monolithic(space: Space, tabor: float) -> Solved:
 def _on_disc(element: Any, tabor: float, f: float, L: float, solve: Solver = _condensed) -> Solved:
     """Quarter disc of triangles whose edges grow by the fraction f of the distance."""
     size = graded_size(f * Scales(tabor).spike_width, widest(tabor), f)
-    return solve(Space(quarter_disc(_box(L, tabor), size), element), tabor)
+    return solve(Space(quarter_disc(max(L * unit(tabor), 2 * widest(tabor)), size), element), tabor)
 
 
 def _on_block(tabor: float, p: int, f: float, L: float, growth: float, solve: Solver = _condensed) -> Solved:
     """Box of quadrilaterals of degree p between graded lines."""
-    mesh = block_grid(f * Scales(tabor).spike_width, widest(tabor), _box(L, tabor), growth=growth)
+    extent = max(L * unit(tabor), 2 * widest(tabor))
+    mesh = block_grid(f * Scales(tabor).spike_width, widest(tabor), extent, growth=growth)
     return solve(Space(mesh, ElementQuad2() if p == 2 else ElementQuadP(p)), tabor)
-
-
-def _box(L: float, tabor: float) -> float:
-    """Size of a block in beta."""
-    return max(L * unit(tabor), 2 * widest(tabor))

@@ -47,26 +47,22 @@ ERRORS = {
     "jump_on": "error of the jump-on approach, over spacing and range of approaches",
     "hysteresis": "relative error of the energy lost",
 }
-COLOURS = (style.ORANGE, style.SKY, style.GREEN, style.BLUE, style.RED, style.PINK)  # black is adaptive
-STYLES = tuple(zip(COLOURS, "XPs^vD", strict=True))
-ADAPTIVE = {"adaptive": ("#000000", "o"), "hp": ("#000000", "o")}
+UNITS = {"pull_off": "R dgamma", "jump_on": "eps", "hysteresis": "R dgamma eps"}
+COLOURS = (style.ORANGE, style.SKY, style.GREEN, style.BLUE, style.RED, style.PINK)
+STYLES = tuple(zip(COLOURS, "XPs^vD", strict=True))  # of the bases of a family; black dots are adaptive
 LINES = {"": "-", "clamped": "--", "monolithic": ":"}
-FRONT: dict[str, Any] = {
-    "color": "0.85",
-    "linewidth": 9,
-    "solid_capstyle": "round",
-    "solid_joinstyle": "round",
-    "zorder": 0,
-}
-BESIDE: dict[str, Any] = {"color": "0.3", "linewidth": 1.5, "linestyle": (0, (6, 2, 1, 2)), "zorder": 1}
+ROUND: dict[str, Any] = {"solid_capstyle": "round", "solid_joinstyle": "round"}
+FRONT: dict[str, Any] = {"color": "0.85", "linewidth": 9, **ROUND, "zorder": 0, "drawstyle": "steps-post"}
+BESIDE: dict[str, Any] = FRONT | {"color": "0.3", "linewidth": 1.5, "linestyle": (0, (6, 2, 1, 2)), "zorder": 1}
 FLOOR: dict[str, Any] = {"color": "0.4", "linewidth": 1, "dashes": (1, 3)}
 HIDDEN: dict[str, Any] = {"color": "0.4", "linestyle": "none", "marker": r"$\downarrow$", "markersize": 11}
 
 
 def pictures(study: SpeedStudy) -> list[Picture[SpeedStudy]]:
     """A figure for each quantity that the study has."""
+    caption = "Error against wall time: half-space left, finite elements right."
     return [
-        Picture(quantity, TITLES[quantity], partial(error_against_time, quantity=quantity), lambda _: [CAPTION])
+        Picture(quantity, TITLES[quantity], partial(error_against_time, quantity=quantity), lambda _: [caption])
         for quantity in study.quantities
     ]
 
@@ -74,23 +70,43 @@ def pictures(study: SpeedStudy) -> list[Picture[SpeedStudy]]:
 def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
     """Figure of one quantity: a panel for each family, with the Pareto front of both families behind.
 
-    A method without this quantity has no line and no place in the legend; an arrow downwards hangs on every error that
-    is no more than the uncertainty of the truth.
+    A method without this quantity has no line and no place in the legend; markers of what departs from the family's
+    usual are hollow; an arrow downwards hangs on every error that is no more than the uncertainty of the truth.
     """
     figure = Figure(figsize=(11.5, 7.2), layout="constrained")
     quick = ", quick run" if study.quick else ""
     figure.suptitle(f"{TITLES[quantity]}: error against wall time at Tabor parameter {study.tabor:g}{quick}")
     panels = figure.subplots(1, 2, sharex=True, sharey=True)
+
+    def draw_rungs(
+        axes: Any, rungs: Sequence[Timing], label: str, unit: float = 1.0, low: float = 1.0, **look: Any
+    ) -> None:
+        known = [rung for rung in rungs if np.isfinite(rung.error(quantity))]
+        if known:
+            seconds = [unit * rung.seconds for rung in known]
+            axes.loglog(seconds, [low * rung.error(quantity) for rung in known], label=label, **look)
+
     for axes, family in zip(panels, FAMILIES, strict=True):
-        _draw_front(axes, pareto_front(study.rungs, quantity), quantity, 1.0, "Pareto front, all methods", FRONT)
+        draw_rungs(axes, pareto_front(study.rungs, quantity), "Pareto front, all methods", **FRONT)
         if study.earlier:
             front = pareto_front(study.earlier.rungs, quantity)
-            _draw_front(axes, front, quantity, study.yardstick, "that of the earlier run, in yardsticks", BESIDE)
+            draw_rungs(axes, front, "that of the earlier run, in yardsticks", study.yardstick, **BESIDE)
         axes.axhline(study.uncertainty(family, quantity), label="uncertainty of the truth", **FLOOR)
-        for method in study.methods:
-            if method.family == family:
-                _draw_method(axes, study, method, quantity)
-        _draw_hidden(axes, study, family, quantity)
+        methods = [method for method in study.methods if method.family == family]
+        bases = dict.fromkeys(method.basis for method in methods if method.basis not in ("adaptive", "hp"))
+        styles = dict(zip(bases, STYLES, strict=False))
+        for method in methods:
+            colour, marker = styles.get(method.basis, ("#000000", "o"))
+            look: dict[str, Any] = {
+                "color": colour,
+                "marker": marker,
+                "markersize": 7,
+                "linestyle": LINES[method.variant],
+            }
+            look["markerfacecolor"] = "white" if method.variant else colour
+            draw_rungs(axes, study.of(method.name), method.name, **look)
+        hidden = [rung for method in methods for rung in study.of(method.name) if rung.hidden(quantity)]
+        draw_rungs(axes, hidden, "within that uncertainty", low=0.75, **HIDDEN)
         axes.set_title(f"{family}, judged by the {study.truths[family].family}")
         axes.tick_params(labelleft=True)
         axes.xaxis.set_minor_formatter(NullFormatter())  # of less than two decades they print over each other
@@ -99,60 +115,18 @@ def error_against_time(study: SpeedStudy, quantity: str) -> Figure:
     return figure
 
 
-def _draw_front(
-    axes: Any, front: Sequence[Timing], quantity: str, unit: float, label: str, look: dict[str, Any]
-) -> None:
-    """A line behind the points that no other beats in both time, in units of so many seconds, and error."""
-    if not front:
-        return
-    seconds, errors = [unit * rung.seconds for rung in front], [rung.error(quantity) for rung in front]
-    axes.loglog(seconds, errors, label=label, drawstyle="steps-post", **look)
-
-
-def _draw_method(axes: Any, study: SpeedStudy, method: Method, quantity: str) -> None:
-    """One method's ladder; markers of what departs from the family's usual are hollow."""
-    rungs = [rung for rung in study.of(method.name) if np.isfinite(rung.error(quantity))]
-    if not rungs:
-        return
-    colour, marker = _style(study, method)
-    axes.loglog(
-        [rung.seconds for rung in rungs],
-        [rung.error(quantity) for rung in rungs],
-        LINES[method.variant],
-        color=colour,
-        marker=marker,
-        markersize=7,
-        markerfacecolor="white" if method.variant else colour,
-        label=method.name,
-    )
-
-
-def _draw_hidden(axes: Any, study: SpeedStudy, family: Family, quantity: str) -> None:
-    """Arrows at the errors that the truth cannot tell."""
-    names = {method.name for method in study.methods if method.family == family}
-    hidden = [rung for rung in study.rungs if rung.method in names and rung.hidden(quantity)]
-    if hidden:
-        places = [rung.seconds for rung in hidden], [0.75 * rung.error(quantity) for rung in hidden]
-        axes.loglog(*places, label="within that uncertainty", **HIDDEN)
-
-
-def _style(study: SpeedStudy, method: Method) -> tuple[str, str]:
-    """Colour and marker, the same for all variants of a basis."""
-    bases = dict.fromkeys(m.basis for m in study.methods if m.family == method.family and m.basis not in ADAPTIVE)
-    return ADAPTIVE.get(method.basis) or STYLES[list(bases).index(method.basis)]
-
-
-TOLERANCES = (1e-3, 1e-6)
-DECADES = tuple(10.0**-digits for digits in range(2, 9))
-UNITS = {"pull_off": "R dgamma", "jump_on": "eps", "hysteresis": "R dgamma eps"}
-
-
 def write(study: SpeedStudy, directory: Path) -> None:
     """Write ``speed.csv``, ``growth.csv``, ``speed.md``, plots of each quantity, SVG and PNG, and their captions.
 
     Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none.
     """
-    write_csv([_rungs(study), _times(study), captions(pictures(study), study)], directory)
+    times = [
+        (growth.solver, growth.grows, f"{x:g}", f"{seconds:.4f}", f"{seconds / study.yardstick:.0f}")
+        for growth in study.growths
+        for x, seconds in zip(growth.at, growth.seconds, strict=True)
+    ]
+    growth = Table("growth", "", "", ("solver", "grows", "at", "seconds", "yardsticks"), times)
+    write_csv([_rungs(study), growth, captions(pictures(study), study)], directory)
     (directory / "speed.md").write_text("\n".join(markdown(list(parts(study)))) + "\n")
     draw(pictures(study), study, directory)
 
@@ -175,16 +149,6 @@ def _rungs(study: SpeedStudy) -> Table:
         "reason": lambda rung: rung.reason,
     }
     return Table.of("speed", "", "", study.rungs, columns)
-
-
-def _times(study: SpeedStudy) -> Table:
-    """How long each growth took at each of its values."""
-    rows = [
-        (growth.solver, growth.grows, f"{x:g}", f"{seconds:.4f}", f"{seconds / study.yardstick:.0f}")
-        for growth in study.growths
-        for x, seconds in zip(growth.at, growth.seconds, strict=True)
-    ]
-    return Table("growth", "", "", ("solver", "grows", "at", "seconds", "yardsticks"), rows)
 
 
 def _number(value: float, form: str) -> str:
@@ -244,34 +208,33 @@ def _truths(study: SpeedStudy) -> Table:
 
 def _costs(study: SpeedStudy, title: str, quantity: str | None) -> Table:
     """One line per method: seconds to each tolerance, and the best that it reached."""
+
+    def cost(method: Method, tolerance: float) -> str:
+        rung = cheapest(study.of(method.name), tolerance, quantity)
+        if rung is None:
+            return "-"
+        return f"{rung.seconds:.2f} s = {rung.seconds / study.yardstick:.0f} yardsticks ({rung.setting})"
+
+    def reached(method: Method) -> str:
+        rung = best(study.of(method.name), quantity)
+        named = quantity or (rung.worst if rung else None)
+        if rung is None or named is None:
+            return "-"
+        return f"{'<' * rung.hidden(named)}{rung.error(named):.0e} in {rung.seconds:.2f} s ({rung.setting})"
+
     columns: Columns[Method] = {
         "method": lambda method: method.name,
-        tuple(f"to {tolerance:.0e}" for tolerance in TOLERANCES): lambda method: [
-            _cost(cheapest(study.of(method.name), tolerance, quantity), study) for tolerance in TOLERANCES
-        ],
-        "best reached": lambda method: _best(best(study.of(method.name), quantity), quantity),
+        "to 1e-03": lambda method: cost(method, 1e-3),
+        "to 1e-06": lambda method: cost(method, 1e-6),
+        "best reached": reached,
     }
     return Table.of("", title, "", study.methods, columns)
-
-
-def _cost(rung: Timing | None, study: SpeedStudy) -> str:
-    if rung is None:
-        return "-"
-    return f"{rung.seconds:.2f} s = {rung.seconds / study.yardstick:.0f} yardsticks ({rung.setting})"
-
-
-def _best(rung: Timing | None, quantity: str | None) -> str:
-    named = quantity or (rung.worst if rung else None)
-    if rung is None or named is None:
-        return "-"
-    below = "<" if rung.hidden(named) else ""
-    return f"{below}{rung.error(named):.0e} in {rung.seconds:.2f} s ({rung.setting})"
 
 
 def _beside(study: SpeedStudy, earlier: Earlier, quantity: str) -> Table:
     """Yardsticks of the fastest method to each tolerance, of the earlier run and of this one."""
     rows = []
-    for tolerance in DECADES:
+    for tolerance in (10.0**-digits for digits in range(2, 9)):
         before, now = (cheapest(rungs, tolerance, quantity) for rungs in (earlier.rungs, study.rungs))
         costs = before.seconds if before else math.nan, now.seconds / study.yardstick if now else math.nan
         cells = [

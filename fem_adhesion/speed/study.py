@@ -39,7 +39,6 @@ from fem_adhesion.speed.methods import (
     halfspace_methods,
     trace_elements,
 )
-from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.limits import require_between
 from halfspace.values import Array, Estimate
@@ -51,7 +50,6 @@ TABOR_RANGE = (0.05, 2.0)  # beyond it fixed grids need too many nodes, or rigid
 TIGHTEST = 1e-9  # relative tolerance of the truths
 TABOR = 1.0  # where digits and R/eps grow
 RTOL = 1e-5  # where the Tabor parameter and R/eps grow
-LOGARITHMIC = 0.0
 
 
 @dataclass(frozen=True)
@@ -186,7 +184,15 @@ class SpeedStudy:
             if not a.agrees(b):
                 yield f"the truths disagree in {quantity}: {a.value:.10g} and {b.value:.10g}"
         for method in self.methods:
-            yield from _troubles(method, self.of(method.name))
+            solved = False
+            for rung in self.of(method.name):  # a coarse grid may be refused, but not above a finer one that was not
+                if (rung.status == "failed" and not method.may_diverge) or (solved and rung.status == "too coarse"):
+                    yield f"{method.name} at {rung.setting}: {rung.reason}"
+                if rung.converged and rung.worst is None:
+                    yield f"{method.name} at {rung.setting}: a result that is not a number"
+                solved = solved or rung.converged
+            if not solved and not method.may_diverge:
+                yield f"{method.name}: no rung has a result"
 
     def exponents(self, method: str) -> dict[str, float]:
         """`EXPONENTS` b of a method's cost ~ x^b, nan where fewer than two rungs converged.
@@ -198,19 +204,6 @@ class SpeedStudy:
         m[m < VISIBLE] = np.nan
         accuracy = 1 / np.array([np.nan if rung.hidden("pull_off") else rung.error("pull_off") for rung in rungs])
         return dict(zip(EXPONENTS, (slope(x, y) for x in (n, accuracy) for y in (t, m)), strict=True))
-
-
-def _troubles(method: Method, rungs: Sequence[Timing]) -> Iterator[str]:
-    """Failures of one method: a coarse grid may be refused, but not above a finer one that was not."""
-    solved = False
-    for rung in rungs:
-        if (rung.status == "failed" and not method.may_diverge) or (solved and rung.status == "too coarse"):
-            yield f"{method.name} at {rung.setting}: {rung.reason}"
-        if rung.converged and rung.worst is None:
-            yield f"{method.name} at {rung.setting}: a result that is not a number"
-        solved = solved or rung.converged
-    if not solved and not method.may_diverge:
-        yield f"{method.name}: no rung has a result"
 
 
 def cheapest(rungs: Sequence[Timing], tolerance: float, quantity: str | None = None) -> Timing | None:
@@ -282,7 +275,9 @@ def measure(
             # Those of the quick ladder, which are cheap, are timed once more, warm, in the full study.
             rungs.append(_run(method.name, step, tabor, truth, again=not quick and rung < method.quick))
     progress("how time grows", len(chosen), len(chosen))
-    found = tuple(timed(growth, _seconds) for growth in (growths_for(quick=quick) if growths is None else growths))
+    few = slice(2 if quick else None)
+    chosen_growths = GROWTHS if growths is None else growths
+    found = tuple(timed(replace(growth, at=growth.at[few]), _seconds) for growth in chosen_growths)
     return SpeedStudy(tabor, quick, truths, yardstick, chosen, tuple(rungs), found, earlier)
 
 
@@ -293,13 +288,11 @@ def require_tabor(tabor: float) -> float:
 
 def find_truths(tabor: float) -> dict[Family, Truth]:
     """What each family is judged by: the other one at its tightest tolerance, with its own uncertainties."""
-    half_space = _truth("half-space", halfspace.trace(tabor, rtol=TIGHTEST))
-    elements = _truth("finite elements", trace_elements(tabor, TIGHTEST))
-    return {"half-space": elements, "finite elements": half_space}
-
-
-def _truth(family: Family, path: EquilibriumPath) -> Truth:
-    return Truth(family, TIGHTEST, estimates(path), path.approach_scale)
+    half_space, elements = halfspace.trace(tabor, rtol=TIGHTEST), trace_elements(tabor, TIGHTEST)
+    return {
+        "half-space": Truth("finite elements", TIGHTEST, estimates(elements), elements.approach_scale),
+        "finite elements": Truth("half-space", TIGHTEST, estimates(half_space), half_space.approach_scale),
+    }
 
 
 def time_yardstick() -> float:
@@ -321,24 +314,19 @@ def _run(method: str, step: Step, tabor: float, truth: Truth, *, again: bool) ->
     try:
         solved, memory = with_peak_memory(lambda: step.run(tabor))
     except (InputError, NotConverged) as error:
-        return Timing(method, step.setting, _status(error), time.perf_counter() - began, str(error))
+        refused: Status = "refused" if isinstance(error, InputError) else "failed"
+        status: Status = "too coarse" if isinstance(error, GridTooCoarse) else refused
+        return Timing(method, step.setting, status, time.perf_counter() - began, str(error))
     seconds = time.perf_counter() - began
     if again:
         seconds = min(seconds, _seconds(lambda: step.run(tabor)))
-    known = {name: true for name, true in truth.values.items() if name in solved.values}
     errors = {  # not below the truth's own uncertainty, since nothing less can be told
         name: truth.relative(name, max(abs(solved.values[name] - true.value), true.error))
-        for name, true in known.items()
+        for name, true in truth.values.items()
+        if name in solved.values
     }
     floors = {name: truth.relative(name, true.error) for name, true in truth.values.items()}
     return Timing(method, step.setting, "converged", seconds, "", solved.unknowns, memory, errors, floors)
-
-
-def _status(error: InputError | NotConverged) -> Status:
-    """How a rung without result ended."""
-    if isinstance(error, InputError):
-        return "refused"
-    return "too coarse" if isinstance(error, GridTooCoarse) else "failed"
 
 
 # How the time grows
@@ -352,15 +340,10 @@ DIGITS = tuple(map(float, range(3, 9)))
 GROWTHS = (
     Growth("half-space", "digits", 3.0, DIGITS, lambda x: halfspace.trace(TABOR, rtol=10.0**-x)),
     Growth("finite elements", "digits", 6.0, DIGITS, lambda x: trace_elements(TABOR, 10.0**-x)),
-    Growth("half-space", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0, 100.0), lambda x: halfspace.trace(x, rtol=RTOL)),
-    Growth("finite elements", "mu", LOGARITHMIC, (1.0, 3.0, 10.0, 30.0), lambda x: trace_elements(x, RTOL)),
-    Growth("hemisphere", "R/eps", LOGARITHMIC, (10.0, 100.0, 1e3, 1e4), _hemisphere),
+    Growth("half-space", "mu", 0.0, (1.0, 3.0, 10.0, 30.0, 100.0), lambda x: halfspace.trace(x, rtol=RTOL)),
+    Growth("finite elements", "mu", 0.0, (1.0, 3.0, 10.0, 30.0), lambda x: trace_elements(x, RTOL)),
+    Growth("hemisphere", "R/eps", 0.0, (10.0, 100.0, 1e3, 1e4), _hemisphere),
 )
-
-
-def growths_for(*, quick: bool) -> tuple[Growth, ...]:
-    """All growths, yet to be timed; each of the two smallest values only if it is to be quick."""
-    return tuple(replace(growth, at=growth.at[:2]) for growth in GROWTHS) if quick else GROWTHS
 
 
 def timed(growth: Growth, seconds_of: Callable[[Callable[[], object]], float]) -> Growth:

@@ -4,12 +4,10 @@ import csv
 import dataclasses
 import math
 import re
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from matplotlib import rc_context
-from numpy.polynomial.legendre import leggauss
 
 import fem_adhesion
 import halfspace
@@ -23,12 +21,10 @@ from fem_adhesion.speed import methods as methods_module
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
 from fem_adhesion.speed.methods import (
-    MOST_NODES,
     QUANTITIES,
     Method,
     Solved,
     Step,
-    _affordable,
     element_methods,
     halfspace_methods,
 )
@@ -41,15 +37,12 @@ from fem_adhesion.speed.study import (
     Truth,
     best,
     cheapest,
-    growths_for,
     measure,
     pareto_front,
     slope,
     timed,
 )
 from halfspace.elastic import compliance
-from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.values import Estimate
@@ -132,45 +125,6 @@ def rung(seconds, error, method="some", **more):
 FAILED = Timing("some", "", "failed", 0.1, "on purpose")
 
 
-# --- the energy lost in a cycle ---
-
-
-def work_along(path, fold, landing_at, problem):
-    """Integral of W from one approach to a fold on the branch that ends there, in t: alpha - fold ~ t^2."""
-    end = fold.point.observables[0]
-    nodes, weights = leggauss(20)
-    total, x = 0.0, fold.point.x
-    for t, w in zip((1 + nodes) / 2, weights / 2, strict=True):
-        alpha = end + (landing_at - end) * t**2
-        start = nearest(path, alpha, stable_side=landing_at > end)
-        x = newton.solve(problem, transfer(*start, problem), newton.approach(alpha)).x
-        total += w * problem.load(x) * 2 * t * (end - landing_at)
-    return total
-
-
-def nearest(path, alpha, stable_side):
-    """The problem and state of the stable branch nearest to an approach: past both folds if in contact, else before."""
-    stable = [(s.problem, p) for s in path.segments for p in s.points]
-    folds = [i for i, ((_, a), (_, b)) in enumerate(pairwise(stable)) if a.rates[0] * b.rates[0] < 0]
-    branch = stable[folds[-1] + 1 :] if stable_side else stable[: folds[0] + 1]
-    problem, point = min(branch, key=lambda item: abs(item[1].observables[0] - alpha))
-    return problem, point.x
-
-
-@pytest.mark.parametrize("tabor", [1.0, 2.0])
-def test_the_energy_lost_is_the_integral_of_the_load_round_the_loop(tabor):
-    path = halfspace.trace(tabor, rtol=1e-7)
-    on, off = path.stages[-1]["jump_on"], path.stages[-1]["jump_off"]
-    a_on, a_off = on.point.observables[0], off.point.observables[0]
-    approaching = work_along(path, on, a_off, path.stages[-1]["separated"].problem)
-    separating = work_along(path, off, a_on, path.stages[-1]["zero_approach"].problem)
-    assert approaching + separating == pytest.approx(cycle(path).energy_lost.value, rel=1e-6)
-
-
-def test_no_energy_is_lost_without_jumps():
-    assert cycle(halfspace.trace(0.5, rtol=1e-3)) is None
-
-
 # --- every method, as a user runs it ---
 
 
@@ -222,7 +176,7 @@ def fe_path(rtol):
     return fem_adhesion.trace(Scene(1.0, HalfSpace(poisson=0.3)), rtol=rtol)
 
 
-def test_clamping_the_far_boundary_tells_and_solving_whole_does_not(rows):
+def test_clamping_tells_and_solving_whole_does_not(rows):
     """A clamped box is another body; the monolithic solver finds what the condensed one finds on the same mesh."""
     of = {(r["method"], r["setting"]): r for r in rows}
     free, clamped, whole = (of[name, "f=0.6 L=16"] for name in ("FE P2", "FE P2, clamped", "FE P2, monolithic"))
@@ -355,21 +309,9 @@ def test_no_jumps_below_the_critical_tabor_parameter():
 def test_a_rung_is_told_by_its_settings():
     settings = {method.name: [step.setting for step in method.steps] for method in METHODS}
     assert settings["simple relaxation"][0] == "f=0.2 U=5 growth=1.4"
-    assert settings["panels, fixed grid"][-1] == "nodes=14 U=800"
     assert settings["adaptive"][0] == "rtol=1e-02"
-    assert settings["FE Q2"] == [
-        "p=2 f=0.6 L=16",
-        "p=2 f=0.4 L=24",
-        "p=2 f=0.28 L=34",
-        "p=2 f=0.2 L=48",
-        "p=2 f=0.14 L=68",
-    ]
+    assert settings["FE Q2"][:2] == ["p=2 f=0.6 L=16", "p=2 f=0.4 L=24"]
     assert settings["FE hp, clamped"][-1] == "p=8 f=0.8 L=1e+06"
-
-
-def test_names_are_unique_and_ladders_long_enough_for_exponents():
-    assert len({m.name for m in METHODS}) == len(METHODS)
-    assert all(len(m.steps) >= 3 and 1 <= m.quick <= len(m.steps) for m in METHODS)
 
 
 def counted_method(runs, quick):
@@ -400,20 +342,10 @@ def test_a_rung_is_recorded_by_how_it_ended(monkeypatch, error, status):
     assert (found.status, found.reason) == (status, "on purpose")
 
 
-def test_an_error_of_the_program_ends_the_study(monkeypatch):
-    def end(_tabor):
-        raise ValueError("operands could not be broadcast together")
-
-    truth = Truth("finite elements", 1e-9, {"pull_off": Estimate(1.0, 1e-10)}, 1.0)
-    monkeypatch.setattr(speed, "find_truths", lambda _tabor: dict.fromkeys(PREFIX, truth))
-    with pytest.raises(ValueError, match="broadcast"):
-        measure(1.0, methods=[Method("half-space", "some", [Step("", end)], 1)], growths=[])
-
-
 def test_too_many_nodes_are_refused_before_any_work():
-    assert _affordable(np.zeros(MOST_NODES)).size == MOST_NODES
-    with pytest.raises(InputError, match=f"{MOST_NODES + 1} nodes exceed {MOST_NODES} .*; take"):
-        _affordable(np.zeros(MOST_NODES + 1))
+    uniform = next(m for m in METHODS if m.name == "uniform triangles")
+    with pytest.raises(InputError, match=r"\d{4,} nodes exceed 3000 of a dense operator; take another"):
+        uniform.steps[-1].run(20.0)
 
 
 @pytest.mark.parametrize("tabor", [0.0, 5.0, float("nan")])
@@ -439,12 +371,12 @@ def test_errors_that_the_truth_cannot_tell_are_equally_accurate():
 
 
 @pytest.mark.parametrize(("quantity", "size"), [("pull_off", 3.0), ("jump_on", 7.0), ("hysteresis", 3.0)])
-def test_errors_are_relative_to_the_value_or_to_the_scale_of_approaches(quantity, size):
+def test_errors_are_relative_to_value_or_scale(quantity, size):
     truth = Truth("half-space", 1e-9, dict.fromkeys(QUANTITIES, Estimate(-3.0, 0.0)), 7.0)
     assert truth.relative(quantity, 2.0) == 2.0 / size
 
 
-def test_the_cheapest_rung_within_a_tolerance_and_the_most_accurate():
+def test_the_cheapest_rung_and_the_most_accurate():
     rungs = [rung(1, 1e-2), rung(5, 1e-4), rung(4, 5e-4), FAILED]
     assert cheapest(rungs, 1e-3).seconds == 4
     assert cheapest(rungs, 1e-6) is None
@@ -474,7 +406,7 @@ def test_each_cost_grows_by_its_own_exponent():
     )
 
 
-def test_errors_that_the_truth_cannot_tell_do_not_bend_the_exponents():
+def test_errors_below_the_truth_s_do_not_bend_the_exponents():
     made = [Timing("some", "", "converged", 10.0**n, "", 10**n, 1.0, {"pull_off": 10.0**-n}) for n in (1, 2, 3)]
     floor = {"pull_off": 1e-3}
     made = [dataclasses.replace(r, floors=floor) for r in (*made, dataclasses.replace(made[-1], seconds=1e9))]
@@ -534,7 +466,7 @@ def test_each_value_stands_under_its_name_in_the_csv(distinct, written):
             assert float(row[f"{q}_truth_uncertainty"]) == pytest.approx(made.floors[q], rel=1e-3, abs=0)
 
 
-def test_an_earlier_run_is_read_back_and_shown_beside_in_yardsticks(distinct, written):
+def test_an_earlier_run_is_shown_beside_in_yardsticks(distinct, written):
     """Twice as slow a run on a machine half as fast took as many yardsticks: only what is known to differ counts."""
     slower = [dataclasses.replace(made, seconds=4 * made.seconds) for made in distinct.rungs]
     table = written(dataclasses.replace(distinct, rungs=tuple(slower), yardstick=2e-3))
@@ -557,7 +489,7 @@ def test_an_earlier_run_is_read_back_and_shown_beside_in_yardsticks(distinct, wr
         np.testing.assert_allclose(before.get_ydata(), now.get_ydata(), rtol=1e-3)
 
 
-def test_what_is_no_earlier_run_at_this_tabor_parameter_is_refused(distinct, written):
+def test_what_is_no_earlier_run_is_refused(distinct, written):
     file = written(distinct)
     other = file.with_name("other.csv")
     with pytest.raises(InputError, match="is of tabor 1, not 2"):
@@ -643,16 +575,6 @@ def test_an_error_below_the_truths_uncertainty_is_shown_as_such():
     assert "within that uncertainty" not in labels
 
 
-def test_a_legend_names_only_what_is_drawn(study):
-    for quantity in QUANTITIES:
-        figure = speed_page.error_against_time(study, quantity)
-        for axes in figure.axes:
-            for text, line in zip(axes.get_legend().get_texts(), axes.get_legend().legend_handles, strict=True):
-                drawn = next(x for x in axes.lines if x.get_label() == text.get_text())
-                assert np.isfinite(drawn.get_ydata()).any(), text
-                assert line.get_color() == drawn.get_color()
-
-
 def test_nothing_is_cut_off_or_overprinted(study):
     for quantity in QUANTITIES:
         with rc_context(style.LOOK):
@@ -693,13 +615,7 @@ SOME = Method("half-space", "some", [Step("a", None)], 1)
 )
 def test_what_failed_that_should_not_have(statuses, troubles):
     assert list(judged(SOME, *statuses).troubles()) == troubles
-
-
-def test_an_iteration_known_to_diverge_may():
     assert list(judged(dataclasses.replace(SOME, may_diverge=True), "failed").troubles()) == []
-
-
-def test_a_grid_refused_above_a_coarser_one_that_was_not_is_trouble():
     good, coarse = rung(1.0, 1e-3), Timing("some", "finer", "too coarse", 1.0, "spacing")
     assert list(made_study([coarse, good]).troubles()) == []
     assert list(made_study([good, coarse]).troubles()) == ["some at finer: spacing"]
@@ -718,7 +634,7 @@ def test_truths_that_disagree_are_told_first():
     assert section("\n".join(lines_of_page(made_study([], nan))), "The truths")[0]["within both errors"] == "NO"
 
 
-def test_a_result_that_is_not_a_number_is_neither_best_nor_cheapest_nor_drawn():
+def test_a_result_that_is_no_number_is_not_best_nor_drawn():
     absurd = made_study([rung(0.1, math.nan), rung(0.2, math.inf)])
     text = "\n".join(lines_of_page(absurd))
     assert section(text, "What it costs to have pull_off")[0]["best reached"] == "-"
@@ -727,29 +643,13 @@ def test_a_result_that_is_not_a_number_is_neither_best_nor_cheapest_nor_drawn():
     assert [line.get_label() for line in lines] == ["uncertainty of the truth"]
 
 
-def test_a_failure_that_should_not_be_is_told_first_and_ends_in_1(monkeypatch, tmp_path, capsys):
+def test_a_failure_is_told_first_and_ends_in_1(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(speed, "measure", lambda *_a, **_k: judged(SOME, "failed"))
     assert cli.main(["speed", "--out", str(tmp_path / "out")]) == 1
     told = capsys.readouterr().out.splitlines()
     assert told[0] == "2 failed that should not have, the first: some at 0: why 0"
     page = (tmp_path / "out" / "speed.md").read_text()
     assert "FAILED where it should not have, 2 times:\n* some at 0: why 0" in page
-
-
-def test_every_number_in_the_pages_own_words_is_computed():
-    """With nothing measured no figure is left but settings: tolerances, the yardstick's size, versions."""
-    page = "\n".join(lines_of_page(made_study([], methods=[SOME])))
-    kept = [line for line in page.splitlines() if not line.startswith("* ") and "judge" not in line]
-    numbers = set(re.findall(r"\d[\d.e+-]*", "\n".join(kept)))
-    assert numbers <= {"1", "0", "1e-03", "1e-05", "1e-06", "0e+00"} | {
-        "-5",
-        "5",
-        "1.5",
-        "0.25",
-        "1e-09",
-        "2e-09",
-        "3e-09",
-    }
 
 
 # --- how time grows ---
@@ -760,15 +660,15 @@ def test_the_time_of_each_solver_is_told_for_all_that_grows(run, page):
     told = {(row["solver"], row["x"]): row for row in section(page, "How the time of the solvers")}
     rows = list(csv.DictReader((run / "speed" / "growth.csv").read_text().splitlines()))
     assert set(told) == {(growth.solver, growth.grows) for growth in GROWTHS}
-    for growth in growths_for(quick=True):
+    for growth in GROWTHS:
         mine = [row for row in rows if (row["solver"], row["grows"]) == (growth.solver, growth.grows)]
-        assert [float(row["at"]) for row in mine] == list(growth.at)
-        (x, y), (s, t) = growth.at, (float(row["seconds"]) for row in mine)
+        assert [float(row["at"]) for row in mine] == list(growth.at[:2])
+        (x, y), (s, t) = growth.at[:2], (float(row["seconds"]) for row in mine)
         found = float(told[growth.solver, growth.grows]["b"])
         assert found == pytest.approx(math.log(t / s) / math.log(y / x), abs=0.02)
 
 
-def test_growth_is_measured_where_it_is_asked_and_its_exponent_is_that_of_the_times():
+def test_the_exponent_of_a_growth_is_that_of_its_times():
     seen = []
     some = Growth("some", "digits", 3.0, (1.0, 2.0, 4.0), seen.append)
 
