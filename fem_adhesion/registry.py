@@ -38,7 +38,7 @@ class Part:
 RATIO, GRIP = {"radius_ratio": "R/eps"}, {"grip": "sliding or bonded"}
 SHEAR = {"foundation": "bonded or sliding"}
 HELD, FLAT, STRATA = (f"fem_adhesion.bodies.{module}" for module in ("held", "half_space", "layers"))
-LAWS, PROFILES = "halfspace.laws.formulas", "halfspace.profiles.formulas"
+LAWS, PROFILES, WAVES = "halfspace.laws.formulas", "halfspace.profiles.formulas", "halfspace.elastic.layers"
 
 PARTS: dict[str, dict[str, Part]] = {
     "body": {
@@ -51,8 +51,8 @@ PARTS: dict[str, dict[str, Part]] = {
         "layers": Part(STRATA, "Layers"),
         "meshed": Part(HELD, "Meshed", {"path": "file"} | RATIO | GRIP),
     },
-    "strata": {"stratum": Part("halfspace.elastic.layers", "Stratum")},
-    "base": {"substrate": Part("halfspace.elastic.layers", "Substrate")},
+    "strata": {"stratum": Part(WAVES, "Stratum", {"thickness": "beta", "poisson": "", "modulus": "E of the first"})},
+    "base": {"substrate": Part(WAVES, "Substrate", {"modulus": "E of the first", "poisson": ""})},
     "material": {
         "linear-elastic": Part("fem_adhesion.materials", "LinearElastic"),
         "neo-hookean": Part("fem_adhesion.materials", "NeoHookean"),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside
-from fem_adhesion.common.scene_options import COUNTER, add_contact, add_law, add_layer, material_of, refuse
+from fem_adhesion.common.scene_options import COUNTER, add_contact, add_law, material_of, refuse
 
 if TYPE_CHECKING:
     from fem_adhesion.common.contact import Contact
@@ -19,8 +19,13 @@ def add_options(command: Parser) -> None:
     """Add the options."""
     add_contact(command, in_si_only=True)
     add_law(command.add_argument_group("law"))
-    sample = "thickness, as 500nm: the sphere is rigid then, and --modulus and --poisson are the sample's"
-    add_layer(command.add_argument_group("thin sample on a rigid base"), sample)
+    grip = "how spheres are held at their mid-planes; sliding unless given"
+    command.add_argument("--grip", choices=("sliding", "bonded"), help=grip)
+    sample = command.add_argument_group("thin sample on a rigid base")
+    thickness = "thickness, as 500nm: the sphere is rigid then, and --modulus and --poisson are the sample's"
+    sample.add_argument("--thickness", help=thickness, metavar="T")
+    base = "whether the base holds the sample or carries it without friction; bonded unless given"
+    sample.add_argument("--foundation", choices=("bonded", "sliding"), help=base)
     results = command.add_argument_group("results")
     results.add_argument(
         "--json", type=Path, help="also write the result to this file, - for standard output", metavar="FILE"
@@ -56,7 +61,7 @@ def _contact(options: argparse.Namespace) -> Contact:
         refuse(options, ("foundation",), "with --thickness")
     else:
         refuse(options, ("grip", *COUNTER), "without --thickness, as a thin sample meets a rigid sphere")
-    contact = material_of(options)
+    contact = material_of(options, grip=options.grip or "sliding", foundation=options.foundation or "bonded")
     require_known(contact)
     tabor = contact.units.tabor
     if tabor > FINITE_TABOR:

@@ -68,10 +68,15 @@ class Contact:
                 "thin sample; leave out the counter-body"
             )
         self.units, self.layer  # noqa: B018  they refuse what is not positive
-        if self.thickness is not None and not self.thickness > self.spacing:
+        if self.thickness is not None:
+            self.require_sample(self.thickness)
+
+    def require_sample(self, thickness: float) -> None:
+        """Raise InputError unless a sample is thicker than the spacing."""
+        if not thickness > self.spacing:
             raise InputError(
-                f"thickness = {self.thickness:g} m is outside {self.spacing:g} m < thickness, the equilibrium spacing "
-                "of the surfaces; give a thicker sample, or a unit, as 500nm"
+                f"thickness = {thickness:g} m is outside {self.spacing:g} m < thickness, the equilibrium spacing; "
+                "give a thicker sample, or a unit, as 500nm"
             )
 
     @cached_property

@@ -42,12 +42,12 @@ DIGITS = 6  # significant, at most
 
 
 def parse(text: str, name: str) -> float:
-    """Read a positive quantity with its unit, such as ``100nm``, one of `KINDS` by its name, and return it in SI.
+    """Read a positive quantity with its unit, such as ``100nm``, and return it in SI; a length unless `KINDS` has it.
 
     Any unit that pint knows will do: for a work of adhesion mN/m is as good as mJ/m^2. InputError if the number or the
     unit is missing, the unit is unknown or of another dimension, or the number is not positive and finite.
     """
-    example = KINDS[name][1]
+    example = KINDS.get(name, LENGTH)[1]
     found = NUMBER_AND_UNIT.fullmatch(text)
     if not found:
         raise InputError(f"{name} = {text!r} is not a number with a unit; write it as {example}")
@@ -59,7 +59,7 @@ def parse(text: str, name: str) -> float:
 
 def _size(text: str, written: str, name: str) -> float:
     """Size of a unit in the SI unit of the quantity."""
-    unit, example = KINDS[name]
+    unit, example = KINDS.get(name, LENGTH)
     if not written:
         raise InputError(f"{name} = {text} has no unit, limit: a multiple of {unit}; write it as {example}")
     try:

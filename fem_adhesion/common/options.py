@@ -28,6 +28,26 @@ COMMAND: ContextVar[str] = ContextVar("command", default="")
 """Command line that is being run, for the records of its files."""
 
 
+GONE = {
+    "--law-parameter": "--law morse:3",
+    "--profile-parameter": "--profile power:4",
+    "--radius-ratio": "--body hemisphere:100 or --profile sphere:100",
+    "--grip": "--body hemisphere:100,bonded",
+    "--counter-share": "--counter hemisphere:200 --share 0.4",
+    "--mesh": "--body meshed:tip.msh,100",
+    "--cap-angle": "--body held-sphere:100,20",
+    "--block-radius": "--body block:20",
+    "--far-field": "--body block:20,clamped",
+    "--thickness": "--body layer:2",
+    "--foundation": "--body layer:2,sliding",
+    "--modulus-ratio": "--body coated:2,10",
+    "--substrate-poisson": "--body coated:2,10,0.4",
+    "--strata": "--body layers:0.4,0.3/0.5,0.45,2",
+    "--substrate": "--body layers:0.4,0.3/substrate:5,0.1",
+}
+"""Options of earlier versions, and what says the same now."""
+
+
 class Help(argparse.HelpFormatter):
     """Shows defaults, where there are any."""
 
@@ -96,7 +116,11 @@ class Parser(argparse.ArgumentParser):
         super().__init__(**{"formatter_class": Help, **settings})
 
     def error(self, message: str) -> NoReturn:
-        """Exit with code 2."""
+        """Exit with code 2; an option of earlier versions is answered by the one in its place."""
+        gone = [word for word in message.split() if word.partition("=")[0] in GONE]
+        if message.startswith("unrecognized") and gone:
+            old = gone[0].partition("=")[0]
+            message = f"{old} is no longer an option, write {GONE[old]}"
         self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_workers, console_beside, written
-from fem_adhesion.common.scene_options import POISSON, add_body, add_other_body, counter_of, scene_of
+from fem_adhesion.common.scene_options import POISSON, add_body, scene_of
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -24,12 +24,11 @@ def add_options(command: Parser) -> None:
     scenes, body, results = map(command.add_argument_group, ("scenes", "body", "results"))
     tabors = [0.05, 0.5, 1, 2, 3, 5]
     scenes.add_argument("--tabor", nargs="+", type=float, default=tabors, help="Tabor parameters", metavar="MU")
-    scenes.add_argument(
-        "--poisson", type=float, default=POISSON, help="Poisson's ratio of the elements, 0 <= nu < 0.5", metavar="NU"
-    )
+    for name, whose in (("poisson", "the elements"), ("counter-poisson", "the counter-body")):
+        of = f"Poisson's ratio of {whose}, 0 <= nu < 0.5; {POISSON:g} unless given"
+        scenes.add_argument(f"--{name}", type=float, help=of, metavar="NU")
     scenes.add_argument("--rtol", type=float, default=1e-5, help="relative accuracy of the comparison, 1e-9 to 1e-1")
     add_body(body)
-    add_other_body(body, f"{POISSON:g} unless given", " in radii of the first")
     file = "also write the result to this file, - for standard output"
     results.add_argument("--json", type=Path, help=file, metavar="FILE")
     add_workers(command)
@@ -42,8 +41,7 @@ def run(options: argparse.Namespace) -> int:
     from halfspace.limits import require_rtol
 
     require_rtol(options.rtol)
-    parts = counter_of(options)
-    scenes = [scene_of(options, mu, options.poisson, *parts) for mu in options.tabor]
+    scenes = [scene_of(options, mu) for mu in options.tabor]
     for scene in scenes:
         require_comparable(scene, options.rtol)
     console = console_beside(options.json)

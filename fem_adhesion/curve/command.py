@@ -12,17 +12,14 @@ from typing import TYPE_CHECKING, TextIO
 from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside, require_distinct
 from fem_adhesion.common.scene_options import (
-    POISSON,
     add_body,
     add_contact,
-    counter_of,
-    has_size,
-    law_named,
     material_unless_tabor,
     refuse,
     scene_of,
     stiffness_of,
 )
+from fem_adhesion.common.words import part_in
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -33,7 +30,7 @@ if TYPE_CHECKING:
     from halfspace.profiles import Profile
 
 POINTS = 20  # of a curve for ParaView
-NOT_BY_WEAK_FORM = ("vtk", "render", "movie", "at", "beside", "points", "stiffness", "block_radius")
+NOT_BY_WEAK_FORM = ("vtk", "render", "movie", "at", "beside", "points", "stiffness")
 OWN = 0.01  # part by which the radius of a tip's apex, fitted to its table, may differ from what is given
 
 
@@ -86,7 +83,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.curve import record, terminal
     from fem_adhesion.curve.solve import solve
 
-    question, laws = _question(options), [law_named(text) for text in options.beside or ()]
+    question, laws = _question(options), [part_in("law", word) for word in options.beside or ()]
     if laws:
         from fem_adhesion.curve import beside
 
@@ -207,7 +204,7 @@ def _question(options: argparse.Namespace) -> Question:
     from fem_adhesion.curve.solve import Question
 
     contact = material_unless_tabor(options)
-    scene = _scene(options, contact)
+    scene = scene_of(options, contact.units.tabor if contact else options.tabor, contact)
     inside = options.vtk or options.render or options.movie
     plain = scene.body.name == "half-space" and not inside
     solver: SolverName = options.solver or ("half-space" if plain else "fem")
@@ -230,10 +227,8 @@ def _question(options: argparse.Namespace) -> Question:
 
 def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverName, contact: Contact | None) -> None:
     """Refuse what the question would not depend on."""
-    if solver == "half-space":
-        refuse(options, ("block_radius",), "with fem or both, as half-spaces have none")
-        if not contact and not scene.body.layered:
-            refuse(options, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it")
+    if solver == "half-space" and not contact and not scene.body.layered:
+        refuse(options, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it")
     if solver not in ("half-space", "both"):
         refuse(options, ("kernel",), "with --solver half-space or both")
     if solver == "weak-form":
@@ -242,8 +237,6 @@ def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverNam
         refuse(options, ("revolve", "force"), "with --vtk DIR")
     if not (options.json or options.csv or options.plot or options.vtk):
         refuse(options, ("points",), "with --json, --csv, --plot or --vtk")
-    if contact and math.isfinite(contact.counter_radius) and not has_size(options) and scene.sized:
-        raise InputError("profile = sphere of two spheres, limit: a hemisphere; take --body hemisphere")
 
 
 def _require_own_radius(radius: float, profile: Profile) -> None:
@@ -260,18 +253,6 @@ def _require_own_radius(radius: float, profile: Profile) -> None:
             f"radius = {engineering(radius, 'm')} under a tip whose apex has {own:.4g} in its table's unit, limit: the "
             f"same to {100 * OWN:g} %, the table in m; {remedy}"
         )
-
-
-def _scene(options: argparse.Namespace, contact: Contact | None) -> Scene:
-    if contact is None:
-        poisson = POISSON if options.poisson is None else options.poisson
-        return scene_of(options, options.tabor, poisson, *counter_of(options))
-    units = contact.units
-    refuse(options, ("radius_ratio",), f"with --tabor, as the material has its own {units.radius_ratio:.4g}")
-    if not has_size(options) or not contact.pair:  # two half-spaces are one, of their contact modulus
-        return scene_of(options, units.tabor, contact.poisson, units.radius_ratio, None, None, contact.layer)
-    parts = contact.smaller_ratio, contact.counter, contact.share
-    return scene_of(options, units.tabor, contact.smaller_poisson, *parts)
 
 
 COMMAND = Command(

@@ -315,9 +315,11 @@ def test_a_thin_sample_and_another_body_are_no_contact():
 
 def test_a_thickness_is_in_si_with_a_material_and_in_beta_without(tmp_path, capsys):
     beta, record = Contact(**SAMPLE).units.length, tmp_path / "c.json"
-    asked = ["curve", *GIVEN, "--body", "layer", "--rtol", "1e-2", "--json", str(record)]
-    assert cli.main([*asked, "--thickness", "30nm"]) == 0
+    asked = ["curve", *GIVEN, "--rtol", "1e-2", "--json", str(record)]
+    assert cli.main([*asked, "--body", "layer:30nm"]) == 0
     assert json.loads(record.read_text())["scene"]["body"]["thickness"] == pytest.approx(30e-9 / beta)
-    assert cli.main([*asked, "--thickness", "30"]) == 2
-    assert cli.main(["curve", "--tabor", "1", "--body", "layer", "--thickness", "30nm"]) == 2
+    for length, words in (("30", "has no unit"), ("0.3nm", "outside 3e-10 m < thickness")):
+        assert cli.main([*asked, "--body", f"layer:{length}"]) == 2
+        assert words in capsys.readouterr().err
+    assert cli.main(["curve", "--tabor", "1", "--body", "layer:30nm"]) == 2
     assert "thickness = 30nm is not a plain number in beta" in capsys.readouterr().err

@@ -236,15 +236,14 @@ def test_an_interface_is_drawn_and_written():
 @pytest.mark.parametrize(
     "body",
     [
-        ["layer", "--thickness", "2"],
-        ["coated", "--thickness", "2", "--modulus-ratio", "10"],
-        ["layers", "--strata", "0.4:0.3", "0.5:0.45:0.2", "--foundation", "sliding"],
+        "layer:2",
+        "coated:2,10",
+        "layers:0.4,0.3/0.5,0.45,0.2/sliding",
     ],
-    ids=lambda body: body[0],
 )
 def test_compare_on_the_command_line_agrees_with_all_that_it_has(body, tmp_path):
     record = tmp_path / "record.json"
-    assert main(["compare", "--tabor", "1", "--body", *body, "--rtol", "1e-4", "--json", str(record)]) == 0
+    assert main(["compare", "--tabor", "1", "--body", body, "--rtol", "1e-4", "--json", str(record)]) == 0
     rows = json.loads(record.read_text())["cases"][0]["comparison"]
     between = {tuple(row["between"]) for row in rows}
     assert {("half-space", "finite elements"), ("weak form", "finite elements")} <= between
@@ -279,15 +278,16 @@ def test_compare_rejects_another_body(asked, wrong):
 @pytest.mark.parametrize(
     ("body", "words"),
     [
-        (["layer"], "give --thickness, in beta"),
-        (["coated", "--thickness", "2"], "give --modulus-ratio"),
-        (["coated", "--thickness", "2", "--modulus-ratio", "1e3"], "modulus_ratio = 1000 is outside 0.001 <="),
-        (["layers"], "give --strata T:NU:E"),
-        (["layers", "--strata", "1:0.3:1:2"], "strata = 1:0.3:1:2, limit: 3 numbers between colons"),
-        (["layers", "--strata", "1:0.3:2"], "modulus = 2 of the first stratum does not serve"),
-        (["layers", "--strata", "1:0.4", "--poisson", "0.3"], "poisson = 0.3 with strata, limit: that of the"),
-        (["layers", "--strata", "1", "--substrate", "2:0.3", "--foundation", "bonded"], "--foundation would not be"),
-        (["layer", "--thickness", "2", "--strata", "1"], "--strata would not be heeded, limit: with --body layers"),
+        (["layer"], "body = layer, limit: layer:thickness,bonded|sliding; give thickness, beta"),
+        (["coated:2"], "limit: coated:thickness,modulus_ratio,substrate_poisson; give modulus_ratio"),
+        (["coated:2,1e3"], "modulus_ratio = 1000 is outside 0.001 <="),
+        (["layers"], "limit: layers:thickness,poisson,modulus/.../bonded|sliding|substrate:modulus,poisson; give a"),
+        (["layers:1,0.3,1,2"], "strata = stratum:1,0.3,1,2, limit: stratum:thickness,poisson,modulus; leave out 2"),
+        (["layers:1,0.3,2"], "modulus = 2 of the first stratum does not serve"),
+        (["layers:1,0.4", "--poisson", "0.3"], "poisson = 0.3 with strata, limit: that of the"),
+        (["layers:1/glued"], "base = glued, limit: one of substrate"),
+        (["layer:2,glued"], "thickness"),
+        (["layer:2nm"], "thickness = 2nm is not a plain number in beta"),
     ],
     ids=str,
 )
@@ -307,12 +307,13 @@ def test_a_stratum_by_its_thickness_has_the_bodys_poissons_ratio_and_the_modulus
 
     monkeypatch.setattr(comparisons, "run", run)
     for words, strata in (
-        (["0.4", "--poisson", "0.2"], [Stratum(0.4, 0.2)]),
-        (["0.4", "0.5", "--poisson", "0.2"], [Stratum(0.4, 0.2), Stratum(0.5, 0.2)]),
-        (["0.4"], [Stratum(0.4, 0.3)]),
-        (["0.4", "0.5:0.1"], [Stratum(0.4, 0.3), Stratum(0.5, 0.1)]),
+        (["layers:0.4", "--poisson", "0.2"], [Stratum(0.4, 0.2)]),
+        (["layers:0.4/0.5", "--poisson", "0.2"], [Stratum(0.4, 0.2), Stratum(0.5, 0.2)]),
+        (["layers:0.4"], [Stratum(0.4, 0.3)]),
+        (["layers:0.4/0.5,0.1"], [Stratum(0.4, 0.3), Stratum(0.5, 0.1)]),
+        (["layers:0.4,0.2/0.5,0.1"], [Stratum(0.4, 0.2), Stratum(0.5, 0.1)]),
     ):
-        main(["compare", "--tabor", "1", "--body", "layers", "--strata", *words])
+        main(["compare", "--tabor", "1", "--body", *words])
         assert asked.pop() == Scene(1.0, Layers(strata))
 
 

@@ -34,7 +34,11 @@ class Drum(Held):
 
 @pytest.fixture(autouse=True)
 def _registered(monkeypatch):
-    monkeypatch.setitem(registry.PARTS["body"], "drum", registry.Part(__name__, "Drum"))
+    monkeypatch.setitem(
+        registry.PARTS["body"],
+        "drum",
+        registry.Part(__name__, "Drum", {"radius_ratio": "R/eps", "grip": "sliding or bonded"}),
+    )
 
 
 def test_a_toy_body_is_traced_and_softer_than_a_half_space_of_its_profile():
@@ -53,7 +57,7 @@ def test_a_toy_body_agrees_with_the_weak_form():
 
 def test_a_toy_body_is_known_to_the_command_line_and_to_its_files(tmp_path):
     record, states = tmp_path / "drum.json", tmp_path / "states"
-    asked = ["--tabor", "1", "--body", "drum", "--radius-ratio", "10", "--grip", "bonded", "--rtol", "1e-2"]
+    asked = ["--tabor", "1", "--body", "drum:10,bonded", "--rtol", "1e-2"]
     assert cli.main(["curve", *asked, "--json", str(record), "--vtk", str(states), "--points", "0"]) == 0
     scene = json.loads(record.read_text())["scene"]
     assert part_from("body", scene["body"]) == Drum(radius_ratio=10.0, grip="bonded")

@@ -13,6 +13,8 @@ from whole_runs import COMPARE
 from fem_adhesion import cli
 from fem_adhesion.common.files import written_aside
 from fem_adhesion.common.jobs import ONE_THREAD
+from fem_adhesion.common.options import GONE
+from fem_adhesion.common.words import part_in
 from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck import study as crosscheck
 from halfspace.errors import NotConverged
@@ -118,6 +120,19 @@ def test_an_output_that_is_in_use_or_cannot_be_written_is_refused_before_any_wor
         assert message in err
         assert err.count("\n") == 1
     assert [file.name for file in tmp_path.iterdir()] == ["precious"]
+
+
+@pytest.mark.parametrize(("old", "new"), GONE.items())
+def test_an_option_that_is_gone_names_what_says_the_same(old, new, capsys):
+    """And what it names is understood."""
+    command = "curve" if old not in ("--grip", "--thickness") else "compare"
+    assert ended([command, "--tabor", "1", old, "2"]) == 2
+    assert capsys.readouterr().err.startswith(f"fem-adhesion: {old} is no longer an option, write {new}; see")
+    for line in new.split(" or "):
+        cli.make_parser().parse_args(["curve", *line.split()])
+        kind, word = line.split()[:2]
+        if "msh" not in word:
+            part_in("body" if kind == "--counter" else kind.removeprefix("--"), word)
 
 
 def test_no_command_is_refused():
@@ -236,7 +251,7 @@ def _option_lines(command, capsys):
 def test_help_shows_groups_and_defaults(capsys):
     text, options = _option_lines("compare", capsys)
     assert "(default: 0.05 0.5 1 2 3 5)" in options["--tabor"]
-    assert "(default: 0.3)" in options["--poisson"]
+    assert "0.3 unless given" in options["--poisson"]
     assert "(default: 1e-05)" in options["--rtol"]
     assert "(default" not in options["--json"]
     text, options = _option_lines("curve", capsys)
@@ -253,10 +268,9 @@ def test_a_contact_has_the_same_options_in_every_command_that_takes_one(capsys):
     _, curve = _option_lines("curve", capsys)
     _, assess = _option_lines("assess", capsys)
     contact = {"--radius", "--modulus", "--poisson", "--work-of-adhesion", "--spacing", "--hamaker"}
-    contact |= {"--counter-modulus", "--counter-poisson", "--counter-radius", "--grip", "--stiffness"}
-    contact |= {"--thickness", "--foundation"}
+    contact |= {"--counter-modulus", "--counter-poisson", "--counter-radius", "--stiffness"}
     assert contact <= set(curve)
-    assert set(assess) == contact | {"--law", "--law-parameter", "--help", "--json", "--plot"}
+    assert set(assess) == contact | {"--law", "--help", "--json", "--plot", "--grip", "--thickness", "--foundation"}
 
 
 @pytest.mark.parametrize("module", ["fem_adhesion", "fem_adhesion.cli"])
@@ -303,7 +317,7 @@ def test_the_command_line_of_a_contact_is_heeded_to_the_last_option(monkeypatch)
     other = ["--counter-modulus", "3GPa", "--counter-poisson", "0.41", "--counter-radius", "0.7um"]
     held = ["--grip", "bonded", "--stiffness", "0.2N/m"]
     with pytest.raises(AttributeError):
-        cli.main(["assess", *MATERIAL, "--spacing", "1nm", *other, *held, "--law", "morse", "--law-parameter", "3.3"])
+        cli.main(["assess", *MATERIAL, "--spacing", "1nm", *other, *held, "--law", "morse:3.3"])
     assert {field.name: getattr(asked[0], field.name) for field in fields(asked[0])} == {
         "radius": pytest.approx(1e-7),
         "modulus": pytest.approx(7e10),

@@ -44,12 +44,7 @@ def test_each_file_of_a_command_has_the_record_that_repeats_it(line, option, val
 
 def test_the_scene_of_a_record_is_read_back_and_units_are_those_of_its_numbers(tmp_path):
     file = tmp_path / "a.csv"
-    assert (
-        cli.main(
-            ["curve", "--tabor", "0.3", "--law", "morse", "--law-parameter", "3", "--rtol", "1e-2", "--csv", str(file)]
-        )
-        == 0
-    )
+    assert cli.main(["curve", "--tabor", "0.3", "--law", "morse:3", "--rtol", "1e-2", "--csv", str(file)]) == 0
     found = read(file)
     assert part_from("law", found["scene"]["law"]) == Morse(3)
     with file.open() as lines:

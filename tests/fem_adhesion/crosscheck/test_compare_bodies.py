@@ -40,7 +40,7 @@ def _without_limits(monkeypatch):
 
 # --- the command ---
 
-HEMISPHERE = ["--body", "hemisphere", "--profile", "sphere", "--radius-ratio", "10"]
+HEMISPHERE = ["--profile", "sphere", "--body", "hemisphere:10"]
 
 
 def test_the_command_compares_a_hemisphere_with_the_whole_sphere(tmp_path, capsys):
@@ -65,12 +65,11 @@ def test_the_command_compares_a_hemisphere_with_the_whole_sphere(tmp_path, capsy
     ("arguments", "message"),
     [
         ([*HEMISPHERE, "--strain", "finite"], "is compared with nothing, limit: small strain"),
-        ([*HEMISPHERE, "--cap-angle", "20"], "--cap-angle would not be heeded, limit: with --body held-sphere"),
-        (["--grip", "bonded"], "--grip would not be heeded"),
-        (["--body", "hemisphere"], 'radius_ratio = None for body = "hemisphere"'),
-        (["--counter-radius", "2"], "--counter-radius would not be heeded, limit: with --counter-share"),
-        (["--body", "hemisphere", "--mesh", "a.msh"], "mesh = a.msh with body = hemisphere, limit: one of both"),
-        ([*HEMISPHERE[:-1], "1e6", "--tabor", "5"], "radius_ratio = 1e+06 at tabor 5 takes"),
+        (["--body", "hemisphere:10,20"], "limit: hemisphere:radius_ratio,sliding|bonded; leave out 20"),
+        (["--body", "half-space:bonded"], "body = half-space:bonded, limit: half-space; leave out bonded"),
+        (["--body", "hemisphere"], "limit: hemisphere:radius_ratio,sliding|bonded; give radius_ratio, R/eps"),
+        (["--share", "0.5"], "--share would not be heeded, limit: with --counter"),
+        (["--body", "hemisphere:1e6", "--tabor", "5"], "radius_ratio = 1e+06 at tabor 5 takes"),
     ],
 )
 def test_the_command_refuses_in_one_line(arguments, message, capsys):
@@ -85,7 +84,7 @@ def test_a_cap_is_heeded(monkeypatch):
     asked = []
     monkeypatch.setattr(comparisons, "run", lambda scenes, **_: asked.extend(scenes) or iter(()))
     with pytest.raises(StopIteration):
-        cli.main(["compare", "--tabor", "2", "--body", "held-sphere", "--radius-ratio", "50", "--cap-angle", "20"])
+        cli.main(["compare", "--tabor", "2", "--body", "held-sphere:50,20"])
     assert asked == [Scene(2.0, HeldSphere(radius_ratio=50.0, cap_angle=20.0))]
 
 

@@ -9,7 +9,6 @@ import pytest
 
 import halfspace
 from fem_adhesion import Hemisphere, Scene
-from fem_adhesion.common.scene_options import law_named
 from fem_adhesion.curve import beside
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace.errors import InputError
@@ -108,27 +107,6 @@ def test_where_one_law_folds_and_another_does_not_jumps_are_not_compared(collaps
     assert found.apart("jumps") is None
     assert found.apart("pull-off").value > 0
     assert "not all fold" in found.told
-
-
-@pytest.mark.parametrize(
-    ("text", "law"), [("morse:3", Morse(3.0)), ("power-law:4,10", PowerLaw(4, 10)), ("power-law", LENNARD_JONES)]
-)
-def test_a_law_is_one_word(text, law):
-    assert law_named(text) == law
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("foo:3", "law = foo, limit: one of power-law, morse"),
-        ("morse", "limit: k; give them in this order"),
-        ("morse:x", "law_parameter = x, limit: a plain number"),
-    ],
-)
-def test_what_is_no_law_is_refused(text, message):
-    with pytest.raises(InputError) as refused:
-        law_named(text)
-    assert message in str(refused.value)
 
 
 def test_a_body_with_a_length_is_refused_before_any_work():

@@ -37,7 +37,7 @@ from halfspace.values import Estimate
 MATERIAL = ("--radius", "100nm", "--modulus", "1GPa", "--poisson", "0.3", "--work-of-adhesion", "50mJ/m^2")
 BY_HAMAKER = (*MATERIAL, "--hamaker", "65zJ")
 MATERIAL = (*MATERIAL, "--spacing", "0.3nm")
-MORSE = ("--law", "morse", "--law-parameter", "3")
+MORSE = ("--law", "morse:3")
 UNITS = Units(100e-9, 1.1e9, 0.05, 0.3e-9)
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 
@@ -452,12 +452,12 @@ def test_the_example_of_the_help_runs(tmp_path, monkeypatch):
     ("arguments", "part"),
     [
         (MORSE, {"law": Morse(3)}),
-        (("--law", "exponential", "--law-parameter", "3"), {"law": Exponential(3)}),
-        (("--law", "dlvo", "--law-parameter", "-0.5", "0.3"), {"law": Dlvo(-0.5, 0.3)}),
-        (("--law", "power-law", "--law-parameter", "4", "10"), {"law": PowerLaw(4, 10)}),
-        (("--profile", "power", "--profile-parameter", "4"), {"profile": Power(4)}),
-        (("--profile", "hyperboloid", "--profile-parameter", "0.5"), {"profile": Hyperboloid(0.5)}),
-        (("--profile", "sphere", "--radius-ratio", "50", *MORSE), {"law": Morse(3), "profile": Sphere(50)}),
+        (("--law", "exponential:3"), {"law": Exponential(3)}),
+        (("--law", "dlvo:-0.5,0.3"), {"law": Dlvo(-0.5, 0.3)}),
+        (("--law", "power-law:4,10"), {"law": PowerLaw(4, 10)}),
+        (("--profile", "power:4"), {"profile": Power(4)}),
+        (("--profile", "hyperboloid:0.5"), {"profile": Hyperboloid(0.5)}),
+        (("--profile", "sphere:50", *MORSE), {"law": Morse(3), "profile": Sphere(50)}),
     ],
 )
 def test_laws_and_profiles_are_heeded(arguments, part, monkeypatch):
@@ -492,19 +492,16 @@ def test_fields_inside_are_written_for_every_event(tmp_path):
         (["--tabor", "2", "--radius", "100nm"], "leave out --tabor"),
         (["--radius", "100nm", "--modulus", "1GPa"], "--poisson, --work-of-adhesion, --spacing or --hamaker missing"),
         ([*MATERIAL, "--hamaker", "65zJ"], "--spacing with --hamaker, limit: one of both"),
-        ([*MATERIAL, "--counter-share", "0.5"], "--counter-share would not be heeded, limit: with --tabor"),
+        ([*MATERIAL, "--share", "0.5"], "--share would not be heeded, limit: with --tabor"),
+        ([*MATERIAL, "--counter", "half-space"], "--counter would not be heeded, limit: with --tabor"),
         ([*MATERIAL, "--counter-modulus", "1GPa"], "counter_poisson = None"),
-        ([*MATERIAL, "--profile", "sphere", "--counter-radius", "1um"], "take --body hemisphere"),
         ([*MATERIAL, "--body", "held-sphere", "--counter-radius", "1um"], "a hemisphere meets another or a half-space"),
-        (["--tabor", "2", "--foundation", "sliding"], "limit: with --body layer or --body layers"),
-        (["--tabor", "2", "--grip", "sliding"], "--grip would not be heeded, limit: with --body hemisphere"),
+        (["--tabor", "2", "--body", "half-space:sliding"], "limit: half-space; leave out sliding"),
         (["--tabor", "2", "--poisson", "0.2"], "--poisson would not be heeded, limit: with a material, fem or both"),
-        (
-            ["--tabor", "2", "--counter-radius", "2"],
-            "--counter-radius would not be heeded, limit: with --counter",
-        ),
-        (["--tabor", "2", "--counter-share", "0.5"], "a hemisphere meets another or a half-space"),
-        (["--tabor", "2", "--counter-share", "0.5", "--counter-radius", "1um"], "plain number in radii of the first"),
+        (["--tabor", "2", "--counter-radius", "2um"], "leave out --tabor or the material"),
+        (["--tabor", "2", "--counter-poisson", "0.2"], "--counter-poisson would not be heeded, limit: with --counter"),
+        (["--tabor", "2", "--counter", "half-space", "--share", "0.5"], "a hemisphere meets another or a half-space"),
+        (["--tabor", "2", "--body", "hemisphere:9", "--counter", "half-space"], "share"),
         (["--tabor", "2", "--points", "5"], "--points would not be heeded, limit: with --json, --csv, --plot or --vtk"),
         (["--tabor", "2", "--revolve", "90", "--force"], "--revolve, --force would not be heeded"),
         (["--tabor", "2", "--json", "a.txt", "--csv", "other/../a.txt"], "is given for two outputs"),
@@ -513,33 +510,26 @@ def test_fields_inside_are_written_for_every_event(tmp_path):
         (["--tabor", "2", "--stiffness", "1N/m"], "not a plain number in R dgamma/eps"),
         (["--tabor", "2", "--stiffness", "-1"], "outside 0 < stiffness"),
         (["--tabor", "2", "--plot", "a.gif"], "ends in '.gif', limit: one of .png, .svg, .pdf"),
+        (["--tabor", "2", "--body", "hemisphere"], "limit: hemisphere:radius_ratio,sliding|bonded; give radius_ratio"),
         (
-            ["--tabor", "2", "--body", "hemisphere"],
-            'radius_ratio = None for body = "hemisphere", limit: a number; give --radius-ratio',
+            ["--tabor", "2", "--profile", "sphere"],
+            "limit: sphere:radius_ratio,counter_radius; give radius_ratio, R/eps",
         ),
-        (["--tabor", "2", "--profile", "sphere"], "limit: a number; give --radius-ratio"),
+        (["--tabor", "2", "--body", "drum:3"], "body = drum, limit: one of half-space, block, hemisphere"),
         (
             [*MATERIAL[:-1], "1m", "--body", "hemisphere"],
             "1e12; it is the radius over the spacing: change one of the two",
         ),
-        (["--tabor", "2", "--law-parameter", "3"], "--law-parameter would not be heeded, limit: with --law"),
-        (["--tabor", "2", "--law", "morse"], "law_parameter = None for law = morse, limit: k; give them in this order"),
-        (["--tabor", "2", "--law", "exponential"], "limit: k [core]; give them in this order"),
-        (["--tabor", "2", "--law", "morse", "--law-parameter", "3nm"], "law_parameter = 3nm, limit: a plain number"),
-        (["--tabor", "2", "--law", "dlvo", "--law-parameter", "0.5", "1"], "charge = 0.5 leaves no work of adhesion"),
-        (
-            ["--tabor", "2", "--profile-parameter", "3"],
-            "--profile-parameter would not be heeded, limit: with",
-        ),
-        (["--tabor", "2", "--profile", "power"], "profile_parameter = None for profile = power, limit: k; give them"),
-        (["--tabor", "2", "--profile", "paraboloid", "--profile-parameter", "3"], "limit: none; leave it out"),
-        (["--tabor", "2", "--profile", "power", "--profile-parameter", "1"], "round a cone's tip"),
+        (["--tabor", "2", "--law", "foo:3"], "law = foo, limit: one of power-law, morse"),
+        (["--tabor", "2", "--law", "morse"], "law = morse, limit: morse:k; give k, 1/eps"),
+        (["--tabor", "2", "--law", "morse:3,4"], "law = morse:3,4, limit: morse:k; leave out 4"),
+        (["--tabor", "2", "--law", "morse:3nm"], "k = 3nm, limit: a plain number, in 1/eps; give one"),
+        (["--tabor", "2", "--law", "dlvo:0.5,1"], "charge = 0.5 leaves no work of adhesion"),
+        (["--tabor", "2", "--profile", "power"], "profile = power, limit: power:k; give k, power"),
+        (["--tabor", "2", "--profile", "paraboloid:3"], "profile = paraboloid:3, limit: paraboloid; leave out 3"),
+        (["--tabor", "2", "--profile", "power:1"], "round a cone's tip"),
         ([*BY_HAMAKER, *MORSE], "--hamaker would not be heeded, limit: the 3-9 law"),
-        (
-            ["--tabor", "2", "--solver", "half-space", "--body", "hemisphere", "--radius-ratio", "99"],
-            "take fem or both",
-        ),
-        (["--tabor", "2", "--body", "hemisphere", "--mesh", "a.msh"], "leave out --body"),
+        (["--tabor", "2", "--solver", "half-space", "--body", "hemisphere:99"], "take fem or both"),
         (["--tabor", "2", "--to-load", "0"], "to_load = 0"),
         (["--tabor", "2", "--json", "/no/such/folder/a.json"], "cannot be written"),
         (["--tabor", "2", "--vtk", "fields", "--solver", "half-space"], "take --solver fem"),
@@ -565,8 +555,8 @@ def test_a_material_without_a_spring_is_held_by_fixed_grips(capsys):
 
 
 def test_a_material_with_a_size_of_its_own_is_not_given_another():
-    with pytest.raises(InputError, match="--radius-ratio would not be heeded"):
-        _run(*MATERIAL, "--body", "hemisphere", "--radius-ratio", 100)
+    with pytest.raises(InputError, match="body = hemisphere:100, limit: hemisphere:sliding.bonded; leave out 100"):
+        _run(*MATERIAL, "--body", "hemisphere:100")
 
 
 def test_standard_output_has_the_data_alone_and_a_person_reads_the_rest_on_standard_error(capsys):
@@ -603,7 +593,7 @@ def _asked(monkeypatch, *arguments):
 
 
 def test_the_question_takes_the_size_of_the_sphere_from_the_material(monkeypatch):
-    sphere = ("--body", "hemisphere", "--profile", "sphere", "--grip", "bonded", "--stiffness", "0.2N/m")
+    sphere = ("--body", "hemisphere:bonded", "--profile", "sphere", "--stiffness", "0.2N/m")
     question = _asked(monkeypatch, *MATERIAL, *sphere)
     assert question.solver == "fem"
     assert question.scene.radius_ratio == pytest.approx(100 / 0.3)
@@ -621,7 +611,11 @@ def test_the_counter_body_of_a_material_is_heeded(monkeypatch):
     assert flat.units.modulus == pytest.approx(modulus, rel=1e-12)
     assert flat.units.radius == pytest.approx(75e-9, rel=1e-12)
     assert flat.scene.counter is None
-    round_ = _asked(monkeypatch, *MATERIAL, *other, "--body", "hemisphere", "--profile", "sphere")
+    on_half_space = _asked(monkeypatch, *MATERIAL, *other, "--profile", "sphere").scene
+    assert on_half_space.shape.radius_ratio == flat.units.radius_ratio
+    assert on_half_space.shape.counter_radius == pytest.approx(3.0, rel=1e-12)
+    round_ = _asked(monkeypatch, *MATERIAL, *other, "--body", "hemisphere:bonded", "--profile", "sphere")
+    assert (round_.scene.body.grip, round_.scene.counter.grip) == ("bonded", "bonded")
     assert round_.units == flat.units
     assert round_.scene.poisson == 0.3
     assert round_.scene.share == pytest.approx(modulus * (1 - 0.4**2) / 3e9, rel=1e-12)
@@ -650,15 +644,13 @@ def test_the_counter_body_is_in_title_and_record(both, radius, recorded):
 
 
 def test_the_counter_body_of_a_tabor_parameter_is_heeded(monkeypatch):
-    body = ("--tabor", 1, "--body", "hemisphere", "--profile", "sphere", "--radius-ratio", 90)
-    plain = _asked(monkeypatch, *body)
-    assert (plain.scene.counter, plain.scene.poisson, plain.scene.body.grip) == (None, 0.3, "sliding")
-    found = _asked(monkeypatch, *body, "--counter-share", 0.4)
-    assert found.scene == pair(1.0, 90.0, 0.4)
-    found = _asked(monkeypatch, *body, "--counter-share", 0.4, "--counter-poisson", 0.2, "--counter-radius", 3)
-    assert found.scene == pair(1.0, 90.0, 0.4, 0.2, 3.0)
-    found = _asked(monkeypatch, *body, "--counter-share", 0.4, "--counter-radius", 3, "--grip", "bonded")
-    assert (found.scene.body.grip, found.scene.counter.grip) == ("bonded", "bonded")
+    body = ("--tabor", 1, "--body", "hemisphere:90")
+    plain = _asked(monkeypatch, *body).scene
+    assert plain == Scene(1.0, Hemisphere(radius_ratio=90.0))
+    assert _asked(monkeypatch, *body, "--counter", "half-space", "--share", 0.4).scene == pair(1.0, 90.0, 0.4)
+    words = ("--counter", "hemisphere:200,bonded", "--share", 0.4, "--counter-poisson", 0.2)
+    found = _asked(monkeypatch, *body, *words).scene
+    assert found == replace(plain, counter=Hemisphere(radius_ratio=200.0, grip="bonded", poisson=0.2), share=0.4)
 
 
 def test_a_hamaker_constant_makes_the_spacing(monkeypatch):

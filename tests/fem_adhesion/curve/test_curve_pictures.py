@@ -188,7 +188,7 @@ def test_the_command_draws_and_prints(tmp_path, capsys):
         (("--render", "a.jpg"), "limit: .png"),
         (("--movie", "a.mp4"), "limit: .gif"),
         (("--movie", "a.gif", "--solver", "half-space"), "--solver fem"),
-        (("--render", "a.png", "--body", "held-sphere", "--radius-ratio", 1000), "hemisphere"),
+        (("--render", "a.png", "--body", "held-sphere:1000"), "hemisphere"),
         (("--render", "missing/a.png"), "missing/a.png cannot be written"),
     ],
 )

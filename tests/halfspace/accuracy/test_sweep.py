@@ -138,7 +138,7 @@ def test_the_table_has_the_numbers_of_the_sweep(capsys, found):
 
 
 def test_the_law_reaches_every_curve(capsys):
-    words = ["--law", "morse", "--law-parameter", "3", "--rtol", str(RTOL), "--csv", "-", "--jobs", "1"]
+    words = ["--law", "morse:3", "--rtol", str(RTOL), "--csv", "-", "--jobs", "1"]
     assert cli.main(["sweep", "--tabor", "1", *words]) == 0
     (row,) = rows_of(capsys.readouterr().out)
     path = halfspace.trace(1.0, law=halfspace.laws.Morse(3.0), rtol=RTOL)

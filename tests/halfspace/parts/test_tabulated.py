@@ -235,7 +235,7 @@ H = EPS * np.geomspace(0.7, 30, 300)
 )
 def test_what_is_no_law_is_refused_in_one_line(x, y, message, tmp_path, capsys):
     path = written(tmp_path / "law.csv", x, y)
-    assert cli.main(["curve", "--tabor", "1", "--law", "tabulated", "--law-parameter", str(path)]) == 2
+    assert cli.main(["curve", "--tabor", "1", "--law", f"tabulated:{path}"]) == 2
     err = capsys.readouterr().err
     assert message in err
     assert err.count("\n") == 1
@@ -272,7 +272,7 @@ def test_a_material_with_another_radius_than_its_tip_is_refused_in_one_line(tmp_
     r = np.linspace(0, 15e-9, 100)
     tip = str(written(tmp_path / "tip.csv", r, r**2 / 40e-9))
     material = ["--modulus", "70GPa", "--poisson", "0.2", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm"]
-    curve = ["curve", *material, "--profile", "tabulated", "--profile-parameter", tip, "--rtol", "1e-2"]
+    curve = ["curve", *material, "--profile", f"tabulated:{tip}", "--rtol", "1e-2"]
     assert cli.main([*curve, "--radius", "20.1nm"]) == 0
     assert "apex radius 2e-08" in capsys.readouterr().out
     assert cli.main([*curve, "--radius", "20.3nm"]) == 2
@@ -285,14 +285,14 @@ def test_a_material_with_another_radius_than_its_tip_is_refused_in_one_line(tmp_
 def test_a_tip_in_another_unit_is_refused_with_the_factor(unit, factor, tmp_path, capsys):
     """In nm, say: with that factor in both columns the same command runs."""
     r, material = np.linspace(0, 15e-9, 100), ["--modulus", "70GPa", "--poisson", "0.2", "--radius", "20nm"]
-    curve = ["curve", *material, "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm", "--profile", "tabulated"]
+    curve = ["curve", *material, "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm"]
     tip = written(tmp_path / "tip.csv", r / unit, r**2 / 40e-9 / unit)
-    assert cli.main([*curve, "--profile-parameter", str(tip), "--rtol", "1e-2"]) == 2
+    assert cli.main([*curve, "--profile", f"tabulated:{tip}", "--rtol", "1e-2"]) == 2
     said = capsys.readouterr().err
     assert f"the table in m; multiply both columns by {factor}" in said
     assert "--radius" not in said
     tip = written(tmp_path / "tip.csv", r / unit * float(factor), r**2 / 40e-9 / unit * float(factor))
-    assert cli.main([*curve, "--profile-parameter", str(tip), "--rtol", "1e-2"]) == 0
+    assert cli.main([*curve, "--profile", f"tabulated:{tip}", "--rtol", "1e-2"]) == 0
 
 
 def test_a_tip_that_turns_back_is_refused(tmp_path):
