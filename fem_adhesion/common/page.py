@@ -105,14 +105,11 @@ class Section:
     tables: Sequence[Table] = ()
 
 
-def write_page(
-    directory: Path, title: str, lead: Sequence[str], sections: Sequence[Section], spent: str, asked: str = ""
-) -> None:
+def write_page(directory: Path, title: str, lead: Sequence[str], sections: Sequence[Section], spent: str) -> None:
     """Write ``index.html``: title, paragraphs, links to sections, and these.
 
     At its foot stand the command line that is being run, if any, machine, versions and cost.
     """
-    del asked  # the record has it
     facts = {**machine(), **versions(), "computed in": spent}
     text = render("common/page.html.j2", title=title, lead=lead, sections=sections, facts=facts)
     (directory / "index.html").write_text(text, encoding="utf-8")

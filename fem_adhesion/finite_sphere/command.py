@@ -38,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
             solved = finite_sphere.run(plan.cases, store, progress=step, **settings)
         study = finite_sphere.Study((*solved, *plan.left_out), options.quick)
         with directory_written_aside(options.out, force=True) as aside, progress_bar() as step, writing(options.out):
-            note = page.write(study, aside, in_turn(step, len(page.PARTS)), options.asked)
+            note = page.write(study, aside, in_turn(step, len(page.PARTS)))
             page.remove_outdated(options.out, aside)
     except KeyboardInterrupt as how:
         return ended(how, f"what is done is kept in {options.out}, --resume goes on")

@@ -154,12 +154,11 @@ PARTS = ("table", *(f"figure {picture.stem}" for picture in PICTURES), "page")
 """What `write` begins, in this order."""
 
 
-def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _: None, asked: str = "") -> str:
+def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _: None) -> str:
     """Write the table, every figure as SVG and PNG, the findings as CSV, and ``index.html``, into a directory.
 
     Give it one made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none. `begin`
-    is called with each of `PARTS` in turn, `asked` is the command line that was run. Returns how to get the Parquet
-    file if there is none, else nothing.
+    is called with each of `PARTS` in turn. Returns how to get the Parquet file if there is none, else nothing.
     """
     begin("table")
     found, records = results(study), study.records
@@ -179,7 +178,7 @@ def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _
     sections += [Section("tables", "Tables", tables=others), _settings(records)]
     lead = [Markup("<strong>{}.</strong>").format(study.headline), *_answer(found.rows)]
     spent = f"{sum(r.seconds for r in records):.0f} s of work on {len(records)} cases"
-    write_page(directory, "Is the half-space good enough for my sphere?", lead, sections, spent, asked)
+    write_page(directory, "Is the half-space good enough for my sphere?", lead, sections, spent)
     return note
 
 

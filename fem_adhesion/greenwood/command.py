@@ -24,7 +24,7 @@ def run(options: argparse.Namespace) -> int:
         begin = in_turn(progress, len(greenwood.SUBJECTS) + len(page.FIGURES))
         study = greenwood.compute(quick=options.quick, begin=begin)
         with writing(options.out):
-            page.write(study, aside, begin, options.asked)
+            page.write(study, aside, begin)
     code = exit_code_of(list(study.troubles()))
     print(f"written: {options.out / 'index.html'}")
     return code

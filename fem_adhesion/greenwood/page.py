@@ -30,13 +30,11 @@ FIGURES: dict[str, tuple[str, Made]] = {
 """Title of each figure, and what makes its plot, by the name of its files: those of the paper, and further ones."""
 
 
-def write(
-    study: Greenwood1997, directory: Path, begin: Callable[[str], None] = lambda _: None, asked: str = ""
-) -> None:
+def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = lambda _: None) -> None:
     """Write every figure as SVG, PNG and CSV, every table and the captions as CSV, and ``index.html``.
 
     Give it a directory made by `fem_adhesion.common.files.directory_written_aside`, so that all files appear or none;
-    `begin` is called with what is drawn next, once for each of `FIGURES`, `asked` is the command line that was run.
+    `begin` is called with what is drawn next, once for each of `FIGURES`.
     """
     plots = {stem: made(study) for stem, (_, made) in FIGURES.items()}
     pictures = [_picture(study, stem, plot) for stem, plot in plots.items()]
@@ -50,7 +48,7 @@ def write(
         Section("tables", "Tables", tables=written),
     ]
     title = f"Greenwood (1997), computed again{', quick run' if study.quick else ''}"
-    write_page(directory, title, list(lead(study)), sections, f"{study.seconds:.1f} s, drawing apart", asked)
+    write_page(directory, title, list(lead(study)), sections, f"{study.seconds:.1f} s, drawing apart")
 
 
 def _picture(study: Greenwood1997, stem: str, plot: Plot) -> Picture[Greenwood1997]:

@@ -5,14 +5,9 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser
-
-if TYPE_CHECKING:
-    from fem_adhesion.curve.solve import Question
-    from fem_adhesion.scene import Scene
 
 STUDIES = {
     "speed": "speed against error",
@@ -36,51 +31,40 @@ def add_options(command: Parser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Compare, walk, and write the page."""
     from fem_adhesion.common.files import written_aside
-    from fem_adhesion.curve.solve import Question
-    from fem_adhesion.report.page import SOURCES, section_of
+    from fem_adhesion.crosscheck import scenes as crosscheck
+    from fem_adhesion.crosscheck.comparison import overall_verdict
+    from fem_adhesion.curve import solve
+    from fem_adhesion.report import walk
+    from fem_adhesion.report.page import SOURCES, Contents, page, section_of
     from fem_adhesion.scene import Scene
+    from halfspace.errors import NotConverged
     from halfspace.limits import require_rtol
 
     require_rtol(options.rtol)
     scenes = [Scene(tabor=tabor) for tabor in options.tabor]
-    question = Question(Scene(options.walk), "both", options.rtol)
+    question = solve.Question(Scene(options.walk), "both", options.rtol)
     named = {name: getattr(options, name.replace("-", "_")) for name in STUDIES}
     directories = {name: directory for name, directory in named.items() if directory is not None}
     for source in SOURCES:
         section_of(source, directories.get(source.name))  # refuse a directory before any work
-    with written_aside(options.out) as file:
-        verdict, text = _compute(scenes, options.rtol, question, directories, options.asked)
-        file.write(text)
-    print(f"verdict: {verdict}; written: {options.out}")
-    return AGREE if verdict == "agree" else DISAGREE
-
-
-def _compute(
-    scenes: list[Scene], rtol: float, question: Question, directories: dict[str, Path], asked: str
-) -> tuple[str, str]:
-    """Verdict and page."""
-    from fem_adhesion.crosscheck import scenes as crosscheck
-    from fem_adhesion.crosscheck.comparison import overall_verdict
-    from fem_adhesion.curve.solve import solve
-    from fem_adhesion.report.page import Contents, page
-    from fem_adhesion.report.walk import walk
-    from halfspace.errors import NotConverged
-
-    with progress_bar() as step:
+    with written_aside(options.out) as file, progress_bar() as step:
         cases = []
         step("comparison", 0, len(scenes))
-        for case in crosscheck.run(scenes, rtol=rtol):
+        for case in crosscheck.run(scenes, rtol=options.rtol):
             cases.append(case)
             step("comparison", len(cases), len(scenes))
-        contents = Contents(cases, None, None, directories, asked=asked)
+        contents = Contents(cases, None, None, directories)
         try:
-            curves = solve(question, step)
-            walked = walk(question.scene.tabor, rtol=rtol, progress=step)
+            curves = solve.solve(question, step)
+            walked = walk.walk(options.walk, rtol=options.rtol, progress=step)
             contents = replace(contents, curves=curves, walk=walked)
         except NotConverged as error:
             contents = replace(contents, lost=str(error))
         step("page", 0, 1)
-        return "failed" if contents.lost else overall_verdict(cases), page(contents)
+        file.write(page(contents))
+    verdict = "failed" if contents.lost else overall_verdict(cases)
+    print(f"verdict: {verdict}; written: {options.out}")
+    return AGREE if verdict == "agree" else DISAGREE
 
 
 COMMAND = Command(

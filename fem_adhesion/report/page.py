@@ -6,7 +6,7 @@ import csv
 import math
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -16,7 +16,7 @@ from matplotlib import rc_context
 
 from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.lines import UNSTABLE, smooth
-from fem_adhesion.common.page import Columns, Figure, Section, Table, render, template_text
+from fem_adhesion.common.page import Columns, Figure, Section, Table, data_rows, render, template_text
 from fem_adhesion.common.style import laid_out
 from fem_adhesion.crosscheck.comparison import (
     CLOSED_FORM,
@@ -51,8 +51,7 @@ WORDS = {
 class Contents:
     """What goes into a report: the cross-check, one curve, by both solvers and state by state, and other results.
 
-    Those are in directories by their commands' names; `lost` says why there is no curve, or is empty;
-    `asked` is the command line that was run, or empty.
+    Those are in directories by their commands' names; `lost` says why there is no curve, or is empty.
     """
 
     cases: Sequence[Case | Failure]
@@ -60,7 +59,6 @@ class Contents:
     walk: Walk | None
     directories: Mapping[str, Path]
     lost: str = ""
-    asked: str = ""
 
 
 def page(contents: Contents) -> str:
@@ -84,7 +82,6 @@ def page(contents: Contents) -> str:
         others=others,
         settings=settings_section(cases, machine()),
         script=template_text("report", "walk.js"),
-        asked=contents.asked,
     )
 
 
@@ -136,8 +133,6 @@ LEVELS = {
 }
 VERDICTS = ("agree", "inconclusive", "disagree")
 
-SUMMARY = ("level", "quantities", *VERDICTS, "largest difference / error", "largest error / budget")
-
 Cases = Sequence[Case | Failure]
 
 
@@ -176,20 +171,21 @@ def _rows(cases: Cases, level: str) -> list[tuple[str, Row]]:
 
 
 def _summary(cases: Cases) -> Table:
-    lines = [_summary_line(LEVELS[level][0], [row for _, row in _rows(cases, level)]) for level in LEVELS]
-    return Table("", "Summary", "", SUMMARY, lines, open=True)
+    """Numbers of verdicts of each level, and its largest ratios of difference, error and budget."""
 
+    def ratio(part: float, whole: float) -> float:
+        return part / whole if whole else (math.inf if part else 0.0)
 
-def _summary_line(title: str, rows: Sequence[Row]) -> list[str]:
-    counts = [str(sum(row.verdict == verdict for row in rows)) for verdict in VERDICTS]
-    known = [row for row in rows if row.first and row.second]
-    ratios = [(_ratio(row.difference, row.error), _ratio(row.error, row.budget)) for row in known]
-    largest = [f"{max(column):.2g}" for column in zip(*ratios, strict=True)] or ["none", "none"]
-    return [title, str(len(rows)), *counts, *largest]
-
-
-def _ratio(part: float, whole: float) -> float:
-    return part / whole if whole else (math.inf if part else 0.0)
+    lines = []
+    for level, (title, _) in LEVELS.items():
+        rows = [row for _, row in _rows(cases, level)]
+        counts = [str(sum(row.verdict == verdict for row in rows)) for verdict in VERDICTS]
+        known = [row for row in rows if row.first and row.second]
+        ratios = [(ratio(row.difference, row.error), ratio(row.error, row.budget)) for row in known]
+        largest = [f"{max(column):.2g}" for column in zip(*ratios, strict=True)] or ["none", "none"]
+        lines.append([title, str(len(rows)), *counts, *largest])
+    columns = ("level", "quantities", *VERDICTS, "largest difference / error", "largest error / budget")
+    return Table("", "Summary", "", columns, lines, open=True)
 
 
 def settings_section(cases: Cases, machine: dict[str, str]) -> Section:
@@ -218,8 +214,6 @@ def _settings(value: object) -> str:
 
 WELL = ("converged", "refused")  # how a hard case may end
 MOST_ROWS = 400  # of a table that is shown
-MOST_DIGITS = 12  # of a number that was written to be read; more are those of the machine
-DIGITS = 4  # that are shown of such
 
 
 @dataclass(frozen=True)
@@ -246,53 +240,24 @@ class Source:
         return self.line or f"fem-adhesion {self.name} --out {self.name}"
 
 
-SOURCES = (
-    Source(
-        "speed",
-        "Speed against error",
-        "Each line is a method at ever finer settings. The grey band is the least time for each error by any method, "
-        "the dotted line the uncertainty of the truth that errors are taken against: the other family's solution.",
-        ("pull_off", "jump_on", "hysteresis"),
-        (
-            ("speed", "Every method on every rung of its ladder"),
-            ("growth", "How the time of the solvers with error control grows"),
-        ),
-    ),
-    Source(
-        "hard",
-        "Hard cases",
-        "Each case has to end in a number whose error is within its estimate, or in a refusal that says why.",
-        (),
-        (("hard", "Cases"), ("locking", "Locking: largest error of the deflection under a smooth pressure")),
-        counted="hard",
-        line="make hard",
-    ),
-    Source(
-        "greenwood",
-        "Greenwood (1997), printed and computed",
-        "The paper's tables beside the same quantities computed here with their estimated errors, and figures after "
-        "the paper's and beyond.",
-        ("fig_3c", "fig_7", "beyond_devices"),
-        (("table_1", "Table 1"), ("table_2", "Table 2"), ("criteria_constants", "Criteria for jumping on")),
-    ),
-    Source(
-        "finite-sphere",
-        "Is the half-space good enough for my sphere?",
-        "An elastic sphere of finite radius R beside the half-space with a parabolic profile.",
-        ("chart", "causes"),
-        (
-            ("safe", "From which R/eps on the half-space will do"),
-            ("theories", "Beside the theories of the rigid and of the soft sphere"),
-        ),
-    ),
-)
+def _read_sources() -> Iterator[Source]:
+    for row in data_rows("report", "sources.csv"):
+        tables = [(stem, title) for stem, _, title in (part.partition(": ") for part in row["tables"].split("; "))]
+        words = row["name"], row["title"], row["introduction"]
+        yield Source(*words, row["figures"].split(), tables, row["counted"], row["line"])
+
+
+SOURCES = tuple(_read_sources())
 
 
 def section_of(source: Source, directory: Path | None) -> Section:
     """Section from a command's directory, InputError if it lacks what that writes, or one that it was not computed."""
     if directory is None:
         return Section(source.name, source.title, missing=source.made_by)
-    captions = _captions(source, directory) if source.figures else {}
+    captions = {}
+    if source.figures:
+        file = _require(directory / "captions.csv", source)
+        captions = dict(zip(_column(file, "figure"), _column(file, "caption"), strict=True))
     figures = tuple(
         Figure(_svg(_require(directory / f"{stem}.svg", source)), captions[stem])
         for stem in source.figures
@@ -307,12 +272,6 @@ def section_of(source: Source, directory: Path | None) -> Section:
         warning = f"{', '.join(f'{n} {outcome}' for outcome, n in wrong.items())}." if wrong else ""
     shown = tuple(tables.values())
     return Section(source.name, source.title, warning=warning, paragraphs=paragraphs, figures=figures, tables=shown)
-
-
-def _captions(source: Source, directory: Path) -> dict[str, str]:
-    """Captions that the command left beside its figures."""
-    file = _require(directory / "captions.csv", source)
-    return dict(zip(_column(file, "figure"), _column(file, "caption"), strict=True))
 
 
 def _svg(file: Path) -> bytes:
@@ -359,9 +318,9 @@ def read_table(file: Path, title: str) -> Table:
 
 
 def cell(text: str) -> str:
-    """Text of a cell, numbers as the machine has them rounded."""
-    if re.fullmatch(r"[-+]?\d+\.?\d*(e[-+]?\d+)?", text) and len(re.sub(r"e.*|\D", "", text)) > MOST_DIGITS:
-        return f"{float(text):.{DIGITS}g}"
+    """Text of a cell; a number of more than twelve digits, which none wrote to be read, is rounded to four."""
+    if re.fullmatch(r"[-+]?\d+\.?\d*(e[-+]?\d+)?", text) and len(re.sub(r"e.*|\D", "", text)) > 12:
+        return f"{float(text):.4g}"
     return text
 
 

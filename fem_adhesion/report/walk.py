@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -17,7 +16,7 @@ from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 from fem_adhesion import convergence
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common.jobs import Progress, unheard
-from fem_adhesion.common.lines import UNSTABLE, Line, smooth
+from fem_adhesion.common.lines import UNSTABLE, smooth
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.elasticity.stress import positions, sampled
 from fem_adhesion.fields import State, half_space_beside, states_along
@@ -28,11 +27,7 @@ from halfspace.errors import NotConverged
 from halfspace.values import Array, Valued
 
 SEEN = Discretisation(degree=4)  # of the fields: right to the width of a line
-RADII = 151  # of the profiles
-REACH = 1.6  # of the largest contact radius: how far the profiles go
 LINES = (0.0, 0.25, 0.5, 1.0, 1.5, 2.0)  # depths in beta at which lines are drawn inside the body
-ON_LINE = 81  # points of a line
-FINE = np.stack(np.meshgrid(*2 * [np.linspace(0, 1, 7)], indexing="ij")).reshape(2, -1)  # of each cell
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -79,8 +74,8 @@ def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progres
     """
     scene = Scene(tabor)
     path = convergence.trace(scene, rtol=rtol)
-    outer = REACH * float(np.nanmax(path.contact_radius))
-    radii, places = np.linspace(0, outer, RADII), np.linspace(0, outer, ON_LINE)
+    outer = 1.6 * float(np.nanmax(path.contact_radius))
+    radii, places = np.linspace(0, outer, 151), np.linspace(0, outer, 81)
     total = (path.count if states is None else states) + len(usual(path.events))
     stations = []
     for number, state in enumerate(states_along(scene, path, points=states, how=SEEN)):
@@ -91,26 +86,23 @@ def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progres
 
 def _station(state: State, radii: Array, places: Array) -> Station:
     approach, load, central_gap, contact_radius = (float(value) for value in state.observables)
-    pressure, gap = (np.array(list(both)) for both in zip(*_profiles(state, radii), strict=True))
+    operator = state.problem.operator.at(1.0)
+    try:
+        beside = half_space_beside(state)
+        other = [operator.values_at(radii, values) for values in (beside.pressure, beside.gap)]
+    except NotConverged:
+        other = [np.full_like(radii, np.nan)] * 2
+    own = [operator.values_at(radii, values) for values in (state.pressure, state.gap)]
+    pressure, gap = (np.array(both) for both in zip(own, other, strict=True))
     point = state.name, state.point.arclength, approach, load, central_gap, contact_radius, state.stable
     return Station(*point, pressure, gap, _lines(state, places))
 
 
-def _profiles(state: State, radii: Array) -> Iterator[tuple[Array, Array]]:
-    """Pressure and gap on the radii, by finite elements and by the half-space beside."""
-    operator = state.problem.operator.at(1.0)
-    yield operator.values_at(radii, state.pressure), operator.values_at(radii, state.gap)
-    try:
-        beside = half_space_beside(state)
-        yield operator.values_at(radii, beside.pressure), operator.values_at(radii, beside.gap)
-    except NotConverged:
-        yield np.full_like(radii, np.nan), np.full_like(radii, np.nan)
-
-
 def _lines(state: State, places: Array) -> Array:
     """Upward displacement in eps on the lines inside the body."""
-    r, z = (x.ravel() for x in positions(state.space, FINE))
-    rise = state.scene.tabor * sampled(state.space, state.components[1], FINE).ravel()
+    fine = np.stack(np.meshgrid(*2 * [np.linspace(0, 1, 7)], indexing="ij")).reshape(2, -1)  # of each cell
+    r, z = (x.ravel() for x in positions(state.space, fine))
+    rise = state.scene.tabor * sampled(state.space, state.components[1], fine).ravel()
     near = (r < 2 * places[-1]) & (-z < 2 * LINES[-1] + places[-1])
     points, values = np.stack([r, z], axis=1)[near], rise[near]
     wanted = np.stack(np.meshgrid(places, -np.array(LINES)), axis=-1).reshape(-1, 2)
@@ -123,7 +115,6 @@ def _lines(state: State, places: Array) -> Array:
 # What the page has of it
 
 BETWEEN = 2.2  # heights in eps per beta of depth at which the lines inside the body are drawn in the moving figure
-DIGITS = 5  # of the numbers in the moving figure
 
 
 def walk_words(walk: Walk) -> list[str]:
@@ -145,23 +136,22 @@ def walk_data(walk: Walk, curves: Curves) -> str:
     drawn = {
         "radii": walk.radii,
         "places": walk.places,
-        "curves": [_curve(smooth(path)) for path in curves.paths.values()],
+        "curves": [
+            {"approach": line.approach, "load": line.load, "unstable": (line.kind == UNSTABLE).tolist()}
+            for line in map(smooth, curves.paths.values())
+        ],
         "stations": [asdict(station) | {"name": station.name.replace("_", " ")} for station in walk.stations],
     }
     data = {"tabor": walk.scene.tabor, "depths": LINES, "between": BETWEEN, **_rounded(drawn)}
     return json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def _curve(line: Line) -> dict[str, Any]:
-    return {"approach": line.approach, "load": line.load, "unstable": (line.kind == UNSTABLE).tolist()}
-
-
 def _rounded(value: Any) -> Any:
-    """Numbers of a few digits; what does not exist is null."""
+    """Numbers of five digits; what does not exist is null."""
     if isinstance(value, dict):
         return {name: _rounded(part) for name, part in value.items()}
     if isinstance(value, list | np.ndarray):
         return [_rounded(part) for part in value]
     if isinstance(value, float):
-        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
+        return float(f"{value:.5g}") if math.isfinite(value) else None
     return value

@@ -218,7 +218,7 @@ def test_a_picture_is_shown_and_runs_nothing(browser, report):
     picture = f"""<svg xmlns="http://www.w3.org/2000/svg" width="30pt" height="12pt" onload="{title}">
     <script>{title}</script><rect width="9" height="9" onclick="{title}"/></svg>"""
     shown = Section("one", "One", figures=[Figure(picture.encode(), "a square")])
-    write_page(report.parent, "A page", [], [shown], "no time", "")
+    write_page(report.parent, "A page", [], [shown], "no time")
     opened = browser.new_page()
     opened.goto((report.parent / "index.html").as_uri())
     image = opened.get_by_alt_text("a square")

@@ -49,7 +49,7 @@ from halfspace.values import Estimate
 
 METHODS = [*halfspace_methods(), *element_methods()]
 PREFIX = {"half-space": "", "finite elements": "FE "}
-FILES = {"speed.csv", "growth.csv", "captions.csv", "speed.md"} | {
+FILES = {"speed.csv", "growth.csv", "captions.csv", "speed.md", "csv-metadata.json"} | {
     f"{q}.{suffix}" for q in QUANTITIES for suffix in ("svg", "png")
 }
 TRUE = {"pull_off": -5.24854818839, "jump_on": -1.62921671169, "hysteresis": 0.2507086026}  # at a Tabor parameter of 1

@@ -45,6 +45,7 @@ def test_the_quick_study_says_in_its_first_line_that_it_is_one_and_that_all_was_
     assert int(re.search(r"(\d+) cases", first)[1]) == len(list((quick / "sphere/cases").iterdir()))
     page = (quick / "sphere/index.html").read_text()
     assert f"<strong>{first.partition('; written')[0]}.</strong>" in page
+    assert f"<p>To repeat: <code>{QUICK}</code></p>" in page
     assert first.partition("; written")[0] in (quick / "sphere/chart.svg").read_text()
 
 

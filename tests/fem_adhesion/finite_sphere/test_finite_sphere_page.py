@@ -85,12 +85,7 @@ def written(records, tmp_path_factory):
     """Directory of the study, and what was begun."""
     pytest.importorskip("pyarrow")
     directory, begun = tmp_path_factory.mktemp("study"), []
-    assert (
-        finite_sphere_page.write(
-            Study(records), directory, begun.append, "fem-adhesion finite-sphere --out 'my sphere'"
-        )
-        == ""
-    )
+    assert finite_sphere_page.write(Study(records), directory, begun.append) == ""
     return directory, tuple(begun)
 
 
@@ -98,11 +93,10 @@ def test_the_page_answers_and_all_files_are_there(written):
     directory, begun = written
     assert begun == finite_sphere_page.PARTS
     names = {f"{stem}.csv" for stem in TABLES} | {f"{stem}.{kind}" for stem in FIGURES for kind in ("svg", "png")}
-    names |= {"index.html", "finite_sphere.csv", "finite_sphere.parquet"}
+    names |= {"index.html", "finite_sphere.csv", "finite_sphere.parquet", "csv-metadata.json"}
     assert {file.name for file in directory.iterdir()} == names
     page = (directory / "index.html").read_text()
     assert "<strong>pull-off force</strong> if R/ε is 1000 or more (points solved, μ from 0.3 to 3)" in page
-    assert "<p>To repeat: <code>fem-adhesion finite-sphere --out &#39;my sphere&#39;</code></p>" in page
     assert "<strong>energy lost in a cycle</strong> nowhere that is known" in page
     assert "take a larger one" in page
     assert page.count('<img src="data:image/svg+xml;base64,') == len(FIGURES)

@@ -173,7 +173,7 @@ def test_the_errors_of_refitted_constants_are_the_spread_of_fits_to_scattered_ju
 
 def test_every_file_is_there(report):
     expected = {f"{stem}.{suffix}" for stem in FIGURES for suffix in ("svg", "png", "csv")}
-    expected |= {f"{stem}.csv" for stem in (*TABLES, "captions")} | {"index.html"}
+    expected |= {f"{stem}.csv" for stem in (*TABLES, "captions")} | {"index.html", "csv-metadata.json"}
     assert {file.name for file in report.iterdir()} == expected
     assert all((report / f"{stem}.png").stat().st_size > 10_000 for stem in FIGURES)
 
