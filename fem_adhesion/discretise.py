@@ -16,7 +16,7 @@ from skfem import ElementQuad2, ElementQuadP, ElementTriP2, MeshTri
 
 from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout
 from fem_adhesion.elasticity import exterior
-from fem_adhesion.elasticity.cells import cell_stiffness, stiffness_of
+from fem_adhesion.elasticity.cells import stiffness_of
 from fem_adhesion.elasticity.condensation import CondensedBody, condense
 from fem_adhesion.elasticity.exterior import FarField
 from fem_adhesion.elasticity.space import Space
@@ -159,10 +159,10 @@ def size_for(scales: Scales, rtol: float) -> float:
 
 def _condensed(body: Body, mesh: Any, how: Discretisation) -> CondensedBody:
     """Condense a body; quadratic triangles, which have no projected dilatation, lose accuracy from poisson 0.45 on."""
-    triangles, material = isinstance(mesh, MeshTri), body.material
-    space = Space(mesh, TRIANGLE if triangles else quadrilateral(how.degree))
-    stiffness = cell_stiffness if triangles else stiffness_of(body.regions)
-    held = exterior.made_of(FAR_FIELDS[body.held], body.beyond)
+    material = body.material
+    space = Space(mesh, TRIANGLE if isinstance(mesh, MeshTri) else quadrilateral(how.degree))
+    held = exterior.of_material(FAR_FIELDS[body.held], body.beyond)
+    stiffness = stiffness_of(space, body.regions)
     return condense(space, material.poisson, far_field=held, stiffness=stiffness, traction=material.area)
 
 

@@ -204,7 +204,7 @@ def require_few(scene: Scene, rtol: float) -> None:
     """Refuse a scene that is not ``checked_by`` harmonics, or takes too many; raise InputError."""
     if scene.checked_by != "harmonics":
         raise InputError(
-            f"scene = {', '.join(scene.told)} is not known to harmonics, limit: linear hemispheres that slide, all "
+            f"scene = {', '.join(scene.words)} is not known to harmonics, limit: linear hemispheres that slide, all "
             "tractions per projected area; take fem_adhesion.trace"
         )
     most = max(counts(scene, resolution_for(rtol, 1)))

@@ -89,12 +89,12 @@ def name_of(part: object) -> str:
     return known.get((own.__module__, own.__qualname__), own.__qualname__)
 
 
-def told(part: Any) -> str:
+def words_of(part: Any) -> str:
     """Name of a law or a profile, its numbers and what it tells; R/eps, which a scene tells, left out."""
     own = {field.name: getattr(part, field.name) for field in fields(part)} if is_dataclass(part) else {}
     own = {name: value for name, value in own.items() if name != "radius_ratio" and value != math.inf}
     numbers = [f"{name} {value.name if isinstance(value, Path) else f'{value:g}'}" for name, value in own.items()]
-    return ", ".join([" ".join([name_of(part), *numbers]), *getattr(part, "told", ())])
+    return ", ".join([" ".join([name_of(part), *numbers]), *getattr(part, "findings", ())])
 
 
 def record_of(part: Any) -> Any:

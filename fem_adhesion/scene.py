@@ -11,7 +11,7 @@ from fem_adhesion.bodies.body import Body, SolverName
 from fem_adhesion.bodies.half_space import HalfSpace
 from fem_adhesion.bodies.layers import as_body
 from fem_adhesion.materials import Material
-from fem_adhesion.registry import told
+from fem_adhesion.registry import words_of
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.laws.law import require_law
@@ -133,7 +133,7 @@ class Scene:
         """What `halfspace.trace` is not given of the scene, in words; nothing of a half-space and of strata."""
         if self.body.endless or self.body.layered:
             return []
-        return [*self.body.told, f"poisson {self.poisson:g}", *self._unusual]
+        return [*self.body.words, f"poisson {self.poisson:g}", *self._unusual]
 
     def made_of(self, material: Material) -> Scene:
         """Return the same contact of another material."""
@@ -203,13 +203,13 @@ class Scene:
         return f"as strong as the 3-9 law at tabor {by_strength:.4g}, as stiff at {by_stiffness:.4g}"
 
     @property
-    def told(self) -> list[str]:
+    def words(self) -> list[str]:
         """What it is, in words: Tabor parameter, material and body, and what else is not as usual."""
         parts = {
-            f"under a {told(self.profile)}": self.profile is not None and self.profile != self.body.shape,
-            f"law {told(self.law)}, {self._as_lennard_jones}": self.law != LENNARD_JONES,
+            f"under a {words_of(self.profile)}": self.profile is not None and self.profile != self.body.shape,
+            f"law {words_of(self.law)}, {self._as_lennard_jones}": self.law != LENNARD_JONES,
         }
-        words = [f"tabor {self.tabor:g}", f"poisson {self.poisson:g}", *self.body.told]
+        words = [f"tabor {self.tabor:g}", f"poisson {self.poisson:g}", *self.body.words]
         words += [f"R/eps {self.radius_ratio:.4g}"] if self.radius_ratio else []
         return [*words, *(word for word, holds in parts.items() if holds), *self._unusual]
 
@@ -222,7 +222,7 @@ class Scene:
         if self.counter:
             larger = 1 / self._smaller if self._smaller else math.inf
             words.append(f"counter-body with {self.share:.4g} of the compliance, radius {larger:.4g}")
-            words += [f"its poisson {self.counter.material.poisson:g}", *self.counter.told[1:]]
+            words += [f"its poisson {self.counter.material.poisson:g}", *self.counter.words[1:]]
         return words
 
 

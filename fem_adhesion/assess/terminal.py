@@ -17,7 +17,7 @@ from fem_adhesion.common.contact import Contact, edge_told
 from fem_adhesion.common.facts import plain
 from fem_adhesion.common.numbers import KINDS, PREFIXES, engineering, exponent_of, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
-from fem_adhesion.registry import record_of, told
+from fem_adhesion.registry import record_of, words_of
 from halfspace.laws import LENNARD_JONES
 
 STANDS = {"bonded": "bonded to its base", "sliding": "sliding on its base"}
@@ -54,7 +54,7 @@ def _head(assessment: Assessment) -> Iterator[RenderableType]:
     law = (("spacing eps", units.spacing, "m"), ("work of adhesion", units.work_of_adhesion, "J/m^2"))
     implied = f"with them the Hamaker constant 16 pi dgamma eps^2 = {engineering(units.hamaker, 'J')}"
     if contact.law != LENNARD_JONES:
-        implied = f"law {told(contact.law)}"
+        implied = f"law {words_of(contact.law)}"
     yield Flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in law), implied])
     fixed = math.isinf(contact.stiffness)
     yield Text("fixed grips" if fixed else f"cantilever: {engineering(contact.stiffness, 'N/m')}")

@@ -104,7 +104,7 @@ class Body(ABC):
         return name_of(self)
 
     @property
-    def told(self) -> list[str]:
+    def words(self) -> list[str]:
         """What it is, in words."""
         return [self.name]
 
@@ -227,9 +227,9 @@ class Held(Body):
         return "clamped" if self.grip == "bonded" else "sliding"
 
     @property
-    def told(self) -> list[str]:
+    def words(self) -> list[str]:
         """Its name and grip."""
-        return [*super().told, *(["bonded"] if self.grip == "bonded" else [])]
+        return [*super().words, *(["bonded"] if self.grip == "bonded" else [])]
 
     @property
     def size(self) -> float:

@@ -28,7 +28,7 @@ class HalfSpace(Body):
     held: ClassVar[FarFieldName] = "point_load"
 
     @property
-    def told(self) -> list[str]:
+    def words(self) -> list[str]:
         """Nothing: it is the usual body."""
         return []
 
@@ -92,9 +92,9 @@ class Block(Body):
         return self.far_field
 
     @property
-    def told(self) -> list[str]:
+    def words(self) -> list[str]:
         """Its size, and what holds it."""
-        return [*super().told, f"size {self.radius:g} beta", *([] if self.endless else [self.far_field])]
+        return [*super().words, f"size {self.radius:g} beta", *([] if self.endless else [self.far_field])]
 
     def check(self, tabor: float, end: float) -> None:
         """Refuse a block smaller than its contact, one that needs a mesh too fine, or one under a sphere."""

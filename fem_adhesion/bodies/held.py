@@ -85,9 +85,9 @@ class HeldSphere(Held):
         keep(self, cap_angle=require_cap_angle(self.cap_angle))
 
     @property
-    def told(self) -> list[str]:
+    def words(self) -> list[str]:
         """Its cap too."""
-        return [*super().told, f"cap of {self.cap_angle:g} degrees"]
+        return [*super().words, f"cap of {self.cap_angle:g} degrees"]
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (rings are the cap's)
         """Layers and rings beyond the core."""
@@ -126,9 +126,9 @@ class Meshed(Held):
         return Path(self.path)
 
     @property
-    def told(self) -> list[str]:
+    def words(self) -> list[str]:
         """The file, and its grip."""
-        return [str(self.path), *super().told[1:]]
+        return [str(self.path), *super().words[1:]]
 
     def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (it is as it is)
         """None: every cell stands still."""

@@ -159,9 +159,9 @@ class Layer(Stratified):
         return layers.Layer(self.thickness, self.material.poisson, self.foundation)
 
     @property
-    def told(self) -> list[str]:
+    def words(self) -> list[str]:
         """Its thickness and foundation."""
-        return [*super().told, f"thickness {self.thickness:g} beta", self.foundation]
+        return [*super().words, f"thickness {self.thickness:g} beta", self.foundation]
 
 
 @dataclass(frozen=True)
@@ -195,10 +195,10 @@ class Coated(Stratified):
         return layers.Coated(self.thickness, self.modulus_ratio, self.material.poisson, self.substrate_poisson)
 
     @property
-    def told(self) -> list[str]:
+    def words(self) -> list[str]:
         """Its coating and what is below."""
         below = f"on a half-space of poisson {self.substrate_poisson:g}"
-        return [*super().told, f"thickness {self.thickness:g} beta", f"{self.modulus_ratio:g} times as stiff", below]
+        return [*super().words, f"thickness {self.thickness:g} beta", f"{self.modulus_ratio:g} times as stiff", below]
 
 
 @dataclass(frozen=True)
@@ -234,15 +234,15 @@ class Layers(Stratified):
         return layers.Layers(self.strata, self.base)
 
     @property
-    def told(self) -> list[str]:
+    def words(self) -> list[str]:
         """Its strata and base."""
         parts = [
             f"{part.thickness:g} beta of modulus {part.modulus:g}, poisson {part.poisson:g}" for part in self.strata
         ]
         base = self.base
         if isinstance(base, layers.Substrate):
-            return [*super().told, *parts, f"half-space of modulus {base.modulus:g}, poisson {base.poisson:g}"]
-        return [*super().told, *parts, base]
+            return [*super().words, *parts, f"half-space of modulus {base.modulus:g}, poisson {base.poisson:g}"]
+        return [*super().words, *parts, base]
 
 
 def as_body(part: object) -> object:

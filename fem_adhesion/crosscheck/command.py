@@ -79,7 +79,7 @@ def _show(case: Case | Failure, console: Console) -> None:
         for table in crosscheck_tables(case):
             console.print(table)
     else:
-        name = ", ".join(case.scene.told)
+        name = ", ".join(case.scene.words)
         console.print(f"{name}: failed: {told(case)}", highlight=False, markup=False)
         for row in case.rows:
             console.print(f"  {row.quantity}: {row.verdict}", highlight=False, markup=False)

@@ -250,7 +250,7 @@ def scene_parts(scene: Scene) -> list[str]:
     """What is compared, in rich's markup."""
     from rich.markup import escape
 
-    return list(map(escape, scene.told))
+    return list(map(escape, scene.words))
 
 
 def crosscheck_table(rows: Sequence[Row], between: Pair = SOLVERS) -> Fitted:

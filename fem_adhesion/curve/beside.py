@@ -91,7 +91,7 @@ def _told(part: Estimate | None) -> str:
 
 
 def _name(law: Law, path: EquilibriumPath) -> str:
-    return f"{registry.told(law)} at tabor {path.tabor:.4g}"
+    return f"{registry.words_of(law)} at tabor {path.tabor:.4g}"
 
 
 def as_strong(scene: Scene, law: Law) -> Scene:
@@ -104,7 +104,7 @@ def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> 
     question, found = curves.question, [(curves.question.scene.law, curves.path)]
     require(question.scene, laws)
     for number, law in enumerate(laws):
-        progress(registry.told(law), number, len(laws))
+        progress(registry.words_of(law), number, len(laws))
         found.append((law, trace(replace(question, scene=as_strong(question.scene, law)), curves.solver)))
     return EquallyStrong(found)
 

@@ -97,7 +97,7 @@ def _cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> I
 def _title(curves: Curves) -> Iterator[str]:
     """What was solved, in rich's markup."""
     scene, units = curves.question.scene, curves.question.units
-    yield from map(escape, scene.told)
+    yield from map(escape, scene.words)
     if units:
         sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
         yield from (f"{name} = {engineering(value, unit)}" for name, value, unit in sizes)

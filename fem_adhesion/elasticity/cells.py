@@ -15,9 +15,9 @@ can meet. The pressure of the mixed form is lambda Pi div u, eliminated cell by 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial.legendre import legvander2d
@@ -31,9 +31,6 @@ from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
 
 BATCH = 400_000  # numbers held in one batch of cells: 3 MB, and a few times that on the way, for the cache to help
-
-CellStiffness = Callable[[Space, float], Array]
-"""Stiffness matrices of all cells of a space at a Poisson's ratio, as `cell_stiffness` returns them."""
 
 STRAINS = np.array([[0.0, 1, 0, 0, 0], [0, 0, 0, 0, 1], [1, 0, 0, 0, 0], [0, 0, 1, 1, 0]])
 """Strains (rr, zz, hoop, rz) from the components of grad u."""
@@ -191,27 +188,17 @@ def inverted(jacobian: Array) -> tuple[Array, Array]:
 REMEDY_FROM = 0.4
 
 
-def stiffness_for(poisson: float) -> CellStiffness:
-    """Stiffness of quadrilaterals that fits the material."""
-    return projected_stiffness if poisson >= REMEDY_FROM else cell_stiffness
-
-
 def projects(space: Space, poisson: float) -> bool:
-    """Whether `stiffness_for` a material is that of projected dilatations, where the cells are quadrilaterals."""
-    return space.element.refdom.nnodes == 4 and stiffness_for(poisson) is projected_stiffness
+    """Whether dilatations of a material are projected: on quadrilaterals, of one that is nearly incompressible."""
+    return space.element.refdom.nnodes == 4 and poisson >= REMEDY_FROM
 
 
-def stiffness_of(materials: Sequence[Elastic]) -> CellStiffness:
-    """Stiffness of quadrilaterals each of which is of the material of its region."""
-    return stiffness_for(materials[0].poisson) if len(materials) == 1 else partial(_by_region, tuple(materials))
-
-
-def _by_region(materials: Sequence[Elastic], space: Space, _: float) -> Array:
-    """Stiffness of every cell, from meshes of the regions apart."""
+def stiffness_of(space: Space, materials: Sequence[Elastic]) -> Array:
+    """Stiffness of every cell, (cells, 2 n, 2 n), of the material of its region."""
     K = np.empty((space.mesh.nelements, *2 * [len(space.cell_dofs)]))
     for cells, (poisson, modulus) in zip(space.regions(materials), materials, strict=True):
-        part = Space(space.mesh.restrict(cells), space.element)
-        K[cells] = modulus * stiffness_for(poisson)(part, poisson)
+        part = space if len(materials) == 1 else Space(space.mesh.restrict(cells), space.element)
+        K[cells] = modulus * (projected_stiffness if projects(space, poisson) else cell_stiffness)(part, poisson)
     return K
 
 

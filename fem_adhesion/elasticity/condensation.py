@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg.blas import dtrsm
 
-from fem_adhesion.elasticity.cells import CellStiffness, cell_stiffness
+from fem_adhesion.elasticity.cells import cell_stiffness
 from fem_adhesion.elasticity.elimination import (
     Factors,
     Region,
@@ -76,13 +76,11 @@ class CondensedBody(Valued):
     """A block factorised once: its surface compliance, and the fields inside for a given surface pressure.
 
     Pressures are (q,) arrays at ``operator.radii``, positive in compression; all is dimensionless, E* = 1. The operator
-    gives the deflection of the surface from the pressure on it; the stiffness makes `cells` (cells, 2 n, 2 n).
+    gives the deflection of the surface from the pressure on it; `cells` (cells, 2 n, 2 n) are the stiffness.
     """
 
     operator: ElasticOperator
     space: Space
-    poisson: float
-    stiffness: CellStiffness
     cells: Array
     exterior: Exterior
     surface: BoundaryPoints
@@ -132,7 +130,7 @@ def condense(
     *,
     far_field: FarField = point_load,
     points: int | None = None,
-    stiffness: CellStiffness = cell_stiffness,
+    stiffness: Array | None = None,
     traction: str = "projected",
 ) -> CondensedBody:
     """Factorise the block once and condense it to its contact surface.
@@ -140,23 +138,20 @@ def condense(
     The compliance is N K^-1 N' diag(w): N evaluates the surface deflection -u_z at the Gauss points of the contact
     facets and w are the weights of 2 pi r dr, so a surface law assembled by quadrature at them is condensed exactly.
 
-    The far field is `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.exterior`. Gauss's points are
-    more than the degree p of the element on a contact facet, p + 2 unless given. Of the stiffnesses of the cells
-    `fem_adhesion.elasticity.cells.projected_stiffness` does not lock. With the traction "projected" the
-    pressure, which is vertical, acts on the area projected on the plane of the contact, with "surface" on that of the
-    surface. InputError unless 0 <= poisson < 0.5 and the points are enough.
+    The far field is `point_load`, `clamped` or `free`, see `fem_adhesion.elasticity.exterior`. Gauss's points on a
+    contact facet are more than the degree p of the element, p + 2 unless given. The stiffness (cells, 2 n, 2 n) of the
+    cells is that of displacements alone unless given; that of projected dilatations does not lock. With the traction
+    "projected" the pressure, which is vertical, acts on the area projected on the plane of the contact, with "surface"
+    on that of the surface. InputError unless 0 <= poisson < 0.5 and the points are enough.
     """
     points = space.degree + 2 if points is None else points
     if points <= space.degree:
         raise InputError(f"points = {points} must exceed the degree p = {space.degree}; use {space.degree + 1} or more")
-    surface, exterior, cells = (
-        boundary_points(space, "contact", points),
-        far_field(space, poisson),
-        stiffness(space, poisson),
-    )
+    surface, exterior = boundary_points(space, "contact", points), far_field(space, poisson)
+    cells = cell_stiffness(space, poisson) if stiffness is None else stiffness
     yielding = flexibility(space, cells, exterior, space.components[1, surface.functions])
     operator = surface_operator(surface, exterior, yielding, traction)
-    return CondensedBody(operator, space, poisson, stiffness, cells, exterior, surface)
+    return CondensedBody(operator, space, cells, exterior, surface)
 
 
 def eliminate_interiors(space: Space, K: Array) -> Array:

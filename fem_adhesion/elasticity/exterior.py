@@ -39,7 +39,7 @@ FarField = Callable[[Space, float], Exterior]
 """A kind of far boundary, at a Poisson's ratio: `clamped`, `sliding`, `sheet`, `point_load` or `free`."""
 
 
-def made_of(far_field: FarField, material: Elastic) -> FarField:
+def of_material(far_field: FarField, material: Elastic) -> FarField:
     """The same where what goes on beyond is of another material than the body's surface."""
 
     def condition(space: Space, poisson: float) -> Exterior:  # noqa: ARG001 (it has its own)

@@ -120,8 +120,8 @@ class Tabulated(Law):
         return np.asarray(5 / 384 * width**4 * np.maximum(fourth[1:], fourth[:-1]))
 
     @property
-    def told(self) -> tuple[str, ...]:
-        """What it has found."""
+    def findings(self) -> tuple[str, ...]:
+        """What the table has, in words."""
         h, tension = self._table
         part = self.open_between_rows / np.maximum(tension.max(), np.maximum(np.abs(tension[1:]), np.abs(tension[:-1])))
         worst = int(np.argmax(part))

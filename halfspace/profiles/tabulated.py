@@ -128,8 +128,8 @@ class Tabulated:
         return float(np.sqrt(np.mean((self._spline(r**2) - z) ** 2)))
 
     @property
-    def told(self) -> tuple[str, ...]:
-        """What it has found."""
+    def findings(self) -> tuple[str, ...]:
+        """What the table has, in words."""
         apex = f"apex radius {self.radius:.6g} +- {self.radius_error:.1g} in the table's unit"
         return apex, f"residual {self.residual * self.radius_ratio / self.radius:.2g} eps"
 

@@ -241,7 +241,9 @@ def locking(poissons=(0.3, 0.45, 0.49, 0.499, 0.4999)):
         yield Locking(poisson, "P2", "Taylor-Hood P2-P1", _plain(space, poisson), _deflection_error(mixed))
         for degree in (3, 4, 6):
             space = Space(cells, ElementQuadP(degree))
-            remedied = _deflection_error(condense(space, poisson, stiffness=projected_stiffness).operator)
+            remedied = _deflection_error(
+                condense(space, poisson, stiffness=projected_stiffness(space, poisson)).operator
+            )
             yield Locking(poisson, f"Q{degree}", "projected dilatation", _plain(space, poisson), remedied)
 
 

@@ -7,11 +7,12 @@ from references import strain_energy
 from skfem import CellBasis, ElementQuadP
 from whole_sphere import sphere_operator, surface_deflection
 
-from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, stiffness_for
+from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, stiffness_of
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import clamped, sliding
 from fem_adhesion.elasticity.space import Space, ring_measure, scatter
 from fem_adhesion.harmonics import legendre
+from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh import curved, spheres
 from halfspace.elastic import grid
 from halfspace.elastic.grid import SurfaceCoordinate
@@ -28,8 +29,9 @@ def space(degree, *, finest=0.15, growth=2.0):
 
 
 def condensed(degree, poisson=0.3, grip="sliding", traction="projected", **mesh):
-    stiffness = stiffness_for(poisson)
-    return condense(space(degree, **mesh), poisson, far_field=GRIPS[grip], stiffness=stiffness, traction=traction)
+    body = space(degree, **mesh)
+    K = stiffness_of(body, [Elastic(poisson)])
+    return condense(body, poisson, far_field=GRIPS[grip], stiffness=K, traction=traction)
 
 
 def gaussian(radii):

@@ -12,10 +12,11 @@ from truths import on, standing
 import fem_adhesion
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
-from fem_adhesion.elasticity.cells import stiffness_for
+from fem_adhesion.elasticity.cells import stiffness_of
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import clamped
 from fem_adhesion.elasticity.space import Space
+from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh import spheres
 from halfspace.elastic import grid
 from halfspace.equilibrium.events import approach_scale
@@ -30,7 +31,7 @@ def pole_compliance(degree, poisson, rings, finest=0.3, growth=2.5):
     depths = grid.graded(0.0, np.diff(x).min(), spheres.DEPTH * R, growth=growth)
     mesh = spheres.hemisphere(R, x, depths, rings=0.2 ** np.arange(1.0, rings + 1))
     space = Space(mesh, ElementQuadP(degree))
-    operator = condense(space, poisson, far_field=clamped, stiffness=stiffness_for(poisson)).operator
+    operator = condense(space, poisson, far_field=clamped, stiffness=stiffness_of(space, [Elastic(poisson)])).operator
     return operator.interpolation(0.0)[0] @ (operator.compliance @ np.exp(-(operator.radii**2)))
 
 

@@ -63,11 +63,6 @@ def test_boundaries_are_named_and_complete(mesh):
     assert mesh.p[1].max() == 0.0
 
 
-def test_area_of_the_box():
-    space = Space(block_grid(0.3, 3.0, 50.0), ElementQuad1())
-    assert np.sum(CellBasis(space.mesh, space.element).dx) == pytest.approx(2500.0, rel=1e-12)
-
-
 def test_quarter_disc_is_the_polygon_inscribed_in_the_arc():
     mesh = quarter_disc(50.0, graded_size(0.3, 3.0, 0.1))
     far = mesh.facets[:, mesh.boundaries["far"]]
@@ -88,20 +83,6 @@ def test_quarter_disc_respects_the_size_function_with_no_sharp_angle(fine):
     _, middle, longest = np.sort(edges, axis=0)
     smallest_angle = np.arcsin(np.abs(a[0] * b[1] - a[1] * b[0]) / (middle * longest))
     assert np.degrees(smallest_angle.min()) > 18.0  # 19.6 at any fineness
-
-
-@pytest.mark.parametrize(("fine", "fine_radius", "length"), [(0.3, 3.0, 50.0), (0.3, 0.3, 1e6), (0.4, 1.0, 1.2)])
-def test_breaks_are_uniform_then_geometric_and_end_at_the_length(fine, fine_radius, length):
-    breaks = grid.graded(0.0, fine, length, growth=2.0, until=fine_radius)
-    steps = np.diff(breaks)
-    ratios = steps[1:] / steps[:-1]
-    assert breaks[0] == 0.0
-    assert breaks[-1] == length
-    assert np.any(np.isclose(breaks, fine_radius, rtol=1e-14))
-    assert steps[0] <= fine * (1.0 + 1e-9)
-    assert np.all(ratios <= 2.0 * (1.0 + 1e-9))
-    outside = ratios[breaks[1:-1] > fine_radius * (1.0 + 1e-12)]
-    np.testing.assert_allclose(outside, 2.0, rtol=1e-6)
 
 
 @pytest.mark.parametrize(

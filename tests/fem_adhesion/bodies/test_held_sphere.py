@@ -1,11 +1,9 @@
 """The sphere held over a cap: its mesh, the patch test, the hemisphere, punches as small caps, and its convergence."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy import sparse
-from skfem import Basis, ElementQuadP, ElementTriP2
+from skfem import Basis, ElementQuadP
 
 from fem_adhesion.elasticity.cells import Cells, cell_stiffness
 from fem_adhesion.elasticity.condensation import Dissection, condense
@@ -14,7 +12,6 @@ from fem_adhesion.elasticity.space import Space, ring_measure
 from fem_adhesion.elasticity.surface import boundary_points
 from fem_adhesion.mesh import spheres as module
 from fem_adhesion.mesh.curved import refined_towards
-from fem_adhesion.mesh.file import read_body
 from fem_adhesion.mesh.spheres import CORE, DEPTH, contact_ends, held_sphere, hemisphere, rings_at_equator
 from halfspace.elastic import grid
 from halfspace.elastic.grid import SurfaceCoordinate
@@ -62,7 +59,7 @@ def surface_area(space, name):
 
 @pytest.mark.parametrize("make", [sphere, coarse_sphere])
 @pytest.mark.parametrize("cap_angle", [*CAPS, 5.0, 89.99])
-def test_volume_and_areas_are_those_of_the_sphere(make, cap_angle):
+def test_volume_areas_and_cells_are_those_of_a_sphere(make, cap_angle):
     mesh = make(cap_angle)
     radius, space = -mesh.p[1].min() / 2, Space(mesh, ElementQuadP(6))
     volume = np.sum(Cells.of(space).measure)
@@ -70,22 +67,8 @@ def test_volume_and_areas_are_those_of_the_sphere(make, cap_angle):
     assert volume == pytest.approx(4 / 3 * np.pi * radius**3, rel=1e-10)
     assert surface_area(space, "contact") == pytest.approx(2 * np.pi * radius**2, rel=1e-10)
     assert surface_area(space, "far") == pytest.approx(cap, rel=1e-10, abs=1e-11 * 4 * np.pi * radius**2)
-
-
-@pytest.mark.parametrize("make", [sphere, coarse_sphere])
-@pytest.mark.parametrize("cap_angle", [*CAPS, 5.0, 89.99])
-def test_no_cell_is_turned_over(make, cap_angle):
-    points = np.array(np.meshgrid(*2 * [np.linspace(0, 1, 7)])).reshape(2, -1)
-    determinants = make(cap_angle).mapping().detDF(points)
-    assert np.all(determinants * np.sign(determinants.mean(axis=1))[:, None] > 0)
-
-
-@pytest.mark.parametrize("cap_angle", CAPS)
-def test_rim_of_the_cap_is_where_its_facets_end(cap_angle):
-    mesh = sphere(cap_angle)
-    ends = mesh.p[:, np.unique(mesh.facets[:, mesh.boundaries["far"]])]
-    angle = np.degrees(np.arctan2(ends[0], -R - ends[1]))
-    assert angle.max() == pytest.approx(cap_angle, rel=1e-12)
+    determinants = mesh.mapping().detDF(np.array(np.meshgrid(*2 * [np.linspace(0, 1, 7)])).reshape(2, -1))
+    assert np.all(determinants * np.sign(determinants.mean(axis=1))[:, None] > 0)  # no cell is turned over
 
 
 @pytest.mark.parametrize("cap_angle", CAPS)
@@ -192,7 +175,7 @@ def test_sphere_between_two_walls_is_a_sliding_hemisphere():
 
 @pytest.mark.parametrize("grip", [clamped, sliding])
 def test_error_falls_with_the_degree_in_spite_of_the_rim(grip):
-    bodies = [held(sphere(30.0), degree, grip) for degree in (3, 4, 5, 9)]
+    bodies = [held(sphere(30.0), degree, grip) for degree in (3, 4, 5, 8)]
     values = np.array([pole_compliance(body) for body in bodies])
     errors = np.abs(values[:-1] / values[-1] - 1)
     assert np.all(errors[1:] < errors[:-1] / 4)
@@ -226,12 +209,3 @@ def test_small_cap_gives_like_a_flat_punch(grip, stiffer):
     errors = np.abs([gain(1.0) - 1, gain(2.0) - 1])
     assert errors[0] < 3e-3
     assert errors[0] < errors[1] / 1.5
-
-
-def test_sphere_of_another_mesh_is_a_little_stiffer():
-    """Quadratic triangles by Gmsh, 0.05 R long at the rim, where they leave 3e-3; graded to 2e-4 R, they leave 3e-5."""
-    mesh = read_body(Path(__file__).parents[3] / "meshes" / "sphere.msh")
-    triangles = condense(Space(mesh, ElementTriP2()), NU, far_field=clamped)
-    quads = held(sphere(30.0, 1.0, finest=0.05, edge=0.2), 6)
-    values = [pole_compliance(body, lambda r: np.exp(-((r / 0.2) ** 2))) for body in (triangles, quads)]
-    assert 0 < 1 - values[0] / values[1] < 4e-3

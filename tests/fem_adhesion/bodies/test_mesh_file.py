@@ -9,11 +9,8 @@ import meshio
 import numpy as np
 import pytest
 from facets import boundary_basis
-from scipy.spatial import cKDTree
-from skfem import CellBasis, ElementTriP1, ElementTriP2, MeshQuad, MeshQuad2, MeshTri, MeshTri2
+from skfem import CellBasis, ElementTriP1, MeshQuad, MeshQuad2, MeshTri, MeshTri2
 
-from fem_adhesion.elasticity.condensation import condense
-from fem_adhesion.elasticity.exterior import clamped
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh.checks import facet_nodes
 from fem_adhesion.mesh.file import read_body, read_scaled
@@ -64,39 +61,12 @@ def test_the_examples_have_the_boundaries_of_their_solids(example):
     np.testing.assert_allclose(lengths, SOLIDS[name][1:], rtol=5e-7)
 
 
-def test_an_arc_is_as_long_as_its_parabolas():
-    """Each side is the parabola through three points of the circle: half-width s, height q, length in closed form."""
-    mesh = read_body(MESHES / "hemisphere.msh")
-    a, b, middle = mesh.p[:, facet_nodes(mesh, mesh.boundaries["contact"])].transpose(1, 0, 2)
-    s, q = np.linalg.norm(b - a, axis=0) / 2, np.linalg.norm(middle - (a + b) / 2, axis=0)
-    parabolas = np.sqrt(s**2 + 4 * q**2) + s**2 / (2 * q) * np.arcsinh(2 * q / s)
-    assert length(mesh, "contact") == pytest.approx(np.sum(parabolas), rel=1e-12)
-
-
 def test_the_pole_is_at_the_origin_and_the_axis_at_zero(example):
     _, mesh = example
     contact = facet_nodes(mesh, mesh.boundaries["contact"])
     assert np.all(mesh.p[0, facet_nodes(mesh, mesh.boundaries["axis"])] == 0.0)
     assert np.all(mesh.p[:, contact[0]].T[np.argmin(mesh.p[0, contact[0]])] == 0.0)
     assert mesh.p[1].max() == 0.0
-
-
-def test_the_examples_are_fine_where_the_contact_lies(example):
-    """Sides of 0.012 R up to r = 0.6; no file over 100 kB."""
-    name, mesh = example
-    a, b = mesh.p[:, mesh.facets[:, mesh.boundaries["contact"]]].transpose(1, 0, 2)
-    size = np.linalg.norm(b - a, axis=0)[np.maximum(a[0], b[0]) < 0.601]
-    assert len(size) > 50
-    assert size.max() < 0.0123
-    assert (MESHES / f"{name}.msh").stat().st_size < 100_000
-
-
-def test_the_sphere_is_free_between_contact_and_grip():
-    mesh = read_body(MESHES / "sphere.msh")
-    named = np.concatenate(list(mesh.boundaries.values()))
-    free = np.setdiff1d(mesh.boundary_facets(), named)
-    angles = np.arctan2(*mesh.p[:, mesh.facets[:, free]] + [[[0.0]], [[1.0]]])  # from the pole
-    np.testing.assert_allclose([angles.min(), angles.max()], [np.pi / 2, 5 * np.pi / 6], atol=1e-12)
 
 
 # --- a small body to write in all formats and to spoil ---
@@ -240,7 +210,7 @@ def test_a_pole_elsewhere_is_moved_to_the_origin(tmp_path):
 # --- the unit of length ---
 
 
-@pytest.mark.parametrize("unit", [0.96, 0.999, 1.0, 1.04])
+@pytest.mark.parametrize("unit", [0.96, 1.04])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_a_mesh_in_a_unit_off_by_some_per_cent_is_scaled_to_the_radius_of_its_pole(tmp_path, name, unit):
     raw = meshio.read(MESHES / f"{name}.msh")
@@ -258,12 +228,6 @@ def test_the_radius_of_a_coarse_sphere_is_found_to_five_digits(tmp_path):
     points[:, 1] += points[:, 0] ** 2 / 2 - (1 - np.sqrt(1 - points[:, 0] ** 2))
     _, radius = read_scaled(written(to_meshio(points, cells, groups), tmp_path / "body.vtu"))
     assert radius == pytest.approx(1.0, abs=3e-5)
-
-
-def test_a_mesh_in_units_of_its_radius_is_left_as_it_is(tmp_path):
-    mesh, radius = read_scaled(written(to_meshio(*paraboloid()), tmp_path / "body.vtu"))
-    assert radius == 1.0
-    assert mesh.p[1].min() == -0.8
 
 
 @pytest.mark.parametrize("unit", [0.94, 1.06])
@@ -500,7 +464,7 @@ def test_a_file_that_is_not_there_is_refused(tmp_path):
     assert "there is no such file" in refusal(tmp_path)
 
 
-@pytest.mark.parametrize("suffix", [".msh", ".vtu", ".xdmf", ".inp", ".nas", ".su2", ".body"])
+@pytest.mark.parametrize("suffix", [".msh", ".vtu", ".inp", ".body"])
 def test_a_file_of_no_format_is_refused_in_silence(tmp_path, capfd, suffix):
     path = tmp_path / f"bad{suffix}"
     path.write_text("A mesh\nof words, and of\n1 2 3\n")
@@ -511,51 +475,12 @@ def test_a_file_of_no_format_is_refused_in_silence(tmp_path, capfd, suffix):
 def test_a_file_cut_short_anywhere_is_refused(tmp_path):
     whole = (MESHES / "hemisphere.msh").read_bytes()
     path = tmp_path / "cut.msh"
-    for end in np.linspace(0, len(whole) - 20, 60).astype(int):
+    for end in np.linspace(0, len(whole) - 20, 15).astype(int):
         path.write_bytes(whole[:end])
         refusal(path)
 
 
 # --- a body from a file, solved ---
-
-
-def refined(mesh):
-    """Cut each curved triangle into four of the same shape: new nodes are images of points of the reference cell."""
-    straight = MeshTri(mesh.p[:, : mesh.nvertices], mesh.t, mesh.boundaries, sort_t=False)
-    fine = MeshTri2.from_mesh(straight.refined())
-    cells = fine.dofs.element_dofs
-    parents = np.tile(np.arange(mesh.nelements), 4)
-    X = straight.mapping().invF(fine.doflocs[:, cells].transpose(0, 2, 1), tind=parents)
-    points = fine.doflocs.copy()
-    points[:, cells.T] = mesh.mapping().F(X, tind=parents)
-    return MeshTri2(points, fine.t, straight.refined().boundaries)
-
-
-def hertz_deflection(mesh, pole, edge):
-    """Deflections of the pole and of the edge of the contact under Hertz's pressure, E* = R = 1."""
-    a = edge[0]
-    body = condense(Space(mesh, ElementTriP2()), 0.3, far_field=clamped)
-    pressure = 2 / np.pi * np.sqrt(np.maximum(a**2 - body.operator.radii**2, 0.0))
-    nodes = cKDTree(mesh.p[:, : mesh.nvertices].T).query([pole, edge])[1]  # vertices are numbered first
-    return -body.displacement(pressure)[body.space.components[1, nodes]]
-
-
-def test_refining_keeps_the_shape():
-    mesh = read_body(MESHES / "tip.msh")
-    assert volume(refined(mesh)) == pytest.approx(volume(mesh), rel=1e-12)
-    assert cKDTree(refined(mesh).p.T).query(mesh.p.T)[0].max() < 1e-14
-
-
-def test_the_deflection_under_hertz_pressure_is_that_of_a_finer_mesh(example):
-    """And its curvature there: between pole and edge of the contact Hertz has a^2/2R, a half-space without end."""
-    name, mesh = example
-    line = mesh.p[:, np.unique(mesh.facets[:, mesh.boundaries["contact"]])]
-    edge = line[:, np.argmin(np.abs(line[0] - 0.3))]
-    coarse, fine = (hertz_deflection(body, [0.0, 0.0], edge) for body in (mesh, refined(mesh)))
-    # the stress is singular at the edge of the cap: the body of the sphere moves by a fraction of a per cent
-    np.testing.assert_allclose(coarse, fine, rtol=5e-3 if name == "sphere" else 6e-4)
-    assert np.subtract(*coarse) == pytest.approx(np.subtract(*fine), rel=1e-3)
-    assert np.subtract(*fine) == pytest.approx(edge[0] ** 2 / 2, rel=5e-3)
 
 
 def test_scikit_fem_gives_no_advice_to_the_user(tmp_path):

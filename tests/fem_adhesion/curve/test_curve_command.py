@@ -467,7 +467,7 @@ def test_laws_and_profiles_are_heeded(arguments, part, monkeypatch):
 def test_a_material_has_its_law(monkeypatch):
     asked = _asked(monkeypatch, *MATERIAL, *MORSE)
     assert asked.scene.law == Morse(3)
-    assert asked.scene.told[-1].startswith("law morse k 3, as strong as the 3-9 law at tabor ")
+    assert asked.scene.words[-1].startswith("law morse k 3, as strong as the 3-9 law at tabor ")
 
 
 @pytest.mark.parametrize("law", [(), MORSE])

@@ -95,14 +95,6 @@ def test_the_error_of_interpolation_falls_geometrically_with_the_number_of_radii
     assert errors[2] < 1e-4 * np.max(fresh.compliance @ P)
 
 
-def test_the_interpolation_is_exact_at_the_radii_themselves(body):
-    moving, make = body
-    operator = interpolated(body, 3)
-    scale = float(operator.scales[1])
-    at, fresh = operator.at(scale), make(moving.lines(scale))
-    np.testing.assert_allclose(at.compliance / at.weights, fresh.compliance / fresh.weights, rtol=1e-7)
-
-
 def test_rates_against_finite_differences(body):
     operator, h = interpolated(body, 4), 1e-5
     P = pressure(operator.at(EDGE).radii)
@@ -157,14 +149,6 @@ def test_the_jacobian_against_finite_differences_on_a_grid_that_follows_a_sphere
     np.testing.assert_allclose(J, differences, atol=1e-6 * (1 + np.max(np.abs(J[:, -1]))), rtol=1e-6)
 
 
-def test_the_load_gradient_against_finite_differences_on_a_grid_that_follows_a_sphere(body):
-    problem = ContactProblem(interpolated(body, 3), 0.5, profile=SphereSurface(R))
-    x, h = problem.undeformed(-0.2, EDGE), 1e-6
-    steps = h * np.eye(x.size)
-    differences = [(problem.load(x + dx) - problem.load(x - dx)) / (2 * h) for dx in steps]
-    np.testing.assert_allclose(problem.gradient(x, np.array([0.0, 1.0, 0.0, 0.0])), differences, atol=1e-7, rtol=1e-6)
-
-
 def test_a_half_space_has_the_same_events_whether_homogeneous_or_interpolated():
     """On a grid with no length of its own, interpolation between any two radii is exact."""
     charts = half_space_charts(Scales(1.0), resolution_for(Scales(1.0), 1e-4))
@@ -180,10 +164,3 @@ def test_a_half_space_has_the_same_events_whether_homogeneous_or_interpolated():
     for name in ("pull_off", "jump_on", "jump_off", "zero_load"):
         a, b = (found[name].point.observables[:3] for found in (first, second))
         np.testing.assert_allclose(a, b, atol=1e-8)
-
-
-def test_chebyshev_radii_lie_between_their_limits():
-    radii = chebyshev_radii(0.1, 3.0, 7)
-    assert np.all(np.diff(radii) < 0)
-    assert np.all((radii > 0.1) & (radii < 3.0))
-    np.testing.assert_allclose(radii * radii[::-1], 0.3)

@@ -4,30 +4,22 @@ import csv
 import pickle
 from dataclasses import replace
 from functools import cache
-from itertools import product
 from pathlib import Path
-from types import SimpleNamespace
 
-import mpmath
 import numpy as np
 import pytest
 from scipy.integrate import quad_vec
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import j0
 
-import fem_adhesion
-from fem_adhesion.scene import Scene
 from halfspace import trace
 from halfspace.accuracy.grids import resolution_for
 from halfspace.accuracy.layered import layered_charts
 from halfspace.elastic import compliance, grid, layered
-from halfspace.elastic.compliance import barycentric, lagrange
 from halfspace.elastic.layered import image_compliance, images_of, layered_panels, nearly_homogeneous
 from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, stiff_as, surface_compliance
-from halfspace.elastic.operators import nodes_beside
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import transfer
-from halfspace.equilibrium.contact import APPROACH, ContactProblem
+from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Morse
 from halfspace.profiles import Hyperboloid, Sphere
@@ -56,11 +48,6 @@ def test_a_sliding_layer_yields_by_its_closed_form_whatever_its_poisson_ratio():
     closed = (np.cosh(2 * x) - 1) / (np.sinh(2 * x) + 2 * x)
     for poisson in POISSON:
         assert surface_compliance(Layer(2, poisson, "sliding"), x / 2) == pytest.approx(closed, rel=0, abs=1e-12)
-
-
-def test_a_layer_cut_into_strata_is_the_layer():
-    whole, cut = Layer(1.5, 0.3), Layers([Stratum(0.1, 0.3), Stratum(0.9, 0.3), Stratum(0.5, 0.3)])
-    assert surface_compliance(cut, WAVES) == pytest.approx(surface_compliance(whole, WAVES), rel=0, abs=1e-12)
 
 
 def test_a_coating_like_its_half_space_is_the_half_space():
@@ -105,13 +92,6 @@ def test_images_have_the_kernel_of_hankels_integral(body):
     assert images_of(body).kernel(r, s) == pytest.approx(np.array(wanted), rel=0, abs=1e-6 * abs(scale))
 
 
-def test_other_images_give_the_same_kernel():
-    r = np.geomspace(0.05, 20, 12)
-    one, other = (images_of(STACK, spacing).kernel(r[:, None], r) for spacing in (1.14, 1.11))
-    assert other == pytest.approx(one, abs=1e-6 * np.abs(one).max())
-    assert not np.array_equal(one, other)
-
-
 @pytest.mark.parametrize("thickness", [0.05, 0.5, 20.0])
 def test_a_bell_of_pressure_deflects_a_layer_as_hankels_integral_says(thickness):
     """P = e^(-r^2) has the transform e^(-k^2/4)/2; cells are longer and shorter than the layer is thick."""
@@ -124,29 +104,6 @@ def test_a_bell_of_pressure_deflects_a_layer_as_hankels_integral_says(thickness)
     inside = operator.radii < 30
     wanted = j0(np.outer(operator.radii[inside], k)) @ waves
     assert found[inside] == pytest.approx(wanted, abs=3e-8)
-
-
-@pytest.mark.parametrize("body", [Layer(0.1, 0.3), Coated(0.02, 30.0)])
-def test_few_nodes_a_cell_deflect_a_thin_film_as_many_do(body, monkeypatch):
-    lines = np.append(0.0, 0.3 * 2.0 ** np.arange(6))
-
-    def deflection():
-        operator = layered_panels(images_of(body), lines, 8)
-        return operator.compliance @ np.exp(-((operator.radii / 0.6) ** 2))
-
-    few = deflection()
-    monkeypatch.setattr(layered, "HOW", replace(layered.HOW, near=4.0, adjacent=(96, 5)))
-    many = deflection()
-    assert few == pytest.approx(many, rel=0, abs=2e-8 * np.abs(many).max())
-    assert not np.array_equal(few, many)
-
-
-def test_the_mean_by_arithmetic_and_geometry_is_as_exact_as_its_numbers():
-    a = np.array([1.0, 3.0 + 1e4j, 2.0 + 1j, 1e-3])
-    b = np.array([1e-5, 2.0, 2.0 + 1.0001j, 1e5 + 1e5j])
-    wanted = [complex(mpmath.agm(mpmath.mpc(x), mpmath.mpc(y))) for x, y in zip(a, b, strict=True)]
-    assert layered._mean(a, b) == pytest.approx(np.array(wanted), rel=1e-14, abs=0)
-    assert layered._mean(a[2:3], b[2:3]) == pytest.approx(np.array(wanted[2:3]), rel=1e-14, abs=0)
 
 
 @cache
@@ -270,13 +227,6 @@ def test_a_gap_on_which_three_grids_agree_by_accident_is_known_as_well_as_those_
         assert rough.error < 100 * abs(rough.value - best.value)
 
 
-def test_an_energy_on_which_three_grids_agree_by_accident_is_known_by_the_load_where_it_ends(under_a_sphere):
-    """It was twice outside."""
-    rough, best = (under_a_sphere[rtol].energy for rtol in (1e-4, 1e-6))
-    assert _off(rough, best) < 1
-    assert rough.error < 100 * abs(rough.value - best.value)
-
-
 def test_a_curve_on_a_layer_can_be_pickled():
     path = trace(1.0, body=Layer(2.0), rtol=1e-2)
     assert pickle.loads(pickle.dumps(path)) == path
@@ -336,15 +286,6 @@ SOFT, THEORY = Layer(2, 0.3), OnLayers(Layer(2, 0.3))
 PRESSED = 100.0  # R dgamma
 
 
-def _pressed(path):
-    """Approach under the load at which a curve ends, on the finest grid about that state alone."""
-    last = path.segments[-1]
-    end = SimpleNamespace(problem=last.problem, point=last.points[-1])
-    problem = path.finest(end).problem
-    start = transfer(end.problem, end.point.x, problem)
-    return newton.solve(problem, start, newton.load(PRESSED)).observables[APPROACH]
-
-
 def _in_the_limit(quantity):
     """JKR's pull-off on the layer, or its approach under a load, and the part by which a wider dgamma changes it.
 
@@ -371,24 +312,13 @@ def _in_the_limit(quantity):
     return jkr.approach, (approach - yields * load) / jkr.approach
 
 
-@pytest.mark.parametrize(
-    ("solver", "tabors", "limit", "order"),
-    [("waves", (20.0, 40.0, 80.0), 1e-6, 0.01), ("elements", (5.0, 10.0, 20.0), 5e-5, 0.06)],
-)
-def test_pull_off_and_approach_go_over_into_jkrs_on_the_layer_as_ln_mu_over_mu_squared(solver, tabors, limit, order):
+def test_a_layer_goes_over_into_jkrs_as_ln_mu_over_mu_squared():
     """With the factor that theory has, and after terms in mu^-2 and mu^-3 into JKR's, in compression nearly Hertz's."""
-    sample = fem_adhesion.Layer(2, poisson=0.3)
-    traced = {
-        "waves": lambda mu: trace(mu, body=SOFT, rtol=1e-5, to_load=PRESSED),
-        "elements": lambda mu: fem_adhesion.trace(Scene(mu, sample), rtol=1e-4, to_load=PRESSED),
-    }
-    # Waves must be known to 1e-9, from grids that are alike in units of the contact; of elements one about it will do.
-    approach_of = {"waves": lambda path: path.at(load=[PRESSED]).approach[0], "elements": _pressed}
-    paths = [traced[solver](mu) for mu in tabors]
-    mu = np.array(tabors)
+    mu, limit, order = np.array([20.0, 40.0, 80.0]), 1e-6, 0.01
+    paths = [trace(tabor, body=SOFT, rtol=1e-5, to_load=PRESSED) for tabor in mu]
     found = {
         "pull_off": np.array([path.events["pull_off"].load for path in paths]),
-        "pressed": np.array([approach_of[solver](path) for path in paths]) / mu,
+        "pressed": np.array([path.at(load=[PRESSED]).approach[0] for path in paths]) / mu,
     }
     for quantity, values in found.items():
         jkr, factor = _in_the_limit(quantity)
@@ -397,14 +327,6 @@ def test_pull_off_and_approach_go_over_into_jkrs_on_the_layer_as_ln_mu_over_mu_s
         assert measured == pytest.approx(factor, rel=order), quantity
         beyond = np.linalg.solve(np.stack([mu**0, mu**-2, mu**-3], axis=1), off - factor * np.log(mu) / mu**2)[0]
         assert abs(beyond) < limit, quantity
-
-
-def test_pull_off_from_a_layer_approaches_jkrs_as_the_tabor_parameter_grows():
-    """By Aitken's rule from three Tabor parameters, each twice the one before."""
-    loads = [-trace(mu, body=Layer(2, 0.3), rtol=1e-4).events["pull_off"].load / np.pi for mu in (10, 20, 40)]
-    first, second = np.diff(loads)
-    assert abs(second) < abs(first) / 2
-    assert loads[-1] + second**2 / (first - second) == pytest.approx(1.642973, rel=1e-4)
 
 
 @pytest.fixture(scope="module")
@@ -456,50 +378,6 @@ def test_a_contact_that_is_wider_than_the_attraction_rests_on_images_integrated_
         assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=1e-5 * np.abs(wanted).max())
 
 
-def test_images_are_integrated_for_contact_radii_that_are_asked_for_and_alike_where_two_polynomials_meet(monkeypatch):
-    found, integrate = [], layered._in_units
-    monkeypatch.setattr(layered, "_in_units", lambda *asked: found.append(asked[1]) or integrate(*asked))
-    path = trace(30.0, body=Layer(1.0, 0.3), rtol=1e-3)
-    operator = path.stages[-1]["pull_off"].problem.operator
-    assert sum(unit is operator.unit for unit in found) == 1 < len(operator.parts)
-    assert np.isfinite(path.load).all()
-    assert sum(unit is operator.unit for unit in found) == len(operator.parts)
-    pressure = np.exp(-(operator.unit.radii**2)) * operator.unit.weights
-    for end, below, above in zip(operator.ends[1:-1], operator.parts[:-1], operator.parts[1:], strict=True):
-        for derivative, close in ((0, 1e-8), (1, 2e-6)):
-            found, wanted = (part.at(end, derivative) @ pressure for part in (below, above))
-            assert found == pytest.approx(wanted, rel=0, abs=close * np.abs(operator.unit.compliance @ pressure).max())
-
-
-def test_images_deflect_alike_in_however_many_parts_they_are_integrated(monkeypatch):
-    """Also where cells that are longer than the first stratum is thick have a rule of their own."""
-    images = images_of(SOFT_BETWEEN)
-    unit = compliance.panels(grid.graded(1.0, 0.1, 20.0, growth=3.0), 6)
-    at_once = image_compliance(images, unit)
-    monkeypatch.setattr(layered, "HOW", replace(layered.HOW, at_once=100 * images.depths.size))
-    assert image_compliance(images, unit) == pytest.approx(at_once, rel=0, abs=1e-15 * np.abs(images.strengths).sum())
-
-
-def test_polynomials_between_lengths_leave_as_little_of_a_kernel_as_they_are_chosen_for():
-    """Of 1/d, d^2 = 1 + (z/a)^2, whose poles are as near as any, in the middle; never much less than was asked."""
-    for step, left in product((0.07, 0.13), (1e-6, 1e-9, 1e-12)):
-        past = nodes_beside(step, left)
-        x = step * (np.arange(2 * past) - past + 0.5)
-        depths = np.exp(np.linspace(-2, 2, 41))
-        values = 1 / np.hypot(1, depths * np.exp(-x[:, None]))
-        error = np.abs(lagrange(x, barycentric(x), 0.0)[0] @ values - 1 / np.hypot(1, depths)).max()
-        assert left / 300 < error < left
-
-
-def test_a_layer_widened_twice_keeps_its_images(charted):
-    standing, _ = charted
-    twice, once = (operator.widened(6, 20.0) for operator in (standing.widened(6, 8.0), standing))
-    assert np.count_nonzero(standing.radii > standing.extent) > 0
-    np.testing.assert_array_equal(twice.radii, once.radii)
-    pressure = (1 + once.radii**2) ** -2.0
-    assert twice.compliance @ pressure == pytest.approx(once.compliance @ pressure, rel=1e-9, abs=1e-12)
-
-
 def test_a_law_with_two_edges_is_traced_on_a_layer():
     """As thick as a half-space: 3.5 beta^2/R under a paraboloid."""
     law = Dlvo(0.4, 1.0)
@@ -539,7 +417,7 @@ def test_a_layer_with_other_cells_far_out_is_the_same_layer(charted):
     assert np.abs(found - half_space)[~(wide.radii < operator.extent)].max() > 1e-3
 
 
-@pytest.mark.parametrize(("rtol", "off"), [(1e-3, 8e-6), (1e-5, 2e-7)])
+@pytest.mark.parametrize(("rtol", "off"), [(1e-5, 2e-7)])
 def test_a_central_gap_on_a_thin_layer_is_read_off_an_even_polynomial(rtol, off):
     """By one in the radius it was 1.2e-5 and 5.4e-7 off, the latter told as 4.7e-7: its coefficients fall unevenly."""
     gap, exact = (

@@ -40,14 +40,6 @@ def test_closed_criteria_have_the_factors_of_their_authors(k, printed):
     assert (criteria.closed_gap(4.0, k) + 1) ** 3.5 == pytest.approx(8 * printed, rel=1e-12)
 
 
-@pytest.mark.parametrize("k", [criteria.ATTARD_PARKER, criteria.PETHICA_SUTTON, criteria.APPENDIX_C])
-def test_closed_criteria_expect_the_jump_too_soon(k):
-    """All predict too wide a gap: (H0 + 1)^(7/2) is about twice that of the true jump."""
-    ratio = ((criteria.closed_gap(TABOR, k) + 1) / (GAP + 1)) ** 3.5
-    assert np.all((ratio > 1.7) & (ratio < 3))
-    np.testing.assert_allclose((criteria.closed_gap(TABOR, k) + 1) ** 3.5, k * np.pi * np.sqrt(2) * TABOR**1.5)
-
-
 def test_closed_criteria_follow_from_the_undeformed_gap():
     """With the bulge b of the module's docstring, App. C is the fold of H0 + b and Attard & Parker's b 3/h = 1."""
     mu = 2.0
@@ -80,8 +72,3 @@ def test_fundamental_criterion_calls_stable_states_unstable():
     """At the true jump it reads well below the -1 at which it lets a state be unstable."""
     at_jump = criteria.fundamental_criterion(APPROACH, GAP)
     assert np.all((at_jump > -1.75) & (at_jump < -1.55))
-
-
-def test_fundamental_criterion_of_a_known_bulge():
-    """Far apart sigma'/sigma = -3/h."""
-    assert criteria.fundamental_criterion(-100.5, 99.0) == pytest.approx(-1.5 * 3 / 100, rel=1e-6)
