@@ -7,6 +7,8 @@ from dataclasses import InitVar, dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Literal, NamedTuple, get_args
 
+import numpy as np
+
 from fem_adhesion.materials import Elastic, LinearElastic, Material
 from fem_adhesion.registry import name_of
 from halfspace.elastic.grid import SurfaceCoordinate
@@ -230,6 +232,16 @@ class Held(Body):
     def words(self) -> list[str]:
         """Its name and grip."""
         return [*super().words, *(["bonded"] if self.grip == "bonded" else [])]
+
+    def rings(self, R: float, how: Discretisation) -> Array:  # noqa: ARG002 (most have none)
+        """Sizes of the rings around the equator, in parts of the last cell."""
+        return np.empty(0)
+
+    def layout(self, R: float, how: Discretisation) -> Layout:
+        """Layers and rings beyond the core of a sphere's mesh."""
+        from fem_adhesion.mesh.spheres import contact_ends
+
+        return contact_ends(R, self.rings(R, how)), SurfaceCoordinate(R, self.material.area)
 
     @property
     def size(self) -> float:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fem_adhesion.bodies.body import Discretisation, Held, Layout, SolverName
-from halfspace.elastic.grid import FLAT, SurfaceCoordinate
+from halfspace.elastic.grid import FLAT
 from halfspace.limits import require_cap_angle
 from halfspace.values import Array, keep
 
@@ -37,7 +37,7 @@ class Hemisphere(Held):
         """Where the bonded mid-plane meets the free surface."""
         return self.grip == "bonded"
 
-    def rings(self, how: Discretisation) -> Array:
+    def rings(self, R: float, how: Discretisation) -> Array:  # noqa: ARG002 (in parts of the cells)
         """Sizes of the rings around the equator, where stress is singular if the mid-plane is bonded.
 
         There u ~ d^s, with d the distance and sin^2(s pi/2) = [4 (1 - nu)^2 - s^2]/(3 - 4 nu) (Williams 1952): s falls
@@ -45,23 +45,17 @@ class Hemisphere(Held):
         """
         return np.asarray(0.2 ** np.arange(1.0, (how.rings if self.singular else 0) + 1))
 
-    def layout(self, R: float, how: Discretisation) -> Layout:
-        """Layers and rings beyond the core."""
-        from fem_adhesion.mesh.spheres import contact_ends
-
-        return contact_ends(R, self.rings(how)), SurfaceCoordinate(R, self.material.area)
-
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Graded from the contact."""
         from fem_adhesion.mesh.spheres import graded_depths, hemisphere
 
-        return hemisphere(R, lines, graded_depths(R, length, how.growth), rings=self.rings(how))
+        return hemisphere(R, lines, graded_depths(R, length, how.growth), rings=self.rings(R, how))
 
     def facing(self, R: float, lines: Array, length: float, smaller: float, how: Discretisation) -> Any:
         """Its cells end where those of the smaller one do, and beyond at its own core's end."""
         from fem_adhesion.mesh.spheres import graded_depths, hemisphere_over
 
-        return hemisphere_over(lines, graded_depths(R, length, how.growth), smaller, R, self.rings(how))
+        return hemisphere_over(lines, graded_depths(R, length, how.growth), smaller, R, self.rings(R, how))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,11 +83,11 @@ class HeldSphere(Held):
         """Its cap too."""
         return [*super().words, f"cap of {self.cap_angle:g} degrees"]
 
-    def layout(self, R: float, how: Discretisation) -> Layout:  # noqa: ARG002 (rings are the cap's)
-        """Layers and rings beyond the core."""
-        from fem_adhesion.mesh.spheres import contact_ends, rings_at_equator
+    def rings(self, R: float, how: Discretisation) -> Array:  # noqa: ARG002 (they are the cap's)
+        """Sizes of the rings around the equator, where the cap begins there or near it."""
+        from fem_adhesion.mesh.spheres import rings_at_equator
 
-        return contact_ends(R, rings_at_equator(R, self.cap_angle)), SurfaceCoordinate(R, self.material.area)
+        return rings_at_equator(R, self.cap_angle)
 
     def mesh(self, R: float, lines: Array, length: float, how: Discretisation) -> Any:
         """Graded from the contact, and towards the rim of the cap."""

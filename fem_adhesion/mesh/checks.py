@@ -1,11 +1,11 @@
-"""What the mesh of a body from a file must fulfil: each check returns what is wrong and what to do, or None.
+"""What the mesh of a body from a file must fulfil: complaints say what is wrong and what to do, or are None.
 
-The checks build on each other: one may assume that those before it have passed.
+They build on each other: what yields one may assume that there was none before. The first ends the search.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from itertools import combinations
 from typing import Any
 
@@ -32,8 +32,8 @@ def require_body(mesh: Any) -> None:
     It is the meridian section, coordinates r and z, about in units of the radius of curvature at the pole. The error
     says in one line what is wrong, with value and limit, and the remedy.
     """
-    for check in CHECKS:
-        complaint = check(mesh)
+    for check in (_of_cells, _of_boundaries, _of_contact, _of_pole):
+        complaint = next(filter(None, check(mesh)), None)
         if complaint:
             raise InputError(complaint)
 
@@ -50,84 +50,56 @@ def pole(mesh: Any) -> int:
     return int(vertices[np.argmin(mesh.p[0, vertices])])
 
 
-def _left_of_the_axis(mesh: Any) -> str | None:
-    least = float(mesh.p[0].min())
-    if least >= -_length(mesh):
-        return None
-    return f"r = {least:.4g} is outside r >= 0; keep only the half x >= 0 of the section, with x = r and y = z"
-
-
-def _coincident_nodes(mesh: Any) -> str | None:
+def _of_cells(mesh: Any) -> Iterator[str | None]:
+    """Complaints about nodes and cells."""
     from scipy.spatial import cKDTree  # it takes long to load, and few need it
 
+    least = float(mesh.p[0].min())
+    if least < -_length(mesh):
+        yield f"r = {least:.4g} is outside r >= 0; keep only the half x >= 0 of the section, with x = r and y = z"
     pairs = cKDTree(mesh.p.T).query_pairs(_length(mesh), output_type="ndarray")
-    return _complaint("nodes coincide with another", mesh.p[:, pairs[:, 0]], "merge duplicates (Gmsh: Coherence Mesh)")
-
-
-def _degenerate_cells(mesh: Any) -> str | None:
+    yield _complaint("nodes coincide with another", mesh.p[:, pairs[:, 0]], "merge duplicates (Gmsh: Coherence Mesh)")
     corners = mesh.p[:, mesh.t]
     longest = np.sum((corners - np.roll(corners, 1, axis=1)) ** 2, axis=0).max(axis=0)
     J = mesh.mapping().detDF(mesh.elem.doflocs.T)
-    least = (J * np.sign(J.sum(axis=1, keepdims=True))).min(axis=1)
-    bad = ~(least > FLATNESS * longest)
-    places = corners[:, :, bad].mean(axis=1)
-    return _complaint("cells are flat or turned inside out", places, "mesh finer or less curved there")
-
-
-def _overlapping_cells(mesh: Any) -> str | None:
+    least_J = (J * np.sign(J.sum(axis=1, keepdims=True))).min(axis=1)
+    flat = corners[:, :, ~(least_J > FLATNESS * longest)].mean(axis=1)
+    yield _complaint("cells are flat or turned inside out", flat, "mesh finer or less curved there")
     crowded = np.flatnonzero(np.bincount(mesh.t2f.ravel()) > 2)
-    if len(crowded):
-        return _complaint("lines belong to more than two cells", _middles(mesh, crowded), "remove double cells")
+    yield _complaint("lines belong to more than two cells", _middles(mesh, crowded), "remove double cells")
     inner = np.flatnonzero(mesh.f2t[1] >= 0)
     folded = inner[_side(mesh, inner, 0) * _side(mesh, inner, 1) > 0]
-    return _complaint("lines have both their cells on one side", _middles(mesh, folded), "mesh the section only once")
+    yield _complaint("lines have both their cells on one side", _middles(mesh, folded), "mesh the section only once")
+    shared = csr_array((np.ones(inner.size), mesh.f2t[:, inner]), shape=2 * (mesh.nelements,))
+    pieces = connected_components(shared, directed=False)[0]
+    yield f"the body falls into {pieces} pieces, limit 1; join them or keep one" if pieces > 1 else None
 
 
-def _loose_pieces(mesh: Any) -> str | None:
-    inner = mesh.f2t[:, mesh.f2t[1] >= 0]
-    n = mesh.nelements
-    pieces = connected_components(csr_array((np.ones(inner.shape[1]), inner), shape=(n, n)), directed=False)[0]
-    return f"the body falls into {pieces} pieces, limit 1; join them or keep one" if pieces > 1 else None
-
-
-def _lines_inside(mesh: Any) -> str | None:
-    named = np.concatenate([mesh.boundaries[inside] for inside in GROUPS.values()])
-    inner = np.setdiff1d(named, mesh.boundary_facets())
-    return _complaint("lines of the groups run inside the body", _middles(mesh, inner), "take them out")
-
-
-def _lines_in_two_groups(mesh: Any) -> str | None:
+def _of_boundaries(mesh: Any) -> Iterator[str | None]:
+    """Complaints about the groups of lines, but for what each line of the contact must be."""
+    boundary, named = mesh.boundary_facets(), {name: mesh.boundaries[inside] for name, inside in GROUPS.items()}
+    inner = np.setdiff1d(np.concatenate(list(named.values())), boundary)
+    yield _complaint("lines of the groups run inside the body", _middles(mesh, inner), "take them out")
     for a, b in combinations(GROUPS, 2):
-        both = np.intersect1d(mesh.boundaries[GROUPS[a]], mesh.boundaries[GROUPS[b]])
-        if len(both):
-            return _complaint(f'lines are both in "{a}" and in "{b}"', _middles(mesh, both), "leave each in one group")
-    return None
-
-
-def _axis_elsewhere(mesh: Any) -> str | None:
-    named = mesh.boundaries["axis"]
-    r = mesh.p[0, facet_nodes(mesh, named)].max()
+        both = _middles(mesh, np.intersect1d(named[a], named[b]))
+        yield _complaint(f'lines are both in "{a}" and in "{b}"', both, "leave each in one group")
+    r = mesh.p[0, facet_nodes(mesh, named["axis"])].max()
     if r > _length(mesh):
-        return f'group "axis" reaches r = {r:.4g}, limit r = 0; let it hold the boundary at x = 0 and nothing else'
-    boundary = mesh.boundary_facets()
+        yield f'group "axis" reaches r = {r:.4g}, limit r = 0; let it hold the boundary at x = 0 and nothing else'
     on_axis = boundary[np.all(mesh.p[0, mesh.facets[:, boundary]] <= _length(mesh), axis=0)]
-    left_out = _middles(mesh, np.setdiff1d(on_axis, named))
-    return _complaint('boundary lines at r = 0 are not in group "axis"', left_out, "add them")
+    left_out = _middles(mesh, np.setdiff1d(on_axis, named["axis"]))
+    yield _complaint('boundary lines at r = 0 are not in group "axis"', left_out, "add them")
 
 
-def _contact_in_parts(mesh: Any) -> str | None:
+def _of_contact(mesh: Any) -> Iterator[str | None]:
+    """Complaints about the contact: one line outwards from the pole, on top of the body."""
     degree = np.bincount(mesh.facets[:, mesh.boundaries["contact"]].ravel())
     ends = np.flatnonzero(degree % 2)
     if len(ends) != 2 or degree.max() > 2:
-        return f'group "contact" has {len(ends)} ends, limit 2; make it one line from the pole outwards'
-    if np.isin(ends, mesh.facets[:, mesh.boundaries["axis"]]).any():
-        return None
-    return (
-        f'group "contact" starts at r = {mesh.p[0, ends].min():.4g}, limit r = 0; let it start at the pole, on the axis'
-    )
-
-
-def _contact_turns_back(mesh: Any) -> str | None:
+        yield f'group "contact" has {len(ends)} ends, limit 2; make it one line from the pole outwards'
+    if not np.isin(ends, mesh.facets[:, mesh.boundaries["axis"]]).any():
+        r = mesh.p[0, ends].min()
+        yield f'group "contact" starts at r = {r:.4g}, limit r = 0; let it start at the pole, on the axis'
     facets, inner, outer = _contact_outwards(mesh)
     r_0, r_1 = mesh.p[0, inner], mesh.p[0, outer]
     rise = r_1 - r_0 - _length(mesh)
@@ -135,21 +107,31 @@ def _contact_turns_back(mesh: Any) -> str | None:
         r_m = mesh.p[0, middle]
         rise = np.minimum(rise, np.minimum(4 * r_m - 3 * r_0 - r_1, r_0 + 3 * r_1 - 4 * r_m) + _length(mesh))
     rise[1:] = np.where(outer[:-1] == inner[1:], rise[1:], -1.0)
-    places = _middles(mesh, facets[rise < 0.0])
     remedy = "z must be a function of r: end the group before them"
-    return _complaint("lines of the contact turn back or run upright", places, remedy)
-
-
-def _upside_down(mesh: Any) -> str | None:
-    facets, inner, _ = _contact_outwards(mesh)
+    yield _complaint("lines of the contact turn back or run upright", _middles(mesh, facets[rise < 0.0]), remedy)
     outwards = np.where(mesh.facets[0, facets] == inner, 1.0, -1.0)
-    wrong = facets[outwards * _side(mesh, facets, 0) > 0]
-    return _complaint("lines of the contact lie below the body", _middles(mesh, wrong), "turn the body over: z -> -z")
+    wrong = _middles(mesh, facets[outwards * _side(mesh, facets, 0) > 0])
+    yield _complaint("lines of the contact lie below the body", wrong, "turn the body over: z -> -z")
+    higher = mesh.p[:, mesh.p[1] > mesh.p[1, pole(mesh)] + _length(mesh)]
+    yield _complaint("nodes stand above the pole", higher, "the pole must be nearest to the wall")
 
 
-def _higher_than_the_pole(mesh: Any) -> str | None:
-    higher = mesh.p[1] > mesh.p[1, pole(mesh)] + _length(mesh)
-    return _complaint("nodes stand above the pole", mesh.p[:, higher], "the pole must be nearest to the wall")
+def _of_pole(mesh: Any) -> Iterator[str | None]:
+    """Complaints about the radius of curvature at the pole, and the misfit of the nodes near it to a round one."""
+    r, depth = _pole_points(mesh)
+    if len(r) < POLE_POINTS[0]:
+        yield (
+            f"the contact line has {len(r)} nodes beside the pole before its slope exceeds {2 * POLE_SLOPE}, limit "
+            f"{POLE_POINTS[0]}; round the pole, or mesh it finer"
+        )
+    misfit, radius = _fitted_pole(r, depth, NEARLY_ROUND)[1], _fitted_pole(r, depth, ROUND)[0]
+    if misfit > ROUNDNESS:
+        yield f"the contact line is not round at the pole, misfit {misfit:.2g}, limit {ROUNDNESS}; round it off there"
+    if abs(radius - 1.0) > RADIUS_ERROR:
+        yield (
+            f"radius of curvature at the pole = {radius:.4g} must be 1 within {RADIUS_ERROR:.0%}, the unit of length; "
+            f"multiply all lengths by {1.0 / radius:.4g} (Gmsh: Mesh.ScalingFactor)"
+        )
 
 
 def pole_radius(mesh: Any) -> float:
@@ -161,48 +143,12 @@ def pole_radius(mesh: Any) -> float:
     return _fitted_pole(*_pole_points(mesh), ROUND)[0]
 
 
-def _not_round(mesh: Any) -> str | None:
-    """Judge the radius of curvature at the pole, and the misfit of the nodes beside it to a round one."""
-    r, depth = _pole_points(mesh)
-    if len(r) < POLE_POINTS[0]:
-        return (
-            f"the contact line has {len(r)} nodes beside the pole before its slope exceeds {2 * POLE_SLOPE}, limit "
-            f"{POLE_POINTS[0]}; round the pole, or mesh it finer"
-        )
-    misfit, radius = _fitted_pole(r, depth, NEARLY_ROUND)[1], _fitted_pole(r, depth, ROUND)[0]
-    if misfit > ROUNDNESS:
-        return f"the contact line is not round at the pole, misfit {misfit:.2g}, limit {ROUNDNESS}; round it off there"
-    if abs(radius - 1.0) <= RADIUS_ERROR:
-        return None
-    return (
-        f"radius of curvature at the pole = {radius:.4g} must be 1 within {RADIUS_ERROR:.0%}, the unit of length; "
-        f"multiply all lengths by {1.0 / radius:.4g} (Gmsh: Mesh.ScalingFactor)"
-    )
-
-
 def _fitted_pole(r: Array, depth: Array, powers: int) -> tuple[float, float]:
     """Radius R and misfit over the depth of the fit by r^2/2R and further even powers of r."""
     shape = np.stack([(r / r[-1]) ** (2 * k) for k in range(1, powers + 1)], axis=1)
     coefficients = np.linalg.lstsq(shape, depth)[0]
     misfit = np.abs(shape @ coefficients - depth).max() / depth.max()
     return float(r[-1] ** 2 / (2.0 * coefficients[0])), float(misfit)
-
-
-CHECKS: tuple[Callable[[Any], str | None], ...] = (
-    _left_of_the_axis,
-    _coincident_nodes,
-    _degenerate_cells,
-    _overlapping_cells,
-    _loose_pieces,
-    _lines_inside,
-    _lines_in_two_groups,
-    _axis_elsewhere,
-    _contact_in_parts,
-    _contact_turns_back,
-    _upside_down,
-    _higher_than_the_pole,
-    _not_round,
-)
 
 
 def _pole_points(mesh: Any) -> tuple[Array, Array]:
