@@ -1,6 +1,7 @@
 """Layers and coatings of finite elements, held against the integral equation, which shares no operator with them."""
 
 import dataclasses
+import json
 from functools import cache
 
 import numpy as np
