@@ -8,6 +8,7 @@ A defect is a piece of text that stands once in a file, what takes its place, an
 import argparse
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -24,7 +25,7 @@ LEFT_OUT = shutil.ignore_patterns(".git", ".venv", ".*cache*", "__pycache__", "b
 def failed(tree, test):
     """The first test of those named that fails in a copy of the project, "" if none does; "not run" without one."""
     ours = {"PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1", "COLUMNS": "300"}
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *test.split()]
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *shlex.split(test)]
     done = subprocess.run(command, cwd=tree, env=os.environ | ours, capture_output=True, text=True, check=False)
     names = re.findall(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.M)
     return {0: "", 1: names[0] if names else "?", 2: "collection"}.get(done.returncode, "not run")

@@ -1,8 +1,8 @@
 """Estimates against the truth: ``python tests/estimates honesty``, ``hard`` or ``constants``.
 
-``honesty`` judges families of scenes (all, or those named), ``hard`` attempts the hard cases, ``constants`` measures
-what each number of an algorithm decides. A campaign of random scenes, which goes on where it was ended:
-``honesty --families "half-space, random" --count 500 --seed 7 --file scenes.jsonl``.
+``honesty`` judges families of scenes, all or those named; ``hard`` attempts the hard cases; ``constants`` measures what
+each number of an algorithm decides. A full run of ``honesty`` ends with five of these, drawn. A campaign of random
+scenes, which goes on where it was ended: ``honesty --families "half-space, random" --count 500 --seed 7 --file F``.
 """
 
 import argparse
@@ -10,6 +10,8 @@ import secrets
 import sys
 import time
 from pathlib import Path
+
+import numpy as np
 
 
 def honesty(asked):
@@ -25,6 +27,10 @@ def honesty(asked):
     until = time.time() + 60 * asked.minutes
     rows = rows_of(chosen, net, seed, count=asked.count, file=asked.file, until=until, jobs=asked.jobs)
     dishonest = [row.name for row in rows if not printed(row).honest]
+    if not asked.quick and not asked.families:
+        from constants import measure
+
+        measure(random=np.random.default_rng(seed))
     print(f"not honest: {', '.join(dishonest) or 'none'}")
     return int(bool(dishonest))
 
@@ -61,7 +67,7 @@ def main(arguments=None):
     tool.add_argument("out", type=Path, help="directory to write")
     tool = tools.add_parser("constants")
     tool.set_defaults(run=constants)
-    tool.add_argument("--names", nargs="+", metavar="NAME", help="all unless given")
+    tool.add_argument("--names", nargs="+", metavar="NAME", help="Class or Class.field; all unless given")
     asked = parser.parse_args(arguments)
     return asked.run(asked)
 
