@@ -189,6 +189,10 @@ class Body(Valued):
         del self._recent[RECENT:]
         return self._recent[0][1]
 
+    def forget(self) -> None:
+        """Free the memory of the last few states."""
+        self._recent.clear()
+
     @cached_property
     def _recent(self) -> list[tuple[Array, Deformation]]:
         return []

@@ -155,6 +155,13 @@ class HeldBody(Valued):
     def _made(self) -> list[Tangent]:
         return []
 
+    def forget(self) -> None:
+        """Free the memory of what is kept between states; it is made anew when asked for."""
+        for name in ("undeformed", "_dissection"):
+            self.__dict__.pop(name, None)
+        self._made.clear()
+        self.body.forget()
+
     def _exact(self, tangent: Tangent, y: Array) -> bool:
         return not self.body.stretch or np.array_equal(tangent.y, y)
 

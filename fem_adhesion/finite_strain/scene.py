@@ -35,7 +35,7 @@ from halfspace.equilibrium.conditions import Located, relocate
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import REMAINING, ErrorRule, Event
-from halfspace.equilibrium.path import Segment
+from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 from halfspace.limits import require_load, require_rtol
@@ -44,10 +44,11 @@ from halfspace.values import Array, Valued
 WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a minute's work at 3
 TIGHTEST = 1e-6  # relative tolerance
 MOST_RUNGS = 2  # above the lowest
-OTHER_CELLS = 4.0  # halves of the change by other cells and a degree that may be left: it errs less, but not always
+OTHER_CELLS = 2.0  # halves of the change by other cells and a degree that may be left: it errs less, but not always
 LITTLE = 0.5  # R dgamma: a load past every event
 SOFT = 0.85  # part of the surface's stiffness to short waves, gone, from which solutions get lost
 FLATTENED = 0.13  # c dgamma/(E* R): up to 0.127 spheres of tabor 0.5 to 1 bear a load, at 0.169 one is lost
+SOFTENED, STRAINED = 0.5, 0.5
 SMALLEST_PART = 0.005  # of delta, in which it is raised where the linear body's events are too far away
 JUMPS = ("pull_off", "jump_on", "jump_off")
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
@@ -84,7 +85,7 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
         )
     began = time.perf_counter()
     with _cause_told(scene):
-        path = climb(rtol, partial(Stages(scene).rung, _lowest_degree(rtol)), to_load=to_load, most_rungs=MOST_RUNGS)
+        path = climb(rtol, partial(Stages(scene).rung, _lowest_degree(rtol, scene.tabor), to_load), to_load=to_load, most_rungs=MOST_RUNGS)
     settings = {**path.settings, "traction": scene.material.traction}
     apart = partial(_apart, scene, path.stages[-2])
     return replace(path, model_uncertainty=apart, settings=settings, seconds=time.perf_counter() - began)
@@ -97,21 +98,25 @@ class Stages(Valued):
     scene: Scene
     along: dict[int, Windows] = field(default_factory=dict, compare=False, repr=False)
 
-    def rung(self, lowest: int, level: int) -> Rung:
-        """Rung of a level: events on meshes of their own, by the degree below on other cells, then by one more.
+    def rung(self, lowest: int, to_load: float, level: int) -> Rung:
+        """Rung of a level: the degree and, from the second level on, other cells of the degree below before it.
+
+        On the lowest level events come from the curve of the linear body, where strains are small, and are solved for
+        at finite strain on the cells of the second level. Where the linear body does not have them, the curve of a
+        higher level is traced at finite strain.
 
         Where the tension ends by a step, in whichever cell that is, a degree more may gain no more than a factor of 2.
         One chain has no twin beside it: the shift of an event along the path counts, see `ErrorRule.along`.
         """
-        degree = lowest + level
-        windows = self.windows(degree)
-        curve = partial(iter, windows)
-        if not level:
-            return Rung(curve, (windows,), asdict(windows.body.how))
-        bodies = self.body(degree - 1, *TWIN[:2]), self.body(degree)
-        stages = tuple(Standing(body, self.windows(body.how.degree)) for body in bodies)
+        degree = lowest + max(level, 1)
+        linear = not level and nearly_linear(self.scene, to_load)
+        curve = partial(linear_charts, self.scene, to_load) if linear else partial(iter, self.windows(degree - 1))
+        other, body = self.body(degree - 1, *TWIN[:2]), self.body(degree)
+        bodies = [other] if not level else [body] if level == 1 else [other, body]
+        stages = tuple(Raising(one, self.windows(one.how.degree)) for one in bodies)
         left = REMAINING / self.scene.scales.gradual
-        return Rung(curve, stages, asdict(bodies[1].how), rule=ErrorRule(left, along=True, last=OTHER_CELLS))
+        settings = {"linear": linear, **asdict(bodies[-1].how)}
+        return Rung(curve, stages, settings, rule=ErrorRule(left, along=True, last=OTHER_CELLS))
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""
@@ -125,9 +130,9 @@ class Stages(Valued):
         return ScenesBody(self.scene, how)
 
 
-def _lowest_degree(rtol: float) -> int:
-    """Degree of the elements for the curve."""
-    return int(np.clip(np.ceil(-np.log10(rtol)), 4, 6))
+def _lowest_degree(rtol: float, tabor: float) -> int:
+    """Degree of the elements on the lowest rung: spikes of tension that are narrow take one more."""
+    return int(np.clip(np.round(-np.log10(rtol) - 1 + 2 * np.log10(max(tabor, 1.0))), 3, 6))
 
 
 def _apart(scene: Scene, events: State, name: str) -> dict[str, float]:
@@ -157,9 +162,9 @@ def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
     curve's mesh each event has one of its own.
     """
     _require(scene, rtol, COMPRESSION)
-    stages, lowest = Stages(scene), _lowest_degree(rtol)
-    body, rung = stages.body(lowest), partial(stages.rung, lowest)
-    found = {name: event for name, event in find_events(_linear_curve(scene, LITTLE)).items() if name in JUMPS}
+    stages, lowest = Stages(scene), _lowest_degree(rtol, scene.tabor)
+    body, rung = stages.body(lowest), partial(stages.rung, lowest, LITTLE)
+    found = {name: event for name, event in find_events(trace_charts(linear_charts(scene, LITTLE), LITTLE)).items() if name in JUMPS}
     with _cause_told(scene):
         radii = {name: float(np.nan_to_num(event.point.observables[CONTACT_RADIUS])) for name, event in found.items()}
         state = {name: raised(event, body.meshed(radii[name], radii[name])) for name, event in found.items()}
@@ -194,28 +199,53 @@ def _cause_told(scene: Scene) -> Iterator[None]:
         ) from error
 
 
-def raised(event: Located, problem: FiniteStrainProblem, done: float = 0.0) -> Located:
-    """Solve for an event again at finite strain, raising delta from where it is done in as many parts as that takes.
+@dataclass(frozen=True, eq=False, repr=False)
+class Raising(Standing):
+    """A stage on which events of the linear body are solved for at finite strain, each on a mesh of its own."""
 
-    NotConverged if a small part of delta is too much.
+    def moved(self, event: Located, problem: FiniteStrainProblem) -> Located:
+        """Solve for an event again, of a linear body by raising its strain."""
+        of_linear = event.problem.interface is event.problem
+        found = raised(event, problem) if of_linear else moved(event, problem)
+        problem.held.forget()
+        return found
+
+
+def raised(event: Located, problem: FiniteStrainProblem) -> Located:
+    """Solve for an event of the linear body at finite strain, raising delta in as many parts as that takes.
+
+    First the linear body is solved on the mesh of the problem. A state is the start for the next one as it is: at the
+    same gaps the law's forces are the same, and only those of the body change. NotConverged if a small part of delta is
+    too much.
     """
-    try:
-        return moved(event, problem)
-    except NotConverged as error:
-        if problem.stretch - done < SMALLEST_PART:
-            approach, load = event.point.observables[[APPROACH, LOAD]]
-            raise NotConverged(
-                f"the event at approach {approach:.6g} eps, load {load:.6g} R dgamma is lost at beta/R = "
-                f"{problem.stretch:.3g} ({error}); take a larger radius_ratio"
-            ) from error
-        half = (done + problem.stretch) / 2
-        return raised(raised(event, problem.stretched(half), done), problem, half)
+    found, done, part = moved(event, problem.stretched(0.0)), 0.0, problem.stretch
+    while done < problem.stretch:
+        last = done + part >= (1 - SMALLEST_PART) * problem.stretch
+        target = problem if last else problem.stretched(done + part)
+        try:
+            found = relocate(found, target, found.point.x, metric_for(target))
+            done = target.stretch
+        except NotConverged as error:
+            part /= 2
+            if part < SMALLEST_PART:
+                approach, load = event.point.observables[[APPROACH, LOAD]]
+                raise NotConverged(
+                    f"the event at approach {approach:.6g} eps, load {load:.6g} R dgamma is lost at beta/R = "
+                    f"{target.stretch:.3g} ({error}); take a larger radius_ratio"
+                ) from error
+    return found
 
 
-def _linear_curve(scene: Scene, to_load: float) -> tuple[Segment, ...]:
-    """Curve of the linear body."""
-    body = sized_body(scene.made_of(LinearElastic(scene.poisson)), Discretisation(CURVE_DEGREE), to_load)
-    return trace_charts(body.curve(), to_load)
+def linear_charts(scene: Scene, to_load: float) -> tuple[Chart, Chart]:
+    """Charts for the curve of the linear body."""
+    linear = scene.made_of(LinearElastic(scene.poisson))
+    return sized_body(linear, Discretisation(CURVE_DEGREE), to_load).curve()
+
+
+def nearly_linear(scene: Scene, to_load: float) -> bool:
+    """Whether strains are so small that the linear body has about the same events."""
+    widest = scene.scales.widest_radius(to_load) / scene.sphere_radius
+    return softening(scene) < SOFTENED and widest < STRAINED
 
 
 def _require(scene: Scene, rtol: float, to_load: float) -> None:
