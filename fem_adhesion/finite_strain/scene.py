@@ -28,11 +28,11 @@ from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.grids import TWIN
 from halfspace.accuracy.refinement import ascend, climb
-from halfspace.accuracy.stages import Rung, Standing, State, WhereAsked
+from halfspace.accuracy.stages import Rung, Standing, State, WhereAsked, on_all
 from halfspace.elastic import grid
 from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, trace_charts, undeformed_radius
 from halfspace.equilibrium.conditions import Located, relocate
-from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, LOAD
+from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import REMAINING, ErrorRule, Event
 from halfspace.equilibrium.newton import Traceable
@@ -44,11 +44,12 @@ from halfspace.values import Array, Valued
 WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a minute's work at 3
 TIGHTEST = 1e-6  # relative tolerance
 MOST_RUNGS = 2  # above the lowest
-OTHER_CELLS = 2.0  # halves of the change by other cells and a degree that may be left: it errs less, but not always
+OTHER_CELLS = 4.0  # halves of the change by other cells and a degree that may be left: it errs less, but not always
 LITTLE = 0.5  # R dgamma: a load past every event
 SOFT = 0.85  # part of the surface's stiffness to short waves, gone, from which solutions get lost
 FLATTENED = 0.13  # c dgamma/(E* R): up to 0.127 spheres of tabor 0.5 to 1 bear a load, at 0.169 one is lost
-SOFTENED, STRAINED = 0.5, 0.5
+SOFTENED = 0.5  # part of the surface's stiffness, gone, up to which the linear body's curve is taken
+STRAINED = 0.5  # widest contact radius in R up to which it is
 SMALLEST_PART = 0.005  # of delta, in which it is raised where the linear body's events are too far away
 JUMPS = ("pull_off", "jump_on", "jump_off")
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
@@ -72,10 +73,12 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
     range, or does not go with finite strain; NotConverged if the curve or an event is lost, as where the material is
     squeezed or torn beyond what Newton's method follows.
 
-    Each event has a mesh of its own, and another of other cells, for elements one degree lower; its error estimate is
-    half of the change from the mesh of the curve to these and twice that to the event's own, and more where the tension
-    ends by a step. Its spread is that between the tractions that have an energy. The energy is nan with the vertical
-    traction, which has none; stability is as said at `FiniteStrainProblem.negative_directions`.
+    Where strains are small the curve is that of the linear body, whose events are the starts for those at finite
+    strain, and its points are solved for at finite strain when they are asked for. Each event has a mesh of its own,
+    and another of other cells for elements one degree lower; its error estimate is twice the change from that to the
+    event's own, and more where the tension ends by a step. Its spread is that between the tractions that have an
+    energy. The energy is nan with the vertical traction, which has none; stability is as said at
+    `FiniteStrainProblem.negative_directions`.
     """
     _require(scene, rtol, to_load)
     if scene.tabor > WIDEST_TABOR:
@@ -85,7 +88,13 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
         )
     began = time.perf_counter()
     with _cause_told(scene):
-        path = climb(rtol, partial(Stages(scene).rung, _lowest_degree(rtol, scene.tabor), to_load), to_load=to_load, most_rungs=MOST_RUNGS)
+        path = climb(
+            rtol,
+            partial(Stages(scene).rung, _lowest_degree(rtol, scene.tabor), to_load),
+            to_load=to_load,
+            most_rungs=MOST_RUNGS,
+        )
+        _require_no_needle(path.stages[-1])
     settings = {**path.settings, "traction": scene.material.traction}
     apart = partial(_apart, scene, path.stages[-2])
     return replace(path, model_uncertainty=apart, settings=settings, seconds=time.perf_counter() - began)
@@ -132,7 +141,7 @@ class Stages(Valued):
 
 def _lowest_degree(rtol: float, tabor: float) -> int:
     """Degree of the elements on the lowest rung: spikes of tension that are narrow take one more."""
-    return int(np.clip(np.round(-np.log10(rtol) - 1 + 2 * np.log10(max(tabor, 1.0))), 3, 6))
+    return int(np.clip(np.round(-np.log10(rtol) - 1 + 2 * np.log10(max(tabor, 1.0))), 4, 6))
 
 
 def _apart(scene: Scene, events: State, name: str) -> dict[str, float]:
@@ -162,16 +171,19 @@ def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
     curve's mesh each event has one of its own.
     """
     _require(scene, rtol, COMPRESSION)
-    stages, lowest = Stages(scene), _lowest_degree(rtol, scene.tabor)
-    body, rung = stages.body(lowest), partial(stages.rung, lowest, LITTLE)
-    found = {name: event for name, event in find_events(trace_charts(linear_charts(scene, LITTLE), LITTLE)).items() if name in JUMPS}
+    rung = partial(Stages(scene).rung, _lowest_degree(rtol, scene.tabor), LITTLE)
+    lowest, curve = rung(0), trace_charts(linear_charts(scene, LITTLE), LITTLE)
+    found = {name: event for name, event in find_events(curve).items() if name in JUMPS}
     with _cause_told(scene):
-        radii = {name: float(np.nan_to_num(event.point.observables[CONTACT_RADIUS])) for name, event in found.items()}
-        state = {name: raised(event, body.meshed(radii[name], radii[name])) for name, event in found.items()}
-        ascent = ascend(state, rung(0), rtol, rung, range(1, 1 + MOST_RUNGS))
-        for event in ascent.chains[0][-1].values():
-            event.problem.require_resolution(event.point.x)
+        ascent = ascend(on_all(found, lowest.stages[0]), lowest, rtol, rung, range(1, 1 + MOST_RUNGS))
+        _require_no_needle(ascent.chains[0][-1])
     return ascent.events
+
+
+def _require_no_needle(events: State) -> None:
+    """Refuse events whose surface is drawn out to a needle, or whose cells are too long."""
+    for event in events.values():
+        event.problem.require_resolution(event.point.x)
 
 
 @contextmanager
@@ -203,8 +215,10 @@ def _cause_told(scene: Scene) -> Iterator[None]:
 class Raising(Standing):
     """A stage on which events of the linear body are solved for at finite strain, each on a mesh of its own."""
 
-    def moved(self, event: Located, problem: FiniteStrainProblem) -> Located:
+    def moved(self, event: Located, problem: Traceable) -> Located:
         """Solve for an event again, of a linear body by raising its strain."""
+        if not isinstance(problem, FiniteStrainProblem):
+            return moved(event, problem)
         of_linear = event.problem.interface is event.problem
         found = raised(event, problem) if of_linear else moved(event, problem)
         problem.held.forget()
