@@ -417,7 +417,7 @@ def test_what_a_sphere_smaller_than_any_that_bears_a_load_does_not_find_says_so(
 def test_a_surface_drawn_out_to_a_needle_is_given_up_on_the_first_rung(tabor, radius_ratio, traction, left, rungs):
     with pytest.raises(IllPosed) as told:
         trace(scene(tabor, radius_ratio, traction=traction), 1e-3, LITTLE)
-    assert set(rungs) == {4, 5}
+    assert set(rungs) == {4}
     assert re.match(
         rf"radius_ratio = {radius_ratio} is close to its limit .* leaves {left}% of the surface's stiffness .* "
         r"\(the surface is drawn out [234]\.\d+ times at .*\); take traction = 'reference', or radius_ratio above",
