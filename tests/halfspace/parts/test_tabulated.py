@@ -191,7 +191,7 @@ def test_what_a_table_leaves_open_is_told(count, tmp_path):
     first = count // 7  # of the rows left out, at about 1.2 eps
     rows = np.delete(np.arange(count), np.arange(first, first + 2))
     holed = laws.Tabulated(written(tmp_path / "holed.csv", h[rows], lennard_jones(h[rows])))
-    assert f"of the tension open between gaps {h[first - 1]:.4g} and {h[first + 2]:.4g}" in holed.words[-1]
+    assert f"of the tension open between gaps {h[first - 1]:.4g} and {h[first + 2]:.4g}" in holed.findings[-1]
 
 
 H = EPS * np.geomspace(0.7, 30, 300)
