@@ -35,10 +35,10 @@ bench: $(VENV)/installed-dev ## time the solvers beside a yardstick (some minute
 	QUICK=$(QUICK) $(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-enable --benchmark-columns=min,median,rounds -q
 
 hard: $(VENV)/installed-dev ## attempt the hard cases and print how each ended (a minute; OUT=directory of the tables, hard)
-	PYTHONPATH=tests/helpers $(BIN)/python tests/estimates hard $(or $(OUT),hard)
+	$(BIN)/python tests/estimates hard $(or $(OUT),hard)
 
 honesty: $(VENV)/installed-dev ## hold error estimates against the truth, by families of scenes (QUICK=1: a minute; SEED=n)
-	PYTHONPATH=tests/helpers $(BIN)/python tests/estimates honesty $(if $(QUICK),--quick) $(if $(SEED),--seed $(SEED))
+	$(BIN)/python tests/estimates honesty $(if $(QUICK),--quick) $(if $(SEED),--seed $(SEED))
 
 docs: $(VENV)/installed-dev ## pages of both packages from their docstrings, into build/docs (QUICK=1: without the code)
 	$(BIN)/python tests/project/docs.py $(or $(OUT),build/docs) $(if $(QUICK),--quick)

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
+sys.path.append(str(Path(__file__).parents[1] / "helpers"))
+
 
 def honesty(asked):
     """Print a table of the families; 1 if one is not honest."""

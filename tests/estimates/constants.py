@@ -27,7 +27,7 @@ BY_ROOM = {  # families that a room's settings decide
     "halfspace": ("half-space", "laws and profiles", "sphere's profile", "layers"),
     "fem_adhesion.finite_strain": ("finite strain",),
     "fem_adhesion.bodies": ("block", "hemisphere, bonded", "layers by elements"),
-    "fem_adhesion.mesh": ("held sphere", "hemisphere, bonded", "layers by elements"),
+    "fem_adhesion.mesh": ("hemisphere, bonded", "layers by elements"),
     "fem_adhesion.elasticity": ("block", "hemisphere, sliding", "layers by elements"),
     "fem_adhesion.discretise": ("block", "hemisphere, sliding", "layers by elements"),
     "fem_adhesion.convergence": ("block", "hemisphere, sliding", "hemisphere, bonded", "layers by elements"),

@@ -440,9 +440,15 @@ def drawn(draw, count):
 
 
 def sized(*sizes, made=sphere, truth=truths.elements, few=1, **more):
-    """Family of bodies of some sizes, each with another Poisson's ratio; `few` is the place of that which is quick."""
+    """Family of bodies of some sizes, each with another Poisson's ratio; `few` is the place of a quick one, or None."""
     scenes = [made(*size, poisson=POISSONS[n % 4], **more) for n, size in enumerate(sizes)]
-    return Family(at(scenes, 4, 5, 6), at(scenes[few : few + 1], 4), by_elements, of_path, partial(relocated, truth))
+    return Family(
+        at(scenes, 4, 5, 6),
+        at(scenes[few : few + 1] if few else (), 4),
+        by_elements,
+        of_path,
+        partial(relocated, truth),
+    )
 
 
 def states(full, quick, solve):
@@ -538,10 +544,10 @@ FAMILIES = {
         (0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (2, 30), truth=truths.harmonics, few=3
     ),
     "hemisphere, bonded": sized(*SIZES, grip="bonded", few=3),
-    "held sphere": sized(*SIZES[:4], body=HeldSphere, few=3),
-    "pair of spheres": sized(*SIZES[2:6], made=partial(pair, share=0.4, larger=2.0)),
+    "held sphere": sized(*SIZES[:4], body=HeldSphere, few=None),
+    "pair of spheres": sized(*SIZES[2:6], made=partial(pair, share=0.4, larger=2.0), few=None),
     "pair of spheres, bonded": sized(
-        *SIZES[:4], made=partial(pair, share=0.4, counter_poisson=0.45, larger=3.0), grip="bonded", few=3
+        *SIZES[:4], made=partial(pair, share=0.4, counter_poisson=0.45, larger=3.0), grip="bonded", few=None
     ),
     "block under a sphere": sized(*SIZES[2:6], made=elements_under_sphere, truth=profile),
     "steps within a cell": Family(

@@ -5,10 +5,11 @@ The run itself, over a coarse net, is a test of the Makefile's targets.
 
 import math
 import os
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 
+import constants
 import families
 import numpy as np
 import pytest
@@ -150,6 +151,31 @@ def test_a_random_scene_is_a_line_of_python_that_repeats_it():
     path = line.solved(1e-2)
     assert str(line) == line.text.format(rtol=line.rtol)
     assert (path.settings["rtol"], path.tabor) == (1e-2, float(str(line).split("(")[1].split(",")[0]))
+
+
+@dataclass(frozen=True)
+class OwnSettings:
+    """Numbers of every kind."""
+
+    ratio: float = 1.5
+    count: int = 3
+    ends: tuple[float, float] = (0.5, 4.0)
+
+
+def test_a_setting_is_replaced_in_every_instance_by_its_half_or_double():
+    one, other = OwnSettings(), OwnSettings(1.2)
+    assert len(constants.replaced(OwnSettings, "ratio", 2.0)) >= 2
+    assert [one.ratio, other.ratio] == pytest.approx([2.0, 1.4])
+    assert constants.changed(3, 0.5) == 2
+    assert constants.changed((0.5, 4.0), 2.0) == (1.0, 8.0)
+    assert constants._numbers(OwnSettings) == ["OwnSettings.ratio", "OwnSettings.count", "OwnSettings.ends"]
+
+
+def test_there_are_settings_and_each_has_families_that_are_measured():
+    known = constants.settings()
+    assert known
+    for kind in known.values():
+        assert all(FAMILIES[name].quick.scenes for name in constants.families_of(kind))
 
 
 def smaller(path, part):
