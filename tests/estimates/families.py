@@ -19,6 +19,7 @@ from judging import Family, Net
 from scenes import pair
 
 import fem_adhesion
+import fem_adhesion.bodies.layers as bodies
 import halfspace
 from fem_adhesion import HalfSpace, HeldSphere, Hemisphere, Meshed, NeoHookean, Scene
 from fem_adhesion.assess.study import assess
@@ -374,8 +375,15 @@ AT_FINITE_STRAIN = tuple(
         (1, 6, NeoHookean(), {}),
     )
 ) + tuple(replace(sphere(1, ratio, material=NeoHookean()), law=Dugdale(0.2)) for ratio in (30, 100))
+STEPPED = (replace(sphere(3.2, 1290.0, poisson=0.45), law=Dugdale(0.232)),)
+BEADS = (
+    silica(),
+    silica(radius=20e-9, modulus=3e9, poisson=0.4),
+    silica(radius=1e-6, stiffness=20.0),
+    silica(radius=5e-9),
+)
 MESHED = mesh("hemisphere", 1.0, 30.0), mesh("hemisphere", 2.0, 100.0), mesh("sphere", 1.0, 100.0)
-RUBBER, ON_OIL = HalfSpace(poisson=0.4999), fem_adhesion.Layer(0.5, "sliding")
+RUBBER, ON_OIL = HalfSpace(poisson=0.4999), bodies.Layer(0.5, "sliding")
 TOGETHER = (  # laws, profiles and bodies that are hard together, for `compare`
     Scene(1.0, law=PowerLaw(2.1, 2.5)),
     Scene(0.5, law=PowerLaw(20, 60)),
@@ -399,31 +407,31 @@ TOGETHER = (  # laws, profiles and bodies that are hard together, for `compare`
     Scene(1.0, law=Morse(3), profile=Sphere(30)),
     Scene(2.0, law=PowerLaw(2.5, 9.5), profile=Sphere(10)),
     Scene(0.5, law=Exponential(3), profile=Sphere(3)),
-    Scene(1.0, fem_adhesion.Layer(0.05)),
-    Scene(1.0, fem_adhesion.Layer(2.0), law=Morse(3)),
-    Scene(1.0, fem_adhesion.Layer(100.0), law=Dlvo(0.3, 1.0)),
-    Scene(3.0, fem_adhesion.Layer(1.0, poisson=0.45), law=PowerLaw(4, 10)),
+    Scene(1.0, bodies.Layer(0.05)),
+    Scene(1.0, bodies.Layer(2.0), law=Morse(3)),
+    Scene(1.0, bodies.Layer(100.0), law=Dlvo(0.3, 1.0)),
+    Scene(3.0, bodies.Layer(1.0, poisson=0.45), law=PowerLaw(4, 10)),
     Scene(1.0, ON_OIL, profile=Power(1.5)),
-    Scene(1.0, fem_adhesion.Layer(1.0, poisson=0.4999), profile=Power(4)),
-    Scene(0.3, fem_adhesion.Layer(5.0, poisson=0.0), law=Exponential(3), profile=Power(3)),
+    Scene(1.0, bodies.Layer(1.0, poisson=0.4999), profile=Power(4)),
+    Scene(0.3, bodies.Layer(5.0, poisson=0.0), law=Exponential(3), profile=Power(3)),
     Scene(0.5, ON_OIL, law=PowerLaw(2.5, 9.5), profile=Power(4)),
     # Of forty drawn at random, those that did not agree before
-    Scene(3.5, fem_adhesion.Layers([Stratum(2.3, 0.2), Stratum(0.9, 0.37, 0.5), Stratum(0.36, 0.47, 0.24)], "sliding"),
+    Scene(3.5, bodies.Layers([Stratum(2.3, 0.2), Stratum(0.9, 0.37, 0.5), Stratum(0.36, 0.47, 0.24)], "sliding"),
           RoundedPunch(0.6)),
     Scene(7.0, HalfSpace(poisson=0.45), profile=RoundedPunch(0.4)),
     Scene(9.6, HalfSpace(poisson=0.499), law=Morse(1.8)),
-    Scene(7.0, fem_adhesion.Layer(0.9, "sliding", poisson=0.0), law=Morse(0.9), profile=Hyperboloid(0.7)),
+    Scene(7.0, bodies.Layer(0.9, "sliding", poisson=0.0), law=Morse(0.9), profile=Hyperboloid(0.7)),
     Scene(4.6, HalfSpace(poisson=0.0), law=Exponential(3.5, 12), profile=Hyperboloid(2.5)),
-    Scene(1.0, fem_adhesion.Coated(thickness=1.0, modulus_ratio=5.0), profile=Hyperboloid(5.0)),
-    Scene(1.7, fem_adhesion.Coated(3.6, 36.0, 0.45, poisson=0.0), profile=RoundedPunch(1.0), law=PowerLaw(4.1, 10.4)),
-    Scene(0.97, fem_adhesion.Coated(72.6, 55.6, poisson=0.0), law=Dugdale(0.36)),
-    Scene(0.377, fem_adhesion.Coated(1.45, 0.088, 0.0, poisson=0.4999), Sphere(755), law=Dlvo(0.16, 4.12)),
-    Scene(0.562, fem_adhesion.Layer(3.76, "sliding", poisson=0.47), Hyperboloid(1.79), law=Dlvo(-0.03, 4.73)),
-    Scene(1.53, fem_adhesion.Layer(0.0653, poisson=0.14), Power(5.31), law=Dugdale(0.338)),
-    Scene(0.441, fem_adhesion.Coated(19.3, 0.461, 0.4999, poisson=0.4999), Hyperboloid(0.526), law=Dugdale(0.169)),
-    Scene(0.898, fem_adhesion.Layer(0.199, poisson=0.42), RoundedPunch(0.246), law=Dlvo(0.05, 1.03)),
-    Scene(0.531, fem_adhesion.Coated(0.0861, 0.0122, 0.4999, poisson=0.0), Power(2.37), law=Exponential(1.44, 8)),
-    Scene(8.2, fem_adhesion.Layers([Stratum(1.86, 0.14), Stratum(3.5, 0.43, 0.443)], "sliding"), Hyperboloid(1.92),
+    Scene(1.0, bodies.Coated(thickness=1.0, modulus_ratio=5.0), profile=Hyperboloid(5.0)),
+    Scene(1.7, bodies.Coated(3.6, 36.0, 0.45, poisson=0.0), profile=RoundedPunch(1.0), law=PowerLaw(4.1, 10.4)),
+    Scene(0.97, bodies.Coated(72.6, 55.6, poisson=0.0), law=Dugdale(0.36)),
+    Scene(0.377, bodies.Coated(1.45, 0.088, 0.0, poisson=0.4999), Sphere(755), law=Dlvo(0.16, 4.12)),
+    Scene(0.562, bodies.Layer(3.76, "sliding", poisson=0.47), Hyperboloid(1.79), law=Dlvo(-0.03, 4.73)),
+    Scene(1.53, bodies.Layer(0.0653, poisson=0.14), Power(5.31), law=Dugdale(0.338)),
+    Scene(0.441, bodies.Coated(19.3, 0.461, 0.4999, poisson=0.4999), Hyperboloid(0.526), law=Dugdale(0.169)),
+    Scene(0.898, bodies.Layer(0.199, poisson=0.42), RoundedPunch(0.246), law=Dlvo(0.05, 1.03)),
+    Scene(0.531, bodies.Coated(0.0861, 0.0122, 0.4999, poisson=0.0), Power(2.37), law=Exponential(1.44, 8)),
+    Scene(8.2, bodies.Layers([Stratum(1.86, 0.14), Stratum(3.5, 0.43, 0.443)], "sliding"), Hyperboloid(1.92),
           law=Morse(1.85)),
 )  # fmt: skip
 
@@ -439,16 +447,15 @@ def drawn(draw, count):
     return partial(drawing.several, draw, count=count)
 
 
+def events(full, quick, solve, truth):
+    return Family(full, quick, solve, of_path, truth)
+
+
 def sized(*sizes, made=sphere, truth=truths.elements, few=1, **more):
     """Family of bodies of some sizes, each with another Poisson's ratio; `few` is the place of a quick one, or None."""
     scenes = [made(*size, poisson=POISSONS[n % 4], **more) for n, size in enumerate(sizes)]
-    return Family(
-        at(scenes, 4, 5, 6),
-        at(scenes[few : few + 1] if few else (), 4),
-        by_elements,
-        of_path,
-        partial(relocated, truth),
-    )
+    quick = at(scenes[few : few + 1] if few else (), 4)
+    return events(at(scenes, 4, 5, 6), quick, by_elements, partial(relocated, truth))
 
 
 def states(full, quick, solve):
@@ -488,57 +495,38 @@ def stages_under_tip(scene):
     return truths.under_surface(tabor, tip(*of_tip).surface(tabor))
 
 
-new_half_space = partial(traced, half_space)
+new_half_space, on_layers = partial(traced, half_space), partial(relocated, truths.layered)
+FE, HS = by_elements, by_integral
 FAMILIES = {
-    "half-space": Family(
-        at((*USUAL, *BETWEEN, 30, 70, 100), *range(1, 10)),
-        at((0.05, 0.75, 2, 20), 2, 5, 8),
-        by_integral,
-        of_path,
-        new_half_space,
+    "half-space": events(
+        at((*USUAL, *BETWEEN, 30, 70, 100), *range(1, 10)), at((0.05, 0.75, 2, 20), 2, 5, 8), HS, new_half_space
     ),
-    "triangles": Family(
-        at((*USUAL[:12], *BETWEEN), *range(1, 7)), at((0.75, 3), 3, 5), by_triangles, of_path, new_half_space
-    ),
-    "block": Family(
+    "triangles": events(at((*USUAL[:12], *BETWEEN), *range(1, 7)), at((0.75, 3), 3, 5), by_triangles, new_half_space),
+    "block": events(
         at((*USUAL[:12:2], 0.1, 0.69, 0.7, 0.8, 3, 4, 7, 10, 20), *range(1, 8)),
         at((0.1, Scene(1, HalfSpace(poisson=0.499)), 3), 2, 4),
-        by_elements,
-        of_path,
+        FE,
         new_half_space,
     ),
-    "sphere's profile": Family(
+    "sphere's profile": events(
         at(ON_PROFILE, *range(1, 10)),
         at((Scene(0.3, profile=Sphere(30)), ON_PROFILE[6]), 2, 6),
-        by_integral,
-        of_path,
+        HS,
         partial(relocated, profile),
     ),
-    "laws and profiles": Family(
-        at(LAWS_AND_PROFILES, *range(2, 9)), at(LAWS_AND_PROFILES[:2], 3, 6), by_integral, of_path, new_half_space
+    "laws and profiles": events(
+        at(LAWS_AND_PROFILES, *range(2, 9)), at(LAWS_AND_PROFILES[:2], 3, 6), HS, new_half_space
     ),
-    "tips from tables": Family(
-        at(TIPS, *range(2, 10)), at(TIPS[:1], 3, 6), under_tip, of_path, partial(relocated, stages_under_tip)
+    "tips from tables": events(
+        at(TIPS, *range(2, 10)), at(TIPS[:1], 3, 6), under_tip, partial(relocated, stages_under_tip)
     ),
-    "layers": Family(
-        at(LAYERED, *range(2, 8)), at(LAYERED[:2], 3, 6), by_integral, of_path, partial(relocated, truths.layered)
+    "layers": events(at(LAYERED, *range(2, 8)), at(LAYERED[:2], 3, 6), HS, on_layers),
+    "layers, drawn": events(
+        at(drawn(drawing.on_layers, 12), 2, 4, 6), at(drawn(drawing.on_layers, 1), 4), HS, on_layers
     ),
-    "layers, drawn": Family(
-        at(drawn(drawing.on_layers, 12), 2, 4, 6),
-        at(drawn(drawing.on_layers, 1), 4),
-        by_integral,
-        of_path,
-        partial(relocated, truths.layered),
-    ),
-    "layers by elements": Family(
-        at(COATED, *range(2, 6)), at(COATED[:1], 3), by_elements, of_path, partial(relocated, truths.layered)
-    ),
-    "elements, drawn": Family(
-        at(drawn(drawing.of_elements, 12), 2, 4, 6),
-        at(drawn(drawing.of_elements, 1), 3),
-        by_elements,
-        of_path,
-        any_scene,
+    "layers by elements": events(at(COATED, *range(2, 6)), at(COATED[:1], 3), FE, on_layers),
+    "elements, drawn": events(
+        at(drawn(drawing.of_elements, 12), 2, 4, 6), at(drawn(drawing.of_elements, 1), 3), FE, any_scene
     ),
     "hemisphere, sliding": sized(
         (0.2, 10), (0.2, 100), (1, 10), (1, 30), (1, 100), (2, 30), truth=truths.harmonics, few=3
@@ -550,51 +538,27 @@ FAMILIES = {
         *SIZES[:4], made=partial(pair, share=0.4, counter_poisson=0.45, larger=3.0), grip="bonded", few=None
     ),
     "block under a sphere": sized(*SIZES[2:6], made=elements_under_sphere, truth=profile),
-    "steps within a cell": Family(
-        at([replace(sphere(3.2, 1290.0, poisson=0.45), law=Dugdale(0.232))], 4, 5),
-        at((), 4),
-        by_elements,
-        of_path,
-        partial(relocated, truths.elements),
+    "steps within a cell": events(at(STEPPED, 4, 5), at((), 4), FE, partial(relocated, truths.elements)),
+    "finite strain": events(
+        at(AT_FINITE_STRAIN, 3, 4, 5), at(AT_FINITE_STRAIN[:1], 3), FE, partial(relocated, truths.finite_strain)
     ),
-    "finite strain": Family(
-        at(AT_FINITE_STRAIN, 3, 4, 5),
-        at(AT_FINITE_STRAIN[:1], 3),
-        by_elements,
-        of_path,
-        partial(relocated, truths.finite_strain),
-    ),
-    "mesh from a file": Family(
-        at(MESHED, 3), at(MESHED[:1], 3), by_elements, of_path, partial(relocated, body_of_mesh)
-    ),
-    "curve, half-space": curve(at((0.05, 0.3, 0.75, 1, 2, 5), 2, 4, 6, 8), at((0.3, 2), 3), by_integral, half_space),
-    "curve, finite strain": curve(
-        at((sphere(0.3, 30, material=NeoHookean()), sphere(1, 100, material=NeoHookean(0.45))), 3, 4),
-        at((), 3),
-        by_elements,
-        truths.along_at_finite_strain,
-    ),
-    "curve, block": curve(at((0.05, 0.3, 1, 2, 5), 2, 3, 4, 5), at((0.05, 2), 3), by_elements, half_space),
-    "curve, hemisphere": curve(at(SLIDING, 3, 5), at(SLIDING[1:2], 3, 4), by_elements, truths.harmonics),
-    "springs, half-space": springs(at((0.05, 0.3, 0.75, 1, 2, 5, 20), 2, 4, 6), at((0.3, 2), 3, 6), by_integral),
-    "springs, block": springs(at((0.05, 0.3, 1, 2, 5), 2, 3, 4), at((1,), 3), by_elements),
-    "springs, sphere's profile": springs(at(ON_PROFILE[2:7:2], 2, 4, 6), at(ON_PROFILE[6:7], 4), by_integral),
-    "springs, hemisphere": springs(at(SLIDING, 3, 4), at(SLIDING[:1], 4), by_elements),
-    "states, half-space": states(at((0.05, 0.3, 0.75, 1, 2, 5), 2, 4, 6), at((0.3, 2), 3), by_integral),
-    "states, hemisphere": states(at(SLIDING, 3, 4), at(SLIDING[:1], 3), by_elements),
-    "assess": Family(
-        Net((silica(), silica(radius=20e-9, modulus=3e9, poisson=0.4), silica(radius=1e-6, stiffness=20.0)), [0.0]),
-        Net((silica(radius=5e-9),), [0.0]),
-        lambda contact, _: assess(contact),
-        of_assessment,
-        in_si,
-    ),
-    "both solvers": Family(
+    "mesh from a file": events(at(MESHED, 3), at(MESHED[:1], 3), FE, partial(relocated, body_of_mesh)),
+    "curve, half-space": curve(at((0.05, 0.3, 0.75, 1, 2, 5), 2, 4, 6, 8), at((0.3, 2), 3), HS, half_space),
+    "curve, finite strain": curve(at(AT_FINITE_STRAIN[:2], 3, 4), at((), 3), FE, truths.along_at_finite_strain),
+    "curve, block": curve(at((0.05, 0.3, 1, 2, 5), 2, 3, 4, 5), at((0.05, 2), 3), FE, half_space),
+    "curve, hemisphere": curve(at(SLIDING, 3, 5), at(SLIDING[1:2], 3, 4), FE, truths.harmonics),
+    "springs, half-space": springs(at((0.05, 0.3, 0.75, 1, 2, 5, 20), 2, 4, 6), at((0.3, 2), 3, 6), HS),
+    "springs, block": springs(at((0.05, 0.3, 1, 2, 5), 2, 3, 4), at((1,), 3), FE),
+    "springs, sphere's profile": springs(at(ON_PROFILE[2:7:2], 2, 4, 6), at(ON_PROFILE[6:7], 4), HS),
+    "springs, hemisphere": springs(at(SLIDING, 3, 4), at(SLIDING[:1], 4), FE),
+    "states, half-space": states(at((0.05, 0.3, 0.75, 1, 2, 5), 2, 4, 6), at((0.3, 2), 3), HS),
+    "states, hemisphere": states(at(SLIDING, 3, 4), at(SLIDING[:1], 3), FE),
+    "assess": Family(Net(BEADS, [0.0]), Net(BEADS[-1:], [0.0]), lambda bead, _: assess(bead), of_assessment, in_si),
+    "both solvers": events(
         at(drawn(for_both_solvers, 60), 0),
         at(drawn(for_both_solvers, 4), 0),
-        lambda both, _: by_integral(both.scene, both.rtol),
-        of_path,
-        lambda both, _, __: of_path(by_elements(both.scene, both.fe_rtol)),
+        lambda both, _: HS(both.scene, both.rtol),
+        lambda both, _, __: of_path(FE(both.scene, both.fe_rtol)),
     ),
     "half-space, random": random_lines(half_space_line, 60, 2),
     "elements, random": random_lines(elements_line, 30, 1),
