@@ -39,7 +39,7 @@ def lines_of(file):
 # --- the quick form ---
 
 
-def test_the_quick_study_says_in_its_first_line_that_it_is_one_and_that_all_was_solved(quick):
+def test_the_quick_study_says_that_it_is_one_and_how_it_went(quick):
     first = quick.out.splitlines()[0]
     assert re.fullmatch(r"quick study, of few points; (\d+) cases, all solved; written: sphere/index\.html", first)
     assert int(re.search(r"(\d+) cases", first)[1]) == len(list((quick / "sphere/cases").iterdir()))
@@ -49,7 +49,7 @@ def test_the_quick_study_says_in_its_first_line_that_it_is_one_and_that_all_was_
     assert first.partition("; written")[0] in (quick / "sphere/chart.svg").read_text()
 
 
-def test_the_table_of_the_quick_study_holds_what_the_solvers_give(quick):
+def test_the_table_holds_what_the_solvers_give(quick):
     table = {
         (row["cause"], row["quantity"], row["tabor"], row["radius_ratio"]): row
         for row in lines_of(quick / "sphere/finite_sphere.csv")
@@ -64,7 +64,7 @@ def test_the_table_of_the_quick_study_holds_what_the_solvers_give(quick):
     assert float(row["deviation"]) == pytest.approx(float(row["value"]) / float(row["half_space"]) - 1, rel=1e-9)
 
 
-def test_the_border_of_the_jumps_is_solved_for_on_each_sphere_and_on_the_half_space(quick):
+def test_the_border_of_the_jumps_is_solved_for(quick):
     found = {line["R/eps"]: line for line in lines_of(quick / "sphere/first_jumps.csv")}
     assert set(found) == {"half-space", "30", "300", "3000"}
     assert float(found["half-space"]["mu"]) == pytest.approx(0.697214622, abs=float(found["half-space"]["error"]))
@@ -73,7 +73,7 @@ def test_the_border_of_the_jumps_is_solved_for_on_each_sphere_and_on_the_half_sp
     assert all(0 < float(line["error"]) < 1e-4 for line in found.values())
 
 
-def test_a_figure_of_the_quick_study_is_drawn_or_says_what_it_lacks(quick):
+def test_a_figure_is_drawn_or_says_what_it_lacks(quick):
     page = (quick / "sphere/index.html").read_text()
     for line in lines_of(quick / "sphere/captions.csv"):
         drawn = (quick / f"sphere/{line['figure']}.svg").exists()
@@ -120,9 +120,7 @@ ONE = ("finite-sphere", "--tabor", "0.3", "--radius-ratio", "30", "--jobs", "1")
 
 @pytest.mark.usefixtures("made_up")
 @pytest.mark.parametrize("kind", [ContactTooWide, NotConverged])
-def test_a_study_that_failed_in_part_says_so_in_its_code_first_line_page_and_tables(
-    tmp_path, monkeypatch, capsys, kind
-):
+def test_a_study_that_failed_in_part_says_so(tmp_path, monkeypatch, capsys, kind):
     monkeypatch.setitem(MODELS, "bonded", replace(MODELS["bonded"], solve=refuse(kind)))
     assert cli.main([*ONE, "--out", str(tmp_path / "out")]) == 1
     said = f"1 of {len(MODELS)} cases not solved (1 {kind.__name__})"
@@ -149,7 +147,7 @@ def test_a_defect_of_the_program_shows_its_traceback(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("ratio", ["1", "0.5", "nan"])
-def test_a_sphere_too_small_for_all_is_refused_before_any_work(tmp_path, monkeypatch, capsys, ratio):
+def test_a_sphere_too_small_for_all_is_refused_at_once(tmp_path, monkeypatch, capsys, ratio):
     monkeypatch.setattr(cases, "compute", lambda _: pytest.fail("worked"))
     assert cli.main(["finite-sphere", "--out", str(tmp_path / "out"), "--radius-ratio", "30", ratio]) == 2
     assert f"radius_ratio = {float(ratio):g} is outside 2 <= radius_ratio <= 1e12" in capsys.readouterr().err
@@ -170,7 +168,7 @@ def test_what_is_beyond_the_limits_is_left_out_and_listed(tmp_path, capsys):
 
 
 @pytest.mark.usefixtures("made_up")
-def test_a_figure_of_an_earlier_study_does_not_stay_beside_the_new_page(tmp_path):
+def test_a_figure_of_an_earlier_study_does_not_stay(tmp_path):
     (tmp_path / "poisson.svg").write_text("old")
     (tmp_path / "notes.txt").write_text("mine")
     assert cli.main([*ONE, "--out", str(tmp_path), "--force"]) == 0
@@ -194,11 +192,10 @@ def interruptible():
     ("number", "to", "word", "code"),
     [
         (signal.SIGTERM, "group", "terminated", 143),  # as timeout sends it
-        (signal.SIGTERM, "study", "terminated", 143),  # as a batch system may
         (signal.SIGINT, "group", "interrupted", 130),  # as a terminal does
     ],
 )
-def test_a_signal_ends_the_study_in_one_line_and_its_workers_with_it(tmp_path, number, to, word, code):
+def test_a_signal_ends_the_study_and_its_workers(tmp_path, number, to, word, code):
     """What is done is kept, and --resume goes on with it."""
     command = ["finite-sphere", "--out", str(tmp_path / "out"), "--tabor", "0.3", "3", "--radius-ratio", "1000"]
     study = subprocess.Popen(

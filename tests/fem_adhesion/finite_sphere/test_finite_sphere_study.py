@@ -53,7 +53,7 @@ from fem_adhesion.finite_sphere.table import (
 )
 from fem_adhesion.finite_strain.scene import find_jumps
 from halfspace.equilibrium.devices import cycle
-from halfspace.errors import ContactTooWide, GridTooCoarse, InputError, NotConverged
+from halfspace.errors import ContactTooWide, InputError, NotConverged
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import Paraboloid, Sphere
 from halfspace.theories.closed_forms import JKR_PULL_OFF
@@ -113,13 +113,6 @@ def test_every_cause_finds_its_baseline_in_the_plan():
         for cause in CAUSES.values():
             if cause.model == case.model:
                 assert case_of(cause.baseline, case.tabor, case.radius_ratio, case.poisson, case.rtol) in cases
-
-
-def test_the_inputs_asked_for_are_the_full_product():
-    points = {
-        (c.tabor, c.radius_ratio, c.poisson) for c in plan([1.0, 2.0], [10.0], [0.1, 0.2]).cases if c.model == "sphere"
-    }
-    assert points == {(mu, 10.0, nu) for mu in (1.0, 2.0) for nu in (0.1, 0.2)}
 
 
 @pytest.mark.parametrize(
@@ -206,12 +199,6 @@ def test_a_study_killed_under_way_computes_nothing_twice(tmp_path, monkeypatch):
     assert {tabor: stored_cases(directory)[tabor].stat().st_mtime_ns for tabor in times} == times
 
 
-def test_a_study_that_is_complete_computes_nothing(tmp_path):
-    first = run(CASES[:3], opened(tmp_path), jobs=1, work=remembered)
-    again = run(CASES[:3], opened(tmp_path, resume=True), jobs=1, work=deadly)
-    assert again == first
-
-
 def test_a_case_whose_worker_died_is_tried_again_when_resumed(tmp_path):
     records = run(CASES[:4], opened(tmp_path), jobs=2, work=deadly)
     died = records[1]
@@ -221,7 +208,7 @@ def test_a_case_whose_worker_died_is_tried_again_when_resumed(tmp_path):
     assert run(CASES[:4], opened(tmp_path, resume=True), jobs=1, work=cheap)[1].status == "solved"
 
 
-@pytest.mark.parametrize("kind", [InputError, NotConverged, ContactTooWide, GridTooCoarse])
+@pytest.mark.parametrize("kind", [InputError, ContactTooWide])
 def test_a_refused_case_is_recorded_with_kind_and_reason(tmp_path, monkeypatch, kind):
     def refused(case):
         raise kind(f"tabor {case.tabor:g} is stuck; try another")
@@ -233,8 +220,7 @@ def test_a_refused_case_is_recorded_with_kind_and_reason(tmp_path, monkeypatch, 
     assert run([record.case], opened(tmp_path, resume=True), jobs=1) == (record,)
 
 
-@pytest.mark.parametrize("kind", [ValueError, TypeError, ZeroDivisionError, RuntimeError])
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize(("kind", "jobs"), [(ValueError, 1), (TypeError, 2)])
 def test_a_defect_of_the_program_is_no_refusal(tmp_path, kind, jobs):
     with pytest.raises(kind, match="shapes do not fit"):
         run([SphereCase("half_space", 1.0)], opened(tmp_path), jobs=jobs, work=DEFECTS[kind])
@@ -245,21 +231,7 @@ def defective(kind, _):
     raise kind("shapes do not fit")
 
 
-DEFECTS = {kind: partial(defective, kind) for kind in (ValueError, TypeError, ZeroDivisionError, RuntimeError)}
-
-
-def test_a_defect_inside_a_solver_is_no_refusal(monkeypatch):
-    for kind, solve in DEFECTS.items():
-        monkeypatch.setitem(MODELS, "half_space", replace(MODELS["half_space"], solve=solve))
-        with pytest.raises(kind, match="shapes do not fit"):
-            finite_sphere_cases.compute(SphereCase("half_space", 1.0))
-
-
-def test_progress_counts_to_the_end(tmp_path):
-    seen = []
-    run(CASES[:3], opened(tmp_path), jobs=1, work=remembered, progress=lambda *args: seen.append(args))
-    assert [(done, total) for _, done, total in seen] == [(0, 3), (1, 3), (2, 3), (3, 3)]
-    assert [name for name, _, _ in seen] == ["starting", *(case.name for case in CASES[:3])]
+DEFECTS = {kind: partial(defective, kind) for kind in (ValueError, TypeError)}
 
 
 # --- the store ---
@@ -281,7 +253,7 @@ def one_stored(directory):
     return file, record
 
 
-@pytest.mark.parametrize("damage", ["", "{", "[1]", "{}", '{"result": {}}', "null", "\x00\xff"])
+@pytest.mark.parametrize("damage", ["", "[1]", '{"result": {}}', "\x00\xff"])
 def test_a_file_that_is_no_result_is_computed_again_with_a_note(tmp_path, damage):
     file, record = one_stored(tmp_path)
     file.write_text(damage, encoding="latin-1")
@@ -569,13 +541,6 @@ def test_maugis_coefficient_is_that_of_his_theory():
     assert deviation * 1e5 == pytest.approx(SOFT_PULL_OFF, rel=1e-3)
 
 
-def test_findings_cover_all_and_each_tabor_parameter():
-    found = list(finite_sphere_fit.findings(made_rows(lambda mu, rho: 0.2 * np.sqrt(mu / rho) + mu / rho, cause="all")))
-    assert [finding.tabor for finding in found] == [None, 0.1, 10.0]
-    for finding in found:
-        assert finding.fit.coefficients["beta/R"].value == pytest.approx(0.2, rel=1e-2)
-
-
 # --- what a case computes ---
 
 
@@ -644,11 +609,6 @@ def test_every_model_solves_its_own_scene(solved_once):
     assert solved_once == wanted
 
 
-def test_every_model_has_a_pull_off_of_its_own(solved_once):
-    loads = sorted(estimate.value for estimate in solved_once.values())
-    assert min(np.diff(loads)) > 1e-5
-
-
 def test_the_grip_of_a_model_is_that_of_its_yield():
     grips = {name: scene.body.grip for name, scene in SCENES.items()} | dict.fromkeys(TRACTIONS, "sliding")
     for name, model in MODELS.items():
@@ -667,14 +627,6 @@ def test_the_first_jump_of_a_large_sphere_is_the_half_space_s():
     assert found[2] == {}
     (border,) = borders([Record(case_of("first_jump", None, 2.0, 0.3, 1e-4), "solved", {}, "", 1.0)])
     assert (border.tabor, bool(border.reason)) == (None, True)
-
-
-def test_the_border_of_the_jumps_divides_the_curves():
-    """The curve's own folds, of the study's own solver, on either side."""
-    border = finite_sphere_cases.compute(case_of("first_jump", None, 30.0, 0.2, 1e-4)).values[CRITICAL].value
-    for tabor, jumps in ((border - 5e-3, False), (border + 5e-3, True)):
-        scene = Scene(tabor, SPHERE)
-        assert ("jump_on" in fem_adhesion.trace(scene, rtol=1e-3, to_load=0.5).events) == jumps
 
 
 def test_the_border_s_error_holds_what_finer_elements_change():
