@@ -166,33 +166,22 @@ class ElasticOperator(Valued, Operator):
         Polynomials through nodes inside their cells leap there by their error; so between the last node of a cell and
         the first of the next, the one goes over into the other in proportion.
         """
-        rows = np.zeros((2, self.radii.size))
-        for nodes, value, slope in self._meeting(radius):
-            rows[:, nodes] = value, slope
-        return rows[0], rows[1]
+        cell, (row, rate) = self.cell_of(radius), np.zeros((2, self.radii.size))
+        cell -= cell > 0 and radius < self.radii[self.cell_nodes[cell, 0]]
+        left, value, slope = self._lagrange(cell, radius)
+        row[left], rate[left] = value, slope
+        if cell + 1 < len(self.cell_nodes) and radius > self.radii[left[-1]]:
+            right, other, other_slope = self._lagrange(cell + 1, radius)
+            width = float(self.radii[right[0]] - self.radii[left[-1]])
+            part = float(radius - self.radii[left[-1]]) / width
+            row[left], rate[left] = (1 - part) * value, (1 - part) * slope - value / width
+            row[right], rate[right] = part * other, part * other_slope + other / width
+        return row, rate
 
     def continuous_value(self, radius: float, values: Array) -> tuple[float, float]:
         """Value and slope at a radius of that function through nodal values."""
-        at = slope = 0.0
-        for nodes, row, derivative in self._meeting(radius):
-            these = values[nodes]
-            at, slope = at + float(these.dot(row)), slope + float(these.dot(derivative))
-        return at, slope
-
-    def _meeting(self, radius: float) -> list[tuple[Index, Array, Array]]:
-        """Nodes of the cell, or the two, that `continuous` is of at a radius, with their part of its rows."""
-        cell = self.cell_of(radius)
-        cell -= cell > 0 and radius < self.radii[self.cell_nodes[cell, 0]]
-        left, value, slope = self._lagrange(cell, radius)
-        if cell + 1 == len(self.cell_nodes) or radius <= self.radii[left[-1]]:
-            return [(left, value, slope)]
-        right, other, other_slope = self._lagrange(cell + 1, radius)
-        width = float(self.radii[right[0]] - self.radii[left[-1]])
-        part = float(radius - self.radii[left[-1]]) / width
-        return [
-            (left, (1 - part) * value, (1 - part) * slope - value / width),
-            (right, part * other, part * other_slope + other / width),
-        ]
+        row, rate = self.continuous(radius)
+        return float(row @ values), float(rate @ values)
 
     def _lagrange(self, cell: int, radius: float) -> tuple[Index, Array, Array]:
         """Nodes of a cell, and the values and slopes at a radius of the Lagrange polynomials through them."""
