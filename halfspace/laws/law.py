@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -39,10 +40,7 @@ class Law:
         """Phi(H) with -dPhi/dH = P and Phi = 0 far apart; multiply by R dgamma eps for an energy per beta^2."""
         raise NotImplementedError
 
-    @property
-    def pieced(self) -> bool:
-        """Whether some derivative leaps between pieces of it, as of a spline."""
-        return False
+    pieced: ClassVar[bool] = False  # whether some derivative leaps between pieces of it, as of a spline
 
     def room(self, gap: Array) -> Array:
         """Size by which changes of a gap are measured: h, by which it may shrink until the bodies are one."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -31,6 +31,8 @@ class Tabulated(Law):
     """
 
     path: Path
+
+    pieced: ClassVar[bool] = True  # the third derivative of its spline leaps
 
     def __post_init__(self) -> None:
         keep(self, path=Path(self.path))
@@ -168,11 +170,6 @@ class Tabulated(Law):
     def energy(self, gap: Array, tabor: float) -> Array:
         """Phi."""
         return -tabor / self.work_of_adhesion * self._left(self.spacing * (1 + gap))
-
-    @property
-    def pieced(self) -> bool:
-        """True: the third derivative of its spline leaps."""
-        return True
 
     def room(self, gap: Array) -> Array:
         """As for other laws, but over four lengths of the core at least."""

@@ -6,7 +6,7 @@ asked for. Most are the same surface at every Tabor parameter; one with a length
 
 from __future__ import annotations
 
-from typing import Protocol, Self
+from typing import ClassVar, Protocol, Self
 
 import numpy as np
 
@@ -73,14 +73,11 @@ def require_profile(profile: Profile) -> Profile:
 class Dimensionless:
     """A profile that is the same surface at every Tabor parameter, as smooth across the axis as a paraboloid."""
 
+    pieced: ClassVar[bool] = False  # whether some derivative leaps between pieces of it, as of a spline
+
     @property
     def pointed(self) -> bool:
         """False: smooth."""
-        return False
-
-    @property
-    def pieced(self) -> bool:
-        """False: one function."""
         return False
 
     def surface(self, tabor: float) -> Self:  # noqa: ARG002 (the same at all)

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -166,15 +166,12 @@ class Tip(Valued, Dimensionless):
     table: Tabulated
     beta: float
 
+    pieced: ClassVar[bool] = True  # the fifth derivative of its spline leaps
+
     @property
     def end(self) -> float:
         """Radius in beta at which it ends."""
         return self.table.end / self.beta
-
-    @property
-    def pieced(self) -> bool:
-        """True: the fifth derivative of its spline leaps."""
-        return True
 
     def height(self, radii: Array) -> Array:
         """Height over the apex."""
