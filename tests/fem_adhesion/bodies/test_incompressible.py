@@ -20,10 +20,12 @@ from fem_adhesion.elasticity.cells import (
     pressure_modes,
     projected_stiffness,
     shear_matrix,
+    stiffness_of,
 )
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import clamped, free, point_load, with_interiors
 from fem_adhesion.elasticity.space import Space, scatter, scatter_pairs
+from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
 from halfspace.elastic import grid
 
@@ -141,6 +143,12 @@ def test_misuse_is_refused():
 
 
 # --- where it is used ---
+
+
+def test_dilatations_are_projected_from_a_threshold_on():
+    space = quads(3)
+    for poisson, stiffness in ((np.nextafter(REMEDY_FROM, 0), cell_stiffness), (REMEDY_FROM, projected_stiffness)):
+        np.testing.assert_array_equal(stiffness_of(space, [Elastic(poisson)]), stiffness(space, poisson))
 
 
 @pytest.mark.parametrize("degree", [4])
