@@ -70,7 +70,7 @@ def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progres
     """Trace the curve of a block by finite elements and stop at some of its states, and at the events.
 
     The states are nearly equidistant in arclength, all points of the curve unless their number is given. `progress` is
-    told what is under way, how much is done and of how much.
+    called with what is under way, how much is done and of how much.
     """
     scene = Scene(tabor)
     path = convergence.trace(scene, rtol=rtol)
