@@ -151,7 +151,7 @@ def halfspace_methods() -> list[Method]:
 
 
 def ladder(solve: Callable[..., Solved], names: str, rungs: Sequence[tuple[Any, ...]]) -> list[Step]:
-    """Rungs of settings, each solved by `solve(tabor, *settings)`; a rung shows those of its settings that have names."""
+    """Rungs of settings, each solved by `solve(tabor, *settings)`, named by those of the settings that have names."""
 
     def told(settings: tuple[Any, ...]) -> str:
         named = zip(names.split(), settings, strict=False)
