@@ -47,12 +47,6 @@ from halfspace.profiles import PARABOLOID, Profile, Sphere
 from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
 
 HALF_SPACE, PROFILE, FINITE, PAIR = "half-space", "true profile", "finite sphere", "finite pair"
-RIGID_TABOR = 1e-12  # below it the rigid sphere is taken; above REFERENCE_TABOR, JKR
-RTOL, FINITE_RTOL = 1e-6, 1e-4  # of the half-space, and of the finite sphere beside it
-SEARCHED = 1e-3  # rtol of the samples among which that is sought which is thick enough
-FINITE_TABOR = 10.0  # up to which the finite sphere takes a few seconds
-TO_LOAD = 2.0  # R dgamma
-MAUGIS_RANGE = (1e-6, 1e6)
 Answer = TypeVar("Answer")
 THEORIES = {
     "JKR": jkr,
@@ -67,6 +61,22 @@ PARAMETERS = {
     "Muller-Yushchenko-Derjaguin mu_T": MYD_AMPLIFICATION,
     "Attard-Parker sigma": ATTARD_PARKER,
 }
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of the solvers."""
+
+    rigid: float = 1e-12  # Tabor parameter below which the rigid sphere is taken; above REFERENCE_TABOR it is JKR
+    finite: float = 10.0  # Tabor parameter up to which the finite sphere takes a few seconds
+    rtol: float = 1e-6  # of the half-space
+    finite_rtol: float = 1e-4  # of the finite sphere beside it
+    searched: float = 1e-3  # of the samples in the search for the thickness that is enough
+    to_load: float = 2.0  # R dgamma
+    maugis: tuple[float, float] = (1e-6, 1e6)  # of Maugis's lambda
+
+
+ASKED = Asked()
 
 
 @dataclass(frozen=True)
@@ -148,8 +158,8 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
 def require_known(contact: Contact) -> None:
     """Refuse a law at a Tabor parameter at which a closed theory, known for the 3-9 law, is as good; InputError."""
     tabor = contact.units.tabor
-    if contact.law != LENNARD_JONES and not RIGID_TABOR <= tabor <= REFERENCE_TABOR:
-        limit = f"{RIGID_TABOR:g} <= tabor <= {REFERENCE_TABOR:g} with --law"
+    if contact.law != LENNARD_JONES and not ASKED.rigid <= tabor <= REFERENCE_TABOR:
+        limit = f"{ASKED.rigid:g} <= tabor <= {REFERENCE_TABOR:g} with --law"
         raise InputError(f"tabor = {tabor:.4g}, limit: {limit}; leave it out, as all laws have the same limits there")
 
 
@@ -158,9 +168,9 @@ def _half_space(contact: Contact) -> Prediction:
     units, stiffness = contact.units, contact.reduced_stiffness
     if units.tabor > REFERENCE_TABOR:
         return large_tabor(units.tabor, stiffness, units)
-    if units.tabor < RIGID_TABOR:
+    if units.tabor < ASKED.rigid:
         return closed("rigid half-space", bradley, units.tabor, stiffness, units)
-    path = halfspace.trace(units.tabor, law=contact.law, rtol=RTOL, to_load=TO_LOAD)
+    path = halfspace.trace(units.tabor, law=contact.law, rtol=ASKED.rtol, to_load=ASKED.to_load)
     return computed(HALF_SPACE, path, stiffness, units)
 
 
@@ -168,7 +178,7 @@ def _theories(contact: Contact) -> Iterator[Prediction]:
     """Closed theories in their range."""
     tabor = contact.units.tabor
     for name, make in THEORIES.items():
-        if make is not maugis_dugdale or MAUGIS_RANGE[0] <= MAUGIS.of(tabor) <= MAUGIS_RANGE[1]:
+        if make is not maugis_dugdale or ASKED.maugis[0] <= MAUGIS.of(tabor) <= ASKED.maugis[1]:
             yield closed(name, make, tabor, contact.reduced_stiffness, contact.units)
 
 
@@ -190,17 +200,17 @@ def _missed(*models: Prediction | None) -> Iterator[str]:
 def _profile(contact: Contact) -> Prediction:
     """The true profile of sphere or spheres on the half-space."""
     units, larger = contact.units, contact.larger_radius
-    if not RIGID_TABOR <= units.tabor <= REFERENCE_TABOR and math.isfinite(larger):
+    if not ASKED.rigid <= units.tabor <= REFERENCE_TABOR and math.isfinite(larger):
         raise InputError(
-            f"tabor = {units.tabor:.4g} of two spheres is outside {RIGID_TABOR:g} <= tabor <= {REFERENCE_TABOR:g}; "
+            f"tabor = {units.tabor:.4g} of two spheres is outside {ASKED.rigid:g} <= tabor <= {REFERENCE_TABOR:g}; "
             "the paraboloid serves"
         )
     if units.tabor > REFERENCE_TABOR:
         return soft_sphere(units)
-    if units.tabor < RIGID_TABOR:
+    if units.tabor < ASKED.rigid:
         return rigid_sphere(units)
     profile = Sphere(units.radius_ratio, larger)
-    path = halfspace.trace(units.tabor, law=contact.law, profile=profile, rtol=RTOL, to_load=TO_LOAD)
+    path = halfspace.trace(units.tabor, law=contact.law, profile=profile, rtol=ASKED.rtol, to_load=ASKED.to_load)
     return computed(PROFILE, path, contact.reduced_stiffness, units)
 
 
@@ -209,9 +219,9 @@ def _finite(contact: Contact) -> Prediction:
     units = contact.units
     if contact.layer:
         return _on_layer(contact, contact.layer, Sphere(units.radius_ratio))
-    if units.tabor > FINITE_TABOR:
+    if units.tabor > ASKED.finite:
         raise InputError(
-            f"tabor = {units.tabor:.4g} is outside tabor <= {FINITE_TABOR:g}, beyond which it takes long; "
+            f"tabor = {units.tabor:.4g} is outside tabor <= {ASKED.finite:g}, beyond which it takes long; "
             "take fem-adhesion curve --body hemisphere"
         )
     scene = Scene(
@@ -221,7 +231,7 @@ def _finite(contact: Contact) -> Prediction:
         counter=contact.counter,
         share=contact.share,
     )
-    path = convergence.trace(scene, rtol=FINITE_RTOL, to_load=TO_LOAD)
+    path = convergence.trace(scene, rtol=ASKED.finite_rtol, to_load=ASKED.to_load)
     return computed(PAIR if contact.pair else FINITE, path, contact.reduced_stiffness, units)
 
 
@@ -230,14 +240,16 @@ def _soft(contact: Contact) -> bool:
     return contact.units.tabor > REFERENCE_TABOR
 
 
-def _on_layer(contact: Contact, layer: Layers, profile: Profile, rtol: float = FINITE_RTOL) -> Prediction:
+def _on_layer(contact: Contact, layer: Layers, profile: Profile, rtol: float = ASKED.finite_rtol) -> Prediction:
     """A profile on a thin sample; of a large Tabor parameter the paraboloid."""
     units, stiffness = contact.units, contact.reduced_stiffness
     if _soft(contact):
         return large_tabor_on(layer, units.tabor, stiffness, units)
 
     def solved(rtol: float) -> Prediction:
-        path = halfspace.trace(units.tabor, law=contact.law, profile=profile, body=layer, rtol=rtol, to_load=TO_LOAD)
+        path = halfspace.trace(
+            units.tabor, law=contact.law, profile=profile, body=layer, rtol=rtol, to_load=ASKED.to_load
+        )
         return computed(ON_LAYER, path, stiffness, units)
 
     try:
@@ -250,7 +262,7 @@ def _thin_sample(contact: Contact, half_space: Prediction) -> ThinSample | None:
     """Where the half-space and the series serve in the place of the thin sample; None of a thick one."""
     if contact.thickness is None:
         return None
-    on_layer = partial(_on_layer, contact, profile=PARABOLOID, rtol=SEARCHED)
+    on_layer = partial(_on_layer, contact, profile=PARABOLOID, rtol=ASKED.searched)
     return ThinSample(
         tuple(indentations(contact, contact.thickness)),
         hertz_until(contact),

@@ -21,13 +21,22 @@ from halfspace.theories.layered import OnLayers
 from halfspace.theories.maugis import MaugisDugdale
 from halfspace.values import Array, Estimate, Valued
 
-SAMPLES = 100_001  # of each stretch; odd, so that every second one has the same ends
-NODES = 48  # of the polynomial through JKR's theory on layers
-COMPRESSED = 2.0  # load to which the curves go
-PRESSED = 0.25  # approach to which a rigid sphere's goes; it bears no load at 0.206
-ROUNDED = 1e-3  # root of the contact radius below which Maugis's approach is the sum of rounding errors
-SMALLEST = 1e-4  # of the coordinate along a stretch
 REACH = 3 * math.pi**2 / (2.5 * 1.4**3.5)  # in the bulge of `jkr_with_reach`, so that the fit of [G97] App. C comes out
+
+
+@dataclass(frozen=True)
+class Samples:
+    """How the curves of theories are sampled."""
+
+    number: int = 100_001  # of each stretch; odd, so that every second sample has the same ends
+    nodes: int = 48  # of the polynomial through JKR's theory on layers
+    compressed: float = 2.0  # load to which the curves go
+    pressed: float = 0.25  # approach to which a rigid sphere's curve goes; it bears no load at 0.206
+    rounded: float = 1e-3  # root of the contact radius below which Maugis's approach is a sum of rounding errors
+    smallest: float = 1e-4  # of the coordinate along a stretch
+
+
+SAMPLES = Samples()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -86,12 +95,12 @@ class Loop:
 def bradley(tabor: float, stiffness: float) -> Curve:
     """Rigid sphere, [G97] (1.3), at any Tabor parameter."""
     del tabor
-    return _rigid(stiffness, PRESSED)
+    return _rigid(stiffness, SAMPLES.pressed)
 
 
 def dmt_maugis(tabor: float, stiffness: float) -> Curve:
     """Rigid until it touches, then after Hertz with a constant tension, [G97] (4.2b)."""
-    a = np.linspace(0.0, float(closed_forms.hertz_radius(COMPRESSED + 2 * np.pi)), SAMPLES)
+    a = np.linspace(0.0, float(closed_forms.hertz_radius(SAMPLES.compressed + 2 * np.pi)), SAMPLES.number)
     alpha = closed_forms.hertz_approach(a, tabor)
     return _rigid(stiffness, 0.0).then(Curve(alpha, dmt.maugis_load(alpha, tabor), a))
 
@@ -112,16 +121,16 @@ def jkr_with_reach(tabor: float, stiffness: float) -> Curve:
     """
     bulge = REACH * tabor**1.5
     past_the_jump = 0.5 * (2.5 * bulge) ** (2 / 7)
-    y = np.geomspace(_beyond(tabor, stiffness), past_the_jump, SAMPLES)
+    y = np.geomspace(_beyond(tabor, stiffness), past_the_jump, SAMPLES.number)
     return Curve.apart(1 - y - bulge * y**-2.5, -8 * np.pi / 3 * y**-2).then(_jkr_contact(tabor))
 
 
 def maugis_dugdale(tabor: float, stiffness: float) -> Curve:
     """Maugis-Dugdale with the largest tension of the Lennard-Jones law."""
     theory = MaugisDugdale.matched(tabor)
-    c = theory.touching_radius * np.linspace(0.0, 1.0, SAMPLES)
+    c = theory.touching_radius * np.linspace(0.0, 1.0, SAMPLES.number)
     disc = Curve.apart(theory.separated_approach(c), theory.separated_load(c))
-    a = _widest() * np.linspace(ROUNDED, 1.0, SAMPLES) ** 2
+    a = _widest() * np.linspace(SAMPLES.rounded, 1.0, SAMPLES.number) ** 2
     contact = Curve(theory.approach(a), theory.load(a), a)
     return _free(tabor, stiffness, float(disc.approach[0])).then(disc).then(contact)
 
@@ -130,24 +139,24 @@ def jkr_on(body: LayeredBody, tabor: float, stiffness: float) -> Curve:
     """JKR on a layered body; the contact is smooth in the root of its radius, by which it is interpolated."""
     theory = OnLayers(body)
     what = "the widest contact; take a half-space"
-    widest = root(lambda a: theory.jkr(a).load - COMPRESSED, SMALLEST, _widest(), what)
-    nodes = chebpts1(NODES)
+    widest = root(lambda a: theory.jkr(a).load - SAMPLES.compressed, SAMPLES.smallest, _widest(), what)
+    nodes = chebpts1(SAMPLES.nodes)
     states = [theory.jkr(widest * float(1 + x) ** 2 / 4) for x in nodes]
-    through = chebfit(nodes, np.array([[state.approach, state.load] for state in states]), NODES - 1)
-    s = np.linspace(0.0, 1.0, SAMPLES)
+    through = chebfit(nodes, np.array([[state.approach, state.load] for state in states]), SAMPLES.nodes - 1)
+    s = np.linspace(0.0, 1.0, SAMPLES.number)
     approach, load = chebval(2 * s - 1, through)
     return _free(tabor, stiffness, 0.0).then(Curve(tabor * approach, load, widest * s**2))
 
 
 def _jkr_contact(tabor: float) -> Curve:
     """Contact branch from a point contact on."""
-    a = _widest() * np.linspace(0.0, 1.0, SAMPLES) ** 2
+    a = _widest() * np.linspace(0.0, 1.0, SAMPLES.number) ** 2
     return Curve(closed_forms.jkr_approach(a, tabor), closed_forms.jkr_load(a), a)
 
 
 def _widest() -> float:
     """Contact radius at which every theory is in compression."""
-    return float(closed_forms.jkr_radius(COMPRESSED))
+    return float(closed_forms.jkr_radius(SAMPLES.compressed))
 
 
 def _beyond(tabor: float, stiffness: float) -> float:
@@ -158,7 +167,7 @@ def _beyond(tabor: float, stiffness: float) -> float:
 def _free(tabor: float, stiffness: float, last: float) -> Curve:
     """Approach without attraction up to a value."""
     approach = _towards(last, _beyond(tabor, stiffness))
-    return Curve.apart(approach, np.zeros(SAMPLES))
+    return Curve.apart(approach, np.zeros(SAMPLES.number))
 
 
 def _rigid(stiffness: float, last: float) -> Curve:
@@ -169,7 +178,7 @@ def _rigid(stiffness: float, last: float) -> Curve:
 
 def _towards(last: float, distance: float) -> Array:
     """Approaches from afar to a value, the closer the nearer to it."""
-    approach = last - np.geomspace(distance, SMALLEST, SAMPLES)
+    approach = last - np.geomspace(distance, SAMPLES.smallest, SAMPLES.number)
     approach[-1] = last
     return np.asarray(approach)
 

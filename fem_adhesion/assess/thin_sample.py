@@ -21,13 +21,24 @@ from halfspace.theories.layered import OnLayers, hertz_ratio, thin_sample_series
 from halfspace.values import Estimate
 
 WRONG = 0.01  # part of the value by which the half-space may be off to be right
-DEEPEST, WIDEST = 0.2, 0.05  # indentations go to this part of the thickness, or of the radius: small strain
-PARTS = (0.05, 0.1, 0.2, 0.5, 1.0)  # of the deepest
-THICK = 30.0  # beta: where the search for a thickness begins
-MOST_SECANTS, FLATTEST = 12, -0.2  # of the search; the slope of the flattest
-LEAST = 1e-12  # difference that is told from none
-NARROW = 1e-8  # thicknesses: to which a contact radius is solved for
-ROOT = 1e-3  # to which the logarithm of a thickness is solved for
+
+
+@dataclass(frozen=True)
+class Search:
+    """Indentations shown, and the search for a thickness."""
+
+    deepest: float = 0.2  # indentation, as a part of the thickness: small strain
+    widest: float = 0.05  # indentation, as a part of the radius: small strain
+    parts: tuple[float, ...] = (0.05, 0.1, 0.2, 0.5, 1.0)  # of the deepest indentation
+    thick: float = 30.0  # beta, where the search begins
+    most: int = 12  # secants
+    flattest: float = -0.2  # slope of a secant
+    least: float = 1e-12  # difference that counts as none
+    narrow: float = 1e-8  # error of the contact radius, in thicknesses
+    root: float = 1e-3  # error of the logarithm of the thickness
+
+
+SEARCH = Search()
 
 
 @dataclass(frozen=True)
@@ -72,8 +83,8 @@ class ThinSample:
 def indentations(contact: Contact, thickness: float) -> Iterator[Indentation]:
     """Contacts without adhesion on a sample of a thickness in m."""
     R, E = contact.units.radius, contact.units.modulus
-    for part in PARTS:
-        delta = part * min(DEEPEST * thickness, WIDEST * R)
+    for part in SEARCH.parts:
+        delta = part * min(SEARCH.deepest * thickness, SEARCH.widest * R)
         chi = math.sqrt(R * delta) / thickness
         ratio = hertz_ratio(_of_unit_thickness(contact), chi**2)
         series = thin_sample_series(chi, contact.poisson, contact.foundation)
@@ -94,9 +105,9 @@ def hertz_until(contact: Contact) -> Quantity:
         state = theory.hertz(a)
         return (1 - float(hertz_load(math.sqrt(state.approach))) / state.load) / WRONG - 1
 
-    a = root(beyond, 1e-4, 1.0, "where Hertz's load is off; take a thick sample", xtol=NARROW)
+    a = root(beyond, 1e-4, 1.0, "where Hertz's load is off; take a thick sample", xtol=SEARCH.narrow)
     chi = math.sqrt(theory.hertz(a).approach)
-    return Quantity.ratio(Estimate(chi, 2 * NARROW))
+    return Quantity.ratio(Estimate(chi, 2 * SEARCH.narrow))
 
 
 def _of_unit_thickness(contact: Contact) -> Layers:
@@ -148,16 +159,16 @@ def _outermost(off: Callable[[float], Estimate], power: float) -> Estimate | str
     """
 
     def level(x: float) -> float:
-        return math.log(max(off(x).value, LEAST) / WRONG)
+        return math.log(max(off(x).value, SEARCH.least) / WRONG)
 
-    (least, most), at, slope = map(math.log, LAYER_THICKNESS), math.log(THICK), -power
-    for _ in range(MOST_SECANTS):
+    (least, most), at, slope = map(math.log, LAYER_THICKNESS), math.log(SEARCH.thick), -power
+    for _ in range(SEARCH.most):
         then = min(max(at - level(at) / slope, least), most)
-        if abs(then - at) <= ROOT and least < then < most:
+        if abs(then - at) <= SEARCH.root and least < then < most:
             size = math.exp(then)
-            return Estimate(size, size * (off(at).error / WRONG / abs(slope) + ROOT))
+            return Estimate(size, size * (off(at).error / WRONG / abs(slope) + SEARCH.root))
         if then == at:
             return f"{'below' if at == least else 'above'} {math.exp(at):g} beta"
-        slope = min((level(then) - level(at)) / (then - at), FLATTEST)
+        slope = min((level(then) - level(at)) / (then - at), SEARCH.flattest)
         at = then
-    raise NotConverged(f"no thickness within {MOST_SECANTS} secants, limit: one; take a thick sample")
+    raise NotConverged(f"no thickness within {SEARCH.most} secants, limit: one; take a thick sample")

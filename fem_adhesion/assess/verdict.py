@@ -10,22 +10,29 @@ from fem_adhesion.common.contact import Contact
 from fem_adhesion.finite_strain.traction import yielded_adhesion
 from halfspace.laws import LENNARD_JONES
 
-# Tabor parameters between which neither limit serves: the limits of lambda in Johnson & Greenwood's map of 1997. [G97],
-# section 5, has 0.2 and 3; the pull-off load is there 4 % off Bradley's and 3.4 % off JKR's.
-RIGID_TO, SOFT_FROM = 0.1, 5.0
-GOOD = 0.01  # largest difference of a model that does in the place of the best one
 
-WIDEST_CONTACT = 0.3  # of the radius: beyond, neither the parabola nor linear elasticity hold
-LARGEST_STRAIN = 0.2  # beta/R, the strain of a contact beta wide
-LARGEST_SPACING = 0.1  # eps/R: a sphere of ten atoms is no continuum
-FARTHEST_JUMP = 0.3  # of the radius: the law between planes is meant for gaps small against it
+@dataclass(frozen=True)
+class Limits:
+    """Where models hold.
+
+    Between the Tabor parameters `rigid` and `soft` neither limit serves: they are those of lambda in Johnson &
+    Greenwood's map of 1997. [G97], section 5, has 0.2 and 3; the pull-off load is there 4 % off Bradley's and 3.4 % off
+    JKR's. The first order of the attracted layer's yield is told between `faint` and `first_order`: below, no measured
+    work of adhesion has that digit; beyond, the second order, its square, is more than a per cent.
+    """
+
+    rigid: float = 0.1
+    soft: float = 5.0
+    good: float = 0.01  # largest difference of a model that does in the place of the best one
+    contact: float = 0.3  # of its radius over R: beyond, neither the parabola nor linear elasticity hold
+    strain: float = 0.2  # beta/R, the strain of a contact beta wide
+    spacing: float = 0.1  # eps/R: a sphere of ten atoms is no continuum
+    jump: float = 0.3  # of the distance over R: the law between planes is meant for gaps small against R
+    faint: float = 1e-3  # of the work of adhesion
+    first_order: float = 0.1  # of the work of adhesion
 
 
-FIRST_ORDER = 1e-3, 0.1
-"""Yield of the attracted layer, as a part of the work of adhesion, between which its first order is told.
-
-Below, no measured work of adhesion has that digit; beyond, the second order, its square, is more than a per cent.
-"""
+LIMITS = Limits()
 
 
 @dataclass(frozen=True)
@@ -93,10 +100,10 @@ def _distance(model: Prediction, best: Prediction, spacing: float) -> Distance:
 
 def regime(tabor: float) -> str:
     """Regime of a Tabor parameter, with its limits."""
-    limits = f"rigid below tabor {RIGID_TO:g}, JKR above {SOFT_FROM:g}"
-    if tabor < RIGID_TO:
+    limits = f"rigid below tabor {LIMITS.rigid:g}, JKR above {LIMITS.soft:g}"
+    if tabor < LIMITS.rigid:
         return f"rigid: Bradley's and DMT's theories ({limits})"
-    if tabor > SOFT_FROM:
+    if tabor > LIMITS.soft:
         return f"soft: JKR's theory ({limits})"
     return f"transition between rigid and JKR ({limits})"
 
@@ -108,17 +115,17 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
     wide, far = (half_space.values.get(name) for name in ("zero_load_radius", "jump_on_separation"))
     deepened = f"it deepens that by more than its first order tells{_premise(contact)}"
     judged = [
-        ("contact radius over R", _over(wide, R), WIDEST_CONTACT, "linear elasticity no longer holds"),
-        ("strain beta/R", units.length / R, LARGEST_STRAIN, "finite strain matters"),
-        ("spacing over R", units.spacing / R, LARGEST_SPACING, "a law between continuous planes is doubtful"),
-        ("jump-on distance over R", _over(far, R), FARTHEST_JUMP, "the law between planes is doubtful"),
-        ("yield of the attracted layer over the work of adhesion", _yield(contact), FIRST_ORDER[1], deepened),
+        ("contact radius over R", _over(wide, R), LIMITS.contact, "linear elasticity no longer holds"),
+        ("strain beta/R", units.length / R, LIMITS.strain, "finite strain matters"),
+        ("spacing over R", units.spacing / R, LIMITS.spacing, "a law between continuous planes is doubtful"),
+        ("jump-on distance over R", _over(far, R), LIMITS.jump, "the law between planes is doubtful"),
+        ("yield of the attracted layer over the work of adhesion", _yield(contact), LIMITS.first_order, deepened),
     ]
     if contact.thickness:
         pressed, h = _over(wide, R) ** 2 * R, contact.thickness
         judged += [
-            ("indentation over thickness", pressed / h, LARGEST_STRAIN, "finite strain matters"),
-            ("spacing over thickness", units.spacing / h, LARGEST_SPACING, "its base attracts through the sample"),
+            ("indentation over thickness", pressed / h, LIMITS.strain, "finite strain matters"),
+            ("spacing over thickness", units.spacing / h, LIMITS.spacing, "its base attracts through the sample"),
         ]
     for what, value, limit, meaning in judged:
         if value > limit:
@@ -127,8 +134,8 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
 
 def yielding(contact: Contact) -> Iterator[str]:
     """What the yield of the attracted layer, which no surface law has, does to the adhesion, where that is known."""
-    part, (least, most) = _yield(contact), FIRST_ORDER
-    if least <= part <= most:
+    part = _yield(contact)
+    if LIMITS.faint <= part <= LIMITS.first_order:
         adhesion = contact.units.work_of_adhesion * (1 + part)
         yield (
             "yield of the attracted layer is left out: to the first order it deepens the work of adhesion by "
@@ -164,16 +171,16 @@ def verdict(
         yield f"the finite body is not known: judge the {best.model} by the cautions"
         return
     whole = [distance for distance in distances if distance.worst and not distance.missing]
-    good = [distance.model for distance in whole if distance.size <= GOOD]
+    good = [distance.model for distance in whole if distance.size <= LIMITS.good]
     trust = f"trust the {best.model}"
     if doubts:
         meanings = ", ".join(doubt.rpartition(": ")[2] for doubt in doubts)
         trust = f"trust no model as it is: {meanings}; of these the {best.model} leaves out least"
     if good:
-        yield f"{trust}; within {_percent(GOOD)} in every quantity: {', '.join(good)}"
+        yield f"{trust}; within {_percent(LIMITS.good)} in every quantity: {', '.join(good)}"
     elif whole:
         nearest = f"the {whole[0].model} is nearest, off by up to {_percent(whole[0].size)}"
-        yield f"{trust}; no other model is within {_percent(GOOD)} in every quantity, {nearest}"
+        yield f"{trust}; no other model is within {_percent(LIMITS.good)} in every quantity, {nearest}"
     else:
         yield f"{trust}; no other model has all its quantities"
 

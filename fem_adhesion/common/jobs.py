@@ -326,7 +326,6 @@ def solve_all(
     *,
     work: Callable[..., Any],
     kept: Kept[Item, Result],
-    parts: Callable[[Sequence[Item]], Sequence[tuple[Item, ...]]] | None = None,
     fresh: bool = False,
     jobs: int | None = None,
     dask: str | None = None,
@@ -334,16 +333,15 @@ def solve_all(
 ) -> tuple[Result, ...]:
     """Results of all items in their order: those in the store, and the others, each stored as soon as it is computed.
 
-    The work, a function of a module, computes the result of an item; each item is given once. Where items are best
-    worked on together, `parts` groups them, and the work makes a list of such a group. If `fresh`, all are computed,
-    whatever the store holds. An item whose worker died is not stored: it is tried again when the study is resumed.
+    The work, a function of a module, computes the result of an item; each item is given once. If `fresh`, all are
+    computed, whatever the store holds. An item whose worker died is not stored: it is tried again when the study is
+    resumed.
     `jobs` and `dask` are those of `stream`; `progress` is called with the last item's name, how many are done, and of
     how many. InputError before any work if jobs is not positive or the cluster does not answer.
     """
     found = dict(_stored(items, store, kept)) if store and not fresh else {}
     todo = [item for item in items if item not in found]
-    where = partial(stream, work, jobs=jobs, dask=dask)
-    with closing(_one_by_one(where, parts(todo)) if parts else where(todo)) as results:
+    with closing(stream(work, todo, jobs=jobs, dask=dask)) as results:
         progress("starting", len(found), len(items))
         for item, result in results:
             if isinstance(result, WorkerDied):
@@ -354,23 +352,6 @@ def solve_all(
                     store.put(kept.inputs(item), kept.write(result))
             progress(kept.name(item), len(found), len(items))
     return tuple(found[item] for item in items)
-
-
-def _one_by_one(
-    where: Callable[..., Generator[tuple[tuple[Item, ...], Any], None, None]], parts: Sequence[tuple[Item, ...]]
-) -> Generator[tuple[Item, Any], None, None]:
-    """Items of groups with their results as these come. The items of a group whose worker died run one by one."""
-    died: list[tuple[Item, ...]] = []
-    with closing(where(parts)) as done:
-        for part, results in done:
-            if not isinstance(results, WorkerDied):
-                yield from zip(part, results, strict=True)
-            elif len(part) > 1:
-                died += [(item,) for item in part]
-            else:
-                yield part[0], results
-    if died:
-        yield from _one_by_one(where, died)
 
 
 def _stored(items: Sequence[Item], store: Store, kept: Kept[Item, Result]) -> Iterator[tuple[Item, Result]]:

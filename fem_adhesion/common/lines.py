@@ -20,11 +20,20 @@ KINDS: Mapping[int, str] = {
     GRIPS_ONLY: "stable under fixed grips only",
     UNSTABLE: "unstable",
 }
-BETWEEN = 12  # points drawn from one computed point to the next
-ROUNDED = 1e-9  # of the pull-off force: a load that may be none
-FADED = 0.04  # of the pull-off force: the attraction at which a frame begins
-MARGIN = 0.08  # of the frame, around what it shows
-HIGHEST = 0.5  # load in pull-off forces that is shown around the events
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Numbers of lines and frames; loads in the pull-off force."""
+
+    between: int = 12  # points drawn from one computed point to the next
+    rounded: float = 1e-9  # load that counts as none
+    faded: float = 0.04  # attraction at which a frame begins
+    margin: float = 0.08  # around what a frame shows, as a part of the frame
+    highest: float = 0.5  # load that is shown around the events
+
+
+DRAWING = Drawing()
 
 
 Range = tuple[float, float]
@@ -82,7 +91,7 @@ def smooth(path: EquilibriumPath) -> Line:
 
 def _smooth(segment: Segment, stable: NDArray[np.bool_]) -> tuple[Array, NDArray[np.int8]]:
     """Approach, load and central gap, (n, 3), along one segment, and the kind of each point."""
-    values, rates = segment.between(BETWEEN)
+    values, rates = segment.between(DRAWING.between)
     d_approach, d_load, *_ = rates.T
     kind = np.where(d_load * d_approach > 0, STABLE, GRIPS_ONLY).astype(np.int8)
     kind[~_stable_between(stable, d_approach)] = UNSTABLE
@@ -91,10 +100,10 @@ def _smooth(segment: Segment, stable: NDArray[np.bool_]) -> tuple[Array, NDArray
 
 def _stable_between(stable: NDArray[np.bool_], rate: Array) -> NDArray[np.bool_]:
     """Stability of the points in between: it changes where the approach turns, the rate d(alpha*)/ds its sign."""
-    fine = np.repeat(stable, BETWEEN)[: rate.size]
+    fine = np.repeat(stable, DRAWING.between)[: rate.size]
     for i in np.flatnonzero(stable[1:] != stable[:-1]):
-        inside = slice(BETWEEN * i, BETWEEN * (i + 1))
-        turned = np.sign(rate[inside]) != np.sign(rate[BETWEEN * i])
+        inside = slice(DRAWING.between * i, DRAWING.between * (i + 1))
+        turned = np.sign(rate[inside]) != np.sign(rate[DRAWING.between * i])
         fine[inside] = np.where(turned, stable[i + 1], stable[i])
     return fine
 
@@ -108,16 +117,16 @@ def folds(path: EquilibriumPath) -> Array:
 
 def around_events(path: EquilibriumPath) -> Frame:
     """Frame from where attraction is felt to a load about half the pull-off force."""
-    return frame(path, -HIGHEST * path.events["pull_off"].load)
+    return frame(path, -DRAWING.highest * path.events["pull_off"].load)
 
 
 def frame(path: EquilibriumPath, highest: float) -> Frame:
     """Frame from where attraction is felt to a load in R dgamma."""
     lowest, line = path.events["pull_off"].load, smooth(path)
-    shown = ((line.load < FADED * lowest) | (line.load > -ROUNDED * lowest)) & (line.load <= highest)
+    shown = ((line.load < DRAWING.faded * lowest) | (line.load > -DRAWING.rounded * lowest)) & (line.load <= highest)
     x = np.append(line.approach[shown], path.events["zero_load"].approach)
     return Frame(_padded(float(x.min()), float(x.max())), _padded(lowest, highest))
 
 
 def _padded(low: float, high: float) -> Range:
-    return low - MARGIN * (high - low), high + MARGIN * (high - low) / 2
+    return low - DRAWING.margin * (high - low), high + DRAWING.margin * (high - low) / 2

@@ -214,7 +214,7 @@ def all_written(**paths: Path | None) -> Iterator[dict[str, TextIO]]:
     if table and table != STANDARD:
         from fem_adhesion.common.record import beside
 
-        paths["metadata"] = beside(table)
+        paths = {"metadata": beside(table), **paths}
     with ExitStack() as stack:
         opened = {name: stack.enter_context(written(path)) for name, path in paths.items()}
         yield {name: file for name, file in opened.items() if file}

@@ -12,7 +12,7 @@ from skfem import CellBasis, ElementVector, MeshTri
 
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common import style
-from fem_adhesion.curve.load import LEGEND, STATES, draw_central_gap, draw_load
+from fem_adhesion.curve.load import LEGEND, SHEET, STATES, draw_central_gap, draw_load
 from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves
 from fem_adhesion.fields import State, gaps_at, require_fields, state_at
 from fem_adhesion.scene import Scene
@@ -22,7 +22,6 @@ from halfspace.errors import InputError
 from halfspace.values import Array, Valued
 
 LOOK = {**style.LOOK, "font.size": 9.5}
-SIZE = (7.3, 10.0)  # inches
 
 
 def has_mesh(curves: Curves) -> bool:
@@ -43,7 +42,7 @@ def named(figure: Figure) -> list[str]:
 
 def draw(curves: Curves) -> Figure:
     """Page with the curve on top, the profiles of its states, the edge spike, and the mesh or the central gap."""
-    figure = Figure(figsize=SIZE, layout="constrained")
+    figure = Figure(figsize=SHEET.size, layout="constrained")
     areas = figure.subplot_mosaic("aa;bc;de", height_ratios=[1.6, 1, 1])
     body = draw_mesh if has_mesh(curves) else draw_central_gap
     for letter, paint in zip("abcde", (draw_load, draw_pressure, draw_gap, draw_spike, body), strict=True):
@@ -53,10 +52,6 @@ def draw(curves: Curves) -> Figure:
 
 EVENT = "pull_off"
 MESH = Discretisation(degree=4)
-SHOWN = 3.0  # radius of the picture, in contact radii
-DRAWN_AS = 0.45  # contact radii that the largest displacement is drawn as
-HIGHEST = 0.9  # height of the picture, in contact radii
-SIDE = 9  # points drawn on a side of a cell
 
 
 def is_drawn(scene: Scene) -> bool:
@@ -91,7 +86,7 @@ def outlines(state: State, reach: float) -> tuple[Array, Array]:
 def _perimeter(*, triangle: bool) -> Array:
     """Points round the reference cell, (2, n)."""
     corners = np.array([[0, 0], [1, 0], [0, 1]] if triangle else [[0, 0], [1, 0], [1, 1], [0, 1]], float)
-    t = np.linspace(0, 1, SIDE)[:-1, None]
+    t = np.linspace(0, 1, SHEET.side)[:-1, None]
     sides = [a + t * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
     return np.concatenate(sides).T
 
@@ -104,20 +99,24 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
     scene, found = curves.question.scene, curves.path.stages[-1][EVENT]
     state = state_at(scene, found.problem, found.point, name=EVENT, how=MESH)
     a, unit = _size(state), curves.scales["radius"]
-    places, moved = outlines(state, 2 * SHOWN * a)
-    factor = DRAWN_AS * a / float(np.abs(moved).max())
+    places, moved = outlines(state, 2 * SHEET.shown * a)
+    factor = SHEET.drawn_as * a / float(np.abs(moved).max())
     look: dict[str, Any] = {"facecolors": "0.94", "edgecolors": style.BLUE, "linewidths": 0.35}
     drawn = unit.size * (places + factor * moved)
     axes.add_collection(PolyCollection(list(drawn), **look))
     for depth in scene.body.interfaces:
         line = drawn[np.isclose(places[..., 1], -depth, rtol=1e-9, atol=0)]
         axes.plot(*line[np.argsort(line[:, 0])].T, color=style.BLUE, linewidth=1.3)
-    r = np.linspace(0, SHOWN * a, 200)
+    r = np.linspace(0, SHEET.shown * a, 200)
     sphere = factor * _sphere(state, r)
-    if np.isinf(scene.body.size) and sphere[0] < HIGHEST * a:
+    if np.isinf(scene.body.size) and sphere[0] < SHEET.highest * a:
         axes.plot(unit.size * r, unit.size * sphere, color="black", linewidth=1.3, label="rigid sphere")
         axes.legend(loc="lower right", **LEGEND)
-    axes.set(xlim=(0, unit.size * SHOWN * a), ylim=(-unit.size * 1.6 * a, unit.size * HIGHEST * a), aspect="equal")
+    axes.set(
+        xlim=(0, unit.size * SHEET.shown * a),
+        ylim=(-unit.size * 1.6 * a, unit.size * SHEET.highest * a),
+        aspect="equal",
+    )
     axes.set_anchor("W")  # under the beginning of its title, which is wider
     axes.set_xlabel(unit.label)
     axes.set_ylabel(unit.label.replace("radius $r$", "height $z$").replace("radius $u = r/", "height $z/"))
@@ -142,12 +141,6 @@ def _title(curves: Curves, factor: float) -> str:
     if np.isfinite(R):
         return f"mesh at {words}, displacement $\\times {factor * R:.3g}$"
     return f"mesh at {words}, $\\beta^2/R$ drawn as {factor:.2g} $\\beta$"
-
-
-POINTS = 1500
-WIDER = 1.6  # radii shown, in those of the widest contact
-HIGHEST_GAP = 3.3  # shown outside the contact, in gaps at its rim on an undeformed sphere
-SPIKES = 5  # widths of the spike shown on either side of the edge
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -189,7 +182,7 @@ def draw_pressure(axes: Any, curves: Curves) -> str:
     x, y = curves.scales["radius"], curves.scales["pressure"]
     _draw(axes, curves, "pressure")
     axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
-    style.dress(axes, x.label, y.label, legend=None, xlim=(0, x.size * WIDER * widest(curves.path)))
+    style.dress(axes, x.label, y.label, legend=None, xlim=(0, x.size * SHEET.wider * widest(curves.path)))
     return "pressure, lines as in (c)"
 
 
@@ -199,8 +192,8 @@ def draw_gap(axes: Any, curves: Curves) -> str:
     _draw(axes, curves, "gap")
     edge = state_of(path, "zero_load")[0].law.edge_gap
     axes.axhline(y.size * edge, color="0.5", linewidth=0.8, linestyle=style.DOTTED, label="edge of contact")
-    right = WIDER * widest(path)
-    top = max(2.0, HIGHEST_GAP * path.tabor * widest(path) ** 2 / 2)
+    right = SHEET.wider * widest(path)
+    top = max(2.0, SHEET.highest_gap * path.tabor * widest(path) ** 2 / 2)
     style.dress(axes, x.label, y.label, legend=None, xlim=(0, x.size * right), ylim=(-0.6 * y.size, top * y.size))
     axes.legend(loc="upper left", **LEGEND)
     return "gap"
@@ -208,7 +201,7 @@ def draw_gap(axes: Any, curves: Curves) -> str:
 
 def _draw(axes: Any, curves: Curves, quantity: str) -> None:
     """A quantity along the surface at each event."""
-    radii = np.linspace(0, WIDER * widest(curves.path), POINTS)
+    radii = np.linspace(0, SHEET.wider * widest(curves.path), SHEET.points)
     for name, look in STATES.items():
         if curves.path.event(name):
             state = profile(curves.path, name, radii)
@@ -221,9 +214,9 @@ def draw_spike(axes: Any, curves: Curves) -> str:
     x, y, path = curves.scales["radius"], curves.scales["pressure"], curves.path
     name = "jump_off" if path.event("jump_off") else "pull_off"
     edge, look = state_of(path, name)[0].contact_radius(state_of(path, name)[1]), STATES[name]
-    reach = SPIKES * path.segments[0].problem.interface.scales.spike_width
+    reach = SHEET.spikes * path.segments[0].problem.interface.scales.spike_width
     low, high = max(0.0, edge - reach), edge + reach
-    line, points = profile(path, name, np.linspace(low, high, POINTS)), nodes(path, name)
+    line, points = profile(path, name, np.linspace(low, high, SHEET.points)), nodes(path, name)
     shown = (points.radii >= low) & (points.radii <= high)
     axes.plot(*curves.shown(radius=line.radii, pressure=line.pressure), color=look.color, linewidth=1.3)
     dots = {"linestyle": "none", "marker": "o", "markersize": 3, "color": "black", "zorder": 3}

@@ -35,10 +35,6 @@ THEORIES: Mapping[str, dict[str, Any]] = {
 LEGEND = {"fontsize": 8, "handlelength": 3.2, "framealpha": 0.9, "edgecolor": "none"}
 GRIPS: dict[str, Any] = {"color": "black", "linestyle": "-"}
 APPARATUS: dict[str, Any] = {"color": style.GREEN, "linestyle": "-"}
-SAMPLES = 600
-APART = 0.06  # least distance of points drawn on a line, of the frame
-WIDER, CLOSE = 1.3, 0.99  # contact radii of theories: than the curve's widest, and of the body's end at most
-FAR_BEYOND = 3  # the highest load, in that of the frame around the events, from which on they are enlarged
 
 Ends = tuple[float, float]
 
@@ -51,6 +47,29 @@ class Look:
     color: str
     linestyle: Any
     marker: str
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Numbers of the page about a curve."""
+
+    size: tuple[float, float] = (7.3, 10.0)  # inches
+    samples: int = 600  # points of a theory's line
+    apart: float = 0.06  # least distance of points drawn on a line, as a part of the frame
+    theory: float = 1.3  # largest contact radius of a theory's line, in the curve's widest
+    close: float = 0.99  # the same in the radius where the body ends, at most
+    enlarged: float = 3.0  # highest load, in that of the frame around the events, from which on these are enlarged
+    shown: float = 3.0  # radius of the mesh shown, in contact radii
+    drawn_as: float = 0.45  # contact radii that the largest displacement is drawn as
+    highest: float = 0.9  # height of the mesh shown, in contact radii
+    side: int = 9  # points drawn on a side of a cell
+    points: int = 1500  # of a profile along the surface
+    wider: float = 1.6  # radius of profiles, in the widest contact's
+    highest_gap: float = 3.3  # gap shown, in that of an undeformed sphere at the rim of the contact
+    spikes: float = 5.0  # widths of the spike of tension shown on either side of the edge
+
+
+SHEET = Sheet()
 
 
 STATES: Mapping[str, Look] = {
@@ -69,7 +88,7 @@ def draw_load(axes: Any, curves: Curves) -> str:
     below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 4, "columnspacing": 1.2}
     axes.legend(handles=_seen(axes), **below, **LEGEND | {"handlelength": 2.5})
     close = lines.around_events(curves.path)
-    if highest > FAR_BEYOND * close.load[1]:
+    if highest > SHEET.enlarged * close.load[1]:
         inset = axes.inset_axes((0.08, 0.4, 0.42, 0.5))
         _draw_frame(inset, curves, close)
         inset.tick_params(labelsize=7.5)
@@ -118,7 +137,7 @@ def _spread(approach: Array, load: Array, frame: Frame) -> tuple[Array, Array]:
     places = np.column_stack([approach / np.ptp(frame.approach), load / np.ptp(frame.load)])
     kept = [0]
     for i in range(1, len(places)):
-        if np.hypot(*(places[i] - places[kept[-1]])) > APART:
+        if np.hypot(*(places[i] - places[kept[-1]])) > SHEET.apart:
             kept.append(i)
     return approach[kept], load[kept]
 
@@ -174,10 +193,12 @@ def _theories(scene: Scene, frame: Frame) -> Iterator[tuple[str, tuple[Array, Ar
     Maugis's is that of a paraboloid, and matched with the 3-9 law.
     """
     scales, surface, tabor = scene.scales, scene.surface, scene.tabor
-    a = np.linspace(1e-3, min(WIDER * scales.widest_radius(frame.load[1]), CLOSE * surface.end), SAMPLES)
+    a = np.linspace(
+        1e-3, min(SHEET.theory * scales.widest_radius(frame.load[1]), SHEET.close * surface.end), SHEET.samples
+    )
     if scene.body.layered is None:
         yield "JKR", (tabor * jkr_approach(surface, a), jkr_load(surface, a))
-    apart = np.linspace(frame.approach[0], min(0.6, frame.approach[1]), SAMPLES)
+    apart = np.linspace(frame.approach[0], min(0.6, frame.approach[1]), SHEET.samples)
     yield "Bradley", (apart, np.array([scales.rigid_load(value) for value in apart.tolist()]))
     matched = scene.law == LENNARD_JONES and isinstance(scene.shape, Paraboloid | Sphere)
     if scene.body.layered is None and matched and 1e-6 <= MAUGIS.of(tabor) <= 1e6:
@@ -187,7 +208,7 @@ def _theories(scene: Scene, frame: Frame) -> Iterator[tuple[str, tuple[Array, Ar
 def _maugis(tabor: float, radius: Array) -> tuple[Array, Array]:
     """From where its attraction reaches across, through the disc of tension, to contact."""
     theory = MaugisDugdale.matched(tabor)
-    c = np.linspace(0, theory.touching_radius, SAMPLES)
+    c = np.linspace(0, theory.touching_radius, SHEET.samples)
     approach = np.concatenate([theory.separated_approach(c), theory.approach(radius)])
     return approach, np.concatenate([theory.separated_load(c), theory.load(radius)])
 

@@ -18,7 +18,6 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from PIL import Image
-from scipy.spatial import KDTree
 
 from fem_adhesion.common import lines
 from fem_adhesion.common.numbers import with_error
@@ -34,15 +33,32 @@ from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
-from halfspace.values import Array, Index
+from halfspace.values import Array
 
-SIZE = (1600, 1000)  # of a picture in pixels
-WIDTH = 8.0  # of a picture in inches
 MINUS = "\N{MINUS SIGN}"  # for the hyphen of Python's numbers
-DIGITS = 6  # significant ones of a number, at most
 
 
-def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tuple[int, int] = SIZE) -> None:
+@dataclass(frozen=True)
+class Reel:
+    """Numbers of pictures and movies."""
+
+    size: tuple[int, int] = (1600, 1000)  # of a picture, in pixels
+    width: float = 8.0  # of a picture, in inches
+    digits: int = 6  # significant digits of a number, at most
+    frame: tuple[int, int] = (800, 500)  # of a movie, in pixels
+    frames: int = 48  # of a movie, about
+    faded: float = 0.04  # load at which the movie begins, in the pull-off load
+    pressed: float = -0.25  # load at which the wall turns back, in the pull-off load
+    moving: float = 0.1  # seconds for which a frame is shown while the wall moves
+    resting: float = 0.9  # the same at turns and jumps
+    sampled: int = 8  # frames for which the colours of the movie are chosen
+    near: float = 1e-6  # difference of approaches in eps that counts as none
+
+
+REEL = Reel()
+
+
+def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tuple[int, int] = REEL.size) -> None:
     """Draw the body at an event and write it as png of a size in pixels to a file of `written_aside`.
 
     The curves' first path is of finite elements. InputError if it has no such event, or as `require_drawing`.
@@ -77,7 +93,7 @@ def composed(curves: Curves, solid: Pixels, state: State, view: View, words: tup
     """Solid with a title and a line below it, colour bar, and the load-approach curve with the state on it."""
     height, width = solid.shape[:2]
     with rc_context(LOOK):
-        figure = Figure(figsize=(WIDTH, WIDTH * height / width), dpi=width / WIDTH)
+        figure = Figure(figsize=(REEL.width, REEL.width * height / width), dpi=width / REEL.width)
         FigureCanvasAgg(figure)
         axes = figure.add_axes((0, 0, 1, 1))
         axes.imshow(solid, aspect="auto")
@@ -97,7 +113,7 @@ def _caption(curves: Curves, at: str) -> tuple[str, str]:
         if (at, name) == ("zero_load", "load"):
             numbers[name] = "0"
         elif np.isfinite((found := event.estimate(name)).value):
-            numbers[name] = with_error(found, units[name].size, DIGITS)
+            numbers[name] = with_error(found, units[name].size, REEL.digits)
     return f"{contact_words(curves)}: {STATES[at].words}", _listed(curves, numbers)
 
 
@@ -182,17 +198,6 @@ def _add_curve(figure: Figure, curves: Curves, state: State) -> None:
 
 # The movie
 
-FRAME = (800, 500)  # in pixels
-FRAMES = 48  # of a movie, about
-FADED = 0.04  # load at which the movie begins, in that of pull-off
-PRESSED = -0.25  # load at which the wall turns back, in that of pull-off
-MOVING, RESTING = 0.1, 0.9  # seconds for which a frame is shown while the wall moves, and at turns and jumps
-PALETTE, SAMPLED = 256, 8  # colours of the movie, and frames for which they are chosen
-WHITE = np.array([255, 255, 255], np.uint8)  # the background
-PACKED = np.array([65536, 256, 1])  # by which the parts of a colour make one number
-REPEATED = 3  # times that colours of the palette are moved to the middle of those that they stand for
-NEAR = 1e-6  # difference of approaches in eps that is none
-
 
 @dataclass(frozen=True)
 class Shot:
@@ -200,10 +205,10 @@ class Shot:
 
     state: Located
     words: str
-    seconds: float = MOVING
+    seconds: float = REEL.moving
 
 
-def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = FRAME) -> None:
+def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = REEL.frame) -> None:
     """Draw the body along the curve through its jumps and write it as gif; raise as `write_picture` or NotConverged."""
     frames = experiment(curves.path)
     images = list(_images(curves, frames, size))
@@ -217,14 +222,14 @@ def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = FRAME) -> 
 def experiment(path: EquilibriumPath) -> list[Shot]:
     """States that a contact passes under fixed grips, up to the wall and back, the wall moving steadily.
 
-    They end at the loads `FADED` and `PRESSED`, or where the path does.
+    They end at the loads `REEL.faded` and `REEL.pressed`, or where the path does.
     """
     found, loop = path.stages[-1], cycle(path)
     if loop and len(loop.jumps) > 2:
         raise InputError(f"movie of {len(loop.jumps)} jumps, limit: one on and one off; take --render")
     frames = _jumping(path, found["jump_on"], found["jump_off"]) if "jump_on" in found else _smooth(path)
     back = max(number for number, frame in enumerate(frames) if frame.state is found["pull_off"])
-    frames[back] = replace(frames[back], words="pull-off", seconds=RESTING)
+    frames[back] = replace(frames[back], words="pull-off", seconds=REEL.resting)
     return frames
 
 
@@ -239,8 +244,8 @@ def _jumping(path: EquilibriumPath, on: Located, off: Located) -> list[Shot]:
     separated = _states(path, grid[grid < _approach(on)], lambda s: s < on.point.arclength)
     contact = _states(path, grid[grid > _approach(off)], lambda s: s > off.point.arclength)
     contact = _contact(path, [off, *contact])
-    landed = [state for state in contact if _approach(state) > _approach(on) - NEAR]
-    left = [state for state in separated if _approach(state) < _approach(off) + NEAR]
+    landed = [state for state in contact if _approach(state) > _approach(on) - REEL.near]
+    left = [state for state in separated if _approach(state) < _approach(off) + REEL.near]
     return [
         *_run([*separated, on], "approaching", last="about to jump on"),
         *_run(landed, "loading", first="jumped on", last="turning back"),
@@ -254,7 +259,7 @@ def _run(states: Sequence[Located], words: str, *, first: str = "", last: str = 
     frames = [Shot(state, words) for state in states]
     for number, own in ((0, first), (-1, last)):
         if own and frames:
-            frames[number] = replace(frames[number], words=own, seconds=RESTING)
+            frames[number] = replace(frames[number], words=own, seconds=REEL.resting)
     return frames
 
 
@@ -266,10 +271,10 @@ def _contact(path: EquilibriumPath, states: Sequence[Located]) -> list[Located]:
 def _grid(path: EquilibriumPath, folds: list[float]) -> Array:
     """Approaches in equal steps, nearly, with those of the folds, which ascend, among them."""
     pull_off = path.events["pull_off"].load
-    low = _approach(path.states(Condition(LOAD, value=FADED * pull_off))[0])
-    pressed = path.states(Condition(LOAD, value=PRESSED * pull_off))
+    low = _approach(path.states(Condition(LOAD, value=REEL.faded * pull_off))[0])
+    pressed = path.states(Condition(LOAD, value=REEL.pressed * pull_off))
     ends = [low, *folds, _approach(pressed[-1]) if pressed else float(path.approach[-1])]
-    step = 2 * (ends[-1] - ends[0]) / FRAMES
+    step = 2 * (ends[-1] - ends[0]) / REEL.frames
     parts = [np.linspace(a, b, int(np.ceil((b - a) / step)), endpoint=False) for a, b in pairwise(ends)]
     return np.concatenate([*parts, ends[-1:]])
 
@@ -296,28 +301,11 @@ def _images(curves: Curves, frames: Sequence[Shot], size: tuple[int, int]) -> It
 
 
 def _with_one_palette(images: Sequence[Pixels]) -> Iterator[Image.Image]:
-    """Images in the same few colours, so that none flickers; white stays white."""
-    some = np.concatenate(images[:: max(1, len(images) // SAMPLED)])
-    palette = _palette(some)
-    nearest = KDTree(palette)
-    for image in images:
-        colours, places = np.unique(image @ PACKED, return_inverse=True)
-        numbers = nearest.query(_unpacked(colours))[1].astype(np.uint8)
-        indexed = Image.fromarray(np.take(numbers, places).reshape(image.shape[:2]))
-        indexed.putpalette(palette.tobytes())
-        yield indexed
-
-
-def _palette(image: Pixels) -> Pixels:
-    """Colours (n, 3) for an image, in which each of its own counts once, however little there is of it."""
-    every = _unpacked(np.unique(image @ PACKED))
-    chosen = Image.fromarray(every[None]).quantize(PALETTE - 1, kmeans=REPEATED).getpalette()
-    return np.append(np.array(chosen, np.uint8), WHITE).reshape(-1, 3)
-
-
-def _unpacked(colours: Index) -> Pixels:
-    """Red, green and blue (n, 3) of colours that are one number each."""
-    return np.asarray(colours[:, None] // PACKED % 256, np.uint8)
+    """Images in the same 256 colours, so that none flickers."""
+    some = np.concatenate(images[:: max(1, len(images) // REEL.sampled)])
+    colours = np.unique(some.reshape(-1, 3), axis=0)  # each counts once, however little there is of it
+    palette = Image.fromarray(colours[None]).quantize(kmeans=3)
+    yield from (Image.fromarray(image).quantize(palette=palette, dither=Image.Dither.NONE) for image in images)
 
 
 def _approach(state: Located) -> float:

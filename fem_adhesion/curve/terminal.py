@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from plotille import Canvas
@@ -21,10 +22,7 @@ from halfspace.equilibrium.events import Event, tolerance_told
 from halfspace.laws import LENNARD_JONES
 from halfspace.values import Array, Estimate
 
-DIGITS = 8  # significant, at most
 MISSED = "*"  # after a number whose error is above the tolerance
-WIDTH, HEIGHT = 76, 18  # of the plot, in characters
-MARGIN = 10  # characters in front of it, for the values at its edges and the frame
 EVENTS: Mapping[str, str] = {
     "pull_off": "pull-off",
     "jump_on": "jump on",
@@ -34,7 +32,20 @@ EVENTS: Mapping[str, str] = {
 LETTERS: Mapping[str, str] = {"pull_off": "P", "jump_on": "A", "jump_off": "C", "zero_load": "Z"}
 COLOURS = {lines.STABLE: "bright_blue", lines.GRIPS_ONLY: "cyan", lines.UNSTABLE: "yellow"}
 RANKS = {"approach": 0, "load": 0, "contact_radius": 1, "central_gap": 2}  # by which columns are left out
-THIN = 3  # every how many dots a thinned line has one
+
+
+@dataclass(frozen=True)
+class Characters:
+    """Numbers of the table and the plot in characters."""
+
+    digits: int = 8  # significant digits of a number, at most
+    width: int = 76  # of the plot
+    height: int = 18  # of the plot
+    margin: int = 10  # in front of the plot, for the values at its edges and the frame
+    thin: int = 3  # a thinned line has one dot of so many
+
+
+PLOT = Characters()
 
 
 def show(curves: Curves, console: Console) -> None:
@@ -43,7 +54,7 @@ def show(curves: Curves, console: Console) -> None:
     for line in notes(curves):
         console.print(prose(line), highlight=False)
     if console.is_terminal and curves.solver != WEAK_FORM:
-        console.print(plot(curves, min(WIDTH, console.width - MARGIN)))
+        console.print(plot(curves, min(PLOT.width, console.width - PLOT.margin)))
         console.print(Flow(_key(curves), ", "))
 
 
@@ -91,7 +102,7 @@ def _cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> I
         elif abs(found.value) <= found.error < np.inf:
             yield "0"
         else:
-            yield with_error(found, units[name].size, DIGITS) + (MISSED if name in missed else "")
+            yield with_error(found, units[name].size, PLOT.digits) + (MISSED if name in missed else "")
 
 
 def _title(curves: Curves) -> Iterator[str]:
@@ -134,7 +145,7 @@ def _jumps(curves: Curves) -> Iterator[str]:
     devices = {"fixed grips": curves.grips} | ({} if np.isinf(k) else {_apparatus(curves): curves.apparatus})
     for device, cycle in devices.items():
         if cycle:
-            lost = with_error(cycle.energy_lost, energy.size, DIGITS)
+            lost = with_error(cycle.energy_lost, energy.size, PLOT.digits)
             yield f"energy lost in a cycle, {device}: {lost} {energy.unit}"
         elif device == "fixed grips" and curves.path.jumps is None:
             yield "jumps, fixed grips: cannot be told from a contact that follows smoothly"
@@ -165,17 +176,17 @@ def _apparatus(curves: Curves) -> str:
     return f"k = {engineering(k * units.stiffness, 'N/m')}" if units else f"k = {k:g} R dgamma/eps"
 
 
-def plot(curves: Curves, width: int = WIDTH) -> Text:
+def plot(curves: Curves, width: int = PLOT.width) -> Text:
     """Load against approach around the events, unstable stretches thinned, events and landings as letters.
 
     The first path is drawn, in a width in characters without the figures beside it.
     """
     units, path = curves.scales, curves.path
     frame = lines.around_events(path)
-    canvas = Canvas(width, HEIGHT, frame.approach[0], frame.load[0], frame.approach[1], frame.load[1])
+    canvas = Canvas(width, PLOT.height, frame.approach[0], frame.load[0], frame.approach[1], frame.load[1])
     line = lines.smooth(reaching(path, curves.question.stiffness))
     for kind, load in line.parts(line.load):
-        _draw(canvas, line.approach, load, COLOURS[kind], THIN if kind == lines.UNSTABLE else 1)
+        _draw(canvas, line.approach, load, COLOURS[kind], PLOT.thin if kind == lines.UNSTABLE else 1)
     for name, event in path.events.items():
         canvas.point(event.approach, event.load, marker=LETTERS.get(name, name[-1]))
     for name, jump in curves.grips.jumps.items() if curves.grips else ():
@@ -202,10 +213,10 @@ def _framed(canvas: Canvas, x: Scale, y: Scale) -> Text:
     edges = [high, *[""] * (len(drawn) - 2), low]
     text = Text(f"load, {y.unit}\n")
     for edge, row in zip(edges, drawn, strict=True):
-        text.append(f"{edge:>{MARGIN - 2}} │").append_text(Text.from_ansi(row)).append("\n")
+        text.append(f"{edge:>{PLOT.margin - 2}} │").append_text(Text.from_ansi(row)).append("\n")
     low, high = _ticks((canvas.xmin, canvas.xmax), x)
-    text.append(" " * (MARGIN - 1) + "└" + "─" * canvas.width + "\n")
-    return text.append(f"{low:>{MARGIN}}{f'approach, {x.unit}':^{canvas.width - 10}}{high:>10}")
+    text.append(" " * (PLOT.margin - 1) + "└" + "─" * canvas.width + "\n")
+    return text.append(f"{low:>{PLOT.margin}}{f'approach, {x.unit}':^{canvas.width - 10}}{high:>10}")
 
 
 def _key(curves: Curves) -> list[str]:

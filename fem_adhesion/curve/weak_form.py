@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from scipy.interpolate import CubicHermiteSpline
 
 from fem_adhesion.common import style
-from fem_adhesion.common.lines import BETWEEN
+from fem_adhesion.common.lines import DRAWING
 from fem_adhesion.curve.load import LEGEND, STATES, Look
 from fem_adhesion.curve.solve import WEAK_FORM, Curves
 
@@ -16,7 +16,7 @@ def draw(curves: Curves) -> Figure:
     """Load and central gap against approach, by stability, with the events."""
     curve, x = curves.paths[WEAK_FORM], curves.scales["approach"]
     figure, axes = style.panels(2)
-    s = np.unique(np.linspace(curve.arclength[:-1], curve.arclength[1:], BETWEEN + 1))
+    s = np.unique(np.linspace(curve.arclength[:-1], curve.arclength[1:], DRAWING.between + 1))
     values = CubicHermiteSpline(curve.arclength, curve.observables[:, :3], curve.rates)(s)
     falling = CubicHermiteSpline(curve.arclength, curve.observables[:, 0], curve.rates[:, 0])(s, 1) < 0
     before = np.clip(np.searchsorted(curve.arclength, s, side="right") - 1, 0, len(curve.stable) - 2)

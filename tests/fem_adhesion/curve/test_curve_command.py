@@ -322,7 +322,7 @@ def test_each_key_of_the_json_holds_what_it_says(both, real):
 def test_the_command_of_the_readme_writes_every_kind_of_file_whole(tmp_path, monkeypatch, capsys):
     """Through the command line, and read back by other people's programs."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(module, "FRAMES", 2)
+    monkeypatch.setattr(module, "REEL", replace(module.REEL, frames=2))
     files = ["--json", "curve.json", "--csv", "curve.csv", "--plot", "curve.png", "--vtk", "curve", "--points", "2"]
     pictures = ["--revolve", "90", "--render", "body.png", "--movie", "jump.gif"]
     assert cli.main(["curve", "--tabor", "2", "--rtol", "1e-3", *files, *pictures]) == 0
@@ -383,8 +383,8 @@ def test_every_number_and_unit_is_whole_and_the_plot_fits_at_any_width(both, rea
         assert set(numbers) <= set(re.findall(r"-?[\d.]+\(\d+\)", _shown(what, 150)))
         assert len(numbers) >= 2 * len(_rows(what)) - 2  # approach and load are never left out, 0 has no error
         drawn = [line for line in text.splitlines() if "│" in line and "┃" not in line and line.index("│") == 9]
-        assert len(drawn) == curve_terminal.HEIGHT
-        assert {len(line) for line in drawn} == {min(width, curve_terminal.WIDTH + 10)}
+        assert len(drawn) == curve_terminal.PLOT.height
+        assert {len(line) for line in drawn} == {min(width, curve_terminal.PLOT.width + 10)}
 
 
 def test_the_axes_of_the_plot_in_characters_are_load_upwards_and_approach_to_the_right(real):
@@ -393,7 +393,7 @@ def test_the_axes_of_the_plot_in_characters_are_load_upwards_and_approach_to_the
     frame = curve_lines.around_events(real.path)
     assert lines[0] == "load, nN"
     assert float(lines[1].split("│")[0]) == pytest.approx(frame.load[1] * 5, rel=6e-3)
-    assert float(lines[curve_terminal.HEIGHT].split("│")[0]) == pytest.approx(frame.load[0] * 5, rel=6e-3)
+    assert float(lines[curve_terminal.PLOT.height].split("│")[0]) == pytest.approx(frame.load[0] * 5, rel=6e-3)
     low, name, unit, high = lines[-1].split()
     assert (name, unit) == ("approach,", "nm")
     assert float(low) == pytest.approx(frame.approach[0] * 0.3, rel=6e-3)
@@ -420,7 +420,7 @@ def test_units_are_chosen_by_the_largest_value(real, size):
 
 
 def test_the_plot_in_characters_has_the_events_where_they_are(both):
-    drawn = curve_terminal.plot(both).plain.split("\n")[1 : curve_terminal.HEIGHT + 1]
+    drawn = curve_terminal.plot(both).plain.split("\n")[1 : curve_terminal.PLOT.height + 1]
     place = {letter: (drawn.index(line), line.index(letter)) for line in drawn for letter in "APCZBD" if letter in line}
     assert set(place) == set("APCZBD")
     assert place["A"][1] == place["B"][1]
@@ -555,7 +555,7 @@ def test_a_material_without_a_spring_is_held_by_fixed_grips(capsys):
 
 
 def test_a_material_with_a_size_of_its_own_is_not_given_another():
-    with pytest.raises(InputError, match="body = hemisphere:100, limit: hemisphere:sliding.bonded; leave out 100"):
+    with pytest.raises(InputError, match=r"body = hemisphere:100, limit: hemisphere:sliding.bonded; leave out 100"):
         _run(*MATERIAL, "--body", "hemisphere:100")
 
 
