@@ -45,8 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     arguments = sys.argv[1:] if arguments is None else arguments
     options = make_parser().parse_args(arguments)
-    options.asked = shlex.join(["fem-adhesion", *arguments])
-    asked = COMMAND.set(options.asked)
+    asked = COMMAND.set(shlex.join(["fem-adhesion", *arguments]))
     keep_to_one_thread()
     try:
         with ended_by_signal():

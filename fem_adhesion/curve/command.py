@@ -23,6 +23,8 @@ from fem_adhesion.common.words import part_in
 from halfspace.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fem_adhesion.common.contact import Contact
     from fem_adhesion.curve.beside import EquallyStrong
     from fem_adhesion.curve.solve import Curves, Question, SolverName
@@ -78,9 +80,8 @@ def _add_results(curve: Parser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Trace the curve, write what is asked for and print the events."""
     from fem_adhesion.common.files import directory_written_aside
-    from fem_adhesion.common.record import write_beside
     from fem_adhesion.common.terminal import prose
-    from fem_adhesion.curve import record, terminal
+    from fem_adhesion.curve import terminal
     from fem_adhesion.curve.solve import solve
 
     question, laws = _question(options), [part_in("law", word) for word in options.beside or ()]
@@ -88,7 +89,10 @@ def run(options: argparse.Namespace) -> int:
         from fem_adhesion.curve import beside
 
         beside.require(question.scene, laws)
-    form = _form_of(options.plot)
+    if options.plot:
+        from fem_adhesion.common.style import require_suffix
+
+        require_suffix(options.plot)
     names = ("json", "csv", "plot", "render", "movie")
     require_distinct(*(getattr(options, name) for name in (*names, "vtk")))
     with ExitStack() as stack:
@@ -97,24 +101,43 @@ def run(options: argparse.Namespace) -> int:
         with progress_bar() as step:
             curves = solve(question, step)
             collapsed = beside.solve(curves, laws, step) if laws else None
-        if "json" in files:
-            told = {"beside": collapsed.record} if collapsed else {}
-            json.dump(record.record(curves) | told, files["json"], indent=1, allow_nan=False)
-        if "csv" in files:
-            record.write_csv(curves, files["csv"])
-        if "metadata" in files:
-            write_beside(files["metadata"], options.csv.name, record.head(curves))
-        if "plot" in files:
-            _draw(collapsed or curves, files["plot"], form)
+        _write(options, curves, collapsed, files)
         if fields:
-            _write_vtk(options, curves, fields)
-        if "render" in files or "movie" in files:
-            _draw_body(curves, files.get("render"), options.at or "pull_off", files.get("movie"))
+            from fem_adhesion.fields import states_along
+            from fem_adhesion.paraview.write import write_states
+
+            states = states_along(question.scene, curves.path, points=_points(options))
+            write_states(states, fields, options.vtk, units=question.units, revolve=options.revolve)
     console = console_beside(options.json, options.csv)
     terminal.show(curves, console)
     if collapsed:
         console.print(prose(collapsed.told), highlight=False)
     return AGREE
+
+
+def _write(
+    options: argparse.Namespace, curves: Curves, collapsed: EquallyStrong | None, files: Mapping[str, TextIO]
+) -> None:
+    """Write the files that are open, by the names of their options."""
+    from fem_adhesion.common.record import write_beside
+    from fem_adhesion.curve import record
+
+    if "json" in files:
+        told = {"beside": collapsed.record} if collapsed else {}
+        json.dump(record.record(curves) | told, files["json"], indent=1, allow_nan=False)
+    if "csv" in files:
+        record.write_csv(curves, files["csv"])
+    if "metadata" in files:
+        write_beside(files["metadata"], options.csv.name, record.head(curves))
+    if "plot" in files:
+        _draw(collapsed or curves, files["plot"], options.plot.suffix[1:])
+    if "render" in files or "movie" in files:
+        from fem_adhesion.curve import pictures
+
+        if "render" in files:
+            pictures.write_picture(curves, files["render"], options.at or "pull_off")
+        if "movie" in files:
+            pictures.write_movie(curves, files["movie"])
 
 
 def _draw(found: Curves | EquallyStrong, file: TextIO, form: str) -> None:
@@ -129,24 +152,6 @@ def _draw(found: Curves | EquallyStrong, file: TextIO, form: str) -> None:
         style.write(lambda: weak_form.draw(found), file, form)
     else:
         style.write(lambda: figure.draw(found), file, form, figure.LOOK)
-
-
-def _write_vtk(options: argparse.Namespace, curves: Curves, aside: Path) -> None:
-    from fem_adhesion.fields import states_along
-    from fem_adhesion.paraview.write import write_states
-
-    question = curves.question
-    states = states_along(question.scene, curves.path, points=_points(options))
-    write_states(states, aside, options.vtk, units=question.units, revolve=options.revolve)
-
-
-def _draw_body(curves: Curves, picture: TextIO | None, at: str, movie: TextIO | None) -> None:
-    from fem_adhesion.curve.pictures import write_movie, write_picture
-
-    if picture:
-        write_picture(curves, picture, at)
-    if movie:
-        write_movie(curves, movie)
 
 
 def _require_drawing(options: argparse.Namespace) -> None:
@@ -184,15 +189,6 @@ def _require_inside(options: argparse.Namespace, scene: Scene, solver: SolverNam
             "or both; take --solver fem"
         )
     require_fields(scene)
-
-
-def _form_of(plot: Path | None) -> str:
-    """Format of the figure; matplotlib is not loaded without one."""
-    if plot is None:
-        return ""
-    from fem_adhesion.common.style import require_suffix
-
-    return require_suffix(plot)
 
 
 def _points(options: argparse.Namespace) -> int:

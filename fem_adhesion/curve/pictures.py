@@ -18,6 +18,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from PIL import Image
+from scipy.spatial import KDTree
 
 from fem_adhesion.common import lines
 from fem_adhesion.common.numbers import with_error
@@ -33,7 +34,7 @@ from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
-from halfspace.values import Array
+from halfspace.values import Array, Index
 
 MINUS = "\N{MINUS SIGN}"  # for the hyphen of Python's numbers
 
@@ -301,11 +302,22 @@ def _images(curves: Curves, frames: Sequence[Shot], size: tuple[int, int]) -> It
 
 
 def _with_one_palette(images: Sequence[Pixels]) -> Iterator[Image.Image]:
-    """Images in the same 256 colours, so that none flickers."""
-    some = np.concatenate(images[:: max(1, len(images) // REEL.sampled)])
-    colours = np.unique(some.reshape(-1, 3), axis=0)  # each counts once, however little there is of it
-    palette = Image.fromarray(colours[None]).quantize(kmeans=3)
-    yield from (Image.fromarray(image).quantize(palette=palette, dither=Image.Dither.NONE) for image in images)
+    """Images in the same few colours, so that none flickers; white stays white, which Pillow's own mapping changes."""
+    colours = _colours(np.concatenate(images[:: max(1, len(images) // REEL.sampled)]))[0]
+    chosen = Image.fromarray(colours[None]).quantize(255, kmeans=3).getpalette()  # each colour counts once
+    palette = np.append(np.array(chosen, np.uint8), np.full(3, 255, np.uint8)).reshape(-1, 3)
+    nearest = KDTree(palette)
+    for image in images:
+        own, places = _colours(image)
+        indexed = Image.fromarray(np.asarray(nearest.query(own)[1], np.uint8)[places].reshape(image.shape[:2]))
+        indexed.putpalette(palette.tobytes())
+        yield indexed
+
+
+def _colours(image: Pixels) -> tuple[Pixels, Index]:
+    """Colours (n, 3) of an image, each once, and which each pixel has."""
+    packed, places = np.unique(image @ np.array([65536, 256, 1]), return_inverse=True)
+    return np.asarray(packed[:, None] // np.array([65536, 256, 1]) % 256, np.uint8), places
 
 
 def _approach(state: Located) -> float:
