@@ -7,6 +7,8 @@ from references import strain_energy
 from skfem import CellBasis, ElementQuadP
 from whole_sphere import sphere_operator, surface_deflection
 
+import fem_adhesion
+from fem_adhesion import Block, Scene
 from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, stiffness_of
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import clamped, sliding
@@ -245,3 +247,14 @@ def test_a_bonded_body_is_the_stiffer(poisson):
         work.append(operator.weights @ (P * (operator.compliance @ P)))
     assert work[1] < work[0]
     assert work[1] > 0.7 * work[0]
+
+
+def test_a_block_is_as_large_as_asked_for():
+    """Half as large its far side, which is clamped, takes twice as much off the approach."""
+    approaches = [
+        fem_adhesion.trace(Scene(0.3, Block(radius=size, far_field="clamped")), rtol=1e-2).event("pull_off").approach
+        for size in (10.0, 20.0, 40.0)
+    ]
+    first, second = np.abs(np.diff(approaches))
+    assert first > 1e-3
+    assert first == pytest.approx(2 * second, rel=0.2)
