@@ -38,7 +38,6 @@ class ScaleSettings:
     """
 
     rise: float = 0.245  # eps over which the tension of the 3-9 law rises: 0.7 beta mu^-1/2 of a rigid paraboloid
-    nothing: float = 1e-15  # part of the work of adhesion beyond the finite cells of a law without an exponent
     sudden: float = 0.65  # part of its maximum that a tension may fall by within one edge gap while cells grow as usual
     slower: float = 1.5  # power of the excess over that part by which cells grow more slowly
     stepped: float = 0.55  # part of its maximum by which the tension of a law with a step falls within one edge gap
@@ -222,8 +221,8 @@ class Scales:
         return max(found, self.how.least_load) if abs(math.log2(found / BRADLEY)) > 1 else BRADLEY
 
     def outer_radius(self, height: float) -> float:
-        """Radius at which finite cells end: the undeformed gap opens by `height`, or by a tail without an exponent."""
-        return self.radius_at(self.law.outer_gap(height, self.how.nothing))
+        """Radius at which finite cells end: there the undeformed gap has opened by `height`."""
+        return self.radius_at(height)
 
     def whole_radius(self, height: float) -> float:
         """Radius at which cells end beyond which nothing acts: `outer_radius`, or farther if too much load is there.

@@ -90,10 +90,6 @@ class Law:
             return float(GAPS[i + int(np.argmax(beyond))])
         return self.edge_gap if before.max() > again else 0.0
 
-    def outer_gap(self, gap: float, left: float) -> float:
-        """Gap at which finite cells end: as given, or where a part `left` of the work is, if the tail is no power."""
-        return max(gap, self.range(left)) if np.isinf(self.decay) else gap
-
     def range(self, part: float) -> float:
         """H beyond which a part of the work of adhesion is left."""
         return root(lambda H: -float(self.energy(np.array(H), 1.0)) - part, 0.0, 1e12, "the law's range; mend the law")

@@ -220,7 +220,7 @@ def test_a_quadratic_power_and_a_wide_hyperboloid_are_paraboloids():
 
 
 @pytest.mark.parametrize(("tabor", "k", "rtol"), [(1e-6, 50, 1e-4), (0.03, 20, 1e-3), (0.01, 40, 1e-6)])
-def test_a_tension_of_short_range_is_followed_to_where_the_curve_falls_most_steeply(tabor, k, rtol):
+def test_a_tension_of_short_range_is_followed(tabor, k, rtol):
     """By the cubics between points that was next to the least load, in whose plane 0.1 of arclength on nothing is."""
     law = Exponential(k)
     path, truth = (halfspace.trace(tabor, law=law, rtol=to) for to in (rtol, rtol / 100))
@@ -232,6 +232,11 @@ def test_a_tension_of_short_range_is_followed_to_where_the_curve_falls_most_stee
         gaps = np.linspace(0, 0.1, 100001)
         largest = np.max(-law.pressure(gaps, tabor)) / tabor
         assert 2 * np.pi * largest * path.margin.value == pytest.approx(1, abs=3e-4)
+
+
+def test_a_tension_of_long_range_is_followed_to_its_end():
+    """An exponential over ten spacings, of which finite cells hold a part that is no power."""
+    assert_same(*(halfspace.trace(1.0, law=Exponential(0.1), rtol=rtol) for rtol in (1e-5, 1e-8)))
 
 
 @pytest.mark.parametrize("law", [PowerLaw(2.5, 9.5), Dlvo(0.3, 1.0)], ids=str)
