@@ -42,10 +42,6 @@ from halfspace.errors import InputError
 from halfspace.limits import require_between
 from halfspace.values import Array, Index, Valued
 
-RECENT = 3  # states whose deformation is kept: the last, its trial, and the one before
-SMALL = 0.5
-"""Change of volume below which x - ln(1 + x) is integrated rather than subtracted; ten Gauss points give all digits."""
-
 TRANSPOSED = ((1, 2), (3, 4))
 """Positions of the components of A in the r-z plane: A[i][j] = du_i/dX_j."""
 
@@ -104,12 +100,13 @@ def shear_energy(state: Deformation, shear: float) -> Array:
 
 def _log_remainder(x: Array) -> Array:
     """(x - ln(1 + x))/x^2 = int_0^1 t/(1 + x t) dt, 1/2 at x = 0."""
-    t, weight = gauss_legendre(10)
+    t, weight = gauss_legendre(10)  # which give all digits up to a change of volume of a half
+    small = np.abs(x) < 0.5
     t, weight = (1 + t) / 2, weight / 2
-    near = np.where(np.abs(x) < SMALL, x, 0.0)
+    near = np.where(small, x, 0.0)
     by_quadrature = np.sum(weight * t / (1 + near[..., None] * t), axis=-1)
-    far = np.where(np.abs(x) < SMALL, 1.0, x)
-    return np.asarray(np.where(np.abs(x) < SMALL, by_quadrature, (far - np.log1p(far)) / far**2))
+    far = np.where(small, 1.0, x)
+    return np.asarray(np.where(small, by_quadrature, (far - np.log1p(far)) / far**2))
 
 
 def stress(state: Deformation, shear: float, pressure: Array | float) -> Array:
@@ -186,7 +183,7 @@ class Body(Valued):
             if np.array_equal(known, u):
                 return state
         self._recent.insert(0, (u.copy(), Deformation(self.cells.gradient(u), self.stretch)))
-        del self._recent[RECENT:]
+        del self._recent[3:]  # the last, its trial, and the one before
         return self._recent[0][1]
 
     def forget(self) -> None:

@@ -26,12 +26,10 @@ from fem_adhesion.elasticity.condensation import Dissection
 from fem_adhesion.elasticity.elimination import Factors
 from fem_adhesion.elasticity.exterior import Exterior
 from fem_adhesion.finite_strain.body import Body
+from fem_adhesion.finite_strain.settings import USUAL, Settings
 from halfspace.equilibrium.contact import Solver, count_negative
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Valued
-
-SLOW = 0.1  # part of the error that an iteration may leave; a state that leaves more gets a tangent of its own
-SOLVED = 1e-10  # relative accuracy of the linear equations where none is asked for
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,6 +82,7 @@ class HeldBody(Valued):
     body: Body
     exterior: Exterior
     surface: Index
+    settings: Settings = USUAL
 
     @property
     def size(self) -> int:
@@ -126,7 +125,9 @@ class HeldBody(Valued):
         def solve(rhs: Array, accuracy: float = 0.0) -> Array:
             nonlocal tangent, nearly
             if not self._exact(tangent, y):
-                solution = _iterated(preconditioned, nearly(rhs), max(accuracy, SOLVED), known)
+                solution = _iterated(
+                    preconditioned, nearly(rhs), max(accuracy, self.settings.solved), known, self.settings.slow
+                )
                 if solution is not None:
                     return solution
                 tangent = self.tangent(y)
@@ -179,7 +180,7 @@ class HeldBody(Valued):
 
 
 def _iterated(
-    product: Callable[[Array], Array], rhs: Array, accuracy: float, known: list[tuple[Array, Array]]
+    product: Callable[[Array], Array], rhs: Array, accuracy: float, known: list[tuple[Array, Array]], slow: float
 ) -> Array | None:
     """Solution for a matrix near 1, of least residual in the space of its powers; None if it takes too many steps.
 
@@ -190,7 +191,7 @@ def _iterated(
     for step, effect in known:
         part = float(effect @ residual)
         solution, residual = solution + part * step, residual - part * effect
-    for _ in range(math.ceil(math.log(accuracy, SLOW))):
+    for _ in range(math.ceil(math.log(accuracy, slow))):
         if np.linalg.norm(residual) <= enough:
             return solution
         step, effect = residual, product(residual)

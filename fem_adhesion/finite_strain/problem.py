@@ -24,18 +24,13 @@ from fem_adhesion.elasticity.exterior import Exterior, FarField, point_load, wit
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.body import Body, displacement_body
 from fem_adhesion.finite_strain.held import HeldBody, Tangent
+from fem_adhesion.finite_strain.settings import USUAL, Settings
 from fem_adhesion.finite_strain.traction import ContactSurface, Convention, Traction, columns, contact_surface
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem, Solver
 from halfspace.errors import IllPosed, InputError
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.profiles import PARABOLOID, Surface
 from halfspace.values import Array, Valued
-
-MOST_STEPS, ENOUGH = 12, 1e-4  # to a start under a given pressure, and its relative accuracy
-SLOW = 0.5  # ratio of two such steps from which the stiffness is computed again
-MOST_DRAWN = 2.0  # r_d/r: up to 1.4 in spheres that are about to be drawn flat, 2.3 to 140 in needles of few cells
-LEAST_VOLUME = 0.1
-"""J below which no step may take a cell in one go, unless it was there already: before it is turned inside out."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -180,20 +175,20 @@ class FiniteStrainProblem(Valued):
         By steps with the undeformed body's tangent, or the one at hand where a state is near, as long as they converge,
         else with that of where they led; the first alone gives the linear body.
         """
-        law, mu = self.interface.law, self.tabor
+        law, mu, how = self.interface.law, self.tabor, self.held.settings
         P, Phi = law.pressure(state[:-2], mu), law.energy(state[:-2], mu)
         tangent, last = self.held.undeformed if near is None else self.held.near, np.inf
         y = tangent.y if near is None else near[:-1]
         solve = self._under(tangent, np.zeros(2 * self.surface.unknowns.shape))
-        for _ in range(MOST_STEPS):
+        for _ in range(how.start_steps):
             unbalanced = np.append(self._unbalanced(y, P, Phi), 0.0)
             dy = -solve(unbalanced)[:-1]
-            if not np.abs(dy).max() < SLOW * last:
+            if not np.abs(dy).max() < how.start_slow * last:
                 follower = self.traction.tangent(self.surface_unknowns(y), P, Phi, 0 * P)
                 solve = self._under(self.held.tangent(y), follower)
                 dy = -solve(unbalanced)[:-1]
             y, last = y + self._unturned(y, dy, 1.0) * dy, float(np.abs(dy).max())
-            if last < ENOUGH * np.abs(y).max():
+            if last < how.start_accuracy * np.abs(y).max():
                 break
         return np.append(y, state[-2])
 
@@ -256,7 +251,7 @@ class FiniteStrainProblem(Valued):
     def _unturned(self, y: Array, dy: Array, fraction: float) -> float:
         """Part of a step, a fraction of it at most, that turns no cell inside out."""
         ratio = self.body.least_volume_ratio
-        least = min(LEAST_VOLUME, ratio(self.held.unknowns(y)) / 2)
+        least = min(self.held.settings.least_volume, ratio(self.held.unknowns(y)) / 2)
         while ratio(self.held.unknowns(y + fraction * dy)) < least:
             fraction /= 2
         return fraction
@@ -277,11 +272,11 @@ class FiniteStrainProblem(Valued):
         GridTooCoarse and IllPosed tell what there is, and the limit.
         """
         self.interface.require_resolution(self.surface_state(x))
-        drawn = np.max(self._deformed_radii(x) / self.surface.points.radii)
-        if drawn > MOST_DRAWN:
+        most, drawn = self.held.settings.most_drawn, np.max(self._deformed_radii(x) / self.surface.points.radii)
+        if drawn > most:
             raise IllPosed(
                 f"the surface is drawn out {drawn:.3g} times at approach {x[-1]:.6g} eps, load {self.load(x):.6g} "
-                f"R dgamma, limit {MOST_DRAWN:g}; take a larger radius_ratio"
+                f"R dgamma, limit {most:g}; take a larger radius_ratio"
             )
 
     def untold(self, x: Array) -> Array:  # noqa: ARG002 (the same in all states)
@@ -314,6 +309,7 @@ def finite_strain_problem(
     convention: Convention,
     points: int | None = None,
     law: Law = LENNARD_JONES,
+    settings: Settings = USUAL,
 ) -> FiniteStrainProblem:
     """Put a body under a rigid flat wall that attracts it.
 
@@ -331,7 +327,7 @@ def finite_strain_problem(
     whole = with_interiors(exterior, space, body.unknowns - space.unknowns)
     surface = contact_surface(space, whole, space.degree + 2 if points is None else points)
     interface = ContactProblem(surface.rigid, tabor, law, profile)
-    return FiniteStrainProblem(HeldBody(body, whole, surface.unknowns), surface, interface, convention)
+    return FiniteStrainProblem(HeldBody(body, whole, surface.unknowns, settings), surface, interface, convention)
 
 
 def assemble(

@@ -23,6 +23,7 @@ from fem_adhesion.discretise import (
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.finite_strain.body import material_body
 from fem_adhesion.finite_strain.problem import FiniteStrainProblem, finite_strain_problem
+from fem_adhesion.finite_strain.settings import USUAL, Settings
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
@@ -41,31 +42,18 @@ from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
 from halfspace.limits import require_load, require_rtol
 from halfspace.values import Array, Valued
 
-WIDEST_TABOR = 3.0  # for a whole curve: its points grow as the square, to a minute's work at 3
-TIGHTEST = 1e-6  # relative tolerance
-MOST_RUNGS = 2  # above the lowest
-OTHER_CELLS = 4.0  # halves of the change by other cells and a degree that may be left: it errs less, but not always
+WIDEST_TABOR = 3.0  # limit of the Tabor parameter for a whole curve: its points grow as the square
+TIGHTEST = 1e-6  # limit of the relative tolerance
 LITTLE = 0.5  # R dgamma: a load past every event
-SOFT = 0.85  # part of the surface's stiffness to short waves, gone, from which solutions get lost
-FLATTENED = 0.13  # c dgamma/(E* R): up to 0.127 spheres of tabor 0.5 to 1 bear a load, at 0.169 one is lost
-SOFTENED = 0.5  # part of the surface's stiffness, gone, up to which the linear body's curve is taken
-STRAINED = 0.5  # widest contact radius in R up to which it is
-SMALLEST_PART = 0.005  # of delta, in which it is raised where the linear body's events are too far away
+FARTHEST = 0.98  # undeformed radius in R up to which a contact may spread; small slopes end before
 JUMPS = ("pull_off", "jump_on", "jump_off")
 NUMBERS = ("approach", "load", "central_gap", "contact_radius")
 CONSERVATIVE: tuple[TractionName, ...] = ("projected", "reference", "normal")
 
-FARTHEST = 0.98
-"""Undeformed radius in R up to which a contact may spread.
 
-Small slopes end before: `halfspace.equilibrium.contact.WIDEST`.
-"""
-
-WINDOW = 8
-"""Fine cells in a mesh of the curve: more cost more unknowns, fewer more meshes."""
-
-
-def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> EquilibriumPath:
+def trace(
+    scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION, settings: Settings = USUAL
+) -> EquilibriumPath:
     """Trace the load-approach curve of a scene at finite strain and solve for its events.
 
     The scene is a hemisphere of Tabor parameter 3 or less, `rtol` the relative accuracy asked of loads and approaches,
@@ -87,17 +75,13 @@ def trace(scene: Scene, rtol: float = 1e-4, to_load: float = COMPRESSION) -> Equ
             "take LinearElastic"
         )
     began = time.perf_counter()
-    with _cause_told(scene):
-        path = climb(
-            rtol,
-            partial(Stages(scene).rung, _lowest_degree(rtol, scene.tabor), to_load),
-            to_load=to_load,
-            most_rungs=MOST_RUNGS,
-        )
+    rung = partial(Stages(scene, settings).rung, _lowest_degree(rtol, scene.tabor), to_load)
+    with _cause_told(scene, settings):
+        path = climb(rtol, rung, to_load=to_load, most_rungs=settings.most_rungs)
         _require_no_needle(path.stages[-1])
-    settings = {**path.settings, "traction": scene.material.traction}
+    made = {**path.settings, "traction": scene.material.traction}
     apart = partial(_apart, scene, path.stages[-2])
-    return replace(path, model_uncertainty=apart, settings=settings, seconds=time.perf_counter() - began)
+    return replace(path, model_uncertainty=apart, settings=made, seconds=time.perf_counter() - began)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -105,6 +89,7 @@ class Stages(Valued):
     """Discretisations of a hemisphere at finite strain by elements of every degree, each made when first asked for."""
 
     scene: Scene
+    settings: Settings = USUAL
     along: dict[int, Windows] = field(default_factory=dict, compare=False, repr=False)
 
     def rung(self, lowest: int, to_load: float, level: int) -> Rung:
@@ -118,25 +103,25 @@ class Stages(Valued):
         One chain has no twin beside it: the shift of an event along the path counts, see `ErrorRule.along`.
         """
         degree = lowest + max(level, 1)
-        linear = not level and nearly_linear(self.scene, to_load)
+        linear = not level and nearly_linear(self.scene, to_load, self.settings)
         curve = partial(linear_charts, self.scene, to_load) if linear else partial(iter, self.windows(degree - 1))
         other, body = self.body(degree - 1, *TWIN[:2]), self.body(degree)
         bodies = [other] if not level else [body] if level == 1 else [other, body]
         stages = tuple(Raising(one, self.windows(one.how.degree)) for one in bodies)
         left = REMAINING / self.scene.scales.gradual
         settings = {"linear": linear, **asdict(bodies[-1].how)}
-        return Rung(curve, stages, settings, rule=ErrorRule(left, along=True, last=OTHER_CELLS))
+        return Rung(curve, stages, settings, rule=ErrorRule(left, along=True, last=self.settings.other_cells))
 
     def windows(self, degree: int) -> Windows:
         """For the curve."""
-        return self.along.setdefault(degree, Windows(ScenesBody(self.scene, Discretisation(degree))))
+        return self.along.setdefault(degree, Windows(ScenesBody(self.scene, Discretisation(degree), self.settings)))
 
     def body(self, degree: int, finest: float = 1.0, growth: float = 1.0) -> ScenesBody:
         """For events, in cells of other lengths and growth by these factors: stiff surfaces have wide spikes."""
         how = Discretisation(
             degree, finest * (1 - softening(self.scene)) * Discretisation.finest, growth * Discretisation.growth
         )
-        return ScenesBody(self.scene, how)
+        return ScenesBody(self.scene, how, self.settings)
 
 
 def _lowest_degree(rtol: float, tabor: float) -> int:
@@ -164,18 +149,18 @@ def _counted(event: Located, scene: Scene) -> Array:
         return np.full(len(NUMBERS), np.nan)
 
 
-def find_jumps(scene: Scene, rtol: float = 1e-4) -> dict[str, Event]:
+def find_jumps(scene: Scene, rtol: float = 1e-4, settings: Settings = USUAL) -> dict[str, Event]:
     """Solve for pull-off and jumps alone, without the curve between: from those of the linear body.
 
     Parameters, errors and error estimates as of `trace`, without the limit of the Tabor parameter; in the place of the
     curve's mesh each event has one of its own.
     """
     _require(scene, rtol, COMPRESSION)
-    rung = partial(Stages(scene).rung, _lowest_degree(rtol, scene.tabor), LITTLE)
+    rung = partial(Stages(scene, settings).rung, _lowest_degree(rtol, scene.tabor), LITTLE)
     lowest, curve = rung(0), trace_charts(linear_charts(scene, LITTLE), LITTLE)
     found = {name: event for name, event in find_events(curve).items() if name in JUMPS}
-    with _cause_told(scene):
-        ascent = ascend(on_all(found, lowest.stages[0]), lowest, rtol, rung, range(1, 1 + MOST_RUNGS))
+    with _cause_told(scene, settings):
+        ascent = ascend(on_all(found, lowest.stages[0]), lowest, rtol, rung, range(1, 1 + settings.most_rungs))
         _require_no_needle(ascent.chains[0][-1])
     return ascent.events
 
@@ -187,14 +172,14 @@ def _require_no_needle(events: State) -> None:
 
 
 @contextmanager
-def _cause_told(scene: Scene) -> Iterator[None]:
+def _cause_told(scene: Scene, settings: Settings) -> Iterator[None]:
     """Say, where a surface stress draws a tiny sphere flat or leaves no stiffness to short waves, that this is why."""
     part, ratio, R = softening(scene), scene.tabor * scene.sphere_radius**2, scene.sphere_radius
-    round_from = scene.tabor * (_surface_stress(scene) / FLATTENED) ** (2 / 3)
+    round_from = scene.tabor * (_surface_stress(scene) / settings.flattened) ** (2 / 3)
     try:
         yield
     except NotConverged as error:
-        ill_posed = part >= SOFT or (part > 0 and isinstance(error, IllPosed))
+        ill_posed = part >= settings.soft or (part > 0 and isinstance(error, IllPosed))
         if isinstance(error, ContactTooWide) or not ill_posed:
             if ratio >= round_from:
                 raise
@@ -207,7 +192,7 @@ def _cause_told(scene: Scene) -> Iterator[None]:
             f"radius_ratio = {ratio:g} is close to its limit {ratio * part**2:.3g} for traction = "
             f"{scene.material.traction!r}: the edge tension leaves {1 - part:.1%} of the surface's stiffness "
             f"to short waves ({error}); take traction = 'reference', or radius_ratio above "
-            f"{max(ratio * (part / SOFT) ** 2, round_from):.3g}"
+            f"{max(ratio * (part / settings.soft) ** 2, round_from):.3g}"
         ) from error
 
 
@@ -233,15 +218,16 @@ def raised(event: Located, problem: FiniteStrainProblem) -> Located:
     too much.
     """
     found, done, part = moved(event, problem.stretched(0.0)), 0.0, problem.stretch
+    least = problem.held.settings.smallest_part
     while done < problem.stretch:
-        last = done + part >= (1 - SMALLEST_PART) * problem.stretch
+        last = done + part >= (1 - least) * problem.stretch
         target = problem if last else problem.stretched(done + part)
         try:
             found = relocate(found, target, found.point.x, metric_for(target))
             done = target.stretch
         except NotConverged as error:
             part /= 2
-            if part < SMALLEST_PART:
+            if part < least:
                 approach, load = event.point.observables[[APPROACH, LOAD]]
                 raise NotConverged(
                     f"the event at approach {approach:.6g} eps, load {load:.6g} R dgamma is lost at beta/R = "
@@ -256,10 +242,10 @@ def linear_charts(scene: Scene, to_load: float) -> tuple[Chart, Chart]:
     return sized_body(linear, Discretisation(CURVE_DEGREE), to_load).curve()
 
 
-def nearly_linear(scene: Scene, to_load: float) -> bool:
+def nearly_linear(scene: Scene, to_load: float, settings: Settings) -> bool:
     """Whether strains are so small that the linear body has about the same events."""
     widest = scene.scales.widest_radius(to_load) / scene.sphere_radius
-    return softening(scene) < SOFTENED and widest < STRAINED
+    return softening(scene) < settings.softened and widest < settings.strained
 
 
 def _require(scene: Scene, rtol: float, to_load: float) -> None:
@@ -314,6 +300,7 @@ class ScenesBody(Valued):
 
     scene: Scene
     how: Discretisation
+    settings: Settings = USUAL
 
     def standing(self, radius: float) -> Chart:
         """Chart finest at a contact radius in beta."""
@@ -339,6 +326,7 @@ class ScenesBody(Valued):
             profile=scene.surface,
             convention=convention_of(scene.material.traction, scene.poisson),
             law=scene.law,
+            settings=self.settings,
         )
 
     @property
@@ -373,7 +361,7 @@ class Windows(WhereAsked):
 
     @property
     def _width(self) -> float:
-        return WINDOW * self.body.length
+        return self.body.settings.window * self.body.length
 
     @property
     def _count(self) -> int:

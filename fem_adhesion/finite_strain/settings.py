@@ -1,0 +1,60 @@
+"""The numbers of the algorithms at finite strain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Numbers of the algorithms at finite strain, relative unless a unit is given; they decide truth or cost as said.
+
+    Attributes
+    ----------
+    most_rungs
+        Rungs of the ladder above the lowest.
+    other_cells
+        Halves of the change by other cells and one degree more that may be left as error. At half of it the load at
+        jump-off by the traction ``vertical`` (poisson 0.499, tabor 1, R/eps 30) was outside its estimate.
+    softened, strained
+        The curve is that of the linear body up to this part of the surface's stiffness gone, and up to this widest
+        contact radius in R. Beyond, the linear body may lack events, or have others.
+    smallest_part
+        Least part in which beta/R is raised from the linear body; below it an event counts as lost.
+    window
+        Fine cells in one mesh of the curve: more cost unknowns, fewer cost meshes.
+    soft
+        Part of the surface's stiffness, gone, from which a lost solution is put down to it.
+    flattened
+        c dgamma/(E* R) above which a sphere is drawn flat: 0.127 bears a load at tabor 0.5 to 1, 0.169 does not.
+    slow
+        Part of the error that a step of the iteration by an old tangent may leave; else a new tangent is made.
+    solved
+        Accuracy of the linear equations where none is asked for.
+    start_steps, start_accuracy, start_slow
+        Most steps to a state under a given pressure, the accuracy of this state, and the ratio of two steps from
+        which the tangent is made anew.
+    most_drawn
+        Largest r_d/r of a surface: up to 1.4 in spheres about to be drawn flat, 2.3 to 140 in needles of few cells.
+    least_volume
+        Least volume ratio J to which a step may take a cell at once.
+    """
+
+    most_rungs: int = 2
+    other_cells: float = 4.0
+    softened: float = 0.5
+    strained: float = 0.5
+    smallest_part: float = 0.005
+    window: int = 8
+    soft: float = 0.85
+    flattened: float = 0.13
+    slow: float = 0.1
+    solved: float = 1e-10
+    start_steps: int = 12
+    start_accuracy: float = 1e-4
+    start_slow: float = 0.5
+    most_drawn: float = 2.0
+    least_volume: float = 0.1
+
+
+USUAL = Settings()
