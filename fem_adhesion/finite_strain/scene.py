@@ -245,7 +245,7 @@ def linear_charts(scene: Scene, to_load: float) -> tuple[Chart, Chart]:
 def nearly_linear(scene: Scene, to_load: float, settings: Settings) -> bool:
     """Whether strains are so small that the linear body has about the same events."""
     widest = scene.scales.widest_radius(to_load) / scene.sphere_radius
-    return softening(scene) < settings.softened and widest < settings.strained
+    return softening(scene) < settings.soft and widest < settings.strained
 
 
 def _require(scene: Scene, rtol: float, to_load: float) -> None:
@@ -357,7 +357,12 @@ class Windows(WhereAsked):
 
     def _chart(self, number: int) -> Chart:
         first, last = self._width * number, self._width * (number + 1)
-        return self.serving((first + last) / 2) or self.keep(first, last, self.body.chart(first, last))
+        found = self.serving((first + last) / 2)
+        if not found:
+            for *_, chart in self.made:  # the points of a curve come in order
+                if isinstance(chart.problem, FiniteStrainProblem):
+                    chart.problem.held.forget()
+        return found or self.keep(first, last, self.body.chart(first, last))
 
     @property
     def _width(self) -> float:

@@ -16,15 +16,15 @@ class Settings:
     other_cells
         Halves of the change by other cells and one degree more that may be left as error. At half of it the load at
         jump-off by the traction ``vertical`` (poisson 0.499, tabor 1, R/eps 30) was outside its estimate.
-    softened, strained
-        The curve is that of the linear body up to this part of the surface's stiffness gone, and up to this widest
-        contact radius in R. Beyond, the linear body may lack events, or have others.
+    soft
+        Part of the surface's stiffness, gone, from which a lost solution is put down to it; up to it the curve may be
+        that of the linear body.
+    strained
+        Widest contact radius in R up to which the curve is that of the linear body; beyond, it may have other events.
     smallest_part
         Least part in which beta/R is raised from the linear body; below it an event counts as lost.
     window
         Fine cells in one mesh of the curve: more cost unknowns, fewer cost meshes.
-    soft
-        Part of the surface's stiffness, gone, from which a lost solution is put down to it.
     flattened
         c dgamma/(E* R) above which a sphere is drawn flat: 0.127 bears a load at tabor 0.5 to 1, 0.169 does not.
     slow
@@ -42,11 +42,10 @@ class Settings:
 
     most_rungs: int = 2
     other_cells: float = 4.0
-    softened: float = 0.5
+    soft: float = 0.85
     strained: float = 0.5
     smallest_part: float = 0.005
     window: int = 8
-    soft: float = 0.85
     flattened: float = 0.13
     slow: float = 0.1
     solved: float = 1e-10
