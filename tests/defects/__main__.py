@@ -1,8 +1,8 @@
 """Defects that the tests must notice: each is put into a copy of the project, where a test named with it must fail.
 
-By hand: ``python tests/defects [WORD ...]``, all of defects.toml or those with a word in their name; ``--list`` shows
-what each is. A defect is caught if its tests pass without it and each fails with it. Exit code 1 if one is not caught.
-A defect is a piece of text that stands once in a file, what takes its place, and the tests: names of files or of tests.
+By hand: ``python tests/defects [WORD ...]``, all of defects.toml or those with a word in their name; ``--list`` says
+whether the places of all are found. A defect is caught if its tests pass without it and each fails with it, else the
+exit code is 1. It is a text that stands once in a file, what takes its place, and the tests as pytest is given them.
 """
 
 import argparse
@@ -50,14 +50,17 @@ def main(arguments=None):
     """Try the defects asked for and print a summary; 1 if one is not caught."""
     parser = argparse.ArgumentParser(prog="tests/defects", description=__doc__)
     parser.add_argument("words", nargs="*", help="parts of the names of the defects; all unless given")
-    parser.add_argument("--list", action="store_true", help="show the names alone")
+    parser.add_argument(
+        "--list", action="store_true", help="show the names and whether their places are found, and try none"
+    )
     parser.add_argument("--fast", action="store_true", help="do not try whether the tests pass without the defect")
     asked = parser.parse_args(arguments)
     known = tomllib.loads((Path(__file__).parent / "defects.toml").read_text())["defect"]
     chosen = [d for d in known if not asked.words or any(word in d["name"] for word in asked.words)]
     if asked.list:
-        print(*(f"{d['name']} ({d['file']})" for d in chosen), sep="\n")
-        return 0
+        places = [(d, (ROOT / d["file"]).read_text().count(d["before"])) for d in chosen if (ROOT / d["file"]).exists()]
+        print(*(f"{d['name']}: {count} times in {d['file']}" for d, count in places), sep="\n")
+        return int(len(places) < len(chosen) or any(count != 1 for _, count in places))
     fates = Counter()
     with tempfile.TemporaryDirectory() as place:
         tree = Path(shutil.copytree(ROOT, Path(place, "tree"), ignore=LEFT_OUT))
