@@ -21,16 +21,7 @@ from fem_adhesion.discretise import (
 )
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
-from halfspace.accuracy.finite_bodies import (
-    AROUND,
-    CLIMBED,
-    COARSEST,
-    TIGHT,
-    WINDOW,
-    AroundEvents,
-    operators_across,
-    surroundings,
-)
+from fem_adhesion.stages import AROUND, CLIMBED, COARSEST, TIGHT, WINDOW, AroundEvents, surroundings
 from halfspace.accuracy.grids import TWIN, rings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung
@@ -143,9 +134,13 @@ def block_charts(scene: Scene, resolution: BlockResolution, to_load: float = COM
         return (Chart(made.problem, made.unknowns),)
     extent = np.sqrt(2 * scene.tabor * float(scene.surface.height(np.array(radius))))
     lines = rings(scene.scales, how.finest, how.growth, extent, to_load, how.degree + 2)
-    centred, edge = (_to_infinity(scene, breaks, how) for breaks in (lines.centred, lines.edge))
+    centred = _to_infinity(scene, lines.centred, how)
+    first = Chart(centred.problem, centred.unknowns, lines.until)
+    if lines.edge is None:
+        return (first,)
+    edge = _to_infinity(scene, lines.edge, how)
     following = ContactProblem(Homogeneous(edge.operator), scene.tabor, scene.law, scene.surface)
-    return Chart(centred.problem, centred.unknowns, lines.until), Chart(following, edge.unknowns)
+    return first, Chart(following, edge.unknowns)
 
 
 def _to_infinity(scene: Scene, lines: Array, how: Discretisation) -> Discretised:
@@ -182,11 +177,10 @@ def _around_events(scene: Scene, how: Discretisation, rtol: float, level: int, t
 
     They differ by rounding, which counts in their derivative by the inverse of the window, see `windows`.
     """
+    _, count = surroundings(rtol, level)
+    across = min(rtol, COARSEST) if scene.body.curved else None
     body = sized_body(scene, how, to_load)
-    across = partial(operators_across, body, rtol, level) if scene.body.curved else None
-    usual, count = surroundings(rtol, level)
-    window = windows(rtol, level, count)
-    return AroundEvents(body, window, count, across=across, wider=window / usual)
+    return AroundEvents(body, how.degree + 2, windows(rtol, level, count), count, across, level)
 
 
 def windows(rtol: float, level: int, count: int) -> float:

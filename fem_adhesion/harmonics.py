@@ -24,7 +24,8 @@ from itertools import count, islice, pairwise
 import numpy as np
 
 from fem_adhesion.scene import Scene
-from halfspace.accuracy.finite_bodies import Made, SizedBody, standing
+from fem_adhesion.stages import standing
+from halfspace.accuracy.finite_bodies import Made, SizedBody
 from halfspace.accuracy.grids import TWIN
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung

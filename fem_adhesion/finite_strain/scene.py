@@ -27,9 +27,10 @@ from fem_adhesion.finite_strain.settings import USUAL, Settings
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
+from fem_adhesion.stages import Standing, WhereAsked
 from halfspace.accuracy.grids import TWIN
 from halfspace.accuracy.refinement import ascend, climb
-from halfspace.accuracy.stages import Rung, Standing, State, WhereAsked, on_all
+from halfspace.accuracy.stages import Rung, State, on_all
 from halfspace.elastic import grid
 from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, trace_charts, undeformed_radius
 from halfspace.equilibrium.conditions import Located, relocate
@@ -107,7 +108,7 @@ class Stages(Valued):
         curve = partial(linear_charts, self.scene, to_load) if linear else partial(iter, self.windows(degree - 1))
         other, body = self.body(degree - 1, *TWIN[:2]), self.body(degree)
         bodies = [other] if not level else [body] if level == 1 else [other, body]
-        stages = tuple(Raising(one, self.windows(one.how.degree)) for one in bodies)
+        stages = tuple(Raising(one, partial(Stages.windows, self, one.how.degree)) for one in bodies)
         left = REMAINING / self.scene.scales.gradual
         settings = {"linear": linear, **asdict(bodies[-1].how)}
         return Rung(curve, stages, settings, rule=ErrorRule(left, along=True, last=self.settings.other_cells))

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from halfspace.accuracy.finite_bodies import EQUAL, LEAVE, at_tip
+from halfspace.accuracy.finite_bodies import HAND_OVER, Made, SizedBody, at_tip
 from halfspace.elastic import compliance, grid
+from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import contact_of
@@ -86,16 +88,21 @@ def rule_for(scales: Scales, resolutions: Sequence[Resolution], level: int, doub
     """
     most, fewer = (resolution.nodes for resolution in resolutions)
     remaining = doubt * (ONE_NODE if level == 1 or scales.pieced else REMAINING)
-    return ErrorRule(remaining if most - fewer == level else max(remaining, ONE_NODE))
+    return ErrorRule(
+        remaining if most - fewer == level else max(remaining, ONE_NODE), steps=scales.body is not None and scales.steps
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Rings(Valued):
-    """Breakpoints of two charts: centred on the axis up to a contact radius, then on the edge, whose radius is 1."""
+    """Breakpoints of two charts: centred on the axis up to a contact radius, then on the edge, whose radius is 1.
+
+    There is no second chart where the first is fine wherever a contact may end.
+    """
 
     centred: Array
-    edge: Array
-    until: float
+    edge: Array | None = None
+    until: float = math.inf
 
 
 def rings(
@@ -110,23 +117,18 @@ def rings(
 
     `finest` is in widths of the spike, `extent` in those of the attraction, as in `Resolution`.
     """
-    length = scales.edge_cell(finest)
     outer = scales.outer_radius(extent**2 / 2)
-    widest, first = scales.widest_radius(to_load), at_tip(scales.profile, nodes)
-    growth = scales.growth(growth)
-    least, reach = EQUAL * length, math.floor(EQUAL * scales.flat) * length  # that carries a contact there at once
-    centred = grid.graded(0.0, length, outer, growth=growth, until=reach)
     if scales.law.outermost:
-        return Rings(_fine_throughout(scales, finest, growth, outer, to_load), centred, math.inf)
-    edge = grid.graded(1.0, 2 * length / widest, outer / (LEAVE * least), growth=growth)  # as wide from the first
-    towards = inwards(scales, growth)
+        return Rings(_fine_throughout(scales, finest, scales.growth(growth), outer, to_load))
+    length, widest, first = scales.edge_cell(finest), scales.widest_radius(to_load), at_tip(scales.profile, nodes)
+    growth = scales.growth(growth)
+    towards = TIP * growth if scales.profile.pointed else growth
+    equal, leave = HAND_OVER.equal, HAND_OVER.leave
+    reach = math.floor(equal * scales.flat) * length  # that carries a contact there at once
+    centred = grid.graded(0.0, length, outer, growth=growth, until=reach)
+    edge = grid.graded(1.0, 2 * length / widest, outer / (leave * equal * length), growth=growth)  # as wide at first
     edge = grid.towards_axis(edge, first / widest, towards)
-    return Rings(grid.towards_axis(centred, first, towards), edge, LEAVE * reach)
-
-
-def inwards(scales: Scales, growth: float) -> float:
-    """Ratio of neighbouring cells towards the axis."""
-    return TIP * growth if scales.profile.pointed else growth
+    return Rings(grid.towards_axis(centred, first, towards), edge, leave * reach)
 
 
 def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float, to_load: float) -> Array:
@@ -143,41 +145,62 @@ def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float,
     return grid.graded(0.0, spacing, max(outer, reach + spacing), growth=growth, until=reach)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Grids(Valued):
-    """The half-space on two grids: one centred on the axis, up to a contact radius in beta, and one that follows it."""
-
-    centred: compliance.ElasticOperator
-    edge: Homogeneous
-    until: float
-
-    @classmethod
-    def of(
-        cls,
-        scales: Scales,
-        resolution: Resolution,
-        to_load: float = COMPRESSION,
-        operator: Callable[[int, float, Array], compliance.ElasticOperator] | None = None,
-    ) -> Grids:
-        """Cells as fine as a contact needs them up to a load, with the operator `endless` unless another is given."""
-        nodes, reach, make = resolution.nodes, scales.tail_reach, operator or endless
-        lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, nodes)
-        centred, edge = (make(nodes, reach, breaks) for breaks in (lines.centred, lines.edge))
-        return cls(centred, Homogeneous(edge), lines.until)
-
-    def charts(self, scales: Scales) -> tuple[Chart, Chart]:
-        """Both grids under a contact of these scales, or of stiffer ones that need no finer cells."""
-        return (
-            Chart(contact_of(scales, self.centred), self.centred.radii.size, self.until),
-            Chart(contact_of(scales, self.edge), self.edge.unit.radii.size),
-        )
-
-
-def half_space_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, Chart]:
-    """Panel grids centred on the axis and following the contact edge."""
-    return Grids.of(scales, resolution, to_load).charts(scales)
+MakeOperator = Callable[[int, float, Array], compliance.ElasticOperator]
+"""Makes an operator from the nodes in a cell, `Scales.tail_reach` and the ends of the cells."""
 
 
 def endless(nodes: int, reach: float, breaks: Array) -> compliance.ElasticOperator:
     """Operator of the half-space on panels of so many nodes, the last of which is infinite, see `Scales.tail_reach`."""
     return compliance.to_infinity(compliance.panels(breaks, nodes), nodes, reach)
+
+
+def half_space_charts(
+    scales: Scales, resolution: Resolution, to_load: float = COMPRESSION, make: MakeOperator = endless
+) -> tuple[Chart, ...]:
+    """Charts of the half-space: centred on the axis and, unless that is fine throughout, following the contact edge."""
+    lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, resolution.nodes)
+    centred, leave = make(resolution.nodes, scales.tail_reach, lines.centred), scales.edge_cell(resolution.finest)
+    first = Chart(contact_of(scales, centred), centred.radii.size, lines.until, HAND_OVER.equal * leave)
+    if lines.edge is None:
+        return (first,)
+    edge = make(resolution.nodes, scales.tail_reach, lines.edge)
+    return first, Chart(contact_of(scales, Homogeneous(edge)), edge.radii.size)
+
+
+def sphere_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, ...]:
+    """Charts of the half-space under a surface that ends, as a sphere's does at its equator."""
+    body = under_sphere(scales, resolution, to_load)
+    return body.curve(operators_of_curve(body, resolution.nodes))
+
+
+def under_sphere(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> SizedBody:
+    """Half-space under a surface that ends, on cells of its own at each contact radius."""
+    R, nodes = scales.profile.end, resolution.nodes
+    return SizedBody(
+        scales,
+        partial(_made, R, nodes),
+        resolution.finest,
+        resolution.growth,
+        np.array([2 * R]),
+        SurfaceCoordinate(R),
+        to_load=to_load,
+        first=at_tip(scales.profile, nodes),
+        together=partial(_all_made, R, nodes),
+    )
+
+
+def operators_of_curve(body: SizedBody, nodes: int) -> int:
+    """Operators between which that of a curve is interpolated, by the nodes in a cell.
+
+    So few that they leave 1e-2 of what the nodes leave at 1e-6, more for a node more, so that the change from rung to
+    rung tells their error too.
+    """
+    return body.operators_between(*body.radii_of_curve, 10.0 ** (-4 - nodes / 2))
+
+
+def _made(R: float, nodes: int, lines: Array) -> Made:
+    return _all_made(R, nodes, lines[None])[0]
+
+
+def _all_made(R: float, nodes: int, lines: Array) -> list[Made]:
+    return [(operator, operator.radii.size) for operator in compliance.stacked_panels(lines, nodes, R)]

@@ -16,11 +16,13 @@ from functools import partial
 from halfspace.accuracy.grids import (
     EXTENT,
     ONE_NODE,
-    Grids,
+    MakeOperator,
     Resolution,
     endless,
+    half_space_charts,
     resolutions_for,
     rule_for,
+    sphere_charts,
     twin_of,
 )
 from halfspace.accuracy.refinement import MOST_RUNGS
@@ -44,21 +46,23 @@ BEYOND = 8  # nodes of the infinite cell; with 12 no digit of 1e-5 is another
 class Kernel:
     """A representation of the pressure.
 
-    `operator` makes that of the body from the nodes or intervals in a cell, `Scales.tail_reach` and the ends of the
-    cells. `resolutions` gives, for a relative accuracy, that of a level and that of a twin of the level below, and
-    `rule` how errors follow from both. `least` is the smallest accuracy that is served, and `most_rungs` the number of
-    levels above the lowest.
+    `make` makes the operator of the half-space. `resolutions` gives, for a relative accuracy, that of a level and that
+    of a twin of the level below, and `rule` how errors follow from both. `least` is the smallest accuracy that is
+    served, and `most_rungs` the number of levels above the lowest.
     """
 
-    operator: Callable[[int, float, Array], ElasticOperator]
+    name: str
+    make: MakeOperator
     resolutions: Callable[[Scales, float, int], tuple[Resolution, Resolution]]
-    rule: Callable[[Scales, tuple[Resolution, Resolution], int], ErrorRule]
+    rule: Callable[[Scales, tuple[Resolution, Resolution], int, int], ErrorRule]
     least: float
     most_rungs: int
 
-    def charts(self, scales: Scales, resolution: Resolution, to_load: float) -> tuple[Chart, Chart]:
-        """Grids centred on the axis and following the contact edge."""
-        return Grids.of(scales, resolution, to_load, self.operator).charts(scales)
+    def charts(self, scales: Scales, to_load: float) -> Callable[[Resolution, int], tuple[Chart, ...]]:
+        """Makes the half-space's charts of a resolution: an operator for all radii, unless the surface ends."""
+        if math.isfinite(scales.profile.end):
+            return lambda resolution, _: sphere_charts(scales, resolution, to_load)
+        return lambda resolution, _: half_space_charts(scales, resolution, to_load, self.make)
 
 
 def _straight(kind: str, parts: int, intervals: int, reach: float, cells: Array) -> ElasticOperator:
@@ -74,15 +78,15 @@ def _finer(scales: Scales, rtol: float, level: int) -> tuple[Resolution, Resolut
     return here, twin_of(below)
 
 
-def _falling(scales: Scales, resolutions: tuple[Resolution, Resolution], level: int) -> ErrorRule:  # noqa: ARG001
+def _falling(scales: Scales, *_: object) -> ErrorRule:
     """How errors are told from the change by a level: where derivatives leap they fall as the square alone."""
     return ErrorRule(ONE_NODE if scales.pieced else CROSSING)
 
 
 KERNELS: Mapping[str, Kernel] = {
-    "panels": Kernel(endless, resolutions_for, rule_for, 1e-9, MOST_RUNGS),
-    "triangles": Kernel(partial(_straight, "triangles", 2), _finer, _falling, 1e-6, 2),
-    "bands": Kernel(partial(_straight, "bands", 3), _finer, _falling, 1e-6, 2),
+    "panels": Kernel("panels", endless, resolutions_for, rule_for, 1e-9, MOST_RUNGS),
+    "triangles": Kernel("triangles", partial(_straight, "triangles", 2), _finer, _falling, 1e-6, 2),
+    "bands": Kernel("bands", partial(_straight, "bands", 3), _finer, _falling, 1e-6, 2),
 }
 
 

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Protocol
+from dataclasses import dataclass
 
-from halfspace.equilibrium.charts import Chart, Stage, settled, undeformed_radius
+from halfspace.equilibrium.charts import Chart, Stage, settled
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.events import FOLDS, USUAL, ErrorRule, Event, estimate_event, is_event
@@ -20,103 +18,20 @@ State = Mapping[str, Located]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Charted(Stage):
-    """The same charts for every event, one for those on a grid that stands still, one for those on one that follows.
-
-    The chart for the grid that follows the contact is the last.
-    """
+    """The same charts for every state, the last of which follows the contact, if there are several."""
 
     charts: Charts
 
     def __call__(self, event: Located) -> Chart:
-        """Chart of the event's kind."""
-        return self.charts[-1 if event.problem.interface.follows_contact else 0]
+        """Chart of a state: the first only where it was found on a grid that stands still too, and has not left it."""
+        follows = event.problem.interface.follows_contact
+        wide = event.point.observables[CONTACT_RADIUS] > self.charts[0].leave
+        return self.charts[-1 if follows or wide else 0]
 
     @property
     def unknowns(self) -> int:
         """Unknowns of the largest chart."""
         return max(chart.unknowns for chart in self.charts)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LeavesEarly(Charted):
-    """Two charts of which events leave the first as soon as their contact is wider than `leave`, in beta.
-
-    The curve stays on it as long as it serves.
-    """
-
-    leave: float
-
-    def __call__(self, event: Located) -> Chart:
-        """Chart for an event."""
-        wide = event.point.observables[CONTACT_RADIUS] > self.leave
-        return self.charts[-1] if wide else super().__call__(event)
-
-    @cached_property
-    def everywhere(self) -> Charted:
-        """The same charts for every point of a curve."""
-        return Charted(self.charts)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class WhereAsked(Stage):
-    """A stage whose charts are made when first asked for, each with the contact radii from and to which it serves."""
-
-    made: list[tuple[float, float, Chart]] = field(default_factory=list, compare=False, repr=False, kw_only=True)
-
-    def serving(self, radius: float) -> Chart | None:
-        """Chart made before that serves a contact radius in beta."""
-        return next((chart for least, most, chart in self.made if least <= radius <= most), None)
-
-    def keep(self, least: float, most: float, chart: Chart) -> Chart:
-        """Keep a chart that serves contact radii between these."""
-        self.made.append((least, most, chart))
-        return chart
-
-    @property
-    def unknowns(self) -> int:
-        """Most unknowns of a chart made so far."""
-        return max(chart.unknowns for *_, chart in self.made)
-
-
-class Gridded(Protocol):
-    """A body that a grid can be made on for any contact radius."""
-
-    @property
-    def length(self) -> float:
-        """Length in beta of the cells at the contact edge."""
-        ...
-
-    def standing(self, radius: float) -> Chart:
-        """Chart that stands still, its cells finest at a contact radius in beta, or on the axis."""
-        ...
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Standing(WhereAsked):
-    """A stage on which every event has a grid of its own that stands still, finest where its contact ends.
-
-    `along` is for the points of a curve.
-    """
-
-    body: Gridded
-    along: Stage
-
-    def __call__(self, event: Located) -> Chart:
-        """Chart for an event, made unless one made before will do."""
-        for *_, chart in self.made:  # on its own an event may have moved by more than that serves
-            if chart.problem is event.problem:
-                return chart
-        radius, near = undeformed_radius(event.problem, event.point), NEAR * self.body.length
-        radius = radius if radius > self.body.length else 0.0
-        return self.serving(radius) or self.keep(radius - near, radius + near, self.body.standing(radius))
-
-    @property
-    def everywhere(self) -> Stage:
-        """That for the points of a curve."""
-        return self.along
-
-
-NEAR = 0.1  # of the finest cell, that a contact may end beside the place for which a grid was made
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -73,27 +73,6 @@ def _growing(length: float, finest: float, growth: float) -> Array:
     return np.concatenate([[0.0], np.cumsum(steps) * (length / steps.sum())])
 
 
-def about(
-    first: float, zone: tuple[float, float], extent: float, *, growth: float, within: float, beyond: float
-) -> Array:
-    """Breakpoints from 0 to `extent` that grow from `first` at 0 on, but slowly in a zone and away from it.
-
-    The most ratios of neighbours are `growth`, `within` the zone, where they are as long as if they had grown so slowly
-    from 0 on, and `beyond` it on either side.
-    """
-    places = first * np.expm1(np.linspace(0.0, np.log1p(extent / first), SAMPLES))
-    nearest = np.clip(places, *zone)
-    by_zone = np.log(within) * (nearest + first) + np.log(beyond) * np.abs(places - nearest)
-    lengths = np.minimum(np.log(growth) * (places + first / (growth - 1)), by_zone)
-    cells = np.append(0.0, np.cumsum(np.diff(places) * (1 / lengths[1:] + 1 / lengths[:-1]) / 2))
-    breaks = np.interp(np.linspace(0.0, cells[-1], int(np.ceil(cells[-1] - 1e-9)) + 1), cells, places)
-    breaks[[0, -1]] = 0.0, extent
-    return breaks
-
-
-SAMPLES = 400  # of the lengths of cells, from which their ends are told
-
-
 def equal_ratios(first: float, last: float, *, most: float) -> Array:
     """Breakpoints from `first` to `last` in equal ratios, each of `most` or less; `last` alone if it is no larger."""
     count = int(np.ceil(np.log(last / first) / np.log(most) - 1e-9))

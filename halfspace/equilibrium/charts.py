@@ -37,20 +37,21 @@ COMPRESSION = 5.0  # load in R dgamma at which a curve ends unless asked otherwi
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Chart(Valued):
-    """A discretisation, its unknowns, and the undeformed contact radius (beta) up to which it serves, or infinity."""
+    """A discretisation and its unknowns.
+
+    The curve leaves it where the undeformed contact radius exceeds `until`, an event of the curve, found on any other,
+    where its contact radius exceeds `leave`; both in beta, infinite where it serves any.
+    """
 
     problem: Traceable
     unknowns: int
     until: float = np.inf
+    leave: float = np.inf
 
     def left(self, problem: Traceable, point: Point) -> bool:
         """Whether the contact at a point has left what the chart serves, or fills the body as allowed."""
         body = self.problem.interface.profile.end
         return undeformed_radius(problem, point) > (WIDEST * body if np.isinf(self.until) else self.until)
-
-    def onward(self, problem: Traceable, point: Point) -> Chart | None:  # noqa: ARG002 (of those that know of others)
-        """Chart on which the curve goes on from a point at which this one is left; None for the next in order."""
-        return None
 
 
 class Stage(Valued, ABC):
@@ -68,11 +69,6 @@ class Stage(Valued, ABC):
     @property
     def everywhere(self) -> Stage:
         """The same for every point of a path: itself, unless its charts are for events."""
-        return self
-
-    @property
-    def at_rest(self) -> Stage:
-        """The same for states that no derivative along the path tells: itself, unless these take fewer operators."""
         return self
 
     def prepare(self, events: Iterable[Located]) -> None:
@@ -99,9 +95,7 @@ def trace_charts(
     NotConverged if the continuation gets stuck.
     """
     segments: list[Segment] = []
-    in_order = iter(charts)
-    chart: Chart | None = None
-    while chart := (chart and chart.onward(segments[-1].problem, segments[-1].points[-1])) or next(in_order, None):
+    for chart in charts:
         problem, metric = chart.problem, metric_for(chart.problem)
         first = problem.interface.scales.separated_approach - 10
         point = _hand_over(segments[-1], problem, metric) if segments else separated(problem, first, metric)

@@ -304,11 +304,7 @@ def _refined(states: JumpStates, stage: Stage, compliance: float) -> JumpStates:
         return landing_of(fold, wide, transfer(state.problem, state.point.x, wide), compliance)
 
     fold = settled(states.take_off, stage, leave)
-    try:
-        landing = settled(states.landing, stage.at_rest, land)
-    except NotConverged:  # far from where it was found: cells that follow the contact go along with it
-        landing = settled(states.landing, stage, land)
-    return JumpStates(fold, landing, states.on, states.known)
+    return JumpStates(fold, settled(states.landing, stage, land), states.on, states.known)
 
 
 def _wide_enough(state: Located, problem: Traceable) -> Traceable:

@@ -13,9 +13,10 @@ from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.finite_strain.scene import ScenesBody, Windows, softening
 from fem_adhesion.harmonics import Fineness as Series
 from fem_adhesion.harmonics import sized_body as series
-from halfspace.accuracy.finite_bodies import SizedBody, at_tip, standing
+from fem_adhesion.stages import Standing, standing
+from halfspace.accuracy.finite_bodies import SizedBody, at_tip
 from halfspace.accuracy.grids import Resolution, half_space_charts
-from halfspace.accuracy.stages import Charted, Standing
+from halfspace.accuracy.stages import Charted
 from halfspace.elastic import compliance
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import images_of, layered_panels
@@ -132,7 +133,7 @@ def finite_strain(scene):
     finest = 1 - softening(scene)
     hows = ((7, 0.55 * finest, 2.2), (8, 0.45 * finest, 2.0))
     found = [ScenesBody(scene, Discretisation(*how)) for how in hows]
-    return [Standing(body, Windows(body)) for body in found]
+    return [Standing(body, partial(Windows, body)) for body in found]
 
 
 def along_at_finite_strain(scene):

@@ -4,6 +4,7 @@ import csv
 import io
 import re
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -33,7 +34,7 @@ from fem_adhesion.finite_strain.scene import (
 )
 from fem_adhesion.finite_strain.settings import USUAL
 from fem_adhesion.finite_strain.traction import Convention
-from halfspace.accuracy.stages import Standing
+from fem_adhesion.stages import Standing
 from halfspace.elastic import grid
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Chart, moved, placed, transfer, undeformed_radius
@@ -493,7 +494,7 @@ def test_where_the_surface_stress_fades_forces_and_load_are_still_derivatives_of
 def outside(path, asked, how):
     """Numbers of a path's events that are farther from those on other meshes than estimated."""
     body = ScenesBody(asked, how)
-    stage, found = Standing(body, Windows(body)), []
+    stage, found = Standing(body, partial(Windows, body)), []
     for name in ("pull_off", "jump_on", "jump_off", "zero_load"):
         event, state = path.events[name], path.stages[-1][name]
         truth = moved(state, stage(state).problem).point.observables

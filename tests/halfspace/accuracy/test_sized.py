@@ -16,22 +16,15 @@ import halfspace
 from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic, Meshed, NeoHookean, Scene
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
-from halfspace.accuracy.finite_bodies import (
-    AroundEvents,
-    AtRest,
-    SizedBody,
-    operators_across,
-    surroundings,
-)
-from halfspace.accuracy.grids import resolution_for
+from fem_adhesion.stages import AroundEvents, surroundings
+from halfspace.accuracy.grids import operators_of_curve, resolution_for, under_sphere
 from halfspace.accuracy.stages import on_all
-from halfspace.accuracy.trace import under_sphere
 from halfspace.elastic import compliance, grid
-from halfspace.elastic.operators import Homogeneous, chebyshev_radii
+from halfspace.elastic.operators import Homogeneous, Interpolated, chebyshev_radii
 from halfspace.equilibrium.charts import Chart, moved
 from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.devices import cycle
-from halfspace.errors import InputError, NotConverged
+from halfspace.errors import InputError
 from halfspace.profiles import PARABOLOID, Paraboloid, Sphere
 from halfspace.profiles.formulas import between_spheres
 from halfspace.scales import Scales
@@ -183,7 +176,7 @@ def test_the_half_space_under_a_sphere_has_the_events_of_finite_elements(spheres
 @pytest.fixture(scope="module")
 def block(spheres):
     scene = Scene(1.0, profile=Sphere(10.0))
-    stage = AroundEvents(sized_body(scene, Discretisation(6)))
+    stage = AroundEvents(sized_body(scene, Discretisation(6)), 8)
     found = spheres[10.0].stages[-1]
     names = ("pull_off", "jump_on", "jump_off")
     states = {name: moved(found[name], stage(found[name]).problem) for name in names}
@@ -221,8 +214,8 @@ def test_a_degree_more_leaves_a_tenth_where_the_attraction_of_a_block_ends_with_
 def test_events_share_an_operator_within_its_window_alone(part, shared):
     """Beyond it the operator is extrapolated, and the error estimate could not tell."""
     made = []
-    body = SimpleNamespace(around=lambda radius, window, count: made.append((radius, window, count)) or Chart(None, 1))
-    stage = AroundEvents(body, window=2e-3, count=5)
+    body = SimpleNamespace(span=lambda *of: of, over=lambda *of: made.append(of) or Chart(None, 1))
+    stage = AroundEvents(body, 8, window=2e-3, count=5)
     problem = ContactProblem(Homogeneous(compliance.panels(grid.graded(1.0, 0.5, 10.0), 4)), 1.0)
     for radius in (1.0, 1.0 + part * 2e-3):
         observables = np.array([0.0, 0.0, 0.0, radius])
@@ -242,37 +235,38 @@ def test_events_share_one_chart_where_that_takes_fewer_operators_than_one_for_ea
 
 def test_points_of_a_curve_have_no_more_operators_than_rounding_lets_tell_apart():
     """On a high rung there were two thousand, whose polynomial overflowed: at `rtol=1e-9` a curve had no points."""
-    scales = Scales(1.0, profile=between_spheres(np.sqrt(30.0), np.inf))
-    body = under_sphere(scales, resolution_for(scales, 1e-3))
-    stage = AroundEvents(body, *surroundings(1e-9, 7))
-    operator = stage.everywhere.charts[1].problem.operator
+    body = under_sphere(Scales(1.0, profile=between_spheres(np.sqrt(30.0), np.inf)), resolution_for(SCALES, 1e-3))
+    operator = body.curve(operators_of_curve(body, 16))[1].problem.operator
     assert operator.scales.size < 80
     a = float(np.sqrt(operator.scales[3] * operator.scales[4]))
     exact = body.together(operator.grid.lines(a)[None])[0][0]
     assert operator.at(a).compliance == pytest.approx(exact.compliance, rel=0, abs=1e-11 * np.max(exact.compliance))
 
 
-@pytest.mark.parametrize(("window", "level"), [(0.29, 0), (0.7, 0), (0.7, 1)])
-def test_an_operator_across_events_errs_as_the_number_it_was_made_for_says(window, level):
+SCALES = Scales(1.0)
+
+
+@pytest.mark.parametrize("window", [0.29, 0.7])
+def test_an_operator_across_events_errs_as_the_number_it_was_made_for_says(window):
     """Against one made where it errs most, at the end of its window, on the same grid."""
     body = sized_body(Scene(3.0, Hemisphere(radius_ratio=300.0)), Discretisation(4))
     errors = {}
     for rtol in (1e-3, 1e-5):
-        count = operators_across(body, rtol, level, 1.2, window)
-        operator = body.around(1.2, window, count).problem.operator
+        span = body.span(1.2, window)
+        operator = body.over(*span, body.operators_between(*span, rtol)).problem.operator
         a = 1.2 * np.exp(0.95 * window)
         exact = body.make(operator.grid.lines(a))[0]
         pressure = np.exp(-(exact.radii**2))
         errors[rtol] = np.abs((operator.at(a).compliance - exact.compliance) @ pressure).max()
     assert errors[1e-5] < errors[1e-3] / 5
-    assert errors[1e-5] < 1e-6 / 10**level
+    assert errors[1e-5] < 1e-6
 
 
 @pytest.mark.parametrize(("tabor", "ratio"), [(1.0, 300.0), (1.0, 60.0), (3.0, 30.0), (0.3, 100.0)])
 def test_meshes_for_one_chart_have_the_same_cells(tabor, ratio):
     """By a layer of cells more or less the operators would differ by 1e-7, and so would what lies between them."""
     body = sized_body(Scene(tabor, Hemisphere(radius_ratio=ratio)), Discretisation(6))
-    operator = body.around(1.2, 0.3, 9).problem.operator
+    operator = body.over(*body.span(1.2, 0.3), 9).problem.operator
     assert len({body.make(operator.grid.lines(a))[1] for a in operator.scales}) == 1
     exact = body.make(operator.grid.lines(1.3))[0]
     pressure = np.exp(-(exact.radii**2))
@@ -281,7 +275,8 @@ def test_meshes_for_one_chart_have_the_same_cells(tabor, ratio):
 
 def test_an_event_that_moves_out_of_a_window_is_solved_for_on_an_operator_of_its_own():
     path = halfspace.trace(1.0, profile=Sphere(100.0), rtol=1e-2)
-    coarse, stage = path.stages[0]["pull_off"], replace(path.finest, window=1e-7, made=[])
+    coarse, scales = path.stages[0]["pull_off"], path.segments[0].problem.scales
+    stage = AroundEvents(under_sphere(scales, resolution_for(scales, 1e-4)), 8, window=1e-7)
     (found,) = on_all({"pull_off": coarse}, stage).values()
     before, after = (float(event.point.observables[CONTACT_RADIUS]) for event in (coarse, found))
     assert abs(found.problem.operator.scales.mean() - after) < 0.01 * abs(after - before)
@@ -291,13 +286,13 @@ def test_the_derivative_of_an_operator_around_an_event_is_as_good_as_the_toleran
     """By which a fold is found; against differences of whole operators over ever narrower windows, extrapolated."""
     scales = Scales(2.0, profile=between_spheres(np.sqrt(5.0), np.inf))
     body = under_sphere(scales, resolution_for(scales, 1e-8))
-    operator = body.around(1.18).problem.operator
+    operator = body.over(*body.span(1.18, 2e-3), 3).problem.operator
     pressure = -np.exp(-8 * (operator.at(1.18).radii / 1.18 - 1) ** 2)
 
     def derivative(window, count):
         around = chebyshev_radii(1.18 * np.exp(-window), 1.18 * np.exp(window), count)
-        chart = body.following(operator.grid, around)
-        return chart.problem.operator.rates(1.18, pressure)[2]
+        made = [body.make(operator.grid.lines(float(a)))[0] for a in around]
+        return Interpolated(around, operator.cell_nodes, operator.grid, lambda: made).rates(1.18, pressure)[2]
 
     wide, middle, narrow = (derivative(window, 2) for window in (4e-2, 2e-2, 1e-2))
     exact = (64 * narrow - 20 * middle + wide) / 45
@@ -355,26 +350,3 @@ def test_the_gap_between_two_spheres_ends_with_the_smaller_one(ratio):
     r = np.array([0.0, 0.3, 0.9]) * smaller
     heights = sum(R - np.sqrt(R**2 - r**2) for R in (smaller, 5.0 * (1 + ratio)))
     np.testing.assert_allclose(gap.height(r), 5.0 * heights, rtol=1e-12, atol=1e-12)
-
-
-def test_a_landing_has_one_operator_on_each_mesh_and_several_where_that_leads_nowhere(monkeypatch):
-    path = fem_adhesion.trace(Scene(1.0, Hemisphere(radius_ratio=100.0)), rtol=1e-4)
-    made = []
-    standing, following = SizedBody.standing, SizedBody.following
-    monkeypatch.setattr(SizedBody, "standing", lambda body, a: made.append(1) or standing(body, a))
-    monkeypatch.setattr(SizedBody, "following", lambda *of: made.append(len(of[-1])) or following(*of))
-    one, alone = cycle(path), list(made)
-    made.clear()
-    monkeypatch.setattr(AtRest, "__call__", lambda *_: refuse(NotConverged("on purpose")))
-    several = cycle(path)
-    assert set(alone) == {1}
-    assert made == [3] * len(alone)
-    for jump, other in zip(one.jumps.values(), several.jumps.values(), strict=True):
-        for name in ("approach", "load", "central_gap", "contact_radius"):
-            ours, theirs = (j.landing.estimate(name) for j in (jump, other))
-            assert np.isnan(ours.value) or abs(ours.value - theirs.value) <= 0.05 * (ours.error + theirs.error)
-        assert abs(jump.energy.value - other.energy.value) <= 0.05 * (jump.energy.error + other.energy.error)
-
-
-def refuse(error):
-    raise error

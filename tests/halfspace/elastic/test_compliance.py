@@ -139,20 +139,6 @@ def test_a_grid_that_is_fine_at_both_ends_grows_from_either_to_where_they_meet(f
     assert np.array_equal(ends, grid.geometric(10.0, finest, 3.0)) == (last > 10.0)
 
 
-def test_a_grid_about_a_zone_grows_slowly_there_and_fast_elsewhere():
-    """Grown so slowly from 0 on it would have ten times the cells."""
-    ends = grid.about(1e-3, (1.0, 2.0), 100.0, growth=3.0, within=1.1, beyond=5.0)
-    steps, inside = np.diff(ends), (ends[:-1] >= 1.0) & (ends[1:] <= 2.0)
-    assert (ends[0], ends[-1]) == (0.0, 100.0)
-    assert steps[0] == pytest.approx(1e-3, rel=0.1)
-    assert np.all(steps[inside] <= 0.1 * ends[1:][inside])
-    assert np.all(steps[1:] / steps[:-1] < 5.1)
-    assert 6 <= inside.sum() <= 8
-    assert steps.size == pytest.approx(
-        np.log(1 + 2 * 0.9 / 1e-3) / np.log(3) + 7 + np.log(1 + 4 * 98 / 0.2) / np.log(5), abs=4
-    )
-
-
 @pytest.mark.parametrize(
     ("call", "message"),
     [

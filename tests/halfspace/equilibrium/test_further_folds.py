@@ -23,9 +23,8 @@ from fem_adhesion.curve import record, terminal
 from fem_adhesion.curve.pictures import experiment
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace import Layer
-from halfspace.accuracy.grids import half_space_charts, resolution_for, rings
+from halfspace.accuracy.grids import half_space_charts, resolution_for, rings, under_sphere
 from halfspace.accuracy.stages import Rung, on_all
-from halfspace.accuracy.trace import under_sphere
 from halfspace.equilibrium import path as path_module
 from halfspace.equilibrium.charts import Stage, moved, trace_charts
 from halfspace.equilibrium.conditions import FOLD
