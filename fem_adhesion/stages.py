@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Protocol
 
@@ -95,7 +95,11 @@ class Standing(WhereAsked):
 
 def standing(body: SizedBody) -> Standing:
     """Stage on which every event has cells of its own."""
-    return Standing(body, lambda: Charted(body.curve()))
+    return Standing(body, partial(_along, body))
+
+
+def _along(body: SizedBody) -> Stage:
+    return Charted(body.curve())
 
 
 def surroundings(rtol: float, level: int) -> tuple[float, int]:

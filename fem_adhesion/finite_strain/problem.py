@@ -279,10 +279,6 @@ class FiniteStrainProblem(Valued):
                 f"R dgamma, limit {most:g}; take a larger radius_ratio"
             )
 
-    def untold(self, x: Array) -> Array:  # noqa: ARG002 (the same in all states)
-        """Errors of the observables that the changes between discretisations may not tell, (4,): zero."""
-        return np.array([0.0, 0.0, 0.0, np.nan])
-
     def energy(self, x: Array) -> float:
         """Elastic and surface energy in R dgamma eps, the latter int Phi(H) dA; nan unless conservative.
 

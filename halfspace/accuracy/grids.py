@@ -88,9 +88,7 @@ def rule_for(scales: Scales, resolutions: Sequence[Resolution], level: int, doub
     """
     most, fewer = (resolution.nodes for resolution in resolutions)
     remaining = doubt * (ONE_NODE if level == 1 or scales.pieced else REMAINING)
-    return ErrorRule(
-        remaining if most - fewer == level else max(remaining, ONE_NODE), steps=scales.body is not None and scales.steps
-    )
+    return ErrorRule(remaining if most - fewer == level else max(remaining, ONE_NODE), steps=scales.steps)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -145,6 +143,9 @@ def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float,
     return grid.graded(0.0, spacing, max(outer, reach + spacing), growth=growth, until=reach)
 
 
+Discretise = Callable[[Resolution, int], tuple[Chart, ...]]
+"""Makes the charts of a resolution for a rung, 0, or for its twin, 1, which may differ in more than cells."""
+
 MakeOperator = Callable[[int, float, Array], compliance.ElasticOperator]
 """Makes an operator from the nodes in a cell, `Scales.tail_reach` and the ends of the cells."""
 
@@ -155,19 +156,27 @@ def endless(nodes: int, reach: float, breaks: Array) -> compliance.ElasticOperat
 
 
 def half_space_charts(
-    scales: Scales, resolution: Resolution, to_load: float = COMPRESSION, make: MakeOperator = endless
+    scales: Scales,
+    resolution: Resolution,
+    _which: int = 0,
+    *,
+    to_load: float = COMPRESSION,
+    make: MakeOperator = endless,
 ) -> tuple[Chart, ...]:
     """Charts of the half-space: centred on the axis and, unless that is fine throughout, following the contact edge."""
     lines = rings(scales, resolution.finest, resolution.growth, resolution.extent, to_load, resolution.nodes)
-    centred, leave = make(resolution.nodes, scales.tail_reach, lines.centred), scales.edge_cell(resolution.finest)
-    first = Chart(contact_of(scales, centred), centred.radii.size, lines.until, HAND_OVER.equal * leave)
+    centred = make(resolution.nodes, scales.tail_reach, lines.centred)
+    leave = lines.until / HAND_OVER.leave  # the end of the equal cells
+    first = Chart(contact_of(scales, centred), centred.radii.size, lines.until, leave)
     if lines.edge is None:
         return (first,)
     edge = make(resolution.nodes, scales.tail_reach, lines.edge)
     return first, Chart(contact_of(scales, Homogeneous(edge)), edge.radii.size)
 
 
-def sphere_charts(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> tuple[Chart, ...]:
+def sphere_charts(
+    scales: Scales, resolution: Resolution, _which: int = 0, *, to_load: float = COMPRESSION
+) -> tuple[Chart, ...]:
     """Charts of the half-space under a surface that ends, as a sphere's does at its equator."""
     body = under_sphere(scales, resolution, to_load)
     return body.curve(operators_of_curve(body, resolution.nodes))

@@ -16,6 +16,7 @@ from functools import partial
 from halfspace.accuracy.grids import (
     EXTENT,
     ONE_NODE,
+    Discretise,
     MakeOperator,
     Resolution,
     endless,
@@ -29,7 +30,6 @@ from halfspace.accuracy.refinement import MOST_RUNGS
 from halfspace.elastic import compliance
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.extrapolated import divided, extrapolated
-from halfspace.equilibrium.charts import Chart
 from halfspace.equilibrium.events import ErrorRule
 from halfspace.errors import InputError
 from halfspace.limits import require_between, require_one_of
@@ -58,11 +58,11 @@ class Kernel:
     least: float
     most_rungs: int
 
-    def charts(self, scales: Scales, to_load: float) -> Callable[[Resolution, int], tuple[Chart, ...]]:
+    def charts(self, scales: Scales, to_load: float) -> Discretise:
         """Makes the half-space's charts of a resolution: an operator for all radii, unless the surface ends."""
         if math.isfinite(scales.profile.end):
-            return lambda resolution, _: sphere_charts(scales, resolution, to_load)
-        return lambda resolution, _: half_space_charts(scales, resolution, to_load, self.make)
+            return partial(sphere_charts, scales, to_load=to_load)
+        return partial(half_space_charts, scales, to_load=to_load, make=self.make)
 
 
 def _straight(kind: str, parts: int, intervals: int, reach: float, cells: Array) -> ElasticOperator:

@@ -8,14 +8,14 @@ is discretised as any body with a length.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from halfspace.accuracy.finite_bodies import HAND_OVER, Made, SizedBody, at_equator, at_tip, least_along, step_above
-from halfspace.accuracy.grids import Resolution, half_space_charts, operators_of_curve
+from halfspace.accuracy.grids import Discretise, Resolution, half_space_charts, operators_of_curve
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import Images, images_of, layered_panels, nearly_homogeneous
 from halfspace.elastic.layered import layered as with_images
@@ -35,17 +35,18 @@ IMAGES = (1.14, 1.17)  # ratios of the depths of a layered body's images, and of
 WIDER = 2  # times the half-space's extent, to where all images are integrated
 
 
-def layered(scales: Scales, body: LayeredBody, to_load: float) -> Callable[[Resolution, int], tuple[Chart, ...]]:
+def layered(scales: Scales, body: LayeredBody, to_load: float) -> Discretise:
     """Makes the charts of a resolution of a layered body under any surface, by its images or by those of its twin."""
-    images = [images_of(body, spacing) for spacing in IMAGES]
+    return partial(_charts, scales, [images_of(body, spacing) for spacing in IMAGES], to_load)
 
-    def charts(resolution: Resolution, which: int) -> tuple[Chart, ...]:
-        if math.isfinite(scales.profile.end):
-            sized = layered_body(scales, images[which], resolution, to_load)
-            return sized.curve(operators_of_curve(sized, resolution.nodes))
-        return layered_charts(scales, images[which], resolution, to_load)
 
-    return charts
+def _charts(
+    scales: Scales, images: Sequence[Images], to_load: float, resolution: Resolution, which: int
+) -> tuple[Chart, ...]:
+    if math.isfinite(scales.profile.end):
+        sized = layered_body(scales, images[which], resolution, to_load)
+        return sized.curve(operators_of_curve(sized, resolution.nodes))
+    return layered_charts(scales, images[which], resolution, to_load)
 
 
 def layered_charts(
@@ -59,7 +60,7 @@ def layered_charts(
     """
     how = replace(resolution, extent=WIDER * resolution.extent)
     outer = scales.outer_radius(how.extent**2 / 2)
-    first, *rest = half_space_charts(scales, how, to_load)
+    first, *rest = half_space_charts(scales, how, to_load=to_load)
     operator = first.problem.interface.operator.at(1.0)
     leave = HAND_OVER.events * scales.edge_cell(how.finest)
     charts = [replace(first, problem=contact_of(scales, with_images(images, operator, outer)), leave=leave)]

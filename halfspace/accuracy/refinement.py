@@ -14,13 +14,13 @@ from functools import partial
 
 from halfspace.accuracy.further_folds import Completed, FurtherFolds
 from halfspace.accuracy.stages import Charted, FoldsLost, Rung, State, on_all
-from halfspace.equilibrium.charts import COMPRESSION, Stage, placed, trace_charts
-from halfspace.equilibrium.conditions import ROUND_OFF, STEEPEST
+from halfspace.equilibrium.charts import COMPRESSION, trace_charts
+from halfspace.equilibrium.conditions import STEEPEST
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import FOLDS, Event, Tolerance
-from halfspace.equilibrium.search import energy_released, find_events, folds_in_doubt
-from halfspace.equilibrium.states import Ways
+from halfspace.equilibrium.search import energy_released, energy_size, find_events, folds_in_doubt
+from halfspace.equilibrium.states import Ladder
 from halfspace.errors import ContactTooWide, GridTooLarge, IllPosed, InputError, NotConverged
 from halfspace.values import Estimate, Valued
 
@@ -76,21 +76,19 @@ def _climb_from(
     before = (*lowest.stages, *(() if below is lowest else below.stages[-1:]))
     jumps = tuple(state[name] for name in FOLDS if name in state)
     further = FurtherFolds(segments if folds else (), jumps, before, higher)
+    lowest_stage = below.stages[-1] if below.stages else Charted(tuple(charts))
+    ladder = Ladder((lowest_stage, *higher.stages), higher.twin, higher.rule)
     return EquilibriumPath(
         segments[0].problem.tabor,
         segments,
         Completed(events, further.events),
         energy_along(chains, higher),
         tuple(Completed(state, partial(further.stage, number)) for number, state in enumerate(chains[0])),
-        higher.stages[-1],
+        ladder,
         time.perf_counter() - began,
         {"rtol": rtol, "curve": lowest.settings, "events": higher.settings},
-        below.stages[-1] if below.stages else None,
-        higher.twin or (higher.stages[-2] if len(higher.stages) > 1 else None),
-        chains[1][0] if higher.twin else {},
-        higher.rule.remaining,
-        _ways(below.stages[-1] if below.stages else Charted(tuple(charts)), higher),
         margin,
+        on_twin=chains[1][0] if higher.twin else {},
         left_out=further.unconfirmed,
     )
 
@@ -125,19 +123,12 @@ def ascend(state: State, higher: Rung, rtol: float, rung: Callable[[int], Rung],
     return Ascent(below, higher, chains, events)
 
 
-def _ways(below: Stage, higher: Rung) -> Ways:
-    """Chains from the rung below, and from its twin, to the last stage of a rung, for any point of the curve."""
-    stages = [stage.everywhere for stage in (below, *higher.stages)]
-    chain = [partial(placed, b) for a, b in zip([None, *stages], stages, strict=False) if a is not b]
-    return (tuple(chain), (partial(placed, higher.twin.everywhere), chain[-1])) if higher.twin else (tuple(chain),)
-
-
 def _margin(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate | None:
     """How far the curve is from folds, with the error that the changes along the chains leave."""
     if "steepest" not in chains[0][-1]:
         return None
     values = [[STEEPEST.of(state["steepest"].point) for state in chain] for chain in chains]
-    return Estimate(values[0][-1], rung.rule.error(values) + FLAT)
+    return rung.rule.estimate(values, 0.0) + Estimate(0.0, FLAT)
 
 
 def energy_along(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate:
@@ -147,6 +138,6 @@ def energy_along(chains: Sequence[Sequence[State]], rung: Rung) -> Estimate:
     by accident, it does not a little `AWAY`, and that is as good a place to end at.
     """
     values = [[energy_released(state) for state in chain] for chain in chains]
-    best = values[0][-1]
     ends = [[AWAY * float(state["zero_approach"].point.observables[LOAD]) for state in chain] for chain in chains]
-    return Estimate(best, rung.rule.error([*values, *ends]) + ROUND_OFF * (1 + abs(best)))
+    best = chains[0][-1]
+    return rung.rule.estimate(values, energy_size(best["separated"]) + energy_size(best["zero_approach"]), ends)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from halfspace.equilibrium.charts import Chart, Stage, settled
+from halfspace.equilibrium.charts import Chart, Stage
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.events import FOLDS, USUAL, ErrorRule, Event, estimate_event, is_event
+from halfspace.equilibrium.states import met_again
 from halfspace.errors import ContactTooWide, IllPosed, NotConverged
 from halfspace.values import Valued
 
@@ -76,13 +77,8 @@ def on_all(state: State, stage: Stage) -> State:
 
 def _found_again(name: str, event: Located, stage: Stage) -> Located:
     try:
-        return moved_to(event, stage)
+        return met_again(stage, event)
     except (ContactTooWide, IllPosed):  # for any grid
         raise
     except NotConverged as error:
         raise FoldsLost(str(error)) if name in FOLDS else error from error
-
-
-def moved_to(event: Located, stage: Stage) -> Located:
-    """Solve for an event again, unless it has been on this stage."""
-    return event if stage(event).problem is event.problem else settled(event, stage, stage.moved)

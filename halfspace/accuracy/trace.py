@@ -5,15 +5,14 @@ See `halfspace.accuracy.refinement` for how the error is estimated.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 
-from halfspace.accuracy.grids import Resolution
+from halfspace.accuracy.grids import Discretise
 from halfspace.accuracy.kernels import Kernel, require_kernel
 from halfspace.accuracy.layered import DOUBT, layered
 from halfspace.accuracy.refinement import climb
-from halfspace.accuracy.stages import Charted, Charts, Rung
+from halfspace.accuracy.stages import Charted, Rung
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -76,13 +75,10 @@ def trace(
     return climb(rtol, partial(_rung, scales, rtol, how, charts, doubt), to_load=to_load, most_rungs=how.most_rungs)
 
 
-def _rung(
-    scales: Scales, rtol: float, how: Kernel, charts: Callable[[Resolution, int], Charts], doubt: int, level: int
-) -> Rung:
+def _rung(scales: Scales, rtol: float, how: Kernel, charts: Discretise, doubt: int, level: int) -> Rung:
     """Rung of a level: the curve on the lowest, events on each above it and on a twin as fine as the rung below.
 
-    `charts` makes those of a resolution for a rung, 0, or for its twin, 1, which may differ in more than cells. An
-    error may be `doubt` times as large as by the change alone.
+    An error may be `doubt` times as large as by the change alone.
     """
     resolution, below = how.resolutions(scales, rtol, level)
     curve, settings = partial(charts, resolution, 0), {"kernel": how.name, **asdict(resolution)}

@@ -24,6 +24,7 @@ class Acting(Valued):
     tabor: float
     profile: Surface
     operator: Operator
+    far_energy: bool = False
 
     @cached_property
     def x(self) -> Array:
@@ -91,6 +92,19 @@ class Acting(Valued):
         gaps = np.abs(self.x[:-2]) + approach + self.tabor * np.abs(self.profile.height(self.body.radii))
         load = np.abs(self.body.weights) @ np.abs(self.pressure)
         return np.array([approach, load, np.abs(self.operator.axis_row) @ gaps, self.contact_radius])
+
+    @cached_property
+    def energies(self) -> tuple[float, float]:
+        """Total potential energy in R dgamma eps, elastic and surface, and the sum of the sizes of its terms.
+
+        That of the undeformed surfaces in touch is taken off where it may be infinite, as of the 3-9 law on a cone.
+        """
+        H, mu = self.x[:-2], self.tabor
+        terms = np.array([self.law.energy(H, mu), self.pressure * self.deflection / 2])
+        if self.far_energy:
+            terms[0] -= self.law.energy(mu * self.profile.height(self.body.radii), mu)
+        weights = self.body.weights
+        return float(weights @ terms.sum(axis=0)), float(np.abs(weights) @ np.abs(terms).sum(axis=0))
 
     @cached_property
     def gradients(self) -> Array:

@@ -87,7 +87,7 @@ class ContactProblem(Valued):
         for known in self._latest:
             if known.state == state:
                 return known
-        self._latest.append(Acting(state, self.law, self.tabor, self.profile, self.operator))
+        self._latest.append(Acting(state, self.law, self.tabor, self.profile, self.operator, self.scales.far_energy))
         return self._latest[-1]
 
     @property
@@ -243,14 +243,6 @@ class ContactProblem(Valued):
         left = np.prod([_last_but_one(self._coefficients(x, cell)) for cell in cells]) ** (1 / len(cells))
         return np.array([gap, left / slope])
 
-    def untold(self, x: Array) -> Array:
-        """Errors of the observables that the changes along a single chain of discretisations may not tell, (4,).
-
-        They are for points of a curve: what is small at one by accident is not at those beside it. So the gap's is what
-        its polynomial lacks, no more.
-        """
-        return np.array([0.0, 0.0, _lacking(self._coefficients(x, 0)), self.ripples(x)[1]])
-
     def _coefficients(self, x: Array, cell: int) -> Array:
         """Sizes of the Legendre coefficients of the deflection in a cell, whereas the profile is exact, in eps."""
         body = self.operator_at(x)
@@ -307,15 +299,12 @@ class ContactProblem(Valued):
         return math.sqrt(float(gaps @ gaps) + float(residual[-1]) ** 2)
 
     def energy(self, x: Array) -> float:
-        """Total potential energy in R dgamma eps, elastic and surface; its derivative by the approach is the load.
+        """Total potential energy in R dgamma eps, elastic and surface; its derivative by the approach is the load."""
+        return self._acting(x).energies[0]
 
-        That of the undeformed surfaces in touch is taken off where it may be infinite, as of the 3-9 law on a cone.
-        """
-        H, mu, body = x[:-2], self.tabor, self.operator_at(x)
-        density = self.law.energy(H, mu) + self.pressure(x) * self.deflection(x) / 2
-        if self.scales.far_energy:
-            density -= self.law.energy(mu * self.profile.height(body.radii), mu)
-        return float(body.weights @ density)
+    def energy_size(self, x: Array) -> float:
+        """Sum of the sizes of the terms of the energy, which may cancel."""
+        return self._acting(x).energies[1]
 
     def negative_directions(self, x: Array) -> int:
         """Number of directions in which the energy falls at fixed approach; 0 means stable under fixed grips.
@@ -335,15 +324,6 @@ def _left_out(coefficients: Array) -> float:
     next, in their logarithms, since they fall unevenly.
     """
     return _carried_on(coefficients, np.array([0.5, 0.0, 0.0]))
-
-
-def _lacking(coefficients: Array) -> float:
-    """Size of the last Legendre coefficient where it is none of the deflection's own, by those.
-
-    They are carried on to it by how fast they fall. So it is of piecewise polynomials of a degree two less than a
-    cell's nodes.
-    """
-    return _carried_on(coefficients, np.array([2.0, 1.0, 0.0]))
 
 
 def _carried_on(coefficients: Array, orders: Array) -> float:

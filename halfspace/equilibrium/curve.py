@@ -16,7 +16,6 @@ from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.events import (
     EVENTS,
-    REMAINING,
     Event,
     Tolerance,
     Unconfirmed,
@@ -28,7 +27,7 @@ from halfspace.equilibrium.events import (
 )
 from halfspace.equilibrium.path import Metric, Point, Segment
 from halfspace.equilibrium.search import states
-from halfspace.equilibrium.states import FinestCurve, States, Ways, finest_curve, require_coordinate, resampled
+from halfspace.equilibrium.states import FinestCurve, Ladder, States, finest_curve, require_coordinate, resampled
 from halfspace.errors import InputError
 from halfspace.limits import require_points
 from halfspace.values import Array, Estimate, Valued, shown
@@ -52,28 +51,19 @@ class EquilibriumPath(Valued):
         in R dgamma eps.
     stages : tuple of mappings of str to Located
         The events, and the two states of `energy`, on each discretisation from the coarsest to the finest.
-    finest : callable
-        Chart of the finest discretisation for an event, found on any.
+    ladder : Ladder
+        Discretisations by which anything else is solved for later, and its error found.
     seconds : float
         Wall time of the whole computation.
     settings : mapping
         What was asked for, ``rtol`` among it, and how it was discretised.
-    below : callable, optional
-        The finest discretisation of the rung below the last, unless that is the curve's own.
-    twin : callable, optional
-        A discretisation as fine as the last but one, with other cells, or one that differs from the finest in one
-        respect only where that differs from the curve's in two; for the errors of what is solved for later.
-    on_twin : mapping of str to Located
-        The events, and the two states of `energy`, on the twin.
-    remaining : float
-        Part of the change from either to the finest that may be left.
-    ways : chains of callables
-        To the finest discretisation that serves the whole curve, see `halfspace.equilibrium.states.Ways`.
     margin : Estimate, optional
         How far the curve is from folding where two folds are about to be born or to merge: its least -d(alpha*)/dW in
         eps/(R dgamma). Any apparatus of a greater compliance jumps; if it is negative, so do fixed grips.
     model_uncertainty : callable, optional
         How far apart the numbers of an event are in models between which the assumptions leave a choice, if they do.
+    on_twin : mapping of str to Located
+        The events, and the two states of `energy`, on the ladder's twin.
     left_out : callable
         The folds of `unconfirmed`.
     """
@@ -83,17 +73,18 @@ class EquilibriumPath(Valued):
     events: Mapping[str, Event]
     energy: Estimate
     stages: tuple[Mapping[str, Located], ...]
-    finest: Stage
+    ladder: Ladder
     seconds: float = field(compare=False)
     settings: Mapping[str, Any] = field(default_factory=dict)
-    below: Stage | None = None
-    twin: Stage | None = None
-    on_twin: Mapping[str, Located] = field(default_factory=dict)
-    remaining: float = REMAINING
-    ways: Ways = ()
     margin: Estimate | None = None
     model_uncertainty: Callable[[str], Mapping[str, float]] | None = field(default=None, compare=False)
+    on_twin: Mapping[str, Located] = field(default_factory=dict)
     left_out: Callable[[], tuple[Unconfirmed, ...]] = field(default=tuple, compare=False)
+
+    @property
+    def finest(self) -> Stage:
+        """Chart of the finest discretisation for an event, found on any."""
+        return self.ladder.finest
 
     @property
     def unknowns(self) -> int:
@@ -231,7 +222,7 @@ class EquilibriumPath(Valued):
     @cached_property
     def finest_curve(self) -> FinestCurve:
         """The points solved for on the finest discretisation, when they are first asked for."""
-        return finest_curve(self.segments, self.ways, self.remaining, self.metric, self._folds)
+        return finest_curve(self.segments, self.ladder, self.metric, self._folds)
 
     def _folds(self) -> list[Located]:
         """Folds on the finest discretisation, those between the jumps solved for by now."""
@@ -274,14 +265,13 @@ class EquilibriumPath(Valued):
         return self.finest_curve.at(coordinate, values, branch)
 
     def states(self, condition: Condition) -> list[Located]:
-        """Every state of the path as it was traced, on the coarsest grid, that meets a condition, in order.
+        """Every state that meets a condition, in order: of the path as it was traced, on the coarsest grid.
 
-        Where an observable turns but for ripples of that grid, see `FinestCurve.confirmed`.
+        Where an observable turns, those that every grid has, on the finest.
         """
-        found = states(self.segments, condition)
-        if not condition.stationary:
-            return found
-        return FinestCurve((), self.ways, self.remaining, self.metric, self._folds).confirmed(found)
+        if condition.stationary:
+            return self.finest_curve.turns(condition)
+        return states(self.segments, condition)
 
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Parts of the curve in order along which a coordinate goes in one direction, and its range on each.

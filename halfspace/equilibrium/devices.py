@@ -23,13 +23,13 @@ import numpy as np
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Stage, metric_for, separated, settled, transfer
-from halfspace.equilibrium.conditions import ROUND_OFF, Condition, Located
+from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import FOLDS, ErrorRule, Event, Tolerance, approach_scale, estimate_event
 from halfspace.equilibrium.newton import Control, Traceable
 from halfspace.equilibrium.path import Segment, make_point
-from halfspace.equilibrium.search import states
+from halfspace.equilibrium.search import energy_size, states
 from halfspace.equilibrium.states import measured
 from halfspace.errors import InputError, NotConverged
 from halfspace.limits import require_number
@@ -93,7 +93,7 @@ class Cycle:
     @property
     def missed(self) -> dict[str, tuple[str, ...]]:
         """By state, as ``jump_on landing``, the numbers that have not."""
-        states = {f"{name} {end}": self.missed_by(name, end) for name in self.jumps for end in ("take_off", "landing")}
+        states = {f"{name} {end}": self.missed_by(name, end) for name in self.jumps for end in ENDS}
         return {name: numbers for name, numbers in states.items() if numbers}
 
     def missed_by(self, name: str, end: str) -> tuple[str, ...]:
@@ -127,11 +127,16 @@ class StagedJump:
     fine: JumpStates
     others: tuple[JumpStates, ...]
 
-    def energy(self, remaining: float, compliance: float = 0.0) -> Estimate:
-        """Energy set free, of whose change so much may be left, with an apparatus of a compliance 1/k."""
-        energies = [states.energy(compliance) for states in (*self.others, self.fine)]
-        change = max(abs(energy - energies[-1]) for energy in energies)
-        return Estimate(energies[-1], max(remaining, 1.0) * change + ROUND_OFF * (1 + abs(energies[-1])))
+    @property
+    def chains(self) -> list[list[JumpStates]]:
+        """From each of the others to the finest."""
+        return [[other, self.fine] for other in self.others]
+
+    def energy(self, rule: ErrorRule, compliance: float = 0.0) -> Estimate:
+        """Energy set free with an apparatus of a compliance 1/k."""
+        energies = [[states.energy(compliance) for states in chain] for chain in self.chains]
+        sizes = sum(energy_size(end) for end in (self.fine.take_off, self.fine.landing))
+        return replace(rule, remaining=max(rule.remaining, 1.0)).estimate(energies, sizes)
 
 
 def cycle(path: EquilibriumPath, stiffness: float = math.inf) -> Cycle | None:
@@ -312,25 +317,29 @@ def _wide_enough(state: Located, problem: Traceable) -> Traceable:
 
 
 def _staged(rough: JumpStates, path: EquilibriumPath, compliance: float) -> StagedJump:
-    """Jump on the finest discretisation, the rung below and, if there is one, a twin of that."""
-    below = _refined(rough, path.below, compliance) if path.below else rough
-    fine = _refined(below, path.finest, compliance)
-    return StagedJump(fine, (below, _refined(fine, path.twin, compliance)) if path.twin else (below,))
+    """Jump on the finest discretisation of the path's ladder, and on the others."""
+
+    def again(stage: Stage, states: JumpStates) -> JumpStates:
+        return _refined(states, stage, compliance)
+
+    chain, *twin = path.ladder.chains(again(path.finest, rough), again)
+    return StagedJump(chain[-1], (*chain[:-1], *(pair[0] for pair in twin)))
 
 
 def _jump(staged: StagedJump, path: EquilibriumPath, compliance: float) -> Jump:
     """Jump as numbers, their errors by the changes from one discretisation to another."""
-    fine, others, alone = staged.fine, staged.others, len(path.ways) < 2  # no chain from a twin guards against chance
+    rule = path.ladder.rule
+    alone = replace(rule, along=path.ladder.twin is None)  # no chain from a twin guards against chance
+    take_offs, landings = ([[getattr(s, end) for s in chain] for chain in staged.chains] for end in ENDS)
+    least = _by_base(staged.others, staged.fine, compliance)
     return Jump(
-        estimate_event("take_off", [[s.take_off, fine.take_off] for s in others], ErrorRule(path.remaining, alone)),
-        estimate_event(
-            "landing",
-            [[s.landing, fine.landing] for s in others],
-            ErrorRule(path.remaining),
-            least=_by_base(others, fine, compliance),
-        ),
-        staged.energy(path.remaining, compliance),
+        estimate_event("take_off", take_offs, alone),
+        estimate_event("landing", landings, replace(rule, along=False), least),
+        staged.energy(rule, compliance),
     )
+
+
+ENDS = ("take_off", "landing")
 
 
 def _by_base(others: Sequence[JumpStates], fine: JumpStates, compliance: float) -> Array:

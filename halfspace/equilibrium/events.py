@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from halfspace.equilibrium.charts import metric_for
-from halfspace.equilibrium.conditions import Located, rounding
+from halfspace.equilibrium.conditions import ROUND_OFF, Located, rounding
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.values import Array, Estimate
 
@@ -161,9 +161,15 @@ class ErrorRule:
         changes = np.abs(np.diff(np.array(chain), axis=0))
         return np.asarray(changes.sum(axis=0) + (self.last - 1) * changes[-1])
 
-    def error(self, chains: Sequence[Sequence[float]]) -> float:
-        """Of a number, by the chain along which it changes most."""
-        return self.remaining * max(float(self.change(chain)) for chain in chains)
+    def estimate(
+        self, chains: Sequence[Sequence[float]], sizes: float, more: Sequence[Sequence[float]] = ()
+    ) -> Estimate:
+        """Of a number, by the chain along which it changes most, and what rounding leaves of terms of such sizes.
+
+        More chains may be of another number whose changes count as its own.
+        """
+        change = max(float(self.change(chain)) for chain in (*chains, *more))
+        return Estimate(chains[0][-1], self.remaining * change + ROUND_OFF * (1 + sizes))
 
 
 USUAL = ErrorRule()
@@ -172,24 +178,29 @@ USUAL = ErrorRule()
 def estimate_event(
     name: str, chains: Sequence[Sequence[Located]], rule: ErrorRule, least: Array | float = 0.0
 ) -> Event:
-    """Turn an event into numbers with error estimates.
+    """Turn an event into numbers with error estimates, see `errors_of`."""
+    values, errors = chains[0][-1].point.observables, errors_of(chains, rule, least)
+    return Event(name, *map(float, values), *map(float, errors))
 
-    A chain has the event on discretisations that differ in one respect from one to the next, all chains ending with the
+
+def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule, least: Array | float = 0.0) -> Array:
+    """Errors of the observables of a state, (4,): an event, a point of the curve, a landing or a state asked for.
+
+    A chain has the state on discretisations that differ in one respect from one to the next, all chains ending with the
     best. Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
     share by accident is not taken for exact. The radius, which at a point errs more than the rest and in turns, is
     known no better than to what the polynomials there end with; where there is but one chain, or `rule.along`, nor is
     the gap. `least` (4,) are the changes of the observables that count where the chains' own are less.
 
-    If `rule.along`, or `rule.steps`, an observable's change along each chain is taken apart: into what the event's
-    shift along the path makes of it, and the rest, see `_apart`: on a single chain one number may stand still by
-    accident while the event moves. For stationary conditions only. If `rule.along`, nor do the gap and radius, which
-    are at a point, then fall as averages do: the changes of all chains add up.
+    If `rule.along` at a stationary event, or `rule.steps` anywhere, an observable's change along each chain is taken
+    apart: into what the event's shift along the path makes of it, and the rest, see `_apart`: on a single chain one
+    number may stand still by accident while the event moves. If `rule.along`, nor do the gap and radius, which are at a
+    point, then fall as averages do: the changes of all chains add up.
     """
     best = chains[0][-1]
-    values = best.point.observables
     changes = [_changes(chain, rule) for chain in chains]
     whole = np.sum(changes, axis=0)
-    if (rule.along or rule.steps) and chains[0][-1].condition.stationary:
+    if rule.steps or (rule.along and best.condition.stationary):
         ways = slice(None) if rule.along else slice(1)
         changes += [apart for chain in chains for apart in _apart(chain, rule)[ways]]
     errors = rule.remaining * np.maximum(np.max(changes, axis=0), least) + rounding(best.problem, best.point.x)
@@ -198,7 +209,7 @@ def estimate_event(
     gap, radius = best.problem.interface.ripples(best.problem.surface_state(best.point.x))
     alone = rule.along or len(chains) == 1
     errors[AT_A_POINT] = np.fmax(errors[AT_A_POINT], [gap if alone else 0.0, radius])
-    return Event(name, *map(float, values), *map(float, errors))
+    return np.asarray(errors)
 
 
 def _changes(chain: Sequence[Located], rule: ErrorRule) -> Array:

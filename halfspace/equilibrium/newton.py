@@ -108,10 +108,6 @@ class Traceable(Equilibrium, Protocol):
         """State without deformation, as a start for Newton's method."""
         ...
 
-    def untold(self, x: Array) -> Array:
-        """Errors of the observables on a single chain of discretisations that its changes may not tell, (4,)."""
-        ...
-
     def energy(self, x: Array) -> float:
         """Total potential energy in R dgamma eps."""
         ...

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from itertools import pairwise, zip_longest
 from typing import NoReturn
@@ -141,11 +141,6 @@ def _require_touching(segments: Sequence[Segment]) -> None:
         )
 
 
-def between_jumps(segments: Sequence[Segment]) -> list[Bracket]:
-    """Discretisation and pair of points for every fold but the outermost, in order along a traced curve."""
-    return brackets_of(segments, FOLD)[1:-1] if segments else []
-
-
 def with_care(bracket: Bracket, condition: Condition) -> list[Located]:
     """State between two points, or those that shorter steps between them find where its own search does not end."""
     problem, a, b = bracket
@@ -154,6 +149,66 @@ def with_care(bracket: Bracket, condition: Condition) -> list[Located]:
         return [between(problem, a, b, condition, metric)]
     except NotConverged:
         return locate(problem, wound(problem, a, b, metric), metric, condition)
+
+
+Chains = Sequence[Sequence[Located]]
+"""A state on discretisations that differ in one respect from one to the next, all chains ending with the finest."""
+
+
+Turn = tuple[Point, Located | None]
+"""About where an observable turns, and the state; None where it is not pinned down."""
+
+
+def turns(segments: Sequence[Segment], condition: Condition, inner: slice = slice(None)) -> list[Turn]:
+    """Where an observable turns along the curve as it was traced, in order."""
+    found: list[Turn] = []
+    for bracket in brackets_of(segments, condition)[inner]:
+        try:
+            found += [(turn.point, turn) for turn in with_care(bracket, condition)]
+        except NotConverged:
+            found.append((bracket[1], None))
+    return found
+
+
+def confirmed(
+    traced: Sequence[Turn],
+    solve: Callable[[Located], Chains],
+    known: Sequence[Located] = (),
+) -> tuple[list[Chains], list[Point]]:
+    """Turns of a curve that every discretisation has, on each of these, and about where the rest are.
+
+    This decides what a turn is, for the events and for the branches in approach, load and central gap alike. Along the
+    curve least and largest values follow each other, so that one that is lost takes its neighbour with it. A ripple of
+    one grid is lost on another, or becomes another turn; those known are no new ones. The first and the last of the
+    known, if there are any, are the turns before and after those sought.
+    """
+    kept: list[Chains] = []
+    lost: list[Point] = []
+    found = [(point, solve(turn) if turn else []) for point, turn in traced]
+    own = [turn.slope for _, turn in traced if turn]
+    if not own:
+        return [], [point for point, _ in found]
+    before, last = (-known[0].slope, known[-1].slope) if known else (own[0], -own[-1])
+    for point, chains in found:
+        fine = chains[0][-1] if chains else None
+        others = (*known, *(one[0][-1] for one in kept))
+        if fine and fine.slope * before > 0 and not any(_same_turn(fine, other) for other in others):
+            kept.append(chains)
+            before = -before
+        else:
+            lost.append(point)
+    if kept and before * last < 0:
+        lost.append(kept.pop()[0][-1].point)
+    return kept, lost
+
+
+def _same_turn(a: Located, b: Located) -> bool:
+    """Whether two turns of an observable are one and the same."""
+    first, second = a.point.observables[:CONTACT_RADIUS], b.point.observables[:CONTACT_RADIUS]
+    return bool(np.all(np.abs(first - second) < SAME * (1 + np.abs(second))))
+
+
+SAME = 1e-6  # of approach, load and central gap, what two turns differ by where they are two
 
 
 def _missing(segment: Segment, event: str) -> NoReturn:
@@ -175,6 +230,11 @@ def energy_released(located: Mapping[str, Located]) -> float:
     """Energy between the states ``separated`` and ``zero_approach`` of `find_events`, in R dgamma eps."""
     before, after = located["separated"], located["zero_approach"]
     return before.problem.energy(before.point.x) - after.problem.energy(after.point.x)
+
+
+def energy_size(state: Located) -> float:
+    """Sum of the sizes of the terms of a state's energy, which may cancel, in R dgamma eps."""
+    return state.problem.interface.energy_size(state.problem.surface_state(state.point.x))
 
 
 def _least_compliance(a: Point, b: Point) -> tuple[float, float]:

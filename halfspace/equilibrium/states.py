@@ -2,7 +2,7 @@
 
 A curve is traced on a coarse discretisation. Each of its points is solved for again on the finest, in the plane across
 the path at that point: two discretisations share the arclength, where at a fold they share neither approach nor load.
-The same in the plane of the point found, on the discretisations that the events went through before, tells the errors.
+The errors are by the same state, in the plane across the point found, on the discretisations of the `Ladder`.
 
 Where a coordinate is prescribed, as the approach, the errors of the others are those in the plane and what that shift
 along the path makes of them by which the coordinate would come back to its value.
@@ -10,29 +10,78 @@ along the path makes of them by which the coordinate would come back to its valu
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import groupby, pairwise
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import Stage, placed, settled
 from halfspace.equilibrium.conditions import FOLD, Condition, Located, between, hermite, rounding
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
+from halfspace.equilibrium.events import ErrorRule, errors_of
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
-from halfspace.equilibrium.search import states_in
+from halfspace.equilibrium.search import Chains, confirmed, turns
 from halfspace.errors import InputError, NotConverged
 from halfspace.values import Array, Valued
 
-Again = Callable[[Traceable, Point], tuple[Traceable, Point]]
-"""Solves for a point of the path on another discretisation, in the plane across the path at that point."""
+T = TypeVar("T")
 
-Ways = Sequence[Sequence[Again]]
-"""Chains of discretisations, each of which differs from the one before in one respect; all end with the finest."""
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Ladder(Valued):
+    """Discretisations on which a state is solved for, so that its changes between them tell its error by a rule.
+
+    The chain begins with the rung below the finest, and each differs from the one before in one respect. The twin is as
+    fine as the first of the chain, with other cells; it has the same error but for the accident of its sign.
+    """
+
+    chain: tuple[Stage, ...]
+    twin: Stage | None
+    rule: ErrorRule
+
+    @property
+    def finest(self) -> Stage:
+        """The finest discretisation."""
+        return self.chain[-1]
+
+    @cached_property
+    def along(self) -> Ladder:
+        """The same for any state of the curve, where charts for events serve these alone."""
+        stages = [stage.everywhere for stage in self.chain]
+        differing = [a for a, b in zip(stages, [*stages[1:], None], strict=True) if a is not b]
+        rule = replace(self.rule, remaining=max(self.rule.remaining, 1.0))
+        return Ladder(tuple(differing), self.twin and self.twin.everywhere, rule)
+
+    @property
+    def told(self) -> bool:
+        """Whether there is anything to compare with."""
+        return len(self.chain) > 1
+
+    def chains(self, fine: T, again: Callable[[Stage, T], T]) -> list[list[T]]:
+        """Chains to a state of the finest discretisation, where `again` solves for it on another one.
+
+        NotConverged if one has no such state.
+        """
+        chain = [*(again(stage, fine) for stage in self.chain[:-1]), fine]
+        return [chain, [again(self.twin, fine), fine]] if self.twin else [chain]
+
+
+def in_plane(stage: Stage, state: Located) -> Located:
+    """Solve for a state again on a discretisation, in the plane across the path there."""
+    problem, point = placed(stage, state.problem, state.point)
+    return replace(state, problem=problem, point=point)
+
+
+def met_again(stage: Stage, state: Located) -> Located:
+    """Solve for a state that meets a condition again on a discretisation."""
+    return state if stage(state).problem is state.problem else settled(state, stage, stage.moved)
+
 
 COORDINATES: Mapping[str, tuple[int, str]] = {
     "approach": (APPROACH, "eps"),
@@ -86,16 +135,15 @@ def _onwards(last: Point, point: Point, metric: Metric) -> Point:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FinestCurve(Valued):
-    """A curve's segments, in order, on the finest discretisation.
+    """A curve's segments, in order, on the finest discretisation of a ladder.
 
-    By the ways, chains of discretisations, errors are found; `remaining` is the part of the changes along a chain that
-    may be left, and the metric says what arclength means. A point that the finest discretisation does not have stays on
-    one of those left behind, with infinite errors. The folds are those that are told as events.
+    `traced` are those on which it was traced; the metric says what arclength means. A point that the finest
+    discretisation does not have stays on one of those left behind, with infinite errors. The folds are the events.
     """
 
     segments: tuple[Segment, ...]
-    ways: Ways
-    remaining: float
+    traced: tuple[Segment, ...]
+    ladder: Ladder
     metric: Metric
     folds: Callable[[], Sequence[Located]]
     left_behind: tuple[Traceable, ...] = ()
@@ -105,28 +153,14 @@ class FinestCurve(Valued):
         """Estimated errors of approach, load, central gap and contact radius at each point, (points, 4).
 
         No less than between those at the points beside it, in the geometric mean: along the path a change passes
-        through zero, where it tells nothing. Where there is but one change to tell, of two points on either side the
-        larger counts, since a change may be all but zero at several. Where one grid hands over to the next its last
-        point has the other's beside it as well: it may be the only one in contact. Infinite at a point that another
-        discretisation does not have, nor a state near to it.
+        through zero, where it tells nothing, and may be all but zero at several points, so that of two on either side
+        the larger counts. Where one grid hands over to the next its last point has the other's beside it as well: it
+        may be the only one in contact. Infinite at a point that another discretisation does not have, nor a state near
+        to it.
         """
-        part = max(self.remaining, 1.0)
-        own = [np.array([self._errors(s.problem, point, part) for point in s.points]) for s in self.segments]
-        apart = np.concatenate([self._no_less_than_beside(along) for along in own])
-        return np.asarray(np.fmax(apart, self._no_less_than_beside(np.concatenate(own))))
-
-    def _no_less_than_beside(self, own: Array) -> Array:
-        """Errors along the path, (points, 4), no less than those beside; at its ends, and a contact's, its own."""
-        farther = 2 if self._one_change else 1
-        padded = np.pad(np.where(np.isfinite(own), own, np.nan), ((farther, farther), (0, 0)), mode="edge")
-        sides = [padded[k : k + len(own)] for k in range(2 * farther + 1) if k != farther]
-        before, after = (np.fmax.reduce(side) for side in (sides[:farther], sides[farther:]))
-        return np.where(np.isnan(own), own, np.fmax(own, np.sqrt(_known(before, own) * _known(after, own))))
-
-    @property
-    def _one_change(self) -> bool:
-        """Whether there is one chain, of two discretisations."""
-        return [len(way) for way in self.ways] == [2]
+        own = [np.array([self._errors(s.problem, point) for point in s.points]) for s in self.segments]
+        apart = np.concatenate([_no_less_than_beside(along) for along in own])
+        return np.asarray(np.fmax(apart, _no_less_than_beside(np.concatenate(own))))
 
     def branches(self, coordinate: str) -> dict[str, tuple[float, float]]:
         """Range of a coordinate on each of its branches, by name."""
@@ -151,59 +185,41 @@ class FinestCurve(Valued):
         """Those that were asked for before."""
         return {}
 
-    def confirmed(self, turns: Sequence[Located]) -> list[Located]:
-        """Places in order where an observable turns, found on any discretisation, but for those by which it ripples.
+    def turns(self, condition: Condition) -> list[Located]:
+        """Places in order where an observable turns on every discretisation, on the finest; the folds are the events.
 
-        The approach turns at the folds that are told as events. Another observable ripples between two places next to
-        each other where on the finest it goes by no more than it errs there, or back. A shift that both share, from
-        grid to grid, does not count.
+        See `halfspace.equilibrium.search.confirmed`.
         """
-        if turns and turns[0].condition == FOLD:
-            return self._folds_among(turns)
-        left = list(turns)
-        told = [self._finest_level(turn) for turn in turns] if self.ways and len(turns) > 1 else []
-        while told and len(left) > 1:
-            goes = np.diff([turn.condition.level(turn.point) for turn in left])
-            levels, errs = np.array(told).T
-            clear = np.sign(goes) * np.diff(levels) / (errs[1:] + errs[:-1])
-            ripple = int(np.lexsort((np.abs(goes), clear))[0])
-            if clear[ripple] > 1:
-                break
-            for numbers in (left, told):
-                del numbers[ripple : ripple + 2]
-        return left
+        if condition == FOLD:
+            return list(self.folds())
+        if not self.ladder.told:
+            return [turn for _, turn in turns(self.traced, condition) if turn]
+        return [chains[0][-1] for chains in confirmed(turns(self.traced, condition), self._again)[0]]
 
-    def _folds_among(self, turns: Sequence[Located]) -> list[Located]:
-        """Of the places where the approach turns those nearest to its folds, least or largest as these."""
-        found = set[int]()
-        for fold in self.folds():
-            alike = [turn for turn in turns if turn.slope * fold.slope > 0]
-            found |= {id(turn) for turn in sorted(alike, key=lambda t: self.metric.distance(t.point, fold.point))[:1]}
-        return [turn for turn in turns if id(turn) in found]
-
-    def _finest_level(self, turn: Located) -> tuple[float, float]:
-        """What turns there, on the finest discretisation, and its error; infinite where that has no such state."""
+    def _again(self, turn: Located) -> Chains:
+        ladder = self.ladder.along
         try:
-            problem, point = self.ways[0][-1](turn.problem, turn.point)
+            return ladder.chains(met_again(ladder.finest, turn), met_again)
         except NotConverged:
-            return turn.condition.level(turn.point), math.inf
-        errors, weights = self._errors(problem, point, max(self.remaining, 1.0)), turn.condition.weights
-        return turn.condition.level(point), float(np.abs(weights[weights != 0]) @ errors[weights != 0])
+            return []
 
     def _cut(self, k: int) -> Mapping[str, Sequence[Segment]]:
-        """Cut the curve where an observable turns."""
-        branches: list[list[Segment]] = [[]]
-        found = states_in(self.segments, Condition(k, stationary=True))
-        confirmed = {id(turn) for turn in self.confirmed([turn for turns in found for turn in turns])}
-        for part, turns in zip(self.segments, found, strict=True):
-            points = list(part.points)
-            for turn in (one for one in turns if id(one) in confirmed):
-                before = [p for p in points if p.arclength < turn.point.arclength]
-                branches[-1].append(measured(part.problem, [*before, turn.point], self.metric))
-                branches.append([])
-                points = [turn.point, *points[len(before) :]]
-            branches[-1].append(measured(part.problem, points, self.metric))
-        return dict(zip(_names(len(branches)), branches, strict=True))
+        """Cut the curve where an observable turns, between the points from which the way over the turn is shortest."""
+        points = [(segment.problem, point) for segment in self.segments for point in segment.points]
+        branches, first = list[list[tuple[Traceable, Point]]](), 0
+        begin: list[tuple[Traceable, Point]] = []
+        for turn in self.turns(Condition(k, stationary=True)):
+            end, place = (turn.problem, turn.point), self._place(points, turn)
+            branches.append([*begin, *points[first:place], end])
+            begin, first = [end], max(first, place)
+        branches.append([*begin, *points[first:]])
+        return dict(zip(_names(len(branches)), (measured_runs(one, self.metric) for one in branches), strict=True))
+
+    def _place(self, points: Sequence[tuple[Traceable, Point]], turn: Located) -> int:
+        """Number of the point before which a turn lies."""
+        far = np.array([self.metric.distance(point, turn.point) for _, point in points])
+        apart = np.array([self.metric.distance(a, b) for (_, a), (_, b) in pairwise(points)])
+        return int(np.argmin(far[:-1] + far[1:] - apart)) + 1
 
     def at(self, coordinate: str, values: ArrayLike, branch: str | None) -> States:
         """States on a branch where a coordinate has given values."""
@@ -216,11 +232,10 @@ class FinestCurve(Valued):
         """Numbers of one state and their errors, (8,)."""
         k, _ = COORDINATES[coordinate]
         problem, point, bend = self._solved(k, value, self.parts(coordinate)[self._chosen(coordinate, value, branch)])
-        try:
-            errors = self._errors_given(k, problem, point, bend)
-        except NotConverged:
-            errors = _unbounded(point)
-            errors[k] = rounding(problem, point.x)[k]
+        errors = self._errors(problem, point)
+        if self.ladder.told:
+            errors = errors + np.abs(point.rates) * shift(errors[k], abs(point.rates[k]), bend)
+        errors[k] = rounding(problem, point.x)[k]
         return np.concatenate([point.observables, errors])
 
     def _solved(self, k: int, value: float, parts: Sequence[Segment]) -> tuple[Traceable, Point, float]:
@@ -266,60 +281,30 @@ class FinestCurve(Valued):
             )
         return having[0]
 
-    def _errors(self, problem: Traceable, point: Point, part: float) -> Array:
-        """Errors of the observables in the plane across the path, (4,); nan where there is nothing to compare with.
-
-        They are a part of the largest change along a chain of discretisations; infinite where one of these has no such
-        state.
-        """
+    def _errors(self, problem: Traceable, point: Point) -> Array:
+        """Errors of the observables in the plane across the path, (4,); nan where there is nothing to compare with."""
+        ladder = self.ladder.along
+        if not ladder.told:
+            return np.full(4, np.nan)
+        if any(problem is one for one in self.left_behind):
+            return _unbounded(point)
         try:
-            steps = self._steps(problem, point)
+            chains = ladder.chains(Located(PLANE, problem, point, 1.0), in_plane)
         except NotConverged:
             return _unbounded(point)
-        return self._in_plane(problem, point, part * _largest(steps))
+        errors = errors_of(chains, ladder.rule)
+        lost = np.isnan(errors) & ~np.isnan(point.observables)  # a contact that only one discretisation has
+        return np.where(lost, np.abs(point.observables), errors)
 
-    def _steps(self, problem: Traceable, point: Point) -> Sequence[Array]:
-        """Changes of the observables from each discretisation of a chain to the next, (steps, 4) for every chain.
 
-        NotConverged if one of these has no such state.
-        """
-        if any(problem is one for one in self.left_behind):
-            raise NotConverged("the finest grid has no state near this one; take a larger rtol")
-        found = [[again(problem, point)[1].observables for again in way[:-1]] for way in self.ways]
-        return [np.diff([*others, point.observables], axis=0) for others in found]
+PLANE = Condition(APPROACH)  # of a state that meets no condition but lies in a plane across the path
 
-    def _in_plane(self, problem: Traceable, point: Point, change: Array) -> Array:
-        """Errors in the plane by changes there, (4,)."""
-        here = point.observables
-        if not self.ways:
-            return np.full(4, np.nan)
-        errors = change + rounding(problem, point.x)
-        if len(self.ways) == 1:
-            untold, rates = problem.untold(point.x), point.rates
-            doubt = max(untold[CENTRAL_GAP] - errors[CENTRAL_GAP], 0.0)  # the plane goes with it
-            errors += np.abs(rates) * (self.metric.weights[CENTRAL_GAP] * abs(rates[CENTRAL_GAP]) * doubt)
-            errors = np.fmax(errors, untold)
-        return np.where(np.isnan(errors), np.abs(here), errors)  # a contact that only one discretisation has
 
-    def _errors_given(self, k: int, problem: Traceable, point: Point, bend: float) -> Array:
-        """Errors where an observable is prescribed: those in the plane and those by a shift along the path, (4,).
-
-        What a change of the others in the plane owes to that of the prescribed one, as all do to that of a gap, which
-        errs most, a shift takes back; but for what the path's bend, or the gap's ripple, adds to it. On a single chain,
-        where one change may be small by accident, both count in full.
-        """
-        steps, part, rates = self._steps(problem, point), max(self.remaining, 1.0), point.rates
-        change = part * _largest(steps)
-        errors = self._in_plane(problem, point, change)
-        whole, straight = shift(errors[k], abs(rates[k]), bend), change[k] / abs(rates[k])
-        if len(self.ways) > 1 and whole > straight:
-            back = part * _largest([step - np.outer(step[:, k], rates / rates[k]) for step in steps])
-            rest = self._in_plane(problem, point, back) + np.abs(rates) * (whole - straight)
-            errors = np.minimum(errors + np.abs(rates) * whole, rest)
-        else:
-            errors = errors + np.abs(rates) * whole
-        errors[k] = rounding(problem, point.x)[k]
-        return errors
+def _no_less_than_beside(own: Array) -> Array:
+    """Errors along the path, (points, 4), no less than those beside; at its ends, and a contact's, its own."""
+    padded = np.pad(np.where(np.isfinite(own), own, np.nan), ((2, 2), (0, 0)), mode="edge")
+    before, after = (np.fmax(*(padded[k : k + len(own)] for k in sides)) for sides in ((0, 1), (3, 4)))
+    return np.where(np.isnan(own), own, np.fmax(own, np.sqrt(_known(before, own) * _known(after, own))))
 
 
 def _unbounded(point: Point) -> Array:
@@ -330,11 +315,6 @@ def _unbounded(point: Point) -> Array:
 def _known(numbers: Array, otherwise: Array) -> Array:
     """Numbers, others in the place of those that are nan."""
     return np.where(np.isnan(numbers), otherwise, numbers)
-
-
-def _largest(steps: Sequence[Array]) -> Array:
-    """Sum of the changes along a chain, the largest of all chains, (4,)."""
-    return np.asarray(np.max([np.sum(np.abs(chain), axis=0) for chain in steps], axis=0)) if steps else np.zeros(4)
 
 
 def shift(change: float, rate: float, bend: float) -> float:
@@ -366,28 +346,33 @@ def require_coordinate(name: str) -> str:
 
 
 def finest_curve(
-    segments: Sequence[Segment], ways: Ways, remaining: float, metric: Metric, folds: Callable[[], Sequence[Located]]
+    segments: Sequence[Segment], ladder: Ladder, metric: Metric, folds: Callable[[], Sequence[Located]]
 ) -> FinestCurve:
     """Solve for the points of a curve on the finest discretisation; without any the curve stays as it is.
 
-    The segments are of the curve on any discretisation; the rest is as of `FinestCurve`, the ways leading to the
-    finest. A point that cannot be solved for there stays where it is.
+    The segments are of the curve on any discretisation. A point that cannot be solved for there stays where it is.
     """
-    if not ways:
-        return FinestCurve(tuple(segments), ways, math.nan, metric, folds)
+    traced = tuple(segments)
+    if not ladder.told:
+        return FinestCurve(traced, traced, ladder, metric, folds)
     found, left_behind = list[tuple[Traceable, Point]](), dict[int, Traceable]()
     for problem, point in ((segment.problem, point) for segment in segments for point in segment.points):
         try:
-            found.append(ways[0][-1](problem, point))
+            found.append(placed(ladder.along.finest, problem, point))
         except NotConverged:
             found.append((problem, point))
             left_behind[id(problem)] = problem
-    runs = [list(run) for _, run in groupby(found, key=lambda one: id(one[0]))]
-    finest: list[Segment] = []
-    for run in runs:
-        before = finest[-1].points[-1] if finest else None
-        finest.append(measured(run[0][0], [point for _, point in run], metric, before))
-    return FinestCurve(tuple(finest), ways, remaining, metric, folds, tuple(left_behind.values()))
+    return FinestCurve(measured_runs(found, metric), traced, ladder, metric, folds, tuple(left_behind.values()))
+
+
+def measured_runs(points: Sequence[tuple[Traceable, Point]], metric: Metric) -> tuple[Segment, ...]:
+    """Segments of points in order, each on a discretisation, with their arclength."""
+    segments: list[Segment] = []
+    for _, run in groupby(points, key=lambda one: id(one[0])):
+        own = list(run)
+        before = segments[-1].points[-1] if segments else None
+        segments.append(measured(own[0][0], [point for _, point in own], metric, before))
+    return tuple(segments)
 
 
 def resampled(segments: Sequence[Segment], count: int, metric: Metric) -> tuple[Segment, ...]:

@@ -23,7 +23,7 @@ from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.equilibrium.charts import moved, placed, trace_charts
 from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.events import is_event, numbered
-from halfspace.equilibrium.search import between_jumps, energy_released, find_events, with_care
+from halfspace.equilibrium.search import brackets_of, energy_released, find_events, with_care
 from halfspace.laws import LENNARD_JONES
 from halfspace.profiles.formulas import between_spheres
 from halfspace.scales import Scales
@@ -50,7 +50,9 @@ def _half_spaces(scales):
 def traced(stages):
     """Events of the curve itself, traced on the first stage and solved for again on the second."""
     segments = trace_charts(stages[0].charts)
-    found = find_events(segments) | numbered(f for pair in between_jumps(segments) for f in with_care(pair, FOLD))
+    found = find_events(segments) | numbered(
+        f for pair in brackets_of(segments, FOLD)[1:-1] for f in with_care(pair, FOLD)
+    )
     return [found, on(stages[1], found)]
 
 

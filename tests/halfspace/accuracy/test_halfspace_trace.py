@@ -14,7 +14,6 @@ import halfspace
 from fem_adhesion.common.fold_birth import critical_stiffness
 from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for, resolutions_for, rule_for
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
-from halfspace.elastic import compliance
 from halfspace.elastic.kernel import RingRules
 from halfspace.equilibrium.charts import metric_for, trace_charts
 from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets, locate
@@ -285,27 +284,6 @@ def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, po
     path = halfspace.trace(tabor, law=law)
     assert path.count <= points
     assert len(made) <= factorisations
-
-
-@pytest.mark.parametrize(("tabor", "ratio", "rtol"), [(1.0, 100.0, 1e-6), (0.3, 30.0, 1e-4), (5.0, 1000.0, 1e-8)])
-def test_events_under_a_sphere_are_found_first_on_the_operators_of_the_curve(monkeypatch, tabor, ratio, rtol):
-    """They err by less than rtol from those made for a radius between, and are all that the lowest rung takes."""
-    made = []
-    integrate = compliance.stacked_panels
-    monkeypatch.setattr(compliance, "stacked_panels", lambda *args: made.append(len(args[0])) or integrate(*args))
-    path = halfspace.trace(tabor, profile=Sphere(ratio), rtol=rtol)
-    assert path.met
-    traced = [segment.problem for segment in path.segments]
-    least = traced[1].operator.least_radius
-    on_curve = [e for e in path.stages[0].values() if not e.point.observables[CONTACT_RADIUS] < least]
-    assert all(any(event.problem is problem for problem in traced) for event in on_curve)
-    known = traced[1].operator
-    assert sum(made) <= 1 + known.scales.size + 2 * (1 + 4 * path.finest.count) + path.finest.count
-    for a in np.sqrt(known.scales[1:] * known.scales[:-1]):
-        (exact,) = integrate(known.grid.lines(a)[None], known.cell_nodes.shape[1], known.grid.coordinate.R)
-        pressure = np.exp(-((exact.radii / a) ** 2))
-        w, near = exact.compliance @ pressure, known.at(a).compliance @ pressure
-        np.testing.assert_allclose(near, w, rtol=rtol)
 
 
 @pytest.mark.parametrize("sign", [1, -1])

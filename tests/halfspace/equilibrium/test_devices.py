@@ -151,7 +151,7 @@ def test_the_error_of_an_energy_is_what_its_change_from_the_curves_grid_to_the_f
     for jump, before, known in zip(
         (found.jump_on, found.jump_off), rough, (truth.jump_on, truth.jump_off), strict=True
     ):
-        left = max(path.remaining, 1) * abs(jump.energy.value - before.energy(1 / stiffness))
+        left = max(path.ladder.rule.remaining, 1) * abs(jump.energy.value - before.energy(1 / stiffness))
         rounding = 2e-11 * (1 + jump.energy.value)
         assert left - rounding <= jump.energy.error <= 3 * left + rounding
         assert abs(jump.energy.value - known.energy.value) <= jump.energy.error
@@ -167,10 +167,12 @@ def test_the_errors_of_a_take_off_count_a_twin_whose_cells_are_others():
         path = halfspace.trace(tabor, rtol=1e-6)
         for rough, jump in zip(jumps(path.segments, 1 / stiffness), ("jump_on", "jump_off"), strict=True):
             before, found = rough.take_off, getattr(cycle(path, stiffness), jump).take_off
-            best, twin = (moved(before, stage(before).problem).point.observables for stage in (path.finest, path.twin))
+            best, twin = (
+                moved(before, stage(before).problem).point.observables for stage in (path.finest, path.ladder.twin)
+            )
             for k, quantity in enumerate(("approach", "load", "central_gap")):
                 change = abs(twin[k] - best[k])
-                assert getattr(found, f"{quantity}_error") >= 0.99 * path.remaining * change
+                assert getattr(found, f"{quantity}_error") >= 0.99 * path.ladder.rule.remaining * change
                 counted += change > 1.5 * abs(before.point.observables[k] - best[k])
     assert counted > 0
 

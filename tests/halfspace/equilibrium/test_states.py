@@ -4,6 +4,7 @@ import csv
 import json
 import pickle
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -12,12 +13,14 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import Hemisphere, Scene, cli
 from halfspace import Coated
+from halfspace.accuracy.stages import Charted
 from halfspace.equilibrium.charts import metric_for, placed
-from halfspace.equilibrium.conditions import EXTREMUM, FOLD, ZERO_LOAD
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD, ZERO_LOAD, Condition
 from halfspace.equilibrium.contact import CENTRAL_GAP
+from halfspace.equilibrium.events import ErrorRule, is_fold
 from halfspace.equilibrium.path import correct, predict
 from halfspace.equilibrium.search import states
-from halfspace.equilibrium.states import COORDINATES, shift
+from halfspace.equilibrium.states import COORDINATES, Ladder, shift
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, PowerLaw
 from halfspace.profiles import Hyperboloid, Power, Sphere
@@ -182,7 +185,7 @@ def _plane_differences(path, truth):
     errors = path.finest_curve.errors
     points = [(segment.problem, point) for segment in path.finest_curve.segments for point in segment.points]
     for error, (problem, point) in zip(errors, points, strict=True):
-        exact = truth.ways[0][-1](problem, point)[1].observables
+        exact = placed(truth.finest.everywhere, problem, point)[1].observables
         off = np.abs(exact - point.observables)
         for k in np.flatnonzero(np.isfinite(off)):
             yield exact[CENTRAL_GAP] > FAR, (error[k], off[k], 1e-11 * (1 + abs(exact[k])))
@@ -254,12 +257,24 @@ def test_the_first_point_in_contact_is_within_its_errors(tabor, rtol, law):
     _judge((number for far, number in _plane_differences(path, truth) if not far), within=1.0)
 
 
-def test_an_observable_turns_where_it_goes_by_more_than_it_errs(paths):
-    curve = paths[2.0].finest_curve
-    assert list(curve.branches("load")) == ["separated", "unstable 1", "unstable 2", "contact"]
-    assert len(replace(curve, remaining=1e12).branches("load")) == 2
+def test_the_load_turns_three_times(paths):
+    assert list(paths[2.0].branches("load")) == ["separated", "unstable 1", "unstable 2", "contact"]
     assert len(paths[2.0].states(EXTREMUM)) == 3
-    assert len(replace(paths[2.0], remaining=1e12).states(EXTREMUM)) == 1
+
+
+@pytest.mark.parametrize("coordinate", ["approach", "load", "central_gap"])
+def test_events_and_branches_tell_of_the_same_turns(coordinate):
+    """Events were ten folds where there were branches for eight."""
+    path = halfspace.trace(300.0, law=PowerLaw(3.427, 19.84), rtol=1e-3)
+    turns = path.states(Condition(COORDINATES[coordinate][0], stationary=True))
+    branches = list(path.branches(coordinate).values())
+    assert len(branches) == len(turns) + 1
+    slopes = np.sign([turn.slope for turn in turns])
+    assert np.all(slopes[1:] == -slopes[:-1])
+    if coordinate == "approach":
+        assert len(turns) == sum(map(is_fold, path.events))
+    for (low, high), (other_low, other_high) in pairwise(branches):
+        assert low == other_low or high == other_high
 
 
 def test_folds_near_each_other_are_kept_where_a_coarse_grid_shifts_both():
@@ -280,11 +295,12 @@ def test_ripples_of_a_coarse_grid_are_no_extrema():
 
 
 def test_a_point_that_another_grid_does_not_have_has_no_error_that_bounds_it(paths):
-    def nowhere(*_):
-        raise NotConverged("no such state")
+    class Nowhere(Charted):
+        def __call__(self, _):
+            raise NotConverged("no such state")
 
     curve = paths[2.0].finest_curve
-    lost = replace(curve, ways=((nowhere, curve.ways[0][-1]),))
+    lost = replace(curve, ladder=Ladder((Nowhere(()), curve.ladder.finest), None, curve.ladder.rule))
     assert np.isinf(lost.errors[:, :3]).all()
     np.testing.assert_array_equal(np.isnan(lost.errors[:, 3]), np.isnan(curve.errors[:, 3]))
     state = lost.at("approach", -1.0, "contact")
@@ -295,7 +311,8 @@ def test_a_point_that_another_grid_does_not_have_has_no_error_that_bounds_it(pat
 
 def test_the_error_of_a_point_is_the_part_of_the_changes_that_may_be_left_and_no_less_than_they():
     curve = halfspace.trace(0.5, rtol=1e-3).finest_curve
-    once, threefold, less = (replace(curve, remaining=part).errors for part in (1.0, 3.0, 0.1))
+    rungs = (replace(curve.ladder, rule=ErrorRule(part)) for part in (1.0, 3.0, 0.1))
+    once, threefold, less = (replace(curve, ladder=ladder).errors[:, :2] for ladder in rungs)  # the rest is at a point
     np.testing.assert_allclose(threefold, 3 * once, rtol=1e-4, atol=1e-9)  # but for what rounding leaves
     assert np.nanmax(once) > 1e-7
     np.testing.assert_array_equal(less, once)

@@ -388,7 +388,7 @@ def test_no_fold_of_a_soft_punch_is_lost():
         assert len(folds_of(path)) == 6
         assert not path.unconfirmed
     for name, event in rough.events.items():
-        assert event.approach == pytest.approx(fine.events[name].approach, abs=1e-4)
+        assert event.estimate("approach").agrees(fine.events[name].estimate("approach"))
 
 
 def test_branches_are_told_where_the_finest_curve_winds_between_two_of_its_points():
