@@ -23,7 +23,6 @@ from fem_adhesion.mesh.block import tensor_grid
 from fem_adhesion.paraview import picture
 from fem_adhesion.paraview.arrays import inside
 from fem_adhesion.paraview.cells import Cut, Lattice
-from fem_adhesion.stages import surroundings
 from halfspace import Stratum, Substrate
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import panels
