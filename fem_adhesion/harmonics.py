@@ -24,11 +24,11 @@ from itertools import count, islice, pairwise
 import numpy as np
 
 from fem_adhesion.scene import Scene
-from fem_adhesion.stages import standing
 from halfspace.accuracy.finite_bodies import Made, SizedBody
 from halfspace.accuracy.grids import TWIN
 from halfspace.accuracy.refinement import climb
 from halfspace.accuracy.stages import Rung
+from halfspace.accuracy.standing import standing
 from halfspace.elastic import compliance, grid
 from halfspace.elastic.compliance import collocated
 from halfspace.elastic.grid import FLAT

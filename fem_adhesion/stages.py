@@ -6,19 +6,19 @@ an operator made around its own contact radius, or all of them on one made acros
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass, field
-from functools import cached_property, partial
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 
 from halfspace.accuracy.finite_bodies import SizedBody, step_above
 from halfspace.accuracy.grids import operators_of_curve
 from halfspace.accuracy.stages import Charted
-from halfspace.equilibrium.charts import Chart, Stage, moved, undeformed_radius
+from halfspace.accuracy.standing import WhereAsked
+from halfspace.equilibrium.charts import Chart, moved
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.newton import Traceable
@@ -31,75 +31,6 @@ COARSEST = 1e-3  # tolerance up to which operators follow it: at 1e-2 landings a
 BESIDE = 0.01  # logarithmic width by which a chart for all events reaches past them: they move from grid to grid
 TIGHT = 1e-6  # tolerance below which a derivative that errs by the window's square is not good enough
 CLIMBED = 2  # rungs up, from which on it is not either
-NEAR = 0.1  # of the finest cell, that a contact may end away from the place for which a grid was made
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class WhereAsked(Stage):
-    """A stage whose charts are made when first asked for, each with the contact radii from and to which it serves."""
-
-    made: list[tuple[float, float, Chart]] = field(default_factory=list, compare=False, repr=False, kw_only=True)
-
-    def serving(self, radius: float) -> Chart | None:
-        """Chart made before that serves a contact radius in beta."""
-        return next((chart for least, most, chart in self.made if least <= radius <= most), None)
-
-    def keep(self, least: float, most: float, chart: Chart) -> Chart:
-        """Keep a chart that serves contact radii between these."""
-        self.made.append((least, most, chart))
-        return chart
-
-    @property
-    def unknowns(self) -> int:
-        """Most unknowns of a chart made so far."""
-        return max(chart.unknowns for *_, chart in self.made)
-
-
-class Gridded(Protocol):
-    """A body that a grid can be made on for any contact radius."""
-
-    @property
-    def length(self) -> float:
-        """Length in beta of the cells at the contact edge."""
-        ...
-
-    def standing(self, radius: float) -> Chart:
-        """Chart that stands still, its cells finest at a contact radius in beta, or on the axis."""
-        ...
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Standing(WhereAsked):
-    """A stage on which every event has a grid of its own that stands still, finest where its contact ends.
-
-    `along` makes the stage for the points of a curve when it is first asked for.
-    """
-
-    body: Gridded
-    along: Callable[[], Stage]
-
-    def __call__(self, event: Located) -> Chart:
-        """Chart for an event, made unless one made before will do."""
-        for *_, chart in self.made:  # on its own an event may have moved by more than that serves
-            if chart.problem is event.problem:
-                return chart
-        radius, near = undeformed_radius(event.problem, event.point), NEAR * self.body.length
-        radius = radius if radius > self.body.length else 0.0
-        return self.serving(radius) or self.keep(radius - near, radius + near, self.body.standing(radius))
-
-    @cached_property
-    def everywhere(self) -> Stage:
-        """That for the points of a curve."""
-        return self.along()
-
-
-def standing(body: SizedBody) -> Standing:
-    """Stage on which every event has cells of its own."""
-    return Standing(body, partial(_along, body))
-
-
-def _along(body: SizedBody) -> Stage:
-    return Charted(body.curve())
 
 
 def surroundings(rtol: float, level: int) -> tuple[float, int]:

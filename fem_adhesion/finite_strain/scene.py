@@ -27,10 +27,10 @@ from fem_adhesion.finite_strain.settings import USUAL, Settings
 from fem_adhesion.finite_strain.traction import convention_of
 from fem_adhesion.materials import LinearElastic, NeoHookean, TractionName
 from fem_adhesion.scene import Scene
-from fem_adhesion.stages import Standing, WhereAsked
 from halfspace.accuracy.grids import TWIN
 from halfspace.accuracy.refinement import ascend, climb
 from halfspace.accuracy.stages import Rung, State, on_all
+from halfspace.accuracy.standing import Standing, WhereAsked
 from halfspace.elastic import grid
 from halfspace.equilibrium.charts import COMPRESSION, Chart, metric_for, moved, trace_charts, undeformed_radius
 from halfspace.equilibrium.conditions import Located, relocate

@@ -13,10 +13,10 @@ from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.finite_strain.scene import ScenesBody, Windows, softening
 from fem_adhesion.harmonics import Fineness as Series
 from fem_adhesion.harmonics import sized_body as series
-from fem_adhesion.stages import Standing, standing
 from halfspace.accuracy.finite_bodies import SizedBody, at_tip
 from halfspace.accuracy.grids import Resolution, half_space_charts
 from halfspace.accuracy.stages import Charted
+from halfspace.accuracy.standing import Standing, standing
 from halfspace.elastic import compliance
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import images_of, layered_panels

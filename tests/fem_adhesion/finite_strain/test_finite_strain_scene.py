@@ -34,7 +34,7 @@ from fem_adhesion.finite_strain.scene import (
 )
 from fem_adhesion.finite_strain.settings import USUAL
 from fem_adhesion.finite_strain.traction import Convention
-from fem_adhesion.stages import Standing
+from halfspace.accuracy.standing import Standing
 from halfspace.elastic import grid
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Chart, moved, placed, transfer, undeformed_radius

@@ -1,0 +1,83 @@
+"""Events each on a grid of its own that stands still: a reference for charts that follow the contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from typing import Protocol
+
+from halfspace.accuracy.finite_bodies import SizedBody
+from halfspace.accuracy.stages import Charted
+from halfspace.equilibrium.charts import Chart, Stage, undeformed_radius
+from halfspace.equilibrium.conditions import Located
+
+NEAR = 0.1  # of the finest cell, that a contact may end away from the place for which a grid was made
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WhereAsked(Stage):
+    """A stage whose charts are made when first asked for, each with the contact radii from and to which it serves."""
+
+    made: list[tuple[float, float, Chart]] = field(default_factory=list, compare=False, repr=False, kw_only=True)
+
+    def serving(self, radius: float) -> Chart | None:
+        """Chart made before that serves a contact radius in beta."""
+        return next((chart for least, most, chart in self.made if least <= radius <= most), None)
+
+    def keep(self, least: float, most: float, chart: Chart) -> Chart:
+        """Keep a chart that serves contact radii between these."""
+        self.made.append((least, most, chart))
+        return chart
+
+    @property
+    def unknowns(self) -> int:
+        """Most unknowns of a chart made so far."""
+        return max(chart.unknowns for *_, chart in self.made)
+
+
+class Gridded(Protocol):
+    """A body that a grid can be made on for any contact radius."""
+
+    @property
+    def length(self) -> float:
+        """Length in beta of the cells at the contact edge."""
+        ...
+
+    def standing(self, radius: float) -> Chart:
+        """Chart that stands still, its cells finest at a contact radius in beta, or on the axis."""
+        ...
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Standing(WhereAsked):
+    """A stage on which every event has a grid of its own that stands still, finest where its contact ends.
+
+    `along` makes the stage for the points of a curve when it is first asked for.
+    """
+
+    body: Gridded
+    along: Callable[[], Stage]
+
+    def __call__(self, event: Located) -> Chart:
+        """Chart for an event, made unless one made before will do."""
+        for *_, chart in self.made:  # on its own an event may have moved by more than that serves
+            if chart.problem is event.problem:
+                return chart
+        radius, near = undeformed_radius(event.problem, event.point), NEAR * self.body.length
+        radius = radius if radius > self.body.length else 0.0
+        return self.serving(radius) or self.keep(radius - near, radius + near, self.body.standing(radius))
+
+    @cached_property
+    def everywhere(self) -> Stage:
+        """That for the points of a curve."""
+        return self.along()
+
+
+def standing(body: SizedBody) -> Standing:
+    """Stage on which every event has cells of its own."""
+    return Standing(body, partial(_along, body))
+
+
+def _along(body: SizedBody) -> Stage:
+    return Charted(body.curve())
