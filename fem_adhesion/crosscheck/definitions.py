@@ -125,23 +125,6 @@ def heights(scene: Scene) -> Heights:
     return (lambda r: known(shape, r)) if known else scene.surface.height
 
 
-def apart(scene: Scene) -> float:
-    """Approach in eps from which the energy counts, as `Scales.separated_approach` defines it.
-
-    The gap is ten eps, or three times that beyond which a tenth of the work is left; off that, 1.2 times the depth of
-    JKR's fold by the profile, the least a int z'(a sin t) dt - sqrt(2 pi a), or twice mu.
-    """
-    z, end = heights(scene), scene.surface.end
-    x, w = np.polynomial.legendre.leggauss(64)
-    a = np.geomspace(1e-4, 1e4, 400)
-    a = a[a < end / (1 + SMALL)][:, None]
-    t = (1 + x) ** 3 / 8  # crowds to the axis, where the slope may be a root
-    r = a * np.sin(np.pi / 2 * t)
-    slope = (z(r * (1 + SMALL)) - z(r * (1 - SMALL))) / (2 * SMALL * r)
-    approach = a[:, 0] * (slope @ (np.pi / 2 * 3 * (1 + x) ** 2 / 8 * w)) - np.sqrt(2 * np.pi * a[:, 0])
-    return -max(10.0, 3 * numbers_of(scene.law).reach) - scene.tabor * max(2.0, -1.2 * float(approach.min()))
-
-
 SMALL = 1e-4  # of a radius, for differences
 
 # What they must make

@@ -16,9 +16,10 @@ from fem_adhesion.elasticity.exterior import clamped
 from fem_adhesion.elasticity.space import Space
 from fem_adhesion.mesh.block import block_grid
 from fem_adhesion.scene import Scene
-from fem_adhesion.weak_form.path import equilibrium
-from fem_adhesion.weak_form.problem import Problem
-from halfspace.equilibrium import newton
+from fem_adhesion.weak_form.body import discretise
+from fem_adhesion.weak_form.contact import Contact
+from fem_adhesion.weak_form.newton import at_approach, newton
+from halfspace.equilibrium import newton as condensed_newton
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.laws import LENNARD_JONES
@@ -40,20 +41,16 @@ def rows(scene: Scene, path: EquilibriumPath) -> Iterator[Row]:
         return
     approach = (path.events["jump_on"].approach if "jump_on" in path.events else 0.0) - BEFORE
     mesh = block_grid(CELL, FINE, SIZE)
-    problem = Problem(mesh, DEGREE, scene.tabor, scene.poisson, FINE)
-    start = np.zeros(problem.free.size + 1)
-    start[-1] = approach
-    border = np.eye(1, start.size, start.size - 1)[0]
-    whole, _ = equilibrium(problem, start, border, approach)
-    whole, _ = equilibrium(problem, whole.x, border, approach)  # its Newton ends at the square of its last step
+    contact = Contact(discretise(mesh, DEGREE, [(scene.poisson, 1.0)]), scene.tabor, endless=False)
+    start = contact.undeformed(approach)
+    whole = newton(contact, start, at_approach(start))
+    whole = newton(contact, whole.y, at_approach(start))  # its Newton ends at the square of its last step
     body = condense(Space(mesh, ElementQuadP(DEGREE)), scene.poisson, far_field=clamped, points=2 * DEGREE + 2)
     condensed = ContactProblem(body.operator, scene.tabor)
-    part = newton.solve(condensed, condensed.undeformed(approach), newton.approach(approach))
-    gaps = problem.gap(whole.x).ravel() - 1
-    nearest = int(np.argmin(np.asarray(problem.surface.global_coordinates()[0]).ravel()))
+    part = condensed_newton.solve(condensed, condensed.undeformed(approach), condensed_newton.approach(approach))
     numbers = {
-        ("load", "R dgamma"): (float(part.observables[LOAD]), float(whole.observables[1])),
-        ("gap beside the axis", "eps"): (float(part.x[0]), float(gaps[nearest])),
+        ("load", "R dgamma"): (float(part.observables[LOAD]), whole.load),
+        ("gap beside the axis", "eps"): (float(part.x[0]), float(whole.y[np.argmin(contact.body.radii)]) - 1),
     }
     for (name, unit), (first, second) in numbers.items():
         budget = ROUNDING * abs(second)

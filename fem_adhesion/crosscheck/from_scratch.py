@@ -21,12 +21,12 @@ import numpy as np
 
 import halfspace
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
-from fem_adhesion.crosscheck.definitions import apart, numbers
+from fem_adhesion.crosscheck.definitions import numbers
 from fem_adhesion.crosscheck.weak_bodies import SHARP, FineAt, contacts, sharpness
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.newton import Equilibrium, Turn, from_afar, newton, turning_point
+from fem_adhesion.weak_form.newton import Equilibrium, Turn, at_approach, at_load, from_afar, newton, turning_point
 from halfspace.equilibrium.conditions import Located
 from halfspace.equilibrium.contact import LOAD, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -115,7 +115,7 @@ def _apart(contact: Contact, radius: float) -> list[float]:
         return body.integral(field * weight) / radius**2
 
     def rise(tension: Array) -> float:
-        return mu * mean(body.rise(body.yielding.solve(body.forces(tension))))
+        return mu * mean(body.rise(body.displaced(tension)))
 
     load, slope = (-body.integral(values) for values in tensions)
     load -= mu * float(contact.rim[1] @ contact.law.tension(1 + _made_up(contact.rim[0] / radius)[0]))
@@ -234,7 +234,7 @@ def _stable_side(state: Equilibrium) -> float:
     """
     for step in ASIDE * (1 + abs(state.load)):
         with suppress(NotConverged):
-            below, above = (state.past(d, under_load=False).unstable for d in (-step, step))
+            below, above = (state.past(d, under_load=False).tangent.unstable for d in (-step, step))
             return float(below - above) if min(below, above) == 0 else math.nan
     return math.nan
 
@@ -247,9 +247,9 @@ def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
     """Equilibrium at the load of a fold that is reached from undeformed surfaces; None if no fold is there."""
     near = state.approach - NEAR * (1 + abs(state.approach))
     with suppress(NotConverged):
-        found = from_afar(state.contact, apart(scene), near)
+        found = from_afar(state.contact, scene.scales.separated_approach, near)
         if abs(found.load - state.load) < AWAY * (1 + abs(state.load)):
-            return newton(state.contact, found.gap, near, load=state.load)
+            return newton(state.contact, found.y, at_load(state.contact, state.load), found.nearby)
     return None
 
 
@@ -297,7 +297,12 @@ class StateInWeakForm(Valued):
 
         On flat cells under a stiff coating up to 1e-3 of the load.
         """
-        return abs(self.reaction - self.contact.load(self.contact.law.tension(self.gap), self.approach))
+        return abs(self.reaction - self.contact.load(self.y))
+
+    @property
+    def y(self) -> Array:
+        """State of the weak form."""
+        return np.append(self.gap, self.approach)
 
 
 def _places(event: Located) -> tuple[float, float]:
@@ -322,8 +327,8 @@ def _state(contact: Contact, event: Located) -> StateInWeakForm:
     """Take over the gaps."""
     approach, load = (float(value) for value in event.point.observables[:2])
     h = 1 + _gaps(event, contact)
-    u, weight = contact.displacement(h), np.abs(contact.law.tension(h))
-    off = contact.body.integral((contact.gap(u, approach) - h) * weight) / contact.body.integral(weight)
+    u, weight = contact.displaced(h), np.abs(contact.law.tension(h))
+    off = contact.body.integral((contact.left_by(u, approach) - h) * weight) / contact.body.integral(weight)
     return StateInWeakForm(contact, h, approach, load, u, off)
 
 
@@ -351,19 +356,18 @@ FINER = 3.0  # steps past a turning point where there is a body with a length, w
 
 def _beside(name: str, state: StateInWeakForm) -> Equilibrium | None:
     """Equilibrium at the approach of pull-off, or at the load of another event: what turns there is stationary."""
-    load = {"pull_off": None, "zero_load": 0.0}.get(name, state.load)
+    to = at_approach(state.y) if name == "pull_off" else at_load(state.contact, state.load * (name != "zero_load"))
     with suppress(NotConverged):
-        return newton(state.contact, state.gap, state.approach, load=load)
+        return newton(state.contact, state.y, to)
     return None
 
 
 def _energy_released(scene: Scene, on: FineAt, path: EquilibriumPath) -> float | None:
     """Potential energy from undeformed surfaces that deform far apart to the equilibrium in contact at no approach."""
-    ends = [
-        _state(on(*_places(path.stages[-1][name])), path.stages[-1][name]) for name in ("separated", "zero_approach")
-    ]
-    far = apart(scene)
+    apart, touching = (path.stages[-1][name] for name in ("separated", "zero_approach"))
+    first, second = (on(*_places(end)) for end in (apart, touching))
+    starts = first.undeformed(scene.scales.separated_approach), np.append(1 + _gaps(touching, second), 0.0)
     with suppress(NotConverged):
-        before = newton(ends[0].contact, ends[0].contact.gap(None, far), far)
-        return before.energy - newton(ends[1].contact, ends[1].gap, 0.0).energy
+        before, after = (newton(each, y, at_approach(y)) for each, y in zip((first, second), starts, strict=True))
+        return before.energy - after.energy
     return None

@@ -88,6 +88,8 @@ class Contact(Valued):
     The body is in beta, `tabor` is mu, and the heights are z of the undeformed surface at radii in beta. If endless,
     the surfaces go on for ever beyond the mesh, as over a half-space; the rim, (k,) each, has radii and parts of dA of
     points beyond the mesh of a body with an end that attract and do not yield.
+
+    A state y (q + 1,) has the gaps h at the points and, last, the approach.
     """
 
     body: Body
@@ -117,41 +119,45 @@ class Contact(Valued):
         r = self.body.rim / s**FAR
         return r, 2 * np.pi * r**2 * FAR * ds / s
 
-    def gap(self, u: Array | None, approach: float) -> Array:
-        """Gap h at the points under displacements u, or of the undeformed surfaces."""
-        return np.asarray(1 - approach + self.tabor * (self.height - (0.0 if u is None else self.body.rise(u))))
-
     @cached_property
     def _far_height(self) -> Array:
         """Height z at the rigid points."""
         r = self.rigid[0]
         return self.heights(r) if r.size else r
 
+    def undeformed(self, approach: float) -> Array:
+        """State y (q + 1,) of undeformed surfaces."""
+        return np.append(1 - approach + self.tabor * self.height, approach)
+
+    def left_by(self, u: Array, approach: float) -> Array:
+        """Gaps (q,) that the displacements u leave."""
+        return np.asarray(self.undeformed(approach)[:-1] - self.tabor * self.body.rise(u))
+
     def _beyond(self, approach: float) -> Array:
         """Gaps at the rigid points."""
         return np.asarray(1 - approach + self.tabor * self._far_height)
 
-    def load(self, tension: Array, approach: float) -> float:
-        """W in R dgamma, positive in compression, of the tension at the points."""
-        return -self.tabor * self.body.integral(tension) + self.load_beyond(approach)
+    def load(self, y: Array) -> float:
+        """W in R dgamma, positive in compression, of a state."""
+        return -self.tabor * self.body.integral(self.law.tension(y[:-1])) + self.load_beyond(y[-1])
 
     def load_beyond(self, approach: float) -> float:
         """Part of the load that is beyond the mesh."""
         return -self.tabor * float(self.rigid[1] @ self.law.tension(self._beyond(approach)))
 
-    def load_slope(self, rate: Array, approach: float) -> float:
-        """dW/dalpha in R dgamma/eps of the rate -dsigma/dalpha."""
-        rigid = self.rigid[1] @ self.law.slope(self._beyond(approach))
-        return self.tabor * (self.body.integral(rate) + float(rigid))
+    def load_row(self, y: Array) -> Array:
+        """Derivative of the load by the state, (q + 1,)."""
+        beyond = float(self.rigid[1] @ self.law.slope(self._beyond(y[-1])))
+        return self.tabor * np.append(-self.body.area * self.law.slope(y[:-1]), beyond)
 
-    def displacement(self, h: Array) -> Array:
-        """What the tensions of given gaps make of the body, whether or not it leaves those gaps."""
-        return np.asarray(self.body.yielding.solve(self.tabor * self.body.forces(self.law.tension(h))))
+    def displaced(self, h: Array) -> Array:
+        """Displacements by the tensions of given gaps, whether or not these leave the gaps."""
+        return self.body.displaced(self.tabor * self.law.tension(h))
 
     def energy(self, u: Array, approach: float) -> float:
         """Potential energy in R dgamma eps, less that of the undeformed surfaces in touch, which may be infinite."""
         inside = float(u @ (self.body.stiffness @ u)) / 2
-        inside += self.body.integral(self._released(self.gap(u, approach), self.height))
+        inside += self.body.integral(self._released(self.left_by(u, approach), self.height))
         return self.tabor * (inside + float(self.rigid[1] @ self._released(self._beyond(approach), self._far_height)))
 
     def _released(self, h: Array, height: Array) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_adhesion.scene import Scene, require_scene
-from fem_adhesion.weak_form.body import Array
-from fem_adhesion.weak_form.path import Point, arclength, events, events_on_finer, follow, on_finer, unloaded
-from fem_adhesion.weak_form.problem import Problem, half_space_mesh
+from fem_adhesion.weak_form.body import Array, box, discretise, growing
+from fem_adhesion.weak_form.contact import Contact
+from fem_adhesion.weak_form.path import Path, Point, arclength, condition_of
 from halfspace.equilibrium.events import Event, Tolerance, tolerance_told
 from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
@@ -22,13 +22,39 @@ from halfspace.limits import require_between
 from halfspace.profiles import Paraboloid
 from halfspace.values import Valued
 
-DEGREES = (2, 3, 4, 5)  # of the elements, until two in a row agree to rtol
-SEPARATED = -9.0  # eps, the approach at which the curve begins; the attraction is a hundredth of its maximum there
-LEFT_OUT = 0.01  # part of rtol eps that the far clamp may take from the approach
-FOUND = 1e-8  # to which a point is solved for, of each number in its unit
 OBSERVABLES = ("approach", "load", "central_gap", "contact_radius")
-
 LIMITS = {"tabor": (0.02, 5.0), "poisson": (0.0, 0.49), "rtol": (1e-4, 0.1), "to_load": (0.0, 20.0)}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a curve is discretised.
+
+    Attributes
+    ----------
+    degrees : tuple of int
+        Of the elements, until two in a row agree to rtol.
+    separated : float
+        Approach in eps at which the curve begins; the attraction is a hundredth of its maximum there.
+    left_out : float
+        Part of rtol eps that the far clamp may take from the approach.
+    found : float
+        To which a number is solved for, in its unit.
+    growth : float
+        Ratio of the lengths of neighbouring cells beyond the fine ones.
+    cells : float
+        Length of the fine cells in the width of the spike of tension, or of the attraction.
+    """
+
+    degrees: tuple[int, ...] = (2, 3, 4, 5)
+    separated: float = -9.0
+    left_out: float = 0.01
+    found: float = 1e-8
+    growth: float = 3.0
+    cells: float = 0.3
+
+
+SETTINGS = Settings()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -51,6 +77,8 @@ class Curve(Valued):
     events : mapping of str to Event
         ``pull_off``, ``jump_on``, ``jump_off``, ``zero_load`` and, where the path winds, ``fold_2`` ...; each solved
         for, with the estimated error of each number.
+    tolerance : Tolerance
+        What `rtol` means for loads and approaches.
     unknowns : int
         Displacements of the finest elements.
     seconds : float
@@ -67,6 +95,7 @@ class Curve(Valued):
     arclength: Array
     stable: NDArray[np.bool_]
     events: Mapping[str, Event]
+    tolerance: Tolerance
     unknowns: int
     seconds: float = field(compare=False)
     settings: Mapping[str, Any]
@@ -81,8 +110,9 @@ class Curve(Valued):
 
     def __repr__(self) -> str:
         """What was found, and whether to the accuracy asked for."""
-        told = "; ".join(f"{name} at {each.approach:.5g} eps, {each.load:.5g}" for name, each in self.events.items())
-        return f"<Curve of tabor {self.tabor:g}, {len(self.load)} points: {told}; {self.tolerance_told}>"
+        found = "; ".join(f"{name} at {each.approach:.5g} eps, {each.load:.5g}" for name, each in self.events.items())
+        told = tolerance_told(self.rtol, self.missed)
+        return f"<Curve of tabor {self.tabor:g}, {len(self.load)} points: {found}; {told}>"
 
     def event(self, name: str) -> Event | None:
         """Event by name, None if the curve does not have it."""
@@ -94,11 +124,6 @@ class Curve(Valued):
         return np.asarray(self.stable & (self.rates[:, 0] * self.rates[:, 1] > 0))
 
     @property
-    def tolerance(self) -> Tolerance:
-        """What `rtol` means for loads and approaches."""
-        return Tolerance.on(self.events, self.rtol)
-
-    @property
     def missed(self) -> dict[str, tuple[str, ...]]:
         """By event, the numbers whose estimated errors exceed `tolerance`."""
         return self.tolerance.missed(self.events)
@@ -108,13 +133,8 @@ class Curve(Valued):
         """Whether all events have their loads and approaches to the accuracy asked for."""
         return not self.missed
 
-    @property
-    def tolerance_told(self) -> str:
-        """The same in words."""
-        return tolerance_told(self.rtol, self.missed)
 
-
-def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0) -> Curve:
+def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0, how: Settings = SETTINGS) -> Curve:
     """Trace the load-approach curve by Newton's method for all displacements at once.
 
     The body is meshed by quadrilaterals and clamped far away; scikit-fem assembles the weak form of
@@ -132,6 +152,8 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0) -> Curve:
         Relative accuracy of loads, and of approaches in the range of the events', 1e-4 to 0.1.
     to_load : float
         Compressive load in R dgamma at which the curve ends, 0 to 20.
+    how : Settings
+        Degrees of the elements, cells, and where the curve begins.
 
     Raises
     ------
@@ -141,42 +163,57 @@ def trace(scene: Scene, rtol: float = 1e-3, *, to_load: float = 5.0) -> Curve:
         If the path ends before that load.
     """
     require_served(scene, rtol, to_load)
-    began, mu = time.perf_counter(), scene.tabor
-    far = mu * max(to_load, 1.0) / (np.pi * LEFT_OUT * rtol)  # a clamp at L takes W/(pi L) beta^2/R of the approach
-    mesh, disc = half_space_mesh(mu, to_load, far)
-    problems = [Problem(mesh, degree, mu, scene.poisson, disc) for degree in DEGREES]
-    points = follow(problems[0], SEPARATED, to_load)
-    found, told = events(problems[0], points), dict[str, Event]()
+    began, paths = time.perf_counter(), _paths(scene, rtol, to_load, how)
+    path = next(paths)
+    points = path.follow(how.separated, to_load)
+    found, told = path.events(points), dict[str, Event]()
     open_events = list(found)
     errors, open_points = np.full((len(points), len(OBSERVABLES)), np.inf), np.arange(len(points))
-    solved_on = [problems[0]] * len(points)
-    for coarse, fine in pairwise(problems):
-        finer = events_on_finer(fine, coarse, {name: found[name] for name in open_events})
-        told |= {name: _event(name, found[name], point) for name, point in finer.items()}
-        found |= finer
+    for path in paths:
+        for name in open_events:
+            finer = path.event_near(path.taken_over(found[name]), condition_of(name))
+            told[name], found[name] = _event(name, found[name], finer, how.found), finer
         tolerance = Tolerance.on(told, rtol)
         open_events = [name for name, event in told.items() if tolerance.missed_by(event) or _rough(event, rtol)]
-        for n, point in zip(open_points, on_finer(fine, coarse, [points[n] for n in open_points]), strict=True):
-            errors[n] = np.abs(point.observables - points[n].observables)
-            points[n], solved_on[n] = point, fine
-        sizes = tolerance.approach, max(abs(unloaded(point)) for point in points)
-        open_points = np.flatnonzero((errors[:, :2] > rtol * np.array(sizes)).any(axis=1))
+        for n in open_points:
+            finer = path.taken_over(points[n])
+            errors[n], points[n] = np.abs(finer.observables - points[n].observables), finer
+        sizes = np.array([tolerance.approach, max(abs(point.state.load) for point in points)])
+        open_points = np.flatnonzero((errors[:, :2] > rtol * sizes).any(axis=1))
         if not (open_points.size or open_events):
             break
-    steps = [arclength(*both) for both in pairwise(zip(solved_on, points, strict=True))]
     return Curve(
-        mu,
+        scene.tabor,
         rtol,
         np.array([point.observables for point in points]),
         errors,
         np.array([point.rates for point in points]),
-        np.cumsum([0.0, *steps]),
+        np.cumsum([0.0, *(arclength(*both) for both in pairwise(points))]),
         np.array([point.stable for point in points]),
         told,
-        fine.free.size,
+        tolerance,
+        path.contact.body.reaction.size,
         time.perf_counter() - began,
-        {"rtol": rtol, "degree": fine.degree, "cells": mesh.nelements, "far": -float(mesh.p[1].min())},
+        {"rtol": rtol, "far": path.contact.body.rim},
     )
+
+
+def _paths(scene: Scene, rtol: float, to_load: float, how: Settings) -> Iterator[Path]:
+    """Paths on elements of ever higher degree, on one mesh.
+
+    The box is so large that its clamp takes little of the approach. Its cells are fine up to the contact radius by JKR
+    at the largest load: the edge, whose spike of tension is as wide as 1/mu^2 beta, passes by all of it. Attraction is
+    as wide as mu^(-1/2) beta at least.
+    """
+    mu, W = scene.tabor, to_load
+    far = mu * max(W, 1.0) / (np.pi * how.left_out * rtol)  # a clamp at L takes W/(pi L) beta^2/R of the approach
+    swept = float(0.75 * (W + 3 * np.pi + np.sqrt(6 * np.pi * W + (3 * np.pi) ** 2))) ** (1 / 3)
+    length = how.cells / max(mu**2, mu**0.5)
+    fine = np.linspace(0, swept, int(np.ceil(swept / length)) + 1)
+    beyond = growing(fine[1], far, how.growth)
+    mesh = box(np.append(fine, swept + how.growth * beyond), beyond)
+    for degree in how.degrees:
+        yield Path(Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), mu, endless=False), swept)
 
 
 def _rough(event: Event, rtol: float) -> bool:
@@ -184,7 +221,7 @@ def _rough(event: Event, rtol: float) -> bool:
     return event.contact_radius_error > rtol * event.contact_radius
 
 
-def _event(name: str, coarse: Point, fine: Point) -> Event:
+def _event(name: str, coarse: Point, fine: Point, found: float) -> Event:
     """Numbers of an event with errors, from those on coarser elements.
 
     Each errs by its change. As two numbers may agree by chance while the event moves, approach and load where
@@ -194,7 +231,7 @@ def _event(name: str, coarse: Point, fine: Point) -> Event:
     if name != "zero_load":
         shift = changes[2] / abs(fine.rates[2])
         changes[:2] = np.maximum(changes[:2], np.abs(fine.rates[:2]) * shift)
-    return Event(name, *map(float, fine.observables), *map(float, changes + FOUND))
+    return Event(name, *map(float, fine.observables), *map(float, changes + found))
 
 
 def require_served(scene: Scene, rtol: float, to_load: float) -> None:

@@ -1,81 +1,144 @@
-"""Newton's method, the determinant of its tangent, and where that changes its sign."""
+"""Newton's method with a border, the equilibria that it finds, and where these turn.
+
+A state y (q + 1,) has the gaps h at the points in eps and, last, the approach alpha.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from fem_adhesion.weak_form.body import Array
+from fem_adhesion.weak_form.body import Array, last
 from fem_adhesion.weak_form.contact import LENNARD_JONES, Contact
 from halfspace.errors import NotConverged
 from halfspace.values import Valued
+
+Condition = Callable[[Array], tuple[float, Array]]
+"""What a state lacks of the last equation, and the derivative (q + 1,) of that equation by the state."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """How far steps go, and when they end.
+
+    Attributes
+    ----------
+    most : int
+        Newton steps, after which there is no equilibrium; steps in approach likewise.
+    near : float
+        Relative change of the gaps that a further Newton step would make.
+    kept : float
+        Length of a step relative to that before: a shorter one may be followed by one along the same tangent.
+    closing : float
+        Largest part of a gap that one Newton step may close.
+    opening : float
+        Largest part of a gap by which it may change in a step of approach.
+    flat, nearby : float
+        First steps past an extremum of the load in approach (1 + its size), past a fold in load.
+    followed : float
+        Largest change of a gap in such a step, in grains of the law.
+    farthest : float
+        Farthest place to look for a turning point, in such steps.
+    tries : int
+        Steps towards a turning point.
+    """
+
+    most: int = 20
+    near: float = 1e-9
+    kept: float = 0.2
+    closing: float = 0.75
+    opening: float = 0.3
+    flat: float = 1e-2
+    nearby: float = 2e-3
+    followed: float = 0.25
+    farthest: float = 50.0
+    tries: int = 6
+
+
+STEPS = Steps()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Tangent(Valued):
     """How a contact yields to a small change of a state, with the law's straight line in the place of the law.
 
-    Gaps h (q,) of the state are in eps, the slope (q,) there is sigma' in dgamma/eps^2, and the matrix is that of
-    a(u, v) + mu^2 int sigma' u_z v_z dA, see `Body.softened`. The gaps' rate is dh/dalpha and the stiffness dW/dalpha
-    in R dgamma/eps, along the equilibria.
+    Attributes
+    ----------
+    slope : (q,) array
+        sigma' at the gaps of the state in dgamma/eps^2.
+    factors : SuperLU
+        Of A: the form a(u, v) + mu^2 int sigma' u_z v_z dA, on all displacements.
+    u_rate, rate : (n,), (q + 1,) array
+        Change of the displacements and of the state along the equilibria, by approach.
+    stiffness : float
+        dW/dalpha along the equilibria in R dgamma/eps.
     """
 
-    gap: Array
     slope: Array
-    matrix: Array
-    gap_rate: Array
+    factors: Any
+    u_rate: Array
+    rate: Array
     stiffness: float
 
     @classmethod
-    def at(cls, contact: Contact, h: Array, approach: float) -> Tangent:
-        """Tangent of a contact at the gaps h."""
-        body, mu, slope = contact.body, contact.tabor, contact.law.slope(h)
-        matrix = body.softened(mu**2 * slope)
-        gap_rate = -1 + mu**2 * body.softened_rise(matrix, slope)
-        return cls(h, slope, matrix, gap_rate, contact.load_slope(slope * -gap_rate, approach))
+    def at(cls, contact: Contact, y: Array) -> Tangent:
+        """Tangent of a contact at a state."""
+        body, mu, slope = contact.body, contact.tabor, contact.law.slope(y[:-1])
+        factors = body.softened(mu**2 * slope)
+        u_rate = factors.solve(-mu * body.forces(slope))
+        rate = np.append(-1 - mu * body.rise(u_rate), 1.0)
+        return cls(slope, factors, u_rate, rate, float(contact.load_row(y) @ rate))
+
+    @cached_property
+    def unstable(self) -> int:
+        """Number of directions in which the energy falls at this approach: negative eigenvalues of A."""
+        return int((self.factors.U.diagonal() < 0).sum())
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Equilibrium(Valued):
-    """A state of equilibrium of a contact: h at the points and alpha in eps, W in R dgamma, and a tangent nearby."""
+    """A state of equilibrium of a contact: the state y, its displacements u (n,), and a tangent nearby."""
 
     contact: Contact
-    gap: Array
-    approach: float
-    load: float
+    y: Array
+    u: Array
     nearby: Tangent
+
+    @property
+    def approach(self) -> float:
+        """Approach in eps."""
+        return float(self.y[-1])
+
+    @cached_property
+    def load(self) -> float:
+        """W in R dgamma."""
+        return self.contact.load(self.y)
 
     @cached_property
     def tangent(self) -> Tangent:
-        """The tangent at the state itself; steps from state to state are too short for one nearby."""
-        return Tangent.at(self.contact, self.gap, self.approach)
-
-    @cached_property
-    def determinant(self) -> tuple[float, float]:
-        """Sign of that of the tangent, and the logarithm of its magnitude."""
-        sign, magnitude = np.linalg.slogdet(self.tangent.matrix)
-        return float(sign), float(magnitude)
-
-    @property
-    def unstable(self) -> int:
-        """Number of directions in which the energy falls at this approach: negative eigenvalues of the tangent."""
-        unit = np.sqrt(
-            self.contact.body.surface.diagonal()
-        )  # they keep their signs, and cells of any size their digits
-        return int((np.linalg.eigvalsh(self.tangent.matrix / np.outer(unit, unit)) < 0).sum())
+        """The tangent at the state itself."""
+        return Tangent.at(self.contact, self.y)
 
     @property
     def energy(self) -> float:
         """Potential energy in R dgamma eps, see `Contact.energy`."""
-        return self.contact.energy(self.contact.displacement(self.gap), self.approach)
+        return self.contact.energy(self.u, self.approach)
 
     @property
     def central_gap(self) -> float:
         """H(0) in eps: the displacement is even and smooth across the axis, as the profile need not be."""
-        return float(even(self.contact.body.radii, self._displaced)(0.0)) - self.approach
+        return on_axis(self.contact, self._displaced) - self.approach
+
+    @property
+    def contact_radius(self) -> float:
+        """Largest radius in beta at which the tension is largest; nan if there is none."""
+        radii = even(self.contact.body.radii, self.y[:-1] - self.contact.law.edge).roots(extrapolate=False)
+        return float(radii[-1]) if radii.size and radii[-1] > 0 else float("nan")
 
     @property
     def ripple(self) -> float:
@@ -86,26 +149,20 @@ class Equilibrium(Valued):
         """
         first = np.argsort(self.contact.body.radii)[:INNERMOST]
         x = self.contact.body.radii[first] ** 2
-        fields = self.gap[first], self._displaced[first]
+        fields = self.y[first], self._displaced[first]
         return min(float(np.max(np.abs(f - np.polynomial.Polynomial.fit(x, f, 2)(x)))) for f in fields)
 
     @property
     def _displaced(self) -> Array:
         """What the points have come down in eps."""
-        return self.gap - self.contact.gap(None, self.approach)
-
-    @property
-    def contact_radius(self) -> float:
-        """Largest radius in beta at which the tension is largest; nan if there is none."""
-        radii = even(self.contact.body.radii, self.gap - self.contact.law.edge).roots(extrapolate=False)
-        return float(radii[-1]) if radii.size and radii[-1] > 0 else float("nan")
+        return self.y[:-1] - self.contact.undeformed(self.approach)[:-1]
 
     def past(self, step: float, *, under_load: bool) -> Equilibrium:
         """Equilibrium a step in approach or load farther, from what the tangent nearby predicts."""
-        near, load = self.nearby, None if under_load else self.load + step
-        change = step if under_load else step / near.stiffness
-        start = self.gap + change * near.gap_rate, self.approach + change
-        return newton(self.contact, *start, load=load, tangent=near)
+        near = self.nearby
+        start = self.y + (step if under_load else step / near.stiffness) * near.rate
+        reached = at_approach(start) if under_load else at_load(self.contact, self.load + step)
+        return newton(self.contact, start, reached, near)
 
 
 INNERMOST = 20  # points, those of about two cells
@@ -118,108 +175,115 @@ def even(radii: Array, values: Array) -> CubicSpline:
     return CubicSpline(np.concatenate([-r[::-1], r]), np.concatenate([f[::-1], f]))
 
 
-MOST_STEPS, NEAR = 20, 1e-9  # relative change of the gaps by one step more
-KEPT = 0.2  # of the step before: one that is shorter may be followed by one along the same tangent
+def on_axis(contact: Contact, values: Array) -> float:
+    """Value on the axis of a smooth field at the points."""
+    return float(even(contact.body.radii, values)(0.0))
+
+
+def along(row: Array, value: float) -> Condition:
+    """The condition that a linear function of the state has a value."""
+    return lambda y: (value - float(row @ y), row)
+
+
+def at_approach(y: Array) -> Condition:
+    """The condition that the approach is that of a state."""
+    return along(last(y.size), float(y[-1]))
+
+
+def at_load(contact: Contact, load: float) -> Condition:
+    """The condition that the load is given."""
+    return lambda y: (load - contact.load(y), contact.load_row(y))
 
 
 def newton(
-    contact: Contact, h: Array, approach: float, *, load: float | None = None, tangent: Tangent | None = None
+    contact: Contact, y: Array, condition: Condition, tangent: Tangent | None = None, how: Steps = STEPS
 ) -> Equilibrium:
-    """Solve for the equilibrium at an approach, or at a load if one is given, from gaps nearby.
+    """Solve for the equilibrium that meets a condition, from gaps nearby.
 
-    Each step solves the problem with the law's straight line, sigma(h) + sigma' (h_new - h), in the place of the law.
-    While each is much shorter than the one before, they keep its slope and with it the factors of the tangent, from
-    that given on; none is kept any more as soon as a step is longer, as where the law ends by a step. NotConverged if
-    the steps run out.
+    Each step solves for all displacements, with the law's straight line sigma(h) + sigma' (h_new - h) in the place of
+    the law, and for the approach. While each is much shorter than the one before, they keep its slope and with it the
+    factors of the tangent, from that given on; none is kept any more as soon as a step is longer, as where the law ends
+    by a step. NotConverged if the steps run out.
     """
-    before: float | None = None
-    kept = KEPT
-    for _ in range(MOST_STEPS):
+    body, mu, before, kept = contact.body, contact.tabor, None, how.kept
+    for _ in range(how.most):
         if tangent is None:
-            tangent, before = Tangent.at(contact, h, approach), 1.0  # its error falls as the square
-        change, d = _step(contact, h, approach, load, tangent)
+            tangent, before = Tangent.at(contact, y), 1.0  # its error falls as the square
+        h, flat = y[:-1], contact.undeformed(y[-1])[:-1]
+        u = tangent.factors.solve(mu * body.forces(contact.law.tension(h) + tangent.slope * (flat - h)))
+        change = np.append(flat - mu * body.rise(u) - h, 0.0)
+        missing, row = condition(y)
+        d = (missing - float(row @ change)) / float(row @ tangent.rate)
+        change, u = change + d * tangent.rate, u + d * tangent.u_rate
         size = contact.law.size(h)
-        part = min(1.0, 0.75 / max(float((-change / size).max()), 0.75))  # lest the surfaces pass through each other
-        h, approach, moved = h + part * change, approach + part * d, float(np.abs(change / size).max())
-        contraction = KEPT if before is None else moved / before  # along the tangent given, a guess
-        if moved * contraction < NEAR:
-            return Equilibrium(contact, h, approach, contact.load(contact.law.tension(h), approach), tangent)
+        # Lest the surfaces pass through each other.
+        y = y + min(1.0, how.closing / max(float((-change[:-1] / size).max()), how.closing)) * change
+        moved = float(np.abs(change[:-1] / size).max())
+        contraction = how.kept if before is None else moved / before  # along the tangent given, a guess
+        if moved * contraction < how.near:
+            return Equilibrium(contact, y, u, tangent)
         kept = 0.0 if contraction > 1 else kept
         tangent, before = (tangent if contraction <= kept else None), moved
-    raise NotConverged(f"no equilibrium in {MOST_STEPS} Newton steps of the weak form; try a nearer start")
+        if not np.isfinite(moved):
+            break
+    raise NotConverged(f"no equilibrium in {how.most} Newton steps of the weak form; try a nearer start")
 
 
-def _step(contact: Contact, h: Array, approach: float, load: float | None, tangent: Tangent) -> tuple[Array, float]:
-    """Changes of the gaps and of the approach towards the equilibrium at this approach, or at a load."""
-    body, mu, tension = contact.body, contact.tabor, contact.law.tension(h)
-    straight = tension + tangent.slope * (contact.gap(None, approach) - h)
-    change = contact.gap(None, approach) - mu * body.softened_rise(tangent.matrix, mu * straight) - h
-    missing = 0.0 if load is None else load - contact.load(tension + tangent.slope * change, approach)
-    d = missing / tangent.stiffness
-    return change + d * tangent.gap_rate, d
-
-
-def from_afar(contact: Contact, far: float, approach: float) -> Equilibrium:
+def from_afar(contact: Contact, far: float, approach: float, how: Steps = STEPS) -> Equilibrium:
     """Equilibrium at an approach that is reached from undeformed surfaces at one far apart, by steps in approach.
 
     In each the gaps change by less than a part of them; NotConverged if that leads nowhere, as past a fold.
     """
-    state = newton(contact, contact.gap(None, far), far)
-    for _ in range(MOST_STEPS):
-        left, rate = approach - state.approach, state.tangent.gap_rate
-        part = OPENING / max(OPENING, float(np.max(np.abs(left * rate) / contact.law.size(state.gap))))
+    start = contact.undeformed(far)
+    state = newton(contact, start, at_approach(start))
+    for _ in range(how.most):
+        left, rate = approach - state.approach, state.nearby.rate
         if left == 0:
             return state
-        state = newton(contact, state.gap + part * left * rate, approach if part == 1 else state.approach + part * left)
-    raise NotConverged(f"no way from afar to alpha = {approach:.4g} eps in {MOST_STEPS} steps of the weak form")
+        fastest = float(np.max(np.abs(left * rate[:-1]) / contact.law.size(state.y[:-1])))
+        start = state.y + how.opening / max(how.opening, fastest) * left * rate
+        start[-1] = approach if fastest <= how.opening else start[-1]
+        state = newton(contact, start, at_approach(start), state.nearby)
+    raise NotConverged(f"no way from afar to alpha = {approach:.4g} eps in {how.most} steps of the weak form")
 
-
-OPENING = 0.3  # of each gap, what it may change by in a step of approach
 
 # Turning points
 
 
 @dataclass(frozen=True)
 class Turn:
-    """Where a determinant changes its sign: load in R dgamma, approach in eps."""
+    """Where the equilibria turn: load in R dgamma, approach in eps."""
 
     load: float
     approach: float
 
 
-FLAT, NEARBY = 1e-2, 2e-3  # first steps, of approach and load
-FOLLOWED = 0.25  # of the grain of a law, what a gap may change by in one, or Newton's method may not follow
-FARTHEST, TRIES = 50.0, 6  # the farthest in such steps, how many are tried
-
-
-def turning_point(middle: Equilibrium, *, under_load: bool, finer: float = 1.0) -> Turn | None:
+def turning_point(middle: Equilibrium, *, under_load: bool, finer: float = 1.0, how: Steps = STEPS) -> Turn | None:
     """Where the equilibria near one turn, or None where they do not.
 
-    Under fixed grips, at the fold of a jump, the determinant of the tangent changes its sign; that is passed at given
-    loads. Under a dead load, at an extremum of the load, that of the tangent bordered by the load does, det A times
-    dW/dalpha; it is passed at given approaches. Where they turn, the cubic through the states on either side does; it
-    errs by a power of the steps, which may be that much finer.
+    At the fold of a jump the approach has an extremum along the load, and d(alpha)/dW changes its sign with the
+    determinant of A; at the load's own extremum dW/d(alpha) does. Where they turn, the cubic through the states on
+    either side does; it errs by a power of the steps, which may be that much finer.
     """
     # The extremum of the load is flat; along the load an edge moves by a spike's width soon.
     contact = middle.contact
-    step = FLAT * min(1.0, contact.law.grain / LENNARD_JONES.grain) if under_load else NEARBY
+    step = how.flat * min(1.0, contact.law.grain / LENNARD_JONES.grain) if under_load else how.nearby
     step *= (1 + abs(middle.approach if under_load else middle.load)) * min(1.0, 9 / contact.sharpness**2) / finer
     if under_load:  # past the edge of a contact that turns early gaps open much faster than the rest
-        fastest = float(np.max(np.abs(middle.nearby.gap_rate) / contact.law.size(middle.gap)))
-        step = min(step, FOLLOWED * contact.law.grain / fastest)
+        fastest = float(np.max(np.abs(middle.nearby.rate[:-1]) / contact.law.size(middle.y[:-1])))
+        step = min(step, how.followed * contact.law.grain / fastest)
     a, b = (middle.past(d, under_load=under_load) for d in (-step, step))
     step = 2 * step
-    for _ in range(TRIES):
-        signs, logs = np.transpose([a.determinant, b.determinant])
-        values = signs * np.exp(logs - logs[0]) * ([a.tangent.stiffness, b.tangent.stiffness] if under_load else 1.0)
-        part = float(values[0] / (values[0] - values[1]))
+    for _ in range(how.tries):
+        stiffness = [state.tangent.stiffness for state in (a, b)]
+        slopes = stiffness if under_load else [1 / each for each in stiffness]
+        part = slopes[0] / (slopes[0] - slopes[1])
         if 0 <= part <= 1:
-            slopes = [(s, s.tangent.stiffness) for s in (a, b)]
-            ends = [(s.load, k) if under_load else (s.approach, 1 / k) for s, k in slopes]
-            part, turned = _extremum(step, *ends)
+            values = [state.load if under_load else state.approach for state in (a, b)]
+            part, turned = _extremum(step, *zip(values, slopes, strict=True))
             place = (a.approach if under_load else a.load) + part * step
             return Turn(turned, place) if under_load else Turn(place, turned)
-        if not abs(part) < FARTHEST:
+        if not abs(part) < how.farthest:
             return None
         step *= 1.3 * part  # past the root
         b = a.past(step, under_load=under_load)

@@ -1,33 +1,55 @@
-"""The path of equilibria through the folds: Newton's method with a border, pseudo-arclength, and the events on it."""
+"""The path of equilibria through the folds: pseudo-arclength, and the events on it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq, newton
+from scipy.optimize import brentq
+from scipy.optimize import newton as secant
 
 from fem_adhesion.weak_form.body import Array
-from fem_adhesion.weak_form.problem import Problem
+from fem_adhesion.weak_form.contact import Contact
+from fem_adhesion.weak_form.newton import Equilibrium, along, at_approach, at_load, even, newton, on_axis
 from halfspace.errors import NotConverged
 from halfspace.values import Valued
 
-MOST_STEPS = 12  # Newton steps, after which a step along the path is halved
-NEAR = 1e-10  # relative change of a gap that a further Newton step would make
-TANGENT = 1e-9  # relative error of the tangent of the path
-KEPT = 0.1  # of the step before: one that is shorter is followed by one with the same matrix
-CLOSING = 0.75  # part of a gap that one Newton step may close
-USUAL = 6  # Newton steps of a step along the path that suits; the next is longer after fewer
-SHORTEST, MOST_POINTS = 1e-6, 1000  # step along the path at which it ends without a curve; points likewise
-OPENING = 0.3  # largest part by which the gap on the axis changes in a step, lest it pass by two folds
-TURN = 0.5  # least cosine between the tangents at both ends of a step
-ROOT = 1e-7  # part of a step along the path within which an event is found
-FIRST = 0.5  # first step, in units of the arclength
-ASIDE = 1e-3  # arclength to the second state from which an event is sought by the secant
+
+@dataclass(frozen=True)
+class March:
+    """How a path is followed.
+
+    Attributes
+    ----------
+    first : float
+        First step, in units of the arclength.
+    shortest : float
+        Step at which the path ends without a curve.
+    most : int
+        Points at which it does likewise.
+    opening : float
+        Largest part by which the gap on the axis changes in a step, lest it pass by two folds.
+    turn : float
+        Least cosine between the tangents at both ends of a step.
+    suits : float
+        Part of these limits that the next step is to use.
+    root : float
+        Part of a step within which an event is found.
+    aside : float
+        Arclength to the second state from which an event is sought by the secant.
+    """
+
+    first: float = 0.5
+    shortest: float = 1e-6
+    most: int = 1000
+    opening: float = 0.3
+    turn: float = 0.5
+    suits: float = 0.6
+    root: float = 1e-7
+    aside: float = 1e-3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,231 +58,157 @@ class Point(Valued):
 
     Attributes
     ----------
-    x, tangent, row : (n + 1,) array
-        State, unit tangent along the path, and the row <tangent, .> of the inner product.
-    observables : (4,) array
-        Approach, load, central gap, contact radius.
-    rates : (3,) array
-        Of approach, load and central gap along the path.
-    stable : bool
-        Whether the state is stable under fixed grips: no eigenvalue of the tangent matrix is negative.
+    state : Equilibrium
+        The equilibrium.
+    direction, row : (q + 1,) array
+        Unit tangent of the path, and the row <tangent, .> of the inner product.
     """
 
-    x: Array
-    tangent: Array
+    state: Equilibrium
+    direction: Array
     row: Array
-    observables: Array
-    rates: Array
-    stable: bool
+
+    @cached_property
+    def observables(self) -> Array:
+        """Approach and load, central gap H(0) in eps, contact radius in beta (nan without contact)."""
+        state = self.state
+        return np.array([state.approach, state.load, state.central_gap, state.contact_radius])
+
+    @cached_property
+    def rates(self) -> Array:
+        """Change of approach, load and central gap along the path."""
+        contact, direction = self.state.contact, self.direction
+        load = float(contact.load_row(self.state.y) @ direction)
+        return np.array([direction[-1], load, on_axis(contact, direction[:-1])])
+
+    @property
+    def stable(self) -> bool:
+        """Whether the state is stable under fixed grips."""
+        return self.state.tangent.unstable == 0
+
+
+Condition = Callable[[Point], float]
+CONDITIONS: Mapping[str, Condition] = {
+    "fold": lambda point: float(point.rates[0]),
+    "pull_off": lambda point: float(point.rates[1]),
+    "zero_load": lambda point: point.state.load,
+}
+"""What vanishes at an event: d(alpha)/ds at a jump or a further fold, dW/ds at pull-off, W at no load."""
+
+
+def condition_of(name: str) -> Condition:
+    """What vanishes at the event of a name."""
+    return CONDITIONS.get(name, CONDITIONS["fold"])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Bordered(Valued):
-    """The bordered matrix [[A, b], [row]] at a state, A = dF/du and b = dF/dalpha, in its factors.
+class Path(Valued):
+    """The equilibria of a contact; the mean square of a change of the gap on a disc measures their arclength.
 
-    Attributes
-    ----------
-    factors : SuperLU
-        Of A.
-    along : (n + 1,) array
-        Solution of A u + b alpha = 0 with alpha = 1.
-    row : (n + 1,) array
-        The border.
+    The radius of the disc is in beta.
     """
 
-    factors: Any
-    along: Array
-    row: Array
-
-    @classmethod
-    def at(cls, problem: Problem, h: Array, row: Array) -> Bordered:
-        """The matrix at gaps h."""
-        factors = problem.tangent(h)
-        return cls(factors, np.append(factors.solve(-problem.by_approach(h)), 1.0), row)
+    contact: Contact
+    disc: float
+    how: March = March()
 
     @cached_property
-    def negative(self) -> int:
-        """Number of negative eigenvalues of A."""
-        return int((self.factors.U.diagonal() < 0).sum())
+    def inner(self) -> Array:
+        """Weights (q + 1,) of <y, y'> = alpha alpha' + mean over the disc of h h'."""
+        body = self.contact.body
+        return np.append(np.where(body.radii < self.disc, body.area, 0.0) / (np.pi * self.disc**2), 1.0)
 
-    def solve(self, F: Array, value: float) -> Array:
-        """Solve A u + b alpha = F with row x = value, by a back-substitution."""
-        x = np.append(self.factors.solve(F), 0.0)
-        return np.asarray(x + (value - self.row @ x) / (self.row @ self.along) * self.along)
+    def point(self, state: Equilibrium, onward: Array) -> Point:
+        """Point of the path at an equilibrium, in the direction in which a row rises."""
+        rate = state.tangent.rate
+        row = self.inner * rate
+        size = np.copysign(np.sqrt(row @ rate), onward @ rate)
+        return Point(state, rate / size, row / size)
 
+    def onward(self, a: Point, s: float, bend: Array | float = 0.0) -> Point:
+        """Point an arclength past another, from the tangent there and its change along the path."""
+        if s == 0:
+            return a
+        reached = along(a.row, float(a.row @ a.state.y) + s)
+        return self.point(newton(self.contact, a.state.y + s * (a.direction + s / 2 * bend), reached), a.row)
 
-def bordered_newton(problem: Problem, x: Array, row: Array, value: float) -> tuple[Array, Bordered, int]:
-    """Solve F(x) = 0 and row x = value, from nearby; also the last matrix and the number of steps taken.
+    def follow(self, approach: float, to_load: float) -> list[Point]:
+        """Points from an approach of separated surfaces, through every fold, to a compressive load."""
+        start, how = self.contact.undeformed(approach), self.how
+        points = [self.point(newton(self.contact, start, at_approach(start)), np.eye(1, start.size, start.size - 1)[0])]
+        s, bend = how.first, np.zeros(1)
+        while points[-1].state.load < to_load:
+            before = points[-1]
+            if s < how.shortest or len(points) > how.most:
+                at = f"alpha = {before.state.approach:.4g} eps"
+                raise NotConverged(f"the weak form's path ends at {at}; try another to_load or a smaller tabor")
+            try:
+                point = self.onward(before, s, bend)
+            except NotConverged:
+                s /= 2
+                continue
+            opened = abs((1 + point.observables[2]) / (1 + before.observables[2]) - 1) / how.opening
+            turned = (1 - float(before.row @ point.direction)) / (1 - how.turn)
+            if max(opened, turned) > 1 or turns_twice(before, point):
+                s /= 2
+                continue
+            bend = (point.direction - before.direction) / s
+            points.append(point)
+            s *= float(np.clip(how.suits / max(opened, turned), 0.5, 2.0))
+        last, end = points[-1], at_load(self.contact, to_load)
+        return [*points[:-1], self.point(newton(self.contact, last.state.y, end, last.state.nearby), last.row)]
 
-    While each step is much shorter than the one before, the next is taken with the same matrix. NotConverged if the
-    steps run out.
-    """
-    matrix: Bordered | None = None
-    for step in range(1, MOST_STEPS + 1):
-        h = problem.gap(x)
-        if matrix is None:
-            matrix, before = Bordered.at(problem, h, row), 1.0  # its error falls as the square
-        dx = matrix.solve(-problem.residual(x), value - float(row @ x))
-        change = problem.gap_change(dx) / h
-        x = x + min(1.0, CLOSING / max(float(-change.min()), CLOSING)) * dx
-        largest = float(np.abs(change).max())
-        if not np.isfinite(largest):
-            break
-        if largest**2 < NEAR * before:
-            return x, matrix, step
-        matrix, before = (matrix if largest < KEPT * before else None), largest
-    raise NotConverged(f"no equilibrium of the weak form in {MOST_STEPS} Newton steps; try another to_load or tabor")
+    def located(self, points: Sequence[Point], condition: Condition) -> list[Point]:
+        """All points at which a condition changes its sign, in order.
 
+        Each is a root in the arclength past the point before it; the state is solved for at every trial.
+        """
+        found = []
+        for a, b in pairwise(points):
+            if condition(a) * condition(b) < 0:
+                length = float(a.row @ (b.state.y - a.state.y))
+                to = partial(self.onward, a, bend=(b.direction - a.direction) / length)
+                root = brentq(lambda s, to=to: condition(to(s)), 0.0, length, xtol=self.how.root * length)
+                found.append(to(root))
+        return found
 
-def equilibrium(problem: Problem, x: Array, row: Array, value: float) -> tuple[Point, int]:
-    """Point of the path where row x = value, from nearby, and the Newton steps that it took; the row points onward."""
-    x, matrix, steps = bordered_newton(problem, x, row, value)
-    h = problem.gap(x)
-    tangent = path_tangent(problem, h, matrix)
-    row = problem.row(tangent)
-    size = np.sqrt(row @ tangent)
-    tangent, row = tangent / size, row / size
-    dh = problem.gap_change(tangent)
-    rates = np.array([tangent[-1], problem.load_rate(h, dh), problem.central_gap(tangent)])
-    # det A has the sign of d(alpha)/ds all along the path; if that matrix has another, a fold lies in between.
-    between = (-1) ** matrix.negative * tangent[-1] < 0
-    negative = (Bordered.at(problem, h, row) if between else matrix).negative
-    return Point(x, tangent, row, problem.observables(x), rates, negative == 0), steps
+    def events(self, points: Sequence[Point]) -> dict[str, Point]:
+        """Pull-off, zero load in contact, and the folds: jump_on and jump_off the outermost, fold_2 ... between."""
+        folds, extrema, zeros = (self.located(points, condition) for condition in CONDITIONS.values())
+        if not extrema:
+            raise NotConverged("the weak form's path has no minimum of the load; give a larger to_load")
+        found = {"pull_off": min(extrema, key=CONDITIONS["zero_load"])}
+        if len(folds) > 1:
+            found |= {"jump_on": folds[0], "jump_off": folds[-1]}
+            found |= {f"fold_{n}": point for n, point in enumerate(folds[1:-1], 2)}
+        return found | ({"zero_load": zeros[-1]} if zeros else {})
 
+    def taken_over(self, point: Point) -> Point:
+        """Point on the same cells by elements of another degree, on its plane across the path."""
+        y, direction = (carried(self.contact, point.state.contact, each) for each in (point.state.y, point.direction))
+        row = self.inner * direction
+        return self.point(newton(self.contact, y, along(row, float(row @ y))), row)
 
-def path_tangent(problem: Problem, h: Array, nearby: Bordered) -> Array:
-    """Solve A t = -b d(alpha), row t = 1 at gaps h by corrections with the matrix of a state nearby."""
-    tangent = nearby.solve(np.zeros(nearby.row.size - 1), 1.0)
-    for _ in range(MOST_STEPS):
-        change = nearby.solve(-problem.residual_along(h, tangent), 1 - float(nearby.row @ tangent))
-        tangent = tangent + change
-        if np.abs(change).max() < TANGENT * np.abs(tangent).max():
-            return tangent
-    raise NotConverged(f"no tangent of the weak form's path in {MOST_STEPS} steps; try another to_load or tabor")
-
-
-def onward(problem: Problem, a: Point, s: float, bend: Array | float = 0.0) -> tuple[Point, int]:
-    """Point of the path on the plane at arclength s past a point, and the Newton steps that it took.
-
-    It is sought on the parabola of that tangent and, if it is given, that curvature.
-    """
-    if s == 0:
-        return a, 0
-    return equilibrium(problem, a.x + s * (a.tangent + s / 2 * bend), a.row, float(a.row @ a.x) + s)
-
-
-def follow(problem: Problem, approach: float, to_load: float) -> list[Point]:
-    """Points of the path from an approach of separated surfaces, through every fold, to a compressive load."""
-    start, last = np.zeros(problem.free.size + 1), np.zeros(problem.free.size + 1)
-    start[-1], last[-1] = approach, 1.0
-    points, s = [equilibrium(problem, start, last, approach)[0]], FIRST
-    while points[-1].observables[1] < to_load:
-        if s < SHORTEST or len(points) > MOST_POINTS:
-            raise NotConverged(f"the weak form's path ends at alpha = {points[-1].x[-1]:.4g} eps; try a smaller tabor")
-        try:
-            point, steps = onward(problem, points[-1], s, curvature(points[-2:]))
-        except NotConverged:
-            s /= 2
-            continue
-        before, after = (1 + each.observables[2] for each in (points[-1], point))
-        opened = abs(after / before - 1)
-        if opened > OPENING or points[-1].row @ point.tangent < TURN or turns_twice(points[-1], point):
-            s /= 2
-            continue
-        points.append(point)
-        s *= min(max(USUAL / steps, 0.5), 2.0)
-    return points
+    def event_near(self, point: Point, condition: Condition) -> Point:
+        """Event near a point, by the secant in the arclength."""
+        how = self.how
+        s = secant(lambda s: condition(self.onward(point, s)), 0.0, x1=how.aside, tol=how.root * how.first)
+        return self.onward(point, float(s))
 
 
-def curvature(points: Sequence[Point]) -> Array | float:
-    """Change of the tangent along the path, by its last two points; 0 at its first."""
-    a, b = points[0], points[-1]
-    return (b.tangent - a.tangent) / float(a.row @ (b.x - a.x)) if len(points) > 1 else 0.0
+def carried(onto: Contact, source: Contact, y: Array) -> Array:
+    """State, or direction, at the points of other elements."""
+    return np.append(even(source.body.radii, y[:-1])(onto.body.radii), y[-1])
 
 
 def turns_twice(a: Point, b: Point) -> bool:
     """Whether approach or load turn and turn back between two points, by the cubics with their values and rates."""
-    means = (b.observables - a.observables)[:2] / (a.row @ (b.x - a.x))
+    means = (b.observables - a.observables)[:2] / (a.row @ (b.state.y - a.state.y))
     before, after = a.rates[:2], b.rates[:2]
     halfway = 1.5 * means - (before + after) / 4
     return bool(((before * after > 0) & (before * halfway < 0)).any())
 
 
-def on_finer(problem: Problem, coarse: Problem, points: Sequence[Point]) -> list[Point]:
-    """The points of a path solved for on elements of higher degree, each on its plane across the path."""
-    found = []
-    for point in points:
-        x, tangent = (problem.taken_over(coarse, each) for each in (point.x, point.tangent))
-        row = problem.row(tangent)
-        found.append(equilibrium(problem, x, row, float(row @ x))[0])
-    return found
-
-
-def arclength(before: tuple[Problem, Point], after: tuple[Problem, Point]) -> float:
-    """Arclength between two points of a path, each on its own elements, by the tangent at that on the finer ones."""
-    (coarse, a), (fine, b) = sorted((before, after), key=lambda each: each[0].degree)
-    return abs(float(b.row @ (b.x - fine.taken_over(coarse, a.x))))
-
-
-# Events
-
-Condition = Callable[[Point], float]
-
-
-def fold(point: Point) -> float:
-    """Dalpha/ds, zero at a jump under fixed grips."""
-    return float(point.rates[0])
-
-
-def extremum(point: Point) -> float:
-    """dW/ds, zero at a jump under a dead load."""
-    return float(point.rates[1])
-
-
-def unloaded(point: Point) -> float:
-    """Load W, zero where nothing pulls or presses."""
-    return float(point.observables[1])
-
-
-CONDITIONS: Mapping[str, Condition] = {"pull_off": extremum, "zero_load": unloaded}  # of all other events: fold
-
-
-def events_on_finer(problem: Problem, coarse: Problem, found: Mapping[str, Point]) -> dict[str, Point]:
-    """The events of a path on elements of higher degree, each by the secant from its place on those of lower degree."""
-    carried = zip(found, on_finer(problem, coarse, list(found.values())), strict=True)
-    return {name: _moved(problem, point, CONDITIONS.get(name, fold)) for name, point in carried}
-
-
-def _moved(problem: Problem, near: Point, condition: Condition) -> Point:
-    """Point past another, or before it, where a condition is zero."""
-    s = newton(lambda s: condition(onward(problem, near, s)[0]), 0.0, x1=ASIDE, tol=ROOT * FIRST, maxiter=MOST_STEPS)
-    return onward(problem, near, float(s))[0]
-
-
-def located(problem: Problem, points: Sequence[Point], condition: Condition) -> list[Point]:
-    """All points of the path at which a condition changes its sign, in order.
-
-    Each is a root in the arclength past the point before it; the state is solved for at every trial.
-    """
-    found = []
-    for a, b in pairwise(points):
-        if condition(a) * condition(b) < 0:
-            length = float(a.row @ (b.x - a.x))
-            root = brentq(lambda s, a=a: condition(onward(problem, a, s)[0]), 0.0, length, xtol=ROOT * length)
-            found.append(onward(problem, a, root)[0])
-    return found
-
-
-def events(problem: Problem, points: Sequence[Point]) -> dict[str, Point]:
-    """Pull-off, zero load in contact, and the folds: jump_on and jump_off the outermost, fold_2 ... between them."""
-    folds = located(problem, points, fold)
-    extrema = located(problem, points, extremum)
-    if not extrema:
-        raise NotConverged("the weak form's path has no minimum of the load; give a larger to_load")
-    found = {"pull_off": min(extrema, key=unloaded)}
-    if len(folds) > 1:
-        found |= {"jump_on": folds[0], "jump_off": folds[-1]}
-        found |= {f"fold_{n}": point for n, point in enumerate(folds[1:-1], 2)}
-    if zeros := located(problem, points, unloaded):
-        found["zero_load"] = zeros[-1]
-    return found
+def arclength(a: Point, b: Point) -> float:
+    """Arclength between two points of a path, each on its own elements, by the tangent at the second."""
+    return abs(float(b.row @ (b.state.y - carried(b.state.contact, a.state.contact, a.state.y))))

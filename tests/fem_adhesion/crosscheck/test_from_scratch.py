@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from families import TOGETHER as SCENES
 from scenes import pair
-from scipy import sparse
 
 import fem_adhesion
 from fem_adhesion import Coated, HalfSpace, Hemisphere, Layer, Scene, cli, scene
@@ -19,7 +18,7 @@ from fem_adhesion.crosscheck.references import elements_of, radius_of, reference
 from fem_adhesion.crosscheck.weak_bodies import contacts, law_of
 from fem_adhesion.weak_form.body import fine_within, half_space, half_space_mesh
 from fem_adhesion.weak_form.contact import Contact, lennard_jones
-from fem_adhesion.weak_form.newton import _extremum, newton, turning_point
+from fem_adhesion.weak_form.newton import _extremum, at_approach, at_load, newton, turning_point
 from halfspace.accuracy import refinement, trace
 from halfspace.equilibrium import conditions, search
 from halfspace.equilibrium.acting import Acting
@@ -29,7 +28,6 @@ from halfspace.equilibrium.events import EVENTS
 from halfspace.errors import NotConverged
 from halfspace.laws import Dlvo, Dugdale, Exponential, Morse, PowerLaw
 from halfspace.profiles import Hyperboloid, Paraboloid, Power, RoundedPunch, Sphere
-from halfspace.scales import Scales
 from halfspace.values import Estimate
 
 # --- the weak form ---
@@ -61,79 +59,65 @@ def test_points_beyond_the_box_bear_what_a_profile_attracts_there(box):
 def test_the_box_is_a_half_space(poisson):
     """Under the pressure (1 + r^2)^-3, whose work is 945 pi^3/24576, and under Hertz's, whose deflection is known."""
     body = half_space(0.04, 30.0, 4, poisson)
-    forces = body.forces((1 + body.radii**2) ** -3)
-    assert forces @ body.yielding.solve(forces) == pytest.approx(945 * np.pi**3 / 24576, rel=3e-5)
+    pressure = (1 + body.radii**2) ** -3
+    work = body.integral(pressure * body.rise(body.displaced(pressure)))
+    assert work == pytest.approx(945 * np.pi**3 / 24576, rel=3e-5)
     inside = body.radii < 0.9
-    hertz = -body.rise(body.yielding.solve(-body.forces(np.sqrt(np.maximum(1 - body.radii**2, 0)))))
+    hertz = body.rise(body.displaced(np.sqrt(np.maximum(1 - body.radii**2, 0))))
     np.testing.assert_allclose(hertz[inside], np.pi / 4 * (2 - body.radii[inside] ** 2), rtol=1e-3)
 
 
 def test_a_body_twice_as_large_is_twice_as_stiff(box):
-    larger = box.scaled(2.0)
-    forces = box.forces(np.exp(-(box.radii**2)))
-    np.testing.assert_allclose(larger.yielding.solve(forces), box.yielding.solve(forces) / 2)
+    larger, pressure = box.scaled(2.0), np.exp(-(box.radii**2))
+    u = box.displaced(pressure)
+    np.testing.assert_allclose(larger.displaced(pressure / 4), u / 2, rtol=0, atol=1e-9 * np.abs(u).max())
     assert larger.integral(np.ones_like(larger.radii)) == pytest.approx(np.pi * larger.rim**2)
-    assert box.reaction @ box.yielding.solve(forces) == pytest.approx(-box.integral(np.exp(-(box.radii**2))), rel=1e-10)
+    assert box.reaction @ u == pytest.approx(-box.integral(pressure), rel=1e-10)
 
 
 @pytest.fixture(scope="module")
 def in_contact(box):
     contact = Contact(box.scaled(2.0), 1.0)
-    start = 1 + np.maximum(contact.body.radii**2 / 2 - 1.5, 0.0)
-    return contact, newton(contact, start, 1.0)
+    start = np.append(1 + np.maximum(contact.body.radii**2 / 2 - 1.5, 0.0), 1.0)
+    return newton(contact, start, at_approach(start))
 
 
 def test_an_equilibrium_balances_and_its_energy_falls_by_the_load(in_contact):
-    contact, found = in_contact
-    u = contact.displacement(found.gap)
-    np.testing.assert_allclose(contact.gap(u, found.approach), found.gap, rtol=0, atol=1e-8)
-    assert contact.far_reaction(u, found.gap) + contact.load_beyond(1.0) == pytest.approx(found.load, rel=1e-7)
+    contact, h = in_contact.contact, in_contact.y[:-1]
+    np.testing.assert_allclose(contact.left_by(in_contact.u, 1.0), h, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(contact.left_by(contact.displaced(h), 1.0), h, rtol=0, atol=1e-8)
+    reaction = contact.far_reaction(in_contact.u, h) + contact.load_beyond(1.0)
+    assert reaction == pytest.approx(in_contact.load, rel=1e-7)
     d = 1e-3
-    beside = [newton(contact, found.gap, 1.0 + step) for step in (-d, d)]
-    energies = [contact.energy(contact.displacement(state.gap), state.approach) for state in beside]
-    assert (energies[1] - energies[0]) / (2 * d) == pytest.approx(found.load, rel=1e-5)
-    assert (beside[1].load - beside[0].load) / (2 * d) == pytest.approx(found.tangent.stiffness, rel=1e-4)
-    rate = (beside[1].gap - beside[0].gap) / (2 * d)
-    np.testing.assert_allclose(rate, found.tangent.gap_rate, rtol=0, atol=1e-4)
-    assert newton(contact, found.gap, 1.0, load=beside[1].load).approach == pytest.approx(1.0 + d, rel=1e-7)
+    before, after = (in_contact.past(step, under_load=True) for step in (-d, d))
+    assert (after.energy - before.energy) / (2 * d) == pytest.approx(in_contact.load, rel=1e-5)
+    assert (after.load - before.load) / (2 * d) == pytest.approx(in_contact.tangent.stiffness, rel=1e-4)
+    np.testing.assert_allclose((after.y - before.y) / (2 * d), in_contact.tangent.rate, rtol=0, atol=1e-4)
+    assert newton(contact, in_contact.y, at_load(contact, after.load)).approach == pytest.approx(1.0 + d, rel=1e-7)
 
 
 def test_newton_says_when_it_ends_without_an_equilibrium(box):
+    contact = Contact(box, 1.0)
     with pytest.raises(NotConverged, match="no equilibrium in 20 Newton steps"):
-        newton(Contact(box, 1.0), 1 + box.radii**2, 0.0, load=-50.0)
+        newton(contact, np.append(1 + box.radii**2, 0.0), at_load(contact, -50.0))
 
 
 def test_newton_follows_a_law_that_ends_by_a_step():
     """A tangent kept from where the step stood let it wander: no equilibrium was found in 20 steps."""
     contact = contacts(Scene(3.0, law=Dugdale(0.363)))[0](2.0, 2.0)
-    found = newton(contact, 1 + np.maximum(0.75 * (contact.body.radii**2 - 4), 0.0), 3.0)
-    u = contact.displacement(found.gap)
-    np.testing.assert_allclose(contact.gap(u, found.approach), found.gap, rtol=0, atol=1e-7)
-
-
-def test_the_matrix_of_the_surface_is_what_is_left_when_all_else_is_eliminated(box):
-    """With one stiffness of the law and another: determinants, and what points rise by, as of the whole matrix."""
-    tension, logs = np.exp(-(box.radii**2)), []
-    for slope in (-0.3, 2.0):
-        small = box.softened(slope * tension)
-        whole = (box.stiffness + box.values.T @ sparse.diags_array(box.area * slope * tension) @ box.values).toarray()
-        rise = box.rise(np.linalg.solve(whole, box.forces(tension)))
-        np.testing.assert_allclose(box.softened_rise(small, tension), rise, rtol=0, atol=1e-9 * np.abs(rise).max())
-        (sign, log), (sign_of_whole, log_of_whole) = np.linalg.slogdet(small), np.linalg.slogdet(whole)
-        assert sign == sign_of_whole
-        logs.append(log_of_whole - log)
-    assert logs[0] == pytest.approx(logs[1], rel=1e-10)
+    start = np.append(1 + np.maximum(0.75 * (contact.body.radii**2 - 4), 0.0), 3.0)
+    found = newton(contact, start, at_approach(start))
+    np.testing.assert_allclose(contact.left_by(found.u, 3.0), found.y[:-1], rtol=0, atol=1e-7)
 
 
 @pytest.mark.parametrize("share", [0.5, 1.0, 2.0])
-def test_the_determinant_changes_its_sign_where_the_surface_gives_way(box, share):
+def test_a_pivot_is_negative_where_the_surface_gives_way(box, share):
     """Softened by its own compliance: the largest eigenvalue c of what points rise by makes 1 - share vanish at 1."""
     pressed = np.exp(-(box.radii**2))
-    V = box.values[:, box.moving].toarray()
-    stiff, soft = box.surface, V.T @ ((box.area * pressed)[:, None] * V)
-    largest = np.linalg.eigvals(np.linalg.solve(stiff, soft)).real.max()
-    sign, _ = np.linalg.slogdet(box.softened(-1.001 * share * pressed / largest))
-    assert sign == (1 if share < 1 else -1)
+    rise = np.transpose([box.rise(box.displaced(pressed * unit)) for unit in np.eye(box.radii.size)])
+    largest = np.linalg.eigvals(rise).real.max()
+    pivots = box.softened(-1.001 * share * pressed / largest).U.diagonal()
+    assert ((pivots < 0).sum() == 0) == (share < 1)
 
 
 @pytest.mark.parametrize(
@@ -149,7 +133,7 @@ def test_the_clamp_under_a_coated_half_space_bears_what_pulls_at_the_coating(sce
     contact = contacts(scene)[0](1.0, 1.0)
     h = 1.1 + contact.body.radii**2
     pulled = contact.tabor * contact.body.integral(contact.law.tension(h))
-    assert contact.far_reaction(contact.displacement(h), h) == pytest.approx(-pulled, rel=from_scratch.LEAST / 5)
+    assert contact.far_reaction(contact.displaced(h), h) == pytest.approx(-pulled, rel=from_scratch.LEAST / 5)
 
 
 def test_the_clamp_under_a_soft_film_leaves_out_little_of_what_the_equations_deflect():
@@ -160,10 +144,8 @@ def test_the_clamp_under_a_soft_film_leaves_out_little_of_what_the_equations_def
 
 
 def test_where_nothing_turns_no_turning_point_is_found(in_contact):
-    contact, found = in_contact
-    assert contact is found.contact
-    assert turning_point(found, under_load=False) is None
-    assert turning_point(found, under_load=True) is None
+    assert turning_point(in_contact, under_load=False) is None
+    assert turning_point(in_contact, under_load=True) is None
 
 
 @pytest.mark.parametrize("ends", [(0.5, 3.0), (1.0, 1.5), (0.99, 1.0), (1.3, -0.5)])
@@ -264,7 +246,7 @@ def test_a_reaction_is_what_acts_at_the_gaps_but_for_rounding():
     for each in scenes:
         contact = contacts(each)[0](1.0, 1.0)
         h = 1.1 + contact.body.radii**2
-        state = from_scratch.StateInWeakForm(contact, h, 0.0, 0.0, contact.displacement(h), 0.0)
+        state = from_scratch.StateInWeakForm(contact, h, 0.0, 0.0, contact.displaced(h), 0.0)
         assert state.rounding < 1e-7 * abs(state.reaction)
 
 
@@ -390,19 +372,18 @@ def _jump_off_is_jump_on(monkeypatch):
     monkeypatch.setattr(refinement, "find_events", found)
 
 
-def _end_state(monkeypatch):
-    find = search.find_events
-    later = replace(conditions.Condition(0), value=0.1)
+def _state_at(name, place, approach):
+    """The energy's first or last state at another approach."""
 
-    def found(segments):
-        bracket = search.brackets_of(segments, later)[-1]
-        return find(segments) | {"zero_approach": search._state(bracket, later)}
+    def inject(monkeypatch):
+        find, other = search.find_events, replace(conditions.Condition(0), value=approach)
+        monkeypatch.setattr(
+            refinement,
+            "find_events",
+            lambda segments: find(segments) | {name: search._state(search.brackets_of(segments, other)[place], other)},
+        )
 
-    monkeypatch.setattr(refinement, "find_events", found)
-
-
-def _first_state(monkeypatch):
-    _scaled(Scales, "separated_approach", 0.7)(monkeypatch)
+    return inject
 
 
 SHARED = {
@@ -417,8 +398,8 @@ SHARED = {
     "contact radius": (_scaled(Acting, "contact_radius", 1.02), {"apart: zero_load contact_radius"}),
     "central gap": (_central_gap, {f"apart: {name} central_gap" for name in EVENTS}),
     "jump_off is jump_on": (_jump_off_is_jump_on, {"apart: jump_off stable side"}),
-    "energy's last state": (_end_state, {"apart: energy released"}),
-    "energy's first state": (_first_state, {"apart: energy released"}),
+    "energy's last state": (_state_at("zero_approach", -1, 0.1), {"apart: energy released"}),
+    "energy's first state": (_state_at("separated", 0, -8.0), {"apart: energy released"}),
 }
 
 
@@ -448,8 +429,6 @@ def test_sound_scenes_have_the_numbers_of_their_definitions():
     """Of those that ``tests/estimates`` compares on all levels."""
     found = {each: [row.quantity for row in definitions.rows(each) if row.verdict != "agree"] for each in SCENES}
     assert {each: names for each, names in found.items() if names} == {}
-    for each in SCENES:
-        assert definitions.apart(each) == pytest.approx(each.scales.separated_approach, rel=1e-5)
 
 
 @pytest.mark.parametrize("place", [1, 3, 5, 10, 28, 40, 42], ids=lambda place: str(SCENES[place].law))
