@@ -19,11 +19,11 @@ How independent the two solvers are:
   and jumps are compared with the finite elements as well. Shared with the panels are the ring kernel, where cells begin
   and end, and the infinite one.
 * Where cells begin and end: the same radial lines; error estimates by refinement on each side.
-* All that is shared is checked by a weak form with its own law, profile, energy, Newton's method and determinant, on
+* All that is shared is checked by a weak form with its own law, profile, energy and Newton's method, on
   its own mesh. Lengths and profiles are from formulas of its own (`definitions`); of laws but the 3-9 it is told the
   potential alone, of profiles of the user's the height. It imports nothing of the solvers. Each event of the finite
   elements is put into it: do the gaps balance, does the far side carry the load, are central gap and contact radius
-  those of the equilibrium nearby, does the determinant of the tangent change its sign at a fold? It comes to jump_on
+  those of the equilibrium nearby, does the approach turn along the load at a fold? It comes to jump_on
   on a way of its own, from undeformed surfaces far apart, and tells the jumps apart by the side on which states are
   stable. The energy is that between two states which it solves for at approaches of its own. Law, load, residual and
   tangent are compared at a state made up as well, so that a solver which does not converge is told what is wrong with

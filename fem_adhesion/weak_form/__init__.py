@@ -17,14 +17,11 @@ The curve is followed through its folds in arclength, with alpha as a further un
 equation; an event exchanges that equation for its own: d(alpha)/ds = 0 at jump_on and jump_off, dW/ds = 0 at pull_off,
 W = 0 at zero_load.
 
-In the order of reading: `problem` (the forms, assembled; the mesh), `path` (Newton's method with a border, arclength,
-events), `curve` (a scene's curve with its errors).
-
-Beside it stands what the check of the solvers (`fem_adhesion.crosscheck.from_scratch`) takes: `contact`
-(law, profile, gaps, load, energy), `body` (elasticity of any body and what holds it), `newton` (determinant, turning
-points). There the unknowns inside each cell and below the surface are eliminated, exactly, before Newton's method
-begins. Strains, law and profile are the same in both. Bodies with a length of their own come to that check with the
-meshes of the solver that it checks, see `fem_adhesion.crosscheck.weak_bodies`.
+In the order of reading: `body` (the forms, the mesh, what holds a body), `contact` (law, profile, gaps, load, energy),
+`newton` (Newton's method with a border, equilibria, where they turn), `path` (arclength, events), `curve` (a scene's
+curve with its errors). The check of the solvers (`fem_adhesion.crosscheck.from_scratch`) goes the same road up to
+`newton`. Bodies with a length of their own come to it with the meshes of the solver that it checks, see
+`fem_adhesion.crosscheck.weak_bodies`.
 
 The room checks the solvers, so it shares no physics with them: it imports NumPy, SciPy and scikit-fem, and of the house
 exceptions, limits of the inputs, containers of results, and the parts by which a scene is known.
