@@ -11,7 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import splu
-from skfem import Basis, BilinearForm, ElementQuadP, ElementTriP3, ElementTriP4, FacetBasis, MeshQuad, MeshTri
+from skfem import (
+    Basis,
+    BilinearForm,
+    ElementQuad2,
+    ElementQuadP,
+    ElementTriP3,
+    ElementTriP4,
+    FacetBasis,
+    MeshQuad,
+    MeshTri,
+)
 
 from halfspace.values import Valued
 
@@ -138,8 +148,9 @@ def discretise(
     may move as a whole along z, on a spring of stiffness 1; that is then the last unknown. If `on_surface`, dA is the
     area of the surface itself, not that projected on the plane of the contact.
     """
-    triangles = isinstance(mesh, MeshTri)
-    element = TRIANGLES[degree]() if triangles else ElementQuadP(degree)
+    element = (
+        TRIANGLES[degree]() if isinstance(mesh, MeshTri) else ElementQuad2() if degree == 2 else ElementQuadP(degree)
+    )
     basis = Basis(mesh, element, intorder=2 * degree + 1)
     # The law is steeper than any polynomial: 2 p + 2 points on each facet.
     surface = FacetBasis(mesh, element, mapping=_mapping(mesh), facets="contact", intorder=4 * degree + 3)
@@ -156,8 +167,8 @@ def discretise(
     unknowns, far = np.arange(2 * basis.N), basis.get_dofs("far")
     held = [basis.get_dofs("axis").all(), basis.N + far.all(), *([] if slides else [far.all()])]
     T = sparse.eye_array(unknowns.size, format="csc")[:, np.setdiff1d(unknowns, np.concatenate(held))]
-    # A translation of what is held: of quadrilaterals' functions those of the vertices alone add up to 1.
-    upwards = basis.N + (far.all() if triangles else far.nodal["u"])
+    # A translation of what is held: of hierarchical functions those of the vertices alone add up to 1.
+    upwards = basis.N + (far.nodal["u"] if isinstance(element, ElementQuadP) else far.all())
     moved = sparse.csc_array(np.isin(unknowns, upwards).astype(float)[:, None])
     T = sparse.csc_array(sparse.hstack([T, moved])) if plate else T
     reaction = 0 * last(T.shape[1]) if plate else (moved.T @ K @ T).toarray()[0]
