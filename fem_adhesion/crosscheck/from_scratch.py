@@ -22,7 +22,7 @@ import numpy as np
 import halfspace
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
 from fem_adhesion.crosscheck.definitions import numbers
-from fem_adhesion.crosscheck.weak_bodies import SHARP, FineAt, contacts, sharpness
+from fem_adhesion.crosscheck.weak_bodies import FineAt, contacts, is_sharp
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.contact import Contact
@@ -35,16 +35,61 @@ from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Estimate, Valued
 
-BUDGET = 1e-3  # of each quantity
-ROUND_OFF = 1e-10
-LEAST = BUDGET / 20  # of each number that the weak form knows none better than: both its bodies may err alike
+
+@dataclass(frozen=True)
+class Settings:
+    """Budgets of the fourth level, and how it looks for what turns.
+
+    Attributes
+    ----------
+    budget : float
+        Of each quantity.
+    pointwise : float
+        Times that for numbers at a point, as of level 3.
+    least : float
+        Error of each number that the weak form knows none better than: both its bodies may err alike.
+    round_off : float
+        Relative.
+    approach, change : float
+        In eps, of the state made up and of its change.
+    aside : tuple of float
+        Steps beside a fold in 1 + the load: more than both sources differ by there, or as far as states are found.
+    near, away : float
+        Where the way from afar ends before a fold, in 1 + the approach; how far off that is, in 1 + the load.
+    small : float
+        Radius of a contact about whose edge cells are finest, in the radius of the attraction.
+    opening : float
+        Part of a gap that opens in the radius of the attraction by the 3-9 law.
+    closest : float
+        Least gap in eps that counts there.
+    finer : float
+        How much shorter steps past a turning point are where a body has a length.
+    """
+
+    budget: float = 1e-3
+    pointwise: float = 10.0
+    least: float = 5e-5
+    round_off: float = 1e-10
+    approach: float = -0.5
+    change: float = 0.3
+    aside: tuple[float, ...] = tuple(1e-2 / 2.0**n for n in range(8))
+    near: float = 3e-3
+    away: float = 0.2
+    small: float = 0.1
+    opening: float = 0.49
+    closest: float = 0.1
+    finer: float = 3.0
+
+
+USUAL = Settings()
+
 
 # Closed forms
 
 
 def closed_forms(law: Law = LENNARD_JONES) -> list[Row]:
     """Law and limits of the default: what the shared code makes of them, beside what is known."""
-    adhesion = Estimate(1.0, 0.0), numbers(lambda h: -law.pressure(h - 1, 1.0)).work + Estimate(0.0, ROUND_OFF)
+    adhesion = Estimate(1.0, 0.0), numbers(lambda h: -law.pressure(h - 1, 1.0)).work + Estimate(0.0, USUAL.round_off)
     return [
         Row("limit: integral of tension", "dgamma", *adhesion, difference(*adhesion), 1e-6, CLOSED_FORM),
         _limit("limit: Bradley pull_off load", -2 * np.pi, (1e-9,)),
@@ -58,15 +103,13 @@ def _limit(quantity: str, value: float, tabors: Sequence[float]) -> Row:
     try:
         loads = [halfspace.trace(tabor, rtol=1e-3).events["pull_off"] for tabor in tabors]
     except NotConverged:
-        return Row(quantity, "R dgamma", known, None, float("nan"), BUDGET * abs(value), CLOSED_FORM)
+        return Row(quantity, "R dgamma", known, None, float("nan"), USUAL.budget * abs(value), CLOSED_FORM)
     step = float(np.abs(np.diff([event.load for event in loads])).sum())
     found = Estimate(loads[-1].load, loads[-1].load_error + step)
-    return Row(quantity, "R dgamma", known, found, difference(known, found), BUDGET * abs(value), CLOSED_FORM)
+    return Row(quantity, "R dgamma", known, found, difference(known, found), USUAL.budget * abs(value), CLOSED_FORM)
 
 
 # Equations
-
-APPROACH, CHANGE = -0.5, 0.3  # in eps, of the state made up and of its change
 
 
 def equations(scene: Scene, problems: Sequence[ContactProblem], radius: float) -> Iterator[Row]:
@@ -80,10 +123,12 @@ def equations(scene: Scene, problems: Sequence[ContactProblem], radius: float) -
     shared = np.array([_shared(problem, radius) for problem in problems])
     sizes = np.abs(apart[1, 4:])
     # Of each the largest, lest both bodies agree by chance on one.
-    doubt = max(LEAST, float(np.max(np.abs(np.diff(apart[:, :4], axis=0)) / sizes)))
+    doubt = max(USUAL.least, float(np.max(np.abs(np.diff(apart[:, :4], axis=0)) / sizes)))
     for n, (name, unit) in enumerate(EQUATIONS.items()):
         first, second = Estimate(float(apart[1, n]), doubt * sizes[n]), _estimate(shared[:, n].tolist())
-        yield Row(f"equations: {name}", unit, first, second, difference(first, second), BUDGET * sizes[n], WEAK_FORM)
+        yield Row(
+            f"equations: {name}", unit, first, second, difference(first, second), USUAL.budget * sizes[n], WEAK_FORM
+        )
 
 
 EQUATIONS = {"residual": "eps", "tangent": "eps", "load": "R dgamma", "load's slope": "R dgamma"}
@@ -99,7 +144,7 @@ def _shared(problem: ContactProblem, radius: float) -> list[float]:
     """What the shared code has for the state made up."""
     operator = problem.operator_at(np.ones(1))
     H, dH, weight = _made_up(operator.radii / radius)
-    x, dx = np.append(H, [APPROACH, 1.0]), np.append(dH, [CHANGE, 0.0])
+    x, dx = np.append(H, [USUAL.approach, 1.0]), np.append(dH, [USUAL.change, 0.0])
     mean = operator.weights * weight / radius**2
     residual, tangent = (float(mean @ field[:-1]) for field in (problem.residual(x), problem.jacobian(x) @ dx))
     return [residual, tangent, problem.load(x), float(problem.gradient(x, np.eye(4)[LOAD]) @ dx)]
@@ -120,7 +165,7 @@ def _apart(contact: Contact, radius: float) -> list[float]:
     load, slope = (-body.integral(values) for values in tensions)
     load -= mu * float(contact.rim[1] @ contact.law.tension(1 + _made_up(contact.rim[0] / radius)[0]))
     raised, further = map(rise, tensions)
-    residual, tangent = mean(H + APPROACH - mu * contact.height) + raised, mean(dH + CHANGE) + further
+    residual, tangent = mean(H + USUAL.approach - mu * contact.height) + raised, mean(dH + USUAL.change) + further
     sizes = [of(np.abs(values)) for of in (rise, body.integral) for values in tensions]
     return [residual, tangent, load, slope, *sizes]
 
@@ -128,7 +173,7 @@ def _apart(contact: Contact, radius: float) -> list[float]:
 def _estimate(values: Sequence[float]) -> Estimate:
     """The last of some values, each of which errs by less than the one before differs from it."""
     change = float(np.abs(np.diff(values)).sum())
-    return Estimate(float(values[-1]), change + ROUND_OFF * (1 + abs(float(values[-1]))))
+    return Estimate(float(values[-1]), change + USUAL.round_off * (1 + abs(float(values[-1]))))
 
 
 # Events
@@ -158,7 +203,7 @@ class Compared:
         """Row, if what the weak form errs by, but for rounding, is so much of the size."""
         coarse, fine = self.both
         first = None if coarse is None or fine is None else Estimate(fine, doubt * self.size + self.rounding[1])
-        off, budget = difference(first, self.second), BUDGET * self.size
+        off, budget = difference(first, self.second), USUAL.budget * self.size
         return Row(f"apart: {self.quantity}", self.unit, first, self.second, off, budget, WEAK_FORM)
 
 
@@ -172,7 +217,7 @@ def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
     rows: list[Row] = []
     for both in pairwise(contacts(scene)):
         found = list(_on_both(scene, path, *both))
-        doubt = max(LEAST, *(compared.change for compared in found))
+        doubt = max(USUAL.least, *(compared.change for compared in found))
         rows = [compared.row(doubt) for compared in found]
         if all(row.first and row.first.error <= row.budget for row in rows):
             break
@@ -205,10 +250,10 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
         known, both = event.estimate(quantity), _numbers(a, b, attrgetter(quantity))
         if not all(value is not None and math.isnan(value) for value in (*both, known.value)):
             ripples = _numbers(a, b, attrgetter("ripple")) if quantity == "central_gap" else (0.0, 0.0)
-            size = POINTWISE * (1 + abs(known.value))
+            size = USUAL.pointwise * (1 + abs(known.value))
             yield Compared(f"{name} {quantity}", unit, both, known, size, (ripples[0] or 0.0, ripples[1] or 0.0))
     # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
-    smooth, sharp = name == "jump_on", sharpness(scene, radius) > SHARP
+    smooth, sharp = name == "jump_on", is_sharp(scene, radius)
     if name in FOLDS and (smooth or not sharp):
         side, _ = _numbers(b, None, _stable_side)
         yield Compared(f"{name} stable side", "", (side, side), Estimate(FOLDS[name], 0.0), 1.0)
@@ -221,7 +266,6 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
         yield Compared(f"{name} load", "R dgamma", _numbers(first, second, attrgetter("load")), load, force)
 
 
-POINTWISE = 10  # as of level 3, of numbers at a point
 FOLDS = {"jump_on": 1.0, "jump_off": -1.0}
 """The side of each jump's load where states are stable under fixed grips: above, coming from afar, or below."""
 
@@ -232,28 +276,21 @@ def _stable_side(state: Equilibrium) -> float:
     So the approach has a maximum there that is reached from stable states, or a minimum that is left to them; anything
     else is no jump.
     """
-    for step in ASIDE * (1 + abs(state.load)):
+    for step in np.array(USUAL.aside) * (1 + abs(state.load)):
         with suppress(NotConverged):
             below, above = (state.past(d, under_load=False).tangent.unstable for d in (-step, step))
             return float(below - above) if min(below, above) == 0 else math.nan
     return math.nan
 
 
-# Of 1 + the load: more than both sources differ by in that of a fold, or as far as states are found.
-ASIDE = 1e-2 / 2.0 ** np.arange(8)
-
-
 def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
     """Equilibrium at the load of a fold that is reached from undeformed surfaces; None if no fold is there."""
-    near = state.approach - NEAR * (1 + abs(state.approach))
+    near = state.approach - USUAL.near * (1 + abs(state.approach))
     with suppress(NotConverged):
         found = from_afar(state.contact, scene.scales.separated_approach, near)
-        if abs(found.load - state.load) < AWAY * (1 + abs(state.load)):
+        if abs(found.load - state.load) < USUAL.away * (1 + abs(state.load)):
             return newton(state.contact, found.y, at_load(state.contact, state.load), found.nearby)
     return None
-
-
-NEAR, AWAY = 3e-3, 0.2  # of 1 + the approach, where that way ends before a fold; of 1 + the load, how far off that is
 
 
 def _numbers(a: object, b: object, of: Callable[[Any], float]) -> tuple[float | None, float | None]:
@@ -310,17 +347,13 @@ def _places(event: Located) -> tuple[float, float]:
     _, _, central_gap, radius = (float(value) for value in event.point.observables)
     scales = event.problem.interface.scales
     attraction = scales.radius_at(_opening(scales.law, central_gap))
-    return (radius, max(radius, attraction)) if radius > SMALL * attraction else (attraction, attraction)
-
-
-SMALL = 0.1  # contact, in the radius of the attraction
-OPENING, CLOSEST = 0.49, 0.1  # of a gap by the 3-9 law: what it opens by in that radius; eps, the least that counts
+    return (radius, max(radius, attraction)) if radius > USUAL.small * attraction else (attraction, attraction)
 
 
 def _opening(law: Law, central_gap: float) -> float:
     """What the gap opens by, in eps, where the attraction has fallen as much as by the 3-9 law."""
     grain = float(np.sqrt(LENNARD_JONES.stiffness / law.stiffness))
-    return OPENING * grain * max(1 + central_gap, CLOSEST)
+    return USUAL.opening * grain * max(1 + central_gap, USUAL.closest)
 
 
 def _state(contact: Contact, event: Located) -> StateInWeakForm:
@@ -345,13 +378,10 @@ def _turn(name: str, state: Equilibrium | None) -> Turn | None:
     """Load and approach of the event in the weak form, or None where there is none nearby."""
     if state is None:
         return None
-    finer = 1.0 if state.contact.endless else FINER
+    finer = 1.0 if state.contact.endless else USUAL.finer
     with suppress(NotConverged):
         return turning_point(state, under_load=name == "pull_off", finer=finer)
     return None
-
-
-FINER = 3.0  # steps past a turning point where there is a body with a length, which the weak form knows better
 
 
 def _beside(name: str, state: StateInWeakForm) -> Equilibrium | None:

@@ -7,7 +7,7 @@ quadrature, radii, profiles and areas are the weak form's own. A user's mesh is 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import Any
 
@@ -32,16 +32,54 @@ from halfspace.values import Array
 FineAt = Callable[[float, float], Contact]
 """The contact on cells that are finest at one radius in beta, and fine up to another."""
 
-FINENESS = ((3, 10.0), (4, 30.0), (5, 90.0))  # degree of the elements, size of the box in contact radii
-WIDE = 2.5  # beta: wider contacts have narrower spikes of tension in contact radii than soft ones on paraboloids
-TIP = 1e-4  # what the cell under a sharp tip may leave
-FARTHER = 10.0  # times as large for an attraction that falls slowly
-# Of the elements of a body with a length; one more of layers, of bodies that nothing else checks, or nearly
-# incompressible ones, with a Poisson's ratio beyond:
-DEGREES, NEARLY = (3, 4, 5), 0.45
-LOCKING = 0.499  # Poisson's ratio beyond which elements of a half-space have a degree more, as by other laws
-SHARP = 6.0
-"""Sharpness of an edge beyond which its spike of tension is too narrow for the weak form to show where it turns."""
+
+@dataclass(frozen=True)
+class Settings:
+    """Cells and elements of the bodies of the weak form.
+
+    Attributes
+    ----------
+    fineness : tuple of (int, float)
+        Of half-spaces: degree of the elements, size of the box in contact radii.
+    wide : float
+        Contact radius in beta beyond which spikes of tension are narrower in contact radii than on paraboloids.
+    tip : float
+        What the cell under a sharp tip may leave.
+    farther : float
+        Times that a box is larger for an attraction that falls slowly.
+    degrees : tuple of int
+        Of a body with a length; one more of layers, of bodies that nothing else checks, or nearly incompressible ones.
+    nearly : float
+        Poisson's ratio beyond which a body with a length is nearly incompressible.
+    locking : float
+        Poisson's ratio beyond which elements of a half-space have a degree more, as by other laws.
+    sharp : float
+        Sharpness of an edge beyond which its spike is too narrow for the weak form to show where it turns.
+    growth : float
+        Ratio of neighbouring cells of a body with a length.
+    widest : float
+        Radius in R beyond which cells are finest nowhere.
+    clamped : float
+        Part of eps and a deflection that a clamp under a half-space that carries strata may leave out.
+    rings : int
+        Rings of cells around a corner where the stress is singular.
+    """
+
+    fineness: tuple[tuple[int, float], ...] = ((3, 10.0), (4, 30.0), (5, 90.0))
+    wide: float = 2.5
+    tip: float = 1e-4
+    farther: float = 10.0
+    degrees: tuple[int, ...] = (3, 4, 5)
+    nearly: float = 0.45
+    locking: float = 0.499
+    sharp: float = 6.0
+    growth: float = 2.5
+    widest: float = 0.95
+    clamped: float = 2e-6
+    rings: int = 4
+
+
+USUAL = Settings()
 
 
 def sharpness(scene: Scene, radius: float) -> float:
@@ -49,7 +87,12 @@ def sharpness(scene: Scene, radius: float) -> float:
 
     On a wide contact it is narrow in contact radii.
     """
-    return float(np.sqrt(max(radius / WIDE, 1.0) / scene.scales.spike_width))
+    return float(np.sqrt(max(radius / USUAL.wide, 1.0) / scene.scales.spike_width))
+
+
+def is_sharp(scene: Scene, radius: float) -> bool:
+    """Whether an edge has a spike too narrow for the weak form to show where it turns."""
+    return sharpness(scene, radius) > USUAL.sharp
 
 
 def law_of(scene: Scene) -> Law:
@@ -69,12 +112,12 @@ def contacts(scene: Scene, load: float | None = None) -> list[FineAt]:
     leave out is little beside what they deflect, however little that is.
     """
     if not scene.sized:
-        return [partial(_on_half_space, scene, fineness) for fineness in FINENESS]
+        return [partial(_on_half_space, scene, fineness) for fineness in USUAL.fineness]
     if scene.body.file:
-        return [partial(_on_given_mesh, scene, degree) for degree in DEGREES if degree in TRIANGLES]
-    more = int(scene.checked_by is None or scene.poisson > NEARLY or scene.body.layered is not None)
+        return [partial(_on_given_mesh, scene, degree) for degree in USUAL.degrees if degree in TRIANGLES]
+    more = int(scene.checked_by is None or scene.poisson > USUAL.nearly or scene.body.layered is not None)
     load = load or scene.scales.largest_load
-    return [partial(_sized, scene, degree + more, load) for degree in DEGREES]
+    return [partial(_sized, scene, degree + more, load) for degree in USUAL.degrees]
 
 
 # Half-spaces
@@ -85,7 +128,11 @@ def _on_half_space(scene: Scene, fineness: tuple[int, float], radius: float, rea
     degree, size = fineness
     size *= _wider(scene, radius)
     sharp = sharpness(scene, radius)
-    more = int(sharp > SHARP) + int(sharp > 3 * SHARP) + int(scene.law != LENNARD_JONES or scene.poisson > LOCKING)
+    more = (
+        int(sharp > USUAL.sharp)
+        + int(sharp > 3 * USUAL.sharp)
+        + int(scene.law != LENNARD_JONES or scene.poisson > USUAL.locking)
+    )
     reach = float(2.0 ** np.ceil(np.log2(reach / radius)))
     body = _half_space(_finest(scene, radius), size, degree + more, scene.poisson, _tip(scene, radius), reach)
     return Contact(body.scaled(radius), scene.tabor, heights(scene), law=law_of(scene))
@@ -94,7 +141,7 @@ def _on_half_space(scene: Scene, fineness: tuple[int, float], radius: float, rea
 def _wider(scene: Scene, radius: float) -> float:
     """How much larger a box is than for a contact whose attraction reaches about as far, by powers of 2."""
     if scene.scales.far_energy:
-        return FARTHER
+        return USUAL.farther
     reach = scene.scales.radius_at(scene.law.range(0.1))
     return float(2.0 ** np.round(np.log2(max(reach / radius, 1.0))))
 
@@ -106,7 +153,7 @@ def _finest(scene: Scene, radius: float) -> float:
 
 def _tip(scene: Scene, radius: float) -> float:
     """Length of the cell under a tip that needs one in contact radii, by powers of 2 so that few bodies serve all."""
-    first = scene.surface.first_cell(TIP) / radius
+    first = scene.surface.first_cell(USUAL.tip) / radius
     return float(2.0 ** np.floor(np.log2(first))) if np.isfinite(first) else np.inf
 
 
@@ -116,10 +163,6 @@ def _half_space(finest: float, size: float, degree: int, poisson: float, tip: fl
 
 
 # Bodies with a length
-
-GROWTH, WIDEST = 2.5, 0.95  # ratio of neighbouring cells; the place in R beyond which they are finest nowhere
-CLAMPED = 2e-6  # of eps and a deflection, what a clamp under a half-space that carries strata may leave out
-RINGS = 4  # of cells around a corner where the stress is singular
 
 
 def _on_given_mesh(scene: Scene, degree: int, *_: float) -> Contact:
@@ -135,7 +178,7 @@ def _given_mesh(scene: Scene) -> Any:
 
     So neighbours agree on the places along their sides.
     """
-    mesh = scene.body.mesh(lengths(scene)[0], np.zeros(1), 0.0, Discretisation(DEGREES[0]))
+    mesh = scene.body.mesh(lengths(scene)[0], np.zeros(1), 0.0, Discretisation(USUAL.degrees[0]))
     mesh = refined(mesh) if is_straight(mesh) else mesh
     return type(mesh)(mesh.doflocs, np.sort(mesh.t, axis=0), mesh.boundaries) if isinstance(mesh, MeshTri) else mesh
 
@@ -143,14 +186,18 @@ def _given_mesh(scene: Scene) -> Any:
 def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) -> Contact:
     """Contact of one body or two, whose cells are finest at a radius."""
     R, bodies = _radii(scene)
-    radius, reach = (min(r, WIDEST * R) for r in (radius, reach))  # what attracts from afar may be wider
-    how = Discretisation(degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, GROWTH, RINGS)
+    radius, reach = (min(r, USUAL.widest * R) for r in (radius, reach))  # what attracts from afar may be wider
+    how = Discretisation(
+        degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, USUAL.growth, USUAL.rings
+    )
     if isinstance(scene.body, Stratified) and scene.body.held == "substrate":
         how = replace(how, beyond=_clamped(scene, scene.body, load, R, radius))
     outer, coordinate = scene.body.layout(R, replace(how, rings=0) if scene.counter else how)
     length = finest_length(scene, how)
-    lines = grid.graded(coordinate.of(radius), length, float(outer[0]), growth=GROWTH)
-    core = fine_within(coordinate.of(reach), grid.towards_axis(lines, scene.surface.first_cell(TIP), GROWTH))
+    lines = grid.graded(coordinate.of(radius), length, float(outer[0]), growth=USUAL.growth)
+    core = fine_within(
+        coordinate.of(reach), grid.towards_axis(lines, scene.surface.first_cell(USUAL.tip), USUAL.growth)
+    )
     mesh = scene.body.mesh(R, core, length, how)
     if scene.counter is None:
         body = _standing(scene.body, mesh, degree)
@@ -180,7 +227,7 @@ def _clamped(scene: Scene, strata: Stratified, W: float, R: float, radius: float
     so flat that rounding hides the force that the clamp bears.
     """
     yielding = float(surface_compliance(strata, np.array([1 / radius]))[0]) / (2 * radius)
-    far = 1 / (np.pi * strata.beyond.modulus * CLAMPED * (1 / (scene.tabor * W) + yielding))
+    far = 1 / (np.pi * strata.beyond.modulus * USUAL.clamped * (1 / (scene.tabor * W) + yielding))
     return max(1 / FAR_OUT, far / strata.spread(R))
 
 

@@ -33,7 +33,7 @@ def _rows(case):
     return {row.quantity.removeprefix("triangles: "): row for row in case.rows if row.between == TRIANGLES}
 
 
-@pytest.mark.parametrize("tabor", [0.05, 0.5, 1.0, 2.0, 5.0, 10.0])
+@pytest.mark.parametrize("tabor", [0.05, 1.0, 10.0])
 def test_triangles_agree_with_finite_elements_within_both_estimates_and_a_part_in_a_hundred_thousand(tabor):
     rows = _rows(_case(tabor, 1e-5))
     assert list(rows) == (QUANTITIES if tabor > 0.697 else QUANTITIES[:1])

@@ -1,7 +1,6 @@
 """The harness agrees where it should and, with a defect put into one side, refuses and says which quantity shows it."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,12 +8,12 @@ from whole_runs import COMPARE, tables_in
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Block, HalfSpace, Scene, cli, convergence, discretise
+from fem_adhesion import Block, HalfSpace, Scene, convergence, discretise
 from fem_adhesion.common.jobs import WorkerDied
 from fem_adhesion.crosscheck import comparison, from_scratch, references
 from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck import study as crosscheck
-from fem_adhesion.crosscheck.comparison import Case, Failure, Row, crosscheck_tables
+from fem_adhesion.crosscheck.comparison import Case, Failure, Row
 from fem_adhesion.elasticity import cells
 from halfspace import limits
 from halfspace.equilibrium.contact import ContactProblem
@@ -281,11 +280,6 @@ def _made_up(verdict):
     return Row(f"made up to {verdict}", "eps", hs, fe, difference, budget)
 
 
-@pytest.mark.parametrize("verdict", VALUE)
-def test_a_row_has_the_verdict_of_its_numbers(verdict):
-    assert _made_up(verdict).verdict == verdict
-
-
 def test_agreement_is_within_the_estimates_and_they_within_the_budget_to_the_last_bit():
     def verdict(difference, error, budget):
         return Row("load", "eps", Estimate(1.0, error / 2), Estimate(1.0, error / 2), difference, budget).verdict
@@ -296,69 +290,9 @@ def test_agreement_is_within_the_estimates_and_they_within_the_budget_to_the_las
     assert verdict(np.nan, 1.0, 1.0) == verdict(1.0, np.nan, 1.0) == "disagree"
 
 
-@pytest.mark.parametrize(
-    ("verdicts", "overall", "code"),
-    [
-        (("agree", "agree"), "agree", 0),
-        (("agree", "inconclusive"), "inconclusive", 1),
-        (("inconclusive", "agree", "disagree"), "disagree", 1),
-    ],
-)
-def test_the_worst_verdict_reaches_table_record_and_exit_code(verdicts, overall, code, monkeypatch, tmp_path, capsys):
-    solved = fem_adhesion.trace(Scene(tabor=0.5), rtol=1e-1)
-    rows = tuple(_made_up(verdict) for verdict in verdicts)
-    paths = halfspace.trace(0.5, rtol=1e-1), solved
-    case = Case(Scene(tabor=0.5), dict(zip(comparison.SOLVERS, paths, strict=True)), rows)
-    monkeypatch.setattr(beside, "run", lambda *_, **__: iter([case]))
-    assert case.verdict == overall
-    assert cli.main(["compare", "--tabor", "0.5", "--json", str(tmp_path / "made-up.json")]) == code
-    out = capsys.readouterr().out
-    assert out.rstrip().endswith(f"verdict: {overall}")
-    assert f"tabor 0.5; poisson 0.3: {overall}" in out
-    (table,) = tables_in(out)
-    record = json.loads((tmp_path / "made-up.json").read_text())
-    assert record["verdict"] == record["cases"][0]["verdict"] == overall
-    written = record["cases"][0]["comparison"]
-    for verdict, row, shown, kept in zip(verdicts, rows, table, written, strict=True):
-        assert shown["quantity"] == kept["quantity"] == row.quantity
-        assert shown["verdict"] == kept["verdict"] == verdict
-        assert (kept["first"], kept["second"]) == (row.first.value, row.second.value)
-        assert (kept["first_error"], kept["second_error"]) == (
-            row.first.error,
-            row.second.error,
-        )
-        assert (kept["difference"], kept["budget"], kept["unit"]) == (row.difference, row.budget, "eps")
-        assert float(shown["half-space"]) == pytest.approx(row.first.value, abs=0.05)
-        assert float(shown["finite elements"]) == pytest.approx(row.second.value, abs=0.05)
-        assert shown["error (hs)"] == f"{row.first.error:.1e}"
-        assert shown["error (fe)"] == f"{row.second.error:.1e}"
-        assert shown["difference"] == f"{row.difference:.1e}"
-        assert shown["budget"] == f"{row.budget:.1e}"
-
-
-def test_a_verdict_has_its_colour():
-    """Green means agreement and nothing else does."""
-    case = Case(Scene(tabor=0.5), dict.fromkeys(comparison.SOLVERS, halfspace.trace(0.5, rtol=1e-1)), ())
-    for verdict, style in (("agree", "green"), ("disagree", "bold red"), ("inconclusive", "yellow")):
-        (table,) = crosscheck_tables(replace(case, rows=(_made_up("agree"), _made_up(verdict))))
-        assert table.title == ["tabor 0.5", f"poisson 0.3: [{style}]{verdict}[/]"]
-        assert table.styles == ["", "" if verdict == "agree" else style]
-
-
 def test_a_missing_event_disagrees():
     one, none = Estimate(1.0, 1e-9), None
     assert Row("jump_on load", "R dgamma", one, none, float("nan"), 1e-3).verdict == "disagree"
-
-
-def test_agreement_by_wide_errors_is_no_agreement():
-    wide = Estimate(1.0, 1e-2)
-    assert Row("pull_off load", "R dgamma", wide, Estimate(1.001, 1e-2), 1e-3, 1e-3).verdict == "inconclusive"
-
-
-def test_the_worst_verdict_counts():
-    assert comparison.worst(["agree", "inconclusive", "disagree"]) == "disagree"
-    assert comparison.worst(["agree", "inconclusive"]) == "inconclusive"
-    assert comparison.worst(["agree"]) == "agree"
 
 
 @pytest.mark.usefixtures("two_solvers")

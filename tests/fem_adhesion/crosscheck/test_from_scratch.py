@@ -11,7 +11,7 @@ from scenes import pair
 
 import fem_adhesion
 from fem_adhesion import Coated, HalfSpace, Hemisphere, Layer, Scene, cli, scene
-from fem_adhesion.crosscheck import definitions, from_scratch
+from fem_adhesion.crosscheck import definitions, from_scratch, weak_bodies
 from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Failure
 from fem_adhesion.crosscheck.references import elements_of, radius_of, reference_for
@@ -133,7 +133,7 @@ def test_the_clamp_under_a_coated_half_space_bears_what_pulls_at_the_coating(sce
     contact = contacts(scene)[0](1.0, 1.0)
     h = 1.1 + contact.body.radii**2
     pulled = contact.tabor * contact.body.integral(contact.law.tension(h))
-    assert contact.far_reaction(contact.displaced(h), h) == pytest.approx(-pulled, rel=from_scratch.LEAST / 5)
+    assert contact.far_reaction(contact.displaced(h), h) == pytest.approx(-pulled, rel=from_scratch.USUAL.least / 5)
 
 
 def test_the_clamp_under_a_soft_film_leaves_out_little_of_what_the_equations_deflect():
@@ -189,7 +189,7 @@ def test_the_fourth_level_agrees(tabor, poisson):
     assert {row.between for row in rows} == {WEAK_FORM}
     folds = 13 if tabor > 0.7 else 6
     numbers = {0.02: 4, 0.75: 7, 1.5: 7, 8.0: 7}[tabor]
-    sides = 2 if 0.7 < tabor < from_scratch.SHARP else int(tabor > 0.7)
+    sides = 2 if 0.7 < tabor < weak_bodies.USUAL.sharp else int(tabor > 0.7)
     assert len(rows) == folds + numbers + sides
 
 
@@ -199,10 +199,10 @@ def test_a_finer_body_is_taken_where_two_differ_by_more_than_the_budget(monkeypa
 
     def doubt():
         rows = from_scratch.events(scene, path)
-        return max(row.first.error / row.budget for row in rows) * from_scratch.BUDGET
+        return max(row.first.error / row.budget for row in rows) * from_scratch.USUAL.budget
 
     assert doubt() > 1e-4
-    monkeypatch.setattr(from_scratch, "BUDGET", 1e-4)
+    monkeypatch.setattr(from_scratch, "USUAL", replace(from_scratch.USUAL, budget=1e-4))
     assert doubt() < 1e-4
 
 
@@ -232,7 +232,7 @@ def test_what_rounding_makes_of_a_reaction_counts_for_that_alone(reaction, round
     """Under a coating 72 times as stiff, both nearly incompressible, a reaction was 1.5 times outside by rounding."""
     found = (1 - rounding, 1 + reaction)
     compared = from_scratch.Compared("reaction", "", found, Estimate(1.0, 1e-6), 1.0, (rounding, rounding))
-    assert compared.row(from_scratch.LEAST).verdict == verdict
+    assert compared.row(from_scratch.USUAL.least).verdict == verdict
     assert compared.change == pytest.approx(max(reaction - rounding, 0.0), abs=1e-12)
 
 
@@ -262,7 +262,7 @@ def test_what_changes_from_stage_to_stage_is_no_mistake_of_a_balance():
     def verdict(*stages):
         told = SimpleNamespace(events=path.events, stages=[{"zero_load": stage} for stage in stages])
         balance, *_ = from_scratch._of_event("zero_load", scene, told, *contacts(scene)[:2])
-        return balance.row(from_scratch.LEAST).verdict
+        return balance.row(from_scratch.USUAL.least).verdict
 
     assert verdict(smooth, smooth) == "agree"
     assert verdict(smooth, rippled) == "inconclusive"
