@@ -20,8 +20,8 @@ def made_up_path(first, seconds, unknowns):
         errors = {f"{name}_error": (start + k) * 1e-6 for k, name in enumerate(NUMBERS)}
         events[name] = Event(name=name, **values, **errors)
     settings = {"rtol": 3.7e-6, "degree": unknowns + 1, "panels": {"edge": unknowns + 2}}
-    finest = SimpleNamespace(unknowns=unknowns)
-    return EquilibriumPath(2.0, (), events, Estimate(first + 0.1, first * 1e-5), (), finest, seconds, settings)
+    ladder = SimpleNamespace(finest=SimpleNamespace(unknowns=unknowns))
+    return EquilibriumPath(2.0, (), events, Estimate(first + 0.1, first * 1e-5), (), ladder, seconds, settings)
 
 
 # value, error and budget of each row; the difference is that of the values
