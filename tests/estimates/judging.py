@@ -29,6 +29,7 @@ from halfspace.values import Estimate
 
 HELD = 0.995  # part of the numbers that must be held
 WIDEST = 100  # median estimate, in true errors
+FEWEST = 30  # different numbers from which on a median tells more than one scene does
 ROUNDED = 1e-11  # relative error that is taken for rounding
 MEMORY, SECONDS = 1024, 60  # MiB and s of CPU that one scene may take at one tolerance
 KILLED = 180  # s of CPU at which a scene at one tolerance is ended
@@ -258,13 +259,14 @@ class Row:
 
     @property
     def honest(self):
-        """Whether all is as it should be; of a few numbers one may lie outside.
+        """Whether all is as it should be; of a few numbers one may lie outside, and their median says nothing.
 
         What two tolerances give alike, since one grid serves both, is one number.
         """
         different, outside = ({n._replace(rtol=0.0) for n in some} for some in (self.numbers, self.outside))
         few = len(outside) <= (max(1, int((1 - self.share) * len(different))) if self.share < 1 else 0)
-        return few and not self.width > WIDEST and not self.faults and not self.heavy
+        wide = len(different) >= FEWEST and self.width > WIDEST
+        return few and not wide and not self.faults and not self.heavy
 
     def __str__(self):
         """One line of the table."""
