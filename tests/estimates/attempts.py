@@ -49,8 +49,11 @@ def steps_of(path):
 
 
 def curves(path, truth, reference):
-    """Numbers of a curve against those of another."""
-    return Measured(of_path(path), of_path(truth), reference, steps_of(path))
+    """Loads and approaches of a curve's events, of which a tolerance is asked, against those of another."""
+    ours, theirs = (
+        {what: n for what, n in of_path(one).items() if what.endswith((" load", " approach"))} for one in (path, truth)
+    )
+    return Measured(ours, theirs, reference, steps_of(path))
 
 
 def against_tighter(scene, *, rtol=1e-4, solve=by_elements):
