@@ -16,10 +16,10 @@ import numpy as np
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.grid import SurfaceCoordinate
-from halfspace.elastic.operators import Interpolated, MovingGrid, chebyshev_radii
+from halfspace.elastic.operators import STORE, Interpolated, MovingGrid, chebyshev_radii
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import WIDEST, contact_of
-from halfspace.errors import ContactTooWide
+from halfspace.errors import ContactTooWide, GridTooLarge
 from halfspace.profiles import Surface
 from halfspace.scales import Scales
 from halfspace.values import Array, Valued
@@ -117,11 +117,15 @@ class SizedBody(Valued):
         return Chart(contact_of(self.scales, operator), unknowns)
 
     def made(self, lines: Array) -> list[Made]:
-        """Operators on some grids, and their numbers of unknowns; lines (n, m + 1)."""
-        if not self.together:
-            return [self.make(one) for one in lines]
-        some = np.array_split(lines, math.ceil(len(lines) / TOGETHER))
-        return [made for few in some for made in self.together(few)]
+        """Operators on some grids, and their numbers of unknowns; lines (n, m + 1).
+
+        GridTooLarge if the store has no room for all: each state would take all of them anew.
+        """
+        made: list[Made] = []
+        for few in np.array_split(lines, math.ceil(len(lines) / TOGETHER)):
+            made += self.together(few) if self.together else [self.make(one) for one in few]
+            require_stored(len(lines), made[0][0].radii.size)
+        return made
 
     @property
     def radii_of_curve(self) -> tuple[float, float]:
@@ -176,6 +180,15 @@ class SizedBody(Valued):
         side, end = self.strip / window, max(end, 1.1)  # where they end within the window, more than ever pay
         rho = min(side + np.sqrt(side**2 + 1), end + np.sqrt(end**2 - 1))
         return int(np.ceil(np.log(ACROSS * self.scales.softest / error) / np.log(rho)))
+
+
+def require_stored(count: int, nodes: int) -> None:
+    """Raise GridTooLarge if the store has no room for the kernels between so many nodes at so many contact radii."""
+    if (size := 8 * count * nodes**2) > STORE.room:
+        raise GridTooLarge(
+            f"{nodes} nodes at {count} contact radii, whose kernels take {size / 1e9:.2g} GB, "
+            f"limit: {STORE.room / 1e9:.2g} GB"
+        )
 
 
 def _operators(body: SizedBody, lines: Array) -> list[ElasticOperator]:
