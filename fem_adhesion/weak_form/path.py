@@ -13,9 +13,11 @@ from scipy.optimize import newton as secant
 
 from fem_adhesion.weak_form.body import Array
 from fem_adhesion.weak_form.contact import Contact
-from fem_adhesion.weak_form.newton import Equilibrium, along, at_approach, at_load, even, newton, on_axis
+from fem_adhesion.weak_form.newton import Equilibrium, Steps, along, at_approach, at_load, even, newton, on_axis
 from halfspace.errors import NotConverged
 from halfspace.values import Valued
+
+FEW = Steps(most=10)
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,8 @@ class March:
         Part of a step within which an event is found.
     aside : float
         Arclength to the second state from which an event is sought by the secant.
+    steps : Steps
+        Of Newton's method; a step along the path that takes more is halved.
     """
 
     first: float = 0.5
@@ -47,9 +51,10 @@ class March:
     most: int = 1000
     opening: float = 0.3
     turn: float = 0.5
-    suits: float = 0.6
+    suits: float = 0.4
     root: float = 1e-7
     aside: float = 1e-3
+    steps: Steps = FEW
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -125,12 +130,19 @@ class Path(Valued):
         size = np.copysign(np.sqrt(row @ rate), onward @ rate)
         return Point(state, rate / size, row / size)
 
-    def onward(self, a: Point, s: float, bend: Array | float = 0.0) -> Point:
-        """Point an arclength past another, from the tangent there and its change along the path."""
+    def onward(self, a: Point, s: float, start: Array | None = None) -> Point:
+        """Point an arclength past another, from a state nearby: on the tangent there unless given."""
         if s == 0:
             return a
+        start = a.state.y + s * a.direction if start is None else start
         reached = along(a.row, float(a.row @ a.state.y) + s)
-        return self.point(newton(self.contact, a.state.y + s * (a.direction + s / 2 * bend), reached), a.row)
+        return self.point(newton(self.contact, start, reached, how=self.how.steps), a.row)
+
+    def between(self, a: Point, b: Point, s: float) -> Point:
+        """Point an arclength past one of two neighbours, from the tangents at both."""
+        length = float(a.row @ (b.state.y - a.state.y))
+        ahead, back, part = a.state.y + s * a.direction, b.state.y - (length - s) * b.direction, s / length
+        return self.onward(a, s, ahead + part**2 * (3 - 2 * part) * (back - ahead))
 
     def follow(self, approach: float, to_load: float) -> list[Point]:
         """Points from an approach of separated surfaces, through every fold, to a compressive load."""
@@ -143,12 +155,14 @@ class Path(Valued):
                 at = f"alpha = {before.state.approach:.4g} eps"
                 raise NotConverged(f"the weak form's path ends at {at}; try another to_load or a smaller tabor")
             try:
-                point = self.onward(before, s, bend)
+                point = self.onward(before, s, before.state.y + s * (before.direction + s / 2 * bend))
             except NotConverged:
                 s /= 2
                 continue
             opened = abs((1 + point.observables[2]) / (1 + before.observables[2]) - 1) / how.opening
-            turned = (1 - float(before.row @ point.direction)) / (1 - how.turn)
+            # The chord turns half as much as the tangent: a long one has led to another part of the path.
+            chord = s**2 / float(self.inner @ (point.state.y - before.state.y) ** 2)
+            turned = (1 - min(float(before.row @ point.direction), 2 * chord - 1)) / (1 - how.turn)
             if max(opened, turned) > 1 or turns_twice(before, point):
                 s /= 2
                 continue
@@ -167,7 +181,7 @@ class Path(Valued):
         for a, b in pairwise(points):
             if condition(a) * condition(b) < 0:
                 length = float(a.row @ (b.state.y - a.state.y))
-                to = partial(self.onward, a, bend=(b.direction - a.direction) / length)
+                to = partial(self.between, a, b)
                 root = brentq(lambda s, to=to: condition(to(s)), 0.0, length, xtol=self.how.root * length)
                 found.append(to(root))
         return found
