@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from halfspace.values import Array
+from halfspace.values import Array, Valued
 
 
 def _spaced(first: float, last: float, number: int) -> tuple[float, ...]:
@@ -21,8 +21,8 @@ def _specified() -> dict[float, Array]:
     return {1.0: few, 2.0: few, 3.0: few, 5.0: np.linspace(1.4, 0.05, 120)}
 
 
-@dataclass(frozen=True, eq=False)
-class Settings:
+@dataclass(frozen=True, eq=False, repr=False)
+class Settings(Valued):
     """What is computed: Tabor parameters, spacings in beta of wrong grids, stiffnesses in R dgamma/eps, accuracies."""
 
     # Figures

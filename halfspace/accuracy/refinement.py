@@ -46,7 +46,8 @@ def climb(
             if start == most_rungs - 1:
                 return _climb_from(0, rtol, rung, to_load, most_rungs, folds=False)
         except GridTooLarge as error:
-            raise GridTooLarge(f"rtol = {rtol:g} takes grids of {error}; take a larger rtol or a smaller tabor") from error
+            remedy = "take a larger rtol or a smaller tabor"
+            raise GridTooLarge(f"rtol = {rtol:g} takes grids of {error}; {remedy}") from error
         except (ContactTooWide, IllPosed):  # for any grid
             raise
         except NotConverged:

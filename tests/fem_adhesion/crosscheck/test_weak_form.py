@@ -51,6 +51,14 @@ def test_the_path_turns_where_its_conditions_vanish(path):
     assert (signs == [point.stable for point in points]).all()  # inertia and turning of the path agree
 
 
+def test_the_path_goes_on_at_a_sharp_edge():
+    """Long chords led back to where the curve began at tabor 2, on the cells of the whole body."""
+    curve = trace(Scene(2.0), rtol=0.1)
+    assert curve.met
+    for name, event in halfspace.trace(2.0).events.items():
+        assert abs(curve.event(name).load - event.load) < curve.event(name).load_error + event.load_error
+
+
 @pytest.fixture(scope="module")
 def curve():
     return trace(Scene(1.0), rtol=RTOL)

@@ -437,6 +437,12 @@ def test_a_grid_that_takes_more_memory_than_there_is_is_refused_by_the_input_tha
         halfspace.trace(2.0, rtol=1e-6)
 
 
+def test_operators_that_the_store_has_no_room_for_are_refused():
+    """Of a contact that grows to the equator of a sphere, whose step takes 864 nodes at 58 radii: they took 1.1 GB."""
+    with pytest.raises(NotConverged, match=r"^rtol = 1e-07 takes .* at \d+ contact radii, .* GB; take a larger rtol"):
+        halfspace.trace(300, law=Dugdale(0.1078), profile=Sphere(1440.16, 13.23), rtol=1e-7)
+
+
 def test_where_memory_ends_the_ladder_the_last_rung_that_fits_is_told_with_its_errors(monkeypatch):
     asked = {"law": Dugdale(0.1), "profile": Sphere(30.0), "rtol": 1e-4}
     full = halfspace.trace(5.0, **asked)
