@@ -7,50 +7,11 @@ from functools import partial
 
 import numpy as np
 import pytest
+from longest import LONGEST
 from whole_runs import whole_run
 
 from fem_adhesion.crosscheck import from_scratch
 
-# Files that take longest, begun first, so that no worker is left with one of them when the others are done.
-LONGEST = (
-    "test_make.py",
-    "test_layer_body.py",
-    "test_finite_strain_scene.py",
-    "test_layers.py",
-    "test_crosscheck.py",
-    "test_finite_sphere_command.py",
-    "test_laws.py",
-    "test_speed.py",
-    "test_greenwood.py",
-    "test_finite_sphere_study.py",
-    "test_readme.py",
-    "test_curve_command.py",
-    "test_further_folds.py",
-    "test_report.py",
-    "test_thin_sample.py",
-    "test_curve_figure.py",
-    "test_jobs.py",
-    "test_properties.py",
-    "test_finite_strain.py",
-    "test_devices.py",
-    "test_honesty.py",
-    "test_curve_pictures.py",
-    "test_files.py",
-    "test_compare_bodies.py",
-    "test_from_scratch.py",
-    "test_fem_monolithic.py",
-    "test_values.py",
-    "test_sweep.py",
-    "test_halfspace_trace.py",
-    "test_finite_sphere_page.py",
-    "test_pairs.py",
-    "test_states.py",
-    "test_meshed.py",
-    "test_finite_sphere_events.py",
-    "test_assess.py",
-    "test_incompressible.py",
-    "test_bonded.py",
-)
 ORIGINAL, RELATIVE, ABSOLUTE = pytest.approx, 1e-6, 1e-12
 
 

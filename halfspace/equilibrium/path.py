@@ -79,7 +79,8 @@ class Segment(Valued):
         s = np.array([point.arclength for point in self.points])
         values, rates = (np.array([getattr(point, name) for point in self.points]) for name in ("observables", "rates"))
         known = np.isfinite(values).all(axis=0) & np.isfinite(rates).all(axis=0)
-        spline = CubicHermiteSpline(s, np.where(known, values, 0), np.where(known, rates, 0))
+        forward = np.append(True, np.diff(s) > 0)  # two grids may have one point where one hands over to the next
+        spline = CubicHermiteSpline(s[forward], np.where(known, values, 0)[forward], np.where(known, rates, 0)[forward])
         fine = np.interp(np.arange(count * (s.size - 1) + 1) / count, np.arange(s.size), s)
         return np.where(known, spline(fine), np.nan), np.where(known, spline(fine, 1), np.nan)
 

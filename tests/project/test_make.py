@@ -9,8 +9,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from conftest import LONGEST
 from families import FAMILIES
+from longest import LONGEST
 from whole_runs import BIN, ROOT, tables_in
 
 MAKEFILE_AT = ROOT / "Makefile"
