@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -26,7 +25,8 @@ With this room the largest scenes stay below 1 GB. Curves and events at usual to
 """
 
 
-class Kernels(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False)
+class Kernels(Valued):
     """Values (m, ...) at m contact radii: matrices (q, q), or n numbers and where a matrix has each, (q, q)."""
 
     values: Array
