@@ -16,7 +16,7 @@ import numpy as np
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.grid import SurfaceCoordinate
-from halfspace.elastic.operators import STORE, Interpolated, MovingGrid, chebyshev_radii
+from halfspace.elastic.operators import ROOM, Interpolated, MovingGrid, chebyshev_radii
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import WIDEST, contact_of
 from halfspace.errors import ContactTooWide, GridTooLarge
@@ -184,10 +184,10 @@ class SizedBody(Valued):
 
 def require_stored(count: int, nodes: int) -> None:
     """Raise GridTooLarge if the store has no room for the kernels between so many nodes at so many contact radii."""
-    if (size := 8 * count * nodes**2) > STORE.room:
+    if (size := 8 * count * nodes**2) > ROOM:
         raise GridTooLarge(
             f"{nodes} nodes at {count} contact radii, whose kernels take {size / 1e9:.2g} GB, "
-            f"limit: {STORE.room / 1e9:.2g} GB"
+            f"limit: {ROOM / 1e9:.2g} GB"
         )
 
 

@@ -18,7 +18,8 @@ from halfspace.elastic.compliance import ElasticOperator, Operator, barycentric,
 from halfspace.elastic.grid import SurfaceCoordinate, gauss_points
 from halfspace.values import Array, Index, Recent, Valued
 
-STORE = Recent(3e8)
+ROOM = 3e8  # bytes of the store
+STORE = Recent(ROOM)
 """Operators at the latest contact radius, and the kernels between which operators are interpolated, in bytes.
 
 With this room the largest scenes stay below 1 GB. Curves and events at usual tolerances take less than a tenth.
