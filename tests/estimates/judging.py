@@ -135,6 +135,7 @@ class Answered(NamedTuple):
 def answer(family, scene, rtols):
     """Judge a scene at all tolerances, and measure what it takes."""
     began, answers, ends, seconds = time.process_time(), {}, [], [0.0]
+    inherited = _peak_memory()  # a fork begins with all that its parent holds, 1.3 GB in a worker of the tests
     with warnings.catch_warnings(record=True) as heard:
         warnings.simplefilter("always")
         for rtol in rtols:
@@ -142,13 +143,18 @@ def answer(family, scene, rtols):
             ended = _attempt(lambda rtol=rtol: answers.update({rtol: family.solve(scene, rtol)}), KILLED)
             seconds.append(time.process_time() - start)
             ends += [f"{ended}: {shown(scene)} at rtol {rtol:g}"] if ended else []
-        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        memory = _peak_memory() - inherited
         numbers = []
         if answers:
             ended = _attempt(lambda: numbers.extend(_against_truth(family, scene, answers)), family.patience)
             ends += [f"{ended}: truth of {shown(scene)}"] if ended else []
     ends += [f"WARNED: {w.message}: {shown(scene)}" for w in heard]
     return Answered(numbers, ends, max(seconds), memory, time.process_time() - began)
+
+
+def _peak_memory():
+    """Most memory that this process has held, MiB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 class TooLong(Exception):
