@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from functools import partial
-from itertools import pairwise, product
+from itertools import product
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -248,18 +248,33 @@ def image_kernels(images: Images, body: ElasticOperator, until: float = np.inf, 
 def nearly_homogeneous(
     images: Images, unit: ElasticOperator, between: tuple[float, float], until: float, left: float
 ) -> NearlyHomogeneous:
-    """Layered body on a half-space's grid about the contact radius 1, scaled with those between two, in beta.
+    """Layered body on a half-space's grid about the contact radius 1, scaled with radii between two or wider, in beta.
 
     Polynomials in the logarithm of the radius leave a part `left` of a kernel at a depth, whose first poles, where the
-    distance vanishes, lie pi/2 beside the real axis, or pi/4 at a complex one; the rest is as of `image_kernels`.
+    distance vanishes, lie pi/2 beside the real axis, or pi/4 at a complex one. The images are integrated up to `until`,
+    in beta, or by as much farther as a contact is wider than the wider of the two; the rest is as of `image_kernels`.
     """
-    count = int(np.ceil(np.log(between[1] / between[0]) / HOW.wide))
-    ends = np.geomspace(*between, count + 1)
-    pole = np.pi / (4 if images.depths.imag.any() else 2) / (np.log(ends[1] / ends[0]) / 2)
+    least, widest = between
+    ratio = float((widest / least) ** (1 / np.ceil(np.log(widest / least) / HOW.wide)))
+    pole = np.pi / (4 if images.depths.imag.any() else 2) / (np.log(ratio) / 2)
     degree = int(np.ceil(np.log(2 / left) / np.arcsinh(pole)))
-    parts = [chebyshev_radii(least, most, degree) for least, most in pairwise(ends.tolist())]
-    make = partial(_in_units, images, unit, until, left)
-    return NearlyHomogeneous(unit, ends, [Remainder(radii, partial(make, radii)) for radii in parts])
+    make = partial(_remainder, images, unit, until - widest, widest, degree, left)
+    return NearlyHomogeneous(unit, least, ratio, make)
+
+
+def _remainder(
+    images: Images,
+    unit: ElasticOperator,
+    beyond: float,
+    widest: float,
+    degree: int,
+    left: float,
+    low: float,
+    high: float,
+) -> Remainder:
+    """Images between two contact radii, integrated up to a radius beyond the wider one, or beyond the widest."""
+    radii = chebyshev_radii(low, high, degree)
+    return Remainder(radii, partial(_in_units, images, unit, max(high, widest) + beyond, left, radii))
 
 
 def _in_units(images: Images, unit: ElasticOperator, until: float, left: float, radii: Array) -> Kernels:

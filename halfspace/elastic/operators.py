@@ -101,17 +101,20 @@ class Remainder(Valued):
 class NearlyHomogeneous(Homogeneous):
     """A homogeneous body and the remainder of another one, on a grid that is scaled with the contact.
 
-    Each of the parts (k,) serves contact radii from one of the ends (k + 1,), ascending, in beta, to the next. The
-    singular part of the kernel is that of the homogeneous body: only what is smooth is interpolated.
+    The singular part of the kernel is that of the homogeneous body: only what is smooth is interpolated, between
+    contact radii from the least, in beta, to `ratio` times that, from there to `ratio` times that, and so on. `make`
+    gives the remainder between the two radii of such a part, when a contact is first so wide: a polynomial tells
+    nothing beyond its ends.
     """
 
-    ends: Array
-    parts: Sequence[Remainder]
+    least: float
+    ratio: float
+    make: Callable[[float, float], Remainder]
 
     @property
     def least_radius(self) -> float:
         """Least contact radius that it serves."""
-        return float(self.ends[0])
+        return self.least
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
@@ -132,8 +135,16 @@ class NearlyHomogeneous(Homogeneous):
 
     def _remainder(self, scale: float, derivative: int) -> Array:
         """Remainder at a contact radius, or its derivative by the logarithm of that."""
-        part = self.parts[int(np.searchsorted(self.ends[1:-1], scale))]
-        return part.at(scale, derivative) * self.unit.weights
+        number = max(int(np.log(scale / self.least) // np.log(self.ratio)), 0)
+        if number not in self._parts:
+            ends = self.least * self.ratio ** np.array([number, number + 1.0])
+            self._parts[number] = self.make(*ends.tolist())
+        return self._parts[number].at(scale, derivative) * self.unit.weights
+
+    @cached_property
+    def _parts(self) -> dict[int, Remainder]:
+        """Remainders made so far, by their number from the least radius on."""
+        return {}
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -266,7 +266,8 @@ def test_between_the_radii_of_a_curve_a_stiff_coating_is_as_well_known_as_a_soft
     for body in (Coated(0.5, 100.0), Coated(0.5, 10.0), Coated(0.5, 0.1)):
         scales, images = Scales(3.0, body=body), images_of(body)
         operator = layered_charts(scales, images, resolution_for(scales, 1e-3))[1].problem.operator
-        for a in np.concatenate([np.sqrt(part.scales[1:] * part.scales[:-1])[::4] for part in operator.parts]):
+        known = operator.make(operator.least, operator.least * operator.ratio).scales
+        for a in np.sqrt(known[1:] * known[:-1])[::4]:
             here = operator.at(a)
             alone = replace(here, compliance=operator.unit.scaled(a).compliance)
             exact = alone.compliance + image_compliance(images, alone)
@@ -354,14 +355,14 @@ def test_a_bell_deflects_a_layer_on_a_scaled_grid_as_on_one_that_stands(charted)
 @pytest.mark.parametrize("body", [Layer(2.0, 0.3), SOFT_BETWEEN, Coated(0.1, 100.0)], ids=repr)
 @pytest.mark.parametrize("spacing", [1.14, 1.17])
 def test_images_in_units_of_the_contact_deflect_as_at_their_own_depths(body, spacing):
-    """At the ends of what they serve and between; the rule for long cells is that of the widest contact."""
+    """From the least contact to one that is wider than was planned; the rule for long cells is that of the widest."""
     images = images_of(body, spacing)
     rounded = 1e-15 * np.abs(images.strengths).sum()  # up to 1e6 each, of either sign
     unit = compliance.panels(grid.graded(1.0, 0.1, 20.0, growth=3.0), 8)
     pressure = np.exp(-(unit.radii**2))
     operator = nearly_homogeneous(images, unit, (0.3, 3.0), np.inf, 1e-12)
-    for a in (operator.least_radius, 0.95, 3.0):
-        own = replace(images, smooth=images.smooth * a / operator.parts[0].scales.max())
+    for a, widest in ((operator.least_radius, 3.0), (0.95, 3.0), (2.999, 3.0), (7.0, 30.0)):
+        own = replace(images, smooth=images.smooth * a / widest)
         wanted = a * unit.compliance + image_compliance(own, unit.scaled(a))
         found, wanted = (each @ pressure for each in (operator.at(a).compliance, wanted))
         assert found == pytest.approx(wanted, rel=0, abs=(1e-10 + rounded) * np.abs(wanted).max())
