@@ -331,23 +331,14 @@ def _jump(staged: StagedJump, path: EquilibriumPath, compliance: float) -> Jump:
     rule = path.ladder.rule
     alone = replace(rule, along=path.ladder.twin is None)  # no chain from a twin guards against chance
     take_offs, landings = ([[getattr(s, end) for s in chain] for chain in staged.chains] for end in ENDS)
-    least = _by_base(staged.others, staged.fine, compliance)
     return Jump(
         estimate_event("take_off", take_offs, alone),
-        estimate_event("landing", landings, replace(rule, along=False), least),
+        estimate_event("landing", landings, replace(rule, along=False)),
         staged.energy(rule, compliance),
     )
 
 
 ENDS = ("take_off", "landing")
-
-
-def _by_base(others: Sequence[JumpStates], fine: JumpStates, compliance: float) -> Array:
-    """Changes of the observables at a landing by that of the base, which those of the landing itself may cancel."""
-    base = _base(fine.take_off, compliance)
-    change = max(abs(_base(states.take_off, compliance) - base) for states in others)
-    rates = fine.landing.point.rates
-    return np.asarray(change * np.abs(rates / (rates[APPROACH] + compliance * rates[LOAD])))
 
 
 def _energy(state: Located, compliance: float) -> float:

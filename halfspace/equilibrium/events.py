@@ -175,22 +175,20 @@ class ErrorRule:
 USUAL = ErrorRule()
 
 
-def estimate_event(
-    name: str, chains: Sequence[Sequence[Located]], rule: ErrorRule, least: Array | float = 0.0
-) -> Event:
+def estimate_event(name: str, chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Event:
     """Turn an event into numbers with error estimates, see `errors_of`."""
-    values, errors = chains[0][-1].point.observables, errors_of(chains, rule, least)
+    values, errors = chains[0][-1].point.observables, errors_of(chains, rule)
     return Event(name, *map(float, values), *map(float, errors))
 
 
-def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule, least: Array | float = 0.0) -> Array:
+def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule) -> Array:
     """Errors of the observables of a state, (4,): an event, a point of the curve, a landing or a state asked for.
 
     A chain has the state on discretisations that differ in one respect from one to the next, all chains ending with the
     best. Along a chain the changes add up; of several chains the largest sum counts, so that a number that two grids
     share by accident is not taken for exact. The radius, which at a point errs more than the rest and in turns, is
     known no better than to what the polynomials there end with; where there is but one chain, or `rule.along`, nor is
-    the gap. `least` (4,) are the changes of the observables that count where the chains' own are less.
+    the gap.
 
     If `rule.along` at a stationary event, or `rule.steps` anywhere, an observable's change along each chain is taken
     apart: into what the event's shift along the path makes of it, and the rest, see `_apart`: on a single chain one
@@ -203,7 +201,7 @@ def errors_of(chains: Sequence[Sequence[Located]], rule: ErrorRule, least: Array
     if rule.steps or (rule.along and best.condition.stationary):
         ways = slice(None) if rule.along else slice(1)
         changes += [apart for chain in chains for apart in _apart(chain, rule)[ways]]
-    errors = rule.remaining * np.maximum(np.max(changes, axis=0), least) + rounding(best.problem, best.point.x)
+    errors = rule.remaining * np.max(changes, axis=0) + rounding(best.problem, best.point.x)
     if rule.along:
         errors[AT_A_POINT] = np.maximum(errors, whole)[AT_A_POINT]
     gap, radius = best.problem.interface.ripples(best.problem.surface_state(best.point.x))

@@ -233,7 +233,7 @@ class FinestCurve(Valued):
         k, _ = COORDINATES[coordinate]
         problem, point, bend = self._solved(k, value, self.parts(coordinate)[self._chosen(coordinate, value, branch)])
         errors = self._errors(problem, point)
-        if self.ladder.told:
+        if np.isfinite(errors[k]):
             errors = errors + np.abs(point.rates) * shift(errors[k], abs(point.rates[k]), bend)
         errors[k] = rounding(problem, point.x)[k]
         return np.concatenate([point.observables, errors])
@@ -247,9 +247,9 @@ class FinestCurve(Valued):
                     bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
                     return part.problem, between(part.problem, a, b, condition, self.metric).point, bend
         # Between the last point on one discretisation and the first on the next, either of which may not have it.
-        nearest = [min(part.points, key=lambda p: abs(condition.of(p))) for part in parts]
-        by_distance = sorted(zip(nearest, parts, strict=True), key=lambda one: abs(condition.of(one[0])))
-        for tries_left, (near, part) in zip(reversed(range(len(parts))), by_distance, strict=True):
+        nearest = [(part, min(part.points, key=lambda p: abs(condition.of(p)))) for part in parts]
+        nearest.sort(key=lambda one: (self._is_left_behind(one[0].problem), abs(condition.of(one[1]))))
+        for tries_left, (part, near) in zip(reversed(range(len(parts))), nearest, strict=True):
             try:
                 solution = newton.solve(part.problem, near.x, newton.Control(np.eye(4)[k], value))
                 break
@@ -258,6 +258,9 @@ class FinestCurve(Valued):
                     raise
         weights, s = self.metric.weights * near.rates, near.arclength + abs(condition.of(near))
         return part.problem, make_point(part.problem, solution, self.metric, weights, s), 0.0
+
+    def _is_left_behind(self, problem: Traceable) -> bool:
+        return any(problem is one for one in self.left_behind)
 
     def _chosen(self, coordinate: str, value: float, branch: str | None) -> str:
         """Name of the branch that is asked for, if it has the value, or of the only one that has."""
@@ -286,7 +289,7 @@ class FinestCurve(Valued):
         ladder = self.ladder.along
         if not ladder.told:
             return np.full(4, np.nan)
-        if any(problem is one for one in self.left_behind):
+        if self._is_left_behind(problem):
             return _unbounded(point)
         try:
             chains = ladder.chains(Located(PLANE, problem, point, 1.0), in_plane)

@@ -446,3 +446,12 @@ def test_a_point_that_no_finer_grid_has_does_not_take_the_curve_with_it():
     assert abs(state.approach[0] - zero_load.approach) <= state.approach_error[0] + zero_load.approach_error
     assert np.isfinite(state.approach_error[:2]).all()
     assert np.all(np.diff(state.approach) > 0)
+
+
+def test_a_state_between_two_grids_is_solved_for_on_the_one_that_has_an_error():
+    """The nearest point was one without a state on the finer grid, so that its error was infinite, or no number."""
+    scene = {"law": Dlvo(-0.61, 0.372), "profile": Sphere(28.4, 3.0), "body": halfspace.Layer(9.01, poisson=0.0)}
+    curve = halfspace.trace(10.2, **scene, to_load=65.7, rtol=0.04).finest_curve
+    assert curve.at("load", -0.535859, "unstable 1").approach_error < 1e-3
+    lost = replace(curve, left_behind=tuple(segment.problem for segment in curve.segments))
+    assert np.isinf(lost.at("load", -0.535859, "unstable 1").approach_error)
