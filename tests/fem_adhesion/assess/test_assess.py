@@ -20,12 +20,10 @@ from fem_adhesion.assess import figure as assess_figure
 from fem_adhesion.assess import study
 from fem_adhesion.assess import theories as assess_theories
 from fem_adhesion.assess.predictions import QUANTITIES, WORDS, Prediction, Quantity, computed, large_tabor
-from fem_adhesion.assess.study import Assessment, assess
+from fem_adhesion.assess.study import assess
 from fem_adhesion.assess.terminal import contact_radius, record, report
-from fem_adhesion.assess.verdict import Distance, cautions, deviations, ranked, regime, verdict, yielding
-from fem_adhesion.common import style
+from fem_adhesion.assess.verdict import Distance, cautions, ranked, regime, verdict, yielding
 from fem_adhesion.common.contact import Contact
-from fem_adhesion.common.files import written_aside
 from fem_adhesion.common.numbers import KINDS, PREFIXES, engineering, exponent_of, parse, with_error
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import cycle
@@ -61,11 +59,7 @@ BEAD = {"radius": 50e-6, "modulus": 2e6, "poisson": 0.49, "work_of_adhesion": 0.
 )
 def test_quantities_are_read_into_si(text, name, value):
     assert parse(text, name) == pytest.approx(value, rel=1e-14)
-
-
-@pytest.mark.parametrize("name", KINDS)
-def test_the_example_of_every_kind_is_read(name):
-    assert parse(KINDS[name][1], name) > 0
+    assert parse(KINDS[name][1], name) > 0  # the example that refusals show
 
 
 @pytest.mark.parametrize(
@@ -258,19 +252,6 @@ def test_of_two_soft_or_rigid_spheres_no_true_profile_is_claimed(tabor):
         study._profile(soft)
 
 
-def test_a_pair_is_the_same_seen_from_either_body():
-    first = Contact(**SILICA, **PAIR)
-    turned = {"radius": 250e-9, "modulus": 3e9, "poisson": 0.35}
-    other = {"counter_radius": 100e-9, "counter_modulus": 70e9, "counter_poisson": 0.17}
-    second = Contact(**(SILICA | turned), **other)
-    assert second.share == pytest.approx(first.share, rel=1e-12)
-    assert second.smaller_ratio == pytest.approx(first.smaller_ratio, rel=1e-12)
-    assert second.counter.radius_ratio == pytest.approx(first.counter.radius_ratio, rel=1e-12)
-    materials = [(one.counter.material, one.smaller_poisson) for one in (first, second)]
-    assert materials[0] == materials[1]
-    assert second.units.tabor == pytest.approx(first.units.tabor, rel=1e-12)
-
-
 def test_two_rigid_spheres_attract_over_their_true_profiles():
     """Pull-off against the integral of the law over the gap between two spheres, and a wall is a sphere without end."""
     tabor, rho = 1e-6, 60.0
@@ -289,12 +270,6 @@ def test_two_rigid_spheres_attract_over_their_true_profiles():
         assert -found.load == pytest.approx(largest, rel=3e-6)
     wall, far = (halfspace.trace(1.0, profile=Sphere(30.0, c), rtol=1e-4) for c in (math.inf, 1e9))
     assert far.event("pull_off").load == pytest.approx(wall.event("pull_off").load, rel=1e-8)
-
-
-@pytest.mark.parametrize("counter_radius", [0.5, math.nan])
-def test_a_second_sphere_smaller_than_the_first_is_refused(counter_radius):
-    with pytest.raises(InputError, match=f"counter_radius = {counter_radius:g} is outside 1 <= counter_radius"):
-        Sphere(30.0, counter_radius)
 
 
 # The answer -----------------------------------------------------------------------------------------------------------
@@ -406,16 +381,12 @@ def test_the_command_prints_and_writes_what_it_computed(said):
     _check_record(said.record, said.assessment)
     assert said.record["input"]["grip"] == "sliding"
     assert said.record["input"]["stiffness"] == 0.2
+    assert "16 pi dgamma eps^2 = 452.4 zJ" in said.text
     drawn = set(re.findall(r"<!-- (.*?) -->", said.plot.read_text()))  # what the letters' outlines say
     assert {"separation of the undeformed surfaces, nm", "force (compression positive), nN"} <= drawn
     assert {"half-space", "finite sphere", "JKR"} <= drawn
     for line in (*said.assessment.verdict, *said.assessment.cautions):
         assert line in said.text.replace("\n", " ")
-
-
-def test_the_hamaker_constant_is_always_said(said):
-    assert "16 pi dgamma eps^2 = 452.4 zJ" in said.text
-    assert said.record["hamaker"] == pytest.approx(4.5239e-19, rel=1e-4)
 
 
 def test_a_hamaker_constant_in_the_place_of_the_spacing(monkeypatch, capsys):
@@ -434,39 +405,9 @@ def test_a_hamaker_constant_in_the_place_of_the_spacing(monkeypatch, capsys):
     assert "--spacing with --hamaker, limit: one of both" in capsys.readouterr().err
 
 
-@pytest.fixture(scope="module")
-def made_up(silica):
-    """An assessment in which no two numbers are alike and none is as it would be."""
-    units = {"pull_off_force": ("N", 1e-9), "energy_lost": ("J", 1e-17)}
-
-    def model(k, one):
-        values = {}
-        for j, name in enumerate(QUANTITIES):
-            unit, size = units.get(name, ("m", 1e-9))
-            values[name] = Quantity((-1) ** k * size * (3.1 + 1.7 * j + 0.13 * k), size * 1e-4 * (1 + j + k), unit)
-        return replace(one, values=values)
-
-    half_space, profile, finite = (
-        model(k, m) for k, m in enumerate((silica.half_space, silica.profile, silica.finite))
-    )
-    theories = tuple(model(k + 3, theory) for k, theory in enumerate(silica.theories))
-    found = tuple(deviations(half_space, profile, finite, silica.contact.spacing))
-    distances = ranked((half_space, profile, finite, *theories), silica.contact.spacing)
-    return Assessment(
-        silica.contact, half_space, profile, finite, theories, found, distances, "made up", ("c",), ("v",), 1.0
-    )
-
-
-def test_a_made_up_assessment_is_read_back_from_the_terminal_and_the_record(made_up):
-    numbers = [q.value for model in made_up.models for q in model.values.values()]
-    assert len({f"{number:.6e}" for number in numbers}) == len(numbers)
-    _check_table(_shown(made_up), made_up)
-    _check_record(json.loads(json.dumps(record(made_up), allow_nan=False)), made_up)
-
-
-@pytest.mark.parametrize("width", [150, 100, 80, 60, 45, 30])
-def test_every_number_unit_and_sentence_is_whole_at_any_width(made_up, silica, bead, width):
-    for assessment in (made_up, silica, bead):
+@pytest.mark.parametrize("width", [150, 80, 45, 30])
+def test_every_number_unit_and_sentence_is_whole_at_any_width(silica, bead, width):
+    for assessment in (silica, bead):
         text = _shown(assessment, width)
         assert "…" not in text
         assert max(map(len, text.splitlines())) <= width
@@ -591,23 +532,59 @@ def _verdict(half_space, profile, finite, *theories):
     return list(verdict(finite or half_space, distances, computed=finite is not None))
 
 
-def test_the_verdict_follows_absurd_numbers():
-    """The half-space off by half, a theory right: the verdict says that, with their figures."""
-    half_space, finite = _model("half-space", 1.5), _model("finite sphere", 1.0)
-    lines = _verdict(half_space, _model("true profile", -1.0), finite, _model("rigid", 1.001))
-    assert lines == [
-        "beside the finite sphere: rigid off by up to 0.1 %, in pull-off force",
-        "beside the finite sphere: half-space off by up to 50 %, in pull-off force",
-        "beside the finite sphere: true profile off by up to 200 %, in pull-off force",
-        "trust the finite sphere; within 1 % in every quantity: rigid",
-    ]
+@pytest.mark.parametrize(
+    ("half_space", "profile", "finite", "theories", "told"),
+    [
+        (
+            ("half-space", 1.5),
+            ("true profile", -1.0),
+            ("finite sphere", 1.0),
+            ("rigid", 1.001),
+            [
+                "beside the finite sphere: rigid off by up to 0.1 %, in pull-off force",
+                "beside the finite sphere: half-space off by up to 50 %, in pull-off force",
+                "beside the finite sphere: true profile off by up to 200 %, in pull-off force",
+                "trust the finite sphere; within 1 % in every quantity: rigid",
+            ],
+        ),
+        (
+            ("half-space", 1.0),
+            ("true profile", 1.1),
+            None,
+            None,
+            [
+                "beside the half-space: true profile off by up to 10 %, in pull-off force",
+                "the finite body is not known: judge the half-space by the cautions",
+            ],
+        ),
+        (
+            ("half-space", 1.5),
+            None,
+            ("finite pair", 1.0),
+            ("rigid", 1.2),
+            [
+                "beside the finite pair: rigid off by up to 20 %, in pull-off force",
+                "beside the finite pair: half-space off by up to 50 %, in pull-off force",
+                "trust the finite pair; no other model is within 1 % in every quantity, the rigid is nearest, "
+                "off by up to 20 %",
+            ],
+        ),
+    ],
+)
+def test_the_verdict_follows_absurd_numbers(half_space, profile, finite, theories, told):
+    half_space, profile, finite, theories = (one and _model(*one) for one in (half_space, profile, finite, theories))
+    assert _verdict(half_space, profile, finite, *([theories] if theories else [])) == told
 
 
-def test_the_verdict_says_so_where_no_model_is_good():
-    lines = _verdict(_model("half-space", 1.5), None, _model("finite pair", 1.0), _model("rigid", 1.2))
-    assert lines[-1] == (
-        "trust the finite pair; no other model is within 1 % in every quantity, the rigid is nearest, off by up to 20 %"
+def test_the_distance_of_a_model_is_what_it_may_be_at_most():
+    """Both errors are part of it, and a position near zero is judged by the spacing."""
+    (distance,) = ranked((_model("a", 1.0, on=3e-12), None, _model("b", 1.0, on=1e-15)), 1e-10)
+    assert distance == Distance("a", "jump_on_separation", pytest.approx(0.02999, rel=1e-6), ())
+    one, other = (
+        Prediction(name, {"energy_lost": Quantity(*v, "J")}) for name, v in (("a", (3, 0.2)), ("b", (2, 0.4)))
     )
+    (distance,) = ranked((one, None, other), 1e-10)
+    assert distance.size == pytest.approx((3.0 - 2.0 + 0.2 + 0.4) / 2.0, rel=1e-12)
 
 
 def test_a_model_that_lacks_a_quantity_is_neither_good_nor_nearest():
@@ -617,27 +594,6 @@ def test_a_model_that_lacks_a_quantity_is_neither_good_nor_nearest():
     assert "the half-space is nearest, off by up to 50 %" in lines[-1]
     lines = _verdict(_model("half-space", 1.5, on=None), None, finite)
     assert lines[-1] == "trust the finite sphere; no other model has all its quantities"
-
-
-def test_without_finite_bodies_the_verdict_claims_nothing_about_them():
-    lines = _verdict(_model("half-space", 1.0), _model("true profile", 1.1), None)
-    assert lines == [
-        "beside the half-space: true profile off by up to 10 %, in pull-off force",
-        "the finite body is not known: judge the half-space by the cautions",
-    ]
-
-
-def test_a_position_near_zero_is_judged_by_the_spacing():
-    (distance,) = ranked((_model("a", 1.0, on=3e-12), None, _model("b", 1.0, on=1e-15)), 1e-10)
-    assert distance == Distance("a", "jump_on_separation", pytest.approx(0.02999, rel=1e-6), ())
-
-
-def test_the_distance_of_a_model_is_what_it_may_be_at_most():
-    """Both errors are part of it."""
-    one = Prediction("a", {"energy_lost": Quantity(3.0, 0.2, "J")})
-    other = Prediction("b", {"energy_lost": Quantity(2.0, 0.4, "J")})
-    (distance,) = ranked((one, None, other), 1e-10)
-    assert distance.size == pytest.approx((3.0 - 2.0 + 0.2 + 0.4) / 2.0, rel=1e-12)
 
 
 def test_closed_theories_are_not_judged_by_a_contact_radius_that_means_another(silica):
@@ -676,20 +632,16 @@ def test_a_caution_stands_beyond_its_limit_only(what, contact, values, figure):
     assert list(cautions(Contact(**SILICA), Prediction("fine", fine))) == []
 
 
-def test_the_yield_of_the_attracted_layer_corrects_the_work_of_adhesion_of_one_sphere(silica):
-    units = silica.contact.units
-    more = 0.273797 * units.tabor * np.sqrt(units.tabor / units.radius_ratio) * (1 - 2 * 0.17) / (1 - 0.17) ** 2
-    (line,) = (line for line in silica.cautions if "attracted layer" in line)
-    assert f"by {100 * more:.3g} %, to {units.work_of_adhesion * (1 + more):.4g} J/m^2; give" in line
-
-
 @pytest.mark.parametrize(("modulus", "told"), [(1e14, False), (1e12, False), (72e9, True), (1e9, True), (5e8, False)])
 def test_the_yield_is_corrected_between_a_thousandth_and_a_tenth_only(modulus, told):
     """Of the work of adhesion. Below it is silent, beyond a caution says that the first order is not enough."""
     contact = Contact(**(SILICA | {"modulus": modulus}))
     mu, ratio = contact.units.tabor, contact.units.radius_ratio
     part = 0.273797 * mu * np.sqrt(mu / ratio) * (1 - 2 * 0.17) / (1 - 0.17) ** 2
-    assert (1e-3 <= part <= 0.1) == told == bool(list(yielding(contact)))
+    lines = list(yielding(contact))
+    assert (1e-3 <= part <= 0.1) == told == bool(lines)
+    work = 0.1 * (1 + part)
+    assert all(f"by {100 * part:.3g} %, to {work:.4g} J/m^2; give" in line for line in lines)
     said = [line for line in cautions(contact, Prediction("absurd", {})) if "attracted layer" in line]
     assert bool(said) == (part > 0.1)
     assert all("deepens that by more than its first order tells" in line for line in said)
@@ -720,18 +672,6 @@ def test_a_loop_that_is_a_ripple_of_the_samples_is_none(tmp_path, capsys):
     assert "energy_lost" not in models["Maugis-Dugdale"]
     assert all(math.isfinite(number["error"]) for values in models.values() for number in values.values())
     assert "pull-off force" in capsys.readouterr().out
-
-
-def test_a_report_that_fails_leaves_no_files(tmp_path, monkeypatch):
-    def fail(_):
-        raise ArithmeticError
-
-    monkeypatch.setattr("fem_adhesion.assess.terminal.report", fail)
-    monkeypatch.setattr("fem_adhesion.assess.study.assess", lambda *_: None)
-    monkeypatch.setattr("fem_adhesion.assess.terminal.record", lambda _: {})
-    with pytest.raises(ArithmeticError):
-        cli.main(["assess", *GLASS, "--spacing", "0.3nm", "--json", str(tmp_path / "found.json")])
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("thickness", [0.1e-9, 0.2e-9])
@@ -767,25 +707,17 @@ def test_the_contact_radius_says_what_it_is_beside_others(silica, bead):
     assert record(silica)["definitions"]["contact_radius"] == contact_radius(silica)
 
 
-def test_the_legend_explains_only_what_is_shown(silica, made_up):
+def test_the_legend_explains_only_what_is_shown(silica):
     text = " ".join(_shown(silica).split())
     assert "Separation: of the undeformed surfaces" in text
     assert "Of the finite sphere what is round is held at its mid-plane, sliding." in text
     assert "of half-space, true profile, finite sphere, where the gap is 1.20094 eps, the place of the largest" in text
     assert "of JKR, Maugis-Dugdale, DMT-M, the edge of the theory's own contact" in text
-    force = {"pull_off_force": made_up.half_space.values["pull_off_force"]}
-    bare = replace(
-        made_up,
-        half_space=replace(made_up.half_space, values=force),
-        profile=None,
-        finite=None,
-        theories=(),
-        deviations=(),
-        distances=(),
-    )
-    text = _shown(bare)
+    bare = replace(silica.half_space, values={"pull_off_force": silica.half_space.values["pull_off_force"]})
+    alone = {"profile": None, "finite": None, "theories": (), "deviations": (), "distances": ()}
+    text = _shown(replace(silica, half_space=bare, **alone))
     assert not any(word in text for word in ("Separation", "held at", "1.20094", "difference from"))
-    bonded = replace(made_up, contact=replace(made_up.contact, grip="bonded"))
+    bonded = replace(silica, contact=replace(silica.contact, grip="bonded"))
     assert "mid-plane, bonded" in " ".join(_shown(bonded).split())
 
 
@@ -850,10 +782,10 @@ def test_numbers_with_errors(value, error, text):
     assert with_error(Quantity(value, error, "1")) == text
 
 
-def test_the_unit_of_a_row_is_that_of_its_largest_number(made_up):
+def test_the_unit_of_a_row_is_that_of_its_largest_number(silica):
     """The first model has next to nothing: its unit would give the others eleven zeros."""
-    tiny = dict(made_up.half_space.values) | {"jump_on_base": Quantity(0.0, 1e-15, "m")}
-    text = _shown(replace(made_up, half_space=replace(made_up.half_space, values=tiny)))
+    tiny = dict(silica.half_space.values) | {"jump_on_base": Quantity(0.0, 1e-15, "m")}
+    text = _shown(replace(silica, half_space=replace(silica.half_space, values=tiny)))
     row = next(line for line in text.splitlines() if "base, jump on" in line)
     assert row.split("│")[2].strip() == "nm"
     assert "0.0000000" not in text
@@ -869,15 +801,6 @@ def test_engineering_prefixes():
 
 
 # The figure -----------------------------------------------------------------------------------------------------------
-
-
-def test_the_figure_is_written(bead, tmp_path):
-    path = tmp_path / "curve.png"
-    with written_aside(path) as file:
-        style.write(lambda: assess_figure.draw(bead), file, style.require_suffix(path))
-    assert path.read_bytes().startswith(b"\x89PNG")
-    with pytest.raises(ValueError, match=r"limit: one of \.png, \.svg, \.pdf; rename it"):
-        style.require_suffix(tmp_path / "curve.gif")
 
 
 @pytest.fixture(scope="module")
@@ -899,6 +822,7 @@ def test_the_axes_of_the_figure_say_what_is_drawn_along_them(axes, silica):
             path = drawn[name].curve
             at = path.events["pull_off"].approach
             assert separation == pytest.approx((1 - at) * 0.3, abs=0.02)
+    assert all(word in axes.get_title() for word in ("= 100 nm", "= 0.1925", "cantilever 200 mN/m"))
     low, high = axes.get_ylim()
     assert low < -1e9 * silica.half_space.values["pull_off_force"].value < 0 < high
 
@@ -927,10 +851,3 @@ def test_the_arrows_of_the_figure_are_the_two_jumps(axes, silica):
     (note,) = notes  # it lands far beyond the frame
     lands = (1 - jump_off.landing.approach) * silica.contact.units.approach * 1e9
     assert note.get_text() == f"lands at {lands:.4g} nm"
-
-
-def test_the_title_of_the_figure_has_radius_tabor_parameter_and_device(axes):
-    title = axes.get_title()
-    assert "= 100 nm" in title
-    assert "= 0.1925" in title
-    assert "cantilever 200 mN/m" in title

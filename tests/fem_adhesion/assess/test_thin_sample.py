@@ -94,23 +94,6 @@ def test_the_series_by_moments_of_the_yield_to_waves_is_that_of_the_dual_integra
     assert np.abs(off / chi**5).max() < 2  # the next term; at chi = 0.01 that is 2e-10
 
 
-@pytest.mark.parametrize(
-    ("poisson", "foundation", "part"),
-    [
-        *((0.0, "bonded", 0.0632), (0.2, "bonded", 0.0133), (0.3, "bonded", 0.0046), (0.499999, "bonded", 0.0052)),
-        *((0.0, "sliding", -0.1084), (0.3, "sliding", 0.0190), (0.499999, "sliding", 0.1888)),
-    ],
-)
-def test_the_published_coefficient_is_as_far_from_the_moment_as_is_said(poisson, foundation, part):
-    published = (thin_sample_series(1e-6, poisson, foundation) - 1) / 1e-6
-    assert published / (-2 / np.pi * _moments(poisson, foundation)[0]) - 1 == pytest.approx(part, abs=1e-4)
-
-
-def test_the_series_is_eight_per_cent_low_at_a_half_and_twenty_at_one():
-    low = [hertz_ratio(Layer(1.0, 0.499999), chi**2).value / thin_sample_series(chi, 0.5, "bonded") for chi in (0.5, 1)]
-    assert low == pytest.approx([1.084, 1.194], abs=1e-3)
-
-
 @pytest.mark.parametrize(("poisson", "foundation"), [(0.3, "bonded"), (0.499, "sliding")])
 def test_hertz_is_off_by_a_hundredth_where_that_is_said(poisson, foundation):
     until = hertz_until(Contact(**SAMPLE | {"poisson": poisson}, thickness=1e-6, foundation=foundation))
@@ -154,19 +137,6 @@ def test_the_sphere_is_traced_on_its_layer(said):
     for name, value in said[0].finite.values.items():
         assert abs(value.value - truth.values[name].value) <= value.error + truth.values[name].error, name
     assert said[0].finite.model == "thin sample"
-
-
-def test_differences_are_parts_of_the_half_space_by_thickness(said):
-    force = next(d for d in said[0].deviations if d.quantity == "pull_off_force")
-    values = [model.values["pull_off_force"].value for model in (said[0].half_space, said[0].profile, said[0].finite)]
-    assert force.total.value == pytest.approx(values[2] / values[0] - 1, rel=1e-9)
-    assert force.body.value == pytest.approx((values[2] - values[1]) / values[0], rel=1e-9)
-    text = _text(report(said[0]))
-    title = "difference from the half-space, in % of it, by cause"
-    cells = _cells(text[text.index(title) :].split("without adhesion")[0], "pull-off force")
-    assert [float(cell.partition("(")[0]) for cell in cells] == pytest.approx(
-        [100 * part.value for part in (force.profile, force.body, force.total)], abs=2e-3
-    )
 
 
 def test_what_is_printed_of_the_sample_is_what_was_found(said):
@@ -237,13 +207,6 @@ def test_from_the_thickness_that_is_told_on_the_half_space_is_right(said):
             assert sign * (WRONG - off) > 0, (row.quantity, sign)
 
 
-@pytest.mark.parametrize("width", [150, 80, 60, 30])
-def test_nothing_is_cut_at_any_width(said, width):
-    text = _text(report(said[0]), width)
-    assert "…" not in text
-    assert max(map(len, text.splitlines())) <= width
-
-
 def test_jkr_on_the_layer_is_as_near_the_truth_as_its_errors_say():
     units, layer, stiffness = Units(2.0, 3.0, 5.0, 7.0), Layer(0.5, 0.3), 0.006
     path = halfspace.trace(300.0, body=layer, rtol=1e-4, to_load=2.0)
@@ -252,15 +215,6 @@ def test_jkr_on_the_layer_is_as_near_the_truth_as_its_errors_say():
     assert {"pull_off_force", "zero_load_radius", "jump_off_separation"} <= set(theory.values)
     for name, value in theory.values.items():
         assert abs(value.value - truth.values[name].value) < value.error + truth.values[name].error, name
-
-
-def test_a_soft_sample_has_jkrs_contact_on_the_layer():
-    contact = Contact(**SAMPLE | {"modulus": 1e5, "radius": 5e-6}, thickness=10e-6)
-    assert contact.units.tabor > 300
-    found, least = study._finite(contact).values["pull_off_force"], []
-    theory = OnLayers(contact.layer)
-    least = minimize_scalar(lambda a: theory.jkr(a).load, bounds=(0.8, 2.0), method="bounded").fun
-    assert abs(found.value + least * contact.units.load) < found.error < 1e-3 * found.value
 
 
 def test_a_position_on_a_soft_sample_is_judged_by_the_distance_between_jumps():
@@ -298,16 +252,6 @@ def test_what_does_not_go_with_a_thin_sample_is_refused_in_one_line(more, words,
     assert len(error.strip().splitlines()[-1:]) == 1
 
 
-def test_thickness_and_foundation_are_heeded(monkeypatch):
-    asked = []
-    monkeypatch.setattr(study, "assess", lambda contact, _: asked.append(contact))
-    with pytest.raises(AttributeError):
-        cli.main([*ARGUMENTS, "--foundation", "sliding"])
-    layer = asked[0].layer
-    assert (layer.strata[0].poisson, layer.base) == (0.3, "sliding")
-    assert layer.thickness == pytest.approx(30e-9 / asked[0].units.length, rel=1e-12)
-
-
 def test_a_thin_sample_and_another_body_are_no_contact():
     with pytest.raises(InputError, match="limit: a rigid sphere on a thin sample"):
         Contact(**SAMPLE, thickness=1e-6, counter_radius=1e-6)
@@ -323,3 +267,13 @@ def test_a_thickness_is_in_si_with_a_material_and_in_beta_without(tmp_path, caps
         assert words in capsys.readouterr().err
     assert cli.main(["curve", "--tabor", "1", "--body", "layer:30nm"]) == 2
     assert "thickness = 30nm is not a plain number in beta" in capsys.readouterr().err
+
+
+def test_thickness_and_foundation_are_heeded(monkeypatch):
+    asked = []
+    monkeypatch.setattr(study, "assess", lambda contact, _: asked.append(contact))
+    with pytest.raises(AttributeError):
+        cli.main([*ARGUMENTS, "--foundation", "sliding"])
+    layer = asked[0].layer
+    assert (layer.strata[0].poisson, layer.base) == (0.3, "sliding")
+    assert layer.thickness == pytest.approx(30e-9 / asked[0].units.length, rel=1e-12)

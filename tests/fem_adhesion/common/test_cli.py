@@ -33,16 +33,9 @@ def compared(whole):
     return whole(COMPARE)
 
 
-def test_agreement_exits_with_0_and_prints_a_table_for_each_value(compared):
-    assert compared.code == 0, compared.err
-    assert "…" not in compared.out
-    assert compared.out.count("; poisson 0.45: agree") == 2
-    assert "verdict: agree" in compared.out
-    assert "pull_off load" in compared.out
-    assert "unknowns" in compared.out
-
-
 def test_the_record_has_all_it_promises(compared):
+    assert compared.code == 0, compared.err
+    assert list((compared / "").iterdir()) == [compared / "result.json"]
     record = json.loads((compared / "result.json").read_text())
     assert record["verdict"] == "agree"
     assert set(record["versions"]) == {"python", "fem-adhesion", "numpy", "scipy", "scikit-fem"}
@@ -61,10 +54,6 @@ def test_the_record_has_all_it_promises(compared):
     assert all(keys <= set(row) for row in folded["comparison"])
     quantities = {row["quantity"] for row in folded["comparison"]}
     assert {"operator: Hertz", "cross-residual: jump_off", "jump_on central_gap", "energy released"} <= quantities
-
-
-def test_nothing_else_is_left_beside_the_record(compared):
-    assert list((compared / "").iterdir()) == [compared / "result.json"]
 
 
 @pytest.mark.parametrize(
@@ -141,16 +130,6 @@ def test_no_command_is_refused():
     assert done.stderr.count("\n") == 1
 
 
-def test_disagreement_exits_with_1(monkeypatch, capsys):
-    """An elastic body twice as stiff: the finite elements solve another problem."""
-    from fem_adhesion.elasticity import cells
-
-    original = cells.elastic_matrix
-    monkeypatch.setattr(cells, "elastic_matrix", lambda nu: 2 * original(nu))
-    assert cli.main(["compare", "--tabor", "0.05", "--rtol", "1e-2"]) == 1
-    assert "verdict: disagree" in capsys.readouterr().out
-
-
 def test_a_failure_is_reported_with_its_reason_and_exits_with_1(monkeypatch, capsys, tmp_path):
     def fail(*_args, **_kwargs):
         raise NotConverged("on purpose; try another day")
@@ -198,10 +177,7 @@ def test_a_file_keeps_its_old_content_until_the_new_one_is_whole(tmp_path):
     assert file.stat().st_mode & 0o777 == 0o666 & ~mask
 
 
-HELPS = [
-    [],
-    *([name] for name in ("compare", "curve", "sweep", "assess", "finite-sphere", "speed", "greenwood", "report")),
-]
+HELPS = [[], ["curve"], ["finite-sphere"], ["report"]]
 
 
 @pytest.mark.parametrize("command", HELPS, ids=lambda words: " ".join(words) or "all")
@@ -343,20 +319,12 @@ def test_compare_writes_its_record_to_standard_output_alone(capsys):
     assert "pull_off load" in err
 
 
-def test_what_fails_leaves_nothing_on_standard_output(monkeypatch, capsys):
-    def fail(*_, **__):
-        raise NotConverged("on purpose")
-
-    monkeypatch.setattr("fem_adhesion.curve.solve.solve", fail)
-    assert cli.main(["curve", "--tabor", "1", "--json", "-"]) == 1
-    assert capsys.readouterr().out == ""
-
-
 def test_what_does_not_converge_is_one_line_and_exit_code_1(monkeypatch, capsys):
     def fail(*_, **__):
         raise NotConverged("no convergence in 40 Newton steps; try a nearer start")
 
     monkeypatch.setattr("fem_adhesion.curve.solve.solve", fail)
-    assert cli.main(["curve", "--tabor", "1"]) == 1
-    said = capsys.readouterr().err.strip()
+    assert cli.main(["curve", "--tabor", "1", "--json", "-"]) == 1
+    out, said = (text.strip() for text in capsys.readouterr())
+    assert out == ""
     assert said == "fem-adhesion: no convergence in 40 Newton steps; try a nearer start; nothing was written"

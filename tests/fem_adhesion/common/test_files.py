@@ -108,25 +108,6 @@ def test_a_defect_that_is_an_oserror_is_not_taken_for_a_full_disk(tmp_path, monk
     assert not list(tmp_path.iterdir())
 
 
-def test_a_case_that_cannot_be_stored_leaves_the_others(tmp_path, monkeypatch):
-    store = open_store(tmp_path / "study", "code")
-    store.put({"a": 1}, {"b": 2})
-    monkeypatch.setattr(os, "fsync", _full)
-    with pytest.raises(NotWritten, match=r"\.json cannot be written \(No space left on device\)"):
-        store.put({"a": 2}, {"b": 3})
-    assert store.get({"a": 1}) == {"b": 2}
-    assert len([file for file in (tmp_path / "study").rglob("*") if file.is_file()]) == 1
-
-
-@pytest.mark.skipif(os.geteuid() == 0, reason="root writes where it likes")
-def test_a_folder_that_may_only_be_read_is_refused_before_any_work(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda *_: pytest.fail("worked"))
-    tmp_path.chmod(0o500)
-    for option in ("--json", "--vtk"):
-        assert cli.main([*CURVE, option, str(tmp_path / "a")]) == 2
-        assert "cannot be written (Permission denied); choose a folder that is yours" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     ("number", "words"), [(errno.EACCES, "choose a folder that is yours"), (errno.EROFS, "choose a disk that is not")]
 )
@@ -172,6 +153,31 @@ def test_a_file_that_cannot_be_replaced_keeps_its_content(tmp_path, monkeypatch)
     with pytest.raises(NotWritten), directory_written_aside(tmp_path / "out") as folder:
         (folder / "b.txt").write_text("new")
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_directory_in_use_is_refused_unless_forced(tmp_path):
+    (tmp_path / "mine").write_text("kept")
+    for place, told in ((tmp_path, r"holds 1 files, limit 0; .* --force"), (tmp_path / "mine", "is a file; ")):
+        with pytest.raises(ValueError, match=told), directory_written_aside(place):
+            pytest.fail("the work was begun")
+    with directory_written_aside(tmp_path, force=True) as directory:
+        (directory / "new").write_text("new")
+    assert {file.name for file in tmp_path.iterdir()} == {"mine", "new"}
+
+
+@pytest.mark.parametrize("existing", [True, False])
+def test_nothing_is_left_of_work_that_ends_badly(tmp_path, existing):
+    def work(out):
+        with directory_written_aside(out) as directory:
+            (directory / "half").write_text("")
+            raise KeyboardInterrupt
+
+    out = tmp_path / "out"
+    if existing:
+        out.mkdir()
+    with pytest.raises(KeyboardInterrupt):
+        work(out)
+    assert list(out.iterdir() if existing else tmp_path.iterdir()) == []
 
 
 def test_what_a_link_leads_to_is_written_and_keeps_its_mode(tmp_path):

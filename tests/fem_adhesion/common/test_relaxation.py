@@ -16,15 +16,7 @@ def problem_at(tabor, nodes=60):
     return ContactProblem(compliance.triangles(grid.uniform(extent, extent / nodes)), tabor)
 
 
-def solved(problem, *controls):
-    """Newton's solution under the last of the controls, starting far apart."""
-    x = problem.undeformed(-8.0)
-    for control in (newton.approach(-8.0), *controls):
-        x = newton.solve(problem, x, control).x
-    return x
-
-
-@pytest.mark.parametrize(("tabor", "relaxation"), [(0.05, 0.2), (0.5, 0.05), (1.0, 0.01)])
+@pytest.mark.parametrize(("tabor", "relaxation"), [(0.05, 0.2), (1.0, 0.01)])
 @pytest.mark.parametrize("control", [newton.approach(-0.5), newton.central_gap(0.3)], ids=["approach", "central gap"])
 def test_simple_relaxation_finds_newtons_state_at_a_small_tabor_parameter(tabor, relaxation, control):
     problem = problem_at(tabor)
@@ -36,7 +28,7 @@ def test_simple_relaxation_finds_newtons_state_at_a_small_tabor_parameter(tabor,
     assert found.sweeps % CHECKED_EVERY == 0
 
 
-@pytest.mark.parametrize("tabor", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("tabor", [0.5, 2.0])
 @pytest.mark.parametrize("gap", [1.0, 0.0], ids=["apart", "in contact"])
 def test_greenwoods_iteration_finds_newtons_state(tabor, gap):
     """The residual is one sweep's share of the error, so the tolerance is three decades below what is asked."""
@@ -46,22 +38,6 @@ def test_greenwoods_iteration_finds_newtons_state(tabor, gap):
     expected = newton.solve(problem, found.x, control)
     np.testing.assert_allclose(found.observables, expected.observables, atol=1e-8)
     np.testing.assert_allclose(found.x, expected.x, atol=1e-8)
-
-
-def test_greenwoods_iteration_at_a_given_approach():
-    problem = problem_at(1.0, nodes=30)
-    start = solved(problem, newton.central_gap(1.0), newton.central_gap(0.0))
-    found = greenwood(problem, start, newton.approach(-1.0), tolerance=1e-12)
-    expected = newton.solve(problem, start, newton.approach(-1.0))
-    np.testing.assert_allclose(found.x, expected.x, atol=1e-8)
-
-
-def test_greenwoods_sweeps_grow_with_the_square_of_the_nodes():
-    sweeps = [
-        greenwood(p, p.undeformed(0.0), newton.central_gap(1.0), tolerance=1e-6).sweeps
-        for p in (problem_at(0.5, nodes) for nodes in (15, 30))
-    ]
-    assert 3 < sweeps[1] / sweeps[0] < 6
 
 
 def test_simple_relaxation_fails_at_a_large_tabor_parameter():

@@ -12,12 +12,9 @@ from matplotlib import rc_context
 import fem_adhesion
 import halfspace
 from fem_adhesion import HalfSpace, Hemisphere, cli, convergence
-from fem_adhesion.common import relaxation, style
-from fem_adhesion.common.files import directory_written_aside
+from fem_adhesion.common import style
 from fem_adhesion.common.page import markdown
-from fem_adhesion.elasticity.space import Space
 from fem_adhesion.scene import Scene
-from fem_adhesion.speed import methods as methods_module
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
 from fem_adhesion.speed.methods import (
@@ -42,7 +39,6 @@ from fem_adhesion.speed.study import (
     slope,
     timed,
 )
-from halfspace.elastic import compliance
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import GridTooCoarse, InputError, NotConverged
 from halfspace.values import Estimate
@@ -94,28 +90,7 @@ def page(run):
     return (run / "speed/speed.md").read_text()
 
 
-@pytest.fixture(scope="module")
-def study(rows):
-    """The study as its table has it."""
-    truths = {family: Truth(judge, 1e-9, _truth(rows, family), SIZES["jump_on"]) for family, judge in JUDGES.items()}
-    return SpeedStudy(1.0, True, truths, 3e-4, tuple(METHODS), tuple(map(_rung, rows)))
-
-
 JUDGES = {"half-space": "finite elements", "finite elements": "half-space"}
-
-
-def _truth(rows, family):
-    names = {m.name for m in METHODS if m.family == family}
-    row = next(r for r in rows if r["method"] in names and r["jump_on_error"])
-    return {q: Estimate(TRUE[q], float(row[f"{q}_truth_uncertainty"]) * SIZES[q]) for q in QUANTITIES}
-
-
-def _rung(row):
-    errors = {q: float(row[f"{q}_error"]) for q in QUANTITIES if row[f"{q}_error"]}
-    floors = {q: float(row[f"{q}_truth_uncertainty"]) for q in errors}
-    unknowns = int(row["unknowns"]) if row["unknowns"] else None
-    seconds, name, setting = float(row["seconds"]), row["method"], row["setting"]
-    return Timing(name, setting, row["outcome"], seconds, row["reason"], unknowns, 1.0, errors, floors)
 
 
 def rung(seconds, error, method="some", **more):
@@ -128,21 +103,13 @@ FAILED = Timing("some", "", "failed", 0.1, "on purpose")
 # --- every method, as a user runs it ---
 
 
-def test_the_quick_run_ends_well_and_its_files_are_there(run, page):
+def test_the_quick_run_ends_well_and_its_files_are_there(run, page, rows):
     assert run.code == 0, run.err
-    files = list((run / "speed").iterdir())
-    assert {file.name for file in files} == FILES
-    small = {"growth.csv", "captions.csv", "csv-metadata.json"}
-    assert all(file.stat().st_size > (200 if file.name in small else 1000) for file in files)
+    assert {file.name for file in (run / "speed").iterdir()} == FILES
     assert run.out == page
     assert "FAILED" not in page
-
-
-def test_the_rungs_climbed_are_those_of_the_ladders(rows):
-    """The same on every machine: no rung is left out since another one took long."""
-    assert [(row["method"], row["setting"]) for row in rows] == [
-        (method.name, step.setting) for method in METHODS for step in method.steps[: method.quick]
-    ]
+    rungs = [(method.name, step.setting) for method in METHODS for step in method.steps[: method.quick]]
+    assert [(row["method"], row["setting"]) for row in rows] == rungs
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
@@ -153,11 +120,6 @@ def test_each_method_is_as_accurate_as_it_is_known_to_be(method, rows):
     assert errors[-1] <= errors[0]
     assert all(float(r["seconds"]) > 0 and int(r["unknowns"]) > 20 for r in solved)
     assert [int(r["unknowns"]) for r in solved] == sorted(int(r["unknowns"]) for r in solved)
-
-
-def test_every_method_is_known():
-    assert [method.name for method in METHODS] == list(REACHED)
-    assert [PREFIX[m.family] + m.basis + (f", {m.variant}" if m.variant else "") for m in METHODS] == list(REACHED)
 
 
 def test_the_best_of_each_family_finds_the_known_values(rows):
@@ -229,73 +191,6 @@ def test_a_wrong_half_space_is_not_its_own_judge(monkeypatch):
     found = measure(0.5, quick=True, methods=[dataclasses.replace(adaptive, quick=1)], growths=[])
     assert found.rungs[0].error("pull_off") == pytest.approx(0.01, rel=1e-2)
     assert any("the truths disagree in pull_off" in trouble for trouble in found.troubles())
-
-
-class Stop(InputError):
-    """Ends a rung where its solver would begin."""
-
-
-@pytest.fixture
-def called(monkeypatch):
-    """What a rung calls, in order; it is stopped where the solution would begin."""
-    calls = []
-
-    def spy(module, name, stops):
-        original = getattr(module, name)
-
-        def record(*arguments, **keywords):
-            space = arguments[0] if isinstance(arguments[0], Space) else None
-            element = (type(space.element).__name__, space.element.maxdeg) if space else ()
-            far = keywords["far_field"].__name__ if "far_field" in keywords else ()
-            calls.append((name, *element, far) if space else name)
-            if stops:
-                raise Stop(name)
-            return original(*arguments, **keywords)
-
-        monkeypatch.setattr(module, name, record)
-
-    for name in ("bands", "triangles", "panels"):
-        spy(compliance, name, stops=False)
-    for name in ("condense", "assemble", "from_chart"):
-        spy(methods_module, name, stops=True)
-    for module, name in (
-        (relaxation, "simple"),
-        (relaxation, "greenwood"),
-        (halfspace, "trace"),
-        (convergence, "trace"),
-    ):
-        spy(module, name, stops=True)
-    return calls
-
-
-ELASTIC = {
-    "simple relaxation": ["triangles", "simple"],
-    "Greenwood's iteration": ["triangles", "greenwood"],
-    "uniform bands": ["bands", "from_chart"],
-    "uniform triangles": ["triangles", "from_chart"],
-    "graded triangles": ["triangles", "from_chart"],
-    "panels, fixed grid": ["panels", "from_chart"],
-    "adaptive": ["trace"],
-    "FE P1": [("condense", "ElementTriP1", 1, "point_load")],
-    "FE P2": [("condense", "ElementTriP2", 2, "point_load")],
-    "FE P3": [("condense", "ElementTriP3", 3, "point_load")],
-    "FE Q2": [("condense", "ElementQuad2", 4, "point_load")],
-    "FE P1, clamped": [("condense", "ElementTriP1", 1, "clamped")],
-    "FE P2, clamped": [("condense", "ElementTriP2", 2, "clamped")],
-    "FE P2, monolithic": [("assemble", "ElementTriP2", 2, "point_load")],
-    "FE hp": ["trace"],
-    "FE hp, clamped": [("condense", "ElementQuadP", 16, "clamped")],
-    "FE hp, monolithic": [("assemble", "ElementQuad2", 4, "point_load")],
-}
-
-
-@pytest.mark.parametrize("name", ELASTIC)
-def test_each_method_is_solved_by_what_its_name_says(called, name):
-    method = next(m for m in [*halfspace_methods(), *element_methods()] if m.name == name)
-    with pytest.raises(Stop):
-        method.steps[0].run(1.0)
-    assert called == ELASTIC[name]
-    assert list(ELASTIC) == list(REACHED)
 
 
 def counted_method(runs, quick):
@@ -473,26 +368,27 @@ def test_an_earlier_run_is_shown_beside_in_yardsticks(distinct, written):
         np.testing.assert_allclose(before.get_ydata(), now.get_ydata(), rtol=1e-3)
 
 
-def test_what_is_no_earlier_run_is_refused(distinct, written):
+NO_TABLE = r"is no table of a speed study .*; give its speed\.csv"
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (("yardsticks", "ells"), "has no column 'yardsticks'; give speed.csv of this version's study"),
+        ((",500,", ",much,"), NO_TABLE),
+        ((",500,", ",inf,"), NO_TABLE),
+        (("converged", "failed"), "has no rung with a result"),
+    ],
+)
+def test_what_is_no_earlier_run_is_refused(distinct, written, change, told):
     file = written(distinct)
-    other = file.with_name("other.csv")
     with pytest.raises(InputError, match="is of tabor 1, not 2"):
         read_earlier(file, 2.0)
     with pytest.raises(InputError, match="cannot be read: No such file"):
-        read_earlier(other, 1.0)
-    no_table, table = r"is no table of a speed study .*; give its speed\.csv", file.read_text()
-    for text, told in (
-        (table.replace("yardsticks", "ells"), "has no column 'yardsticks'; give speed.csv of this version's study"),
-        (table.replace(",500,", ",much,"), no_table),
-        (table.replace(",500,", ",inf,"), no_table),
-        (f"{table}\n{'9' * 200_000}", no_table),
-    ):
-        other.write_text(text)
-        with pytest.raises(InputError, match=told):
-            read_earlier(other, 1.0)
-    other.write_text(file.read_text().replace("converged", "failed"))
-    with pytest.raises(InputError, match="has no rung with a result"):
-        read_earlier(other, 1.0)
+        read_earlier(file.with_name("other.csv"), 1.0)
+    file.write_text(file.read_text().replace(*change))
+    with pytest.raises(InputError, match=told):
+        read_earlier(file, 1.0)
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
@@ -559,10 +455,10 @@ def test_an_error_below_the_truths_uncertainty_is_shown_as_such():
     assert "within that uncertainty" not in labels
 
 
-def test_nothing_is_cut_off_or_overprinted(study):
+def test_nothing_is_cut_off_or_overprinted(distinct):
     for quantity in QUANTITIES:
         with rc_context(style.LOOK):
-            figure = speed_page.error_against_time(study, quantity)
+            figure = speed_page.error_against_time(distinct, quantity)
             figure.draw_without_rendering()
         boxes = [axes.get_tightbbox() for axes in figure.axes]
         assert all(box.x0 >= 0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0 for box in boxes)
@@ -671,38 +567,3 @@ def test_each_growth_solves_what_it_says(monkeypatch):
         growth.solve(4.0)
     block, sphere = HalfSpace(poisson=0.3), Hemisphere(radius_ratio=4.0, poisson=0.3)
     assert seen == [(1.0, 1e-4), (1.0, block, 1e-4), (4.0, 1e-5), (4.0, block, 1e-5), (1.0, sphere, 1e-5)]
-
-
-# --- directories of results ---
-
-
-def test_a_directory_in_use_is_refused_before_any_work(tmp_path):
-    (tmp_path / "mine").write_text("kept")
-    with pytest.raises(ValueError, match=r"holds 1 files, limit 0; .* --force"), directory_written_aside(tmp_path):
-        pytest.fail("the work was begun")
-    with directory_written_aside(tmp_path, force=True) as directory:
-        (directory / "new").write_text("new")
-    assert {file.name for file in tmp_path.iterdir()} == {"mine", "new"}
-
-
-@pytest.mark.parametrize(("name", "reason"), [("file", "is a file"), ("missing/out", "cannot be written")])
-def test_a_directory_that_cannot_be_is_refused_before_any_work(tmp_path, name, reason):
-    (tmp_path / "file").write_text("")
-    with pytest.raises(ValueError, match=f"{reason}.*; "), directory_written_aside(tmp_path / name):
-        pytest.fail("the work was begun")
-
-
-def interrupted_work(out):
-    with directory_written_aside(out) as directory:
-        (directory / "half").write_text("")
-        raise KeyboardInterrupt
-
-
-@pytest.mark.parametrize("existing", [True, False])
-def test_nothing_is_left_of_work_that_ends_badly(tmp_path, existing):
-    out = tmp_path / "out"
-    if existing:
-        out.mkdir()
-    with pytest.raises(KeyboardInterrupt):
-        interrupted_work(out)
-    assert list(out.iterdir() if existing else tmp_path.iterdir()) == []

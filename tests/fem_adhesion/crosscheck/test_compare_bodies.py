@@ -10,13 +10,11 @@ from scenes import hemisphere, pair
 
 from fem_adhesion import HeldSphere, Hemisphere, LinearElastic, Meshed, Scene, cli, discretise, harmonics
 from fem_adhesion.crosscheck import definitions, from_scratch
-from fem_adhesion.crosscheck import scenes as comparisons
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, WEAK_FORM
 from fem_adhesion.crosscheck.weak_bodies import contacts
 from fem_adhesion.elasticity import cells
 from fem_adhesion.weak_form.contact import LENNARD_JONES
-from halfspace.elastic.grid import SurfaceCoordinate
 from halfspace.errors import InputError
 from halfspace.profiles import Paraboloid, Sphere
 
@@ -78,14 +76,6 @@ def test_the_command_refuses_in_one_line(arguments, message, capsys):
     assert out == ""
     assert message in err
     assert err.count("\n") == 1
-
-
-def test_a_cap_is_heeded(monkeypatch):
-    asked = []
-    monkeypatch.setattr(comparisons, "run", lambda scenes, **_: asked.extend(scenes) or iter(()))
-    with pytest.raises(StopIteration):
-        cli.main(["compare", "--tabor", "2", "--body", "held-sphere:50,20"])
-    assert asked == [Scene(2.0, HeldSphere(radius_ratio=50.0, cap_angle=20.0))]
 
 
 # --- what needs no solution ---
@@ -156,8 +146,7 @@ DEFECTS = {
 
 
 @pytest.mark.usefixtures("_without_limits")
-@pytest.mark.parametrize("grip", ["sliding", "bonded"])
-@pytest.mark.parametrize("defect", DEFECTS)
+@pytest.mark.parametrize(("defect", "grip"), [*((each, "sliding") for each in DEFECTS), ("another grip", "bonded")])
 def test_a_defect_of_the_finite_elements_is_rejected(defect, grip, monkeypatch):
     """Bonded by the weak form alone."""
     inject, shown_by = DEFECTS[defect]
@@ -169,12 +158,6 @@ def test_a_defect_of_the_finite_elements_is_rejected(defect, grip, monkeypatch):
 
 
 # --- the solvers they are compared with ---
-
-
-def test_harmonics_take_the_rim_of_a_pair_as_the_finite_elements_do():
-    from fem_adhesion.mesh.spheres import CORE
-
-    assert SurfaceCoordinate(3.0).radius(np.array(3.0 * CORE))[0] == pytest.approx(3.0 * harmonics.RIM, rel=1e-12)
 
 
 def test_harmonics_refuse_a_spike_that_takes_too_many():

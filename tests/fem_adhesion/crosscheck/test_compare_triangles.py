@@ -1,6 +1,5 @@
 """The comparison's level of overlapping triangles: they agree with the finite elements, and wrong triangles do not."""
 
-import json
 from functools import cache, partial
 
 import numpy as np
@@ -11,7 +10,7 @@ import fem_adhesion
 import halfspace
 from fem_adhesion import HalfSpace, Hemisphere, Layer, Scene
 from fem_adhesion.crosscheck import study
-from fem_adhesion.crosscheck.comparison import TRIANGLES, crosscheck_record, crosscheck_tables
+from fem_adhesion.crosscheck.comparison import TRIANGLES
 from halfspace.elastic import compliance
 from halfspace.elastic.kernel import panel_integrals
 from halfspace.errors import NotConverged
@@ -43,14 +42,6 @@ def test_triangles_agree_with_finite_elements_within_both_estimates_and_a_part_i
         assert row.verdict == "agree"
         assert row.difference <= row.error <= 1e-5 * size == pytest.approx(row.budget)
         assert row.first.value != row.second.value
-
-
-def test_the_triangles_are_a_solver_of_their_own():
-    row = _rows(_case(1.0, 1e-4))["jump_off load"]
-    own = halfspace.trace(1.0, kernel="triangles", rtol=0.25e-4).event("jump_off")
-    assert (row.first.value, row.first.error) == (own.load, own.load_error)
-    panels = halfspace.trace(1.0, rtol=1e-5).event("jump_off").load
-    assert 1e-9 < abs(row.first.value - panels) < 1e-4
 
 
 # --- wrong triangles ---
@@ -122,15 +113,6 @@ def test_triangles_that_do_not_converge_disagree(monkeypatch):
 
 
 # --- what is told ---
-
-
-def test_record_and_tables_have_the_level():
-    case = _case(1.0, 1e-4)
-    rows = [row for row in crosscheck_record([case])["cases"][0]["comparison"] if row["between"] == [*TRIANGLES]]
-    assert [row["quantity"] for row in rows] == [f"triangles: {quantity}" for quantity in QUANTITIES]
-    assert json.loads(json.dumps(rows)) == rows
-    tables = {tuple(table.title): [column.header for column in table.columns] for table in crosscheck_tables(case)}
-    assert "error (tr)" in tables["overlapping triangles and finite elements",]
 
 
 @pytest.mark.parametrize("body", [HalfSpace(), Layer(thickness=2.0), Hemisphere(radius_ratio=100.0)], ids=str)

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from whole_runs import COMPARE, tables_in
+from whole_runs import COMPARE
 
 import fem_adhesion
 import halfspace
@@ -15,7 +15,6 @@ from fem_adhesion.crosscheck import scenes as beside
 from fem_adhesion.crosscheck import study as crosscheck
 from fem_adhesion.crosscheck.comparison import Case, Failure, Row
 from fem_adhesion.elasticity import cells
-from halfspace import limits
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import NotConverged
 from halfspace.laws import Morse, PowerLaw
@@ -28,8 +27,10 @@ def _rejecting(case):
     return {row.quantity: row.verdict for row in case.rows if row.verdict != "agree"}
 
 
-@pytest.mark.parametrize(("tabor", "limit"), [(0.5, 1e-5), (1, 1e-5), (2, 1e-5), (5, 5e-5)])
-@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])  # one after the other, as bodies of the weak form serve all tabor
+@pytest.mark.parametrize(
+    ("tabor", "poisson", "limit"),
+    [(0.05, 0.3, 1e-5), (0.5, 0.45, 1e-5), (1, 0.3, 1e-5), (2, 0.0, 1e-5), (5, 0.45, 5e-5)],
+)
 def test_the_solvers_agree(tabor, poisson, limit):
     case = crosscheck.compare(Scene(tabor=tabor, body=HalfSpace(poisson=poisson)), rtol=1e-5, before=())
     assert _rejecting(case) == {}
@@ -37,20 +38,6 @@ def test_the_solvers_agree(tabor, poisson, limit):
     for row in case.rows:
         if row.quantity in ("pull_off load", "jump_on approach", "jump_off approach"):
             assert row.difference <= limit * abs(row.first.value)
-
-
-def test_the_solvers_agree_on_which_states_are_stable():
-    paths = halfspace.trace(2.0, rtol=1e-4), fem_adhesion.trace(Scene(tabor=2.0), rtol=1e-3)
-    for path in paths:
-        unstable = path.approach[~path.stable]
-        on, off = path.event("jump_on"), path.event("jump_off")
-        assert unstable.size > 5
-        assert unstable.max() <= on.approach
-        assert unstable.min() >= off.approach
-
-
-def test_the_solvers_agree_for_a_nearly_rigid_contact():
-    assert crosscheck.compare(Scene(tabor=0.05), rtol=1e-5).verdict == "agree"
 
 
 def _no_hoop_strain(monkeypatch):
@@ -126,11 +113,8 @@ def test_a_defect_in_the_finite_elements_is_shown(defect, monkeypatch):
     assert set(shown_by) <= set(_rejecting(case))
 
 
-def test_the_same_scene_without_a_defect_agrees_at_that_tolerance():
-    assert crosscheck.compare(Scene(tabor=1.0), rtol=RTOL).verdict == "agree"
-
-
 # --- budgets ---
+
 
 # What two solvers may err by together for a comparison to 1e-4 to mean something, at a Tabor parameter of 2: so much
 # of a load or an energy; of an approach in eps and their range; ten times that of gaps, radii and deflections,
@@ -210,21 +194,6 @@ def test_the_record_of_the_command_holds_both_solvers_under_their_names(record):
                 assert row["second_error"] == fe["events"][event][f"{quantity}_error"]
 
 
-def test_the_tables_of_the_command_show_what_the_record_holds(command, record):
-    tables = tables_in(command.out)
-    assert len(tables) == 4 * len(record["cases"])
-    for number, table in enumerate(tables):
-        rows = record["cases"][number // 4]["comparison"]
-        between = list(table[0])[2:4]
-        for row, shown in zip([row for row in rows if row["between"] == between], table, strict=True):
-            assert (shown["quantity"], shown["unit"], shown["verdict"]) == (row["quantity"], row["unit"], "agree")
-            for header, key in zip(between, ("first", "second"), strict=True):
-                assert float(shown[header]) == pytest.approx(row[key], rel=0.1, abs=row[f"{key}_error"])
-            assert [shown[header] for header in list(shown)[4:8]] == [
-                f"{row[key]:.1e}" for key in ("difference", "first_error", "second_error", "budget")
-            ]
-
-
 @pytest.mark.usefixtures("two_solvers")
 def test_a_solver_less_accurate_than_the_comparison_is_inconclusive_whatever_it_hits():
     """A hundred times less: of all rows that it has a part in, none stays within its budget."""
@@ -290,11 +259,6 @@ def test_agreement_is_within_the_estimates_and_they_within_the_budget_to_the_las
     assert verdict(np.nan, 1.0, 1.0) == verdict(1.0, np.nan, 1.0) == "disagree"
 
 
-def test_a_missing_event_disagrees():
-    one, none = Estimate(1.0, 1e-9), None
-    assert Row("jump_on load", "R dgamma", one, none, float("nan"), 1e-3).verdict == "disagree"
-
-
 @pytest.mark.usefixtures("two_solvers")
 def test_a_failing_case_does_not_lose_the_others(monkeypatch):
     original = convergence.trace
@@ -320,28 +284,6 @@ def test_the_error_estimate_of_a_held_block_covers_its_distance_from_the_half_sp
         event = path.event(name)
         assert 1e-4 < abs(event.approach - approach) <= 1.5 * event.approach_error
         assert abs(event.load - load) <= 1.5 * event.load_error
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: Scene(-1), "tabor = -1 is outside 0 < tabor"),
-        (lambda: HalfSpace(poisson=0.5), r"poisson = 0.5 is outside 0 <= poisson < 0.5; take"),
-        (lambda: HalfSpace(poisson=float("nan")), "poisson = nan"),
-        (lambda: Block(radius=2.0), "radius = 2 is outside 5 < radius"),
-        (lambda: Block(radius=50.0, far_field="glued"), "far_field = 'glued' is not one of"),
-        (lambda: Scene(0.01, Block(radius=20.0)), "radius = 20 is outside 50 < radius"),
-    ],
-)
-def test_bad_scenes_are_refused(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
-
-
-def test_limits_are_checked_before_any_work():
-    with pytest.raises(ValueError, match="rtol = 1 is outside"):
-        crosscheck.compare(Scene(tabor=1.0), rtol=1.0)
-    assert limits.require_poisson(0.0) == 0.0
 
 
 def test_scenes_come_in_their_order_whatever_ends_first(monkeypatch):

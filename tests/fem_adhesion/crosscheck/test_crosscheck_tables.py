@@ -7,7 +7,6 @@ from dataclasses import replace
 import pytest
 from made_up import AGREE, DISAGREE, ENDINGS, FAILED, MISSING, NUMBERS, WIDE, case
 from page_tables import tables
-from rich.console import Console
 
 from fem_adhesion import cli
 from fem_adhesion.crosscheck import scenes as beside
@@ -155,6 +154,9 @@ def test_a_difference_without_an_error_is_not_left_out_of_the_summary():
     assert (missing["disagree"], missing["largest difference / error"]) == ("1", "none")
 
 
+# --- the verdict, wherever it is told ---
+
+
 def test_settings_and_costs_stand_beside_their_solver():
     section = settings_section([case(AGREE)], {"processor": "abacus"})
     versions, settings = tables(section_text(section))
@@ -166,8 +168,6 @@ def test_settings_and_costs_stand_beside_their_solver():
     assert halfspace["tolerance"] == f"rtol 3.7e-06 not met by {MISSED}"
     assert elements["tolerance"] == f"rtol 3.7e-06 not met by {MISSED_BY_ALL}"
 
-
-# --- the verdict, wherever it is told ---
 
 CODES = {"agree": 0, "inconclusive": 1, "disagree": 1, "failed": 1}
 
@@ -186,17 +186,6 @@ def test_compare_tells_the_verdict_in_text_record_and_exit_code(verdict, tmp_pat
     record = json.loads((tmp_path / "a.json").read_text())
     assert record["verdict"] == verdict
     assert [one["verdict"] for one in record["cases"]][-1] == verdict
-
-
-@pytest.mark.parametrize(("row", "colour"), [(AGREE, "32"), (WIDE, "33"), (DISAGREE, "1;31")])
-def test_the_terminal_has_a_colour_for_each_verdict(row, colour):
-    console = Console(force_terminal=True, width=200, color_system="standard", no_color=False)
-    with console.capture() as captured:
-        console.print(crosscheck_tables(case(row))[0])
-    title, *rest = captured.get().split("\n")
-    assert f"\x1b[{colour}m{row.verdict}" in title.replace("[3;", "[").replace("[1;3;", "[1;")  # titles are slanted
-    line = next(line for line in rest if row.quantity in line)
-    assert (f"\x1b[{colour}m" in line) == (row.verdict != "agree")
 
 
 @pytest.mark.parametrize("rows", [[AGREE, WIDE, DISAGREE], [DISAGREE, WIDE, AGREE], [WIDE, AGREE], [AGREE]])

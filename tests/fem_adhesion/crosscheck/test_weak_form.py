@@ -79,15 +79,6 @@ def test_every_number_is_that_of_the_integral_equation_within_its_error(curve):
     assert (np.abs(on_other.load - curve.load[contact]) < 1e-2 * abs(curve.event("pull_off").load)).all()
 
 
-def test_a_curve_has_arrays_by_name_and_says_what_it_found(curve):
-    assert curve.load.shape == curve.approach_error.shape == curve.stable.shape
-    assert np.isnan(curve.contact_radius[0])
-    assert curve.event("fold_2") is None
-    assert "pull_off" in repr(curve)
-    with pytest.raises(AttributeError):
-        _ = curve.loads
-
-
 @pytest.mark.parametrize(
     ("scene", "message"),
     [

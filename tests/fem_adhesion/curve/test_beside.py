@@ -65,16 +65,6 @@ def test_jumps_differ_by_the_largest_part_in_loads_of_the_pull_off_and_in_approa
     assert found.apart("jumps").error == pytest.approx(error, rel=1e-6)
 
 
-def test_the_stronger_the_adhesion_the_better_curves_collapse():
-    """Towards JKR's, whose curve knows the work of adhesion alone."""
-    apart = []
-    for tabor in (1.0, 10.0):
-        question = Question(Scene(tabor), rtol=1e-4)
-        curves = Curves(question, {"half-space": halfspace.trace(tabor, rtol=1e-4)}, None, None)
-        apart.append(beside.solve(curves, [PowerLaw(4, 10)]).apart("pull-off").value)
-    assert apart[1] < apart[0] / 3
-
-
 def test_labels_tell_the_lines_that_are_drawn(collapsed, drawn):
     left, right = drawn.axes
     lines = {line.get_label(): line for line in left.get_lines()}

@@ -131,21 +131,6 @@ def test_stability_changes_at_the_folds_and_under_dead_load_at_pull_off(curves, 
     assert np.all(np.diff(stable) == 1)
 
 
-def test_axes_carry_the_symbols_of_the_paper_or_si(curves, real):
-    paper, si = _drawn(curves[2.0]), _drawn(real)
-    assert _panel(paper, "load").get_xlabel() == r"approach $\alpha^* = \alpha/\epsilon$"
-    assert _panel(paper, "load").get_ylabel() == r"load $W/R\Delta\gamma$"
-    assert _panel(paper, "pressure").get_ylabel() == r"pressure $P = \mu\epsilon p/\Delta\gamma$"
-    assert [_panel(si, "load").get_xlabel(), _panel(si, "load").get_ylabel()] == [
-        r"approach $\alpha$, nm",
-        "load $W$, nN",
-    ]
-    assert _panel(si, "pressure").get_ylabel() == "pressure $p$, MPa"
-    pull_off = _lines(_panel(si, "load"))["pull-off"]
-    assert pull_off.get_ydata()[0] == pytest.approx(real.path.event("pull_off").load * 5)
-    assert pull_off.get_xdata()[0] == pytest.approx(real.path.event("pull_off").approach * 0.3)
-
-
 def test_an_apparatus_adds_two_arrows_along_its_load_lines(real):
     axes = _panel(_drawn(real), "load")
     assert len(_arrows(axes)) == 4
@@ -203,28 +188,11 @@ def test_nothing_is_smaller_than_can_be_read(elements):
     assert min(sizes) >= 7.5
 
 
-def test_every_panel_stays_inside_the_page(real):
-    figure = _drawn(real)
-    page = figure.bbox
-    for axes in figure.axes:
-        box = axes.get_tightbbox()
-        assert page.x0 <= box.x0
-        assert box.x1 <= page.x1
-        assert page.y0 <= box.y0
-        assert box.y1 <= page.y1
-
-
 def test_events_that_would_be_too_small_are_enlarged():
     figure = _drawn(solve(Question(Scene(2.0), rtol=1e-3, to_load=100.0)))
     (inset,) = _panel(figure, "load").child_axes
     assert inset.get_ylim()[1] < 5
     assert len(_arrows(inset)) == 2
-
-
-@pytest.mark.parametrize("tabor", [1e-8, 0.01, 50.0])
-def test_extreme_parameters_are_drawn(tabor):
-    figure = _drawn(solve(Question(Scene(tabor), rtol=1e-3)))
-    assert len(figure.axes) == 5
 
 
 @pytest.mark.parametrize("form", ["svg", "png", "pdf"])
@@ -293,6 +261,9 @@ def test_each_axis_is_labelled_with_what_is_drawn_along_it(curves, real, materia
     assert nodes.get_xdata()[nodes.get_ydata().argmin()] == pytest.approx(radius, rel=2e-2)
 
 
+# --- what is on the page ---
+
+
 def test_the_legend_of_stability_is_that_of_the_curve(curves):
     """Each line that is named after a stability passes through states of that stability, and through no others."""
     path, lines = curves[5.0].path, _lines(_panel(_drawn(curves[5.0]), "load"))
@@ -304,26 +275,12 @@ def test_the_legend_of_stability_is_that_of_the_curve(curves):
         assert np.nanmin(np.hypot(*(drawn - place).T)) < 1e-9
 
 
-def test_the_axes_of_the_mesh_are_radius_and_height(elements):
-    body = _panel(_drawn(elements), "body")
-    assert (body.get_xlabel(), body.get_ylabel()) == (r"radius $u = r/\beta$", r"height $z/\beta$")
-    r, z = _lines(body)["rigid sphere"].get_xydata().T
-    assert r[0] == 0
-    assert np.all(np.diff(z) > 0)
-    places = np.concatenate([path.vertices for path in body.collections[0].get_paths()])
-    assert places[:, 0].min() > -0.1
-    assert places[:, 1].min() < -3
-
-
-# --- what is on the page ---
-
 PAGES = {
     "nearly rigid": Question(Scene(0.05), "fem", 1e-2),
     "nearly JKR": Question(Scene(5.0), "both", 1e-2),
     "sphere": Question(Scene(2.0, Hemisphere(radius_ratio=60.0)), "both", 1e-2, stiffness=3.0),
     "material": Question(Scene(UNITS.tabor), "fem", 1e-2, units=UNITS),
     "rigid": Question(Scene(1e-8), rtol=1e-2),
-    "little load": Question(Scene(2.0), rtol=1e-2, to_load=0.01),
 }
 
 
@@ -341,29 +298,17 @@ def made(request):
     return _drawn(solve(PAGES[request.param]))
 
 
-def test_no_title_and_no_label_is_cut_off(made):
+def test_nothing_is_cut_off_and_legends_name_what_is_to_be_seen(made):
+    titles = [axes._left_title.get_window_extent() for axes in made.axes]
+    assert not any(a.overlaps(b) for a, b in itertools.combinations(titles, 2))
     for axes in made.axes:
-        for text in (axes.title, axes._left_title, axes.xaxis.label, axes.yaxis.label):
-            if text.get_text():
-                box = text.get_window_extent()
-                assert made.bbox.x0 <= box.x0
-                assert box.x1 <= made.bbox.x1
-                assert made.bbox.y0 <= box.y0
-                assert box.y1 <= made.bbox.y1
-
-
-def test_no_two_titles_overlap(made):
-    boxes = [axes._left_title.get_window_extent() for axes in made.axes]
-    assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
-
-
-def test_each_legend_names_what_is_to_be_seen(made):
-    for axes in made.axes:
-        if axes.get_legend() is None:
-            continue
+        shown = [text for text in (axes.title, axes._left_title, axes.xaxis.label, axes.yaxis.label) if text.get_text()]
+        for box in [axes.get_tightbbox(), *(text.get_window_extent() for text in shown)]:
+            assert made.bbox.x0 <= box.x0 <= box.x1 <= made.bbox.x1
+            assert made.bbox.y0 <= box.y0 <= box.y1 <= made.bbox.y1
         low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
         lines = _lines(axes)
-        for text in axes.get_legend().get_texts():
+        for text in axes.get_legend().get_texts() if axes.get_legend() else ():
             line = lines[text.get_text()]
             if text.get_text().startswith("jumps"):
                 assert any(note.arrow_patch.get_edgecolor() == to_rgba(line.get_color()) for note in _arrows(axes))
@@ -411,10 +356,3 @@ def test_axes_have_the_same_places_in_every_format_and_nothing_is_cut_off():
             box = axes.get_tightbbox()
             assert -2 <= box.x0 <= box.x1 <= figure.bbox.x1 + 2
             assert -2 <= box.y0 <= box.y1 <= figure.bbox.y1 + 2
-
-
-def test_a_figure_whose_axes_were_placed_by_hand_keeps_them():
-    figure = Figure()
-    axes = figure.add_axes((0.1, 0.2, 0.3, 0.4))
-    assert style.laid_out(figure).axes == [axes]
-    assert axes.get_position().bounds == pytest.approx((0.1, 0.2, 0.3, 0.4))

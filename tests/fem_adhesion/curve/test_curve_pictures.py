@@ -88,15 +88,6 @@ def test_the_wall_over_a_sphere_is_drawn_flat_and_the_sphere_flattened_where_it_
     assert np.ptp(shown.undeformed[1, touching]) > 3 * spacing
 
 
-def test_a_small_sphere_is_drawn_to_scale():
-    curves = _solved(Scene(2.0, Hemisphere(radius_ratio=30.0)))
-    state = module.event_states(curves)["pull_off"]
-    view, R = view_of([state]), np.sqrt(30.0 / 2.0)
-    assert view.heights == pytest.approx(1 / R)
-    r, z = surfaces(state, view.reach, view.heights).undeformed[:, 1:-1]
-    assert np.hypot(r, z + R) == pytest.approx(R, rel=1e-4)
-
-
 def test_the_section_meets_the_surface_with_the_stress_of_the_law(states):
     state, view = states["zero_load"], view_of(list(states.values()))
     shown = section(state, view)

@@ -133,19 +133,6 @@ def test_a_study_that_failed_in_part_says_so(tmp_path, monkeypatch, capsys, kind
     assert {(row["status"], row["kind"]) for row in rows if row["cause"] == "grip"} == {("refused", kind.__name__)}
 
 
-@pytest.mark.usefixtures("made_up")
-def test_a_study_that_is_solved_ends_with_0(tmp_path, capsys):
-    assert cli.main([*ONE, "--out", str(tmp_path / "out")]) == 0
-    assert capsys.readouterr().out.startswith(f"{len(MODELS)} cases, all solved; written: ")
-
-
-@pytest.mark.usefixtures("made_up")
-def test_a_defect_of_the_program_shows_its_traceback(tmp_path, monkeypatch):
-    monkeypatch.setitem(MODELS, "bonded", replace(MODELS["bonded"], solve=refuse(TypeError)))
-    with pytest.raises(TypeError, match="bonded is stuck"):
-        cli.main([*ONE, "--out", str(tmp_path / "out")])
-
-
 @pytest.mark.parametrize("ratio", ["1", "0.5", "nan"])
 def test_a_sphere_too_small_for_all_is_refused_at_once(tmp_path, monkeypatch, capsys, ratio):
     monkeypatch.setattr(cases, "compute", lambda _: pytest.fail("worked"))
@@ -167,6 +154,9 @@ def test_what_is_beyond_the_limits_is_left_out_and_listed(tmp_path, capsys):
     assert sum("tabor 10, R/eps 5" in line["case"] for line in lines) == left - 1
 
 
+# --- ended from outside ---
+
+
 @pytest.mark.usefixtures("made_up")
 def test_a_figure_of_an_earlier_study_does_not_stay(tmp_path):
     (tmp_path / "poisson.svg").write_text("old")
@@ -174,9 +164,6 @@ def test_a_figure_of_an_earlier_study_does_not_stay(tmp_path):
     assert cli.main([*ONE, "--out", str(tmp_path), "--force"]) == 0
     assert not (tmp_path / "poisson.svg").exists()
     assert (tmp_path / "notes.txt").exists()
-
-
-# --- ended from outside ---
 
 
 @pytest.fixture

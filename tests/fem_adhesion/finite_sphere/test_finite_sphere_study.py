@@ -26,14 +26,12 @@ from fem_adhesion.finite_sphere import cases as finite_sphere_cases
 from fem_adhesion.finite_sphere import fit as finite_sphere_fit
 from fem_adhesion.finite_sphere.cases import (
     APPROACH_SCALE,
-    CAUSES,
     CRITICAL,
     MODELS,
     QUANTITIES,
     Record,
     SphereCase,
     case_of,
-    from_plain,
     quantities_of,
     to_plain,
 )
@@ -53,8 +51,7 @@ from fem_adhesion.finite_sphere.table import (
 )
 from fem_adhesion.finite_strain.scene import find_jumps
 from halfspace.equilibrium.devices import cycle
-from halfspace.errors import ContactTooWide, InputError, NotConverged
-from halfspace.laws import LENNARD_JONES
+from halfspace.errors import ContactTooWide, InputError
 from halfspace.profiles import Paraboloid, Sphere
 from halfspace.theories.closed_forms import JKR_PULL_OFF
 from halfspace.theories.exact_sphere import JKRSphere
@@ -105,14 +102,6 @@ def test_each_case_is_solved_once_though_many_points_need_it():
     assert len(set(cases)) == len(cases)
     assert {case.tabor for case in cases if case.model == "half_space"} == set(Combinations.tabors)
     assert sum(case.model == "half_space" for case in cases) == len(Combinations.tabors)
-
-
-def test_every_cause_finds_its_baseline_in_the_plan():
-    cases = set(plan().cases)
-    for case in cases:
-        for cause in CAUSES.values():
-            if cause.model == case.model:
-                assert case_of(cause.baseline, case.tabor, case.radius_ratio, case.poisson, case.rtol) in cases
 
 
 @pytest.mark.parametrize(
@@ -237,15 +226,6 @@ DEFECTS = {kind: partial(defective, kind) for kind in (ValueError, TypeError)}
 # --- the store ---
 
 
-def test_a_record_survives_the_disk_to_the_last_bit(tmp_path):
-    record = run(CASES[4:5], opened(tmp_path), jobs=1)[0]
-    assert {*QUANTITIES, APPROACH_SCALE} == record.values.keys()
-    case = record.case
-    plain = opened(tmp_path, resume=True).get(asdict(case))
-    assert from_plain(case, plain) == record
-    assert to_plain(from_plain(case, plain)) == to_plain(record)
-
-
 def one_stored(directory):
     """File of a stored case, and its record."""
     (record,) = run(CASES[:1], opened(directory), jobs=1, work=remembered)
@@ -315,12 +295,6 @@ def test_a_result_stored_that_is_no_record_is_computed_again(tmp_path, keys, val
     computed_again(tmp_path, record, f"{file} is computed again: it")
 
 
-def test_the_file_of_another_case_is_computed_again(tmp_path):
-    file, record = one_stored(tmp_path)
-    file.write_text(json.dumps(json.loads(file.read_text()) | {"inputs": asdict(CASES[1])}))
-    computed_again(tmp_path, record, f"{file} is computed again: it has been changed")
-
-
 def test_results_of_other_code_or_format_are_computed_again(tmp_path, monkeypatch):
     records = run(CASES[:3], opened(tmp_path), jobs=1)
     later = open_store(tmp_path, "edited code", resume=True)
@@ -331,16 +305,6 @@ def test_results_of_other_code_or_format_are_computed_again(tmp_path, monkeypatc
     later = open_store(tmp_path, "edited code", resume=True)
     run(CASES[:1], later, jobs=1)
     assert later.notes == ("1 case computed by another format: computed again",)
-
-
-def test_a_refusal_of_other_code_is_tried_again(tmp_path):
-    def refused(_):
-        raise NotConverged("stuck")
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(MODELS, "half_space", replace(MODELS["half_space"], solve=refused))
-        assert run(CASES[:1], opened(tmp_path), jobs=1)[0].status == "refused"
-    assert run(CASES[:1], open_store(tmp_path, "mended code", resume=True), jobs=1)[0].status == "solved"
 
 
 @pytest.mark.parametrize("fresh", [False, True])
@@ -564,11 +528,6 @@ def test_quantities_are_those_of_the_curve():
     assert 0 < values["hysteresis"].value < path.energy.value
 
 
-def test_a_hard_contact_has_no_jumps():
-    values = quantities_of(halfspace.trace(0.3, rtol=1e-4))
-    assert values.keys() == {"pull_off_load", "zero_load_radius", APPROACH_SCALE}
-
-
 SPHERE = Hemisphere(radius_ratio=30.0, poisson=0.2)
 SCENES = {
     "finite_body": Scene(0.3, SPHERE, Paraboloid()),
@@ -639,6 +598,7 @@ def test_the_border_s_error_holds_what_finer_elements_change():
 
 # --- materials ---
 
+
 # Young's modulus in Pa and Hamaker constant in J: what handbooks give, from the least to the largest.
 HANDBOOK = {
     "silica": ((70e9, 75e9), (6e-20, 7e-20)),
@@ -648,7 +608,6 @@ HANDBOOK = {
     "polystyrene": ((3e9, 3.6e9), (6e-20, 8e-20)),
     "toner": ((1e9, 4e9), (5e-20, 8e-20)),
 }
-CUTOFF = 0.165e-9  # m, between two continua: dgamma = A/(12 pi D0^2), Israelachvili (2011)
 
 
 def _kind(material):
@@ -665,16 +624,6 @@ def test_a_material_is_within_the_ranges_of_handbooks(material):
     size = float(number) * {"nm": 1e-9, "um": 1e-6}[unit]
     across = size / 2 if "across" in material.name else size
     assert material.units.radius == pytest.approx(across, rel=1e-12, abs=0)
-
-
-@pytest.mark.parametrize("material", list(materials()), ids=lambda material: material.name)
-def test_adhesion_spacing_and_hamaker_constant_agree(material):
-    """The attraction from afar of the surface law, read off the law itself, is the one of the Hamaker constant."""
-    units, gap = material.units, 1e3
-    tension = -float(LENNARD_JONES.pressure(np.array(gap - 1), units.tabor)) * units.pressure
-    assert tension == pytest.approx(units.hamaker / (6 * np.pi * (gap * units.spacing) ** 3), rel=1e-9, abs=0)
-    assert units.work_of_adhesion == pytest.approx(units.hamaker / (12 * np.pi * CUTOFF**2), rel=0.1, abs=0)
-    assert units.spacing == pytest.approx(math.sqrt(0.75) * CUTOFF, rel=0.05, abs=0)
 
 
 def test_a_material_stands_where_its_own_numbers_put_it():

@@ -189,16 +189,6 @@ def interpolated(space, across, axial):
     return np.array([full.project(lambda x: across * x[0]), full.project(lambda x: axial * x[1])])
 
 
-def test_a_translation_along_the_axis_costs_no_force():
-    space = block()
-    body, u = displacement_body(space, 0.3, 0.3), np.zeros(space.unknowns)
-    u[space.components] = interpolated(space, 0.2, -0.3)
-    moved = u.copy()
-    moved[space.components[1]] += 5.0 * space.constant
-    np.testing.assert_allclose(body.forces(moved), body.forces(u), atol=1e-10 * np.abs(body.forces(u)).max())
-    assert body.energy(moved) == pytest.approx(body.energy(u), rel=1e-12)
-
-
 # The contact problem
 
 
@@ -267,8 +257,9 @@ def test_a_traction_with_an_energy_has_a_symmetric_tangent_and_the_vertical_one_
     assert asymmetry < 1e-14 if problem.convention.conservative else asymmetry > 1e-5
 
 
-@pytest.mark.parametrize("convention", [VERTICAL, NORMAL, REFERENCE, BLEND])
-@pytest.mark.parametrize("pressure", [None, ElementQuad1()])
+@pytest.mark.parametrize(
+    ("convention", "pressure"), [(VERTICAL, None), (NORMAL, ElementQuad1()), (REFERENCE, None), (BLEND, ElementQuad1())]
+)
 def test_negative_directions_are_the_negative_eigenvalues_and_change_at_the_fold(convention, pressure):
     problem = problem_of(block(2, 0.7), 0.2, convention=convention, pressure=pressure, tabor=1.0)
     counts, rates = [], []
@@ -391,6 +382,7 @@ def test_total_energy_grows_by_the_load_times_the_approach(stable):
 
 def test_elastic_energy_grows_by_the_work_of_a_vertical_traction(stable):
     problem, x = replace(stable[0], convention=VERTICAL), stable[1]
+    assert np.isnan(problem.energy(x))  # it has none
 
     def power(y):
         tangent = problem.bordered_solver(y, np.eye(1, y.size, y.size - 1)[0])(np.eye(1, y.size, y.size - 1)[0])
@@ -402,11 +394,6 @@ def test_elastic_energy_grows_by_the_work_of_a_vertical_traction(stable):
     assert problem.tabor * (problem.held.energy(end[:-1]) - problem.held.energy(start[:-1])) == pytest.approx(
         work, rel=1e-8
     )
-
-
-def test_the_vertical_traction_has_no_energy(stable):
-    problem, x = stable
-    assert np.isnan(replace(problem, convention=VERTICAL).energy(x))
 
 
 # What the traction is counted per
@@ -460,13 +447,6 @@ def test_yield_of_the_attracted_layer_deepens_the_well_of_its_columns(law):
     assert yielded_adhesion(tabor, ratio, 0.499999, law) == pytest.approx(1, abs=1e-6)
 
 
-def test_yield_by_morses_law_and_the_3_9_law_in_closed_form():
-    """The integrals of the squared tension are k/3 and (8/3)^2 (1/5 - 2/11 + 1/17), dgamma^2/eps."""
-    squared = (8 / 3) ** 2 * (1 / 5 - 2 / 11 + 1 / 17)
-    for law, integral in ((Morse(3), 1.0), (LENNARD_JONES, squared)):
-        assert yielded_adhesion(1.0, 100.0, 0.0, law) == pytest.approx(1 + integral / 2 * 0.1, rel=1e-12)
-
-
 # Near-incompressible
 
 
@@ -493,20 +473,15 @@ def test_mixed_form_does_not_lock():
     assert locked > 5 * mixed
 
 
-# Refusals
-
-
-@pytest.mark.parametrize("stretch", [-0.1, 3.0, np.nan])
-def test_impossible_stretch_is_refused(stretch):
-    with pytest.raises(ValueError, match="is outside 0 <= stretch <= 2"):
-        displacement_body(block(), 0.3, stretch)
-
-
-def test_mixed_form_without_a_pressure_is_refused():
-    with pytest.raises(ValueError, match="poisson = 0 leaves the pressure undetermined"):
-        mixed_body(block(), 0.0, 0.1, ElementQuad2())
-
-
-def test_a_body_on_a_spring_is_refused():
-    with pytest.raises(ValueError, match="rigid_compliance"):
-        problem_of(block(), 0.1, far_field=free)
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: displacement_body(block(), 0.3, 3.0), "is outside 0 <= stretch <= 2"),
+        (lambda: displacement_body(block(), 0.3, np.nan), "is outside 0 <= stretch <= 2"),
+        (lambda: mixed_body(block(), 0.0, 0.1, ElementQuad2()), "poisson = 0 leaves the pressure undetermined"),
+        (lambda: problem_of(block(), 0.1, far_field=free), "rigid_compliance"),
+    ],
+)
+def test_a_body_that_cannot_be_is_refused(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()
