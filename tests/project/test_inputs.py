@@ -14,7 +14,7 @@ from halfspace import limits
 from halfspace.equilibrium.devices import cycle
 from halfspace.errors import InputError
 
-KINDS = [np.float32, np.float16, np.longdouble, np.int64, np.uint8, int, Fraction]
+KINDS = [np.float32, np.longdouble, np.uint8, int, Fraction]
 
 
 @pytest.fixture(scope="module")
@@ -54,9 +54,7 @@ def test_tolerances_and_loads_are_floats_too(path):
     assert events(one) == events(same)
 
 
-@pytest.mark.parametrize(
-    "wrong", ["2", None, 2j, True, np.array([2.0]), np.linspace(1, 2, 1000), Decimal(2), b"2", [2.0], object()]
-)
+@pytest.mark.parametrize("wrong", ["2", None, 2j, True, np.array([2.0]), np.linspace(1, 2, 1000), Decimal(2)])
 @pytest.mark.parametrize(
     ("name", "call"),
     [
@@ -94,11 +92,6 @@ def test_what_is_no_part_is_refused_in_one_line(name, call, wrong):
     with pytest.raises(InputError, match=rf"^{name} = .* of type \w+ is no {name}; take .*, say$") as refusal:
         call(wrong)
     assert len(str(refusal.value)) < 200
-
-
-def test_a_sweep_of_nothing_is_refused():
-    with pytest.raises(InputError, match="tabors is empty, limit: at least one"):
-        halfspace.sweep([])
 
 
 def test_an_integer_beyond_all_floats_is_refused():

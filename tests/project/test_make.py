@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 from families import FAMILIES
-from longest import LONGEST
-from whole_runs import BIN, ROOT, tables_in
+from whole_runs import ROOT, tables_in
 
 MAKEFILE_AT = ROOT / "Makefile"
 MAKEFILE = MAKEFILE_AT.read_text()
@@ -37,11 +36,6 @@ def made(whole):
     return lambda target: whole(TARGETS[target])
 
 
-def test_every_target_is_run():
-    (phony,) = re.findall(r"^\.PHONY: (.*)$", MAKEFILE, re.M)
-    assert sorted(phony.split()) == sorted(TARGETS)
-
-
 def test_help_lists_the_targets_with_what_they_do(made):
     run = made("help")
     assert run.code == 0
@@ -62,18 +56,6 @@ def test_compare_prints_six_tables_and_agrees(made):
             error = sum(float(cell) for name, cell in row.items() if name.startswith("error"))
             assert float(row["difference"]) <= error * 1.1  # two digits are printed
             assert error <= float(row["budget"]) * 1.1
-
-
-def test_check_asks_every_tool_about_all_there_is(made):
-    """A rehearsal: what decides whether work lands runs it, and would read all sources here a second time."""
-    assert made("test").code == 0
-    run = made("check")
-    assert run.code == 0
-    assert run.out.splitlines() == [f"{BIN}/ruff format --check .", f"{BIN}/ruff check .", f"{BIN}/mypy"]
-
-
-def test_the_files_that_take_longest_are_there():
-    assert set(LONGEST) <= {path.name for path in (ROOT / "tests").rglob("test_*.py")}
 
 
 def test_bench_times_every_solver_beside_the_yardstick(made):

@@ -83,22 +83,6 @@ def test_a_line_is_run_as_it_stands_or_in_its_quick_form():
             assert run in (line, f"{line} --quick")
 
 
-def test_the_readme_shows_every_command():
-    shown = {shlex.split(line)[1] for line in LINES if line.startswith("fem-adhesion")}
-    assert shown == set(NAMES)
-
-
-def test_other_blocks_are_python_and_run_as_doctests():
-    blocks = re.findall(r"```(\w*)\n(.*?)```", README, re.S)
-    assert len(blocks) >= 3
-    for language, text in blocks:
-        assert language == "python"
-        assert text.startswith(">>> ")
-    settings = (ROOT / "pyproject.toml").read_text()
-    assert "--doctest-glob=README.md" in settings
-    assert 'testpaths = ["tests", "README.md", "meshes/README.md"]' in settings
-
-
 # --- what the commands leave ---
 
 

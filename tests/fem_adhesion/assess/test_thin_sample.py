@@ -181,7 +181,7 @@ def test_the_record_has_all_of_it(said):
 
 
 def test_the_forces_without_adhesion_are_hertzs_times_the_layers(said):
-    """By the contact radius, whose pressures an operator of images knows too; see `test_layers`."""
+    """By the contact radius."""
     theory, h = OnLayers(Layer(1.0, 0.3)), 30e-9
     for row in said[0].sample.indentations:
         a = brentq(lambda a, row=row: theory.hertz(a).approach - row.chi**2, 1e-3, 3.0)

@@ -9,11 +9,10 @@ from whole_sphere import sphere_operator, surface_deflection
 
 import fem_adhesion
 from fem_adhesion import Block, Scene
-from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, stiffness_of
+from fem_adhesion.elasticity.cells import cell_quadrature, stiffness_of
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import clamped, sliding
-from fem_adhesion.elasticity.space import Space, ring_measure, scatter
-from fem_adhesion.harmonics import legendre
+from fem_adhesion.elasticity.space import Space, ring_measure
 from fem_adhesion.materials import Elastic
 from fem_adhesion.mesh import curved, spheres
 from halfspace.elastic import grid
@@ -62,39 +61,12 @@ def test_areas(traction, area):
     assert np.sum(weights) == pytest.approx(area * np.pi * R**2, rel=1e-9)
 
 
-def test_the_mid_plane_is_flat_and_the_axis_straight(fine):
-    assert np.max(np.abs(surface_points(fine, "far")[1] + R)) < 1e-12 * R
-    assert np.max(np.abs(surface_points(fine, "axis")[0])) < 1e-15 * R
-
-
 def test_the_contact_surface_is_the_sphere_below_the_wall(fine):
     r, z = surface_points(fine, "contact")
     assert np.max(np.abs(np.hypot(r, z + R) - R)) < 1e-8 * R
     inside = r < 0.9 * R  # the profile has a vertical tangent at the equator
     assert np.max(np.abs(z + SphereSurface(R).height(r * inside) / R)[inside]) < 1e-8 * R
     assert np.max(z) < 0
-
-
-def test_the_boundaries_are_whole(fine):
-    named = np.concatenate(list(fine.mesh.boundaries.values()))
-    np.testing.assert_array_equal(np.sort(named), np.sort(fine.mesh.boundary_facets()))
-
-
-def test_normals_point_out_of_the_body(fine):
-    basis = boundary_basis(fine, "contact", 8)
-    r, z = basis.global_coordinates()
-    np.testing.assert_allclose(np.asarray(basis.normals), np.array([r, z + R]) / R, atol=1e-7)
-
-
-def test_the_meridian_map_is_that_of_the_sphere():
-    x = np.linspace(0.01, 2 * R, 50)
-    r, z = spheres.stereographic(x + 0j, R)
-    np.testing.assert_allclose(np.hypot(r, z + R), R, rtol=1e-14)
-    radius, slope = SurfaceCoordinate(R).radius(x)
-    np.testing.assert_allclose(radius, r, rtol=1e-14)
-    h = 1e-5
-    ahead, behind = (SurfaceCoordinate(R).radius(x + s)[0] for s in (h, -h))
-    np.testing.assert_allclose(slope, (ahead - behind) / (2 * h), atol=1e-9)
 
 
 @pytest.mark.parametrize("area", ["projected", "surface"])
@@ -123,22 +95,6 @@ def patch():
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49])
-def test_no_force_is_left_inside(patch, poisson):
-    """Hydrostatic, uniaxial along the axis, and equal biaxial across it."""
-    basis = CellBasis(patch.mesh, patch.element, dofs=patch.scalar_dofs, quadrature=cell_quadrature(patch))
-    r, z = basis.project(lambda x: x[0]), basis.project(lambda x: x[1])
-    K = scatter(cell_stiffness(patch, poisson), patch.cell_dofs, patch.unknowns)
-    outside = [patch.components[:, patch.boundary_functions(name)] for name in ("contact", "far")]
-    free = np.setdiff1d(np.arange(patch.unknowns), np.concatenate([part.ravel() for part in outside]))
-    free = np.setdiff1d(free, patch.components[0, patch.boundary_functions("axis")])
-    for c_r, c_z in ((1.0, 1.0), (-poisson, 1.0), (1.0, 0.0)):
-        u = np.zeros(patch.unknowns)
-        u[patch.components] = np.array([c_r * r, c_z * z])
-        forces = K @ u
-        assert np.max(np.abs(forces[free])) < 1e-9 * np.max(np.abs(forces))
-
-
-@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49])
 def test_uniform_pressure_on_the_projected_area_shortens_the_body_uniaxially(patch, poisson):
     """u_z = -p (z + R)/E above the sliding mid-plane, E = 1 - nu^2."""
     body = condense(patch, poisson, far_field=sliding)
@@ -147,55 +103,10 @@ def test_uniform_pressure_on_the_projected_area_shortens_the_body_uniaxially(pat
     np.testing.assert_allclose(deflection, (z + R)[np.argsort(r)] / (1 - poisson**2), atol=1e-10 * R)
 
 
-def test_a_bonded_mid_plane_is_a_sliding_one_for_what_does_not_spread(patch):
-    """Uniaxial compression at nu = 0."""
-    one = np.ones(condense(patch, 0.0, far_field=sliding).operator.radii.size)
-    first, second = (condense(patch, 0.0, far_field=grip).operator.compliance @ one for grip in GRIPS.values())
-    np.testing.assert_allclose(second, first, atol=1e-10 * R)
-
-
 # The independent solver against closed forms, before it is trusted.
 
 
-@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45, 0.4999])
-def test_uniaxial_compression(poisson):
-    operator = sphere_operator(R, poisson, 40)
-    exact = R * cosine(operator.radii) / (1 - poisson**2)
-    np.testing.assert_allclose(operator.compliance @ np.ones(operator.radii.size), exact, atol=1e-11)
-
-
-def test_the_load_of_a_gaussian():
-    operator = sphere_operator(R, 0.3, 40)
-    assert operator.weights @ gaussian(operator.radii) == pytest.approx(np.pi * R**2 * (1 - np.exp(-8)) / 8, rel=1e-13)
-
-
-def test_reciprocity():
-    """Each of two pressures does the same work in the deflection under the other."""
-    operator = sphere_operator(R, 0.3, 100)
-    force, other = (operator.weights * pressure(operator.radii) for pressure in (gaussian, cosine))
-    deflected, by_other = (operator.compliance @ (f / operator.weights) for f in (force, other))
-    assert other @ deflected == pytest.approx(force @ by_other, rel=1e-8)
-
-
-def test_the_polynomials_and_their_derivatives():
-    theta, h = np.linspace(0.1, 1.5, 20), 1e-6
-    P, D = legendre(15, np.cos(theta))
-    exact = np.array([np.polynomial.legendre.Legendre.basis(n)(np.cos(theta)) for n in range(0, 30, 2)])
-    np.testing.assert_allclose(P, exact, atol=1e-12)
-    above, below = (legendre(15, np.cos(theta + s))[0] for s in (h, -h))
-    np.testing.assert_allclose(D, (above - below) / (2 * h), atol=1e-6)
-
-
-def test_a_small_contact_sees_a_half_space():
-    """Under Hertz's pressure of radius a the deflection falls from the pole as the half-space's, but for O(a/R)."""
-    for a in (0.1, 0.05):
-        bowl = lambda r, a=a: np.exp(-((r / (a * R)) ** 2))  # noqa: E731
-        w = surface_deflection(R, 0.3, bowl, np.array([1e-9, a * R]), 400)
-        exact = np.sqrt(np.pi) * a * R * (1 - np.exp(-0.5) * np.i0(0.5))  # w(0) - w(a), G[97] (2.4) in closed form
-        assert w[0] - w[1] == pytest.approx(exact, rel=3 * a**2)
-
-
-@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45, 0.4999])
+@pytest.mark.parametrize("poisson", [0.0, 0.4999])
 def test_deflection_under_a_smooth_pressure(poisson):
     operator = condensed(11, poisson, finest=0.2).operator
     exact = surface_deflection(R, poisson, gaussian, operator.radii)
@@ -238,7 +149,7 @@ def test_the_mid_plane_carries_the_load(grip):
     assert far_reaction(body, P) == pytest.approx(body.operator.weights @ P, rel=1e-9)
 
 
-@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49])
+@pytest.mark.parametrize("poisson", [0.0, 0.49])
 def test_a_bonded_body_is_the_stiffer(poisson):
     work = []
     for grip in GRIPS:

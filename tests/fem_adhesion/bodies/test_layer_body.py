@@ -15,17 +15,13 @@ from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.cli import main
 from fem_adhesion.crosscheck import scenes as comparisons
 from fem_adhesion.crosscheck.comparison import difference
-from fem_adhesion.discretise import discretise, quadrilateral
-from fem_adhesion.elasticity.cells import cell_stiffness, stiffness_of
-from fem_adhesion.elasticity.space import Space
-from fem_adhesion.materials import Elastic, LinearElastic
-from fem_adhesion.mesh.block import tensor_grid
+from fem_adhesion.discretise import discretise
+from fem_adhesion.materials import LinearElastic
 from fem_adhesion.paraview import picture
 from fem_adhesion.paraview.arrays import inside
 from fem_adhesion.paraview.cells import Cut, Lattice
 from halfspace import Stratum, Substrate
 from halfspace.elastic import grid
-from halfspace.elastic.compliance import panels
 from halfspace.elastic.layered import images_of, layered_panels
 from halfspace.errors import ContactTooWide, InputError, NotConverged
 from halfspace.laws import Dlvo, PowerLaw
@@ -46,24 +42,19 @@ def traced(scene, rtol):
     ("scene", "rtol"),
     [
         (Scene(1.0, Layer(2.0, poisson=0.3)), 1e-5),
-        (Scene(1.0, Layer(2.0, "sliding", poisson=0.3)), 1e-4),
         (Scene(1.0, Layer(0.1, poisson=0.4999)), 1e-4),
         (Scene(5.0, Layer(20.0, poisson=0.45)), 1e-3),
         # What is pressed out of the contact goes on beyond the edge, and a steep tip's attraction ends before the layer
         # has hidden its base.
         (Scene(0.5, Layer(0.5, "sliding"), law=PowerLaw(2.5, 9.5), profile=Power(4)), 1e-4),
         (Scene(1.0, Layer(0.5, "sliding", poisson=0.4999), profile=Power(10)), 1e-4),
-        (Scene(1.0, Layer(1.0, poisson=0.4999), profile=Power(10)), 1e-4),
         (Scene(5.0, Layer(1000.0, "sliding")), 1e-3),
         (Scene(1.0, Layer(2.0, poisson=0.3), profile=Sphere(30.0)), 1e-4),
         (Scene(1.0, STIFF), 1e-4),
         (Scene(2.0, Coated(0.5, 0.01, 0.0, poisson=0.499)), 1e-3),
-        (Scene(1.0, Coated(0.05, 100.0, poisson=0.3)), 1e-3),
         (Scene(1.0, Coated(0.01, 10.0, poisson=0.3)), 1e-4),  # bends over a tenth of a half-space's spike
         (Scene(1.0, Coated(0.05, 0.01, 0.0, poisson=0.499)), 1e-5),
-        (Scene(1.0, Layer(0.5, poisson=0.499)), 1e-5),
         (Scene(1.0, STACK), 1e-3),
-        (Scene(1.0, Layers(PLIES, "sliding")), 1e-3),
         (Scene(0.562, Layer(3.76, "sliding", poisson=0.47), Hyperboloid(1.79), law=Dlvo(-0.03, 4.73)), 1e-4),  # to 1e9
         (Scene(1.0, Layers([Stratum(0.2, 0.3), Stratum(0.2, 0.4999, 0.02)], "sliding")), 1e-3),  # complex images
     ],
@@ -79,13 +70,6 @@ def test_both_solvers_have_the_same_events_on_a_layer(scene, rtol):
         for quantity in QUANTITIES:
             one, other = event.estimate(quantity), integral.events[name].estimate(quantity)
             assert one.value == pytest.approx(other.value, rel=0, abs=one.error + other.error, nan_ok=True)
-
-
-def test_the_pull_off_is_that_of_the_reference():
-    event = fem_adhesion.trace(Scene(1.0, body=halfspace.Layer(2.0, 0.3)), rtol=1e-5).events["pull_off"]
-    assert abs(event.load + 5.681629017) <= event.load_error + 1e-8
-    assert abs(event.approach + 0.095053503) <= event.approach_error + 1e-9
-    assert event.load_error <= 1e-5 * 5.7
 
 
 @pytest.mark.parametrize(
@@ -104,14 +88,14 @@ def test_layers_are_the_same_bodies_in_both_packages(theirs, ours):
     assert (ours.strata, ours.base) == (theirs.strata, theirs.base)
 
 
+# --- operators ---
+
+
 def test_strata_are_replaced_with_their_material():
     others = [Stratum(1.0, 0.45)]
     with pytest.raises(InputError, match=r"limit: that of the first, 0\.45; .* by LinearElastic\(0\.45\)"):
         dataclasses.replace(STACK, strata=others)
     assert dataclasses.replace(STACK, strata=others, material=LinearElastic(0.45)) == Layers(others, STACK.base)
-
-
-# --- operators ---
 
 
 BODIES = [
@@ -157,23 +141,6 @@ def test_a_half_space_under_a_stiff_film_ends_far_enough_out():
     assert far_from(layered_panels(images_of(scene.body), lines, 16), found) < 4e-9
 
 
-def test_a_coating_like_what_is_below_is_the_half_space():
-    lines = grid.graded(1.0, 0.2, Scene(1.0, BODIES[0]).surface.end, growth=2.5)
-    found, known = discretise(Scene(1.0, BODIES[0]), lines, Discretisation(5)).operator, panels(lines, 9)
-    assert far_from(known, found) < 2e-4
-
-
-def test_a_block_cut_into_regions_of_one_material_is_the_block():
-    lines = np.array([0.0, 0.5, 1.3])
-    space = Space(tensor_grid(lines, lines, [0.5]), quadrilateral(4))
-    halves = stiffness_of(space, [Elastic(0.3), Elastic(0.3)])
-    assert halves == pytest.approx(cell_stiffness(space, 0.3), rel=1e-12, abs=1e-14)
-    softer = stiffness_of(space, [Elastic(0.3), Elastic(0.3, 0.5)])
-    below = space.mesh.p[1, space.mesh.t].mean(axis=0) < -0.5
-    assert softer[below] == pytest.approx(halves[below] / 2, rel=1e-12, abs=1e-14)
-    assert np.array_equal(softer[~below], halves[~below])
-
-
 # --- fields ---
 
 
@@ -207,6 +174,9 @@ def test_stresses_jump_at_an_interface_where_they_must():
         assert density[side] == pytest.approx(wanted, rel=1e-9)
 
 
+# --- compare and the command line ---
+
+
 def test_an_interface_is_drawn_and_written():
     scene, event = Scene(1.0, STIFF), traced(Scene(1.0, STIFF), 1e-4).stages[-1]["zero_load"]
     state = fields.state_at(scene, event.problem, event.point)
@@ -218,9 +188,6 @@ def test_an_interface_is_drawn_and_written():
     assert on_axis < far == pytest.approx(-2, abs=0.2 * (far - on_axis))  # pressed in under the contact
 
 
-# --- compare and the command line ---
-
-
 def test_compare_on_the_command_line_agrees_with_all_that_it_has(tmp_path):
     record, body = tmp_path / "record.json", "layers:0.4,0.3/0.5,0.45,0.2/sliding"
     assert main(["compare", "--tabor", "1", "--body", body, "--rtol", "1e-4", "--json", str(record)]) == 0
@@ -228,11 +195,6 @@ def test_compare_on_the_command_line_agrees_with_all_that_it_has(tmp_path):
     between = {tuple(row["between"]) for row in rows}
     assert {("half-space", "finite elements"), ("weak form", "finite elements")} <= between
     assert all(row["verdict"] == "agree" for row in rows)
-
-
-@pytest.mark.parametrize("ratio", [0.3, 7, 49, 93, 98.7])
-def test_a_coating_of_either_package_is_the_same_body(ratio):
-    assert Scene(1.0, halfspace.Coated(1.0, ratio)) == Scene(1.0, Coated(1.0, ratio))
 
 
 @pytest.mark.usefixtures("two_solvers")

@@ -32,14 +32,6 @@ def test_a_meshed_hemisphere_agrees_with_ours_within_the_estimates():
         assert a.approach_error < 1e-3
 
 
-def test_a_tip_pulls_as_its_cap_does_and_yields_more():
-    """A slender tip is softer in bulk, so that its grip is further away under tension; the force is local."""
-    tip = fem_adhesion.trace(meshed("tip", 100.0, grip="bonded"), rtol=1e-3).events
-    cap = fem_adhesion.trace(meshed("hemisphere", 100.0, grip="bonded"), rtol=1e-3).events
-    assert tip["pull_off"].load == pytest.approx(cap["pull_off"].load, rel=5e-3)
-    assert tip["jump_off"].approach < cap["jump_off"].approach - 0.1
-
-
 @pytest.mark.parametrize("name", ["hemisphere", "tip"])
 def test_traction_of_the_stress_is_left_out_at_the_corner_alone(name):
     """The last facet ends where the grip begins; the same mesh that slides has all."""
@@ -121,7 +113,7 @@ def test_a_contact_whose_chords_leave_the_surface_by_more_than_the_tolerance_is_
     assert limit == pytest.approx(unit * 1e-3 * (1 / 20 + 1 - chords[k] * np.cos(middles[k])), rel=2e-2)
 
 
-@pytest.mark.parametrize(("tabor", "radius_ratio"), [(0.6, 20.0), (1.0, 100.0)])
+@pytest.mark.parametrize(("tabor", "radius_ratio"), [(0.6, 20.0)])
 def test_what_a_polygon_errs_by_is_in_the_estimate(tmp_path, tabor, radius_ratio):
     ours = fem_adhesion.trace(Scene(tabor, Hemisphere(radius_ratio=radius_ratio)), rtol=1e-5)
     theirs = fem_adhesion.trace(Scene(tabor, Meshed(straight(tmp_path), radius_ratio=radius_ratio)), rtol=1e-2)

@@ -12,7 +12,7 @@ from references import charted_rung
 
 import halfspace
 from fem_adhesion.common.fold_birth import critical_stiffness
-from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for, resolutions_for, rule_for
+from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.elastic.kernel import RingRules
 from halfspace.equilibrium.charts import metric_for, trace_charts
@@ -22,7 +22,7 @@ from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.path import Metric, Point, Steps, _hides_turning_points, correct
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES, Dlvo, Dugdale, Exponential, Morse, PowerLaw
+from halfspace.laws import LENNARD_JONES, Dugdale
 from halfspace.profiles import Sphere
 from halfspace.scales import Scales
 from halfspace.theories import closed_forms
@@ -75,21 +75,9 @@ def test_estimates_hold_the_truth_at_other_tolerances(rtol, tabor):
             assert event.load_error <= rtol * abs(event.load)
 
 
-def test_table_2_to_its_printed_digits(curves):
-    """Printed rows that were controlled by the central gap; those controlled by the approach err by up to 1.2 %."""
-    assert -curves[1].event("jump_on").approach == pytest.approx(1.628, abs=2e-3)
-    assert curves[5].event("jump_on").central_gap == pytest.approx(2.361, abs=2e-3)
-    assert curves[3].event("jump_off").contact_radius == pytest.approx(0.650, abs=3e-3)
-
-
 def test_the_curve_folds_only_above_the_critical_tabor_parameter(curves):
     for tabor, path in curves.items():
         assert (path.event("jump_on") is None) == (path.event("jump_off") is None) == (tabor < 0.697)
-
-
-def test_four_folds_at_tabor_5(curves):
-    rates = np.array([point.rates[0] for point in curves[5].points])
-    assert np.sum(rates[:-1] * rates[1:] < 0) == 4
 
 
 def test_the_unstable_branch_lies_between_the_jumps(curves):
@@ -107,32 +95,12 @@ def test_the_unstable_branch_lies_between_the_jumps(curves):
     assert not (path.stable_under_dead_load[1:] & path.stable_under_dead_load[:-1])[falling].any()
 
 
-def test_an_event_gives_each_of_its_numbers_with_its_own_error(curves):
-    event = curves[2.0].event("jump_off")
-    for name in ("approach", "load", "central_gap", "contact_radius"):
-        estimate = event.estimate(name)
-        assert (estimate.value, estimate.error) == (getattr(event, name), getattr(event, f"{name}_error"))
-    assert len({event.estimate(name) for name in ("approach", "load", "central_gap")}) == 3
-
-
 def test_the_states_of_a_path_that_meet_a_condition_come_in_order(curves):
     path = curves[2.0]
     on, off = path.states(FOLD)
     assert on.point.arclength < off.point.arclength
     for fold, name in ((on, "jump_on"), (off, "jump_off")):
         assert fold.point.observables[0] == pytest.approx(path.event(name).approach, abs=1e-3)
-
-
-def test_between_its_points_a_segment_is_drawn_with_their_tangents(curves):
-    for segment in curves[2.0].segments:
-        values, rates = segment.between(4)
-        assert values.shape == rates.shape == (4 * (len(segment.points) - 1) + 1, 4)
-        ends = np.array([point.observables[:3] for point in segment.points])
-        assert values[::4, :3] == pytest.approx(ends, rel=1e-12, abs=1e-12)
-        slopes = np.array([point.rates[:3] for point in segment.points])
-        assert rates[::4, :3] == pytest.approx(slopes, rel=1e-9, abs=1e-9)
-        apart = any(np.isnan(point.observables[CONTACT_RADIUS]) for point in segment.points)
-        assert np.isnan(values[:, CONTACT_RADIUS]).all() == apart
 
 
 def test_the_curve_runs_from_separation_to_compression(curves):
@@ -195,45 +163,6 @@ def test_the_neck_outside_a_soft_contact_is_jkrs():
     gap = state.problem.operator_at(state.point.x).values_at(r, state.point.x[:-2])
     jkr = closed_forms.hertz_gap(r, a, mu) + mu * np.sqrt(2 * np.pi * a) * 2 / np.pi * np.arccos(a / r)
     np.testing.assert_allclose(gap, jkr, rtol=0.02)
-
-
-def test_jkr_forms_agree_with_each_other():
-    radius = closed_forms.jkr_radius(np.array([-4.0, 0.0, 10.0]))
-    np.testing.assert_allclose(closed_forms.jkr_load(radius), [-4.0, 0.0, 10.0], atol=1e-12)
-    s = np.linspace(0.3, 1.5, 400001) * np.cbrt(9 * np.pi / 2)
-    assert closed_forms.jkr_load(s).min() == pytest.approx(closed_forms.JKR_PULL_OFF, rel=1e-9)
-    assert closed_forms.jkr_approach(s, 1.0).min() == pytest.approx(-0.75 * np.pi ** (2 / 3), rel=1e-9)
-    assert closed_forms.hertz_load(closed_forms.jkr_radius(1e6)) == pytest.approx(1e6, rel=0.01)
-
-
-def test_pull_off_lies_between_bradley_and_jkr_and_falls_with_tabor(curves):
-    loads = [path.event("pull_off").load for path in curves.values()]
-    assert min(loads) > closed_forms.BRADLEY_PULL_OFF
-    assert max(loads) < closed_forms.JKR_PULL_OFF
-    assert np.all(np.diff(loads) > 0)
-
-
-@pytest.mark.parametrize(
-    ("kwargs", "message"),
-    [
-        ({"tabor": 0}, r"tabor = 0 is outside 0 < tabor"),
-        ({"tabor": float("nan")}, r"tabor = nan"),
-        ({"tabor": float("inf")}, r"tabor = inf"),
-        ({"tabor": 1, "rtol": 1e-12}, r"rtol = 1e-12 is outside 1e-9 <= rtol <= 0.1; take"),
-        ({"tabor": 1, "rtol": float("nan")}, r"rtol = nan"),
-    ],
-)
-def test_bad_input_is_refused(kwargs, message):
-    tabor = kwargs.pop("tabor")
-    with pytest.raises(ValueError, match=message):
-        halfspace.trace(tabor, **kwargs)
-
-
-def test_the_half_space_needs_only_numpy_and_scipy():
-    code = "import sys, halfspace; print([m for m in ('skfem', 'meshio', 'rich', 'fem_adhesion') if m in sys.modules])"
-    assert (
-        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == "[]"
-    )
 
 
 @pytest.mark.parametrize(
@@ -367,11 +296,8 @@ CRITICAL = 0.69721461383  # `fem_adhesion.common.fold_birth` at rtol 1e-10
 BY_TABOR = 0.459  # R dgamma/eps by which the margin falls with the Tabor parameter there
 
 
-@pytest.mark.parametrize("rtol", [1e-1, 1e-2, 1e-4, 1e-8])
-@pytest.mark.parametrize(
-    "tabor",
-    [0.6970, 0.69715, 0.6972, 0.69721, 0.6972145, 0.6972146, 0.69721461, 0.697214614, 0.69721462, 0.69722, 0.6974],
-)
+@pytest.mark.parametrize("rtol", [1e-1, 1e-4, 1e-8])
+@pytest.mark.parametrize("tabor", [0.6970, 0.6972, 0.6972146, 0.69721461, 0.697214614, 0.69721462, 0.6974])
 def test_a_curve_about_to_fold_is_traced_and_says_how_far_the_folds_are(tabor, rtol):
     path = halfspace.trace(tabor, rtol=rtol)
     margin, truth = path.margin, BY_TABOR * (CRITICAL - tabor)
@@ -415,20 +341,6 @@ def test_a_step_does_not_leap_over_the_end_of_a_chart_into_cells_too_coarse(tabo
     last = segments[0].points[-1]
     assert last.observables[CONTACT_RADIUS] > charts[0].until
     segments[0].problem.require_resolution(last.x)
-
-
-def test_a_level_for_which_there_are_not_nodes_enough_is_trusted_no_more_than_one_node():
-    """The fourth at 1e-6 has two more, not four: a fold on a stiff coating changed by less than its error."""
-    scales = Scales(1.0)
-    parts = [rule_for(scales, resolutions_for(scales, 1e-6, level), level).remaining for level in (1, 2, 3, 4)]
-    assert parts[0] == parts[3] > 1 > parts[1] == parts[2]
-
-
-@pytest.mark.parametrize("width", [0.15, 0.274, 0.399, 0.5])
-def test_a_law_with_a_step_is_told_from_others_however_wide_it_is(width):
-    assert Scales(1.0, Dugdale(width)).steps
-    others = LENNARD_JONES, Morse(0.5), Morse(8), PowerLaw(5, 14), Dlvo(0.3, 1), Exponential(5, 15), Exponential(0.5, 4)
-    assert not any(Scales(1.0, law).steps for law in others)
 
 
 def test_a_grid_that_takes_more_memory_than_there_is_is_refused_by_the_input_that_asks_for_it(monkeypatch):

@@ -21,7 +21,6 @@ from fem_adhesion.mesh.block import block_grid
 from halfspace.equilibrium.contact import APPROACH, LOAD, ContactProblem
 from halfspace.equilibrium.path import correct, predict
 from halfspace.errors import InputError
-from halfspace.limits import require_load, require_rtol, require_tabor
 from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 
 tabors = st.floats(-12, math.log10(200)).map(lambda x: 10.0**x) | st.floats(0.05, 10)
@@ -123,26 +122,12 @@ def test_one_number_outside_its_limits_is_refused(name, data):
     require_refused(lambda: halfspace.trace(**(good | {name: value})), name, value)
 
 
-@pytest.mark.parametrize(
-    ("name", "edges"),
-    [("tabor", (1e-12, 300)), ("rtol", (1e-9, 1e-1)), ("to_load", (math.ulp(0), 1000))],
-)
-def test_a_limit_belongs_to_what_is_allowed_and_its_neighbour_does_not(name, edges):
-    require = {"tabor": require_tabor, "rtol": require_rtol, "to_load": require_load}[name]
-    for edge, outwards in zip(edges, (-math.inf, math.inf), strict=True):
-        assert require(edge) == edge
-        beyond = math.nextafter(edge, outwards)
-        require_refused(lambda: require(beyond), name, beyond)  # noqa: B023
-
-
-@over_inputs(40)
+@over_inputs(20)
 @given(tabor=tabors, factor=st.floats(1.001, 3), rtol=rtols, to_load=loads)
 @example(tabor=0.6972, factor=0.6973 / 0.6972, rtol=1e-2, to_load=5.0)  # about the critical value
 @example(tabor=3.9743, factor=1.001, rtol=1e-2, to_load=5.0)  # where a second pair of folds is born
 @example(tabor=200.0, factor=1.5, rtol=1e-1, to_load=5.0)
-def test_every_contact_on_the_half_space_is_solved_and_the_larger_tabor_parameter_pulls_off_at_less(
-    tabor, factor, rtol, to_load
-):
+def test_every_half_space_is_solved_and_the_softer_pulls_off_at_less(tabor, factor, rtol, to_load):
     assume(tabor * factor <= 300)
     paths = [halfspace.trace(value, rtol=rtol, to_load=to_load) for value in (tabor, tabor * factor)]
     for path in paths:
@@ -167,18 +152,6 @@ def test_a_scene_that_makes_no_sense_is_refused_for_what_is_wrong_with_it(name, 
     require_refused(lambda: Scene(asked.pop("tabor"), Block(**asked)), name, asked[name])
 
 
-@over_inputs(60)
-@given(tabor=tabors, poisson=GOOD["poisson"], radius=GOOD["radius"], far_field=GOOD["far_field"])
-@example(tabor=1e-12, poisson=0.3, radius=6e6, far_field="free")
-@example(tabor=3.0, poisson=0.499999, radius=1e9, far_field="clamped")
-@example(tabor=300.0, poisson=0.0, radius=50.0, far_field="point_load")
-def test_a_scene_within_the_limits_is_made_as_asked(tabor, poisson, radius, far_field):
-    assume(radius > 5 * tabor**-0.5)
-    assume(far_field == "point_load" or tabor <= 3)  # a block that is held needs a mesh that does not follow the edge
-    scene = Scene(tabor, Block(radius=radius, far_field=far_field, poisson=poisson))
-    assert (scene.tabor, scene.poisson, scene.body.radius, scene.body.far_field) == (tabor, poisson, radius, far_field)
-
-
 @pytest.mark.parametrize("far_field", ["clamped", "free"])
 def test_a_block_that_is_held_is_refused_from_a_tabor_parameter_of_3(far_field):
     tabor = math.nextafter(3, 4)
@@ -186,7 +159,7 @@ def test_a_block_that_is_held_is_refused_from_a_tabor_parameter_of_3(far_field):
         Scene(tabor, Block(radius=50.0, far_field=far_field))
 
 
-@over_inputs(20)
+@over_inputs(12)
 @given(tabor=tabors, poisson=poissons, rtol=st.floats(-2, -1).map(lambda x: 10.0**x), to_load=st.floats(0.1, 20))
 @example(tabor=1.0, poisson=0.499999, rtol=1e-2, to_load=5.0)
 @example(tabor=1e-12, poisson=0.0, rtol=1e-2, to_load=5.0)

@@ -7,11 +7,10 @@ import pytest
 
 import fem_adhesion
 import halfspace
-from fem_adhesion import Block, Scene, stages
-from fem_adhesion.stages import AroundEvents
+from fem_adhesion import Block, Scene
 from halfspace import Coated
 from halfspace.equilibrium import conditions, events
-from halfspace.equilibrium.charts import Chart, settled
+from halfspace.equilibrium.charts import settled
 from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import APPROACH
 from halfspace.equilibrium.path import grows_from_afar
@@ -88,40 +87,6 @@ def test_an_event_that_always_lies_elsewhere_is_not_found():
     _, solve = solved_on([1, 2, 3, 4, 5, 6, 7])
     with pytest.raises(NotConverged, match="lies elsewhere on every grid"):
         settled(SimpleNamespace(problem=None, lies_in=0), Windows(), solve)
-
-
-def test_what_a_chart_for_farther_off_tells_is_solved_for_again_on_that_made_for_it(monkeypatch):
-    """The first chart leads astray from far off, by a half of the radius; the wide one does not know it as well."""
-    interface, asked = SimpleNamespace(follows_contact=True), []
-    found_on, near, wide = (SimpleNamespace(interface=interface, name=name) for name in ("found on", "near", "wide"))
-    stage = AroundEvents(SimpleNamespace(span=lambda *of: of, over=lambda *_: Chart(wide, 1)), 8)
-    stage.keep(0.9, 1.1, Chart(near, 1))
-
-    def lying(radius, problem):
-        return SimpleNamespace(point=SimpleNamespace(observables=np.array([0, 0, 0, radius])), problem=problem)
-
-    def solve(event, problem):
-        asked.append(problem.name)
-        return lying(1.5 if event.problem is found_on and problem is near else 1.01, problem)
-
-    monkeypatch.setattr(stages, "moved", solve)
-    assert stage.moved(lying(1.0, found_on), near).problem is near
-    assert asked == ["near", "wide", "near"]
-
-
-def test_no_state_is_handed_out_on_the_chart_for_farther_off(monkeypatch):
-    """The wide chart has the event in the window of another chart than that which led astray: it is solved there."""
-    interface = SimpleNamespace(follows_contact=True)
-    found_on, near, other, wide = (SimpleNamespace(interface=interface) for _ in range(4))
-    stage = AroundEvents(SimpleNamespace(span=lambda *of: of, over=lambda *_: Chart(wide, 1)), 8)
-    stage.keep(0.9, 1.1, Chart(near, 1))
-    stage.keep(1.1, 1.3, Chart(other, 1))
-
-    def lying(radius, problem):
-        return SimpleNamespace(point=SimpleNamespace(observables=np.array([0, 0, 0, radius])), problem=problem)
-
-    monkeypatch.setattr(stages, "moved", lambda _, p: lying(1.5 if p is near else 1.2, p))
-    assert stage.moved(lying(1.0, found_on), near).problem is other
 
 
 def point(arclength, approach):

@@ -1,11 +1,6 @@
 """Layers: the yield of their surface to waves, its images, and the limits of Hertz and JKR on a layer."""
 
-import csv
-import pickle
 from dataclasses import replace
-from functools import cache
-from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,10 +12,8 @@ from halfspace import trace
 from halfspace.accuracy.grids import resolution_for
 from halfspace.accuracy.layered import layered_charts
 from halfspace.elastic import compliance, grid, layered
-from halfspace.elastic.compliance import barycentric, lagrange
 from halfspace.elastic.layered import image_compliance, images_of, layered_panels, nearly_homogeneous
 from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, stiff_as, surface_compliance
-from halfspace.elastic.operators import nodes_beside
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
@@ -29,7 +22,6 @@ from halfspace.profiles import Hyperboloid, Sphere
 from halfspace.scales import Scales
 from halfspace.theories.layered import OnLayers
 
-DATA = Path(__file__).parents[2] / "data"
 WAVES = np.geomspace(1e-3, 25, 300)
 POISSON = [0.0, 0.3, 0.45, 0.499999]
 STACK = Layers([Stratum(0.4, 0.3), Stratum(0.5, 0.45, 0.2), Stratum(3, 0.2, 2.0)], Substrate(5.0, 0.1))
@@ -109,61 +101,6 @@ def test_a_bell_of_pressure_deflects_a_layer_as_hankels_integral_says(thickness)
     assert found[inside] == pytest.approx(wanted, abs=3e-8)
 
 
-@cache
-def _images(poisson: float):
-    return images_of(Layer(1.0, poisson))
-
-
-@cache
-def _pressures(poisson: float, a: float):
-    """Under a punch of radius a: weights, pressures by a unit approach and by u^2/2, and of both the root's part."""
-    inner = grid.geometric(a, 1e-11 * a, 3.0)
-    lines = a - inner[::-1]
-    lines[0] = 0.0
-    operator = layered_panels(_images(poisson), lines, 10)
-    u = operator.radii
-    flat, bowl = np.linalg.solve(operator.compliance, np.stack([np.ones_like(u), u**2 / 2], axis=1)).T
-    near = (a - u > 1e-4 * a) & (a - u < 0.1 * a)  # P times the root is smooth; rounding and cells spoil it at the edge
-    d, root = (a - u[near]) / a, np.sqrt((a - u[near]) * (a + u[near]) / a)
-    parts = [float(np.polynomial.Polynomial.fit(d, P[near] * root, 6)(0.0)) for P in (flat, bowl)]
-    return operator.weights, flat, bowl, parts
-
-
-def _hertz(poisson: float, a: float):
-    """Approach and load on a layer of thickness 1 without a singularity at the edge of the contact."""
-    weights, flat, bowl, (of_flat, of_bowl) = _pressures(poisson, a)
-    approach = of_bowl / of_flat
-    return approach, float(weights @ (approach * flat - bowl))
-
-
-def _rows(kind: str):
-    with (DATA / "layer_limits.csv").open() as file:
-        return [tuple(map(float, row[1:])) for row in csv.reader(file) if row[0].startswith(kind)]
-
-
-@pytest.mark.parametrize(("poisson", "chi", "ratio"), _rows("hertz"))
-def test_hertz_on_a_layer(poisson, chi, ratio):
-    """Load over Hertz's at sqrt(R delta)/h = chi, by dual integral equations; nearly incompressible for 0.5."""
-    nu = min(poisson, 0.499999)
-    a = brentq(lambda a: np.sqrt(_hertz(nu, a)[0]) - chi, 0.3 * chi, 2.5 * chi, xtol=1e-9)
-    approach, load = _hertz(nu, a)
-    assert load / (4 / 3 * approach**1.5) == pytest.approx(ratio, rel=1e-5 if poisson < 0.5 else 3e-5)
-
-
-@pytest.mark.parametrize(("poisson", "thickness", "pull_off"), _rows("jkr"))
-def test_jkr_on_a_layer(poisson, thickness, pull_off):
-    """Pull-off over pi R dgamma, h/beta = thickness; lengths in thicknesses here, so that dgamma scales by its cube."""
-    nu = min(poisson, 0.499999)
-
-    def load(a):  # K = (2 E* dgamma)^(1/2), P -> -K/(2 pi (a - u))^(1/2), in thicknesses
-        weights, flat, bowl, (of_flat, of_bowl) = _pressures(nu, a)
-        approach = (of_bowl - 2 / np.sqrt(2 * np.pi * thickness**3)) / of_flat
-        return float(weights @ (approach * flat - bowl)) * thickness**3
-
-    least = minimize_scalar(load, bounds=(0.8 / thickness, 2.0 / thickness), method="bounded", options={"xatol": 1e-6})
-    assert -least.fun / np.pi == pytest.approx(pull_off, rel=1e-5)
-
-
 @pytest.mark.parametrize(
     ("make", "words"),
     [
@@ -230,11 +167,6 @@ def test_a_gap_on_which_three_grids_agree_by_accident_is_known_as_well_as_those_
         assert rough.error < 1000 * abs(rough.value - best.value)
 
 
-def test_a_curve_on_a_layer_can_be_pickled():
-    path = trace(1.0, body=Layer(2.0), rtol=1e-2)
-    assert pickle.loads(pickle.dumps(path)) == path
-
-
 def test_the_energy_on_a_layer_falls_by_the_work_of_the_load():
     operator = layered_panels(images_of(Layer(2, 0.3)), grid.graded(1.4, 0.1, 60.0), 10)
     problem, step = ContactProblem(operator, 1.0), 1e-4
@@ -274,16 +206,6 @@ def test_between_the_radii_of_a_curve_a_stiff_coating_is_as_well_known_as_a_soft
             pressure = np.exp(-((here.radii / a) ** 2))
             off = np.abs((here.compliance - exact) @ pressure).max()
             assert off < 1e-8 * np.abs(exact @ pressure).max()
-
-
-def test_a_thick_layer_goes_over_into_the_half_space():
-    """What is missing below bends the surface by a uniform W/t to first order: it moves approaches, not loads."""
-    half_space = trace(1.0, rtol=1e-6).events["pull_off"]
-    near, far = (trace(1.0, body=Layer(t, 0.3), rtol=1e-6).events["pull_off"] for t in (50, 500))
-    ratio = (near.approach - half_space.approach) / (far.approach - half_space.approach)
-    assert ratio == pytest.approx(10, rel=0.01)
-    assert abs(far.load - half_space.load) < 1e-6
-    assert near.load != pytest.approx(half_space.load, rel=0, abs=near.load_error + half_space.load_error)
 
 
 SOFT, THEORY = Layer(2, 0.3), OnLayers(Layer(2, 0.3))
@@ -341,17 +263,6 @@ def charted():
     return tuple(chart.problem.operator for chart in charts)
 
 
-def test_a_bell_deflects_a_layer_on_a_scaled_grid_as_on_one_that_stands(charted):
-    _, operator = charted
-    there = operator.at(1.4005)
-    lines = grid.graded(1.4005, 0.1, 60.0)
-    other = layered_panels(images_of(Layer(2.0, 0.3)), lines, 12)
-    wanted = other.compliance @ np.exp(-(other.radii**2))
-    inside = there.radii < 10
-    found = (there.compliance @ np.exp(-(there.radii**2)))[inside]
-    assert found == pytest.approx(other.values_at(there.radii[inside], wanted), rel=0, abs=1e-7)
-
-
 @pytest.mark.parametrize("body", [Layer(2.0, 0.3), SOFT_BETWEEN, Coated(0.1, 100.0)], ids=repr)
 @pytest.mark.parametrize("spacing", [1.14, 1.17])
 def test_images_in_units_of_the_contact_deflect_as_at_their_own_depths(body, spacing):
@@ -382,26 +293,6 @@ def test_a_contact_that_is_wider_than_the_attraction_rests_on_images_integrated_
         assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=1e-5 * np.abs(wanted).max())
 
 
-def test_polynomials_between_lengths_leave_what_was_asked():
-    """Of 1/d, d^2 = 1 + (z/a)^2, whose poles are as near as any, in the middle; never much less than was asked."""
-    for step, left in product((0.07, 0.13), (1e-6, 1e-9, 1e-12)):
-        past = nodes_beside(step, left)
-        x = step * (np.arange(2 * past) - past + 0.5)
-        depths = np.exp(np.linspace(-2, 2, 41))
-        values = 1 / np.hypot(1, depths * np.exp(-x[:, None]))
-        error = np.abs(lagrange(x, barycentric(x), 0.0)[0] @ values - 1 / np.hypot(1, depths)).max()
-        assert left / 300 < error < left
-
-
-def test_a_law_with_two_edges_is_traced_on_a_layer():
-    """As thick as a half-space: 3.5 beta^2/R under a paraboloid."""
-    law = Dlvo(0.4, 1.0)
-    assert law.outermost
-    on_layer, alone = (trace(0.5, law=law, body=body, rtol=1e-4, to_load=20) for body in (Layer(1000, 0.3), None))
-    assert on_layer.met
-    assert on_layer.event("pull_off").load == pytest.approx(alone.event("pull_off").load, abs=1e-3)
-
-
 def test_a_barrier_is_resolved_on_a_stiff_coating():
     """Against 16 nodes in each of the cells and `rtol=1e-8`; cells that grew threefold ended at 15 nodes and 6.7863."""
     jump_on = trace(2, law=Dlvo(0.3, 1.0), body=Coated(0.2, 20), rtol=1e-2).event("jump_on")
@@ -419,17 +310,6 @@ def test_the_scaled_operator_changes_with_the_contact_as_its_rates_say(charted):
     assert (after.weights - before.weights) / (2 * h) == pytest.approx(weights, rel=1e-9)
     assert (after.compliance - before.compliance) @ pressure / (2 * h) == pytest.approx(deflection, rel=0, abs=1e-6)
     assert np.abs(deflection).max() > 0.1
-
-
-def test_a_layer_with_other_cells_far_out_is_the_same_layer(charted):
-    operator, _ = charted
-    wide = operator.widened(12, 8.0)
-    assert wide.beyond.size > operator.beyond.size
-    inside = operator.radii < operator.extent
-    found, same = (o.compliance @ (1 + o.radii**2) ** -3.0 for o in (wide, operator))
-    assert found[: inside.sum()] == pytest.approx(same[inside], rel=0, abs=1e-8 * np.abs(same).max())
-    half_space = compliance.to_infinity(operator, 12, 8.0).compliance @ (1 + wide.radii**2) ** -3.0
-    assert np.abs(found - half_space)[~(wide.radii < operator.extent)].max() > 1e-3
 
 
 @pytest.mark.parametrize(("rtol", "off"), [(1e-5, 2e-7)])

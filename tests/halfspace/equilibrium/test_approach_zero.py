@@ -5,13 +5,7 @@ from dataclasses import replace
 import pytest
 
 import halfspace
-from fem_adhesion.assess.predictions import Prediction, Quantity
-from fem_adhesion.assess.verdict import ranked
 from fem_adhesion.crosscheck import study as crosscheck
-from fem_adhesion.finite_sphere.cases import Record, case_of, quantities_of
-from fem_adhesion.finite_sphere.table import rows
-from fem_adhesion.greenwood.tables import table_2
-from fem_adhesion.speed.study import TIGHTEST, Truth, estimates
 from halfspace.equilibrium.events import Tolerance, approach_scale
 
 ZEROS = (0.0, 1e3, -1e3)  # eps
@@ -67,49 +61,3 @@ def test_the_cross_check(path):
     for quantity, (*numbers, verdict) in tables[0].items():
         for table in tables[1:]:
             assert table[quantity] == (*(pytest.approx(n, rel=1e-9, abs=1e-9) for n in numbers), verdict)
-
-
-def test_the_table_of_the_finite_sphere(path):
-    tables = []
-    for zero in ZEROS:
-        cases = [case_of(model, 2.0, 100.0, 0.3, 1e-4) for model in ("half_space", "true_profile")]
-        paths = _counted_from(path, zero), _counted_from(path, zero, 0.05)
-        found = [Record(case, "solved", _without_energy(one, path)) for case, one in zip(cases, paths, strict=True)]
-        tables.append({row.quantity: row.deviation for row in rows(found) if row.cause == "profile" and row.deviation})
-    _alike([table["jump_on_approach"].value for table in tables])
-    assert tables[0]["jump_on_approach"].value == pytest.approx(0.05 / path.approach_scale, rel=1e-9)
-    assert tables[0]["jump_off_approach"].value == 0
-
-
-def _without_energy(path, whole):
-    """Quantities of a path whose events were moved, which has no cycle of its own."""
-    values = quantities_of(replace(whole, events=path.events))
-    return {name: value for name, value in values.items() if name != "hysteresis"}
-
-
-def test_the_speed_study(path):
-    moved = [_counted_from(path, zero) for zero in ZEROS]
-    truths = [Truth("half-space", TIGHTEST, estimates(one), one.approach_scale) for one in moved]
-    _alike([truth.relative("jump_on", 1e-3) for truth in truths])
-
-
-def test_the_assessment():
-    """A soft cantilever whose base stands far from zero, another model half a spacing off at jump-on."""
-    spacing, found = 0.2e-9, []
-    for zero in (0.0, 1e-6, -1e-6):
-        bases = {"jump_on_base": -2e-9 - zero, "jump_off_base": -30e-9 - zero}
-        ours, best = (
-            Prediction(name, {k: Quantity(v + (more if "on" in k else 0), 0.0, "m") for k, v in bases.items()})
-            for name, more in (("half-space", 0.5 * spacing), ("finite sphere", 0.0))
-        )
-        found.append(ranked((ours, None, best), spacing)[0].size)
-    _alike(found)
-    assert found[0] == pytest.approx(0.5 * spacing / (28e-9 + spacing), rel=1e-9)
-
-
-def test_greenwoods_printed_approaches(path):
-    printed = [p for p in table_2({2.0: path}) if "alpha_star" in p.row]
-    assert printed
-    for p in printed:
-        size = path.approach_scale / (2.0 if p.row.endswith("over_mu") else 1.0)
-        assert p.deviation == pytest.approx((p.computed.value - float(p.printed)) / size, rel=1e-9, abs=0)

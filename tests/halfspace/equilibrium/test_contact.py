@@ -3,7 +3,6 @@ import weakref
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 from truths import relocated, under_sphere
 
 import halfspace
@@ -14,9 +13,8 @@ from halfspace.elastic.operators import Homogeneous
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import transfer
 from halfspace.equilibrium.contact import CENTRAL_GAP, ContactProblem, count_negative
-from halfspace.equilibrium.path import passed, with_edge
 from halfspace.errors import GridTooCoarse, NotConverged
-from halfspace.laws import LENNARD_JONES, PowerLaw
+from halfspace.laws import LENNARD_JONES
 from halfspace.profiles import PARABOLOID, Power, Sphere
 from halfspace.profiles.formulas import SphereSurface
 from halfspace.scales import Scales
@@ -38,36 +36,6 @@ def touching(problem):
     for gap in (4, 3, 2, 1, 0.6, 0.4, 0.2, 0.1):
         x = newton.solve(problem, x, newton.central_gap(gap)).x
     return x
-
-
-@pytest.mark.parametrize("law", [LENNARD_JONES, PowerLaw(3, 8)])
-def test_surface_law_is_normalised_to_the_work_of_adhesion(law):
-    tension = quad(lambda h: -float(law.pressure(np.array(h - 1), 1.0)), 1, np.inf, epsabs=1e-12)[0]
-    assert tension == pytest.approx(1, abs=1e-9)
-    assert law.pressure(np.zeros(1), 2.0) == 0
-    assert law.slope(np.array([law.edge_gap]), 1.0) == pytest.approx(0, abs=1e-14)
-
-
-def test_largest_tension_of_the_3_9_law():
-    peak = -float(LENNARD_JONES.pressure(np.array(LENNARD_JONES.edge_gap), 1.0))
-    assert peak == pytest.approx(16 / (9 * np.sqrt(3)), rel=1e-14)
-    assert LENNARD_JONES.edge_gap == pytest.approx(3 ** (1 / 6) - 1, rel=1e-14)
-
-
-def test_slope_and_energy_are_derivatives():
-    H, step = np.array([-0.2, 0.1, 1.0, 5.0]), 1e-6
-    law, mu = LENNARD_JONES, 0.7
-    np.testing.assert_allclose(
-        law.slope(H, mu), (law.pressure(H + step, mu) - law.pressure(H - step, mu)) / (2 * step), rtol=1e-7
-    )
-    np.testing.assert_allclose(
-        -law.pressure(H, mu), (law.energy(H + step, mu) - law.energy(H - step, mu)) / (2 * step), rtol=1e-7, atol=1e-9
-    )
-
-
-def test_sign_of_the_pressure_against_the_papers_fig_4():
-    assert LENNARD_JONES.pressure(np.array(2.554), 5.0) == pytest.approx(-0.2968, abs=1e-4)
-    assert LENNARD_JONES.pressure(np.array(-0.0036), 5.0) == pytest.approx(0.2943, abs=5e-3)  # 5e-5 in H
 
 
 @pytest.mark.parametrize("follows", [False, True])
@@ -117,7 +85,7 @@ def test_every_control_finds_the_same_state(problem, touching):
         )
 
 
-@pytest.mark.parametrize(("tabor", "nodes", "finest"), [(1.0, 4, 0.1), (1.0, 6, 0.2), (2.0, 5, 0.05)])
+@pytest.mark.parametrize(("tabor", "nodes", "finest"), [(1.0, 4, 0.1), (2.0, 5, 0.05)])
 def test_a_contact_edge_is_prescribed_where_two_cells_meet(tabor, nodes, finest):
     """There the polynomials of the gap leap by their error, and Newton's method would go to and fro between them."""
     operator = compliance.panels(grid.graded(1.0, finest, 100.0), nodes)
@@ -145,7 +113,7 @@ def test_a_contact_edge_is_pinned_down_to_the_rounding(problem, radius):
     assert found == pytest.approx(radius, rel=1e-14, abs=np.finfo(float).eps * largest / slope)
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(8))
 def test_a_contact_edge_is_found_between_any_gaps(problem, seed):
     """Where they go up and down from node to node Newton's method leaves the two between which the edge is."""
     u, edge = CENTRED.radii, LENNARD_JONES.edge_gap
@@ -201,21 +169,6 @@ def test_newton_never_returns_an_unconverged_state(problem, touching):
         newton.solve(problem, touching, newton.load(-7.0))  # no state pulls harder than 2 pi
 
 
-def test_no_trial_gap_reaches_zero(problem, touching):
-    """From a state in contact, a jump far into compression: every state on the way has positive gaps."""
-    seen = []
-
-    class Watched(ContactProblem):
-        def residual(self, x):
-            seen.append(x[:-2].min())
-            return super().residual(x)
-
-    watched = Watched(problem.operator, problem.tabor)
-    newton.solve(watched, touching, newton.central_gap(0.01), max_iterations=60)
-    assert min(seen) > -1
-    assert len(seen) > 5
-
-
 def test_a_grid_too_coarse_for_the_spike_is_refused_with_the_numbers():
     coarse = ContactProblem(compliance.triangles(grid.uniform(10.0, 0.05)), tabor=3.0)
     x = coarse.undeformed(1.0)
@@ -235,8 +188,7 @@ def test_the_papers_discretisations_converge_to_the_same_pull_off(build):
     assert min(loads) == pytest.approx(-5.615543245, rel=3e-4)
 
 
-@pytest.mark.parametrize("tabor", [0.3, 1.0, 3.0])
-@pytest.mark.parametrize("gap", [4.0, 1.5, 0.5])
+@pytest.mark.parametrize(("tabor", "gap"), [(0.3, 4.0), (1.0, 1.5), (3.0, 0.5)])
 def test_the_load_does_not_miss_the_attraction_beyond_the_grid(tabor, gap):
     """The same state on grids of any extent, its load the derivative of its energy by the approach."""
     states = []
@@ -333,12 +285,6 @@ def test_a_gap_is_known_no_better_than_to_its_last_coefficients(last):
     assert np.isnan(ripples[1]) == (gaps.min() > LENNARD_JONES.edge_gap)
 
 
-def test_the_profile_adds_nothing_to_what_a_gap_is_known_to():
-    """Of five coefficients, elements of degree 3, the third from the end is that of a parabola."""
-    problem = ContactProblem(compliance.panels(np.array([0.0, 1.0, 2.0]), 5), 1.0)
-    assert problem.ripples(problem.undeformed(-5.0))[0] < 1e-13
-
-
 @pytest.mark.parametrize(("edge", "cells"), [(1.0, (0, 1)), (0.7, (0,))])
 def test_a_radius_is_known_no_better_than_to_the_last_coefficient_but_one_beside_the_edge_over_the_slope(edge, cells):
     operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 6)
@@ -351,17 +297,6 @@ def test_a_radius_is_known_no_better_than_to_the_last_coefficient_but_one_beside
     ripple = problem.ripples(np.append(gaps, [0.0, 1.0]))[1]
     beside = np.prod([last[k] for k in cells]) ** (1 / len(cells))
     assert ripple == pytest.approx(beside / (0.3 + 0.5 * edge), rel=1e-3, abs=0)
-
-
-def test_a_coefficient_small_by_accident_does_not_tell_a_radius_better_than_those_of_its_parity():
-    """The cells of a fold where a dimple begins: even coefficients fall slowly, odd ones are nearly none."""
-    operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 7)
-    problem, even = ContactProblem(operator, 0.5), [0, 0, 4e-3, 0, 2e-4, 1e-9, 0]
-    deflection = 0.3 * (operator.radii - 0.7) + np.polynomial.legendre.legval(2 * (operator.radii % 1.0) - 1, even)
-    gaps = LENNARD_JONES.edge_gap + deflection + 0.5 * (problem.profile.height(operator.radii) - 0.7**2 / 2)
-    state = np.append(gaps, [0.0, 1.0])
-    slope = operator.continuous(problem.contact_radius(state))[1] @ gaps
-    assert problem.ripples(state)[1] == pytest.approx(1e-5 / slope, rel=1e-3, abs=0)
 
 
 @pytest.mark.parametrize("nodes", [2, 5, 8])
@@ -411,17 +346,3 @@ def test_a_problem_that_is_left_frees_its_matrices_at_once():
         assert freed() is None
     finally:
         gc.enable()
-
-
-def test_a_state_is_extrapolated_through_three_better_than_through_two(problem, touching):
-    """As seen from a contact edge that runs over a grid which stands still."""
-    radii, x, states = (0.3, 0.33, 0.36, 0.39), touching, []
-    for radius in radii:
-        x = newton.solve(problem, x, newton.contact_radius(radius)).x
-        states.append(x)
-    trail = [passed(problem, state, radius) for state, radius in zip(states, radii, strict=True)]
-    two, three = (with_edge(problem, trail[k:3], states[2], radii[3]) for k in (1, 0))
-    errors = [np.abs(guess - states[3])[:-2].max() for guess in (two, three)]
-    assert errors[1] < errors[0] / 4
-    assert with_edge(problem, [passed(problem, problem.undeformed(-5.0), 0.2), trail[0]], states[0], 0.33) is None
-    assert with_edge(problem, trail[:2], states[1], 1e4) is None

@@ -78,11 +78,6 @@ def test_a_contact_radius_is_known_no_better_than_the_gap_ripples_there():
             assert event.contact_radius_error >= ripple > 0, name
 
 
-def test_a_softer_apparatus_loses_more(path):
-    losses = [cycle(path, stiffness).energy_lost.value for stiffness in (0.1, 1.0, 10.0, np.inf)]
-    assert np.all(np.diff(losses) < 0)
-
-
 def test_a_soft_apparatus_jumps_where_fixed_grips_do_not():
     path = halfspace.trace(0.5)
     assert cycle(path) is None
@@ -136,12 +131,6 @@ def test_critical_stiffness_of_a_rigid_contact_is_the_steepest_fall_of_bradleys_
     assert critical_stiffness(0.697) > 5000
 
 
-def test_errors_are_small_and_positive(path):
-    found = cycle(path, 2.0)
-    assert 0 < found.energy_lost.error < 1e-5 * found.energy_lost.value
-    assert 0 < found.jump_on.take_off.approach_error < 1e-5
-
-
 @pytest.mark.parametrize("rtol", [1e-2, 1e-4])
 @pytest.mark.parametrize(("tabor", "stiffness"), [(0.75, 0.5), (2.0, math.inf), (8.0, 3.0)])
 def test_the_error_of_an_energy_is_what_its_change_from_the_curves_grid_to_the_finest_may_leave(tabor, stiffness, rtol):
@@ -183,15 +172,6 @@ def test_an_apparatus_has_a_positive_stiffness(path, stiffness):
         cycle(path, stiffness)
 
 
-def test_the_finite_element_path_has_its_cycle_too():
-    import fem_adhesion
-
-    path = fem_adhesion.trace(fem_adhesion.Scene(tabor=2.0), rtol=1e-4)
-    other = cycle(halfspace.trace(2.0), 1.0)
-    ours = cycle(path, 1.0)
-    assert ours.energy_lost.value == pytest.approx(other.energy_lost.value, abs=2 * ours.energy_lost.error)
-
-
 def test_at_a_coarse_tolerance_states_on_a_hemisphere_are_within_their_errors():
     """Of few operators for all events the change by one more tells little: it was up to 4.6 times the estimate."""
     import fem_adhesion
@@ -228,7 +208,7 @@ def test_a_soft_cantilever_jumps_on_from_beyond_the_traced_curve():
     assert Scales(path.tabor).rigid_jump_on(stiffness) == pytest.approx(1 - gap, rel=1e-6)
 
 
-@pytest.mark.parametrize("stiffness", [1e-2, 1e-4, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("stiffness", [1e-2, 1e-6, 1e-12])
 @pytest.mark.parametrize("rtol", [1e-2, 1e-6])
 def test_however_soft_an_apparatus_its_jumps_are_within_their_errors(truth, rtol, stiffness):
     """Against the tightest tolerance; where the jump on lies far out, against a rigid sphere too."""
@@ -268,11 +248,6 @@ def test_an_extended_curve_has_the_same_cycle(stiff_path):
     for a, b in zip(ours, theirs, strict=True):
         assert a.take_off.point.observables[0] == pytest.approx(b.take_off.point.observables[0], rel=1e-7)
         assert a.energy(1 / stiffness) == pytest.approx(b.energy(1 / stiffness), rel=1e-7)
-
-
-def test_a_curve_that_reaches_far_enough_is_left_alone(stiff_path):
-    assert reaching(stiff_path, 1.0) is stiff_path
-    assert reaching(stiff_path, math.inf) is stiff_path
 
 
 def test_take_offs_are_found_again_where_the_curves_grid_has_them_a_fifth_farther_in():

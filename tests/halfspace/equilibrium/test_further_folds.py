@@ -1,11 +1,9 @@
 """Curves with more folds than two: their events, jumps and cycle, against closed forms, brute force and relaxation."""
 
 import io
-import math
 import re
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -23,19 +21,17 @@ from fem_adhesion.curve import record, terminal
 from fem_adhesion.curve.pictures import experiment
 from fem_adhesion.curve.solve import Curves, Question
 from halfspace import Layer
-from halfspace.accuracy.grids import half_space_charts, resolution_for, rings, under_sphere
-from halfspace.accuracy.stages import Rung, on_all
-from halfspace.equilibrium import path as path_module
-from halfspace.equilibrium.charts import Stage, moved, trace_charts
+from halfspace.accuracy.grids import half_space_charts, resolution_for, under_sphere
+from halfspace.accuracy.stages import Rung
+from halfspace.equilibrium.charts import moved, trace_charts
 from halfspace.equilibrium.conditions import FOLD
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import is_fold, usual
 from halfspace.equilibrium.path import Steps
-from halfspace.errors import ContactTooWide, IllPosed, InputError, NotConverged
+from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Law, Morse, PowerLaw
 from halfspace.profiles import Sphere
 from halfspace.scales import Scales
-from halfspace.values import Estimate
 
 
 @dataclass(frozen=True)
@@ -75,12 +71,6 @@ def winding():
 def ordinary():
     """Four folds, no stable state between the jumps."""
     return halfspace.trace(5.0, rtol=1e-4)
-
-
-def test_a_stage_has_the_folds_of_its_own_grid(ordinary):
-    """Not those of the twin, which has other cells."""
-    for stage in ordinary.stages:
-        assert stage["fold_2"].problem is stage["fold_3"].problem is stage["jump_on"].problem
 
 
 @pytest.mark.parametrize(
@@ -196,11 +186,6 @@ def _numbers(event):
     return np.array([event.approach, event.load, event.central_gap])
 
 
-def test_without_stable_states_between_the_folds_there_are_two_jumps(ordinary):
-    assert list(ordinary.events) == ["pull_off", "jump_on", "fold_2", "fold_3", "jump_off", "zero_load"]
-    assert list(cycle(ordinary).jumps) == ["jump_on", "jump_off"]
-
-
 @pytest.mark.parametrize("tabor", [20.0, 100.0])
 def test_a_curve_that_winds_more_has_all_its_folds(tabor):
     """At tabor 100 one is between two points so far apart that only shorter steps find it."""
@@ -305,16 +290,6 @@ def test_a_law_with_two_edges_on_a_soft_body_is_refused_by_what_is_to_be_resolve
         halfspace.trace(30.0, law=LAW)
 
 
-def test_errors_of_the_loss_add_up(winding):
-    found = cycle(winding)
-    assert found.energy_lost == Estimate(
-        sum(jump.energy.value for jump in found.jumps.values()), sum(jump.energy.error for jump in found.jumps.values())
-    )
-    assert found.met
-    assert math.isinf(found.stiffness)
-    assert found.jump_on.take_off.load == pytest.approx(winding.event("jump_on").load, abs=1e-8)
-
-
 def test_folds_are_found_at_every_tolerance_also_where_contact_is_about_to_be_made():
     """The curve's grid has the last at 0.0092 beta from the axis; on one that stands still the truth is at 0.0077."""
     tolerances = (1e-1, 1e-4, 1e-5, 1e-7)
@@ -358,16 +333,6 @@ def test_coarse_elements_name_no_wiggle_at_the_birth_of_contact_a_fold(wound, rt
             assert abs(getattr(ours, quantity) - getattr(truth, quantity)) <= error
 
 
-@pytest.mark.parametrize("tabor", [0.1, 1.0, 20.0])
-def test_the_chart_that_follows_the_contact_reaches_as_far_as_the_standing_one_when_it_takes_over(tabor):
-    scales = Scales(tabor)
-    lines = rings(scales, 0.6, 3.0, 8.0)
-    assert lines.edge[-1] * lines.until == pytest.approx(lines.centred[-1], rel=1e-12)
-    assert lines.centred[-1] == pytest.approx(scales.outer_radius(32.0), rel=1e-12)
-    within = lines.centred[lines.centred < lines.until]
-    assert np.diff(np.append(within, lines.centred[within.size])).max() <= 0.3 * scales.spike_width * (1 + 1e-12)
-
-
 def test_a_sphere_whose_contact_is_born_between_folds_is_traced():
     """A step leapt from the first radius to one that the operator is not known for, and the path went astray."""
     law, sphere = PowerLaw(3.32, 11.7), Sphere(973.6)
@@ -376,14 +341,6 @@ def test_a_sphere_whose_contact_is_born_between_folds_is_traced():
     assert "fold_5" in rough.events
     for name, event in rough.events.items():
         assert abs(event.approach - fine.events[name].approach) <= event.approach_error
-
-
-def test_a_step_that_leaves_the_radii_for_which_an_operator_is_known_is_refused(monkeypatch):
-    leapt = SimpleNamespace(observables=np.array([0.0, 0.0, 0.0, 0.05]))
-    monkeypatch.setattr(path_module, "_corrected", lambda *_: leapt)
-    problem = SimpleNamespace(interface=SimpleNamespace(operator=SimpleNamespace(least_radius=0.1)))
-    with pytest.raises(NotConverged, match=r"contact radius 0\.05 beta is below 0\.1 beta"):
-        path_module._advance(problem, [leapt], 0.1, None, Steps(), ())
 
 
 @pytest.mark.parametrize("lost", [0, 1])
@@ -410,35 +367,6 @@ def test_a_fold_that_no_finer_grid_has_is_told(monkeypatch, lost):
     assert re.match(r"half-space: a fold near approach -4\.\d+ eps, load -0\.\d+ R dgamma cannot be told", told[0])
     solution = record.record(curves)["solutions"]["half-space"]
     assert [fold["central_gap"] for fold in solution["unconfirmed_folds"]] == [f.central_gap for f in path.unconfirmed]
-
-
-def test_folds_left_over_are_named_in_turn_as_least_and_largest_approaches(monkeypatch):
-    """Of four with the second lost, the first and the last are a pair; the third is as the first."""
-    path, whole = (halfspace.trace(20.0, rtol=1e-3) for _ in range(2))
-    every, ups = [whole.event(f"fold_{k}").approach for k in range(2, 6)], iter(range(9))
-    chains = Rung.chains
-
-    def on_finer_grids(rung, state):
-        if next(ups) == 1:
-            raise NotConverged("not found again")
-        return chains(rung, state)
-
-    monkeypatch.setattr(Rung, "chains", on_finer_grids)
-    kept = [path.events[name].approach for name in path.events if name.startswith("fold")]
-    assert kept == [every[0], every[3]]
-    assert len(path.unconfirmed) == 2
-
-
-@pytest.mark.parametrize("error", [IllPosed("for any grid"), ContactTooWide("for any grid")])
-def test_a_jump_that_no_grid_has_ends_the_climb_for_what_it_is(error):
-    class Refusing(Stage):
-        unknowns = 0
-
-        def __call__(self, _):
-            raise error
-
-    with pytest.raises(type(error), match="for any grid"):
-        on_all({"jump_on": SimpleNamespace(problem=None)}, Refusing())
 
 
 def test_a_contact_that_grows_wider_than_was_guessed_is_traced():

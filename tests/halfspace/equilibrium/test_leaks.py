@@ -63,14 +63,6 @@ def test_what_is_not_between_two_places_is_said_with_their_values_and_the_remedy
         root(function, 0.0, 1.0, "a thing; do this")
 
 
-def test_what_the_function_itself_says_goes_through():
-    def lost(_):
-        raise NotConverged("no convergence in 20 steps; nearer")
-
-    with pytest.raises(NotConverged, match="no convergence in 20"):
-        root(lost, 0.0, 1.0, "a thing; do this")
-
-
 @pytest.fixture(scope="module")
 def segments():
     return trace_charts(half_space_charts(Scales(1.0), resolution_for(Scales(1.0), 1e-1)))

@@ -10,7 +10,6 @@ from halfspace.errors import InputError
 from halfspace.laws import LENNARD_JONES
 from halfspace.scaling import IN_SI, Units
 from halfspace.theories import closed_forms
-from halfspace.theories.maugis import MaugisDugdale
 
 SILICA = {"radius": 1e-6, "modulus": 40e9, "work_of_adhesion": 0.05, "spacing": 0.3e-9}
 
@@ -52,11 +51,6 @@ def test_the_hamaker_constant_is_that_of_the_surface_law_far_away(material):
     tension = -float(LENNARD_JONES.pressure(np.array(gap - 1), units.tabor)) * units.pressure
     assert tension == pytest.approx(units.hamaker / (6 * math.pi * (gap * units.spacing) ** 3), rel=1e-9)
     assert scaling.spacing_of(units.hamaker, units.work_of_adhesion) == pytest.approx(units.spacing, rel=1e-14)
-
-
-def test_silica_has_the_spacing_of_its_hamaker_constant():
-    """A = 6.5e-20 J and 0.063 J/m^2, which obey dgamma = A/(12 pi (0.165 nm)^2): eps = sqrt(3/4) 0.165 nm."""
-    assert scaling.spacing_of(6.5e-20, 0.063) == pytest.approx(math.sqrt(0.75) * 0.165e-9, rel=4e-3)
 
 
 @pytest.mark.parametrize("value", [0.0, -1e-20, math.inf, math.nan])
@@ -136,10 +130,6 @@ def test_parameters_of_appendix_a_there_and_back(parameter, at_one):
     assert parameter.of(1.0) == pytest.approx(at_one, rel=1e-4)
     tabor = np.geomspace(1e-3, 1e2, 20)
     np.testing.assert_allclose(parameter.tabor(parameter.of(tabor)), tabor, rtol=1e-14)
-
-
-def test_lambda_is_that_of_the_theory_matched_to_the_largest_tension():
-    assert MaugisDugdale.matched(3.0).maugis == pytest.approx(float(scaling.MAUGIS.of(3.0)), rel=1e-14)
 
 
 def test_each_quantity_has_the_size_of_its_unit():

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
-from scipy.special import gamma
 
 import halfspace
 from halfspace.laws import LENNARD_JONES
@@ -27,19 +26,6 @@ def _rows(name):
 def test_table_1_to_its_last_printed_digit(row):
     alpha, printed = float(row["alpha_star"]), row["f_over_alpha_star_1_5"]
     assert f"{dmt.force_excess(alpha) / alpha**1.5:.3f}" == f"{float(printed):.3f}"
-
-
-def test_tension_around_a_tiny_hertz_contact():
-    """Greenwood fitted 1.84 alpha*^(3/2) - 7.7 alpha*^2; the series is 1.8397 alpha*^(3/2) - 8 alpha*^2 + ..."""
-    alpha = np.geomspace(2e-5, 1e-4, 20)
-    f = dmt.force_excess(alpha)
-    second, first = np.polyfit(np.sqrt(alpha), f / alpha**1.5, 1)
-    assert first == pytest.approx(1.84, rel=1e-3)
-    assert second == pytest.approx(-7.7, rel=0.015)
-    leading = 32 / (9 * np.pi) * np.sqrt(np.pi / 2) * (9 * gamma(9.5) / gamma(10) - 3 * gamma(3.5) / gamma(4))
-    assert leading == pytest.approx(1.83970, abs=1e-5)
-    third = (f / alpha**1.5 - leading + 8 * np.sqrt(alpha)) / alpha
-    np.testing.assert_allclose(third, third.mean(), rtol=0.1)
 
 
 def _outside(alpha, integrand):
@@ -146,19 +132,6 @@ def test_maugis_equations_as_he_printed_them(lam):
     )
 
 
-def test_maugis_becomes_jkr():
-    theory, radius = MaugisDugdale(1e4, tabor=2.0), np.geomspace(0.1, 10, 30)
-    np.testing.assert_allclose(theory.load(radius), closed_forms.jkr_load(radius), atol=1e-2)
-    np.testing.assert_allclose(theory.approach(radius), closed_forms.jkr_approach(radius, 2.0), atol=1e-3)
-    for found, limit in (
-        (theory.pull_off(), closed_forms.jkr_pull_off(2.0)),
-        (theory.jump_off(), closed_forms.jkr_jump_off(2.0)),
-    ):
-        assert found.load == pytest.approx(limit.load, rel=1e-4)
-        assert found.approach == pytest.approx(limit.approach, rel=1e-4)
-        assert found.contact_radius == pytest.approx(limit.contact_radius, rel=1e-3)
-
-
 @pytest.mark.parametrize("lam", [1e-4, 0.1, 1.0, 5.0, 100.0])
 def test_turning_points_of_maugis_are_minima(lam):
     theory = MaugisDugdale(lam, tabor=1.0)
@@ -207,7 +180,7 @@ def test_maugis_out_of_range_is_refused(lam, limit, remedy):
         MaugisDugdale(1.0, tabor=-1.0)
 
 
-@pytest.mark.parametrize("lam", np.geomspace(1e-3, 1e3, 13))
+@pytest.mark.parametrize("lam", np.geomspace(1e-3, 1e3, 5))
 def test_carpick_fits_maugis(lam):
     """About a per cent in the load at pull-off and the radius under no load, which set the scales of the fit."""
     theory = MaugisDugdale(lam, tabor=1.0)
@@ -224,13 +197,6 @@ def test_carpicks_transition_parameter_by_the_formula_that_they_print():
     """Their (13), lambda = -0.924 ln(1 - 1.02 alpha)."""
     alpha = np.linspace(0, 0.95, 20)
     np.testing.assert_allclose(maugis.carpick_transition(-0.924 * np.log(1 - 1.02 * alpha)), alpha, atol=1e-14)
-
-
-def test_carpick_runs_from_dmt_to_jkr():
-    loads = np.array([0.0, 5.0, 20.0])
-    np.testing.assert_allclose(maugis.carpick_radius(loads, 1e-6), np.cbrt(3 / 4 * (loads + 2 * np.pi)), rtol=2e-3)
-    np.testing.assert_allclose(maugis.carpick_radius(loads, 1e6), closed_forms.jkr_radius(loads), rtol=1e-2)
-    assert maugis.carpick_transition(0.0) == 0
 
 
 def test_matched_maugis_against_the_converged_lennard_jones_contact():
