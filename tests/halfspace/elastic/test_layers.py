@@ -17,8 +17,8 @@ from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, 
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.contact import ContactProblem
 from halfspace.errors import InputError, NotConverged
-from halfspace.laws import LENNARD_JONES, Dlvo, Exponential, Morse
-from halfspace.profiles import Hyperboloid, Sphere
+from halfspace.laws import LENNARD_JONES
+from halfspace.profiles import Hyperboloid
 from halfspace.scales import Scales
 from halfspace.theories.layered import OnLayers
 
@@ -141,30 +141,6 @@ def test_pull_off_from_a_layer_is_within_its_estimate_of_the_reference(on_layer,
     assert abs(event.load - load) <= event.load_error + 1e-8
     assert event.approach_error <= rtol * 3
     assert event.load_error <= rtol * 6
-
-
-def _off(rough, best):
-    """How far a number is off, in what it and a better one are told to err by."""
-    return abs(rough.value - best.value) / (rough.error + best.error)
-
-
-@pytest.fixture(scope="module")
-def under_a_sphere():
-    """Of a sphere with a stiff law on a coating, at several tolerances."""
-    how = {"law": Morse(4.1), "profile": Sphere(72.5), "body": Coated(0.319, 0.218, 0.16, 0.39)}
-    return {rtol: trace(4.72, **how, rtol=rtol) for rtol in (1e-2, 1e-4, 1e-6)}
-
-
-def test_a_gap_on_which_three_grids_agree_by_accident_is_known_as_well_as_those_beside_it(under_a_sphere):
-    """To a twentieth of what each of them errs by, so that it was nine times outside; one on a layer eleven times."""
-    on_a_layer = {
-        rtol: trace(5.93, law=Exponential(1.31, 10), body=Layer(0.0816, 0.4999, "sliding"), rtol=rtol)
-        for rtol in (1e-2, 1e-6)
-    }
-    for paths in (under_a_sphere, on_a_layer):
-        rough, best = (paths[rtol].events["zero_load"].estimate("central_gap") for rtol in (1e-2, 1e-6))
-        assert _off(rough, best) < 1
-        assert rough.error < 1000 * abs(rough.value - best.value)
 
 
 def test_the_energy_on_a_layer_falls_by_the_work_of_the_load():
@@ -291,13 +267,6 @@ def test_a_contact_that_is_wider_than_the_attraction_rests_on_images_integrated_
         found, wanted = (each.compliance @ pressure for each in (operator.at(radius), own))
         inside = operator.unit.radii < 1.0
         assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=1e-5 * np.abs(wanted).max())
-
-
-def test_a_barrier_is_resolved_on_a_stiff_coating():
-    """Against 16 nodes in each of the cells and `rtol=1e-8`; cells that grew threefold ended at 15 nodes and 6.7863."""
-    jump_on = trace(2, law=Dlvo(0.3, 1.0), body=Coated(0.2, 20), rtol=1e-2).event("jump_on")
-    assert abs(jump_on.approach - 6.78583698) < jump_on.approach_error < 1e-2
-    assert abs(jump_on.load - 0.130549561) < jump_on.load_error < 1e-2 * jump_on.load
 
 
 def test_the_scaled_operator_changes_with_the_contact_as_its_rates_say(charted):

@@ -20,7 +20,6 @@ from fem_adhesion.crosscheck.study import _compare_events
 from fem_adhesion.curve import record, terminal
 from fem_adhesion.curve.pictures import experiment
 from fem_adhesion.curve.solve import Curves, Question
-from halfspace import Layer
 from halfspace.accuracy.grids import half_space_charts, resolution_for, under_sphere
 from halfspace.accuracy.stages import Rung
 from halfspace.equilibrium.charts import moved, trace_charts
@@ -306,15 +305,6 @@ def test_folds_are_found_at_every_tolerance_also_where_contact_is_about_to_be_ma
             assert max(abs(fold.load - load), fold.load_error) <= rtol
 
 
-def test_a_fold_that_the_curve_passes_on_the_axis_is_told_on_cells_that_end_at_its_contact_edge():
-    """On those of the axis, of which its contact covers two, the load at the last fold was known to 6.5e-7."""
-    usual, fine = (halfspace.trace(10.0, profile=Sphere(100.0), rtol=rtol).event("fold_3") for rtol in (1e-7, 1e-9))
-    assert usual.load_error <= 1e-8
-    assert fine.load_error <= 1e-9
-    assert abs(usual.load - fine.load) <= usual.load_error
-    assert abs(usual.approach - fine.approach) <= usual.approach_error
-
-
 @pytest.fixture(scope="module")
 def wound():
     """At a Tabor parameter at which the last fold but one is next to the birth of contact."""
@@ -331,16 +321,6 @@ def test_coarse_elements_name_no_wiggle_at_the_birth_of_contact_a_fold(wound, rt
         for quantity in ("approach", "load", "central_gap"):
             error = getattr(ours, f"{quantity}_error") + getattr(truth, f"{quantity}_error")
             assert abs(getattr(ours, quantity) - getattr(truth, quantity)) <= error
-
-
-def test_a_sphere_whose_contact_is_born_between_folds_is_traced():
-    """A step leapt from the first radius to one that the operator is not known for, and the path went astray."""
-    law, sphere = PowerLaw(3.32, 11.7), Sphere(973.6)
-    rough, fine = (halfspace.trace(28.9388, law=law, profile=sphere, rtol=rtol) for rtol in (1e-4, 1e-6))
-    assert list(rough.events) == list(fine.events)
-    assert "fold_5" in rough.events
-    for name, event in rough.events.items():
-        assert abs(event.approach - fine.events[name].approach) <= event.approach_error
 
 
 @pytest.mark.parametrize("lost", [0, 1])
@@ -367,12 +347,6 @@ def test_a_fold_that_no_finer_grid_has_is_told(monkeypatch, lost):
     assert re.match(r"half-space: a fold near approach -4\.\d+ eps, load -0\.\d+ R dgamma cannot be told", told[0])
     solution = record.record(curves)["solutions"]["half-space"]
     assert [fold["central_gap"] for fold in solution["unconfirmed_folds"]] == [f.central_gap for f in path.unconfirmed]
-
-
-def test_a_contact_that_grows_wider_than_was_guessed_is_traced():
-    """A soft law on a layer: its radius comes to 1.3 times the widest that the operator was made for."""
-    layer = Layer(6.51, poisson=0.413)
-    assert halfspace.trace(0.0434, law=Morse(0.63), body=layer, rtol=1e-3).met
 
 
 def test_the_radius_of_a_fold_at_the_birth_of_contact_is_within_its_error_by_elements():
