@@ -206,9 +206,7 @@ def words_of(html):
 
 @pytest.mark.usefixtures("_drawn_before")
 @pytest.mark.parametrize("verdict", ENDINGS)
-def test_page_and_exit_code_tell_the_verdict_of_the_cases(
-    contents, verdict, tmp_path, monkeypatch, capsys
-):
+def test_page_and_exit_code_tell_the_verdict_of_the_cases(contents, verdict, tmp_path, monkeypatch, capsys):
     solved_before(monkeypatch, contents, ENDINGS[verdict])
     code = cli.main(["report", "--out", str(tmp_path / "a.html"), "--tabor", "2"])
     assert code == (0 if verdict == "agree" else 1)
