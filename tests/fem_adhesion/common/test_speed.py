@@ -36,7 +36,6 @@ from fem_adhesion.speed.study import (
     cheapest,
     measure,
     pareto_front,
-    slope,
     timed,
 )
 from halfspace.equilibrium.devices import cycle
@@ -261,12 +260,6 @@ def test_the_cheapest_rung_and_the_most_accurate():
     assert cheapest(rungs, 1e-6) is None
     assert best(rungs).seconds == 5
     assert best(rungs, "jump_on") is None
-
-
-def test_the_slope_of_a_power_is_its_exponent():
-    n = np.array([10, 20, 40, np.nan])
-    assert slope(n, 3 * n**2.5) == pytest.approx(2.5)
-    assert math.isnan(slope(n[:1], n[:1]))
 
 
 def test_each_cost_grows_by_its_own_exponent():

@@ -5,7 +5,6 @@ import io
 import json
 import math
 import re
-import shlex
 from dataclasses import replace
 
 import meshio
@@ -323,20 +322,6 @@ def test_the_command_of_the_readme_writes_every_kind_of_file_whole(tmp_path, mon
     assert set((tmp_path / "curve").iterdir()) >= {tmp_path / "curve" / "body.pvd", tmp_path / "curve" / "contact.pvd"}
 
 
-def test_a_material_without_a_spring_is_drawn_and_written_in_si(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    arguments = [*MATERIAL, "--rtol", "1e-2", "--plot", "a.svg", "--vtk", "fields", "--points", "0"]
-    assert cli.main(["curve", *arguments]) == 0
-    assert "jumps under fixed grips" in (tmp_path / "a.svg").read_text()
-    zero = meshio.read(tmp_path / "fields" / "body_0003.vtu")
-    modulus = 1e9 / (1 - 0.3**2)
-    beta = np.cbrt(1e-14 * 0.05 / modulus)
-    assert zero.field_data["contact_radius_m"][0] == pytest.approx(2.2 * beta, rel=0.2)
-    assert zero.field_data["contact_modulus_Pa"][0] == pytest.approx(modulus)
-    largest = zero.point_data["stress_cylindrical_Pa"][:, 2].max()
-    assert largest == pytest.approx(16 / (9 * np.sqrt(3)) * 0.05 / 0.3e-9, rel=0.02)  # the law's largest tension
-
-
 def test_a_pipe_gets_no_plot_and_a_terminal_does(both):
     piped = _shown(both, 150, terminal=False)
     assert "pull-off" in piped
@@ -380,16 +365,6 @@ def test_the_plot_in_characters_has_the_events_where_they_are(both):
     assert place["C"][1] == place["D"][1]
     assert place["Z"][0] < place["A"][0] < place["C"][0] < place["P"][0]
     assert place["C"][1] < place["A"][1] < place["P"][1] < place["Z"][1]
-
-
-def test_the_example_of_the_help_runs(tmp_path, monkeypatch):
-    commands = Parser(prog="fem-adhesion").add_subparsers(parser_class=Parser)
-    curve.COMMAND.add_to(commands)
-    program, command, *arguments = shlex.split(commands.choices["curve"].epilog.removeprefix("example: "))
-    assert (program, command) == ("fem-adhesion", "curve")
-    monkeypatch.chdir(tmp_path)
-    assert _run(*arguments) == 0
-    assert {file.name for file in tmp_path.iterdir()} == {"curve.svg", "curve.json"}
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from matplotlib import rc_context
 from matplotlib.colors import to_rgba
-from matplotlib.figure import Figure
 
 from fem_adhesion import Hemisphere, LinearElastic, NeoHookean
 from fem_adhesion.common import lines as curve_lines
@@ -140,14 +139,6 @@ def test_an_apparatus_adds_two_arrows_along_its_load_lines(real):
     assert sum(line.get_label().startswith("jumps, $k$ = 5 N/m") for line in axes.lines) == 1
 
 
-def test_an_arrow_is_cut_at_the_frame():
-    frame = curve_lines.Frame((-1.0, 1.0), (-2.0, 2.0))
-    assert load_panel._clipped((-3, 0), (3, 0), frame) == ((-1, 0), (1, 0))
-    assert load_panel._clipped((0, 0), (0, 8), frame) == ((0, 0), (0, 2))
-    assert load_panel._clipped((0, 0), (0.5, 1), frame) == ((0, 0), (0.5, 1))
-    assert load_panel._clipped((-3, 0), (-2, 1), frame) is None
-
-
 def test_profiles_meet_the_surface_law_and_the_nodes_lie_on_them(curves):
     figure = _drawn(curves[5.0])
     for panel, count in (("pressure", 5), ("gap", 5)):
@@ -180,12 +171,6 @@ def test_both_solvers_are_in_one_picture(elements):
     dots = lines["half-space"]
     assert dots.get_marker() == "o"
     assert set(dots.get_ydata()) <= set(elements.other.load)
-
-
-def test_nothing_is_smaller_than_can_be_read(elements):
-    figure = _drawn(elements)
-    sizes = {text.get_fontsize() for text in figure.findobj(lambda artist: hasattr(artist, "get_fontsize"))}
-    assert min(sizes) >= 7.5
 
 
 def test_events_that_would_be_too_small_are_enlarged():
@@ -327,16 +312,6 @@ def test_a_gap_is_smooth_up_to_the_equator_of_a_sphere(made):
             rise = np.diff(line.get_ydata())
             far = line.get_xdata()[:-1] > 0.95 * line.get_xdata().max()
             assert np.all(rise[far] > 0)
-
-
-def test_a_line_outside_the_frame_is_not_named():
-    axes = Figure().add_subplot()
-    axes.plot([0.0, 1.0], [0.0, 1.0], label="inside")
-    axes.plot([5.0, 6.0], [0.0, 1.0], label="beside")
-    axes.plot([0.0, 1.0], [7.0, 8.0], label="above")
-    axes.plot([], [], label="arrows")
-    axes.set(xlim=(0, 2), ylim=(0, 2))
-    assert [line.get_label() for line in load_panel._seen(axes)] == ["inside", "arrows"]
 
 
 def test_axes_have_the_same_places_in_every_format_and_nothing_is_cut_off():

@@ -412,17 +412,6 @@ def test_crossings_of_two_lines_are_all_found():
     assert facts.crossings(wave, np.column_stack([level, 0 * level + 2])).shape == (0, 2)
 
 
-def test_stable_stretches_are_drawn_full_and_unstable_ones_dotted(study, figure):
-    path = study.curves[5.0]
-    full, dotted = figure("fig_2b").axes[0].lines[6:8]
-    assert full.get_label() == r"$\mu = 5$"
-    assert dotted.get_linestyle() == ":" or dotted.is_dashed()
-    np.testing.assert_allclose(full.get_xdata(), path.approach / 5)
-    assert np.all(np.isfinite(np.asarray(full.get_ydata())[path.stable]))
-    assert np.all(np.isfinite(np.asarray(dotted.get_ydata())[~path.stable]))
-    assert np.sum(np.isfinite(full.get_ydata()) & np.isfinite(dotted.get_ydata())) <= 4  # they join, and no more
-
-
 def test_criteria_grids_and_border_stand_in_their_files(study, lines_in, figure):
     jumps = study.criteria
     for stem, values in (
