@@ -3,10 +3,8 @@
 No target installs anything here: the stamps that say that the environment is complete are given.
 """
 
-import os
 import re
 import subprocess
-from pathlib import Path
 
 import pytest
 from families import FAMILIES
@@ -102,31 +100,3 @@ def test_clean_removes_what_was_made_and_nothing_else(tmp_path):
         (tmp_path / name / "file").touch()
     subprocess.run(["make", "clean"], cwd=tmp_path, check=True, capture_output=True)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["Makefile", "halfspace", "meshes"]
-
-
-def test_the_environment_of_a_target_is_made_once_and_from_what_is_pinned():
-    """Rehearsed in a directory without one; a second run finds the stamps and makes nothing."""
-    rehearsed = subprocess.run(
-        ["make", "--no-print-directory", "--dry-run", "compare", "VENV=no-such-environment"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout.splitlines()
-    assert rehearsed[0].endswith("-m venv no-such-environment")
-    assert "--constraint constraints.txt --editable '.[studies]'" in rehearsed[1]
-    assert rehearsed[-1] == "no-such-environment/bin/fem-adhesion compare"
-    assert not Path(ROOT / "no-such-environment").exists()
-
-
-def test_processes_of_a_target_share_bytecode_in_the_environment_even_where_none_is_to_be_written(tmp_path):
-    (tmp_path / "told").write_text("told:\n\t@echo $$PYTHONPYCACHEPREFIX [$$PYTHONDONTWRITEBYTECODE]\n")
-    outside = {name: value for name, value in os.environ.items() if name not in ("PYTHONPYCACHEPREFIX", "MAKEFLAGS")}
-    told = subprocess.run(
-        ["make", "--no-print-directory", f"--file={MAKEFILE_AT}", f"--file={tmp_path}/told", "told", "VENV=/some"],
-        env=outside | {"PYTHONDONTWRITEBYTECODE": "1"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert told.stdout.split() == ["/some/bytecode", "[]"]

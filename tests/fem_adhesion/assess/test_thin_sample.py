@@ -19,10 +19,9 @@ from fem_adhesion.assess.terminal import enough_table, indentations_table, repor
 from fem_adhesion.assess.thin_sample import WRONG, hertz_until
 from fem_adhesion.common.contact import Contact
 from halfspace.elastic import grid
-from halfspace.elastic.layers import Coated, Layer, Layers, Stratum, Substrate, surface_compliance
+from halfspace.elastic.layers import Layer, Layers, Stratum, Substrate, surface_compliance
 from halfspace.errors import InputError
 from halfspace.scaling import Units
-from halfspace.theories import closed_forms
 from halfspace.theories.layered import OnLayers, hertz_ratio, thin_sample_series
 
 SAMPLE = {"radius": 100e-9, "modulus": 1e9, "poisson": 0.3, "work_of_adhesion": 0.05, "spacing": 0.3e-9}
@@ -49,16 +48,6 @@ def test_jkr_on_a_layer(poisson, thickness, pull_off):
     theory = OnLayers(Layer(thickness, min(poisson, 0.499999)))
     least = minimize_scalar(lambda a: theory.jkr(a).load, bounds=(0.8, 2.0), method="bounded")
     assert -least.fun / np.pi == pytest.approx(pull_off, rel=5e-7 if poisson < 0.5 else 3e-6)
-
-
-@pytest.mark.parametrize("radius", [0.01, 1.0, 30.0])
-def test_a_coating_like_its_half_space_has_the_closed_forms(radius):
-    body = OnLayers(Coated(1.0, 1.0, 0.3, 0.3))
-    hertz, jkr = body.hertz(radius), body.jkr(radius)
-    assert hertz.approach == pytest.approx(float(closed_forms.hertz_approach(radius, 1.0)), rel=1e-11)
-    assert hertz.load == pytest.approx(float(closed_forms.hertz_load(radius)), rel=1e-11)
-    assert jkr.approach == pytest.approx(float(closed_forms.jkr_approach(radius, 1.0)), rel=1e-11)
-    assert jkr.load == pytest.approx(float(closed_forms.jkr_load(radius)), rel=1e-11)
 
 
 @pytest.mark.parametrize("radius", [0.1, 3.0])

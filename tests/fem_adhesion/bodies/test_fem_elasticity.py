@@ -243,20 +243,6 @@ def test_boussinesq_stress_belongs_to_the_displacement(poisson):
     np.testing.assert_allclose(elastic_matrix(poisson) @ strain, boussinesq_stress(r, z, poisson), atol=1e-9)
 
 
-@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
-def test_boussinesq_stress_is_in_equilibrium(poisson):
-    r, z, step = np.array([0.4, 1.3, 2.0]), np.array([-0.2, -1.0, -3.0]), 1e-5
-
-    def stress(dr, dz):
-        return boussinesq_stress(r + dr, z + dz, poisson)
-
-    rr, _, hoop, rz = stress(0.0, 0.0)
-    d_dr = (stress(step, 0.0) - stress(-step, 0.0)) / (2.0 * step)
-    d_dz = (stress(0.0, step) - stress(0.0, -step)) / (2.0 * step)
-    np.testing.assert_allclose(d_dr[0] + d_dz[3] + (rr - hoop) / r, 0.0, atol=1e-8)
-    np.testing.assert_allclose(d_dr[3] + d_dz[1] + rz / r, 0.0, atol=1e-8)
-
-
 @pytest.mark.parametrize("name", ["contact", "far"])
 @pytest.mark.parametrize(
     "space",

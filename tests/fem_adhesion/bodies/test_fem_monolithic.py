@@ -1,7 +1,5 @@
 """The problem of a whole linear body against its own derivatives, the condensed one, and the laws of mechanics."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 from skfem import ElementQuadP, ElementTriP2
@@ -14,7 +12,7 @@ from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc
 from halfspace.equilibrium import newton
 from halfspace.equilibrium.charts import Chart, metric_for, trace_charts
 from halfspace.equilibrium.conditions import relocate
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD, ContactProblem
 from halfspace.equilibrium.search import find_events
 
 NU = 0.3
@@ -30,16 +28,6 @@ SMALL = Space(block_grid(0.6, 2.0, 20.0), ElementQuadP(4))
 @pytest.fixture(scope="module", params=SPACES)
 def body(request):
     return condense(SPACES[request.param], NU)
-
-
-@pytest.fixture(scope="module")
-def small():
-    return assemble(SMALL, NU, 1.3)
-
-
-@pytest.fixture(scope="module")
-def in_contact(small):
-    return solved(small, newton.approach(-0.5)).x
 
 
 def solved(problem, control, gaps=(3.0, 2.0, 1.0, 0.5, 0.2, 0.0)):
@@ -61,37 +49,6 @@ def central_difference(function, x, direction, step=1e-5):
     """Fourth-order difference quotient of a function along a direction."""
     near, far = (function(x + k * step * direction) - function(x - k * step * direction) for k in (1, 2))
     return (8 * near - far) / (12 * step)
-
-
-# --- what is assembled ---
-
-
-def test_the_tangent_is_the_derivative_of_the_residual(small, in_contact):
-    along = partial(small.along, in_contact)
-    rng = np.random.default_rng(1)
-    for dx in (rng.normal(size=in_contact.size), np.eye(in_contact.size)[-1]):
-        np.testing.assert_allclose(along(dx), central_difference(small.residual, in_contact, dx), atol=1e-8)
-    by_displacement = np.apply_along_axis(along, 0, np.eye(in_contact.size, in_contact.size - 1))
-    assert abs(by_displacement - by_displacement.T).max() < 1e-13 * abs(by_displacement).max()
-
-
-@pytest.mark.parametrize("observable", [APPROACH, LOAD, CENTRAL_GAP, CONTACT_RADIUS])
-def test_the_gradients_of_the_observables(small, in_contact, observable):
-    dx = np.random.default_rng(2).normal(size=in_contact.size)
-    found = small.gradient(in_contact, np.eye(4)[observable]) @ dx
-    quotient = central_difference(lambda x: small.observables(x)[observable], in_contact, dx)
-    assert found == pytest.approx(quotient, rel=1e-8)
-
-
-def test_the_residual_is_the_gradient_of_the_energy(small, in_contact):
-    """Out of equilibrium too."""
-    rng = np.random.default_rng(3)
-    x = in_contact + 0.01 * rng.normal(size=in_contact.size)
-    dy = np.append(rng.normal(size=x.size - 1), 0.0)
-    work = small.tabor * small.residual(x) @ dy[:-1]
-    assert work == pytest.approx(central_difference(small.energy, x, dy), rel=1e-8)
-    by_approach = central_difference(small.energy, x, np.eye(x.size)[-1])
-    assert by_approach == pytest.approx(small.load(x), rel=1e-8)
 
 
 # --- against the condensed problem ---

@@ -197,8 +197,3 @@ def test_bodies_without_fields_are_refused_in_one_line(winding, body):
     with pytest.raises(ValueError, match="no fields here") as refusal:
         list(fields.states_along(Scene(1.0, body), winding[1]))
     assert "\n" not in str(refusal.value)
-
-
-def test_a_negative_number_of_points_is_refused(winding):
-    with pytest.raises(ValueError, match="points = -1"):
-        list(fields.states_along(*winding, points=-1))

@@ -141,7 +141,7 @@ def test_the_stations_of_a_walk_balance(contents):
 @pytest.mark.parametrize(
     ("option", "name", "content", "words"),
     [
-        ("--speed", "other.csv", b"", "captions.csv is not there; give the directory that fem-adhesion speed"),
+        ("--speed", "captions.csv", None, "captions.csv is not there; give the directory that fem-adhesion speed"),
         ("--speed", "captions.csv", b"stem,words\na,b\n", "has the columns stem, words, but not figure; "),
         ("--speed", "captions.csv", b"figure,words\na,b\n", "has the columns figure, words, but not caption; "),
         ("--hard", "hard.csv", b"name,ended\na,b\n", "has the columns name, ended, but not outcome; "),
@@ -151,7 +151,8 @@ def test_the_stations_of_a_walk_balance(contents):
 )
 def test_a_table_of_other_columns_is_refused_before_any_work(option, name, content, words, tmp_path, capsys):
     (tmp_path / "locking.csv").write_text("poisson,error\n0.3,1e-5\n")
-    (tmp_path / name).write_bytes(content)
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
     assert cli.main(["report", "--out", str(tmp_path / "report.html"), option, str(tmp_path)]) == 2
     error = capsys.readouterr().err
     assert str(tmp_path / name) in error

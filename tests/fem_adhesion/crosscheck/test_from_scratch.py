@@ -161,19 +161,6 @@ def test_a_finer_body_is_taken_where_two_differ_by_more_than_the_budget(monkeypa
     assert doubt() < 1e-4
 
 
-def test_a_finer_body_is_taken_where_one_does_not_find_what_turns(monkeypatch):
-    """A state of a coating under Dugdale's law turned on the finest body only: the comparison ended in no number."""
-    asked = []
-
-    def found_from_the_third_on(*asking):
-        asked.append(asking)
-        yield from_scratch.Compared("load", "", (1.0, 1.0) if len(asked) == 2 else (1.0, None), Estimate(1.0, 0.0), 1.0)
-
-    monkeypatch.setattr(from_scratch, "_on_both", found_from_the_third_on)
-    (row,) = from_scratch.events(Scene(0.5), None)
-    assert (len(asked), row.verdict) == (2, "agree")
-
-
 @pytest.mark.parametrize(
     ("reaction", "rounding", "verdict"),
     [

@@ -51,7 +51,7 @@ from fem_adhesion.finite_sphere.table import (
 )
 from fem_adhesion.finite_strain.scene import find_jumps
 from halfspace.equilibrium.devices import cycle
-from halfspace.errors import ContactTooWide, InputError
+from halfspace.errors import InputError
 from halfspace.profiles import Paraboloid, Sphere
 from halfspace.theories.closed_forms import JKR_PULL_OFF
 from halfspace.theories.exact_sphere import JKRSphere
@@ -195,18 +195,6 @@ def test_a_case_whose_worker_died_is_tried_again_when_resumed(tmp_path):
     assert "worker died" in died.reason
     assert [record.status for record in records].count("solved") == 3
     assert run(CASES[:4], opened(tmp_path, resume=True), jobs=1, work=cheap)[1].status == "solved"
-
-
-@pytest.mark.parametrize("kind", [InputError, ContactTooWide])
-def test_a_refused_case_is_recorded_with_kind_and_reason(tmp_path, monkeypatch, kind):
-    def refused(case):
-        raise kind(f"tabor {case.tabor:g} is stuck; try another")
-
-    monkeypatch.setitem(MODELS, "half_space", replace(MODELS["half_space"], solve=refused))
-    (record,) = run([SphereCase("half_space", 1.0)], opened(tmp_path), jobs=1)
-    assert (record.status, record.kind, record.values) == ("refused", kind.__name__, {})
-    assert record.reason == "tabor 1 is stuck; try another"
-    assert run([record.case], opened(tmp_path, resume=True), jobs=1) == (record,)
 
 
 @pytest.mark.parametrize(("kind", "jobs"), [(ValueError, 1), (TypeError, 2)])

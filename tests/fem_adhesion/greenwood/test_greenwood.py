@@ -308,19 +308,6 @@ def test_a_theory_stands_in_the_file_under_its_name(lines_in, stem, curve, tabor
     np.testing.assert_allclose(size * load, THEORIES[stem, curve, tabor](along), rtol=1e-8, atol=1e-8)
 
 
-@pytest.mark.parametrize(("stem", "tabor"), [("fig_1c", 0.02), ("fig_2b", 1.0), ("fig_3c", 3.0)])
-def test_jkr_s_curve_is_hertz_s_less_a_flat_punch(lines_in, stem, tabor):
-    """Load and approach by Hertz's and the flat punch's: W = W_H - W_P, alpha = alpha_H - W_P/(2 a)."""
-    columns, lines = lines_in(stem)
-    radius = np.linspace(0.01, 4.1, 500)
-    punch = np.sqrt(8 * np.pi * radius**3)
-    scaled, load = radius**2 - punch / (2 * radius), 4 / 3 * radius**3 - punch
-    x, y = (scaled, load / (2 * np.pi)) if columns[2] == "approach_mu_eps" else (tabor * scaled, load)
-    jkr = lines["JKR", None]
-    for point in np.column_stack([x, y])[::25]:
-        assert np.hypot(*(jkr - point).T).min() < 0.02 * (1 + np.hypot(*point))
-
-
 @pytest.mark.parametrize("stem", ["fig_1a", "fig_2a", "fig_2b", "fig_3c", "fig_6b"])
 def test_computed_loads_are_right_within_their_errors(rows, lines_in, stem):
     """At both ends of the file, where a single state has the approach."""

@@ -12,14 +12,14 @@ from references import charted_rung
 
 import halfspace
 from fem_adhesion.common.fold_birth import critical_stiffness
-from halfspace.accuracy.grids import Resolution, half_space_charts, resolution_for
+from halfspace.accuracy.grids import half_space_charts, resolution_for
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.elastic.kernel import RingRules
 from halfspace.equilibrium.charts import metric_for, trace_charts
-from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets, locate
-from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD, ContactProblem
+from halfspace.equilibrium.conditions import EXTREMUM, FOLD, between, bracketed, brackets
+from halfspace.equilibrium.contact import CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.devices import cycle
-from halfspace.equilibrium.path import Metric, Point, Steps, _hides_turning_points, correct
+from halfspace.equilibrium.path import Steps
 from halfspace.equilibrium.search import find_events
 from halfspace.errors import InputError, NotConverged
 from halfspace.laws import LENNARD_JONES, Dugdale
@@ -115,19 +115,6 @@ def test_the_curve_runs_from_separation_to_compression(curves):
         assert np.all(np.diff(path.arclength) >= 0)
 
 
-def test_arclength_does_not_depend_on_the_grid():
-    def length(rtol):
-        """Length of the polyline from far separation to zero load."""
-        segments = trace_charts(
-            half_space_charts(Scales(1.0), resolution_for(Scales(1.0), rtol)), steps=Steps(longest=0.2, turn=0.05)
-        )
-        values = np.array([point.observables[:3] for segment in segments for point in segment.points])
-        lengths = np.sqrt(np.diff(values, axis=0) ** 2 @ metric_for(segments[0].problem).weights[:3])
-        return np.interp(0.0, values[-10:, 1], np.cumsum(lengths)[-10:])
-
-    assert length(1e-3) == pytest.approx(length(1e-7), rel=2e-4)
-
-
 def test_the_work_along_the_curve_is_the_energy_between_its_ends():
     """Trapezoidal rule with end corrections on a finely stepped curve, against the energies of the two end states."""
     segments = trace_charts(
@@ -179,22 +166,6 @@ def test_what_takes_long_to_load_is_not_loaded_unless_it_is_needed(code, unneede
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
 
 
-@pytest.mark.parametrize("tabor", [0.6973, 0.698])
-def test_a_pair_of_folds_between_two_points_is_found_though_their_tangents_do_not_tell(tabor):
-    segment = trace_charts(half_space_charts(Scales(tabor), resolution_for(Scales(tabor), 1e-6)))[0]
-    metric = metric_for(segment.problem)
-    folds = [fold.point for fold in locate(segment.problem, segment.points, metric, FOLD)]
-    assert len(folds) == 2
-    before = [point for point in segment.points if point.arclength < folds[0].arclength][-1]
-    after = next(point for point in segment.points if point.arclength > folds[1].arclength)
-    step = float((metric.weights * before.rates)[:3] @ (after.observables - before.observables)[:3])
-    reached = correct(segment.problem, before, step, after.x, metric, 20)
-    assert FOLD.of(before) * FOLD.of(reached) > 0
-    found = [fold.point for fold in locate(segment.problem, [before, reached], metric, FOLD)]
-    for one, other in zip(found, folds, strict=True):
-        np.testing.assert_allclose(one.observables[:3], other.observables[:3], atol=1e-7)
-
-
 @pytest.mark.parametrize(
     ("tabor", "law", "points", "factorisations"),
     [
@@ -213,29 +184,6 @@ def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, po
     path = halfspace.trace(tabor, law=law)
     assert path.count <= points
     assert len(made) <= factorisations
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("growth", [3.0, 1e3, 1e-2])
-def test_a_faint_load_that_grows_as_an_exponential_hides_no_extremum(sign, growth):
-    """Nor is one told from a load that grows by less than that, or one that counts: there a step may leap over it."""
-    metric, length = Metric(1.0, 1.0, 1.0), 0.5
-
-    def point(load, rate, arclength):
-        rates = sign * np.array([1.0, rate, -1.0, 0.0])
-        return Point(
-            np.zeros(3), np.array([arclength, sign * load, 0.0, np.nan]), np.zeros(3), rates, arclength, 1, 0.0
-        )
-
-    def hidden(largest, of_mean):
-        first, last = (largest * rate / max(1.0, growth) for rate in (1.0, growth))
-        mean = (last - first) / np.log(growth)
-        return _hides_turning_points(point(0.0, first, 0.0), point(of_mean * mean * length, last, length), LOAD, metric)
-
-    assert not hidden(0.05, 1.0)
-    assert not hidden(0.05, 0.9)
-    assert hidden(0.05, 0.3)
-    assert hidden(0.5, 1.0) == (growth != 3.0)
 
 
 def test_factors_that_serve_twice_leave_points_and_tangents_exact():
@@ -332,15 +280,6 @@ def test_folds_that_a_finer_grid_loses_are_left_in_doubt():
     assert path.jumps is None
     assert path.margin.error > 1e-5
     assert cycle(path) is None
-
-
-@pytest.mark.parametrize(("tabor", "nodes", "growth", "extent"), [(0.0394754, 5, 3.0, 16.11), (0.0603, 5, 2.5, 15.2)])
-def test_a_step_does_not_leap_over_the_end_of_a_chart_into_cells_too_coarse(tabor, nodes, growth, extent):
-    charts = half_space_charts(Scales(tabor), Resolution(nodes, 0.6, growth, extent))
-    segments = trace_charts(charts, 0.5)
-    last = segments[0].points[-1]
-    assert last.observables[CONTACT_RADIUS] > charts[0].until
-    segments[0].problem.require_resolution(last.x)
 
 
 def test_a_grid_that_takes_more_memory_than_there_is_is_refused_by_the_input_that_asks_for_it(monkeypatch):

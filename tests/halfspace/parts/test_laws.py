@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from families import TOGETHER, compared
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import beta
@@ -423,12 +422,6 @@ def test_both_solvers_agree_on_any_law_and_profile(tabor, parts):
     assert not ours.missed
     assert not theirs.missed
     assert_same(ours, theirs)
-
-
-@pytest.mark.parametrize("number", [26])
-def test_hard_combinations_agree(number):
-    """Two of those that `make honesty` compares: short in range with a hard core, a thin layer under a tip."""
-    assert compared(TOGETHER[number], 1e-4).verdict == "agree"
 
 
 @dataclass(frozen=True)

@@ -61,14 +61,6 @@ def test_a_hamaker_constant_out_of_range_is_refused(value):
         scaling.spacing_of(6.5e-20, value)
 
 
-def test_hertz_in_si():
-    """W = 4/3 E* sqrt(R) alpha^(3/2) in newtons, by way of the dimensionless theory."""
-    units = Units(**SILICA)
-    alpha = 2e-9
-    W = closed_forms.hertz_load(closed_forms.hertz_radius_at(alpha / units.approach, units.tabor)) * units.load
-    assert float(W) == si(4 / 3 * 40e9 * math.sqrt(1e-6) * alpha**1.5)
-
-
 def test_jkr_in_si():
     """4 E* a^3/(3 R) = W + 3 pi R dgamma + sqrt(6 pi R dgamma W + (3 pi R dgamma)^2), [G97] (1.5)."""
     units = Units(**SILICA)
