@@ -156,7 +156,7 @@ def test_the_lines_of_each_solver_are_its_own_numbers(open_page, stations, repor
         assert straight(y, stations[number][panel][0])[0] != pytest.approx(scales[0], rel=0.1)
 
 
-def test_the_points_are_load_against_approach_and_hollow_where_unstable(open_page, stations):
+def test_points_are_load_against_approach_hollow_if_unstable(open_page, stations):
     shown = open_page()
     circles = shown.locator("#curve circle.station")
     assert circles.count() == len(stations)
@@ -177,7 +177,7 @@ def test_the_points_are_load_against_approach_and_hollow_where_unstable(open_pag
     assert against == ["approach", "radius", "radius", "radius"]
 
 
-def test_the_curve_of_each_solver_is_load_against_approach_and_marked_where_unstable(browser, report):
+def test_curves_are_load_against_approach_marked_if_unstable(browser, report):
     """On a page whose half-space bears twice the load; along the scales of the points."""
     found = re.search(r'(id="walk-data">)(.*?)(</script>)', report.read_text(), re.S)
     data = json.loads(found[2])

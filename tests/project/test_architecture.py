@@ -42,7 +42,7 @@ def _imports(module):
             yield f"{node.module}.{node.names[0].name}"
 
 
-def test_the_fourth_level_imports_nothing_of_the_solvers_it_checks():
+def test_the_fourth_level_imports_no_solver():
     """No physics, no numbers: exceptions, containers of results, limits, and the parts by which a scene is known."""
     own = {name for name in _imports("fem_adhesion.weak_form") if name.split(".")[0] in ("halfspace", "fem_adhesion")}
     own = {name for name in own if not name.startswith("fem_adhesion.weak_form.")}
@@ -52,6 +52,6 @@ def test_the_fourth_level_imports_nothing_of_the_solvers_it_checks():
     assert own == scene | results | refusals
 
 
-def test_the_harmonics_import_nothing_of_the_finite_elements_they_check():
+def test_the_harmonics_import_no_finite_elements():
     own = {name for name in _imports("fem_adhesion.harmonics") if name.split(".")[0] in ("skfem", "fem_adhesion")}
     assert own == {"fem_adhesion.scene.Scene"}

@@ -44,7 +44,7 @@ def tree(tmp_path):
     return tmp_path
 
 
-def test_it_is_the_same_in_another_place_and_loads_nothing_heavy(tree):
+def test_it_is_the_same_elsewhere_and_loads_nothing_heavy(tree):
     assert digest_in(tree) == (code_digest(CASES), False)
 
 
@@ -59,13 +59,13 @@ def test_it_is_the_same_in_another_place_and_loads_nothing_heavy(tree):
         ("fem_adhesion/cli.py", False),
     ],
 )
-def test_it_changes_with_the_code_that_computes_and_with_no_other(tree, name, counts):
+def test_it_changes_with_the_code_that_computes_alone(tree, name, counts):
     file = tree / name
     file.write_text(file.read_text() + "# edited\n")
     assert (digest_in(tree)[0] != code_digest(CASES)) == counts
 
 
-def test_it_knows_every_module_of_this_project_that_computing_a_case_loads():
+def test_it_knows_every_module_that_a_case_loads():
     code = (
         "import sys, halfspace, fem_adhesion\n"
         "from fem_adhesion.finite_sphere.study import plan\n"

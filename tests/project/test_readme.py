@@ -152,7 +152,7 @@ OPENED = {
 }
 
 
-def test_the_report_takes_what_the_other_commands_of_the_readme_left(whole, tmp_path, capsys):
+def test_the_report_takes_what_other_commands_left(whole, tmp_path, capsys):
     lines = {shlex.split(run)[1]: run for run in RUN if "--out" in run} | {"hard": test_make.HARD}
     made = {name: whole(lines[name]) for name in ("speed", "hard", "greenwood", "finite-sphere")}
     given = [f"--{name}={run / name.replace('finite-', '')}" for name, run in made.items()]

@@ -106,7 +106,7 @@ def test_a_contact_that_cannot_be_is_refused(change, message):
         Contact(**(SILICA | change))
 
 
-def test_two_bodies_enter_by_their_contact_modulus_and_equivalent_radius():
+def test_two_bodies_enter_by_contact_modulus_and_radius():
     pair = Contact(**SILICA, counter_modulus=70e9, counter_poisson=0.17, counter_radius=100e-9, stiffness=0.2)
     assert pair.units.modulus == pytest.approx(70e9 / (2 * (1 - 0.17**2)))
     assert pair.units.radius == pytest.approx(50e-9)
@@ -178,7 +178,7 @@ def soft_path():
 
 
 @pytest.mark.parametrize("stiffness", [math.inf, 1.0, 0.006, 1e-4])
-def test_jkr_with_reach_is_as_near_the_half_space_as_its_errors_say(soft_path, stiffness):
+def test_jkr_with_reach_is_within_its_errors(soft_path, stiffness):
     units = Units(2.0, 3.0, 5.0, 7.0)  # all of its units differ
     truth = computed("half-space", soft_path, stiffness, units)
     theory = large_tabor(300.0, stiffness, units)
@@ -241,7 +241,7 @@ def test_the_true_profile_is_that_of_both_spheres(counter_radius, ratio, monkeyp
 
 
 @pytest.mark.parametrize("tabor", [1e3, 1e-14])
-def test_of_two_soft_or_rigid_spheres_no_true_profile_is_claimed(tabor):
+def test_two_soft_or_rigid_spheres_have_no_true_profile(tabor):
     """JKR's theory and Bradley's on the exact sphere know one sphere only."""
     size = Contact(**SILICA, counter_radius=1e-7)
     soft = replace(size, modulus=size.modulus * (size.units.tabor / tabor) ** 1.5)
@@ -527,7 +527,7 @@ def test_the_distance_of_a_model_is_what_it_may_be_at_most():
     assert distance.size == pytest.approx((3.0 - 2.0 + 0.2 + 0.4) / 2.0, rel=1e-12)
 
 
-def test_a_model_that_lacks_a_quantity_is_neither_good_nor_nearest():
+def test_a_model_that_lacks_a_quantity_is_not_nearest():
     finite = _model("finite sphere", 1.0)
     lines = _verdict(_model("half-space", 1.5), None, finite, _model("JKR", 1.0, on=None))
     assert lines[1] == "beside the finite sphere: JKR off by up to 0 %, in pull-off force; has no separation, jump on"
@@ -536,7 +536,7 @@ def test_a_model_that_lacks_a_quantity_is_neither_good_nor_nearest():
     assert lines[-1] == "trust the finite sphere; no other model has all its quantities"
 
 
-def test_closed_theories_are_not_judged_by_a_contact_radius_that_means_another(silica):
+def test_theories_are_not_judged_by_another_contact_radius(silica):
     radii = {"pull_off_radius", "zero_load_radius"}
     for distance in silica.distances:
         closed = distance.model not in ("half-space", "true profile")
@@ -573,7 +573,7 @@ def test_a_caution_stands_beyond_its_limit_only(what, contact, values, figure):
 
 
 @pytest.mark.parametrize(("modulus", "told"), [(1e14, False), (1e12, False), (72e9, True), (1e9, True), (5e8, False)])
-def test_the_yield_is_corrected_between_a_thousandth_and_a_tenth_only(modulus, told):
+def test_yield_is_corrected_from_a_thousandth_to_a_tenth(modulus, told):
     """Of the work of adhesion. Below it is silent, beyond a caution says that the first order is not enough."""
     contact = Contact(**(SILICA | {"modulus": modulus}))
     mu, ratio = contact.units.tabor, contact.units.radius_ratio
@@ -628,7 +628,7 @@ def test_the_yield_by_another_law_is_told_with_its_premise(silica):
     assert "J/m^2, if the law attracts matter and not charges on the surfaces; give that to include it" in line
 
 
-def test_by_another_law_nothing_is_said_that_holds_for_the_3_9_law_alone(silica):
+def test_what_holds_for_the_3_9_law_is_said_of_it_alone(silica):
     other = replace(silica, contact=replace(silica.contact, law=Morse(3)))
     premise = "Maugis lambda and the theories with a range of attraction, Maugis-Dugdale and DMT-M, are the 3-9 law's."
     for assessment, usual in ((silica, True), (other, False)):

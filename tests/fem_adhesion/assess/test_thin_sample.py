@@ -73,7 +73,7 @@ def _moments(poisson, foundation):
 
 
 @pytest.mark.parametrize(("poisson", "foundation"), [(0.0, "bonded"), (0.499999, "bonded"), (0.3, "sliding")])
-def test_the_series_by_moments_of_the_yield_to_waves_is_that_of_the_dual_integral_equation(poisson, foundation):
+def test_series_by_moments_is_that_of_the_integral_equation(poisson, foundation):
     A, B = _moments(poisson, foundation)
     cubic = -8 * (200 * A**3 - 9 * np.pi**2 * B) / (135 * np.pi**3)
     quartic = 2 * A * (715 * A**3 - 72 * np.pi**2 * B) / (45 * np.pi**4)
@@ -169,7 +169,7 @@ def test_the_record_has_all_of_it(said):
     assert "<!-- thin sample -->" in said[2]
 
 
-def test_the_forces_without_adhesion_are_hertzs_times_the_layers(said):
+def test_forces_without_adhesion_are_hertzs_times_the_layers(said):
     """By the contact radius."""
     theory, h = OnLayers(Layer(1.0, 0.3)), 30e-9
     for row in said[0].sample.indentations:
@@ -183,7 +183,7 @@ def test_the_forces_without_adhesion_are_hertzs_times_the_layers(said):
         assert row.series.value == pytest.approx(series / force - 1, rel=1e-8, abs=1e-12)
 
 
-def test_from_the_thickness_that_is_told_on_the_half_space_is_right(said):
+def test_the_half_space_is_right_from_the_thickness_told(said):
     contact = said[0].contact
     half_space = study._half_space(contact)
     force, every = said[0].sample.enough
@@ -196,7 +196,7 @@ def test_from_the_thickness_that_is_told_on_the_half_space_is_right(said):
             assert sign * (WRONG - off) > 0, (row.quantity, sign)
 
 
-def test_jkr_on_the_layer_is_as_near_the_truth_as_its_errors_say():
+def test_jkr_on_a_layer_is_within_its_errors():
     units, layer, stiffness = Units(2.0, 3.0, 5.0, 7.0), Layer(0.5, 0.3), 0.006
     path = halfspace.trace(300.0, body=layer, rtol=1e-4, to_load=2.0)
     truth = computed("truth", path, stiffness, units)
@@ -206,7 +206,7 @@ def test_jkr_on_the_layer_is_as_near_the_truth_as_its_errors_say():
         assert abs(value.value - truth.values[name].value) < value.error + truth.values[name].error, name
 
 
-def test_a_position_on_a_soft_sample_is_judged_by_the_distance_between_jumps():
+def test_positions_are_judged_by_the_distance_between_jumps():
     """JKR's theory on the layer has no jump on, so that the distance is the half-space's."""
     contact = Contact(**SAMPLE | {"modulus": 1e5, "radius": 5e-6}, thickness=10e-6, stiffness=0.05)
     thin, half_space = study._finite(contact), study._half_space(contact)
@@ -230,7 +230,7 @@ def test_a_position_on_a_soft_sample_is_judged_by_the_distance_between_jumps():
         (["--thickness", "30nm", "--foundation", "glued"], "invalid choice: 'glued'"),
     ],
 )
-def test_what_does_not_go_with_a_thin_sample_is_refused_in_one_line(more, words, capsys):
+def test_what_does_not_go_with_a_thin_sample_is_refused(more, words, capsys):
     try:
         code = cli.main(["assess", *GIVEN, *more])
     except SystemExit as stopped:
@@ -246,7 +246,7 @@ def test_a_thin_sample_and_another_body_are_no_contact():
         Contact(**SAMPLE, thickness=1e-6, counter_radius=1e-6)
 
 
-def test_a_thickness_is_in_si_with_a_material_and_in_beta_without(tmp_path, capsys):
+def test_a_thickness_is_in_si_with_a_material_else_in_beta(tmp_path, capsys):
     beta, record = Contact(**SAMPLE).units.length, tmp_path / "c.json"
     asked = ["curve", *GIVEN, "--rtol", "1e-2", "--json", str(record)]
     assert cli.main([*asked, "--body", "layer:30nm"]) == 0

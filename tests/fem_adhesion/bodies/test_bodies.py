@@ -95,7 +95,7 @@ def patch():
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49])
-def test_uniform_pressure_on_the_projected_area_shortens_the_body_uniaxially(patch, poisson):
+def test_uniform_pressure_shortens_the_body_uniaxially(patch, poisson):
     """u_z = -p (z + R)/E above the sliding mid-plane, E = 1 - nu^2."""
     body = condense(patch, poisson, far_field=sliding)
     r, z = (x.ravel() for x in boundary_basis(patch, "contact", patch.degree + 2).global_coordinates())

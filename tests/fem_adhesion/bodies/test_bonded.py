@@ -45,7 +45,7 @@ def williams(poisson):
 
 
 @pytest.mark.parametrize("poisson", [0.2, 0.4999])
-def test_rings_take_the_error_of_the_corner_down_as_its_exponent_says(poisson):
+def test_rings_reduce_the_corners_error_by_its_exponent(poisson):
     """What a cell of size h leaves of the energy is as h^(2 s)."""
     values = np.array([pole_compliance(4, poisson, rings) for rings in (1, 2, 3, 6)])
     errors = values[:-1] - values[-1]
@@ -53,7 +53,7 @@ def test_rings_take_the_error_of_the_corner_down_as_its_exponent_says(poisson):
 
 
 @pytest.mark.parametrize("poisson", [0.3, 0.4999])
-def test_the_error_falls_with_the_degree_however_fine_the_contact(poisson):
+def test_the_error_falls_with_the_degree_on_fine_contacts(poisson):
     """Rings in a corner cell as thin as the contact's would leave 1e-6."""
     best = pole_compliance(10, poisson, 6, 0.1, 2.2)
     errors = [abs(pole_compliance(degree, poisson, 5, 0.1) / best - 1) for degree in (4, 6, 8)]
@@ -85,7 +85,7 @@ def traced(request):
     return path, on(standing(sized_body(request.param, finer)), path.stages[-1])
 
 
-def test_bonded_estimates_meet_the_tolerance_and_hold_a_tighter_solution(traced):
+def test_bonded_estimates_hold_a_tighter_solution(traced):
     """On other cells."""
     path, truth = traced
     scale = approach_scale(event.approach for event in path.events.values())

@@ -64,7 +64,7 @@ def test_boundaries_are_named_and_complete(mesh):
 
 
 @pytest.mark.parametrize("fine", [0.4, 0.1, 0.01])
-def test_quarter_disc_respects_the_size_function_with_no_sharp_angle(fine):
+def test_quarter_disc_respects_sizes_with_no_sharp_angle(fine):
     size = graded_size(fine, 1.0, 0.25)
     mesh = quarter_disc(50.0, size)
     corners = mesh.p[:, mesh.t]

@@ -68,7 +68,7 @@ def test_volume_areas_and_cells_are_those_of_a_sphere(make, cap_angle):
     assert np.all(determinants * np.sign(determinants.mean(axis=1))[:, None] > 0)  # no cell is turned over
 
 
-def test_facets_on_the_axis_are_known_whatever_rounding_makes_of_their_radii():
+def test_facets_on_the_axis_are_known_despite_rounding():
     """Else they are the cap's or the contact's, and the sphere is held there: by which processor multiplies."""
     mesh = sphere(1.0)
     known = {name: np.sort(facets) for name, facets in mesh.boundaries.items()}
@@ -93,7 +93,7 @@ def test_caps_out_of_range_are_refused(cap_angle):
 
 
 @pytest.mark.parametrize("cap_angle", CAPS)
-def test_uniform_tension_is_exact_in_elements_of_the_degree_of_the_cells(cap_angle):
+def test_uniform_tension_is_exact_in_elements_of_the_cells(cap_angle):
     """Linear fields are in the space only if neighbours agree on their common side, function by function."""
     space = Space(coarse_sphere(cap_angle), ElementQuadP(8))
     basis = Basis(space.mesh, space.element, intorder=18)

@@ -180,7 +180,7 @@ def test_every_kind_of_cell_is_read(tmp_path, kind):
     assert mesh.p.shape[1] == len(np.unique(cells[kind])) + (mesh.nelements if kind == "quad8" else 0)
 
 
-def test_the_ninth_node_of_a_quadrilateral_is_where_the_file_has_it(tmp_path):
+def test_the_ninth_node_is_where_the_file_has_it(tmp_path):
     """Off the place that the other eight give it, it moves what is inside a cell."""
     points, cells, groups = paraboloid("quad9")
     points[cells["quad9"][:, 8]] += [0.003, 0.002, 0.0]
@@ -205,7 +205,7 @@ def test_a_mesh_that_scikit_fem_saved_is_read(tmp_path):
 
 @pytest.mark.parametrize("unit", [0.96, 1.04])
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_a_mesh_in_a_unit_off_by_some_per_cent_is_scaled_to_the_radius_of_its_pole(tmp_path, name, unit):
+def test_a_mesh_is_scaled_to_the_radius_of_its_pole(tmp_path, name, unit):
     raw = meshio.read(MESHES / f"{name}.msh")
     raw.points *= unit
     raw.points[:, 1] += 3.0
@@ -224,7 +224,7 @@ def test_the_radius_of_a_coarse_sphere_is_found_to_five_digits(tmp_path):
 
 
 @pytest.mark.parametrize("unit", [0.94, 1.06])
-def test_a_mesh_in_quite_another_unit_is_refused_with_the_factor(tmp_path, unit):
+def test_a_mesh_in_another_unit_is_refused_with_the_factor(tmp_path, unit):
     points, cells, groups = paraboloid()
     message = refusal(written(to_meshio(unit * points, cells, groups), tmp_path / "bad.vtu"))
     assert f"radius of curvature at the pole = {unit:g} must be 1 within 5%" in message

@@ -22,7 +22,7 @@ def meshed(name, radius_ratio, **changes):
     return Scene(1.0, Meshed(MESHES / f"{name}.msh", radius_ratio=radius_ratio, **changes))
 
 
-def test_a_meshed_hemisphere_agrees_with_ours_within_the_estimates():
+def test_a_meshed_hemisphere_agrees_with_ours():
     theirs = fem_adhesion.trace(meshed("hemisphere", 30.0), rtol=1e-3)
     ours = fem_adhesion.trace(Scene(1.0, Hemisphere(radius_ratio=30.0)), rtol=1e-4)
     for name, a in theirs.events.items():
@@ -70,7 +70,7 @@ def rescaled(tmp_path, unit):
 
 
 @pytest.mark.parametrize("unit", [1.0, 1.03])
-def test_a_mesh_that_cannot_carry_the_spike_is_refused_in_its_own_unit(tmp_path, unit):
+def test_a_mesh_too_coarse_is_refused_in_its_own_unit(tmp_path, unit):
     """The limit in the file's unit is the spike's, some 0.57 of its width for quadratic elements, over R."""
     scene = Scene(2.0, Meshed(rescaled(tmp_path, unit), radius_ratio=1e3))
     with pytest.raises(GridTooCoarse) as refused:
@@ -98,7 +98,7 @@ def straight(tmp_path, unit=1.0):
 
 
 @pytest.mark.parametrize("unit", [1.0, 1.03])
-def test_a_contact_whose_chords_leave_the_surface_by_more_than_the_tolerance_is_refused(tmp_path, unit):
+def test_chords_that_leave_the_surface_too_far_are_refused(tmp_path, unit):
     """Chords of a circle leave it by 1 - cos of half their angle; in the file's unit."""
     file = straight(tmp_path, unit)
     with pytest.raises(GridTooCoarse, match="second order") as refused:

@@ -41,7 +41,7 @@ def _registered(monkeypatch):
     )
 
 
-def test_a_toy_body_is_traced_and_softer_than_a_half_space_of_its_profile():
+def test_a_toy_body_is_softer_than_a_half_space():
     drum = fem_adhesion.trace(Scene(1.0, Drum(radius_ratio=10.0)), rtol=1e-3)
     endless = fem_adhesion.trace(Scene(1.0, profile=Sphere(10.0)), rtol=1e-3)
     assert drum.met
@@ -55,7 +55,7 @@ def test_a_toy_body_agrees_with_the_weak_form():
     assert list(case.solutions) == ["finite elements"]
 
 
-def test_a_toy_body_is_known_to_the_command_line_and_to_its_files(tmp_path):
+def test_a_toy_body_is_known_to_the_command_line(tmp_path):
     record, states = tmp_path / "drum.json", tmp_path / "states"
     asked = ["--tabor", "1", "--body", "drum:10,bonded", "--rtol", "1e-2"]
     assert cli.main(["curve", *asked, "--json", str(record), "--vtk", str(states), "--points", "0"]) == 0

@@ -84,9 +84,7 @@ def test_bad_input_ends_the_program_itself():
 
 
 @pytest.mark.parametrize("command", ["speed", "greenwood"])
-def test_an_output_that_is_in_use_or_cannot_be_written_is_refused_before_any_work(
-    command, tmp_path, monkeypatch, capsys
-):
+def test_an_output_that_cannot_be_is_refused_before_any_work(command, tmp_path, monkeypatch, capsys):
     for work in ("speed.study.measure", "greenwood.study.compute"):
         monkeypatch.setattr(f"fem_adhesion.{work}", lambda *_, **__: pytest.fail("work was begun"))
     (tmp_path / "precious").write_text("kept")
@@ -127,7 +125,7 @@ def test_an_interrupt_leaves_no_file(monkeypatch, tmp_path, capsys):
     assert "interrupted; nothing was written" in capsys.readouterr().err
 
 
-def test_a_file_keeps_its_old_content_until_the_new_one_is_whole(tmp_path):
+def test_a_file_keeps_its_content_until_the_new_is_whole(tmp_path):
     file = tmp_path / "record.json"
     file.write_text("old")
     with pytest.raises(ZeroDivisionError), written_aside(file) as aside:
@@ -174,7 +172,7 @@ print(len(os.listdir("/proc/self/task")), "OPENBLAS_NUM_THREADS" in os.environ)
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted by Linux")
-def test_a_command_keeps_blas_to_one_thread_unless_told_otherwise():
+def test_a_command_keeps_blas_to_one_thread_unless_told():
     assert _threads_of_a_command() == (1, True)
     assert not _threads_of_a_command(OMP_NUM_THREADS="2")[1]
 
@@ -205,7 +203,7 @@ def test_help_shows_groups_and_defaults(capsys):
     assert not any("None" in line or "False" in line for line in options.values())
 
 
-def test_a_contact_has_the_same_options_in_every_command_that_takes_one(capsys):
+def test_a_contact_has_the_same_options_in_every_command(capsys):
     _, curve = _option_lines("curve", capsys)
     _, assess = _option_lines("assess", capsys)
     contact = {"--radius", "--modulus", "--poisson", "--work-of-adhesion", "--spacing", "--hamaker"}
@@ -251,7 +249,7 @@ def test_assess_refuses_in_one_line_before_any_work(arguments, message, monkeypa
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_command_line_of_a_contact_is_heeded_to_the_last_option(monkeypatch):
+def test_every_option_of_a_contact_is_heeded(monkeypatch):
     """Every number distinct, read back from the contact that is assessed."""
     asked = []
     monkeypatch.setattr("fem_adhesion.assess.study.assess", lambda contact, _: asked.append(contact))

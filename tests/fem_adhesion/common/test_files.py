@@ -77,7 +77,7 @@ def _full(*_args, **_kwargs):
 
 
 @pytest.mark.parametrize("command", ["speed", "greenwood", "finite-sphere"])
-def test_a_full_disk_ends_each_study_in_one_line_and_leaves_nothing(command, tmp_path, monkeypatch, capsys):
+def test_a_full_disk_ends_each_study_and_leaves_nothing(command, tmp_path, monkeypatch, capsys):
     from fem_adhesion.finite_sphere import page as finite_sphere_page
     from fem_adhesion.finite_sphere import study as finite_sphere
     from fem_adhesion.greenwood import page as greenwood_page
@@ -101,7 +101,7 @@ def test_a_full_disk_ends_each_study_in_one_line_and_leaves_nothing(command, tmp
     assert not list(tmp_path.iterdir())
 
 
-def test_a_defect_that_is_an_oserror_is_not_taken_for_a_full_disk(tmp_path, monkeypatch):
+def test_a_defect_is_not_taken_for_a_full_disk(tmp_path, monkeypatch):
     monkeypatch.setattr("fem_adhesion.speed.study.measure", _full)
     with pytest.raises(OSError, match="No space left"):
         cli.main(["speed", "--out", str(tmp_path / "out")])
@@ -196,7 +196,7 @@ def test_what_a_link_leads_to_is_written_and_keeps_its_mode(tmp_path):
     assert sorted(file.name for file in (tmp_path / "far").iterdir()) == ["a.txt", "b.txt"]
 
 
-def test_links_to_and_in_a_directory_are_written_through_and_modes_kept(tmp_path):
+def test_links_of_a_directory_are_written_through(tmp_path):
     (tmp_path / "out").symlink_to(tmp_path / "real")
     for force, text in ((False, "first"), (True, "second")):
         with directory_written_aside(tmp_path / "out", force=force) as folder:

@@ -93,7 +93,7 @@ def test_an_item_whose_worker_dies_is_tried_again(tmp_path):
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_an_item_that_always_kills_its_worker_is_given_up_and_no_other(tmp_path):
+def test_an_item_that_always_kills_its_worker_is_given_up(tmp_path):
     items = [(x, 99, str(tmp_path)) for x in range(8)]
     results = {item[0]: result for item, result in stream(deadly, items, jobs=2)}
     died = results.pop(3)
@@ -262,14 +262,14 @@ def test_a_dask_cluster_does_the_work_and_hides_no_error(cluster, capsys):
 
 
 @needs_cluster
-def test_an_item_whose_worker_of_the_cluster_dies_is_done_by_another(cluster, tmp_path):
+def test_an_item_whose_cluster_worker_dies_goes_to_another(cluster, tmp_path):
     items = [(x, 1, str(tmp_path)) for x in range(6)]
     assert sorted(result for _, result in stream(deadly, items, dask=cluster)) == [x * x for x in range(6)]
     assert len(list(tmp_path.iterdir())) == 1
 
 
 @needs_cluster
-def test_an_item_that_kills_every_worker_of_the_cluster_is_given_up(cluster, tmp_path):
+def test_an_item_that_kills_every_cluster_worker_is_given_up(cluster, tmp_path):
     results = {item[0]: r for item, r in stream(deadly, [(x, 99, str(tmp_path)) for x in (2, 3)], dask=cluster)}
     assert results[2] == 4
     assert "its worker died" in results[3].reason

@@ -42,7 +42,7 @@ def test_each_file_of_a_command_has_the_record_that_repeats_it(line, option, val
     assert capsys.readouterr().out.split()[:20] == first.split()[:20]
 
 
-def test_the_scene_of_a_record_is_read_back_and_units_are_those_of_its_numbers(tmp_path):
+def test_a_record_has_the_scene_and_the_units_of_its_numbers(tmp_path):
     file = tmp_path / "a.csv"
     assert cli.main(["curve", "--tabor", "0.3", "--law", "morse:3", "--rtol", "1e-2", "--csv", str(file)]) == 0
     found = read(file)

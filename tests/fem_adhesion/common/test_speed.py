@@ -235,7 +235,7 @@ def test_a_tabor_parameter_out_of_range_is_refused(tabor):
 # --- figures of merit ---
 
 
-def test_the_pareto_front_has_what_nothing_beats_in_time_and_error():
+def test_the_front_has_what_nothing_beats():
     fast, mid, slow = rung(1, 1e-1), rung(2, 1e-2), rung(9, 1e-5)
     beaten = [rung(3, 1e-2), rung(2, 5e-2), rung(1, 2e-1), rung(10, 1e-5)]
     assert pareto_front([slow, *beaten, FAILED, fast, mid], "pull_off") == [fast, mid, slow]

@@ -161,7 +161,7 @@ def test_a_page_is_shown_with_its_tables_fitted(width):
         assert all(cell in text for cell in cells_) != (name in left_out), (name, width)
 
 
-def test_the_bar_of_long_work_says_what_is_under_way_and_what_is_left(monkeypatch, capsys):
+def test_the_bar_says_what_is_under_way_and_what_is_left(monkeypatch, capsys):
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "80")
     with progress_bar() as step:

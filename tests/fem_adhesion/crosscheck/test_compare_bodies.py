@@ -41,7 +41,7 @@ def _without_limits(monkeypatch):
 HEMISPHERE = ["--profile", "sphere", "--body", "hemisphere:10"]
 
 
-def test_the_command_compares_a_hemisphere_with_the_whole_sphere(tmp_path, capsys):
+def test_a_hemisphere_is_compared_with_the_whole_sphere(tmp_path, capsys):
     file = tmp_path / "result.json"
     assert cli.main(["compare", "--tabor", "3", *HEMISPHERE, "--json", str(file)]) == 0
     (case,), out = json.loads(file.read_text())["cases"], capsys.readouterr().out
@@ -166,7 +166,7 @@ def test_harmonics_refuse_a_spike_that_takes_too_many():
 
 
 @pytest.mark.parametrize("counter", [None, (0.4, 0.3, 3.0)])
-def test_the_weak_form_of_a_body_with_a_length_has_its_whole_surface(counter):
+def test_the_weak_form_of_a_sphere_has_its_whole_surface(counter):
     scene = sphere() if counter is None else facing(*counter)
     R = scene.sphere_radius * (1 if counter is None else 1 + 1 / 3)
     for contact in (make(1.2, 1.2) for make in contacts(scene)):

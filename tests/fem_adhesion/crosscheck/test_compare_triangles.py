@@ -33,7 +33,7 @@ def _rows(case):
 
 
 @pytest.mark.parametrize("tabor", [0.05, 1.0, 10.0])
-def test_triangles_agree_with_finite_elements_within_both_estimates_and_a_part_in_a_hundred_thousand(tabor):
+def test_triangles_agree_with_elements_to_five_digits(tabor):
     rows = _rows(_case(tabor, 1e-5))
     assert list(rows) == (QUANTITIES if tabor > 0.697 else QUANTITIES[:1])
     scale = elements(tabor, 0.9 * 1e-5).approach_scale

@@ -170,7 +170,7 @@ def test_every_quantity_has_the_budget_it_should(record):
         assert rows[quantity]["budget"] == pytest.approx(budget, rel=1e-4), quantity
 
 
-def test_the_record_of_the_command_holds_both_solvers_under_their_names(record):
+def test_the_record_holds_both_solvers_under_their_names(record):
     for case in record["cases"]:
         hs, fe = halfspace.trace(case["tabor"], rtol=1e-5), case["finite_element"]
         assert case["halfspace"]["unknowns"] == hs.unknowns < fe["unknowns"]
@@ -195,7 +195,7 @@ def test_the_record_of_the_command_holds_both_solvers_under_their_names(record):
 
 
 @pytest.mark.usefixtures("two_solvers")
-def test_a_solver_less_accurate_than_the_comparison_is_inconclusive_whatever_it_hits():
+def test_a_solver_less_accurate_is_inconclusive():
     """A hundred times less: of all rows that it has a part in, none stays within its budget."""
     case = crosscheck.compare(
         Scene(tabor=2.0), rtol=1e-5, before=(), solve=lambda scene, **_: fem_adhesion.trace(scene, rtol=1e-3)
@@ -208,7 +208,7 @@ def test_a_solver_less_accurate_than_the_comparison_is_inconclusive_whatever_it_
 
 @pytest.mark.usefixtures("two_solvers")
 @pytest.mark.parametrize(("rtol", "closer"), [(RTOL, [1, 10]), (RTOL, [1, 10, 100]), (RTOL / 10, [1, 100])])
-def test_what_estimates_leave_open_is_asked_again_to_a_closer_tolerance(rtol, closer, monkeypatch):
+def test_what_estimates_leave_open_is_asked_more_closely(rtol, closer, monkeypatch):
     """Ten and a hundred times, or a hundred at once where a decade leaves more than the budget: 24 times that at 1e-2.
 
     A scene on strata took 34 s of 168 for what could not suffice.
@@ -249,7 +249,7 @@ def _made_up(verdict):
     return Row(f"made up to {verdict}", "eps", hs, fe, difference, budget)
 
 
-def test_agreement_is_within_the_estimates_and_they_within_the_budget_to_the_last_bit():
+def test_agreement_is_within_estimates_within_the_budget():
     def verdict(difference, error, budget):
         return Row("load", "eps", Estimate(1.0, error / 2), Estimate(1.0, error / 2), difference, budget).verdict
 
@@ -278,7 +278,7 @@ def test_a_failing_case_does_not_lose_the_others(monkeypatch):
 
 
 @pytest.mark.parametrize("far_field", ["clamped", "free"])
-def test_the_error_estimate_of_a_held_block_covers_its_distance_from_the_half_space(far_field):
+def test_a_held_blocks_error_covers_its_end(far_field):
     path = fem_adhesion.trace(Scene(tabor=1.0, body=Block(radius=40.0, far_field=far_field)), rtol=1e-3)
     for name, approach, load in (("jump_on", -1.629216712, -2.139717925), ("jump_off", -1.743430144, -3.243484131)):
         event = path.event(name)

@@ -83,7 +83,7 @@ def test_each_column_of_the_table_holds_what_its_header_says():
     ]
 
 
-def test_a_value_that_a_solver_does_not_find_is_none_and_no_number():
+def test_a_value_that_is_not_found_is_no_number():
     (line,) = zip(*(column.cells for column in crosscheck_table([MISSING]).columns), strict=True)
     cells = dict(zip(columns(), line, strict=True))
     assert (cells["half-space"], cells["finite elements"], cells["difference"]) == ("-2.25000", "none", "-")
@@ -128,7 +128,7 @@ def section_text(section):
     )
 
 
-def test_the_levels_of_the_report_hold_each_value_under_its_header():
+def test_the_reports_levels_hold_values_under_their_headers():
     section = crosscheck_section([case(AGREE, DISAGREE), FAILED])
     summary, lost, operators, *others, events = tables(section_text(section))
     assert others == [[]] * (len(LEVELS) - 2)
@@ -146,7 +146,7 @@ def test_the_levels_of_the_report_hold_each_value_under_its_header():
     assert "Tabor parameter 2: disagree; Tabor parameter 3: failed." in section.paragraphs[1]
 
 
-def test_a_difference_without_an_error_is_not_left_out_of_the_summary():
+def test_a_difference_without_an_error_is_in_the_summary():
     certain = replace(DISAGREE, first=Estimate(1.0, 0.0), second=Estimate(2.0, 0.0), difference=1.0)
     summary = tables(section_text(crosscheck_section([case(certain)])))[0]
     assert summary[-1]["largest difference / error"] == "inf"
@@ -189,7 +189,7 @@ def test_compare_tells_the_verdict_in_text_record_and_exit_code(verdict, tmp_pat
 
 
 @pytest.mark.parametrize("rows", [[AGREE, WIDE, DISAGREE], [DISAGREE, WIDE, AGREE], [WIDE, AGREE], [AGREE]])
-def test_the_worst_of_the_rows_is_the_verdict_of_the_case_and_the_worst_case_that_of_all(rows):
+def test_the_worst_row_is_the_verdict_of_case_and_all(rows):
     order = ("disagree", "inconclusive", "agree")
     wanted = next(name for name in order if any(row.verdict == name for row in rows))
     assert case(*rows).verdict == wanted
@@ -197,7 +197,7 @@ def test_the_worst_of_the_rows_is_the_verdict_of_the_case_and_the_worst_case_tha
     assert overall_verdict([*(case(row) for row in rows), FAILED]) == "failed"
 
 
-def test_mixed_verdicts_are_told_each_with_its_parameters_worst_first():
+def test_mixed_verdicts_are_told_worst_first():
     cases = [case(AGREE, tabor=0.5), case(DISAGREE, tabor=1.0), FAILED, case(WIDE, tabor=5.0), case(AGREE, tabor=4.0)]
     words = verdict_words(cases)
     assert words == (

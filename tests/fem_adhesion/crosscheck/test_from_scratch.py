@@ -75,7 +75,7 @@ def in_contact(box):
     return newton(contact, start, at_approach(start))
 
 
-def test_an_equilibrium_balances_and_its_energy_falls_by_the_load(in_contact):
+def test_an_equilibrium_balances_and_its_load_is_its_slope(in_contact):
     contact, h = in_contact.contact, in_contact.y[:-1]
     np.testing.assert_allclose(contact.left_by(in_contact.u, 1.0), h, rtol=0, atol=1e-8)
     np.testing.assert_allclose(contact.left_by(contact.displaced(h), 1.0), h, rtol=0, atol=1e-8)
@@ -111,7 +111,7 @@ def test_newton_follows_a_law_that_ends_by_a_step():
     ],
     ids=["stiff", "soft"],
 )
-def test_the_clamp_under_a_coated_half_space_bears_what_pulls_at_the_coating(scene):
+def test_the_clamp_under_a_coated_half_space_bears_the_load(scene):
     """Within a fifth of what the weak form may err by at least; on cells up to 4e9 beta it was a part in 600 more."""
     contact = contacts(scene)[0](1.0, 1.0)
     h = 1.1 + contact.body.radii**2
@@ -119,7 +119,7 @@ def test_the_clamp_under_a_coated_half_space_bears_what_pulls_at_the_coating(sce
     assert contact.far_reaction(contact.displaced(h), h) == pytest.approx(-pulled, rel=from_scratch.USUAL.least / 5)
 
 
-def test_cells_are_finest_at_a_small_contact_whose_edge_is_sharp():
+def test_cells_are_finest_at_a_small_sharp_contact():
     """0.07 beta wide, within an attraction of 0.44: with cells finest there the gaps were off by 4e-4 eps.
 
     They converged so slowly that the jump was off by as much as the change from body to body.
@@ -148,7 +148,7 @@ def test_the_fourth_level_agrees(tabor, poisson):
     assert len(rows) == folds + numbers + sides
 
 
-def test_a_finer_body_is_taken_where_two_differ_by_more_than_the_budget(monkeypatch):
+def test_a_finer_body_is_taken_where_two_differ(monkeypatch):
     scene = Scene(0.5)
     path = fem_adhesion.trace(scene, rtol=1e-3)
 
@@ -170,7 +170,7 @@ def test_a_finer_body_is_taken_where_two_differ_by_more_than_the_budget(monkeypa
         (3e-3, 4e-4, "disagree"),
     ],
 )
-def test_what_rounding_makes_of_a_reaction_counts_for_that_alone(reaction, rounding, verdict):
+def test_a_reactions_rounding_counts_for_that_alone(reaction, rounding, verdict):
     """Under a coating 72 times as stiff, both nearly incompressible, a reaction was 1.5 times outside by rounding."""
     found = (1 - rounding, 1 + reaction)
     compared = from_scratch.Compared("reaction", "", found, Estimate(1.0, 1e-6), 1.0, (rounding, rounding))
@@ -178,7 +178,7 @@ def test_what_rounding_makes_of_a_reaction_counts_for_that_alone(reaction, round
     assert compared.change == pytest.approx(max(reaction - rounding, 0.0), abs=1e-12)
 
 
-def test_what_changes_from_stage_to_stage_is_no_mistake_of_a_balance():
+def test_what_changes_between_stages_is_no_mistake():
     """A stiff law makes of a ripple of the gaps a deflection of its own; what both stages share is a mistake."""
     scene = Scene(0.5)
     path = fem_adhesion.trace(scene, rtol=1e-3)
@@ -321,7 +321,7 @@ SHARED = {
 
 
 @pytest.mark.parametrize("defect", SHARED)
-def test_a_defect_that_both_solvers_share_is_rejected_by_the_row_that_should(defect, monkeypatch, capsys):
+def test_a_shared_defect_is_rejected_by_the_row_that_should(defect, monkeypatch, capsys):
     inject, shown_by = SHARED[defect]
     inject(monkeypatch)
     (case,) = beside.run([Scene(1.0)], rtol=RTOL)

@@ -64,7 +64,7 @@ def curve():
     return trace(Scene(1.0), rtol=RTOL)
 
 
-def test_every_number_is_that_of_the_integral_equation_within_its_error(curve):
+def test_every_number_agrees_with_the_integral_equation(curve):
     other = halfspace.trace(1.0, rtol=1e-7)
     assert curve.met
     assert set(curve.events) == {"pull_off", "jump_on", "jump_off", "zero_load"}

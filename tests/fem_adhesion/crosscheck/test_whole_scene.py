@@ -141,7 +141,7 @@ def _cases():
 
 @pytest.mark.parametrize(("option", "one", "other"), _cases())
 @pytest.mark.parametrize("solver", ["half-space", "fem", "both"])
-def test_curve_gives_every_option_to_every_solver_or_says_what_it_left_out(option, one, other, solver, given, capsys):
+def test_curve_gives_options_to_solvers_or_says_what_is_left(option, one, other, solver, given, capsys):
     curves = []
     for words in (one, other):
         code = cli.main(["curve", *words.split(), "--solver", solver])
@@ -159,7 +159,7 @@ def test_curve_gives_every_option_to_every_solver_or_says_what_it_left_out(optio
 
 
 @pytest.mark.parametrize(("option", "one", "other"), [case for case in _cases() if "nm" not in case.values[1]])
-def test_compare_gives_every_option_to_its_reference_or_has_none(option, one, other, given, monkeypatch):
+def test_compare_gives_options_to_its_reference_or_has_none(option, one, other, given, monkeypatch):
     asked = []
 
     def run(scenes, **_):
@@ -193,7 +193,7 @@ def test_harmonics_refuse_what_they_do_not_know():
             harmonics.trace(scene)
 
 
-def test_a_sound_pair_one_of_which_is_bonded_is_not_held_against_a_sliding_one():
+def test_a_bonded_pair_is_not_held_against_a_sliding_one():
     scene = Scene(
         1.0,
         fem_adhesion.Hemisphere(radius_ratio=40.0),

@@ -47,9 +47,7 @@ def test_the_numbers_are_those_of_the_curves(collapsed):
 
 @pytest.mark.parametrize("name", ["jump_on", "jump_off"])
 @pytest.mark.parametrize("quantity", ["approach", "load"])
-def test_jumps_differ_by_the_largest_part_in_loads_of_the_pull_off_and_in_approaches_of_their_range(
-    collapsed, name, quantity
-):
+def test_jumps_differ_by_their_largest_part_of_load_or_range(collapsed, name, quantity):
     """The first curve beside itself, moved in one number alone, at a Tabor parameter that scales its approaches."""
     law, path = collapsed.curves[0]
     event, events = path.events[name], path.events
@@ -90,7 +88,7 @@ def test_labels_tell_the_lines_that_are_drawn(collapsed, drawn):
     assert f"{100 * collapsed.apart('pull-off').value:.3g} +- " in left.get_title(loc="left")
 
 
-def test_where_one_law_folds_and_another_does_not_jumps_are_not_compared(collapsed):
+def test_jumps_are_compared_where_all_laws_fold(collapsed):
     first, (law, path), _ = collapsed.curves
     smooth = replace(path, events={name: path.events[name] for name in ("pull_off", "zero_load")})
     found = beside.EquallyStrong([first, (law, smooth)])

@@ -73,7 +73,7 @@ def _shown(what, width, *, terminal=True):
     return console.file.getvalue()
 
 
-def test_the_table_has_the_events_of_both_solvers_within_their_errors(both):
+def test_the_table_has_the_events_of_both_solvers(both):
     rows = _rows(both)
     for solver, path in both.paths.items():
         printed = {row[0]: row[2:] for row in rows if row[1] == solver}
@@ -90,7 +90,7 @@ def test_the_table_has_the_events_of_both_solvers_within_their_errors(both):
                     assert error <= bound * (1 + 1e-9)
 
 
-def test_the_table_has_where_the_jumps_land_and_the_notes_what_they_lose(both):
+def test_table_and_notes_have_landings_and_losses(both):
     rows = {row[0]: row for row in _rows(both)}
     for device, cycle in (("fixed grips", both.grips), ("apparatus", both.apparatus)):
         shown, bound = _printed(rows[f"jump on lands, {device}"][3])
@@ -169,7 +169,7 @@ def relative_errors(event, path):
         (Estimate(-2e-4, 3e-5), True, "its folds are about to merge, by a margin of -0.0002 +- 3e-05 eps/(R dgamma)"),
     ],
 )
-def test_how_far_the_folds_are_is_said_and_what_cannot_be_told_is_no_disagreement(both, margin, jumps, said):
+def test_how_far_folds_are_is_said_and_doubt_disagrees_not(both, margin, jumps, said):
     """The half-space has its jumps, the finite elements those that the margin allows."""
     fe, hs = both.paths.values()
     events = {name: event for name, event in fe.events.items() if jumps or "jump" not in name}
@@ -289,7 +289,7 @@ def test_each_key_of_the_json_holds_what_it_says(both, real):
     assert si["material"] == {"radius": 1e-7, "modulus": 1.1e9, "work_of_adhesion": 0.05, "spacing": 3e-10}
 
 
-def test_the_command_of_the_readme_writes_every_kind_of_file_whole(tmp_path, monkeypatch, capsys):
+def test_every_kind_of_file_is_written_whole(tmp_path, monkeypatch, capsys):
     """Through the command line, and read back by other people's programs."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(module, "REEL", replace(module.REEL, frames=2))
@@ -330,7 +330,7 @@ def test_a_pipe_gets_no_plot_and_a_terminal_does(both):
 
 
 @pytest.mark.parametrize("width", [150, 45])
-def test_every_number_and_unit_is_whole_and_the_plot_fits_at_any_width(both, real, width):
+def test_numbers_are_whole_and_the_plot_fits_at_any_width(both, real, width):
     for what in (both, real):
         text = _shown(what, width)
         assert "…" not in text
@@ -343,7 +343,7 @@ def test_every_number_and_unit_is_whole_and_the_plot_fits_at_any_width(both, rea
         assert {len(line) for line in drawn} == {min(width, curve_terminal.PLOT.width + 10)}
 
 
-def test_the_axes_of_the_plot_in_characters_are_load_upwards_and_approach_to_the_right(real):
+def test_axes_in_characters_are_load_up_and_approach_right(real):
     """The figures at the ends of the axes, which the names stand beside, against the data."""
     lines = curve_terminal.plot(real).plain.split("\n")
     frame = curve_lines.around_events(real.path)
@@ -384,7 +384,7 @@ def test_laws_and_profiles_are_heeded(arguments, part, monkeypatch):
 
 
 @pytest.mark.parametrize("law", [(), MORSE])
-def test_a_hamaker_constant_and_the_edge_are_told_by_the_law_that_has_them(law, capsys):
+def test_hamaker_constant_and_edge_are_told_by_the_law(law, capsys):
     assert cli.main(["curve", *map(str, MATERIAL), *law, "--rtol", "1e-2"]) == 0
     told = capsys.readouterr().out
     assert ("Hamaker constant" in told) == (not law)
@@ -459,7 +459,7 @@ def test_a_material_with_a_size_of_its_own_is_not_given_another():
         _run(*MATERIAL, "--body", "hemisphere:100")
 
 
-def test_standard_output_has_the_data_alone_and_a_person_reads_the_rest_on_standard_error(capsys):
+def test_standard_output_has_the_data_alone(capsys):
     assert _run("--tabor", 0.3, "--rtol", 1e-3, "--json", "-") == 0
     out, err = capsys.readouterr()
     assert json.loads(out)["scene"]["tabor"] == 0.3
@@ -479,7 +479,7 @@ def _asked(monkeypatch, *arguments):
     return asked[0]
 
 
-def test_the_question_takes_the_size_of_the_sphere_from_the_material(monkeypatch):
+def test_the_material_gives_the_size_of_the_sphere(monkeypatch):
     sphere = ("--body", "hemisphere:bonded", "--profile", "sphere", "--stiffness", "0.2N/m")
     question = _asked(monkeypatch, *MATERIAL, *sphere)
     assert question.solver == "fem"

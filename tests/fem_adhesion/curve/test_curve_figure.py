@@ -98,7 +98,7 @@ def test_branches_and_theories_differ_in_dashes_and_in_colour(curves, tabor):
         assert all(a != b for a, b in itertools.combinations(looks, 2))
 
 
-def test_the_drawn_line_is_the_curve_between_the_computed_points(curves):
+def test_the_drawn_line_is_the_curve_between_its_points(curves):
     """Against points ten times closer, each solved for."""
     charts = half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-4))
     close = [p.observables for s in trace_charts(charts, steps=Steps(longest=0.05)) for p in s.points]
@@ -118,7 +118,7 @@ def _distance(line, point):
 
 
 @pytest.mark.parametrize("tabor", [2.0, 5.0])
-def test_stability_changes_at_the_folds_and_under_dead_load_at_pull_off(curves, tabor):
+def test_stability_changes_at_folds_and_at_pull_off(curves, tabor):
     path, line = curves[tabor].path, curve_lines.smooth(curves[tabor].path)
     unstable = np.flatnonzero(line.kind == curve_lines.UNSTABLE)
     for name, at in (("jump_on", unstable[0]), ("jump_off", unstable[-1])):
@@ -139,7 +139,7 @@ def test_an_apparatus_adds_two_arrows_along_its_load_lines(real):
     assert sum(line.get_label().startswith("jumps, $k$ = 5 N/m") for line in axes.lines) == 1
 
 
-def test_profiles_meet_the_surface_law_and_the_nodes_lie_on_them(curves):
+def test_profiles_meet_the_law_and_nodes_lie_on_them(curves):
     figure = _drawn(curves[5.0])
     for panel, count in (("pressure", 5), ("gap", 5)):
         assert len(_panel(figure, panel).lines) == count  # four events and a level
@@ -314,7 +314,7 @@ def test_a_gap_is_smooth_up_to_the_equator_of_a_sphere(made):
             assert np.all(rise[far] > 0)
 
 
-def test_axes_have_the_same_places_in_every_format_and_nothing_is_cut_off():
+def test_axes_have_the_same_places_in_every_format():
     figure, panels = style.panels(2)
     for axes in panels:
         axes.plot([0.0, 1.0], [0.0, 1e-3], label="a line")

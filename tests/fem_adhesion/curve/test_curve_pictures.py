@@ -76,7 +76,7 @@ def test_the_rigid_sphere_over_a_half_space_is_drawn_round(states, name):
     assert z == pytest.approx(view.heights * rigid, abs=1e-6 * view.reach)
 
 
-def test_the_wall_over_a_sphere_is_drawn_flat_and_the_sphere_flattened_where_it_touches(sphere):
+def test_a_wall_is_drawn_flat_and_its_sphere_flattened(sphere):
     states = module.event_states(sphere)
     state, view = states["zero_load"], view_of(list(states.values()))
     shown = surfaces(state, view.reach, view.heights)
@@ -88,7 +88,7 @@ def test_the_wall_over_a_sphere_is_drawn_flat_and_the_sphere_flattened_where_it_
     assert np.ptp(shown.undeformed[1, touching]) > 3 * spacing
 
 
-def test_the_section_meets_the_surface_with_the_stress_of_the_law(states):
+def test_the_section_meets_the_surface_with_the_laws_stress(states):
     state, view = states["zero_load"], view_of(list(states.values()))
     shown = section(state, view)
     r, z = shown.points
@@ -115,7 +115,7 @@ def test_a_picture_has_the_size_and_the_colours_of_its_state(pictures):
     assert blue["jump_on"] + blue["pull_off"] < blue["zero_load"] / 4
 
 
-def test_a_movie_passes_stable_states_only_and_jumps_at_a_fixed_wall(block):
+def test_a_movie_has_stable_states_and_jumps_at_a_fixed_wall(block):
     frames = module.experiment(block.path)
     alpha = np.array([_approach(frame) for frame in frames])
     words = [frame.words for frame in frames]
@@ -137,7 +137,7 @@ def test_a_movie_passes_stable_states_only_and_jumps_at_a_fixed_wall(block):
     assert all(state.problem.negative_directions(state.point.x) == 0 for state in resting)
 
 
-def test_a_movie_without_jumps_goes_and_comes_by_the_same_states():
+def test_a_movie_without_jumps_comes_as_it_goes():
     frames = module.experiment(_solved(Scene(0.5)).path)
     alpha = [_approach(frame) for frame in frames]
     assert not any("jump" in frame.words for frame in frames)
@@ -184,7 +184,7 @@ def test_the_command_draws_and_prints(tmp_path, capsys):
         (("--render", "missing/a.png"), "missing/a.png cannot be written"),
     ],
 )
-def test_what_cannot_be_drawn_is_refused_in_one_line_before_any_work(tmp_path, monkeypatch, arguments, words):
+def test_what_cannot_be_drawn_is_refused_before_any_work(tmp_path, monkeypatch, arguments, words):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda *_: pytest.fail("worked"))
     with pytest.raises(ValueError, match=words) as refused:
@@ -193,13 +193,13 @@ def test_what_cannot_be_drawn_is_refused_in_one_line_before_any_work(tmp_path, m
     assert not list(tmp_path.iterdir())
 
 
-def test_an_event_that_the_curve_has_not_is_refused_and_leaves_no_file(tmp_path):
+def test_an_event_that_the_curve_has_not_is_refused(tmp_path):
     with pytest.raises(ValueError, match="does not fold; take pull_off"):
         _run("--tabor", 0.5, "--rtol", 1e-2, "--render", tmp_path / "a.png", "--at", "jump_on")
     assert not list(tmp_path.iterdir())
 
 
-def test_a_machine_that_cannot_draw_is_told_what_to_install_before_vtk_crashes(monkeypatch):
+def test_a_machine_that_cannot_draw_is_told_what_to_install(monkeypatch):
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
     monkeypatch.setattr(solid_view, "OSMESA", ("libOfNoName.so",))
     with pytest.raises(ValueError, match="apt-get install libegl1 libgl1-mesa-dri"):
@@ -225,7 +225,7 @@ def _said(text):
 
 
 @pytest.mark.parametrize("event", ["jump_on", "jump_off", "pull_off", "zero_load"])
-def test_the_caption_has_the_numbers_of_the_event_under_their_symbols(block, event):
+def test_the_caption_has_the_events_numbers_by_their_symbols(block, event):
     title, numbers = module._caption(block, event)
     assert title == f"$\\mu$ = 2: {STATES[event].words}"
     found, said = block.path.events[event], _said(numbers)
@@ -243,7 +243,7 @@ def test_the_words_of_a_frame_are_load_and_approach(block, states):
         assert said["alpha"] == pytest.approx(state.observables[APPROACH], abs=6e-3)
 
 
-def test_the_curve_on_a_picture_is_load_against_approach_with_the_state_on_it(block, states):
+def test_the_curve_on_a_picture_has_the_state_on_it(block, states):
     figure, view = _composed(block, states["jump_off"], ("title", "numbers"))
     solid, bar, curve = figure.axes
     assert "title" in _texts(figure)

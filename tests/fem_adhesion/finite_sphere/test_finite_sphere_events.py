@@ -60,7 +60,7 @@ def traced(request):
     return fem_adhesion.trace(scene, rtol=1e-5), events_of(tabor, radius_ratio)
 
 
-def test_events_are_right_within_estimates_that_meet_the_tolerance(traced):
+def test_events_are_right_within_estimates(traced):
     path, table = traced
     assert set(path.events) == set(table)
     for name, row in table.items():
@@ -90,7 +90,7 @@ def logarithm(poisson):
 
 @pytest.mark.parametrize("tabor", [1.0, 3.0])
 @pytest.mark.parametrize("name", ["jump_on", "jump_off"])
-def test_the_shift_of_a_jump_has_the_logarithm_of_the_bulks_compliance(half_space, tabor, name):
+def test_the_shift_of_a_jump_has_the_bulks_logarithm(half_space, tabor, name):
     """At a fold d alpha* = mu W s [kappa ln(1/s) + constant + O(s)], s = beta/R = sqrt(mu/rho): fitted to three rho."""
     ratios = np.array([1e2, 1e3, 1e4])
     s = np.sqrt(tabor / ratios)
@@ -100,7 +100,7 @@ def test_the_shift_of_a_jump_has_the_logarithm_of_the_bulks_compliance(half_spac
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.2, 0.3, 0.45, 0.4999])
-def test_the_bulk_compliance_of_a_small_contact_is_logarithmic_but_for_rubber(poisson):
+def test_bulk_compliance_is_logarithmic_but_for_rubber(poisson):
     """Under Gaussian pressures of width b, R = 1: (w(0) - sqrt(pi) b)/W grows by kappa ln 2 as b halves."""
     excess = []
     for b in (0.04, 0.02):

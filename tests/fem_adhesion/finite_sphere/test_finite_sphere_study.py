@@ -119,7 +119,7 @@ def test_inputs_out_of_range_are_refused(inputs, message):
         plan(*inputs)
 
 
-def test_spheres_too_small_for_their_tabor_parameter_are_left_out():
+def test_spheres_too_small_are_left_out():
     found = plan([1.0, 10.0], [5.0, 100.0])
     assert {(r.status, r.kind) for r in found.left_out} == {("left out", "InputError")}
     ill_posed = [r for r in found.left_out if "the equations are ill-posed" in r.reason]
@@ -330,7 +330,7 @@ def test_a_write_that_fails_leaves_what_was_there(tmp_path, monkeypatch):
     assert len(list((tmp_path / "cases").iterdir())) == 1
 
 
-def test_a_directory_that_is_not_empty_is_refused_and_left_alone(tmp_path):
+def test_a_directory_in_use_is_refused_and_left_alone(tmp_path):
     (tmp_path / "thesis.tex").touch()
     with pytest.raises(ValueError, match=r"holds 1 files, limit 0; choose another or use --resume or --force"):
         opened(tmp_path)

@@ -59,7 +59,7 @@ def path():
 # --- the curve ---
 
 
-def test_curve_runs_from_far_separation_into_compression_over_all_meshes(path):
+def test_the_curve_runs_into_compression_over_all_meshes(path):
     assert path.approach[0] < -20
     assert path.load[-1] >= LITTLE > path.load[-2]
     assert np.all(np.diff(path.arclength) >= 0)
@@ -69,7 +69,7 @@ def test_curve_runs_from_far_separation_into_compression_over_all_meshes(path):
     assert len(path.segments) > 1
 
 
-def test_every_point_of_the_curve_has_an_error_that_holds_a_solution_of_higher_degree(path):
+def test_errors_of_points_hold_a_solution_of_higher_degree(path):
     """Solved for again in the plane across the curve, on elements of two degrees more and other meshes.
 
     Their cells grow more slowly: of the truth, too, the first on the axis is long where the window is farther out.
@@ -124,7 +124,7 @@ def test_events_are_where_the_curve_says(path):
     assert path.settings["events"]["degree"] > path.settings["curve"]["degree"]
 
 
-def test_the_spread_between_the_conservative_tractions_is_the_models_uncertainty(path):
+def test_the_spread_of_tractions_is_the_models_uncertainty(path):
     """Between the values that the tests below hold, of each traction on meshes of its own."""
     assert set(path.spread) == set(path.events)
     assert path.spread["jump_on"]["approach"] == pytest.approx(1.5902027 - 1.5623241, rel=2e-3)
@@ -186,7 +186,7 @@ def smallest(request):
     return request.param, trace(scene(0.1, 2.0, traction=request.param), 1e-2, LITTLE)
 
 
-def test_the_smallest_sphere_is_traced_by_the_convention_asked_for(smallest):
+def test_the_smallest_sphere_has_the_convention_asked_for(smallest):
     name, path = smallest
     assert path.load[-1] >= LITTLE
     assert set(path.events) == {"pull_off", "zero_load"}
@@ -195,7 +195,7 @@ def test_the_smallest_sphere_is_traced_by_the_convention_asked_for(smallest):
     assert {problem.convention for problem in problems} == {EXPLICIT[name]}
 
 
-def test_pull_off_of_the_smallest_sphere_is_the_least_load_of_its_own_convention(smallest):
+def test_pull_off_is_the_least_load_of_its_own_convention(smallest):
     """Of an equilibrium on another mesh, put together by hand; the conventions differ by more, as is shown, too."""
     name, path = smallest
     event, found = path.events["pull_off"], path.stages[-1]["pull_off"]
@@ -225,7 +225,7 @@ def test_jumps_alone_are_by_the_convention_asked_for(smallest):
 
 
 @pytest.mark.parametrize("traction", ["reference", "projected"])
-def test_a_sphere_of_one_contact_radius_is_traced_until_it_is_all_in_contact(traction):
+def test_a_tiny_sphere_is_traced_until_all_in_contact(traction):
     """The undeformed radius of the contact edge comes to 0.98 R at most; as deformed it may exceed the sphere's.
 
     A line force at its equator would draw it flat.
@@ -276,7 +276,7 @@ def test_estimates_hold_against_a_finer_computation(path):
     ("traction", "pull_off", "jump_on"),
     [("normal", -5.1751362, -1.5902027), ("reference", -5.17281255, -1.5623241)],
 )
-def test_a_code_of_its_own_with_curved_elements_of_high_order_has_the_same_digits(traction, pull_off, jump_on):
+def test_another_code_of_high_order_has_the_same_digits(traction, pull_off, jump_on):
     """Load of the pull-off and approach of the jump on, printed to the last digit that it knows."""
     found = find_jumps(scene(traction=traction), 1e-6)
     load, approach = found["pull_off"].load, found["jump_on"].approach
@@ -285,7 +285,7 @@ def test_a_code_of_its_own_with_curved_elements_of_high_order_has_the_same_digit
     assert found["jump_on"].approach_error < 2e-6
 
 
-def test_as_the_stretch_vanishes_pull_off_is_that_of_the_linear_body():
+def test_pull_off_tends_to_that_of_the_linear_body():
     bonded = scene(0.3, 1e10, grip="bonded", traction="reference")
     asked = replace(bonded, law=Dlvo(0.3, 1.0), profile=Hyperboloid(1.0))
     linear = asked.made_of(LinearElastic(asked.poisson))
@@ -298,7 +298,7 @@ def test_as_the_stretch_vanishes_pull_off_is_that_of_the_linear_body():
 # --- what the traction is counted per ---
 
 
-def test_attraction_per_deformed_area_grows_with_the_area_that_it_stretches():
+def test_attraction_grows_with_the_area_that_it_stretches():
     radius_ratio, nu = 1e3, 0.3
     pulls = {
         n: find_jumps(scene(0.3, radius_ratio, traction=n), 1e-4)["pull_off"].load
@@ -338,9 +338,7 @@ def test_what_finite_strain_cannot_do_is_refused(options, rtol, message):
         (2.0, 20.0, {"poisson": 0.499}, 33.6),
     ],
 )
-def test_an_edge_that_makes_the_equations_ill_posed_is_refused_before_work(
-    solve, tabor, radius_ratio, options, least, monkeypatch
-):
+def test_ill_posed_equations_are_refused_before_any_work(solve, tabor, radius_ratio, options, least, monkeypatch):
     for work in ("linear_charts", "climb"):
         monkeypatch.setattr(finite_strain_scene, work, None)
     with pytest.raises(InputError, match=f"= {radius_ratio:g} is outside {least} < .*; take traction = 'reference'"):
@@ -348,7 +346,7 @@ def test_an_edge_that_makes_the_equations_ill_posed_is_refused_before_work(
 
 
 @pytest.mark.parametrize(("radius_ratio", "told"), [(38.0, True), (50.0, False)])
-def test_what_is_lost_close_to_the_limit_of_ill_posedness_says_so(radius_ratio, told, monkeypatch):
+def test_what_is_lost_close_to_ill_posedness_says_so(radius_ratio, told, monkeypatch):
     def lost(*_, **__):
         raise NotConverged("the path ends")
 
@@ -376,7 +374,7 @@ def rungs(monkeypatch):
         (IllPosed, "= 2 is close to its limit 1.15 .* leaves 24.1% .*lost.* or radius_ratio above 2.39"),
     ],
 )
-def test_what_a_sphere_smaller_than_any_that_bears_a_load_does_not_find_says_so(error, told, monkeypatch):
+def test_what_too_small_a_sphere_does_not_find_says_so(error, told, monkeypatch):
     def lost(*_, **__):
         raise error("lost")
 
@@ -388,7 +386,7 @@ def test_what_a_sphere_smaller_than_any_that_bears_a_load_does_not_find_says_so(
 @pytest.mark.parametrize(
     ("tabor", "radius_ratio", "traction", "left"), [(1, 8, "normal", 6.7), (2, 13, "projected", 11.3)]
 )
-def test_a_surface_drawn_out_to_a_needle_is_given_up_on_the_first_rung(tabor, radius_ratio, traction, left, rungs):
+def test_a_surface_drawn_to_a_needle_is_given_up_at_once(tabor, radius_ratio, traction, left, rungs):
     with pytest.raises(IllPosed) as told:
         trace(scene(tabor, radius_ratio, traction=traction), 1e-3, LITTLE)
     assert set(rungs) == {4}
@@ -415,7 +413,7 @@ def separated_loads(asked):
     return [p.load(newton.solve(p, p.undeformed(-8.0), newton.approach(-8.0)).x) for p in problems]
 
 
-def test_the_surface_stress_fades_towards_the_equator_so_that_every_degree_gives_the_same_load():
+def test_every_degree_has_the_same_load_at_the_equator():
     """On cells that nothing refines there, as without a surface stress."""
     for tabor, radius_ratio in ((0.3, 6.0), (1.0, 6.0), (1.0, 10.0)):
         loads = separated_loads(scene(tabor, radius_ratio))
@@ -424,7 +422,7 @@ def test_the_surface_stress_fades_towards_the_equator_so_that_every_degree_gives
     assert loads[1] == pytest.approx(loads[0], abs=1e-11)
 
 
-def test_where_the_surface_stress_fades_forces_and_load_are_still_derivatives_of_the_energy():
+def test_forces_derive_from_the_energy_at_the_equator():
     problem = standing(scene(0.3, 3.0), 4)
     x, h = newton.solve(problem, problem.undeformed(-2.0), newton.approach(-2.0)).x, 1e-4
     n = np.arange(x.size)
@@ -453,7 +451,7 @@ def outside(path, asked, how):
     return found
 
 
-def test_the_error_of_a_load_that_stands_still_is_that_of_where_the_event_is():
+def test_a_load_that_stands_still_errs_by_its_place():
     """It changes from mesh to mesh by less than it errs, 8e-6, though the event shifts."""
     scene = Scene(1.0, Hemisphere(radius_ratio=30.0, material=NeoHookean(0.499, "vertical")))
     jump = trace(scene, rtol=1e-4).event("jump_off")
@@ -466,7 +464,7 @@ def test_errors_hold_where_the_tension_ends_by_a_step():
     assert outside(trace(asked, 1e-3), asked, Discretisation(8, 0.35, 2.0)) == []
 
 
-def test_events_of_a_tiny_sliding_sphere_are_those_on_cells_graded_to_its_equator(monkeypatch):
+def test_events_of_a_tiny_sphere_hold_on_graded_cells(monkeypatch):
     """A surface stress that ended there would shift loads by 3e-4 on the first rings."""
     asked = scene(1.0, 6.0)
     path = trace(asked, 1e-4, LITTLE)

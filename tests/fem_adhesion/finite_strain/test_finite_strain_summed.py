@@ -149,7 +149,7 @@ def compared():
     return found
 
 
-def test_the_blend_is_what_the_summed_model_tends_to_and_nothing_else_is(compared):
+def test_the_summed_model_tends_to_the_blend_alone(compared):
     """To the first order in beta/R, once the yield of the attracted layer is taken out."""
     (d1, coarse), (d2, fine) = compared
     limits = {name: fine[name] + (fine[name] - coarse[name]) * d2 / (d1 - d2) for name in fine}

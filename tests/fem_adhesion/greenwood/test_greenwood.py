@@ -115,7 +115,7 @@ def test_a_fit_returns_the_constants_that_made_the_jumps():
     assert fitted["fit of App. C"].scatter < 1e-12
 
 
-def test_the_errors_of_refitted_constants_are_the_spread_of_fits_to_scattered_jumps():
+def test_errors_of_refitted_constants_are_the_spread_of_fits():
     tabor, random = np.geomspace(1, 100, 12), np.random.default_rng(5)
     gaps, approaches = criteria.fitted_gap(tabor), criteria.fitted_approach(tabor)
 

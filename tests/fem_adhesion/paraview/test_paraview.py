@@ -386,7 +386,7 @@ def test_with_a_material_the_state_is_in_si_too(si, states):
     np.testing.assert_allclose(array(grid, "displacement_magnified_m"), true * array(grid, "displacement_m"), rtol=1e-9)
 
 
-def test_a_sphere_has_its_displacement_in_beta_too_in_si_as_well(hemisphere, tmp_path, units):
+def test_a_sphere_has_its_displacement_in_beta_too(hemisphere, tmp_path, units):
     write_path([hemisphere], tmp_path / "sphere")
     grid = read(tmp_path / "sphere" / "body_0000.vtu")
     R = note(grid, "sphere_radius_in_beta")

@@ -42,7 +42,7 @@ def curves():
 
 
 @pytest.mark.parametrize("tabor", [0.02, 0.71, 2, 10])
-def test_the_curve_goes_on_where_one_grid_hands_it_over_to_another(curves, tabor):
+def test_the_curve_goes_on_from_grid_to_grid(curves, tabor):
     """The same state on two grids, of which each is right to some 1e-5 where the edge leaves the one for the other."""
     separated, contact = curves[tabor].segments
     last, first = separated.points[-1], contact.points[0]
@@ -75,7 +75,7 @@ def test_estimates_hold_the_truth_at_other_tolerances(rtol, tabor):
             assert event.load_error <= rtol * abs(event.load)
 
 
-def test_the_curve_folds_only_above_the_critical_tabor_parameter(curves):
+def test_the_curve_folds_above_the_critical_tabor_parameter(curves):
     for tabor, path in curves.items():
         assert (path.event("jump_on") is None) == (path.event("jump_off") is None) == (tabor < 0.697)
 
@@ -95,7 +95,7 @@ def test_the_unstable_branch_lies_between_the_jumps(curves):
     assert not (path.stable_under_dead_load[1:] & path.stable_under_dead_load[:-1])[falling].any()
 
 
-def test_the_states_of_a_path_that_meet_a_condition_come_in_order(curves):
+def test_states_that_meet_a_condition_come_in_order(curves):
     path = curves[2.0]
     on, off = path.states(FOLD)
     assert on.point.arclength < off.point.arclength
@@ -115,7 +115,7 @@ def test_the_curve_runs_from_separation_to_compression(curves):
         assert np.all(np.diff(path.arclength) >= 0)
 
 
-def test_the_work_along_the_curve_is_the_energy_between_its_ends():
+def test_work_along_the_curve_is_the_energy_of_its_ends():
     """Trapezoidal rule with end corrections on a finely stepped curve, against the energies of the two end states."""
     segments = trace_charts(
         half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-8)), steps=Steps(longest=0.05, turn=0.02)
@@ -160,7 +160,7 @@ def test_the_neck_outside_a_soft_contact_is_jkrs():
     ],
     ids=["import", "trace"],
 )
-def test_what_takes_long_to_load_is_not_loaded_unless_it_is_needed(code, unneeded):
+def test_what_loads_slowly_is_loaded_if_needed(code, unneeded):
     """By the modules that are there afterwards, not by the clock."""
     code = f"import sys, halfspace; {code or None}; print([m for m in {unneeded} if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
@@ -186,7 +186,7 @@ def test_a_curve_takes_few_points_and_factorisations(monkeypatch, tabor, law, po
     assert len(made) <= factorisations
 
 
-def test_factors_that_serve_twice_leave_points_and_tangents_exact():
+def test_factors_that_serve_twice_leave_points_exact():
     """Against factors made anew at each point."""
     for segment in trace_charts(half_space_charts(Scales(2.0), resolution_for(Scales(2.0), 1e-6))):
         problem = segment.problem
@@ -199,7 +199,7 @@ def test_factors_that_serve_twice_leave_points_and_tangents_exact():
 
 
 @pytest.mark.parametrize("condition", [FOLD, EXTREMUM], ids=["fold", "extremum"])
-def test_newtons_method_finds_the_turning_points_that_halving_finds(condition):
+def test_newton_finds_the_turning_points_of_halving(condition):
     """At tabor 50 the curve winds, in folds of 0.01 eps at loads that change by 1e-4."""
     segments = trace_charts(half_space_charts(Scales(50.0), resolution_for(Scales(50.0), 1e-6)))
     metric = metric_for(segments[0].problem)
@@ -213,7 +213,7 @@ def test_newtons_method_finds_the_turning_points_that_halving_finds(condition):
     assert found >= 6
 
 
-def test_a_curve_that_the_lowest_grid_cannot_carry_is_traced_on_the_next():
+def test_what_the_lowest_grid_cannot_carry_goes_to_the_next():
     """As where two folds about to merge exist on one grid, but not on another."""
     asked = []
 
@@ -228,7 +228,7 @@ def test_a_curve_that_the_lowest_grid_cannot_carry_is_traced_on_the_next():
     assert path.event("jump_on").approach == pytest.approx(-1.629216712, abs=1e-4)
 
 
-def test_a_curve_that_no_grid_can_carry_is_given_up_and_says_why():
+def test_a_curve_that_no_grid_can_carry_says_why():
     def rung(level):
         raise NotConverged(f"no level {level}; refine the grid")
 
@@ -246,7 +246,7 @@ BY_TABOR = 0.459  # R dgamma/eps by which the margin falls with the Tabor parame
 
 @pytest.mark.parametrize("rtol", [1e-1, 1e-4, 1e-8])
 @pytest.mark.parametrize("tabor", [0.6970, 0.6972, 0.6972146, 0.69721461, 0.697214614, 0.69721462, 0.6974])
-def test_a_curve_about_to_fold_is_traced_and_says_how_far_the_folds_are(tabor, rtol):
+def test_a_curve_about_to_fold_says_how_far_its_folds_are(tabor, rtol):
     path = halfspace.trace(tabor, rtol=rtol)
     margin, truth = path.margin, BY_TABOR * (CRITICAL - tabor)
     assert abs(margin.value - truth) <= margin.error + 0.01 * abs(truth)
@@ -257,7 +257,7 @@ def test_a_curve_about_to_fold_is_traced_and_says_how_far_the_folds_are(tabor, r
         assert certain is (tabor != 0.697214614)  # which is 1.7e-10 from it
 
 
-def test_the_margin_is_the_compliance_of_the_stiffest_apparatus_that_jumps():
+def test_the_margin_is_that_of_the_stiffest_apparatus():
     """By a golden search under prescribed central gaps, in `fem_adhesion.common.fold_birth`."""
     path = halfspace.trace(0.69, rtol=1e-8)
     assert path.margin.value == pytest.approx(1 / critical_stiffness(0.69), rel=1e-5, abs=0)
@@ -282,7 +282,7 @@ def test_folds_that_a_finer_grid_loses_are_left_in_doubt():
     assert cycle(path) is None
 
 
-def test_a_grid_that_takes_more_memory_than_there_is_is_refused_by_the_input_that_asks_for_it(monkeypatch):
+def test_a_grid_beyond_memory_is_refused_by_its_input(monkeypatch):
     monkeypatch.setattr(halfspace.elastic.kernel, "RULES", RingRules(largest=2e4))
     with pytest.raises(NotConverged, match=r"^rtol = 1e-06 takes grids of \d+ nodes, .*, limit: 2e-05 GB; take a lar"):
         halfspace.trace(2.0, rtol=1e-6)
@@ -294,7 +294,7 @@ def test_operators_that_the_store_has_no_room_for_are_refused():
         halfspace.trace(300, law=Dugdale(0.1078), profile=Sphere(1440.16, 13.23), rtol=1e-7)
 
 
-def test_where_memory_ends_the_ladder_the_last_rung_that_fits_is_told_with_its_errors(monkeypatch):
+def test_the_last_rung_that_fits_memory_has_its_errors(monkeypatch):
     asked = {"law": Dugdale(0.1), "profile": Sphere(30.0), "rtol": 1e-4}
     full = halfspace.trace(5.0, **asked)
     lowest, highest = (full.settings[rung]["nodes"] for rung in ("curve", "events"))
@@ -307,7 +307,7 @@ def test_where_memory_ends_the_ladder_the_last_rung_that_fits_is_told_with_its_e
         assert abs(path.events[name].load - event.load) <= path.events[name].load_error
 
 
-def test_kernels_that_made_room_for_others_are_made_again_as_they_were(monkeypatch):
+def test_kernels_that_made_room_are_made_as_they_were(monkeypatch):
     asked = {"profile": Sphere(30.0), "rtol": 1e-5}
     kept = halfspace.trace(1.0, **asked)
     monkeypatch.setattr(halfspace.elastic.operators.STORE, "room", 0.0)

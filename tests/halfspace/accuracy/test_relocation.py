@@ -17,7 +17,7 @@ from halfspace.scales import Scales
 
 
 @pytest.mark.parametrize("rtol", [1e-1, 1e-2])
-def test_events_are_found_again_on_a_clamped_block_three_times_as_large(rtol):
+def test_events_are_found_on_a_block_three_times_as_large(rtol):
     """The smaller one is only two attractions wide: its pull-off load is a sixth less, all events lie elsewhere."""
     path = fem_adhesion.trace(Scene(0.1, Block(radius=20.0, far_field="clamped")), rtol=rtol)
     for stage in path.stages:
@@ -59,7 +59,7 @@ def solved_on(route):
     ],
     ids=str,
 )
-def test_an_event_is_settled_where_it_lies_on_a_chart_made_for_it(route, order):
+def test_an_event_is_settled_on_a_chart_made_for_it(route, order):
     asked, solve = solved_on(route)
     found = settled(SimpleNamespace(problem=None, lies_in=0), Windows(), solve)
     assert asked == order
@@ -93,7 +93,7 @@ def test_a_sign_that_changes_where_states_leap_is_no_event(monkeypatch, leap, fo
             conditions.bracketed(None, a, b, Condition(0), None)
 
 
-def test_a_load_at_a_fold_is_known_no_better_than_its_place_where_the_law_has_a_step():
+def test_a_fold_under_a_step_is_known_as_its_place_is():
     """By the radius' shift: a load that three grids had alike by accident was 3.4 times outside at jump_off."""
     values = np.array([[0.0, 5.0, 0.0, 1.0], [0.0, 5.0, 0.0, 1.0 + 1e-5]])
     chain = _chain(conditions.FOLD, np.array([0.0, -6.0, 0.03, 1.5]), values)
@@ -134,7 +134,7 @@ def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, still, rate
     assert (event.approach_error, event.load_error)[still] < 1e-10
 
 
-def test_what_a_shift_along_the_path_and_the_rest_take_from_each_other_is_left_of_both():
+def test_shift_and_rest_do_not_cancel_in_an_error():
     """A load at a fold that stands still by accident, as under Dugdale's law on a coating: told to half of it."""
     rates = np.array([0.0, -5.0, -1e-3, 1.0])
     values = np.array([[2e-4, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0 - 1e-5]])
@@ -160,7 +160,7 @@ def _chain(condition, rates, values, near_axis=((0.0,), (0.0,))):
 
 
 @pytest.mark.parametrize(("part", "passed"), [(1.0, True), (0.85, True), (0.7, False), (1.2, True), (1.4, False)])
-def test_a_load_grows_from_afar_where_its_mean_slope_is_about_an_exponentials(part, passed):
+def test_a_load_grows_from_afar_as_an_exponential(part, passed):
     """Neither less, where it may dip, nor more, where it may have come back from higher up."""
     first, last = 1e-4, 8e-4
     mean = part * (last - first) / float(np.log(last / first))

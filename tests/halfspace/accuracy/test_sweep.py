@@ -46,7 +46,7 @@ def found():
     return halfspace.sweep(TABORS, rtol=RTOL)
 
 
-def test_the_arrays_hold_the_numbers_of_each_curve_in_the_order_asked(found):
+def test_arrays_hold_the_curves_in_the_order_asked(found):
     assert found.tabor.tolist() == list(TABORS)
     for i, tabor in enumerate(TABORS):
         path = halfspace.trace(tabor, rtol=RTOL)
@@ -166,7 +166,7 @@ def test_what_is_no_tabor_parameter_is_refused_in_one_line(capsys, tmp_path, tex
     assert not table.exists()
 
 
-def test_a_range_of_more_parameters_than_a_table_is_for_is_refused(capsys, tmp_path):
+def test_a_range_too_long_for_a_table_is_refused(capsys, tmp_path):
     assert cli.main(["sweep", "--tabor", "1:2:99999999999", "--csv", str(tmp_path / "table.csv")]) == 2
     assert "COUNT 2 to 100000; write 0.05:50:200, say\n" in capsys.readouterr().err
 
@@ -194,7 +194,7 @@ def test_what_is_kept_is_not_traced_again(tmp_path):
         assert len(counted.calls) == 5 + number
 
 
-def test_what_missed_its_tolerance_comes_back_from_the_disk_as_it_was(tmp_path):
+def test_what_missed_its_tolerance_survives_the_disk(tmp_path):
     store = open_store(tmp_path / "kept", "code", resume=True)
     missed = Summary(1.0, {}, UNKNOWN, UNKNOWN, {"jump_on": ("approach", "load")}, "")
     (kept,) = study.run([1.0], ASKED, store, jobs=1, work=lambda *_, **__: missed)

@@ -76,7 +76,7 @@ def pressure(radii):
     return np.cos(radii) * np.exp(-radii / 3)
 
 
-def test_the_error_of_interpolation_falls_geometrically_with_the_number_of_radii(body):
+def test_interpolation_errors_fall_geometrically_with_radii(body):
     moving, make = body
     fresh = make(moving.lines(EDGE))
     known = interpolated(body, 2).at(EDGE)
@@ -109,7 +109,7 @@ def test_the_edge_row_interpolates_at_the_contact_edge(body):
     assert operator.edge_row @ operator.at(EDGE).radii == pytest.approx(EDGE, rel=1e-4)
 
 
-def test_the_jacobian_against_finite_differences_on_a_grid_that_follows_a_sphere(body):
+def test_the_jacobian_on_a_sphere_against_differences(body):
     problem = ContactProblem(interpolated(body, 3), 0.5, profile=SphereSurface(R))
     x = problem.undeformed(-0.2, EDGE)
     x[:-2] += 0.3 * np.cos(np.arange(x.size - 2))
@@ -119,7 +119,7 @@ def test_the_jacobian_against_finite_differences_on_a_grid_that_follows_a_sphere
     np.testing.assert_allclose(J, differences, atol=1e-6 * (1 + np.max(np.abs(J[:, -1]))), rtol=1e-6)
 
 
-def test_a_half_space_has_the_same_events_whether_homogeneous_or_interpolated():
+def test_homogeneous_and_interpolated_have_the_same_events():
     """On a grid with no length of its own, interpolation between any two radii is exact."""
     charts = half_space_charts(Scales(1.0), resolution_for(Scales(1.0), 1e-4))
     operator = charts[1].problem.operator

@@ -117,7 +117,7 @@ def test_graded_grid_is_finest_at_its_radius():
 
 
 @pytest.mark.parametrize(("finest", "last"), [(0.01, 0.001), (0.001, 0.5), (3.0, 0.01), (0.01, 50.0), (20.0, 30.0)])
-def test_a_grid_that_is_fine_at_both_ends_grows_from_either_to_where_they_meet(finest, last):
+def test_a_grid_fine_at_both_ends_grows_from_either(finest, last):
     steps = np.diff(ends := grid.geometric(10.0, finest, 3.0, last))
     assert (ends[0], ends[-1]) == (0.0, 10.0)
     assert 0 < steps[0] <= finest
@@ -140,7 +140,7 @@ def test_bad_grids_are_refused(call, message):
         call()
 
 
-def test_the_continuous_interpolation_does_not_leap_where_cells_meet():
+def test_interpolation_does_not_leap_where_cells_meet():
     operator = compliance.panels(np.array([0.0, 0.5, 1.5, 4.0]), 4)
     values = np.cos(2 * operator.radii)
     for end in (0.5, 1.5):
@@ -159,7 +159,7 @@ def test_the_continuous_interpolation_does_not_leap_where_cells_meet():
 
 
 @pytest.mark.parametrize("R", [10.0, np.inf])
-def test_operators_integrated_together_are_those_of_each_grid_alone(R):
+def test_operators_made_together_are_those_made_alone(R):
     lines = np.array([0.0, 0.3, 0.8, 1.0, 1.1, 1.6, 5.0, 20.0]) * np.array([[0.9], [1.0], [1.0]])
     lines[:, -1] = 20.0
     lines[2, 3] = 1.05

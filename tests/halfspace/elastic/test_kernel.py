@@ -22,7 +22,7 @@ def test_ring_kernel_on_the_axis_and_far_away():
     assert ring_kernel(np.array(1e6), np.array(1.0)) == pytest.approx(2 / 1e6, rel=1e-11)  # 2 pi s/(pi r) per s
 
 
-def test_band_closed_form_has_the_values_that_correct_the_papers_misprint():
+def test_bands_have_the_values_that_correct_the_misprint():
     assert band_deflection(0.5, 1.0) * np.pi / 4 == pytest.approx(1.4674622093, abs=1e-10)
     assert band_deflection(1.0, 0.5) * np.pi / 4 == pytest.approx(0.2031494432, abs=1e-10)
 
@@ -73,7 +73,7 @@ def _weighted_kernel(r, s):
     return 4 / (mpmath.pi * max(r, s)) * mpmath.ellipk(k**2) * s
 
 
-def test_a_triangle_is_the_integral_of_the_bands_it_is_stacked_from():
+def test_a_triangle_is_the_integral_of_its_bands():
     a, b, c = 0.5, 0.8, 1.2
     for r in (0.1, 0.62, 0.8, 1.1, 2.0):
 
@@ -87,7 +87,7 @@ def test_a_triangle_is_the_integral_of_the_bands_it_is_stacked_from():
 
 
 @pytest.mark.parametrize("count", [7, 9, 16])
-def test_panels_under_a_sphere_deflect_as_rings_do_up_to_the_equator(count):
+def test_panels_under_a_sphere_deflect_as_rings_do(count):
     """The pressure jumps there, and a node's image beyond it is near: by rules of 80 points from all of them."""
     R, power = 2.0, 3
     operator = compliance.panels(R * np.array([0, 0.3, 0.7, 1.2, 2.0]), count, R)

@@ -38,7 +38,7 @@ def test_a_bonded_layer_yields_to_waves_by_its_closed_form(poisson, thickness):
     assert surface_compliance(Layer(thickness, poisson), x / thickness) == pytest.approx(closed, rel=0, abs=1e-12)
 
 
-def test_a_sliding_layer_yields_by_its_closed_form_whatever_its_poisson_ratio():
+def test_a_sliding_layer_yields_by_its_closed_form():
     x = WAVES
     closed = (np.cosh(2 * x) - 1) / (np.sinh(2 * x) + 2 * x)
     for poisson in POISSON:
@@ -50,7 +50,7 @@ def test_a_coating_like_its_half_space_is_the_half_space():
 
 
 @pytest.mark.parametrize("poisson", POISSON)
-def test_a_coating_on_something_ever_stiffer_goes_over_into_the_bonded_layer(poisson):
+def test_a_coating_on_something_stiff_is_a_bonded_layer(poisson):
     """Linearly in the ratio of moduli, by which it is extrapolated."""
     near, nearer = (surface_compliance(Coated(2.0, ratio, poisson, 0.2), WAVES / 2) for ratio in (2e-3, 1e-3))
     rigid = surface_compliance(Layer(2.0, poisson), WAVES / 2)
@@ -59,14 +59,14 @@ def test_a_coating_on_something_ever_stiffer_goes_over_into_the_bonded_layer(poi
     assert not np.allclose(nearer[waves], rigid[waves], rtol=0, atol=1e-4)
 
 
-def test_long_waves_see_what_is_below_and_short_ones_the_first_stratum():
+def test_long_waves_see_the_base_short_ones_the_stratum():
     body = Coated(2, modulus_ratio=10, poisson=0.3, substrate_poisson=0.2)
     long, short = surface_compliance(body, np.array([1e-7, 20.0]))
     assert long == pytest.approx(10 * (1 - 0.2**2) / (1 - 0.3**2), rel=1e-5)
     assert short == pytest.approx(1, rel=1e-12)
 
 
-def test_a_thin_stiff_film_is_as_stiff_over_the_length_that_a_plate_bends_over():
+def test_a_thin_stiff_film_bends_as_a_plate():
     """A plate on a half-space: E t^3/(12 l^4) + E_2/(2 l) = E/(2 l_0)."""
     t, modulus, bends = 0.01, 0.01, 0.04
     stiffness = t**3 / 12 / bends**4 + modulus / bends / 2
@@ -88,7 +88,7 @@ def test_images_have_the_kernel_of_hankels_integral(body):
 
 
 @pytest.mark.parametrize("thickness", [0.05, 0.5, 20.0])
-def test_a_bell_of_pressure_deflects_a_layer_as_hankels_integral_says(thickness):
+def test_a_bell_deflects_a_layer_as_hankels_integral(thickness):
     """P = e^(-r^2) has the transform e^(-k^2/4)/2; cells are longer and shorter than the layer is thick."""
     body = Layer(thickness, 0.3)
     operator = layered_panels(images_of(body), grid.graded(1.0, 0.05, 60.0, growth=3.0), 10)
@@ -118,7 +118,7 @@ def test_what_is_no_layer_is_refused_when_it_is_made(make, words):
         make()
 
 
-def test_strata_too_unlike_for_images_are_refused_with_the_misfit():
+def test_strata_too_unlike_are_refused_with_the_misfit():
     soft, *stiff = Stratum(0.44, 0.3, 0.09), Stratum(2.2, 0.499, 410), Stratum(0.46, 0.499, 570)
     unlike = Layers([Stratum(0.2, 0.499), stiff[0], soft, stiff[1], Stratum(0.19, 0.3, 280)], Substrate(0.013, 0.3))
     with pytest.raises(NotConverged, match="is missed by"):
@@ -134,7 +134,7 @@ def on_layer():
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8])
-def test_pull_off_from_a_layer_is_within_its_estimate_of_the_reference(on_layer, rtol):
+def test_pull_off_from_a_layer_hits_the_reference(on_layer, rtol):
     event = on_layer[rtol].events["pull_off"]
     approach, load = REFERENCE["pull_off"]
     assert abs(event.approach - approach) <= event.approach_error + 1e-9
@@ -169,7 +169,7 @@ def test_bodies_that_are_the_same_have_the_same_events(body, alike):
             )
 
 
-def test_between_the_radii_of_a_curve_a_stiff_coating_is_as_well_known_as_a_soft_one():
+def test_a_stiff_coating_is_known_between_its_radii():
     """Against images integrated where the contact is; what they bend by is a hundred times the coating's own yield."""
     for body in (Coated(0.5, 100.0), Coated(0.5, 10.0), Coated(0.5, 0.1)):
         scales, images = Scales(3.0, body=body), images_of(body)
@@ -241,7 +241,7 @@ def charted():
 
 @pytest.mark.parametrize("body", [Layer(2.0, 0.3), SOFT_BETWEEN, Coated(0.1, 100.0)], ids=repr)
 @pytest.mark.parametrize("spacing", [1.14, 1.17])
-def test_images_in_units_of_the_contact_deflect_as_at_their_own_depths(body, spacing):
+def test_images_in_units_of_the_contact_deflect_alike(body, spacing):
     """From the least contact to one that is wider than was planned; the rule for long cells is that of the widest."""
     images = images_of(body, spacing)
     rounded = 1e-15 * np.abs(images.strengths).sum()  # up to 1e6 each, of either sign
@@ -256,7 +256,7 @@ def test_images_in_units_of_the_contact_deflect_as_at_their_own_depths(body, spa
     assert operator.least_radius == pytest.approx(0.3)
 
 
-def test_a_contact_that_is_wider_than_the_attraction_rests_on_images_integrated_up_to_its_edge():
+def test_images_serve_a_contact_wider_than_the_attraction():
     """Under a load a cone on a thin layer is forty times as wide as it attracts; there deflections were of any size."""
     body, profile = Layer(0.05, 0.3), Hyperboloid(0.05).surface(300.0)
     scales, images = Scales(300.0, profile=profile, body=body), images_of(body)
@@ -269,7 +269,7 @@ def test_a_contact_that_is_wider_than_the_attraction_rests_on_images_integrated_
         assert found[inside] == pytest.approx(wanted[inside], rel=0, abs=1e-5 * np.abs(wanted).max())
 
 
-def test_the_scaled_operator_changes_with_the_contact_as_its_rates_say(charted):
+def test_the_scaled_operator_changes_as_its_rates_say(charted):
     _, operator = charted
     a, h = 1.4, 1e-4
     pressure = np.exp(-(operator.unit.radii**2))
@@ -282,7 +282,7 @@ def test_the_scaled_operator_changes_with_the_contact_as_its_rates_say(charted):
 
 
 @pytest.mark.parametrize(("rtol", "off"), [(1e-5, 2e-7)])
-def test_a_central_gap_on_a_thin_layer_is_read_off_an_even_polynomial(rtol, off):
+def test_a_central_gap_is_read_off_an_even_polynomial(rtol, off):
     """By one in the radius it was 1.2e-5 and 5.4e-7 off, the latter told as 4.7e-7: its coefficients fall unevenly."""
     gap, exact = (
         trace(0.1, body=Layer(0.1, 0.4999), rtol=r).event("zero_load").estimate("central_gap") for r in (rtol, 1e-8)
@@ -291,7 +291,7 @@ def test_a_central_gap_on_a_thin_layer_is_read_off_an_even_polynomial(rtol, off)
     assert gap.error < 100 * off
 
 
-def test_the_estimate_holds_what_images_of_a_very_thin_layer_leave():
+def test_estimates_hold_what_images_of_a_thin_layer_leave():
     """By finite elements, which have none, at 1e-4 and 1e-6 alike to ten digits."""
     path = trace(1.0, body=Layer(0.01, 0.3), profile=Hyperboloid(0.2), rtol=1e-6)
     for name, value in (("zero_load", 0.6010980289), ("pull_off", 0.2212462660)):

@@ -30,7 +30,7 @@ def _alike(values):
     assert others == [pytest.approx(first, rel=1e-9, abs=1e-12) for _ in others]
 
 
-def test_the_scale_is_the_spacing_and_the_range_between_the_events():
+def test_the_scale_is_the_spacing_and_the_events_range():
     assert approach_scale([-3.0, 1.5, -0.5]) == 5.5
     assert approach_scale([7.0]) == 1.0
     assert approach_scale([2e-9, -1e-9], 0.2e-9) == pytest.approx(3.2e-9, rel=1e-12, abs=0)

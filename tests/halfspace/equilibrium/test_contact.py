@@ -125,12 +125,12 @@ def test_a_contact_edge_is_found_between_any_gaps(problem, seed):
     assert CENTRED.continuous(found)[0] @ gaps == pytest.approx(edge, abs=1e-9)
 
 
-def test_a_contact_wider_than_its_surface_reaches_to_the_end_of_it(problem):
+def test_a_contact_wider_than_its_surface_ends_with_it(problem):
     x = problem.undeformed(1e6)
     assert problem.contact_radius(np.append(np.zeros(x.size - 2), x[-2:])) == CENTRED.extent
 
 
-def test_a_grid_that_follows_the_contact_finds_the_state_of_a_fixed_one():
+def test_a_moving_grid_finds_the_state_of_a_fixed_one():
     fixed = ContactProblem(compliance.panels(grid.graded(1.0, 0.1, 400.0), 12), 1.0)
     moving = ContactProblem(Homogeneous(compliance.panels(grid.graded(1.0, 0.05, 800.0), 12)), 1.0)
     x = fixed.undeformed(-0.5)
@@ -148,7 +148,7 @@ def test_energy_falls_by_the_work_of_the_load(problem, touching):
     assert slope == pytest.approx(problem.load(touching), rel=1e-6)
 
 
-def test_negative_directions_counts_the_tangents_negative_eigenvalues(problem, touching):
+def test_negative_directions_are_negative_eigenvalues(problem, touching):
     J = problem.jacobian(touching)[:-1, :-2]
     eigenvalues = np.linalg.eigvals(J)
     assert problem.negative_directions(touching) == np.sum(eigenvalues.real < 0) == 1
@@ -169,7 +169,7 @@ def test_newton_never_returns_an_unconverged_state(problem, touching):
         newton.solve(problem, touching, newton.load(-7.0))  # no state pulls harder than 2 pi
 
 
-def test_a_grid_too_coarse_for_the_spike_is_refused_with_the_numbers():
+def test_a_grid_too_coarse_is_refused_with_the_numbers():
     coarse = ContactProblem(compliance.triangles(grid.uniform(10.0, 0.05)), tabor=3.0)
     x = coarse.undeformed(1.0)
     x[:-2] = np.maximum(x[:-2], 0.0)
@@ -178,7 +178,7 @@ def test_a_grid_too_coarse_for_the_spike_is_refused_with_the_numbers():
 
 
 @pytest.mark.parametrize("build", [compliance.triangles, compliance.bands])
-def test_the_papers_discretisations_converge_to_the_same_pull_off(build):
+def test_the_papers_grids_converge_to_the_same_pull_off(build):
     """Pull-off at tabor 0.5 by load control from both sides of the minimum, against the converged -5.615543."""
     problem = ContactProblem(build(grid.graded(0.0, 0.01, 200.0, growth=1.02)), tabor=0.5)
     x = problem.undeformed(-8.0)
@@ -234,7 +234,7 @@ def test_the_energy_of_the_surfaces_goes_on_beyond_the_grid(central_gap):
 
 @pytest.mark.parametrize(("nodes", "widths"), [(2, 0.1), (3, 0.1), (5, 0.336), (10, 0.9)])
 @pytest.mark.parametrize(("tabor", "width"), [(2.0, 0.25), (0.1, 0.7 / 0.1**0.5)])
-def test_the_grid_must_be_fine_where_the_edge_stands_to_the_limit_and_no_further(nodes, widths, tabor, width):
+def test_the_grid_must_be_fine_at_the_edge_to_the_limit(nodes, widths, tabor, width):
     """So many widths of the spike, mu^-2 or 0.7 mu^-1/2 of a nearly rigid contact, between the nodes of a panel."""
     limit = widths * width
 
@@ -250,7 +250,7 @@ def test_the_grid_must_be_fine_where_the_edge_stands_to_the_limit_and_no_further
         require(1.001 * limit)
 
 
-def test_no_step_of_newtons_method_takes_a_gap_below_a_quarter_of_its_value(problem):
+def test_no_step_takes_a_gap_below_a_quarter_of_its_value(problem):
     x = problem.undeformed(-5.0)
     dx = np.zeros(x.size)
     dx[3] = -10 * (x[3] + 1)
@@ -286,7 +286,7 @@ def test_a_gap_is_known_no_better_than_to_its_last_coefficients(last):
 
 
 @pytest.mark.parametrize(("edge", "cells"), [(1.0, (0, 1)), (0.7, (0,))])
-def test_a_radius_is_known_no_better_than_to_the_last_coefficient_but_one_beside_the_edge_over_the_slope(edge, cells):
+def test_a_radius_is_known_as_the_gaps_last_coefficients(edge, cells):
     operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 6)
     problem, last = ContactProblem(operator, 0.5), (2e-6, 5e-6)
     places = 2 * (operator.radii % 1.0) - 1
@@ -300,14 +300,14 @@ def test_a_radius_is_known_no_better_than_to_the_last_coefficient_but_one_beside
 
 
 @pytest.mark.parametrize("nodes", [2, 5, 8])
-def test_what_is_even_in_the_radius_is_told_on_the_axis_by_a_polynomial_in_its_square(nodes):
+def test_values_on_the_axis_are_by_even_polynomials(nodes):
     operator = compliance.panels(np.array([0.0, 1.3, 2.0]), nodes)
     even = np.polynomial.Polynomial(np.linspace(-1.0, 2.0, nodes))
     assert operator.axis_row @ even(operator.radii**2) == pytest.approx(-1.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("profile", [PARABOLOID, Power(1.5)])
-def test_the_central_gap_is_that_of_a_smooth_deflection_under_any_profile(profile):
+def test_the_central_gap_is_known_under_any_profile(profile):
     problem = ContactProblem(compliance.panels(np.array([0.0, 1.0, 2.0]), 5), 0.7, profile=profile)
     state = problem.undeformed(-3.0)
     state[:-2] += 1 - problem.operator.radii**2 / 2
@@ -326,7 +326,7 @@ def test_a_central_gap_under_a_small_sphere_is_within_its_error(tabor, ratio, rt
 
 
 @pytest.mark.parametrize("nodes", [1, 2, 3, 4])
-def test_of_few_coefficients_a_displacement_and_a_slope_are_no_ripple(nodes):
+def test_a_displacement_and_a_slope_are_no_ripple(nodes):
     lines = np.array([0.0, 1.0, 2.0])
     operator = compliance.panels(lines, nodes) if nodes > 1 else compliance.bands(lines)
     tilted = np.append(3.0 + 0.5 * operator.radii, [0.0, 1.0])

@@ -60,13 +60,13 @@ def test_a_take_off_has_the_errors_of_the_event_that_it_is(path):
             assert own == pytest.approx(event, rel=0.05, abs=1e-10, nan_ok=True), (name, quantity)
 
 
-def test_the_loss_on_one_discretisation_is_that_of_the_cycle_under_fixed_grips(path):
+def test_the_loss_on_one_grid_is_that_of_the_cycle(path):
     assert energy_lost(path.segments, find_events(path.segments)) == pytest.approx(
         cycle(path).energy_lost.value, rel=1e-5
     )
 
 
-def test_a_contact_radius_is_known_no_better_than_the_gap_ripples_there():
+def test_a_contact_radius_is_known_as_the_gap_ripples():
     rippling = halfspace.trace(5.0, rtol=1e-3)
     for name, event in rippling.events.items():
         located = rippling.stages[-1][name]
@@ -82,7 +82,7 @@ def test_a_soft_apparatus_jumps_where_fixed_grips_do_not():
     assert cycle(path, 1.0).energy_lost.value > 0
 
 
-def test_an_accuracy_is_met_by_a_soft_apparatus_that_lands_thousands_of_spacings_away(path):
+def test_a_soft_apparatus_that_lands_far_away_is_accurate(path):
     """Where nearly no load is left: its rounding is of the load before, and the approach has errors of the load's."""
     found = cycle(path, 1e-3)
     assert found.jump_off.landing.approach < -1000
@@ -91,7 +91,7 @@ def test_an_accuracy_is_met_by_a_soft_apparatus_that_lands_thousands_of_spacings
 
 
 @pytest.mark.parametrize("stiffness", [3.0, 0.5])
-def test_the_work_of_the_base_round_the_loop_is_the_energy_its_jumps_set_free(path, stiffness):
+def test_the_work_round_the_loop_is_what_its_jumps_free(path, stiffness):
     found = cycle(path, stiffness)
     low, high = (_base(jump.take_off, stiffness) for jump in (found.jump_off, found.jump_on))
     # The load has a square root at the fold where each branch ends, so the nodes are graded towards it.
@@ -123,7 +123,7 @@ def test_below_its_critical_stiffness_an_apparatus_jumps(tabor):
     assert cycle(path, 0.999 * stiffness).energy_lost.value > 0
 
 
-def test_critical_stiffness_of_a_rigid_contact_is_the_steepest_fall_of_bradleys_curve():
+def test_critical_stiffness_tends_to_bradleys_steepest_fall():
     h = 3 ** (1 / 6)  # where the third derivative of the energy vanishes
     assert critical_stiffness(1e-4) == pytest.approx(16 * np.pi / 3 * (h**-3 - h**-9), rel=1e-4)
     assert critical_stiffness(0.697) > 5000
@@ -131,7 +131,7 @@ def test_critical_stiffness_of_a_rigid_contact_is_the_steepest_fall_of_bradleys_
 
 @pytest.mark.parametrize("rtol", [1e-2, 1e-4])
 @pytest.mark.parametrize(("tabor", "stiffness"), [(0.75, 0.5), (2.0, math.inf), (8.0, 3.0)])
-def test_the_error_of_an_energy_is_what_its_change_from_the_curves_grid_to_the_finest_may_leave(tabor, stiffness, rtol):
+def test_the_error_of_an_energy_is_by_its_change_over_grids(tabor, stiffness, rtol):
     """Or from a twin, if that is more; and holds the truth, as another curve gives it that is four decades tighter."""
     path, truth = halfspace.trace(tabor, rtol=rtol), cycle(halfspace.trace(tabor, rtol=1e-4 * rtol), stiffness)
     found, rough = cycle(path, stiffness), jumps(path.segments, 1 / stiffness)
@@ -153,7 +153,7 @@ def test_an_apparatus_has_a_positive_stiffness(path, stiffness):
         cycle(path, stiffness)
 
 
-def test_at_a_coarse_tolerance_states_on_a_hemisphere_are_within_their_errors():
+def test_coarse_states_on_a_hemisphere_hold_their_errors():
     """Of few operators for all events the change by one more tells little: it was up to 4.6 times the estimate."""
     import fem_adhesion
 
@@ -175,7 +175,7 @@ def stiff_path():
     return halfspace.trace(0.3, rtol=1e-6)
 
 
-def test_a_soft_cantilever_jumps_on_from_beyond_the_traced_curve():
+def test_a_soft_cantilever_jumps_on_beyond_the_curve():
     path = halfspace.trace(1e-3, rtol=1e-6)
     stiffness = 1e-4
     found = cycle(path, stiffness)
@@ -191,7 +191,7 @@ def test_a_soft_cantilever_jumps_on_from_beyond_the_traced_curve():
 
 @pytest.mark.parametrize("stiffness", [1e-2, 1e-6, 1e-12])
 @pytest.mark.parametrize("rtol", [1e-2, 1e-6])
-def test_however_soft_an_apparatus_its_jumps_are_within_their_errors(truth, rtol, stiffness):
+def test_jumps_of_any_soft_apparatus_hold_their_errors(truth, rtol, stiffness):
     """Against the tightest tolerance; where the jump on lies far out, against a rigid sphere too."""
     found, expected = (cycle(path, stiffness) for path in (halfspace.trace(1.0, rtol=rtol), truth))
     for jump in ("jump_on", "jump_off"):
@@ -231,7 +231,7 @@ def test_an_extended_curve_has_the_same_cycle(stiff_path):
         assert a.energy(1 / stiffness) == pytest.approx(b.energy(1 / stiffness), rel=1e-7)
 
 
-def test_take_offs_are_found_again_where_the_curves_grid_has_them_a_fifth_farther_in():
+def test_take_offs_are_found_a_fifth_farther_out():
     """On a thin, nearly incompressible layer that slides; the grids around jump_off know its radius alone."""
     path = halfspace.trace(219.0, body=Layer(0.01, 0.499, "sliding"), rtol=1e-4)
     stiff, soft, event = cycle(path).jump_off, cycle(path, 10.0).jump_off, path.event("jump_off")

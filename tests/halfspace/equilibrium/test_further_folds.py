@@ -113,7 +113,7 @@ def test_a_rigid_contact_jumps_as_the_closed_form_does(stiffness, names):
         assert jump.energy.value == pytest.approx(contact + spring, rel=1e-4)
 
 
-def test_all_folds_are_events_in_order_along_the_curve_and_the_truth_is_within_their_errors(winding):
+def test_all_folds_are_events_in_order_and_hold_the_truth(winding):
     truth = halfspace.trace(2.0, law=LAW, rtol=1e-8)
     names = ["pull_off", "jump_on", "fold_2", "fold_3", "jump_off", "zero_load"]
     assert list(winding.events) == list(truth.events) == names
@@ -164,7 +164,7 @@ def test_relaxation_from_past_a_fold_ends_where_the_jump_lands(winding, name):
     assert problem.observables(x)[2] == pytest.approx(jump.landing.central_gap, abs=0.1)
 
 
-def test_of_several_states_at_the_base_of_a_take_off_the_nearest_stable_one_is_landed_on():
+def test_a_jump_lands_on_the_nearest_stable_state():
     """A spring of 1 R dgamma/eps: three states of the curve are at the base of a jump on, and of one off."""
     path = halfspace.trace(1.0, law=LAW, rtol=1e-4)
     found, base = cycle(path, 1.0), path.approach + path.load
@@ -267,7 +267,7 @@ def test_a_law_tells_its_edges():
     assert deep.edge_gap == pytest.approx(4.5, abs=0.1)
 
 
-def test_surfaces_that_a_second_minimum_holds_apart_at_the_curves_end_are_told():
+def test_surfaces_held_apart_at_the_curves_end_are_told():
     with pytest.raises(NotConverged, match=r"apart at the curve's end, load .*, limit: .*; take a larger to_load"):
         halfspace.trace(1.0, law=TwoMinima(depth=1.0, place=3.9))
 
@@ -282,14 +282,14 @@ def test_a_barrier_holds_the_surfaces_apart_up_to_a_load():
     assert path.event("pull_off").load < 0
 
 
-def test_a_law_with_two_edges_on_a_soft_body_is_refused_by_what_is_to_be_resolved():
+def test_a_law_of_two_edges_on_a_soft_body_is_refused():
     with pytest.raises(
         InputError, match=r"the tension rises again at H = .* times as far, limit: 60; take a smaller tabor"
     ):
         halfspace.trace(30.0, law=LAW)
 
 
-def test_folds_are_found_at_every_tolerance_also_where_contact_is_about_to_be_made():
+def test_folds_near_contact_are_found_at_every_tolerance():
     """The curve's grid has the last at 0.0092 beta from the axis; on one that stands still the truth is at 0.0077."""
     tolerances = (1e-1, 1e-4, 1e-5, 1e-7)
     paths = {rtol: halfspace.trace(5.0, profile=Sphere(30.0), rtol=rtol) for rtol in tolerances}
@@ -312,7 +312,7 @@ def wound():
 
 
 @pytest.mark.parametrize("rtol", [1e-1, 1e-2])
-def test_coarse_elements_name_no_wiggle_at_the_birth_of_contact_a_fold(wound, rtol):
+def test_coarse_elements_name_no_wiggle_a_fold(wound, rtol):
     """The block that follows the contact was a third as large where it took over: a fold was 0.18 eps off."""
     path = fem_adhesion.trace(Scene(wound.tabor), rtol=rtol)
     assert list(path.events) == list(wound.events)
@@ -349,7 +349,7 @@ def test_a_fold_that_no_finer_grid_has_is_told(monkeypatch, lost):
     assert [fold["central_gap"] for fold in solution["unconfirmed_folds"]] == [f.central_gap for f in path.unconfirmed]
 
 
-def test_the_radius_of_a_fold_at_the_birth_of_contact_is_within_its_error_by_elements():
+def test_the_radius_of_a_fold_at_contacts_birth_holds():
     """It was off by four times its estimate, alike on two degrees of the elements."""
     path = fem_adhesion.trace(Scene(7.41963935414074, fem_adhesion.HalfSpace(poisson=0.0)), rtol=8.301120954255128e-06)
     known, fold = halfspace.trace(7.41963935414074, rtol=1e-8).event("fold_3"), path.event("fold_3")

@@ -38,7 +38,7 @@ NUMBERS = st.floats(allow_nan=True, allow_infinity=True, width=64)
 
 @given(at=st.tuples(NUMBERS, NUMBERS, NUMBERS), bend=NUMBERS)
 @settings(max_examples=200, deadline=None, derandomize=True, database=None)
-def test_a_root_is_found_or_said_not_to_be_there_whatever_the_function(at, bend):
+def test_a_root_is_found_or_said_not_to_be_there(at, bend):
     """Values at the ends and in the middle, joined anyhow; also so small that their product is zero."""
 
     def function(x):
@@ -58,7 +58,7 @@ def test_a_root_is_found_or_said_not_to_be_there_whatever_the_function(at, bend)
         (lambda x: math.nan if 0 < x < 1 else x - 0.3, "a thing is lost at 0.3, where it cannot be told; do this"),
     ],
 )
-def test_what_is_not_between_two_places_is_said_with_their_values_and_the_remedy(function, said):
+def test_a_missing_root_is_said_with_values_and_remedy(function, said):
     with pytest.raises(NotConverged, match=re.escape(said)):
         root(function, 0.0, 1.0, "a thing; do this")
 

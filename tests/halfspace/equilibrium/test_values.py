@@ -242,7 +242,7 @@ def test_moduli_that_cannot_be_are_refused(moduli, message):
         share_of(*moduli)
 
 
-def test_estimates_agree_within_both_errors_and_a_number_that_is_none_with_nothing():
+def test_estimates_agree_within_both_errors():
     near, far = Estimate(1.0, 0.25), Estimate(1.75, 0.5)
     assert near.agrees(far)
     assert far.agrees(near)
@@ -252,7 +252,7 @@ def test_estimates_agree_within_both_errors_and_a_number_that_is_none_with_nothi
 
 
 @pytest.mark.parametrize("signs", [*itertools.product((-1, 1), repeat=2)], ids=str)
-def test_bounds_of_sums_hold_and_those_of_products_to_the_first_order(signs):
+def test_bounds_of_sums_and_products_hold(signs):
     """At the ends of both intervals; what products leave out is the product of both errors."""
     a, b = Estimate(3.0, 1e-4), Estimate(-0.5, 2e-5)
     x, y = (number.value + sign * number.error for number, sign in zip((a, b), signs, strict=True))

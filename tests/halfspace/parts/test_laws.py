@@ -178,7 +178,7 @@ def test_other_laws_and_profiles_hit_the_references(law, profile):
         assert off[1] <= min(1e-6 * abs(event.load), event.load_error + known[1])
 
 
-def test_slow_tails_under_cones_are_followed_as_far_as_their_load_asks():
+def test_slow_tails_under_cones_are_followed():
     """On a rigid hyperboloid by a 2.5-9.5 law a thousandth of the load lies beyond eight extents of the cells."""
     tabor, law, profile = 1e-9, PowerLaw(2.5, 9.5), Hyperboloid(0.3)
     pull_off = halfspace.trace(tabor, law=law, profile=profile, rtol=1e-6).event("pull_off")
@@ -209,7 +209,7 @@ def test_morse_knows_k_and_tabor_by_their_product_alone(k, tabor):
     assert_same(ours, unit, approaches=1 / k)
 
 
-def test_a_quadratic_power_and_a_wide_hyperboloid_are_paraboloids():
+def test_a_quadratic_power_is_a_paraboloid():
     paraboloid = halfspace.trace(0.8)
     assert_same(halfspace.trace(0.8, profile=Power(2)), paraboloid)
     wide = halfspace.trace(0.8, profile=Hyperboloid(1e5))
@@ -330,7 +330,7 @@ def test_states_are_known_along_a_curve_of_many_charts(profile, tabor):
         assert_same_state(path.at(central_gap=gap), fine.at(central_gap=gap))
 
 
-def test_branches_are_told_where_the_finest_curve_winds_between_two_of_its_points():
+def test_branches_are_told_where_a_curve_winds_between_points():
     """Halfway between two Newton's method does not end, where it does by shorter steps."""
     contact = {"tabor": 20.0, "law": Dugdale(0.3), "profile": Power(4.0)}
     rough, fine = (halfspace.trace(**contact, rtol=rtol) for rtol in (1e-4, 1e-6))
@@ -374,7 +374,7 @@ def test_contact_with_a_profile_against_closed_forms():
 
 
 @pytest.mark.parametrize("softness", [0.1, 9.9])
-def test_contacts_of_a_softer_body_are_those_in_lengths_of_its_own(softness):
+def test_contacts_of_a_softer_body_are_in_its_own_lengths(softness):
     """Whose beta is wider by s^(1/3); by that alone a cone's contact was taken for a quarter of what it is."""
     wider = np.cbrt(softness)
     for k in (1.5, 2.0, 7.0):
@@ -475,7 +475,7 @@ def test_a_search_for_a_length_ends():
         rising_root(lambda r: r + 0.3, "a length; let it begin at zero")
 
 
-def test_a_scene_tells_the_tabor_parameters_of_the_3_9_law_as_strong_and_as_stiff():
+def test_a_scene_tells_the_3_9_law_as_strong_and_as_stiff():
     """Morse's law is as stiff at k = sqrt 8 and as strong at k/2 = 16/(9 sqrt 3), with which both are told."""
     told = Scene(2.0, law=Morse(np.sqrt(8))).words[-1]
     strength = 2 * np.sqrt(2) / (16 / 9 / np.sqrt(3))

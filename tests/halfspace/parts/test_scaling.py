@@ -45,7 +45,7 @@ def test_units_one_by_one():
 
 
 @pytest.mark.parametrize("material", [SILICA, SILICA | {"work_of_adhesion": 0.4, "spacing": 0.14e-9}])
-def test_the_hamaker_constant_is_that_of_the_surface_law_far_away(material):
+def test_the_hamaker_constant_is_the_laws_far_away(material):
     """The law's tension at a wide gap against A/(6 pi h^3), in SI."""
     units, gap = Units(**material), 1e3
     tension = -float(LENNARD_JONES.pressure(np.array(gap - 1), units.tabor)) * units.pressure

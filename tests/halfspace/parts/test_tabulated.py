@@ -66,7 +66,7 @@ def test_a_table_of_a_sphere_is_it(tmp_path):
     assert 0 < event.load - known.load < 5e-3
 
 
-def test_a_curve_of_a_tip_is_within_its_errors_though_the_spline_s_derivatives_leap(tmp_path):
+def test_a_curve_of_a_tabulated_tip_is_within_its_errors(tmp_path):
     """Errors fell by less from grid to grid than those of smooth profiles: loads were 1.3 to 2.2 times outside."""
     r = np.linspace(0, 3, 100)
     cone = profiles.Hyperboloid(1 / np.sqrt(3))
@@ -168,7 +168,7 @@ def test_a_narrow_valley_is_resolved_or_refused_before_any_work(tmp_path):
         halfspace.trace(3.0, law=law, rtol=1e-2)
 
 
-def test_estimates_hold_the_truth_where_the_third_derivative_leaps(tmp_path):
+def test_estimates_hold_where_the_third_derivative_leaps(tmp_path):
     """Errors fall as a power of the nodes: a pair more leaves so much that jumps were 2.3 times outside at 1e-5."""
     h = np.append(np.linspace(0.753, 4, 131), np.geomspace(4.05, 60, 60))
     tension = (h**-3 - h**-9) * (1 - 0.95 * np.exp(-(((h - 2.5) / 0.7) ** 2)))
@@ -252,7 +252,7 @@ def test_a_header_may_be_of_any_letters(encoding, tmp_path):
     assert profiles.Tabulated(tmp_path / "tip.csv", 100.0).radius == pytest.approx(4.0)
 
 
-def test_a_material_with_another_radius_than_its_tip_is_refused_in_one_line(tmp_path, capsys):
+def test_a_material_of_another_radius_than_its_tip_is_refused(tmp_path, capsys):
     r = np.linspace(0, 15e-9, 100)
     tip = str(written(tmp_path / "tip.csv", r, r**2 / 40e-9))
     material = ["--modulus", "70GPa", "--poisson", "0.2", "--work-of-adhesion", "50mJ/m^2", "--spacing", "0.3nm"]

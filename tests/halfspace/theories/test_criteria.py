@@ -18,7 +18,7 @@ TABOR = np.array(list(JUMPS))
 APPROACH, GAP = np.array(list(JUMPS.values())).T
 
 
-def test_attard_and_parkers_load_in_table_2_to_its_last_printed_digit():
+def test_attard_and_parkers_load_to_its_last_printed_digit():
     with (DATA / "greenwood1997_table2.csv").open() as file:
         rows = csv.DictReader(line for line in file if not line.startswith("#"))
         row = next(row for row in rows if row["quantity"].endswith("_AP"))

@@ -66,7 +66,7 @@ def test_expansions_at_contact_and_at_pull_off(whole, c):
 
 
 @pytest.mark.parametrize(("whole", "c"), [(False, 4 / 3), (True, 1 / 3)])
-def test_the_two_conventions_differ_by_nine_sevenths_of_the_spacing_over_the_radius(whole, c):
+def test_the_two_conventions_differ_by_nine_sevenths(whole, c):
     for rho in (300.0, 3000.0):
         body = RigidSphere(rho, whole)
         surface, projected = (
@@ -119,7 +119,7 @@ def test_jkr_is_the_limit_and_the_excess_its_leading_correction(name):
     )
 
 
-def test_the_elastic_energy_released_by_the_edge_is_the_work_of_adhesion():
+def test_the_energy_released_is_the_work_of_adhesion():
     """The elastic energy at a fixed approach, loaded as a punch without adhesion and unloaded as a flat one."""
     body = JKRSphere(1.0, 16.0)
     X = body.radius

@@ -46,7 +46,7 @@ def test_force_method_by_adaptive_quadrature(alpha):
 
 
 @pytest.mark.parametrize("alpha", [1e-2, 0.3, 5.0])
-def test_thermodynamic_tension_is_the_slope_of_the_surface_energy(alpha):
+def test_thermodynamic_tension_is_the_surface_energys_slope(alpha):
     def energy(a):
         return 2 * np.pi * a * _outside(a, lambda _, H: LENNARD_JONES.energy(H, 1.0)) - np.pi * a
 
@@ -55,7 +55,7 @@ def test_thermodynamic_tension_is_the_slope_of_the_surface_energy(alpha):
     assert dmt.thermodynamic_tension(alpha) == pytest.approx(-slope, rel=1e-5)
 
 
-def test_the_three_dmt_theories_part_once_the_bodies_are_pressed_together():
+def test_the_three_dmt_theories_part_under_compression():
     alpha, tabor = np.array([0.0, 1e-3, 0.1, 1.0, 100.0]), 0.1
     by_force, simplest = dmt.force_load(alpha, tabor), dmt.maugis_load(alpha, tabor)
     thermodynamic = dmt.thermodynamic_load(alpha, tabor)
@@ -147,7 +147,7 @@ def test_turning_points_of_maugis_are_minima(lam):
 
 
 @pytest.mark.parametrize("lam", [0.05, 1.0, 20.0])
-def test_maugis_separated_branch_runs_from_first_attraction_into_contact(lam):
+def test_maugis_separated_branch_runs_into_contact(lam):
     theory = MaugisDugdale(lam, tabor=1.0)
     on = theory.jump_on()
     assert on.load == 0
@@ -193,13 +193,13 @@ def test_carpick_fits_maugis(lam):
     assert np.isnan(maugis.carpick_radius(-7.0, lam))
 
 
-def test_carpicks_transition_parameter_by_the_formula_that_they_print():
+def test_carpicks_transition_parameter_is_as_printed():
     """Their (13), lambda = -0.924 ln(1 - 1.02 alpha)."""
     alpha = np.linspace(0, 0.95, 20)
     np.testing.assert_allclose(maugis.carpick_transition(-0.924 * np.log(1 - 1.02 * alpha)), alpha, atol=1e-14)
 
 
-def test_matched_maugis_against_the_converged_lennard_jones_contact():
+def test_matched_maugis_against_the_converged_contact():
     """The best constant tension errs by at most 5.5 % in the pull-off force, most where the theories change over."""
     for row in _rows("reference_events.csv"):
         if row["event"] == "pull_off":
