@@ -25,13 +25,7 @@ from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, elast
 from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress
 from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure, scatter
 from fem_adhesion.elasticity.surface import boundary_points
-from fem_adhesion.mesh.block import (
-    block_grid,
-    graded_size,
-    quarter_disc,
-    tensor_grid,
-    with_named_boundaries,
-)
+from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid, with_named_boundaries
 from fem_adhesion.mesh.file import refined
 from fem_adhesion.mesh.spheres import held_sphere
 from halfspace.elastic import grid
@@ -79,10 +73,7 @@ def test_quarter_disc_respects_sizes_with_no_sharp_angle(fine):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (
-            lambda: grid.graded(0.0, 0.3, 2.0, until=3.0),
-            "from 0 to 3, lies outside 0 <= radius < extent = 2",
-        ),
+        (lambda: grid.graded(0.0, 0.3, 2.0, until=3.0), "from 0 to 3, lies outside 0 <= radius < extent = 2"),
         (lambda: grid.graded(0.0, 0.3, 50.0, growth=1.0, until=3.0), "growth 1 is not above 1"),
         (lambda: grid.graded(0.0, -0.3, 50.0, until=3.0), "finest -0.3 is not a positive length"),
         (lambda: tensor_grid(np.array([0.0, 2.0, 1.0]), np.array([0.0, 1.0])), "r_breaks"),

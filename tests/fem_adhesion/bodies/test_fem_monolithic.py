@@ -96,9 +96,7 @@ def far_reaction(problem, x):
 
 
 @pytest.mark.parametrize(
-    ("approach", "gaps"),
-    [(-1.68, (1.0, 0.3)), (-0.5, (0.5, 0.0))],
-    ids=["unstable", "in contact"],
+    ("approach", "gaps"), [(-1.68, (1.0, 0.3)), (-0.5, (0.5, 0.0))], ids=["unstable", "in contact"]
 )
 def test_three_routes_to_the_load(approach, gaps):
     """The derivative of the energy is a difference of energies, each right to 1e-13, over 0.01: hence 1e-9 at best."""

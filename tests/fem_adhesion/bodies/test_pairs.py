@@ -67,10 +67,7 @@ def jump_on_shift(counter, radius_ratio):
     return found.approach - halfspace.trace(1.0).events["jump_on"].approach
 
 
-@pytest.mark.parametrize(
-    ("counter", "shift"),
-    [((0.5,), 0.0023004), ((0.2, 0.45, 3.0), 0.0028470)],
-)
+@pytest.mark.parametrize(("counter", "shift"), [((0.5,), 0.0023004), ((0.2, 0.45, 3.0), 0.0028470)])
 def test_a_pair_is_as_far_from_one_modulus_as_measured(counter, shift):
     """At R/eps = 1e4; solved at rtol 1e-5."""
     assert jump_on_shift(counter, 1e4) == pytest.approx(shift, abs=1e-5)

@@ -85,11 +85,7 @@ def test_a_full_disk_ends_each_study_and_leaves_nothing(command, tmp_path, monke
     from fem_adhesion.speed import page as speed_page
     from fem_adhesion.speed import study as speed
 
-    for module, name in (
-        (speed_page, "write"),
-        (greenwood_page, "write"),
-        (finite_sphere_page, "write"),
-    ):
+    for module, name in ((speed_page, "write"), (greenwood_page, "write"), (finite_sphere_page, "write")):
         monkeypatch.setattr(module, name, _full)
     monkeypatch.setattr(speed, "measure", lambda *_, **__: None)
     monkeypatch.setattr(greenwood, "compute", lambda **_: None)

@@ -17,14 +17,7 @@ from fem_adhesion.common.page import markdown
 from fem_adhesion.scene import Scene
 from fem_adhesion.speed import page as speed_page
 from fem_adhesion.speed import study as speed
-from fem_adhesion.speed.methods import (
-    QUANTITIES,
-    Method,
-    Solved,
-    Step,
-    element_methods,
-    halfspace_methods,
-)
+from fem_adhesion.speed.methods import QUANTITIES, Method, Solved, Step, element_methods, halfspace_methods
 from fem_adhesion.speed.page import read_earlier
 from fem_adhesion.speed.study import (
     GROWTHS,
@@ -207,8 +200,7 @@ def test_what_is_run_depends_on_the_ladder_alone(monkeypatch, quick, expected):
 
 
 @pytest.mark.parametrize(
-    ("error", "status"),
-    [(GridTooCoarse, "too coarse"), (InputError, "refused"), (NotConverged, "failed")],
+    ("error", "status"), [(GridTooCoarse, "too coarse"), (InputError, "refused"), (NotConverged, "failed")]
 )
 def test_a_rung_is_recorded_by_how_it_ended(monkeypatch, error, status):
     def end(_tabor):

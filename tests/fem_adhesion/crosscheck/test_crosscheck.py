@@ -95,11 +95,7 @@ DEFECTS = {
     "half the shear modulus": (_half_the_shear_modulus, HalfSpace(), ["operator: spike", "zero_load contact_radius"]),
     "shifted approach": (_shifted_approach, HalfSpace(), ["cross-residual: pull_off", "jump_on approach"]),
     "exponents 3-8": (_exponents_3_8, HalfSpace(), ["cross-residual: jump_on", "pull_off load", "energy released"]),
-    "clamped at L = 10": (
-        _nothing,
-        Block(radius=10.0, far_field="clamped"),
-        ["operator: Hertz", "zero_load approach"],
-    ),
+    "clamped at L = 10": (_nothing, Block(radius=10.0, far_field="clamped"), ["operator: Hertz", "zero_load approach"]),
 }
 
 

@@ -163,12 +163,7 @@ def test_a_finer_body_is_taken_where_two_differ(monkeypatch):
 
 @pytest.mark.parametrize(
     ("reaction", "rounding", "verdict"),
-    [
-        (4e-4, 4e-4, "agree"),
-        (4e-4, 0.0, "disagree"),
-        (4e-4, 4e-3, "inconclusive"),
-        (3e-3, 4e-4, "disagree"),
-    ],
+    [(4e-4, 4e-4, "agree"), (4e-4, 0.0, "disagree"), (4e-4, 4e-3, "inconclusive"), (3e-3, 4e-4, "disagree")],
 )
 def test_a_reactions_rounding_counts_for_that_alone(reaction, rounding, verdict):
     """Under a coating 72 times as stiff, both nearly incompressible, a reaction was 1.5 times outside by rounding."""
@@ -398,10 +393,7 @@ def test_a_parameter_that_acts_with_another_value_is_rejected(part, name, monkey
     )
 
 
-DEFECTS_OF_LENGTHS = {
-    "R/beta": ("sphere_radius", lambda R: 1.01 * R),
-    "shares": ("shares", lambda both: both[::-1]),
-}
+DEFECTS_OF_LENGTHS = {"R/beta": ("sphere_radius", lambda R: 1.01 * R), "shares": ("shares", lambda both: both[::-1])}
 
 
 @pytest.mark.parametrize("defect", DEFECTS_OF_LENGTHS)

@@ -30,15 +30,7 @@ CHANGES = {
         (MATERIAL, MATERIAL.replace("0.3 ", "0.4 ")),
         *(
             (f"{start} --poisson 0.3", f"{start} --poisson 0.4")
-            for start in (
-                PLAIN,
-                SPHERE,
-                f"{SPHERE},bonded",
-                PAIR,
-                LAYER,
-                COATED,
-                HELD,
-            )
+            for start in (PLAIN, SPHERE, f"{SPHERE},bonded", PAIR, LAYER, COATED, HELD)
         ),
     ],
     "work_of_adhesion": [(MATERIAL, MATERIAL.replace("50mJ", "60mJ"))],
@@ -99,10 +91,7 @@ CHANGES = {
 }
 """For every option of a scene two scenes that it tells apart."""
 
-ONE_NUMBER = {
-    "poisson": "E*, which a Tabor parameter has in it",
-    "block": "an estimate",
-}
+ONE_NUMBER = {"poisson": "E*, which a Tabor parameter has in it", "block": "an estimate"}
 """What of a half-space makes no difference to one: a block that is cut off is one to within its error estimate."""
 
 

@@ -512,10 +512,7 @@ def test_the_counter_body_of_a_material_is_heeded(monkeypatch):
 
 @pytest.mark.parametrize(
     ("radius", "recorded"),
-    [
-        (math.inf, {"name": "half-space"}),
-        (2.0, {"name": "hemisphere", "radius_ratio": 270.0, "grip": "sliding"}),
-    ],
+    [(math.inf, {"name": "half-space"}), (2.0, {"name": "hemisphere", "radius_ratio": 270.0, "grip": "sliding"})],
 )
 def test_the_counter_body_is_in_title_and_record(both, radius, recorded):
     """JSON has no number for the radius of a flat one."""

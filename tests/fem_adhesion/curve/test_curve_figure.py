@@ -91,10 +91,7 @@ def test_branches_and_theories_differ_in_dashes_and_in_colour(curves, tabor):
     assert branches <= set(lines)
     assert {"JKR", "Bradley", "Maugis-Dugdale"} <= set(lines)
     shown = [lines[name] for name in branches]
-    for looks in (
-        [line._unscaled_dash_pattern for line in shown],
-        [line.get_color() for line in shown],
-    ):
+    for looks in ([line._unscaled_dash_pattern for line in shown], [line.get_color() for line in shown]):
         assert all(a != b for a, b in itertools.combinations(looks, 2))
 
 

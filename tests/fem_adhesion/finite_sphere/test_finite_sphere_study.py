@@ -523,11 +523,7 @@ SCENES = {
     "bonded": Scene(0.3, replace(SPHERE, grip="bonded")),
     "surface_traction": Scene(0.3, replace(SPHERE, material=LinearElastic(0.2, "surface"))),
 }
-TRACTIONS = {
-    "finite_strain": "projected",
-    "finite_strain_normal": "normal",
-    "finite_strain_reference": "reference",
-}
+TRACTIONS = {"finite_strain": "projected", "finite_strain_normal": "normal", "finite_strain_reference": "reference"}
 AT = (0.3, 30.0, 0.2, 1e-2)
 
 

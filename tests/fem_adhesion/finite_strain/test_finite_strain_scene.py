@@ -273,8 +273,7 @@ def test_estimates_hold_against_a_finer_computation(path):
 
 
 @pytest.mark.parametrize(
-    ("traction", "pull_off", "jump_on"),
-    [("normal", -5.1751362, -1.5902027), ("reference", -5.17281255, -1.5623241)],
+    ("traction", "pull_off", "jump_on"), [("normal", -5.1751362, -1.5902027), ("reference", -5.17281255, -1.5623241)]
 )
 def test_another_code_of_high_order_has_the_same_digits(traction, pull_off, jump_on):
     """Load of the pull-off and approach of the jump on, printed to the last digit that it knows."""
@@ -318,10 +317,7 @@ def test_attraction_grows_with_the_area_that_it_stretches():
 
 @pytest.mark.parametrize(
     ("options", "rtol", "message"),
-    [
-        ({"tabor": 4.0}, 1e-4, "tabor = 4 is outside tabor <= 3"),
-        ({}, 1e-7, "rtol = 1e-07 is outside 1e-06 <= rtol"),
-    ],
+    [({"tabor": 4.0}, 1e-4, "tabor = 4 is outside tabor <= 3"), ({}, 1e-7, "rtol = 1e-07 is outside 1e-06 <= rtol")],
 )
 def test_what_finite_strain_cannot_do_is_refused(options, rtol, message):
     with pytest.raises(ValueError, match=message):

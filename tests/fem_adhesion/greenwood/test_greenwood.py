@@ -401,10 +401,7 @@ def test_crossings_of_two_lines_are_all_found():
 
 def test_criteria_grids_and_border_stand_in_their_files(study, lines_in, figure):
     jumps = study.criteria
-    for stem, values in (
-        ("beyond_criteria", jumps.central_gap + 1),
-        ("beyond_criteria_approach", 1 - jumps.approach),
-    ):
+    for stem, values in (("beyond_criteria", jumps.central_gap + 1), ("beyond_criteria_approach", 1 - jumps.approach)):
         _, lines = lines_in(stem)
         expected = np.column_stack([jumps.tabor, values / jumps.tabor ** (3 / 7)])
         np.testing.assert_allclose(lines["true jumps", None], expected, rtol=1e-9)

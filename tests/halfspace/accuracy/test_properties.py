@@ -45,7 +45,7 @@ WITHIN = {  # the limits of README, and what a number has to be to lie in them
     "far_field": lambda x: x in ("point_load", "clamped", "free"),
 }
 ANYTHING = {
-    "far_field": st.text(max_size=12) | st.sampled_from(["", "Clamped", "clamped ", "point load", "free\n", "none"]),
+    "far_field": st.text(max_size=12) | st.sampled_from(["", "Clamped", "clamped ", "point load", "free\n", "none"])
 }
 GOOD = {
     "tabor": tabors,

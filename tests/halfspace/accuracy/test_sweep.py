@@ -146,8 +146,7 @@ def test_the_law_reaches_every_curve(capsys):
 
 
 @pytest.mark.parametrize(
-    ("text", "values"),
-    [("0.05:50:4", [0.05, 0.5, 5.0, 50.0]), ("3:1:2", [3.0, 1.0]), ("2", [2.0])],
+    ("text", "values"), [("0.05:50:4", [0.05, 0.5, 5.0, 50.0]), ("3:1:2", [3.0, 1.0]), ("2", [2.0])]
 )
 def test_a_range_is_of_equal_ratios_with_both_ends(text, values):
     from fem_adhesion.sweep.command import tabors_of

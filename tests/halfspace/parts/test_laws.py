@@ -241,11 +241,7 @@ def test_a_rigid_profile_adheres_with_the_integral_of_the_law(profile):
     assert abs(float(state.load) - sum(parts)) < 20 * tabor * abs(sum(parts)) + float(state.load_error)
 
 
-@pytest.mark.parametrize(
-    "parts",
-    [{"law": PowerLaw(2.5, 9.5)}, {"profile": Power(4)}],
-    ids=str,
-)
+@pytest.mark.parametrize("parts", [{"law": PowerLaw(2.5, 9.5)}, {"profile": Power(4)}], ids=str)
 def test_a_soft_contact_is_jkrs_by_any_law_on_any_profile(parts):
     """Pull-off under dead load and least approach, as the Tabor parameter grows, with the order seen at three."""
     profile = parts.get("profile", PARABOLOID)
@@ -343,13 +339,7 @@ def test_branches_are_told_where_a_curve_winds_between_points():
 
 
 @pytest.mark.parametrize(
-    "parts",
-    [
-        {"law": Exponential(3)},
-        {"law": PowerLaw(2.1, 2.5)},
-        {"profile": Hyperboloid(1)},
-    ],
-    ids=str,
+    "parts", [{"law": Exponential(3)}, {"law": PowerLaw(2.1, 2.5)}, {"profile": Hyperboloid(1)}], ids=str
 )
 def test_the_energys_derivative_is_the_load(parts):
     """Along the contact branch, by differences of the energy over the approach on one grid."""

@@ -111,12 +111,7 @@ def test_bad_bodies_are_refused(bad, message):
 
 @pytest.mark.parametrize(
     ("parameter", "at_one"),
-    [
-        (scaling.MYD_AMPLIFICATION, 3.898),
-        (scaling.MYD, 2.9208),
-        (scaling.MAUGIS, 1.1570),
-        (scaling.ATTARD_PARKER, 0.5),
-    ],
+    [(scaling.MYD_AMPLIFICATION, 3.898), (scaling.MYD, 2.9208), (scaling.MAUGIS, 1.1570), (scaling.ATTARD_PARKER, 0.5)],
 )
 def test_parameters_of_appendix_a_there_and_back(parameter, at_one):
     assert parameter.of(1.0) == pytest.approx(at_one, rel=1e-4)
