@@ -31,7 +31,7 @@ check: $(VENV)/installed-dev ## check format, style and types
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 
-bench: $(VENV)/installed-dev ## time the solvers beside a yardstick (some minutes; QUICK=1: half a minute)
+bench: $(VENV)/installed-dev ## time the solvers beside a yardstick (some minutes; QUICK=1: some seconds)
 	QUICK=$(QUICK) $(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-enable --benchmark-columns=min,median,rounds -q
 
 hard: $(VENV)/installed-dev ## attempt the hard cases and print how each ended (a minute; OUT=directory of the tables, hard)

@@ -17,6 +17,8 @@ from halfspace.errors import NotConverged
 
 QUANTITIES = ["pull_off load", "jump_on approach", "jump_on load", "jump_off approach", "jump_off load"]
 
+pytestmark = pytest.mark.usefixtures("two_solvers")
+
 
 @cache
 def elements(tabor, rtol):
