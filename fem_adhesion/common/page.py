@@ -134,10 +134,14 @@ def template_text(folder: str, name: str) -> str:
     return (resources.files("fem_adhesion") / folder / "templates" / name).read_text(encoding="utf-8")
 
 
+def data_text(folder: str, name: str) -> str:
+    """Text of a file of data that comes with a folder."""
+    return (resources.files("fem_adhesion") / folder / "data" / name).read_text(encoding="utf-8")
+
+
 def data_rows(folder: str, name: str) -> list[dict[str, str]]:
     """Rows of a table that comes with a folder, comments left out."""
-    text = (resources.files("fem_adhesion") / folder / "data" / name).read_text(encoding="utf-8")
-    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    return list(csv.DictReader(line for line in data_text(folder, name).splitlines() if not line.startswith("#")))
 
 
 def symbols(text: str) -> str:

@@ -2,8 +2,8 @@
 
 A claim allows its number an interval, which the paper's own words give: the last printed digit, "within 2 %", "below".
 Where the words give no number, the interval is ours and says so. The verdict follows from the interval and from the
-computed number with its error, and from nothing else. The claims stand in ``data/claims.csv``, their measures are
-functions of `formulas` and `measures`.
+computed number with its error, and from nothing else. The claims stand in ``data/claims.csv``, each with its measure:
+an expression in the words of `measures`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 from fem_adhesion.common.numbers import counted, digits, listed
 from fem_adhesion.common.page import Columns, Table, data_rows
-from fem_adhesion.greenwood import formulas, measures
+from fem_adhesion.greenwood import measures
 from fem_adhesion.greenwood.facts import Facts, exact
 from fem_adhesion.greenwood.tables import TABORS, last_digit
 from halfspace.values import Estimate
@@ -71,7 +71,7 @@ class Allowed:
 class Claim:
     """A statement of the paper in our words, and the number that tests it.
 
-    Section, the measure with its arguments, the unit of the number, and the figures, tables or files where it is seen.
+    Section, the measure, an expression in the words of `measures`, the unit of the number, and the files that show it.
     A reading is what the statement may mean, should it fail as printed: its unit is the verdict that it then has.
     """
 
@@ -85,12 +85,7 @@ class Claim:
 
     def measured(self, facts: Facts) -> Estimate:
         """The number that tests it."""
-        name, *words = self.measure.split()
-        arguments = [word if word[0].isalpha() else float(word) for word in words]
-        if hasattr(formulas, name):
-            found: Estimate = getattr(formulas, name)(*arguments)
-        else:
-            found = getattr(measures, name)(facts, *arguments)
+        found: Estimate = eval(self.measure, {**vars(measures), "f": facts, "pi": math.pi})
         return found
 
 
@@ -118,44 +113,22 @@ class Judged:
     how: str
 
 
-@dataclass(frozen=True)
-class Number:
-    """A number that claims rest on and no other table has: what, at which Tabor parameter, and its unit."""
-
-    what: str
-    tabor: float
-    computed: Estimate
-    unit: str = "1"
-
-
-@dataclass(frozen=True)
-class Claims:
-    """Every claim with its verdict, and numbers that they rest on."""
-
-    judged: tuple[Judged, ...]
-    numbers: tuple[Number, ...]
-
-
-def examined(facts: Facts) -> Claims:
-    """Decide every claim."""
-    return Claims(tuple(judge(claim, facts) for claim in CLAIMS), tuple(_numbers(facts)))
-
-
-def _numbers(facts: Facts) -> Iterator[Number]:
+def numbers(facts: Facts) -> Iterator[tuple[str, float, Estimate, str]]:
+    """What claims rest on and no other table has: quantity, Tabor parameter, number, its unit."""
     for mu in TABORS:
         for event, words in (("jump_on", "jump on"), ("jump_off", "jump off")):
-            yield Number(f"w(0) sigma'/sigma, (4.3), at the {words}", mu, measures.criterion(facts, mu, event))
-        yield Number("h0/w(0) at the jump on", mu, measures.gap_over_displacement(facts, mu))
-        yield Number("w(0) over that of undeformed surfaces", mu, measures.displacement_over_rigid(facts, mu))
+            yield (f"w(0) sigma'/sigma, (4.3), at the {words}", mu, measures.criterion_at(facts, mu, event), "1")
+        yield ("h0/w(0) at the jump on", mu, measures.h0(facts, mu) / measures.displacement(facts, mu), "1")
+        yield ("w(0) over that of undeformed surfaces", mu, measures.displacement_over_rigid(facts, mu), "1")
     for gap, moved in facts.cores.items():
         name = f"jump-on approach less that of the 3-9 law, dgamma raised at gaps below {gap:.4g} eps"
-        yield Number(name, 5.0, moved, "eps")
+        yield (name, 5.0, moved, "eps")
     for (mu, spacing), force in facts.coarse.items():
-        yield Number(f"pull-off force, uniform triangles of {spacing:g} beta", mu, exact(force), "R dgamma")
+        yield (f"pull-off force, uniform triangles of {spacing:g} beta", mu, exact(force), "R dgamma")
     for rise, name in zip(facts.omitted, ("without the kernel's singular point", "by triangles"), strict=True):
         for r in rise.ripples:
             what = f"pull-off force {name}, nodes {r.spacing:g} beta apart"
-            yield Number(what, r.tabor, exact(-r.pull_off), "R dgamma")
+            yield (what, r.tabor, exact(-r.pull_off), "R dgamma")
 
 
 def judge(claim: Claim, facts: Facts) -> Judged:
@@ -195,7 +168,7 @@ def distance(computed: Estimate, allowed: Allowed, unit: str) -> str:
 # Tables and captions
 
 
-def tables(claims: Claims) -> list[Table]:
+def tables(claims: Sequence[Judged], facts: Facts) -> list[Table]:
     """Claims with printed and computed numbers, verdicts and where each is seen; and what else they rest on."""
     columns: Columns[Judged] = {
         "section": lambda c: c.claim.section,
@@ -206,15 +179,12 @@ def tables(claims: Claims) -> list[Table]:
         "holds for": lambda c: c.claim.allowed.interval,
         "shown by": lambda c: c.claim.shown,
     }
-    rest: Columns[Number] = {
-        "quantity": lambda n: n.what,
-        "mu": lambda n: f"{n.tabor:g}",
-        ("computed", "error", "unit"): lambda n: (*_cells(n.computed), n.unit),
-    }
+    rest = [(what, f"{mu:g}", *_cells(computed), unit) for what, mu, computed, unit in numbers(facts)]
     see = "Forces on coarse grids and by a wrong sum are wrong on purpose: their error is that of rounding."
+    names, title = ("quantity", "mu", "computed", "error", "unit"), "Numbers that claims rest on and no other table has"
     return [
-        Table.of("claims", "Every claim, in the order of the paper", words(claims.judged), claims.judged, columns),
-        Table.of("claims_numbers", "Numbers that claims rest on and no other table has", see, claims.numbers, rest),
+        Table.of("claims", "Every claim, in the order of the paper", words(claims), claims, columns),
+        Table("claims_numbers", title, see, names, rest),
     ]
 
 

@@ -2,38 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 from scipy.optimize import curve_fit
 
-import halfspace
 from halfspace.theories import criteria
 from halfspace.values import Array, Estimate, Valued
 
-CLOSED = {
+CLOSED: Mapping[str, float] = {
     "Attard & Parker": criteria.ATTARD_PARKER,
     "Pethica & Sutton": float(criteria.PETHICA_SUTTON),
     "App. C": criteria.APPENDIX_C,
 }
 """Factors k of the criteria that were derived, and not fitted."""
 REPULSION_GONE = 10.0  # Tabor parameter above which the exponent is fitted
-
-
-@dataclass(frozen=True)
-class JumpOn:
-    """A true jump into contact under fixed grips."""
-
-    tabor: float
-    approach: Estimate
-    central_gap: Estimate
-
-    @property
-    def fundamental(self) -> float:
-        """Value of b sigma'/sigma there, which by [G97] (4.3) should be -1."""
-        return float(criteria.fundamental_criterion(self.approach.value, self.central_gap.value))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -53,39 +38,9 @@ class Criterion(Valued):
     scatter: float
 
 
-@dataclass(frozen=True)
-class CriteriaStudy:
-    """True jumps and the criteria fitted to them."""
-
-    jumps: tuple[JumpOn, ...]
-    criteria: tuple[Criterion, ...]
-
-    @property
-    def tabor(self) -> Array:
-        """Tabor parameters of the jumps."""
-        return np.array([jump.tabor for jump in self.jumps])
-
-    @property
-    def central_gap(self) -> Array:
-        """True central gaps at the jumps, in eps."""
-        return np.array([jump.central_gap.value for jump in self.jumps])
-
-    @property
-    def approach(self) -> Array:
-        """True approaches at the jumps, in eps."""
-        return np.array([jump.approach.value for jump in self.jumps])
-
-
-def jump_on(tabor: float) -> JumpOn:
-    """Solve for a true jump; above the critical Tabor parameter."""
-    event = halfspace.trace(tabor, rtol=1e-6).events["jump_on"]
-    return JumpOn(tabor, event.estimate("approach"), event.estimate("central_gap"))
-
-
-def fit(jumps: Iterable[JumpOn]) -> CriteriaStudy:
-    """Refit every criterion by least squares of logarithms."""
-    bare = CriteriaStudy(tuple(jumps), ())
-    mu, y, z = bare.tabor, bare.central_gap + 1, 1 - bare.approach
+def fit(tabor: Array, central_gap: Array, approach: Array) -> tuple[Criterion, ...]:
+    """Refit every criterion by least squares of logarithms to true jumps: gaps and approaches in eps, all (n,)."""
+    mu, y, z = tabor, central_gap + 1, 1 - approach
     k, scatter = _mean(np.log(y**3.5 / (np.pi * np.sqrt(2) * mu**1.5)))
     formula = "(H0 + 1)^(7/2) = k pi sqrt2 mu^(3/2)"
     found = [
@@ -103,20 +58,16 @@ def fit(jumps: Iterable[JumpOn]) -> CriteriaStudy:
     far = mu >= REPULSION_GONE
     if far.sum() >= 4:  # 3/7 by every theory, which no one fitted
         for name, left, values in (("gap", "H0", y), ("approach", "|alpha*|", z)):
-            (log_c, n), scatter = _fitted(_line, np.log(mu[far]), np.log(values[far]), (1.0, 0.4))
-            name, formula = f"power of mu, {name}, mu >= {REPULSION_GONE:g}", f"{left} + 1 = c mu^n"
+            (log_c, n), scatter = _fitted(lambda x, a, b: a + b * x, np.log(mu[far]), np.log(values[far]), (1.0, 0.4))
             powers = ("n", 3 / 7, n), ("c", None, _exponential(log_c))
-            found.append(Criterion(name, formula, None, "alpha" in formula, powers, scatter))
-    return CriteriaStudy(bare.jumps, tuple(found))
+            title, formula = f"power of mu, {name}, mu >= {REPULSION_GONE:g}", f"{left} + 1 = c mu^n"
+            found.append(Criterion(title, formula, None, name == "approach", powers, scatter))
+    return tuple(found)
 
 
 def _log_repulsion(y: Array, log_c: float, n: float) -> Array:
     """Logarithm of c [1 - n/y^6], bounded where there is none."""
     return np.asarray(log_c + np.log(np.maximum(1 - n / y**6, 1e-6)))
-
-
-def _line(x: Array, log_c: float, n: float) -> Array:
-    return np.asarray(log_c + n * x)
 
 
 def _fitted(

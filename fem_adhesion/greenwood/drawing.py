@@ -1,13 +1,10 @@
-"""A figure as data: axes, lines, and what is to be seen in them. What is drawn is what its CSV file holds.
-
-Each Tabor parameter and each theory has a look of its own; a figure shows no two Tabor parameters in the same look.
-"""
+"""A figure as data: axes, lines, and what is to be seen in them. What is drawn is what its CSV file holds."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,26 +14,14 @@ from numpy.typing import NDArray
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import told
 from fem_adhesion.common.page import Table
-from fem_adhesion.common.style import BLUE, CHAIN, DASHED, DOTTED, GREEN, LONG, ORANGE, PINK, RED, SKY
+from fem_adhesion.common.style import DOTTED
 from halfspace.equilibrium.curve import EquilibriumPath
-from halfspace.equilibrium.devices import Jump
 from halfspace.equilibrium.states import States
 from halfspace.values import Array, Valued
 
 Look = Mapping[str, Any]
-OF_TABOR = {
-    0.02: SKY, 0.05: SKY, 0.1: BLUE, 0.2: GREEN, 0.5: ORANGE, 0.7: SKY, 1.0: RED, 2.0: BLUE, 3.0: PINK, 5.0: GREEN,
-}  # fmt: skip
-DASHES_OF_TABOR = dict(zip(OF_TABOR, ("-", "-", DASHED, CHAIN, LONG, DASHED, "-", DASHED, CHAIN, LONG), strict=True))
-THEORIES: Mapping[str, Look] = {
-    "Bradley": {"color": "black", "linestyle": DOTTED, "linewidth": 1.8},
-    "JKR": {"color": "black", "linestyle": DASHED, "linewidth": 1.5},
-    "Hertz": {"color": "0.45", "linestyle": CHAIN, "linewidth": 1.5},
-    "DMT-M": {"color": "black", "linestyle": LONG, "linewidth": 1.1},
-    "DMT force method": {"color": PINK, "linestyle": DASHED, "linewidth": 1.5},
-    "DMT thermodynamic": {"color": RED, "linestyle": CHAIN, "linewidth": 1.5},
-}
-MARKS: Look = {"linestyle": "none", "marker": "o", "markersize": 5, "markerfacecolor": "white"}
+Note = tuple[str, tuple[float, float]] | tuple[str, tuple[float, float], tuple[float, float]]
+"""A text, the point beside which it stands, and its offset in points."""
 HALF_SPACE, ELEMENTS = "half-space", "finite elements"
 
 
@@ -50,7 +35,7 @@ class Axis:
     quantity: str
     unit: str
     label: str
-    limits: tuple[float, float] | None = None
+    limits: tuple[float, ...] = ()
     ticks: Sequence[float] = ()
     logarithmic: bool = False
 
@@ -59,26 +44,15 @@ class Axis:
         """Names of the columns of its values and of their errors."""
         return tuple("_".join(filter(None, (name, self.unit))) for name in (self.quantity, f"{self.quantity}_error"))
 
-    def within(self, low: float, high: float) -> Axis:
-        """The same, of which this range is shown."""
-        return replace(self, limits=(low, high))
+    def size(self, tabor: float) -> float:
+        """The unit in the paper's own: eps, beta, R dgamma."""
+        return {"mu_eps": tabor, "2_pi_R_dgamma": 2 * math.pi}.get(self.unit, 1.0)
 
     def values(self, states: EquilibriumPath | States, tabor: float) -> tuple[Array, Array]:
         """Numbers of states along the axis, and their errors, (n,) arrays."""
-        size = {"mu_eps": tabor, "2_pi_R_dgamma": 2 * math.pi}.get(self.unit, 1.0)
         names = self.quantity, f"{self.quantity}_error"
-        value, error = (np.atleast_1d(getattr(states, name)) / size for name in names)
+        value, error = (np.atleast_1d(getattr(states, name)) / self.size(tabor) for name in names)
         return value, error
-
-
-LOAD = Axis("load", "R_dgamma", r"load $W/R\Delta\gamma$")
-LOAD_OF_RIGID = Axis("load", "2_pi_R_dgamma", r"load $W/2\pi R\Delta\gamma$")
-APPROACH = Axis("approach", "eps", r"approach $\alpha^*$")
-SCALED_APPROACH = Axis("approach", "mu_eps", r"scaled approach $\alpha^*/\mu$")
-CENTRAL_GAP = Axis("central_gap", "eps", r"central gap $H(0)$")
-CONTACT_RADIUS = Axis("contact_radius", "beta", r"contact radius $a^* = a/\beta$")
-RADIUS = Axis("radius", "beta", r"radius $u = r/\beta$")
-TABOR = Axis("tabor", "", r"Tabor parameter $\mu$", logarithmic=True)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -86,7 +60,8 @@ class Line(Valued):
     """A line of a figure: whose it is, at which Tabor parameter if it belongs to one, and its points, (n,) arrays.
 
     Errors are those of computed numbers; of closed theories there are none. What is `dotted`, a mask (n,), is unstable
-    under fixed grips. `label` is that of the legend, where that differs from the name; empty if it has none there.
+    under fixed grips. `label` is that of the legend, where that differs from the name; empty if it has none there. An
+    `arrow` leads from its first point to its second.
     """
 
     curve: str
@@ -98,6 +73,7 @@ class Line(Valued):
     y_error: Array | None = None
     dotted: NDArray[np.bool_] | None = None
     label: str | None = None
+    arrow: bool = False
 
     @property
     def key(self) -> str:
@@ -106,24 +82,6 @@ class Line(Valued):
             return self.label
         mu = "" if self.tabor is None else rf"$\mu = {self.tabor:g}$"
         return mu if self.curve == HALF_SPACE and mu else ", ".join(filter(None, (self.curve, mu)))
-
-
-@dataclass(frozen=True)
-class Arrow:
-    """An arrow from point to point, in the units of the axes."""
-
-    tail: tuple[float, float]
-    head: tuple[float, float]
-    look: Look
-
-
-@dataclass(frozen=True)
-class Note:
-    """A text beside a point, offset in points."""
-
-    text: str
-    at: tuple[float, float]
-    offset: tuple[float, float] = (7.0, 2.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -136,38 +94,12 @@ class Plot(Valued):
 
     x: Axis
     y: Axis
-    lines: Sequence[Line]
+    lines: Sequence[Line] = ()
     see: Sequence[str] = ()
-    arrows: Sequence[Arrow] = ()
     notes: Sequence[Note] = ()
     title: str = ""
     legend: str = "upper left"
     above: tuple[str, float] | None = None
-
-
-def points(curve: str, states: EquilibriumPath | States, tabor: float, x: Axis, y: Axis, look: Look = MARKS) -> Line:
-    """States of a curve, as markers unless they look otherwise."""
-    (u, u_error), (v, v_error) = x.values(states, tabor), y.values(states, tabor)
-    return Line(curve, tabor, u, v, {"color": OF_TABOR[tabor], **look}, u_error, v_error)
-
-
-def half_space(path: EquilibriumPath, x: Axis, y: Axis) -> Line:
-    """A computed curve; stretches that are unstable under fixed grips are dotted."""
-    look = {"linestyle": DASHES_OF_TABOR[path.tabor], "linewidth": 1.9}
-    return replace(points(HALF_SPACE, path, path.tabor, x, y, look), dotted=~path.stable)
-
-
-def theory(name: str, x: Array, y: Array, tabor: float | None = None, **look: Any) -> Line:
-    """Curve of a closed theory, in the units of the axes."""
-    return Line(name, tabor, x, y, {**THEORIES.get(name, {}), **look})
-
-
-def ends(name: str, tabor: float, jump: Jump, look: Look, label: str = "") -> tuple[Line, Arrow]:
-    """A jump as a line and as the arrow over it."""
-    columns = [(s.approach, s.load, s.approach_error, s.load_error) for s in jump.ends]
-    approach, load, dx, dy = np.transpose(columns)
-    line = Line(name, tabor, approach, load, look, dx, dy, label=label)
-    return line, Arrow(columns[0][:2], columns[1][:2], look)
 
 
 # What becomes of a plot
@@ -180,16 +112,15 @@ def drawn(plot: Plot) -> Figure:
         _draw(axes, line)
     if any(line.dotted is not None and np.any(line.dotted) for line in plot.lines):
         axes.plot([], [], color="0.3", linewidth=1.9, linestyle=DOTTED, label="unstable under fixed grips")
-    for arrow in plot.arrows:
-        style.arrow(axes, arrow.tail, arrow.head, **arrow.look)
-    for note in plot.notes:
-        style.note(axes, note.text, note.at, note.offset, weight="bold")
+    for line in (line for line in plot.lines if line.arrow):
+        style.arrow(axes, *zip(line.x, line.y, strict=True), **line.look)
+    for text, at, *offset in plot.notes:
+        style.note(axes, text, at, *(offset or [(7.0, 2.0)]), weight="bold")
     if plot.above:
         label, factor = plot.above
         axes.secondary_xaxis("top", functions=(lambda x: x * factor, lambda x: x / factor)).set_xlabel(label)
     for axis, name in ((plot.x, "x"), (plot.y, "y")):
-        if axis.logarithmic:
-            axes.set(**{f"{name}scale": "log"})
+        axes.set(**{f"{name}scale": "log" if axis.logarithmic else "linear"})
         if axis.limits:
             axes.set(**{f"{name}lim": axis.limits})
         if axis.ticks:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 import halfspace
-from fem_adhesion.greenwood.criteria import CriteriaStudy
+from fem_adhesion.greenwood.criteria import Criterion
 from fem_adhesion.greenwood.numerics_1997 import Attempt, Rise, false_rise, without_singular_point
 from fem_adhesion.greenwood.settings import Settings
 from fem_adhesion.greenwood.tables import PROFILE_CHECKS, Tables
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import Cycle, cycle
+from halfspace.equilibrium.events import Event
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Estimate, Valued
 
@@ -52,20 +54,37 @@ class OtherCore(Law):
         return np.asarray((LENNARD_JONES.energy(gap, tabor) - tabor * self.more * left) / (1 + self.more))
 
 
+@dataclass(frozen=True)
+class PullOff:
+    """Pull-off load, in R dgamma; finite elements where they were asked."""
+
+    tabor: float
+    half_space: Estimate
+    finite_element: Estimate | None = None
+
+    @property
+    def agree(self) -> bool:
+        """Whether both solvers agree within their errors; not so without finite elements."""
+        return self.finite_element is not None and self.half_space.agrees(self.finite_element)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Facts(Valued):
     """What claims are measured on.
 
-    Paths are by Tabor parameter, cycles those under fixed grips, pull-offs by rising Tabor parameter in R dgamma.
-    `cores` has, by the gap in eps above which another law is the same, how far its jump-on at mu = 5 is from that of
-    the 3-9 law, in eps; `coarse` the pull-off force on uniform triangles by Tabor parameter and spacing, wrong on
-    purpose; `omitted` the forces with the singular point of the kernel left out, and on the same grid with it.
+    Paths are by Tabor parameter, `grips` the cycles under fixed grips, `jumps_on` true jumps by rising Tabor parameter,
+    to which the `criteria` are fitted. Relaxations are the iterations of 1997 on 200 nodes, rises, by spacing, the
+    false ones of the pull-off force. At the critical Tabor parameter the curve first has a vertical tangent. `omitted`
+    has the forces with the singular point of the kernel left out, and on the same grid with it; `cores`, by the gap in
+    eps above which another law is the same, how far its jump-on at mu = 5 is from that of the 3-9 law, in eps; `coarse`
+    the pull-off force on uniform triangles by Tabor parameter and spacing, wrong on purpose.
     """
 
     paths: Mapping[float, EquilibriumPath]
-    cycles: Mapping[float, Cycle]
-    criteria: CriteriaStudy
-    pull_offs: Mapping[float, Estimate]
+    grips: Mapping[float, Cycle]
+    jumps_on: Mapping[float, Event]
+    criteria: tuple[Criterion, ...]
+    pull_offs: tuple[PullOff, ...]
     tables: Tables
     relaxations: Sequence[Attempt]
     rises: Mapping[float, Rise]
@@ -79,36 +98,41 @@ class Facts(Valued):
         found = self.paths[tabor].events.get(event)
         return found.estimate(quantity) if found else UNKNOWN
 
-    def load(self, tabor: float, approach: float, branch: str | None = None) -> Estimate:
-        """Load at an approach in eps, on a branch where there are several."""
-        state = self.paths[tabor].at(approach=approach, branch=branch)
-        return Estimate(float(state.load), float(state.load_error))
+    def force(self, tabor: float) -> Estimate:
+        """Pull-off force in R dgamma."""
+        return self.number(tabor, "pull_off", "load") * -1
+
+    def state(self, tabor: float, quantity: str, **asked: Any) -> Estimate:
+        """A number of the state that is asked for, as of `EquilibriumPath.at`."""
+        found = self.paths[tabor].at(**asked)
+        return Estimate(*(float(getattr(found, name)) for name in (quantity, f"{quantity}_error")))
+
+    def worst(self, row: str) -> float:
+        """Largest relative deviation of Table 2 in rows that end so."""
+        return max(abs(p.deviation) for p in self.tables.table_2 if p.row.endswith(row))
 
 
-def gathered(
-    known: Mapping[float, EquilibriumPath],
-    settings: Settings,
-    criteria: CriteriaStudy,
-    pull_offs: Mapping[float, Estimate],
-    tables: Tables,
-    relaxations: Sequence[Attempt],
-    rises: Mapping[float, Rise],
-    critical_tabor: Estimate,
-) -> Facts:
-    """Compute what is not known yet: paths at further Tabor parameters, cycles, other laws, wrong numerics."""
+def gathered(known: Mapping[float, EquilibriumPath], settings: Settings, **found: Any) -> Facts:
+    """Facts of what was found, and of what is not known yet: further paths, cycles, other laws, wrong numerics."""
     loads = {settings.claimed[0]: settings.deepest_load}
     paths = dict(known) | {
         mu: halfspace.trace(mu, rtol=settings.table_rtol, to_load=loads.get(mu, 5.0))
         for mu in settings.claimed
         if mu not in known
     }
-    cycles = {mu: found for mu in settings.cycled if (found := cycle(paths[mu]))}
     resolved = [paths[mu] for mu in settings.omitted]
-    without, whole = (false_rise(resolved, settings.omitted_spacing, *body) for body in ((without_singular_point,), ()))
     wrong = {(mu, wide): false_rise([paths[mu]], wide, window=1.5, steps=8).ripples for mu, wide in settings.coarse}
-    coarse = {place: -ripples[0].pull_off for place, ripples in wrong.items() if ripples}
-    known_facts = paths, cycles, criteria, pull_offs, tables, relaxations, rises, critical_tabor
-    return Facts(*known_facts, (without, whole), _cores(paths[5.0], settings), coarse)
+    return Facts(
+        paths=paths,
+        grips={mu: loop for mu in settings.cycled if (loop := cycle(paths[mu]))},
+        omitted=(
+            false_rise(resolved, settings.omitted_spacing, without_singular_point),
+            false_rise(resolved, settings.omitted_spacing),
+        ),
+        cores=_cores(paths[5.0], settings),
+        coarse={place: -ripples[0].pull_off for place, ripples in wrong.items() if ripples},
+        **found,
+    )
 
 
 def _cores(path: EquilibriumPath, settings: Settings) -> dict[float, Estimate]:
@@ -144,12 +168,17 @@ def spread(function: Callable[..., float], *arguments: Estimate) -> Estimate:
     return Estimate(value, sum(errors))
 
 
-def most(numbers: Sequence[Estimate]) -> Estimate:
+def power(lower: Estimate, upper: Estimate, ratio: float) -> Estimate:
+    """Power of mu of two numbers, by the ratio of their Tabor parameters."""
+    return spread(lambda a, b: np.log(b / a) / np.log(ratio), lower, upper)
+
+
+def most(numbers: Iterable[Estimate]) -> Estimate:
     """The largest of numbers with errors; not a number if there are none."""
     return max(numbers, key=lambda number: number.value, default=UNKNOWN)
 
 
-def least(numbers: Sequence[Estimate]) -> Estimate:
+def least(numbers: Iterable[Estimate]) -> Estimate:
     """The smallest of numbers with errors; not a number if there are none."""
     return min(numbers, key=lambda number: number.value, default=UNKNOWN)
 

@@ -1,249 +1,342 @@
-"""The figures of the paper, [G97] Figs 1a to 7, as lines of data; what they show of its claims, the claims tell."""
+"""The lines of the figures: functions by which ``data/figures.toml`` says what is drawn in each.
+
+A function has the study, the figure without lines, whose axes it heeds, and what stands in its entry; it yields lines,
+notes and sentences on what is to be seen. What the figures show of the paper's claims, the claims tell.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from fem_adhesion.common import style
-from fem_adhesion.greenwood.drawing import (
-    APPROACH,
-    CONTACT_RADIUS,
-    ELEMENTS,
-    HALF_SPACE,
-    LOAD,
-    LOAD_OF_RIGID,
-    MARKS,
-    OF_TABOR,
-    RADIUS,
-    SCALED_APPROACH,
-    TABOR,
-    Axis,
-    Line,
-    Note,
-    Plot,
-    ends,
-    half_space,
-    points,
-    theory,
-)
-from fem_adhesion.greenwood.study import DrawnState, Greenwood1997, PullOff
-from halfspace.scaling import MYD
-from halfspace.theories import dmt
-from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF, bradley_load, jkr_approach, jkr_load
-from halfspace.theories.maugis import MaugisDugdale
+from fem_adhesion.common.numbers import digits, listed, plus_minus, told
+from fem_adhesion.common.page import data_text
+from fem_adhesion.common.style import BLUE, CHAIN, DASHED, DOTTED, GREEN, LONG, ORANGE, PINK, RED, SKY
+from fem_adhesion.greenwood.drawing import ELEMENTS, HALF_SPACE, Axis, Line, Look, Note, Plot
+from fem_adhesion.greenwood.study import Greenwood1997
+from halfspace import scaling
+from halfspace.equilibrium.curve import EquilibriumPath
+from halfspace.equilibrium.devices import Jump
+from halfspace.equilibrium.events import is_fold
+from halfspace.equilibrium.states import States
+from halfspace.theories import closed_forms, dmt
+from halfspace.theories.maugis import MaugisDugdale, carpick_pull_off, carpick_radius
 from halfspace.values import Array, Estimate
 
 Made = Callable[[Greenwood1997], Plot]
-TWO_PI = 2 * np.pi
-GAP = Axis("gap", "eps", "gap $H$")
-PRESSURE = Axis("pressure", "dgamma_per_mu_eps", "pressure $P$")
-PULL_OFF = Axis("pull_off_force", "R_dgamma", r"pull-off force $-W_\mathrm{min}/R\Delta\gamma$")
-ATTARD_PARKER = np.array([[1.0, 1.6], [6.7, 3.4]])  # mu and force over pi, the two values that [G97] quotes
-BEFORE_AND_AFTER = ((style.BLUE, "-"), (style.RED, style.DASHED))
+Parts = Iterator[Line | Note | str]
+OF_TABOR = {
+    0.02: SKY, 0.05: SKY, 0.1: BLUE, 0.2: GREEN, 0.5: ORANGE, 0.7: SKY, 1.0: RED, 2.0: BLUE, 3.0: PINK, 5.0: GREEN,
+}  # fmt: skip
+"""A colour for each Tabor parameter; no figure shows two in the same look."""
+DASHES_OF_TABOR = dict(zip(OF_TABOR, ("-", "-", DASHED, CHAIN, LONG, DASHED, "-", DASHED, CHAIN, LONG), strict=True))
+MARKS: Look = {"linestyle": "none", "marker": "o", "markersize": 5, "markerfacecolor": "white"}
+CRITERIA: Mapping[str, tuple[str, Any]] = {
+    "Attard & Parker": (RED, DASHED),
+    "Pethica & Sutton": (ORANGE, CHAIN),
+    "App. C": (PINK, LONG),
+    "fit (4.5)": (BLUE, "-"),
+    "fit of App. C": (GREEN, "-"),
+}
+SPACINGS: Mapping[float, tuple[str, Any]] = {
+    0.2: (RED, CHAIN),
+    0.1: (ORANGE, DASHED),
+    0.05: (PINK, LONG),
+    0.025: (SKY, "-"),
+}
+STIFFNESSES = {math.inf: (RED, "-"), 3.0: (GREEN, DASHED), 1.0: (ORANGE, CHAIN)}
+STATES = {
+    "profiles": ((BLUE, "-"), (RED, DASHED)),
+    "more_profiles": ((SKY, "-"), (BLUE, DASHED), (GREEN, CHAIN), (PINK, LONG), (ORANGE, DOTTED)),
+}
 OFFSETS = {  # in points, of the letters in Fig. 2a
     "A": (7.0, -5.0), "B": (-15.0, -6.0), "C": (-15.0, -4.0), "D": (-15.0, 2.0),
     "A'": (9.0, -2.0), "B'": (6.0, -14.0), "C'": (7.0, -2.0), "D'": (-4.0, 8.0),
 }  # fmt: skip
 
 
-def curves(
-    study: Greenwood1997, x: Axis, y: Axis, tabors: Sequence[float], *others: Line, elements: bool = False, **more: Any
-) -> Plot:
-    """Computed curves at some Tabor parameters, finite-element points on those that have any, and other lines."""
-    lines = [half_space(study.curves[mu], x, y) for mu in tabors]
-    if elements:
-        lines += [points(ELEMENTS, study.elements[mu], mu, x, y) for mu in tabors if mu in study.elements]
-    return Plot(x, y, [*lines, *others], **more)
+def figures() -> dict[str, tuple[str, Made]]:
+    """Title of each figure, and what makes its plot, by the name of its files."""
+    read = tomllib.loads(data_text("greenwood", "figures.toml"))
+    axes = read.pop("axes")
+    return {stem: (figure["title"], partial(_plot, figure, axes)) for stem, figure in read.items()}
 
 
-def bradley(low: float, high: float) -> Line:
-    """Bradley's load between two approaches in eps."""
-    approach = np.linspace(low, high, 300)
-    return theory("Bradley", approach, bradley_load(approach))
+def _plot(figure: Mapping[str, Any], axes: Mapping[str, Any], study: Greenwood1997) -> Plot:
+    """Plot of an entry of the file."""
+    x, y = (Axis(**axes[name], limits=tuple(limits)) for name, *limits in (figure["x"], figure["y"]))
+    label, scale = figure.get("above", ("", ""))
+    above = (label, float(getattr(scaling, scale).of(1.0))) if scale else None
+    blank = Plot(x, y, title=figure.get("heading", ""), legend=figure.get("legend", "upper left"), above=above)
+    parts: list[Line | Note | str] = []
+    for entry in figure["lines"]:
+        (name, first), *others = entry.items()
+        parts += LINES[name](study, blank, first, **dict(others))
+    lines, see = [part for part in parts if isinstance(part, Line)], [part for part in parts if isinstance(part, str)]
+    return replace(blank, lines=lines, see=see, notes=[part for part in parts if isinstance(part, tuple)])
 
 
-def jkr(tabor: float, load_unit: float = 1.0) -> Line:
-    """JKR's whole curve, from no contact on."""
-    radius = np.linspace(0, 4.2, 800)
-    return theory("JKR", jkr_approach(radius, tabor), jkr_load(radius) / load_unit)
+# Curves
 
 
-def dmt_m(approach: Array, tabor: float, load_unit: float = 1.0) -> Line:
-    """DMT-M at approaches."""
-    return theory("DMT-M", approach, dmt.maugis_load(approach, tabor) / load_unit)
+def points(name: str, states: EquilibriumPath | States, tabor: float, plot: Plot, look: Look = MARKS) -> Line:
+    """States of a curve, as markers unless they look otherwise."""
+    (u, u_error), (v, v_error) = plot.x.values(states, tabor), plot.y.values(states, tabor)
+    return Line(name, tabor, u, v, {"color": OF_TABOR[tabor], **look}, u_error, v_error)
 
 
-def maugis_radius(tabor: float, radius: Array) -> Line:
-    """Maugis's theory of the same largest tension, as a thin line."""
-    look = {"color": OF_TABOR[tabor], "linewidth": 1.0}
-    return Line("Maugis-Dugdale", tabor, MaugisDugdale.matched(tabor).load(radius), radius, look)
+def half_space(study: Greenwood1997, plot: Plot, tabors: Sequence[float]) -> Parts:
+    """Computed curves; stretches that are unstable under fixed grips are dotted."""
+    for mu in tabors:
+        path, look = study.curves[mu], {"linestyle": DASHES_OF_TABOR[mu], "linewidth": 1.9}
+        yield replace(points(HALF_SPACE, path, mu, plot, look), dotted=~path.stable)
 
 
-def profiles(
-    study: Greenwood1997,
-    axis: Axis,
-    states: Sequence[DrawnState],
-    looks: Sequence[tuple[str, Any]],
-    legend: str,
-) -> Plot:
+def elements(study: Greenwood1997, plot: Plot, tabors: Sequence[float]) -> Parts:
+    """Finite-element points, where there are any."""
+    yield from (points(ELEMENTS, study.elements[mu], mu, plot) for mu in tabors if mu in study.elements)
+
+
+def specified(study: Greenwood1997, plot: Plot, tabors: Sequence[float]) -> Parts:
+    """States found by prescribing the central gap."""
+    yield from (points("central gap specified", study.specified[mu], mu, plot) for mu in tabors)
+
+
+def turns(study: Greenwood1997, _: Plot, tabors: Sequence[float]) -> Parts:
+    """How often the approach turns."""
+    found = [f"{sum(map(is_fold, study.curves[mu].events))} at mu = {mu:g}" for mu in tabors]
+    yield f"The approach turns so many times: {listed(found)}."
+
+
+def folds(study: Greenwood1997, plot: Plot, tabor: float) -> Parts:
+    """The unstable branch, and the folds between jump-on and jump-off where the curve winds."""
+    look: Look = {"linestyle": DOTTED, "linewidth": 1.9}
+    yield points("unstable branch", study.specified[tabor], tabor, plot, look)
+    rows = [(f.approach, f.central_gap, f.approach_error, f.central_gap_error) for f in study.folds]
+    x, y, dx, dy = np.reshape(rows, (-1, 4)).T
+    yield Line("folds", tabor, x, y, {**MARKS, "color": "black"}, dx, dy, label="folds")
+    yield from ((str(n), (x[n - 1], y[n - 1])) for n in range(2, len(rows)))
+    see = f"The approach has {len(rows)} folds, at alpha* = {listed([f'{value:.4f}' for value in x])}."
+    yield told(see, x)
+
+
+def profiles(study: Greenwood1997, plot: Plot, which: str) -> Parts:
     """Gap or pressure of states along the radius."""
-    mu, lines = study.settings.winding_at, []
-    for state, (colour, dashes) in zip(states, looks, strict=False):
-        values, errors = getattr(state, axis.quantity), getattr(state, f"{axis.quantity}_error")
+    mu, quantity = study.settings.winding_at, plot.y.quantity
+    for state, (colour, dashes) in zip(getattr(study, which), STATES[which], strict=False):
+        values, errors = getattr(state, quantity), getattr(state, f"{quantity}_error")
         gap = round(state.central_gap, 9) + 0.0  # not -0
         look = {"color": colour, "linestyle": dashes, "linewidth": 1.8}
-        label = f"$H(0) = {gap:.4g}$"
-        lines.append(Line(f"H(0) = {gap:g}", mu, state.radii, values, look, None, errors, label=label))
-    return Plot(RADIUS.within(0, 3), axis, lines, title=rf"$\mu = {mu:g}$", legend=legend)
+        yield Line(f"H(0) = {gap:g}", mu, state.radii, values, look, None, errors, label=f"$H(0) = {gap:.4g}$")
 
 
-def _fig_2a(study: Greenwood1997) -> Plot:
-    """The vertical tangent at mu near 1, and the jumps at fixed grips and in an apparatus, along its load lines."""
-    arrows, notes, lines = [], [], []
+# Jumps
+
+
+def jump_line(name: str, tabor: float, jump: Jump, look: Look, label: str = "") -> Line:
+    """A jump as a line, which becomes an arrow."""
+    approach, load, dx, dy = np.transpose([(s.approach, s.load, s.approach_error, s.load_error) for s in jump.ends])
+    return Line(name, tabor, approach, load, look, dx, dy, label=label, arrow=True)
+
+
+def jumps(study: Greenwood1997, _: Plot, margins: Sequence[float]) -> Parts:
+    """The jumps at fixed grips and in an apparatus, along its load lines."""
     mu, k = study.settings.jumps_at, study.settings.apparatus
     for letters, jump in study.jumps.items():
         primed = "'" in letters[0]
-        look = {"color": style.PINK if primed else "black", "linewidth": 1.4}
-        line, arrow = ends(f"jump {' to '.join(letters)}", mu, jump, look)
-        lines.append(line)
-        arrows.append(arrow)
-        notes += [
-            Note(letter, at, OFFSETS[letter]) for letter, at in zip(letters, (arrow.tail, arrow.head), strict=True)
-        ]
+        line = jump_line(
+            f"jump {' to '.join(letters)}", mu, jump, {"color": PINK if primed else "black", "linewidth": 1.4}
+        )
+        yield line
+        yield from (
+            (letter, (at.approach, at.load), OFFSETS[letter]) for letter, at in zip(letters, jump.ends, strict=True)
+        )
         if primed:
-            approach = np.array([line.x.min() - 0.35, line.x.max() + 0.35])
+            approach = np.array([line.x.min() - margins[0], line.x.max() + margins[0]])
             label = rf"load lines, $k = {k:g}\,R\Delta\gamma/\epsilon$" if letters[0] == "A'" else ""
-            look = {"color": style.PINK, "linestyle": style.DOTTED, "linewidth": 1.2}
+            look: Look = {"color": PINK, "linestyle": DOTTED, "linewidth": 1.2}
             load = line.y[0] - k * (approach - line.x[0])
-            lines.append(Line(f"load line of {letters[0]}", mu, approach, load, look, label=label))
-    x, y = APPROACH.within(-3.6, 0.8), LOAD.within(-6.2, 0.4)
-    return curves(study, x, y, (0.5, 0.7, mu), *lines, arrows=arrows, notes=notes, legend="lower left")
+            yield Line(f"load line of {letters[0]}", mu, approach, load, look, label=label)
 
 
-def _fig_3(tabor: float, low: float, high: float, *others: Line) -> Made:
-    """The S-shaped curve, and states found by prescribing the central gap."""
-
-    def made(study: Greenwood1997) -> Plot:
-        specified = points("central gap specified", study.specified[tabor], tabor, APPROACH, LOAD)
-        x, y, title = APPROACH.within(low, high), LOAD.within(-5.6, 1.0), rf"$\mu = {tabor:g}$"
-        return curves(study, x, y, (tabor,), specified, *others, title=title, legend="lower right")
-
-    return made
-
-
-def _fig_5(study: Greenwood1997) -> Plot:
-    radius = np.linspace(1e-3, 2.9, 400)
-    theories = theory("JKR", jkr_load(radius), radius), *(maugis_radius(mu, radius) for mu in (0.5, 2.0))
-    x, y = LOAD.within(-6.5, 5), CONTACT_RADIUS.within(0, 2.8)
-    return curves(study, x, y, (0.5, 2.0, 5.0), *theories, elements=True, legend="below")
+def apparatus(study: Greenwood1997, _: Plot, stiffnesses: Sequence[float]) -> Parts:
+    """Jumps in apparatus of several stiffnesses."""
+    for cycle in study.cycles:
+        if (k := cycle.stiffness) in stiffnesses:
+            colour, dashes = STIFFNESSES[k]
+            look = {"color": colour, "linestyle": dashes, "linewidth": 1.7}
+            name, label = f"apparatus {k:g} R dgamma/eps", rf"$k = {k:g}\,R\Delta\gamma/\epsilon$"
+            if math.isinf(k):
+                name = label = "fixed grips"
+            yield jump_line(f"{name}, jump on", study.settings.devices_at, cycle.jump_on, look, label)
+            yield jump_line(f"{name}, jump off", study.settings.devices_at, cycle.jump_off, look)
 
 
-def _fig_6a(_: Greenwood1997) -> Plot:
-    """The recalculated DMT theory: Bradley's load apart, Hertz's and that of the surface forces in contact."""
-    scaled = np.concatenate([np.linspace(-4, 0, 120), np.geomspace(1e-6, 4, 200)])
-    lines = []
-    for mu in (0.1, 0.2, 0.5, 1.0):
-        apart, contact = bradley_load(mu * scaled[scaled <= 0]), dmt.force_load(mu * scaled[scaled > 0], mu)
-        look, loads = {"color": OF_TABOR[mu], "linewidth": 1.9}, np.concatenate([apart, contact]) / TWO_PI
-        lines.append(Line("DMT force method", mu, scaled, loads, look, label=rf"$\mu = {mu:g}$"))
-    lines.append(dmt_m(np.linspace(0, 4, 200), 1.0, TWO_PI))
-    return Plot(SCALED_APPROACH.within(-3, 3), LOAD_OF_RIGID.within(-1.45, 0.4), lines)
+def border(study: Greenwood1997, _: Plot, places: Sequence[tuple[float, float]]) -> Parts:
+    """Stiffness below which a contact jumps, against the Tabor parameter; words at three places."""
+    critical = study.critical_tabor
+    tabor, least = study.border.T
+    yield Line("border", None, tabor, least, {"color": BLUE, "linewidth": 2}, label="least without a jump")
+    words = "follows smoothly", "jumps", rf"fixed grips jump from $\mu = {digits(critical)}$"
+    yield from ((text, (place[0], place[1])) for text, place in zip(words, places, strict=True))
+    yield told(f"Fixed grips jump from mu = {plus_minus(critical)} on.", critical.value, critical.error)
 
 
-def _fig_6b(study: Greenwood1997) -> Plot:
-    x, y = SCALED_APPROACH.within(-4, 4), LOAD_OF_RIGID.within(-1.15, 0.6)
-    return curves(study, x, y, (0.05, 0.1, 0.2, 0.5, 1.0), dmt_m(np.linspace(0, 4, 200), 1.0, TWO_PI))
+# Theories
 
 
-def forces(
-    found: Sequence[PullOff],
-    get: Callable[[PullOff], Estimate | None],
-    curve: str,
-    look: Mapping[str, Any],
-    label: str | None,
-) -> Line:
-    """Pull-off forces with their errors against the Tabor parameter."""
-    rows = [(p.tabor, -load.value, load.error) for p in found if (load := get(p))]
+def _by_radius(a: Array, approach: Array, load: Array) -> Mapping[str, Array]:
+    return {"approach": approach, "load": load, "contact_radius": a}
+
+
+def _forced(approach: Array, mu: float) -> Array:
+    """Load of the DMT force method: Bradley's apart."""
+    apart = closed_forms.bradley_load(np.minimum(approach, 0.0))
+    return np.where(approach <= 0, apart, dmt.force_load(np.maximum(approach, 0.0), mu))
+
+
+THEORIES: Mapping[str, tuple[Look, Callable[[Array, float], Mapping[str, Array]]]] = {
+    "Bradley": (
+        {"color": "black", "linestyle": DOTTED, "linewidth": 1.8},
+        lambda x, _: {"approach": x, "load": closed_forms.bradley_load(x)},
+    ),
+    "JKR": (
+        {"color": "black", "linestyle": DASHED, "linewidth": 1.5},
+        lambda a, mu: _by_radius(a, closed_forms.jkr_approach(a, mu), closed_forms.jkr_load(a)),
+    ),
+    "Hertz": (
+        {"color": "0.45", "linestyle": CHAIN, "linewidth": 1.5},
+        lambda a, mu: _by_radius(a, closed_forms.hertz_approach(a, mu), closed_forms.hertz_load(a)),
+    ),
+    "DMT-M": (
+        {"color": "black", "linestyle": LONG, "linewidth": 1.1},
+        lambda x, mu: {"approach": x, "load": dmt.maugis_load(x, mu)},
+    ),
+    "DMT force method": (
+        {"color": PINK, "linestyle": DASHED, "linewidth": 1.5},
+        lambda x, mu: {"approach": x, "load": _forced(x, mu)},
+    ),
+    "DMT thermodynamic": (
+        {"color": RED, "linestyle": CHAIN, "linewidth": 1.5},
+        lambda x, mu: {"approach": x, "load": dmt.thermodynamic_load(x, mu)},
+    ),
+    "Maugis-Dugdale": (
+        {"linewidth": 1.0},
+        lambda a, mu: _by_radius(a, MaugisDugdale.matched(mu).approach(a), MaugisDugdale.matched(mu).load(a)),
+    ),
+}
+"""How the curve of a theory looks, and its numbers, by approaches or radii and the Tabor parameter."""
+
+
+def theory(
+    _: Greenwood1997,
+    plot: Plot,
+    name: str,
+    over: tuple[float, float, int],
+    mu: float = 1.0,
+    tabor: float | None = None,
+    look: Look | None = None,
+    label: str | None = None,
+    *,
+    coloured: bool = False,
+) -> Parts:
+    """Curve of a closed theory; of one Tabor parameter `tabor` if the legend says so, and in its colour if asked."""
+    usual, numbers = THEORIES[name]
+    mu = tabor or mu
+    found, colour = numbers(np.linspace(*over), mu), {"color": OF_TABOR[mu]} if coloured else {}
+    x, y = (found[axis.quantity] / axis.size(mu) for axis in (plot.x, plot.y))
+    yield Line(name, tabor, x, y, {**usual, **colour, **(look or {})}, label=label)
+
+
+def carpick(study: Greenwood1997, _: Plot, tabors: Sequence[float]) -> Parts:
+    """Contact radii after Carpick et al., and how far they are off under no load."""
+    off = []
+    for mu in tabors:
+        maugis = scaling.MAUGIS.of(mu)
+        load = np.linspace(float(carpick_pull_off(maugis)), 5, 400)
+        yield Line(
+            "Carpick et al.", mu, load, carpick_radius(load, maugis), {"color": OF_TABOR[mu], "linestyle": DOTTED}
+        )
+        radius = study.curves[mu].events["zero_load"].contact_radius
+        off.append(f"{100 * (float(carpick_radius(0.0, maugis)) / radius - 1):+.1f} % at mu = {mu:g}")
+    yield f"At zero load the radius of Carpick et al. is off the solution's by {listed(off)}."
+
+
+# Numbers against the Tabor parameter
+
+
+def pull_offs(
+    study: Greenwood1997, _: Plot, solver: str, look: Look = MARKS, label: str | None = None, above: float = 0.0
+) -> Parts:
+    """Pull-off forces by a solver with their errors, above a Tabor parameter."""
+    found: list[tuple[float, Estimate | None]] = [(p.tabor, getattr(p, solver)) for p in study.pull_offs]
+    rows = [(mu, -load.value, load.error) for mu, load in found if load and mu > above]
     tabor, force, error = np.reshape(rows, (-1, 3)).T
-    return Line(curve, None, tabor, force, {"color": style.BLUE, **look}, None, error, label=label)
+    name = {"half_space": HALF_SPACE, "finite_element": ELEMENTS}[solver]
+    yield Line(name, None, tabor, force, {"color": BLUE, **look}, None, error, label=label)
 
 
-def _fig_7(study: Greenwood1997) -> Plot:
-    """Pull-off force against the Tabor parameter: the solvers, Maugis, and Attard & Parker."""
-    label, line = "half-space; Muller et al. solved the same equations", {"linewidth": 2, "marker": "."}
-    solved = forces(study.pull_offs, lambda p: p.half_space, HALF_SPACE, line, label)
-    tabor = solved.x
-    attard: dict[str, Any] = {"color": style.RED, "linestyle": style.DASHED, "marker": "s"}
+def pull_off_theories(study: Greenwood1997, _: Plot, attard: Sequence[tuple[float, float]]) -> Parts:
+    """Pull-off forces after Maugis, by the values of Attard & Parker over pi that [G97] quotes, and in the limits."""
+    tabor = np.array([p.tabor for p in study.pull_offs])
     maugis = np.array([-MaugisDugdale.matched(mu).pull_off().load for mu in tabor])
-    lines = [
-        solved,
-        forces(study.pull_offs, lambda p: p.finite_element, ELEMENTS, MARKS, None),
-        theory("Maugis-Dugdale", tabor, maugis, color=style.GREEN, linestyle=style.CHAIN),
-        theory("Attard & Parker, the two values quoted", ATTARD_PARKER[:, 0], np.pi * ATTARD_PARKER[:, 1], **attard),
-        theory("Bradley", tabor, np.full_like(tabor, -BRADLEY_PULL_OFF), linewidth=1.0),
-        theory("JKR", tabor, np.full_like(tabor, -JKR_PULL_OFF), linewidth=1.0),
-    ]
-    above = (r"parameter of Muller et al., $\mu_D$", float(MYD.of(1.0)))
-    return Plot(TABOR, PULL_OFF.within(4.4, 11.2), lines, above=above)
+    yield Line("Maugis-Dugdale", None, tabor, maugis, {"color": GREEN, "linestyle": CHAIN})
+    mu, force = np.transpose(attard)
+    look: Look = {"color": RED, "linestyle": DASHED, "marker": "s"}
+    yield Line("Attard & Parker, the two values quoted", None, mu, np.pi * force, look)
+    for name, load in (("Bradley", closed_forms.BRADLEY_PULL_OFF), ("JKR", closed_forms.JKR_PULL_OFF)):
+        yield Line(name, None, tabor, np.full_like(tabor, -load), {**THEORIES[name][0], "linewidth": 1.0})
 
 
-FIGURES: Mapping[str, tuple[str, Made]] = {
-    "1a": (
-        "Load against approach at low Tabor parameters, with Bradley's equation",
-        lambda s: curves(
-            s,
-            APPROACH.within(-2.2, 0.8),
-            LOAD.within(-6.8, 1.5),
-            (0.05, 0.1, 0.2, 0.5),
-            bradley(-2.5, 0.24),
-            legend="below",
-        ),
-    ),
-    "1b": (
-        "The numerical results at mu = 0.05 compared with Bradley's equation",
-        lambda s: curves(s, APPROACH.within(-3, 0.4), LOAD.within(-6.8, 2.5), (0.05,), bradley(-4, 0.3)),
-    ),
-    "1c": (
-        "Compressive loads at mu = 0.02, with the theories of Bradley, JKR and DMT-M",
-        lambda s: curves(
-            s,
-            APPROACH.within(-0.3, 0.5),
-            LOAD.within(-8, 50),
-            (0.02,),
-            *(bradley(-0.4, 0.36), jkr(0.02), dmt_m(np.linspace(0, 0.26, 200), 0.02)),
-        ),
-    ),
-    "2a": ("Near mu = 1 the tangent becomes vertical: jumps at fixed grips and in an apparatus", _fig_2a),
-    "2b": (
-        "Load against approach at higher Tabor parameters, with JKR's theory",
-        lambda s: curves(
-            s,
-            SCALED_APPROACH.within(-3.2, 3.2),
-            LOAD_OF_RIGID.within(-0.95, 0.5),
-            (1.0, 2.0, 3.0, 5.0),
-            jkr(1.0, TWO_PI),
-            elements=True,
-        ),
-    ),
-    "3a": ("Load against approach with the central gap specified, mu = 1", _fig_3(1.0, -3.5, 2.5)),
-    "3b": ("Load against approach with the central gap specified, mu = 2", _fig_3(2.0, -5.5, 5.0)),
-    "3c": (
-        "Load against approach with the central gap specified, mu = 3, with JKR's theory",
-        _fig_3(3.0, -7.0, 7.0, jkr(3.0)),
-    ),
-    "4a": (
-        "The jump into contact at mu = 5: pressures before and after",
-        lambda s: profiles(s, PRESSURE.within(-5.6, 1.4), s.profiles, BEFORE_AND_AFTER, "best"),
-    ),
-    "4b": (
-        "The jump into contact at mu = 5: shape before and after",
-        lambda s: profiles(s, GAP.within(-0.3, 8), s.profiles, BEFORE_AND_AFTER, "best"),
-    ),
-    "5": ("Contact radius against load, with the theories of JKR and Maugis", _fig_5),
-    "6a": ("The recalculated DMT theory against alpha*/mu, with its limit DMT-M", _fig_6a),
-    "6b": ("Numerical results at low Tabor parameters against alpha*/mu, with the limit of the DMT theory", _fig_6b),
-    "7": ("Pull-off force against Tabor parameter, with Maugis's theory and Attard & Parker's values", _fig_7),
+def criteria(study: Greenwood1997, _: Plot, quantity: str) -> Parts:
+    """Central gap or approach at jump-on plus one over mu^(3/7): true jumps as markers, and what criteria predict."""
+    sign = 1 if quantity == "central_gap" else -1
+
+    def scaled(values: Array, tabor: Array) -> Array:
+        return np.asarray((1 + sign * values) / tabor ** (3 / 7))
+
+    found = [jump.estimate(quantity) for jump in study.jumps_on.values()]
+    mu, true, errors = np.array([*study.jumps_on]), [jump.value for jump in found], [jump.error for jump in found]
+    look = {**MARKS, "color": "black"}
+    yield Line("true jumps", None, mu, scaled(np.array(true), mu), look, None, np.array(errors) / mu ** (3 / 7))
+    tabor = np.geomspace(0.72, max(mu, default=1.0), 200)
+    for one in study.criteria:
+        if one.predict and one.of_approach == (quantity == "approach"):
+            colour, dashes = CRITERIA[one.name]
+            yield Line(one.name, None, tabor, scaled(one.predict(tabor), tabor), {"color": colour, "linestyle": dashes})
+
+
+def coarse(study: Greenwood1997, _: Plot, which: str) -> Parts:
+    """What uniform triangles too wide give, wrong on purpose, so without an error: pull-off forces, or curves."""
+
+    def line(spacing: float, tabor: float | None, x: Array, y: Array) -> Line:
+        colour, dashes = SPACINGS[spacing]
+        look, label = (
+            {"color": colour, "linestyle": dashes, "linewidth": 1.4},
+            rf"uniform triangles, ${spacing:g}\,\beta$",
+        )
+        return Line(f"uniform triangles {spacing:g} beta", tabor, x, y, look, label=label)
+
+    if which == "rises":
+        for spacing, rise in study.rises.items():
+            yield line(spacing, None, *np.reshape([(r.tabor, -r.pull_off) for r in rise.ripples], (-1, 2)).T)
+        return
+    yield from (line(r.spacing, r.tabor, r.approach, r.load) for r in study.ripples)
+    least = listed([f"{-r.pull_off:.3f} at {r.spacing:g} beta" for r in study.ripples])
+    resolved = -study.curves[study.settings.ripple_at].events["pull_off"].load
+    yield f"The largest tension is {least}, where it is {resolved:.3f} R dgamma."
+
+
+LINES: Mapping[str, Callable[..., Parts]] = {
+    make.__name__: make
+    for make in (
+        *(half_space, elements, specified, turns, folds, profiles, jumps, apparatus, border, theory, carpick),
+        *(pull_offs, pull_off_theories, criteria, coarse),
+    )
 }

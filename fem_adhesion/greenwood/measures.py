@@ -1,33 +1,34 @@
-"""What claims of the paper are measured on that need solutions, asked of the facts of a study."""
+"""What claims of the paper are measured on: the words of the column ``measure`` of ``data/claims.csv``.
+
+A measure there is an expression of Python. Its words are the functions and names of this module, and `f`, the facts of
+a study; what needs no solution, the paper's formulas by quadrature and search, comes first.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
+from scipy.integrate import quad
+from scipy.optimize import minimize_scalar
+from scipy.special import ellipe, ellipk
 
-from fem_adhesion.common.fold_birth import count_folds
-from fem_adhesion.greenwood.facts import (
-    UNKNOWN,
-    Facts,
-    count,
-    crossings,
-    exact,
-    least,
-    most,
-    spread,
-    steps,
-)
-from fem_adhesion.greenwood.formulas import JKR_AT_REST, JKR_JUMP_OFF, RIGID, maugis_radius
-from fem_adhesion.greenwood.tables import LAST_DIGIT, PROFILE_CHECKS, TABORS, Printed
+from fem_adhesion.common.fold_birth import count_folds, critical_stiffness
+from fem_adhesion.greenwood.facts import Facts, count, crossings, exact, least, most, power, spread, steps
+from fem_adhesion.greenwood.tables import LAST_DIGIT, TABORS
+from halfspace import scaling
+from halfspace.elastic import compliance, grid
+from halfspace.elastic.kernel import ring_kernel
 from halfspace.equilibrium.conditions import Condition
 from halfspace.equilibrium.contact import CONTACT_RADIUS, LOAD
 from halfspace.laws import LENNARD_JONES
+from halfspace.roots import root
 from halfspace.theories import closed_forms, criteria, dmt
-from halfspace.theories.closed_forms import BRADLEY_PULL_OFF, JKR_PULL_OFF
 from halfspace.theories.maugis import MaugisDugdale
 from halfspace.values import Estimate
 
+__all__ = ["LAST_DIGIT", "TABORS", "count_folds", "critical_stiffness", "least", "power", "scaling"]
+
+RIGID = np.pi * np.sqrt(2)  # w(0) = pi sqrt2 mu^(3/2) (H0 + 1)^(-5/2) of undeformed surfaces, eps
+JKR_AT_REST, JKR_JUMP_OFF = closed_forms.jkr_zero_load(1.0), closed_forms.jkr_jump_off(1.0)
 BELOW_NOSE = -4.0  # load in R dgamma at which Fig. 5 is compared on the unstable branch
 BELOW_NOSE_RADIUS = float(
     np.cbrt(3 / 4 * (BELOW_NOSE + 3 * np.pi - np.sqrt(6 * np.pi * BELOW_NOSE + (3 * np.pi) ** 2)))
@@ -35,162 +36,140 @@ BELOW_NOSE_RADIUS = float(
 """JKR's contact radius there, in beta."""
 
 
-def _extreme(which: str, numbers: Iterable[Estimate]) -> Estimate:
-    """The most or the least of some numbers."""
-    return {"most": most, "least": least}[which](list(numbers))
+def tension(gap: float) -> float:
+    """Tension of the law in dgamma/eps at a gap H in eps."""
+    return -float(LENNARD_JONES.pressure(np.array(gap), 1.0))
 
 
-# Events
+def rigid_force(gap: float = 0.0) -> Estimate:
+    """Force between rigid spheres at a gap in eps, in R dgamma: 2 pi times the integral of the tension beyond it."""
+    return Estimate(*quad(tension, gap, np.inf, epsabs=1e-13, epsrel=1e-13)) * (2 * np.pi)
 
 
-def number(f: Facts, tabor: float, event: str, quantity: str) -> Estimate:
-    """A number of an event; approach and gaps in eps, load in R dgamma, contact radius in beta."""
-    return f.number(tabor, event, quantity)
+def bradley_by_quadrature() -> Estimate:
+    """Largest deviation of (1.3) from the integral of the law, relative."""
+    pairs = ((rigid_force(gap), float(closed_forms.bradley_load(-gap))) for gap in (-0.1, 0, 0.2, 0.5, 1, 2, 4))
+    return most(abs(integral + printed) / abs(printed) for integral, printed in pairs)
 
 
-def force(f: Facts, tabor: float) -> Estimate:
-    """Pull-off force in R dgamma."""
-    return f.number(tabor, "pull_off", "load") * -1
+def least_jkr_load() -> Estimate:
+    """Pull-off force of JKR's load against the contact radius."""
+    found = minimize_scalar(lambda a: float(closed_forms.jkr_load(a)), bounds=(0.5, 2.4), method="bounded")
+    return exact(-found.fun)
 
 
-def force_over_pi(f: Facts, tabor: float) -> Estimate:
-    """Pull-off force over pi."""
-    return force(f, tabor) / np.pi
+def least_jkr_approach() -> Estimate:
+    """Least scaled approach of JKR's printed curve."""
+    radii = JKR_JUMP_OFF.contact_radius + np.linspace(-0.1, 0.1, 2001)
+    return exact(np.min(closed_forms.jkr_approach(radii, 1.0)))
 
 
-def force_over_bradley(f: Facts, which: str, *tabors: float) -> Estimate:
-    """The most or the least pull-off force over Bradley's, at some Tabor parameters or at all."""
-    return _extreme(which, (force(f, mu) for mu in tabors or f.paths)) / -BRADLEY_PULL_OFF
+def hertz_by_kernel() -> Estimate:
+    """Central deflection under Hertz's pressure on a disc of radius 1, by the ring kernel; s = sin t."""
+
+    def integrand(t: float) -> float:
+        s = np.array(np.sin(t))
+        return float(2 / np.pi * np.cos(t) ** 2 * ring_kernel(np.array(0.0), s) * s)
+
+    return Estimate(*quad(integrand, 0, np.pi / 2))
 
 
-def force_change(f: Facts, which: str, *tabors: float) -> Estimate:
-    """The most or the least change of the pull-off force from one Tabor parameter to the next."""
-    return _extreme(which, steps([force(f, mu) for mu in tabors]))
+def hertz_at(approach: float) -> float:
+    """Hertz's load at an approach in eps, mu = 1."""
+    return float(closed_forms.hertz_load(closed_forms.hertz_radius_at(approach, 1.0)))
 
 
-def way_to_jkr(f: Facts, lower: float, upper: float) -> Estimate:
-    """Part of the way from Bradley's pull-off force to JKR's that is gone between two Tabor parameters."""
-    return (force(f, lower) - force(f, upper)) / (JKR_PULL_OFF - BRADLEY_PULL_OFF)
+def hertz_less_jkr(radius: float) -> Estimate:
+    """What must be added to JKR's load so that Hertz's equation gives JKR's approach, at a contact radius."""
+    hertz = hertz_at(float(closed_forms.jkr_approach(radius, 1.0)))
+    return Estimate(hertz - float(closed_forms.jkr_load(radius)), 1e-13 * hertz)
 
 
-def nearer_to_bradley(f: Facts, tabor: float) -> Estimate:
-    """Distance of the pull-off force from Bradley's over that from JKR's."""
-    return abs(force(f, tabor) + BRADLEY_PULL_OFF) / abs(force(f, tabor) + JKR_PULL_OFF)
+def maugis_rise() -> Estimate:
+    """Largest rise of Maugis's pull-off force between successive values of lambda."""
+    return most(steps([exact(-MaugisDugdale(float(la), 1.0).pull_off().load) for la in np.geomspace(0.01, 100, 30)]))
 
 
-def separation(f: Facts, which: str, *tabors: float) -> Estimate:
-    """The most or the least separation -alpha* at pull-off."""
-    return _extreme(which, (f.number(mu, "pull_off", "approach") * -1 for mu in tabors))
+def maugis_radius(tabor: float, load: float, low: float, high: float) -> float:
+    """Maugis's contact radius under a load, between two radii."""
+    theory = MaugisDugdale.matched(tabor)
+    return root(lambda a: float(theory.load(a)) - load, low, high, "Maugis's radius")
 
 
-def separation_change(f: Facts, which: str, *tabors: float) -> Estimate:
-    """The most or the least change of the separation at pull-off from one Tabor parameter to the next."""
-    return _extreme(which, steps([f.number(mu, "pull_off", "approach") * -1 for mu in tabors]))
+def ring_by_points() -> Estimate:
+    """Largest deviation of (2.4) from the mean of deflections 1/(pi distance) by points on a ring, times 2 pi.
+
+    The trapezoidal rule is exact there.
+    """
+    angle = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    off = []
+    for r, s in ((1.0, 0.5), (0.5, 1.0), (2.0, 0.3), (0.3, 2.0)):
+        printed = 4 / np.pi / max(r, s) * ellipk((min(r, s) / max(r, s)) ** 2)
+        off.append(abs(printed / (2 * np.mean(1 / np.sqrt(r**2 + s**2 - 2 * r * s * np.cos(angle)))) - 1))
+    return exact(max(off))
 
 
-def scaled_approach(f: Facts, tabor: float, event: str) -> Estimate:
-    """Approach of an event over the Tabor parameter, in beta^2/R."""
-    return f.number(tabor, event, "approach") / tabor
+def largest_tension() -> Estimate:
+    """Largest tension of the law in dgamma/eps, by search."""
+    return exact(-minimize_scalar(lambda H: -tension(H), bounds=(0.1, 0.4), method="bounded").fun)
 
 
-def power_of_separation(f: Facts, lower: float, upper: float) -> Estimate:
-    """Size of the power of mu of alpha*/mu at pull-off, between two Tabor parameters."""
-    ends = (scaled_approach(f, mu, "pull_off") for mu in (lower, upper))
-    return abs(spread(lambda a, b: np.log(b / a) / np.log(upper / lower), *ends))
+def matrix_of_twice_the_interval() -> Estimate:
+    """Largest deviation of the matrix of twice the interval from twice the matrix, relative to the largest entry."""
+    fine, wide = (compliance.triangles(grid.uniform(*lengths)).compliance for lengths in ((3.0, 0.1), (6.0, 0.2)))
+    return exact(np.abs(wide - 2 * fine).max() / wide.max())
 
 
-def zero_load_change(f: Facts, which: str, *tabors: float) -> Estimate:
-    """The most or the least change of the distance of alpha*/mu at zero load from JKR's."""
-    return _extreme(which, steps([abs(scaled_approach(f, mu, "zero_load") - JKR_AT_REST.approach) for mu in tabors]))
+def disc(form: str, c: float, r: float) -> Estimate:
+    """Closed form of F(c, r), App. B, over its integral; s = min(c, r) sin t takes the roots of the integrand away.
+
+    With x the larger and y the smaller of both radii the forms are E, x E(y/x), and B, (y^2/x) B(y/x).
+    """
+
+    def integrand(t: float) -> float:
+        s = min(c, r) * np.sin(t)
+        return float((c * np.cos(t)) ** 2 / np.sqrt(r**2 - s**2) if c < r else np.sqrt(c**2 - s**2))
+
+    value, error = quad(integrand, 0, np.pi / 2, epsrel=1e-12)
+    x, y = max(c, r), min(c, r)
+    k = (y / x) ** 2
+    closed = x * ellipe(k) if form == "E" else y**2 / x * (ellipe(k) - (1 - k) * ellipk(k)) / k
+    return Estimate(closed / value, error / value)
+
+
+def excess_limit() -> Estimate:
+    """Limit of f/alpha*^(3/2), from two small approaches whose roots are as 1 to 2; b alpha*^(1/2) drops out."""
+    near, far = (float(dmt.force_excess(x)) / x**1.5 for x in (1e-6, 4e-6))
+    return Estimate(2 * near - far, abs(near - far) / 10)
+
+
+def rising_threshold() -> Estimate:
+    """Tabor parameter at which Hertz's load and the excess tension grow alike at first touch."""
+    leading = excess_limit()
+    value = (2 / (3 * np.pi) / leading.value) ** (2 / 3)
+    return Estimate(value, 2 / 3 * value * leading.error / leading.value)
+
+
+def rigid_displacement() -> Estimate:
+    """w(0) of undeformed surfaces at h0 = eps, mu = 1, by quadrature: 2 int sigma dr."""
+    return Estimate(*quad(lambda r: 2 * 8 / 3 * (1 + r**2 / 2) ** -3, 0, np.inf, epsabs=1e-13, epsrel=1e-13))
+
+
+def rigid_fold() -> Estimate:
+    """h0/w(0) where h0 + w(0) is least, w(0) = h0^(-5/2)."""
+    h = float(minimize_scalar(lambda h: h + h**-2.5, bounds=(1, 2), method="bounded", options={"xatol": 1e-12}).x)
+    return Estimate(h**3.5, 1e-6)
+
+
+# What needs solutions
 
 
 def farthest_from_jkr(f: Facts, tabor: float) -> Estimate:
     """Largest deviation of events from JKR's, relative, in loads, radii and scaled approaches."""
-    off = closed_forms.jkr_pull_off(1.0)
-    pairs = (
-        (f.number(tabor, "pull_off", "load"), off.load),
-        (scaled_approach(f, tabor, "pull_off"), off.approach),
-        (scaled_approach(f, tabor, "zero_load"), JKR_AT_REST.approach),
-        (f.number(tabor, "zero_load", "contact_radius"), JKR_AT_REST.contact_radius),
-    )
-    return most([abs(ours / theirs - 1) for ours, theirs in pairs])
-
-
-def jump_off_over_jkr(f: Facts, tabor: float) -> Estimate:
-    """Load at the jump off over JKR's."""
-    return f.number(tabor, "jump_off", "load") / JKR_JUMP_OFF.load
-
-
-def width_of_the_fold(f: Facts, tabor: float) -> Estimate:
-    """Range of approaches between the jumps, in eps."""
-    return f.number(tabor, "jump_on", "approach") - f.number(tabor, "jump_off", "approach")
-
-
-def fewest_folds(f: Facts, *tabors: float) -> Estimate:
-    """Least number of folds at some Tabor parameters."""
-    return count(min(count_folds(f.paths[mu]) for mu in tabors))
-
-
-def critical_tabor(f: Facts) -> Estimate:
-    """Tabor parameter of the first vertical tangent."""
-    return f.critical_tabor
-
-
-def pulled_off(f: Facts, sign: float) -> Estimate:
-    """At how many Tabor parameters the approach at pull-off has a sign: apart -1, pressed together +1."""
-    return count(sum(sign * path.events["pull_off"].approach > 0 for path in f.paths.values()))
-
-
-def pull_off_change(f: Facts) -> Estimate:
-    """Largest change of the pull-off force of Fig. 7 from one Tabor parameter to the next."""
-    return most(steps([f.pull_offs[mu] * -1 for mu in sorted(f.pull_offs)]))
-
-
-# Jumps
-
-
-def left_after_jump_off(f: Facts, tabor: float) -> Estimate:
-    """Force left after the jump off, as a part of that before."""
-    if tabor not in f.cycles:
-        return UNKNOWN
-    before, after = (state.estimate("load") for state in f.cycles[tabor].jump_off.ends)
-    return after / before
-
-
-def energy_lost(f: Facts, tabor: float) -> Estimate:
-    """Energy lost in a cycle, in R dgamma eps."""
-    return f.cycles[tabor].energy_lost if tabor in f.cycles else UNKNOWN
-
-
-def landing_gap(f: Facts, tabor: float) -> Estimate:
-    """Central gap where the jump on lands, in eps."""
-    return f.cycles[tabor].jump_on.landing.estimate("central_gap") if tabor in f.cycles else UNKNOWN
-
-
-def tension_after_jump(f: Facts, which: str) -> Estimate:
-    """The most or the least tension just after the jump on, over the pull-off force, mu = 1 to 5."""
-    landings = {mu: f.cycles[mu].jump_on.landing for mu in TABORS[:-1] if mu in f.cycles}
-    return _extreme(which, [end.estimate("load") / -force(f, mu).value for mu, end in landings.items()])
-
-
-def landing_under_load(f: Facts, tabor: float) -> Estimate:
-    """Approach in contact under the load at which the surfaces jump on."""
-    state = f.paths[tabor].at(load=f.number(tabor, "jump_on", "load").value, branch="contact")
-    return Estimate(float(state.approach), float(state.approach_error))
-
-
-def approaches_apart(f: Facts, tabor: float) -> Estimate:
-    """Distance in the approach of the states of the two printed gaps of Fig. 4."""
-    before, after = (f.paths[tabor].at(central_gap=float(gap)) for gap, _ in PROFILE_CHECKS)
-    return Estimate(float(after.approach - before.approach), float(after.approach_error + before.approach_error))
-
-
-def other_core(f: Facts, which: str) -> Estimate:
-    """How far a law with another core moves the jump on: below the most or the least of the gaps tried, in eps."""
-    return f.cores[{"most": max, "least": min}[which](f.cores)] if f.cores else UNKNOWN
-
-
-# Loads along the curve
+    off, rest = closed_forms.jkr_pull_off(tabor), closed_forms.jkr_zero_load(tabor)
+    numbers = [("pull_off", name, getattr(off, name)) for name in ("load", "approach")]
+    numbers += [("zero_load", name, getattr(rest, name)) for name in ("approach", "contact_radius")]
+    return most(abs(f.number(tabor, event, quantity) / theirs - 1) for event, quantity, theirs in numbers)
 
 
 def from_bradley(f: Facts, tabor: float, low: float, high: float) -> Estimate:
@@ -201,18 +180,14 @@ def from_bradley(f: Facts, tabor: float, low: float, high: float) -> Estimate:
     return Estimate(float(off.max()), float(np.max(states.load_error)))
 
 
-def nearing_bradley(f: Facts, lower: float, upper: float) -> Estimate:
-    """That distance apart at a Tabor parameter, over that at another."""
-    return from_bradley(f, lower, -6.0, 0.0) / from_bradley(f, upper, -6.0, 0.0)
-
-
 def far_from_bradley(f: Facts, times: float) -> Estimate:
     """Largest relative deviation from Bradley's load at so many jump-on separations, mu = 1 to 6."""
     ratios = []
     for mu in TABORS:
         event = f.paths[mu].events.get("jump_on")
         approach = times * event.approach if event else -5.0
-        ratios.append(abs(f.load(mu, approach, "separated") / float(closed_forms.bradley_load(approach)) - 1))
+        load = f.state(mu, "load", approach=approach, branch="separated")
+        ratios.append(abs(load / float(closed_forms.bradley_load(approach)) - 1))
     return most(ratios)
 
 
@@ -221,10 +196,7 @@ def compression_exponent(f: Facts, tabor: float) -> Estimate:
 
     As alpha* = alpha0 + (W/k)^(1/n), successive differences grow by 2^(1/n).
     """
-    states = f.paths[tabor].at(load=np.array([5.0, 10.0, 20.0]), branch="contact")
-    first, second = steps(
-        [Estimate(*map(float, pair)) for pair in zip(states.approach, states.approach_error, strict=True)]
-    )
+    first, second = steps([f.state(tabor, "approach", load=W, branch="contact") for W in (5.0, 10.0, 20.0)])
     return spread(lambda ratio: np.log(2) / np.log(abs(ratio)), second / first)
 
 
@@ -236,42 +208,11 @@ def nearest_theory(f: Facts, tabor: float) -> Estimate:
     return Estimate(min(abs(float(W) / 20 - 1) for W in theories), float(state.load_error) / 20)
 
 
-def load_at_touch_over_jkr(f: Facts, tabor: float) -> Estimate:
-    """Load at zero approach over JKR's."""
-    return f.load(tabor, 0.0, "contact") / closed_forms.jkr_zero_approach(1.0).load
-
-
 def crossings_of_jkr(f: Facts, tabor: float) -> Estimate:
     """How often the curve crosses JKR's, both as polygons."""
     path, radius = f.paths[tabor].resampled(400), np.linspace(1e-4, 4, 4000)
     jkr = closed_forms.jkr_approach(radius, tabor), closed_forms.jkr_load(radius)
     return count(len(crossings(np.column_stack([path.approach, path.load]), np.column_stack(jkr))))
-
-
-def dmt_spread(f: Facts, what: str) -> Estimate:
-    """Spread of the DMT loads from mu = 0.1 to 0.5 at alpha*/mu = 1 over that of the computed; its size or sign."""
-    theirs = [exact(float(dmt.force_load(mu, mu))) for mu in (0.1, 0.5)]
-    ratio = exact((theirs[1] - theirs[0]).value) / (f.load(0.5, 0.5) - f.load(0.1, 0.1))
-    return abs(ratio) if what == "size" else ratio
-
-
-def off_dmt_m(f: Facts, tabor: float, approach: float) -> Estimate:
-    """Relative deviation of the load of DMT-M at an approach in eps."""
-    return abs(exact(float(dmt.maugis_load(approach, tabor))) / f.load(tabor, approach) - 1)
-
-
-def nearer_bradley_than_dmt(f: Facts, tabor: float, approach: float) -> Estimate:
-    """Distance of the load from Bradley's over that from the DMT theory's, at an approach in eps."""
-    load, bradley = f.load(tabor, approach), float(closed_forms.bradley_load(approach))
-    return abs(load - bradley) / abs(load - float(dmt.force_load(approach, tabor)))
-
-
-# Contact radius and pressure
-
-
-def radius_over_jkr(f: Facts, tabor: float) -> Estimate:
-    """Contact radius at zero load over JKR's."""
-    return f.number(tabor, "zero_load", "contact_radius") / JKR_AT_REST.contact_radius
 
 
 def radius_below_nose(f: Facts, tabor: float) -> Estimate:
@@ -295,121 +236,34 @@ def central_pressure_over_jkr(f: Facts, tabor: float) -> Estimate:
     return P / float(2 * a / np.pi - np.sqrt(2 / (np.pi * a)))
 
 
-# Printed numbers
-
-
-def asymptote(f: Facts, index: float) -> Estimate:
-    """A constant of f = a alpha*^(3/2) - b alpha*^2, fitted."""
-    return f.tables.asymptote[int(index)]
-
-
-def _entries(f: Facts, start: str, end: str = "") -> list[Printed]:
-    """Entries of Table 2 whose row begins and ends so."""
-    return [p for p in f.tables.table_2 if p.row.startswith(start) and p.row.endswith(end)]
-
-
-def worst_digit(f: Facts, table: str, end: str = "") -> Estimate:
-    """Largest deviation from a table, or from rows that end so, in units of the third decimal."""
-    entries: list[Printed] = getattr(f.tables, table)
-    return most([abs(p.computed - float(p.printed)) * 1e3 for p in entries if p.row.endswith(end)])
-
-
-def right_digits(f: Facts, jump: str) -> Estimate:
-    """How many numbers of Table 2 at a jump, but for Attard & Parker's row, are right to the last digit."""
-    return count(sum(p.note == LAST_DIGIT for p in _entries(f, jump) if not p.row.endswith("_AP")))
-
-
-def earlier(f: Facts, jump: str, side: float) -> Estimate:
-    """How many printed approaches are met before the fold: from afar with side 1, from contact with -1."""
-    return count(
-        sum(side * (float(p.printed) - p.computed.value) > 0 for p in _entries(f, f"{jump} minus_alpha_star", "star"))
-    )
-
-
-def load_worse_than_place(f: Facts) -> Estimate:
-    """Largest relative deviation of a printed load from ours over that of a printed approach."""
-    load, place = (
-        max((abs(p.deviation) for p in _entries(f, "", end)), default=np.nan)
-        for end in ("minus_W_over_R_dgamma", "minus_alpha_star")
-    )
-    return exact(load / place)
-
-
-# Criteria
-
-
-def gap(f: Facts, tabor: float, event: str = "jump_on") -> Estimate:
+def h0(f: Facts, tabor: float, event: str = "jump_on") -> Estimate:
     """Central h at a jump, in eps."""
     return f.number(tabor, event, "central_gap") + 1
 
 
-def power_of_gap(f: Facts, lower: float, upper: float) -> Estimate:
-    """Power of mu of H0 + 1 at the jump on, between two Tabor parameters."""
-    return spread(lambda a, b: np.log(b / a) / np.log(upper / lower), gap(f, lower), gap(f, upper))
+def criterion(approach: Estimate, central_gap: Estimate) -> Estimate:
+    """Value of w sigma'/sigma at the centre, (4.3), of a state, with the error that its numbers leave."""
+    return spread(lambda a, h: float(criteria.fundamental_criterion(a, h)), approach, central_gap)
 
 
-def criterion(f: Facts, tabor: float, event: str) -> Estimate:
-    """Value of w sigma'/sigma at the centre, (4.3), with the error that its approach and gap leave."""
-    ends = (f.number(tabor, event, name) for name in ("approach", "central_gap"))
-    return spread(lambda a, h: float(criteria.fundamental_criterion(a, h)), *ends)
+def criterion_at(f: Facts, tabor: float, event: str = "jump_on") -> Estimate:
+    """The same at a jump."""
+    return criterion(f.number(tabor, event, "approach"), f.number(tabor, event, "central_gap"))
 
 
-def largest_criterion(f: Facts, divisor: float) -> Estimate:
-    """Largest size of (4.3) at the jump on, mu = 1 to 6, over a divisor."""
-    return most([abs(criterion(f, mu, "jump_on")) for mu in TABORS]) / divisor
-
-
-def criterion_before_jump(f: Facts) -> Estimate:
-    """Half the size of (4.3) in the state before the jump of Fig. 4."""
-    state = f.paths[5.0].at(central_gap=float(PROFILE_CHECKS[0][0]))
-    value = float(criteria.fundamental_criterion(state.approach, state.central_gap))
-    return Estimate(abs(value) / 2, float(state.approach_error + state.central_gap_error))
-
-
-def criterion_has_value(f: Facts, equation: float) -> Estimate:
-    """At how many jumps on of Table 2 equation (4.2), for alpha* > 0, or (4.3) has a value."""
-    if equation == 4.2:
-        return count(sum(f.number(mu, "jump_on", "approach").value > 0 for mu in TABORS))
-    return count(sum(bool(np.isfinite(criterion(f, mu, "jump_on").value)) for mu in TABORS))
-
-
-def closed_criterion(f: Facts, name: str, tabor: float, event: str) -> Estimate:
+def closed_criterion(f: Facts, k: float, tabor: float, event: str = "jump_on") -> Estimate:
     """(H0 + 1)^(7/2) by a closed criterion over the true one."""
-    k = float(getattr(criteria, name))
-    return spread(lambda h: k * RIGID * tabor**1.5 / h**3.5, gap(f, tabor, event))
+    return spread(lambda h: k * RIGID * tabor**1.5 / h**3.5, h0(f, tabor, event))
 
 
-def refitted(f: Facts, name: str, index: float) -> Estimate:
-    """A refitted constant with its standard error; underscores stand for blanks in the name of its criterion."""
-    found = [c.constants[int(index)][2] for c in f.criteria.criteria if c.name == name.replace("_", " ")]
-    return found[0] if found else UNKNOWN
+def refitted(f: Facts, name: str, index: int) -> Estimate:
+    """A refitted constant of a criterion, with its standard error."""
+    return next(c.constants[index][2] for c in f.criteria if c.name == name)
 
 
-def fitted_gap(f: Facts, tabor: float, event: str) -> Estimate:
+def fit_over_gap(f: Facts, tabor: float, event: str = "jump_on") -> Estimate:
     """Gap h by (4.5) over the true one."""
-    return exact(float(criteria.fitted_gap(tabor)) + 1) / gap(f, tabor, event)
-
-
-def worst_fit(f: Facts) -> Estimate:
-    """Largest relative deviation of h by (4.5) at the jump on, mu = 1 to 6."""
-    return most([abs(fitted_gap(f, mu, "jump_on") - 1) for mu in TABORS])
-
-
-def repulsion(f: Facts, tabor: float) -> Estimate:
-    """Part of (H0 + 1)^(7/2) by the term of repulsion in (4.5)."""
-    return spread(lambda h: criteria.FIT_REPULSION / h**6, gap(f, tabor))
-
-
-def fitted_approach(f: Facts, tabor: float, event: str) -> Estimate:
-    """|alpha*| + 1 by the fit of Appendix C over the true one."""
-    return exact(1 - float(criteria.fitted_approach(tabor))) / (f.number(tabor, event, "approach") * -1 + 1)
-
-
-def attard_parker_loads(f: Facts) -> Estimate:
-    """Largest relative deviation of Attard & Parker's loads from those of the true jumps, mu = 1 to 6."""
-    gaps = (float(criteria.closed_gap(mu, criteria.ATTARD_PARKER)) for mu in TABORS)
-    theirs = [exact(float(criteria.undeformed_load(h))) for h in gaps]
-    return most([abs(w / f.number(mu, "jump_on", "load") - 1) for w, mu in zip(theirs, TABORS, strict=True)])
+    return exact(float(criteria.fitted_gap(tabor)) + 1) / h0(f, tabor, event)
 
 
 def displacement(f: Facts, tabor: float) -> Estimate:
@@ -417,62 +271,11 @@ def displacement(f: Facts, tabor: float) -> Estimate:
     return (f.number(tabor, "jump_on", "approach") + f.number(tabor, "jump_on", "central_gap")) * -1
 
 
-def gap_over_displacement(f: Facts, *tabors: float) -> Estimate:
-    """Largest h0/w(0) at the jump on, of some Tabor parameters."""
-    return most([gap(f, mu) / displacement(f, mu) for mu in tabors])
-
-
 def displacement_over_rigid(f: Facts, tabor: float) -> Estimate:
     """Central displacement at the jump on over that by the attraction across undeformed surfaces."""
-    return displacement(f, tabor) / spread(lambda h: RIGID * tabor**1.5 / h**2.5, gap(f, tabor))
+    return displacement(f, tabor) / spread(lambda h: RIGID * tabor**1.5 / h**2.5, h0(f, tabor))
 
 
-# Numerics of 1997
-
-
-def _converged(f: Facts, c: float) -> set[float]:
+def converged(f: Facts, c: float) -> set[float]:
     """Tabor parameters at which simple relaxation with a factor c converged."""
     return {a.tabor for a in f.relaxations if a.method.endswith(f"c = {c:g}") and a.sweeps}
-
-
-def failures_of_simple(f: Facts, c: float, limit: float) -> Estimate:
-    """At how many Tabor parameters below a limit simple relaxation failed."""
-    tried = {a.tabor for a in f.relaxations if a.tabor < limit}
-    return count(len(tried - _converged(f, c))) if tried else UNKNOWN
-
-
-def successes_of_simple(f: Facts, c: float, limit: float) -> Estimate:
-    """At how many Tabor parameters from a limit on simple relaxation converged."""
-    return count(sum(mu >= limit for mu in _converged(f, c)))
-
-
-def needed_small_steps(f: Facts, slow: float, fast: float) -> Estimate:
-    """At how many Tabor parameters simple relaxation converged with the smaller of two factors only."""
-    return count(len(_converged(f, slow) - _converged(f, fast)))
-
-
-def most_sweeps(f: Facts) -> Estimate:
-    """Most sweeps that Greenwood's own iteration took where it converged."""
-    return exact(max((a.sweeps for a in f.relaxations if a.sweeps and "Greenwood" in a.method), default=np.nan))
-
-
-def coarse_ratio(f: Facts, tabor: float, spacing: float, other: float, wide: float) -> Estimate:
-    """Ratio of two pull-off forces on uniform triangles."""
-    return exact(f.coarse.get((tabor, spacing), np.nan) / f.coarse.get((other, wide), np.nan))
-
-
-def coarse_over_pi(f: Facts, tabor: float, spacing: float) -> Estimate:
-    """Pull-off force on uniform triangles over pi."""
-    return exact(f.coarse.get((tabor, spacing), np.nan) / np.pi)
-
-
-def least_coarse_force(f: Facts) -> Estimate:
-    """Least pull-off force over pi on the widest triangles of Fig. 7, before it rises."""
-    rises = f.rises[max(f.rises)].ripples if f.rises else ()
-    return exact(min((-r.pull_off / np.pi for r in rises), default=np.nan))
-
-
-def singular_point_omitted(f: Facts) -> Estimate:
-    """Largest ratio of the force with the singular point left out to that with it, on the same nodes."""
-    pairs = zip(*(rise.ripples for rise in f.omitted), strict=False)
-    return most([exact(without.pull_off / whole.pull_off) for without, whole in pairs])

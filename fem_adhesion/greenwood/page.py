@@ -12,21 +12,21 @@ from markupsafe import Markup
 from fem_adhesion.common.numbers import digits, joined, plus_minus, told
 from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
 from fem_adhesion.common.style import Picture, captions, draw, shown
-from fem_adhesion.greenwood import beyond, claims, figures
-from fem_adhesion.greenwood.criteria import JumpOn
+from fem_adhesion.greenwood import claims
 from fem_adhesion.greenwood.drawing import Plot, drawn, elements_beside, table
-from fem_adhesion.greenwood.figures import Made
+from fem_adhesion.greenwood.facts import PullOff
+from fem_adhesion.greenwood.figures import figures
 from fem_adhesion.greenwood.numerics_1997 import NODES, Attempt
-from fem_adhesion.greenwood.study import Greenwood1997, PullOff
+from fem_adhesion.greenwood.study import Greenwood1997
 from fem_adhesion.greenwood.tables import Printed
 from halfspace.equilibrium.devices import Cycle
+from halfspace.equilibrium.events import Event
+from halfspace.theories.criteria import fundamental_criterion
 from halfspace.values import Estimate
 
 PAPER = "J. A. Greenwood, Adhesion of elastic spheres, Proc. R. Soc. Lond. A 453 (1997) 1277-1297"
 DOI = "10.1098/rspa.1997.0070"
-FIGURES: dict[str, tuple[str, Made]] = {
-    f"fig_{number}": (f"Fig. {number}: {title}", made) for number, (title, made) in figures.FIGURES.items()
-} | {f"beyond_{name}": (f"Beyond the paper: {title}", made) for name, (title, made) in beyond.FIGURES.items()}
+FIGURES = figures()
 """Title of each figure, and what makes its plot, by the name of its files: those of the paper, and further ones."""
 
 
@@ -39,7 +39,7 @@ def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = 
     plots = {stem: made(study) for stem, (_, made) in FIGURES.items()}
     pictures = [_picture(study, stem, plot) for stem, plot in plots.items()]
     draw(pictures, study, directory, begin)
-    written, held = list(tables(study)), claims.tables(study.claims)
+    written, held = list(tables(study)), claims.tables(study.claims, study)
     data = [table(stem, FIGURES[stem][0], plot) for stem, plot in plots.items()]
     write_csv([*held, *written, *data, captions(pictures, study)], directory)
     sections = [
@@ -53,7 +53,7 @@ def write(study: Greenwood1997, directory: Path, begin: Callable[[str], None] = 
 
 def _picture(study: Greenwood1997, stem: str, plot: Plot) -> Picture[Greenwood1997]:
     """A plot with what is to be seen: its own sentences, how near finite elements are, and the claims it shows."""
-    see = [*plot.see, elements_beside(plot.lines), claims.caption(stem, study.claims.judged)]
+    see = [*plot.see, elements_beside(plot.lines), claims.caption(stem, study.claims)]
     return Picture(stem, FIGURES[stem][0], lambda _: drawn(plot), lambda _: see)
 
 
@@ -201,29 +201,27 @@ def _rises(study: Greenwood1997) -> Table:
 
 def _true_jumps(study: Greenwood1997) -> Table:
     """True jumps beside what the criteria predict for them."""
-    criteria = [c for c in study.criteria.criteria if c.predict]
-    usable = {f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps": c.predict for c in criteria if c.predict}
-    columns: Columns[JumpOn] = {
-        "mu": lambda jump: f"{jump.tabor:.6g}",
-        ("alpha*, eps", "error of alpha*, eps"): lambda jump: _cells(jump.approach),
-        ("H0, eps", "error of H0, eps"): lambda jump: _cells(jump.central_gap),
-        "b sigma'/sigma": lambda jump: f"{jump.fundamental:.5f}",
-        tuple(usable): lambda jump: [f"{predict(np.array(jump.tabor)):.5f}" for predict in usable.values()],
+    usable = {f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps": c.predict for c in study.criteria if c.predict}
+    columns: Columns[tuple[float, Event]] = {
+        "mu": lambda jump: f"{jump[0]:.6g}",
+        ("alpha*, eps", "error of alpha*, eps"): lambda jump: _cells(jump[1].estimate("approach")),
+        ("H0, eps", "error of H0, eps"): lambda jump: _cells(jump[1].estimate("central_gap")),
+        "b sigma'/sigma": lambda jump: f"{fundamental_criterion(jump[1].approach, jump[1].central_gap):.5f}",
+        tuple(usable): lambda jump: [f"{predict(np.array(jump[0])):.5f}" for predict in usable.values()],
     }
     see = "The fundamental criterion (4.3) expects b sigma'/sigma = -1 at the jump."
     title = "True jumps on and the criteria's predictions"
-    return Table.of("criteria", title, see, study.criteria.jumps, columns)
+    return Table.of("criteria", title, see, study.jumps_on.items(), columns)
 
 
 def _constants(study: Greenwood1997) -> Table:
-    criteria = study.criteria
     columns = ("criterion", "formula", "constant", "printed", "refitted", "standard error", "scatter of ln(left side)")
     rows = [
         (c.name, c.formula, name, "" if printed is None else f"{printed:.6g}", *_cells(fitted), f"{c.scatter:.1e}")
-        for c in criteria.criteria
+        for c in study.criteria
         for name, printed, fitted in c.constants
     ]
-    span = f" for mu = {criteria.tabor[0]:g} to {criteria.tabor[-1]:g}" if criteria.jumps else ""
+    span = f" for mu = {min(study.jumps_on):g} to {max(study.jumps_on):g}" if study.jumps_on else ""
     title = f"Constants of the criteria, refitted{span}"
     return Table("criteria_constants", title, "Least squares of logarithms.", columns, rows)
 

@@ -15,10 +15,11 @@ import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.common.fold_birth import FIRST, critical_stiffness, tabor_of
 from fem_adhesion.fields import gaps_at
-from fem_adhesion.greenwood import claims, facts, tables
-from fem_adhesion.greenwood.claims import Claims
-from fem_adhesion.greenwood.criteria import CriteriaStudy, fit, jump_on
-from fem_adhesion.greenwood.numerics_1997 import Attempt, Ripple, Rise, attempts, false_rise, ripple
+from fem_adhesion.greenwood import facts, tables
+from fem_adhesion.greenwood.claims import CLAIMS, Judged, judge
+from fem_adhesion.greenwood.criteria import fit
+from fem_adhesion.greenwood.facts import Facts, PullOff
+from fem_adhesion.greenwood.numerics_1997 import Ripple, attempts, false_rise, ripple
 from fem_adhesion.greenwood.settings import FULL, QUICK, Settings
 from fem_adhesion.greenwood.tables import Tables
 from fem_adhesion.scene import Scene
@@ -40,14 +41,10 @@ PROFILE_OFFSETS = np.concatenate([sign * np.geomspace(1e-3, 0.3, 40) for sign in
 class DrawnState(Valued):
     """Shape and pressure of one state.
 
-    Central gap and approach in eps, load in R dgamma, contact radius in beta, nan where the central gap exceeds 3^(1/6)
-    eps; radii in beta, gap in eps and pressure in dgamma/(mu eps) with their errors, (n,) arrays.
+    Central gap in eps; radii in beta, gap in eps and pressure in dgamma/(mu eps) with their errors, (n,) arrays.
     """
 
     central_gap: float
-    approach: float
-    load: float
-    contact_radius: float
     radii: Array
     gap: Array
     pressure: Array
@@ -55,32 +52,17 @@ class DrawnState(Valued):
     pressure_error: Array
 
 
-@dataclass(frozen=True)
-class PullOff:
-    """Pull-off load, in R dgamma; finite elements where they were asked."""
-
-    tabor: float
-    half_space: Estimate
-    finite_element: Estimate | None = None
-
-    @property
-    def agree(self) -> bool:
-        """Whether both solvers agree within their errors; not so without finite elements."""
-        return self.finite_element is not None and self.half_space.agrees(self.finite_element)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
-class Greenwood1997(Valued):
-    """What the figures and tables show.
+class Greenwood1997(Facts):
+    """What claims are measured on, and what else the figures and tables show.
 
     Curves on the half-space and by finite elements are by Tabor parameter, and `specified` states of prescribed central
     gap; `jumps` are those at mu = 1, by the letters of their ends in Fig. 2a, primed in an apparatus; `folds` all folds
     at mu = 5, in order. There are the `profiles` of Fig. 4, before the jump and after, and `more_profiles` in contact
-    and on the way to it. Pull-offs are by rising Tabor parameter, ripples curves at mu = 2 on grids that are too
-    coarse, and rises, by spacing, the false ones of the pull-off force. Relaxations are the iterations of 1997 on 200
-    nodes, cycles those in apparatus of falling stiffness at mu = 2, fixed grips first. The `border` (n, 2) has Tabor
-    parameters below the critical one, where the curve first has a vertical tangent, and the stiffness in R dgamma/eps
-    below which they jump. Claims are those of the paper, each with its verdict. Seconds are those of the computation.
+    and on the way to it. Ripples are curves at mu = 2 on grids that are too coarse, cycles those in apparatus of
+    falling stiffness at mu = 2, fixed grips first. The `border` (n, 2) has Tabor parameters below the critical one, and
+    the stiffness in R dgamma/eps below which they jump. Claims are those of the paper, each with its verdict. Seconds
+    are those of the computation.
     """
 
     settings: Settings
@@ -91,16 +73,10 @@ class Greenwood1997(Valued):
     folds: tuple[Event, ...]
     profiles: tuple[DrawnState, ...]
     more_profiles: tuple[DrawnState, ...]
-    pull_offs: tuple[PullOff, ...]
     ripples: tuple[Ripple, ...]
-    rises: Mapping[float, Rise]
-    criteria: CriteriaStudy
-    tables: Tables
-    relaxations: tuple[Attempt, ...]
     cycles: tuple[Cycle, ...]
     border: Array
-    critical_tabor: Estimate
-    claims: Claims
+    claims: tuple[Judged, ...]
     seconds: float
 
     @property
@@ -145,11 +121,11 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     begin("curves")
     traced = {mu: halfspace.trace(mu, rtol=given.rtol, to_load=given.loads.get(mu, COMPRESSION)) for mu in given.drawn}
     drawn = {mu: path.resampled(given.points) for mu, path in traced.items()}
-    specified = {mu: traced[mu].at(central_gap=gaps) for mu, gaps in given.specified.items()}
     begin("finite elements")
     elements = {mu: _by_elements(mu) for mu in given.elements}
     begin("criteria")
-    criteria = fit(jump_on(mu) for mu in given.jumps)
+    jumps_on = {mu: halfspace.trace(mu, rtol=1e-6).events["jump_on"] for mu in given.jumps}
+    gaps, approaches = np.array([(jump.central_gap, jump.approach) for jump in jumps_on.values()]).T
     begin("pull-off")
     pull_offs = tuple(_pull_off(mu, given) for mu in sorted({*given.pull_offs, *given.element_pull_offs}))
     begin("false rise")
@@ -169,14 +145,33 @@ def compute(*, quick: bool = False, begin: Callable[[str], None] = lambda _: Non
     begin("critical Tabor parameter")
     critical_tabor = Estimate.refined(*(tabor_of(FIRST, rtol=rtol) for rtol in (1e-6, 1e-7)))
     begin("claims")
-    forces = {p.tabor: p.half_space for p in pull_offs}
-    known = facts.gathered(traced | paths, given, criteria, forces, printed, relaxations, rises, critical_tabor)
-    examined = claims.examined(known)
-    folds = tuple(event for name, event in traced[given.winding_at].events.items() if is_fold(name))
-    printed_gaps = [float(gap) for gap, _ in tables.PROFILE_CHECKS]
-    states = _jumps(given), folds, _profiles(given, printed_gaps), _profiles(given, given.profile_gaps)
-    parts = drawn, elements, specified, *states, pull_offs, ripples, rises, criteria, printed, relaxations
-    return Greenwood1997(given, *parts, cycles, border, critical_tabor, examined, time.perf_counter() - began)
+    known = facts.gathered(
+        traced | paths,
+        given,
+        jumps_on=jumps_on,
+        criteria=fit(np.array(given.jumps), gaps, approaches),
+        pull_offs=pull_offs,
+        tables=printed,
+        relaxations=relaxations,
+        rises=rises,
+        critical_tabor=critical_tabor,
+    )
+    return Greenwood1997(
+        **vars(known),
+        settings=given,
+        curves=drawn,
+        elements=elements,
+        specified={mu: traced[mu].at(central_gap=gaps) for mu, gaps in given.specified.items()},
+        jumps=_jumps(given),
+        folds=tuple(event for name, event in traced[given.winding_at].events.items() if is_fold(name)),
+        profiles=_profiles(given, [float(gap) for gap, _ in tables.PROFILE_CHECKS]),
+        more_profiles=_profiles(given, given.profile_gaps),
+        ripples=ripples,
+        cycles=cycles,
+        border=border,
+        claims=tuple(judge(claim, known) for claim in CLAIMS),
+        seconds=time.perf_counter() - began,
+    )
 
 
 def _by_elements(tabor: float) -> EquilibriumPath:
@@ -212,6 +207,5 @@ def _profile(coarse: Located, fine: Located) -> DrawnState:
     gap, coarse_gap = (gaps_at(state, radii) for state in (fine, coarse))
     tabor = fine.problem.interface.tabor
     pressure, coarse_pressure = (LENNARD_JONES.pressure(values, tabor) for values in (gap, coarse_gap))
-    approach, load, central_gap, radius = fine.point.observables
     errors = np.abs(gap - coarse_gap), np.abs(pressure - coarse_pressure)
-    return DrawnState(central_gap, approach, load, radius, radii, gap, pressure, *errors)
+    return DrawnState(fine.point.observables[CENTRAL_GAP], radii, gap, pressure, *errors)

@@ -20,7 +20,7 @@ from fem_adhesion.greenwood import facts, numerics_1997, settings
 from fem_adhesion.greenwood import page as greenwood_page
 from fem_adhesion.greenwood import study as greenwood
 from fem_adhesion.greenwood import tables as greenwood_tables
-from fem_adhesion.greenwood.criteria import CriteriaStudy, JumpOn, fit
+from fem_adhesion.greenwood.criteria import fit
 from fem_adhesion.greenwood.drawing import ELEMENTS, drawn, elements_beside
 from halfspace.errors import NotConverged
 from halfspace.theories import criteria, dmt
@@ -93,7 +93,7 @@ def test_the_critical_tabor_parameter_to_six_digits(study):
 
 
 def test_refitted_constants(study):
-    fitted = {c.name: c for c in study.criteria.criteria}
+    fitted = {c.name: c for c in study.criteria}
     values = [e.value for c in fitted.values() for _, _, e in c.constants]
     errors = [e.error for c in fitted.values() for _, _, e in c.constants]
     assert np.all(np.isfinite(values))
@@ -108,8 +108,7 @@ def test_refitted_constants(study):
 def test_a_fit_returns_the_constants_that_made_the_jumps():
     tabor = np.geomspace(1, 100, 9)
     gaps, approaches = criteria.fitted_gap(tabor), criteria.fitted_approach(tabor)
-    made = fit(JumpOn(m, Estimate(a, 0.0), Estimate(g, 0.0)) for m, a, g in zip(tabor, approaches, gaps, strict=True))
-    fitted = {c.name: c for c in made.criteria}
+    fitted = {c.name: c for c in fit(tabor, gaps, approaches)}
     assert [e.value for _, _, e in fitted["fit (4.5)"].constants] == pytest.approx([6.233, 1.6])
     assert fitted["fit of App. C"].constants[0][2].value == pytest.approx(3 * np.pi**2)
     assert fitted["fit of App. C"].scatter < 1e-12
@@ -121,9 +120,8 @@ def test_errors_of_refitted_constants_are_the_spread_of_fits():
 
     def refitted():
         y, z = (np.exp(random.normal(0, 1e-3, tabor.size)) for _ in range(2))
-        scattered = zip(tabor, 1 - (1 - approaches) * z, (gaps + 1) * y - 1, strict=True)
-        made = fit(JumpOn(mu, Estimate(a, 0.0), Estimate(g, 0.0)) for mu, a, g in scattered)
-        return [(e.value, e.error) for c in made.criteria for _, _, e in c.constants]
+        made = fit(tabor, (gaps + 1) * y - 1, 1 - (1 - approaches) * z)
+        return [(e.value, e.error) for c in made for _, _, e in c.constants]
 
     values, errors = np.moveaxis([refitted() for _ in range(400)], -1, 0)
     spread = np.std(values, axis=0)
@@ -400,10 +398,11 @@ def test_crossings_of_two_lines_are_all_found():
 
 
 def test_criteria_grids_and_border_stand_in_their_files(study, lines_in, figure):
-    jumps = study.criteria
-    for stem, values in (("beyond_criteria", jumps.central_gap + 1), ("beyond_criteria_approach", 1 - jumps.approach)):
+    jumps, tabor = study.jumps_on.values(), np.array([*study.jumps_on])
+    gaps, approaches = [jump.central_gap + 1 for jump in jumps], [1 - jump.approach for jump in jumps]
+    for stem, values in (("beyond_criteria", gaps), ("beyond_criteria_approach", approaches)):
         _, lines = lines_in(stem)
-        expected = np.column_stack([jumps.tabor, values / jumps.tabor ** (3 / 7)])
+        expected = np.column_stack([tabor, values / tabor ** (3 / 7)])
         np.testing.assert_allclose(lines["true jumps", None], expected, rtol=1e-9)
     _, lines = lines_in("beyond_criteria")
     mu, scaled = lines["Attard & Parker", None].T
@@ -487,14 +486,15 @@ def test_cells_of_pull_offs_and_coarse_grids(study, rows):
 
 
 def test_cells_of_criteria_and_relaxations(study, rows):
-    for i, (row, jump) in enumerate(zip(rows("criteria"), study.criteria.jumps, strict=True)):
-        assert_row(row, {"mu": jump.tabor, "b sigma'/sigma": jump.fundamental})
-        for name, estimate in (("alpha*", jump.approach), ("H0", jump.central_gap)):
+    for row, (mu, jump) in zip(rows("criteria"), study.jumps_on.items(), strict=True):
+        fundamental = criteria.fundamental_criterion(jump.approach, jump.central_gap)
+        assert_row(row, {"mu": mu, "b sigma'/sigma": fundamental})
+        for name, quantity in (("alpha*", "approach"), ("H0", "central_gap")):
+            estimate = jump.estimate(quantity)
             assert_row(row, {f"{name}, eps": estimate.value, f"error of {name}, eps": estimate.error})
-        for c in (c for c in study.criteria.criteria if c.predict):
-            name = f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps"
-            assert_row(row, {name: c.predict(study.criteria.tabor)[i]})
-    constants = [(c, *constant) for c in study.criteria.criteria for constant in c.constants]
+        for c in (c for c in study.criteria if c.predict):
+            assert_row(row, {f"{'alpha*' if c.of_approach else 'H0'} by {c.name}, eps": c.predict(np.array(mu))})
+    constants = [(c, *constant) for c in study.criteria for constant in c.constants]
     for row, (c, name, printed, fitted) in zip(rows("criteria_constants"), constants, strict=True):
         assert (row["criterion"], row["formula"], row["constant"]) == (c.name, c.formula, name)
         assert row["printed"] == "" if printed is None else float(row["printed"]) == pytest.approx(printed, rel=1e-5)
@@ -522,7 +522,7 @@ def test_a_caption_tells_what_does_not_hold(study, report, rows):
         title, sentences = greenwood_page.FIGURES[stem][0], caption.removeprefix(greenwood_page.FIGURES[stem][0])
         assert caption.startswith(f"{title}. ")
         assert symbols(sentences.removeprefix(". ")) in page
-        on_it = [c for c in study.claims.judged if stem in c.claim.shown.split(", ")]
+        on_it = [c for c in study.claims if stem in c.claim.shown.split(", ")]
         failed = [c for c in on_it if c.verdict != "holds"]
         assert (f"{len(on_it) - len(failed)} of {len(on_it)} claim" in caption) == bool(on_it)
         assert all(f"{c.claim.words.rstrip('.')}: {c.verdict}, {c.how}." in caption for c in failed)
@@ -572,10 +572,10 @@ def with_elements(study, factor):
 
 def test_what_was_not_found_is_a_trouble_and_the_page_is_made(study, tmp_path, monkeypatch):
     monkeypatch.setattr(style, "DOTS_PER_INCH", 30)  # few pixels are drawn faster
-    nothing = {name: {} for name in ("jumps", "elements", "rises")} | dict.fromkeys(
-        ("folds", "profiles", "more_profiles", "pull_offs", "ripples", "relaxations", "cycles"), ()
+    nothing = {name: {} for name in ("jumps", "elements", "rises", "jumps_on")} | dict.fromkeys(
+        ("folds", "profiles", "more_profiles", "pull_offs", "ripples", "relaxations", "cycles", "criteria"), ()
     )
-    bare = dataclasses.replace(study, **nothing, criteria=CriteriaStudy((), ()), border=np.empty((0, 2)))
+    bare = dataclasses.replace(study, **nothing, border=np.empty((0, 2)))
     greenwood_page.write(bare, tmp_path)
     assert (tmp_path / "index.html").stat().st_size > 10_000
     assert list(bare.troubles()) == ["no jumps were found", "no cycles were found"]
