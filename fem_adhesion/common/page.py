@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import csv
 import re
+import tomllib
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar
@@ -142,6 +144,21 @@ def data_text(folder: str, name: str) -> str:
 def data_rows(folder: str, name: str) -> list[dict[str, str]]:
     """Rows of a table that comes with a folder, comments left out."""
     return list(csv.DictReader(line for line in data_text(folder, name).splitlines() if not line.startswith("#")))
+
+
+@cache
+def _texts(folder: str) -> Mapping[str, Mapping[str, str]]:
+    return tomllib.loads(data_text(folder, "texts.toml"))
+
+
+def said(folder: str, stem: str, what: str = "see", **numbers: Any) -> str:
+    """Text of ``data/texts.toml`` of a folder, with numbers put in."""
+    return _texts(folder)[stem].get(what, "").format(**numbers)
+
+
+def titled(folder: str, stem: str, **numbers: Any) -> tuple[str, str, str]:
+    """Stem, title and what is to be seen of a table, of which ``data/texts.toml`` of a folder has the texts."""
+    return stem, said(folder, stem, "title", **numbers), said(folder, stem, "see", **numbers)
 
 
 def symbols(text: str) -> str:

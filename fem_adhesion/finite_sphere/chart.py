@@ -15,11 +15,14 @@ from matplotlib.patches import Rectangle
 
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import plus_minus
+from fem_adhesion.common.page import said
 from fem_adhesion.common.style import Picture
+from fem_adhesion.finite_sphere.cases import CRITICAL, Record
 from fem_adhesion.finite_sphere.plane import Field, contour, field_of, materials
-from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results, reference_poisson, samples
+from fem_adhesion.finite_sphere.study import Study
+from fem_adhesion.finite_sphere.table import DeviationRow, borders, samples
 from halfspace.limits import SMALLEST_SPHERE
-from halfspace.values import Array
+from halfspace.values import Array, Estimate
 
 LEFT, RIGHT = 0.028, 25.0  # Tabor parameters of the chart's edges
 BOTTOM, TOP = 4.0, 2e5  # R/eps of its edges
@@ -36,6 +39,7 @@ UNSOLVED: Mapping[str, tuple[str, str]] = {  # by how a contact ended: hatching,
     "left out": ("|||", rf"not tried: $R < {SMALLEST_SPHERE**0.5:g}\,\beta$"),
     "died": ("xxx", "not solved: its process died"),
 }
+ENDED = {"solved", "absent", ""}  # endings that are not hatched
 MARKERS: Mapping[str, tuple[str, str]] = {
     "silica": ("o", style.BLUE),
     "gold": ("s", style.ORANGE),
@@ -46,7 +50,7 @@ MARKERS: Mapping[str, tuple[str, str]] = {
 }
 
 
-def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence[Border], heading: str = "") -> Figure:
+def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence[Record], heading: str = "") -> Figure:
     """Draw the contours of 0.1, 1 and 10 % for the pull-off force and for the jump-on approach, side by side.
 
     `borders` are where the jumps begin, `heading` what to know of the whole, as that a part was not solved.
@@ -62,7 +66,7 @@ def chart(rows: Sequence[DeviationRow], poisson: float | None, borders: Sequence
         style.plain_ticks(axes.xaxis, (0.1, 0.3, 1, 3, 10))
         axes.set(xlabel=r"Tabor parameter $\mu$", ylabel=r"radius over spacing $R/\epsilon$", axisbelow=True)
         axes.grid(True, color="0.9", linewidth=0.6)
-    _no_jump(panels[1], [border for border in borders if border.poisson == poisson])
+    _no_jump(panels[1], _begun(borders, poisson))
     if heading:
         figure.suptitle(heading, fontsize=10.5, color="0.25")
     style.legend_below(figure, panels, columns=5)
@@ -90,7 +94,7 @@ def _contours(axes: Any, field: Field) -> None:
 def _unsolved(axes: Any, field: Field) -> None:
     """Hatch what is nearest to the points that were not solved, each by how it ended."""
     across, along = (_midways(values) for values in (field.tabor, field.radius_ratio))
-    for ending in sorted(set(field.ending.flat) - {"solved", "absent", ""}):
+    for ending in sorted(set(field.ending.flat) - ENDED):
         hatch, label = UNSOLVED.get(ending, ("...", f"not solved: {ending}"))
         look: Any = {"facecolor": "white", "edgecolor": "0.45", "hatch": hatch, "linewidth": 0.0, "zorder": 1.5}
         for i, j in np.argwhere(field.ending == ending):
@@ -107,16 +111,21 @@ def _midways(values: Array) -> Array:
     )
 
 
-def _no_jump(axes: Any, borders: Sequence[Border]) -> None:
+def _begun(borders: Sequence[Record], poisson: float | None) -> list[tuple[float, Estimate]]:
+    """R/eps, ascending and infinite of the half-space, and Tabor parameters from which on they jump."""
+    found = {border.case: border.values.get(CRITICAL) for border in borders if border.case.poisson in (None, poisson)}
+    return sorted(((case.radius_ratio or np.inf), tabor) for case, tabor in found.items() if tabor)
+
+
+def _no_jump(axes: Any, begun: Sequence[tuple[float, Estimate]]) -> None:
     """Shade where the contact was found not to jump."""
-    found = [(b.tabor.value, b.radius_ratio) for b in borders if b.tabor and b.radius_ratio]
-    if not found:
+    spheres = [(tabor.value, ratio) for ratio, tabor in begun if np.isfinite(ratio)]
+    if not spheres:
         return
-    tabor, ratio = np.array(sorted(found, key=lambda point: point[1])).T
+    tabor, ratio = np.transpose(spheres)
     axes.fill_betweenx(ratio, LEFT, tabor, color="0.97", linewidth=0, zorder=-2)
     axes.plot(tabor, ratio, color="0.4", linewidth=1.2, marker="|", zorder=1.7, label="jumps begin, fixed grips")
-    at = float(tabor[-1]), float(ratio[-1])
-    style.note(axes, "no jump", at, (-6, -12), ha="right", color="0.35")
+    style.note(axes, "no jump", spheres[-1], (-6, -12), ha="right", color="0.35")
 
 
 def _materials(axes: Any) -> None:
@@ -142,47 +151,32 @@ def _materials(axes: Any) -> None:
                 axes.text(LEFT * 1.06, rho, size, color="0.25", fontsize=9.5, va="center")
 
 
-def _caption(results: Results) -> Iterator[str]:
-    """What is to be seen."""
-    poisson = reference_poisson(results.rows)
-    fields = [field_of(results.rows, quantity, poisson) for quantity in PANELS]
-    if any(np.isfinite(contour(field, level)).any() for field in fields for level in LINES):
-        yield (
-            "A line is where the half-space under a paraboloid errs by as much as it says, between the points solved; "
-            "at the points above it, it errs by less; what is below it is grey."
-        )
-    else:
-        yield f"No deviation passes {', '.join(f'{100 * level:g}' for level in LINES)} % between the points solved."
-    yield from _borders([border for border in results.borders if border.poisson in (None, poisson)])
-    if any(set(field.ending.flat) - {"solved", "absent", ""} for field in fields):
-        yield "Hatched: nearest to points that were not solved."
-    yield (
-        "Materials are typical, and placed by their own values, whatever their Poisson's ratio; sizes are radii, of "
-        "the tips at the left edge."
-    )
-
-
-def _borders(borders: Sequence[Border]) -> Iterator[str]:
-    """Where the jumps begin, on the smallest sphere, the largest, and the half-space."""
-    spheres = [(b.radius_ratio, b.tabor) for b in borders if b.tabor and b.radius_ratio]
-    flat = [b.tabor for b in borders if b.tabor and b.radius_ratio is None]
-    ends = dict(sorted(spheres, key=lambda pair: pair[0]))
-    shown = [f"{plus_minus(ends[ratio])} at R/eps = {ratio:g}" for ratio in dict.fromkeys([*ends][:1] + [*ends][-1:])]
-    shown += [f"{plus_minus(tabor)} on the half-space" for tabor in flat]
+def _caption(study: Study) -> Iterator[str]:
+    """What is to be seen; of where the jumps begin, the smallest sphere, the largest, and the half-space."""
+    fields = [field_of(study.rows, quantity, study.poisson) for quantity in PANELS]
+    crossed = any(np.isfinite(contour(field, level)).any() for field in fields for level in LINES)
+    levels = ", ".join(f"{100 * level:g}" for level in LINES)
+    yield said("finite_sphere", "chart", "lines" if crossed else "no_lines", levels=levels)
+    begun = {ratio: plus_minus(tabor) for ratio, tabor in _begun(borders(study.records), study.poisson)}
+    spheres = [ratio for ratio in begun if np.isfinite(ratio)]
+    shown = [f"{begun[ratio]} at R/eps = {ratio:g}" for ratio in dict.fromkeys(spheres[:1] + spheres[-1:])]
+    shown += [f"{begun[np.inf]} on the half-space"] * (np.inf in begun)
     if shown:
         yield f"Jumps under fixed grips begin at mu = {', '.join(shown)}."
+    if any(set(field.ending.flat) - ENDED for field in fields):
+        yield said("finite_sphere", "chart", "hatched")
+    yield said("finite_sphere", "chart", "materials")
 
 
-def _figure_chart(results: Results) -> Figure:
-    partly = results.study.quick or results.study.failed
-    heading = results.study.headline if partly else ""
-    return chart(results.rows, reference_poisson(results.rows), results.borders, heading)
+def _figure_chart(study: Study) -> Figure:
+    heading = study.headline if study.quick or study.failed else ""
+    return chart(study.rows, study.poisson, borders(study.records), heading)
 
 
-def no_sphere(results: Results) -> str:
+def no_sphere(study: Study) -> str:
     """What is lacking where no sphere was solved, or empty."""
-    solved = samples(results.rows, "all", "pull_off_load", poisson=reference_poisson(results.rows))
+    solved = samples(study.rows, "all", "pull_off_load", poisson=study.poisson)
     return "" if solved.tabor.size else "no elastic sphere was solved beside the half-space"
 
 
-CHART = Picture("chart", "Where the half-space is good enough", _figure_chart, _caption, no_sphere)
+CHART = Picture("chart", said("finite_sphere", "chart", "title"), _figure_chart, _caption, no_sphere)

@@ -14,17 +14,17 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fem_adhesion.common import style
 from fem_adhesion.common.numbers import counted, span
+from fem_adhesion.common.page import said
 from fem_adhesion.common.style import Picture
 from fem_adhesion.finite_sphere.chart import no_sphere
 from fem_adhesion.finite_sphere.fit import RIGID_PULL_OFF, SOFT_PULL_OFF, fit, leading_terms
+from fem_adhesion.finite_sphere.study import Study
 from fem_adhesion.finite_sphere.table import (
     DeviationRow,
-    Results,
     Samples,
     jumping_tabors,
     panel_tabors,
     points_by_poisson,
-    reference_poisson,
     samples,
 )
 from halfspace.errors import InputError
@@ -43,9 +43,9 @@ CAUSES: Mapping[str, tuple[str, str, str]] = {
 }
 
 
-def _draw(results: Results) -> Figure:
-    rows = results.rows
-    tabors, poisson = panel_tabors(rows), reference_poisson(rows)
+def _draw(study: Study) -> Figure:
+    rows = study.rows
+    tabors, poisson = panel_tabors(rows), study.poisson
     figure, panels = style.panels(max(len(tabors), 2), height=6.4)
     for axes, tabor in zip(panels, tabors, strict=False):
         for cause in CAUSES:
@@ -114,10 +114,10 @@ def _theories(axes: Any, tabor: float) -> None:
         axes.plot(x, abs(factor) * x**2, color="0.45", linestyle=dashes, linewidth=1.6, label=label)
 
 
-def _caption(results: Results) -> Iterator[str]:
+def _caption(study: Study) -> Iterator[str]:
     """Which part is the larger on the smallest and on the largest sphere, and what grip, strain and area change."""
-    rows, poisson = results.rows, reference_poisson(results.rows)
-    yield "Filled markers: the force is weakened; hollow: strengthened; only what exceeds its error has one."
+    rows, poisson = study.rows, study.poisson
+    yield said("finite_sphere", "causes")
     for tabor in panel_tabors(rows):
         found = {cause: _pull_off(rows, cause, poisson, tabor=tabor).significant for cause in ("profile", "body")}
         both = np.intersect1d(found["profile"].radius_ratio, found["body"].radius_ratio)
@@ -128,22 +128,13 @@ def _caption(results: Results) -> Iterator[str]:
             ends.append(f"the {most}'s at R/eps = {ratio:g} ({100 * sizes[most]:.2g} %)")
         if ends:
             yield f"At mu = {tabor:g} the larger part is {', and '.join(ends)}."
-    changes = (
-        (("grip",), "all", "The grip changes the force by {} % of the whole deviation"),
-        (("strain",), "all", "Finite strain changes the force by {} % of the whole deviation"),
-        (
-            ("reference", "normal"),
-            "all",
-            "What its traction is counted per, a model uncertainty, leaves {} % of it open",
-        ),
-        (("traction",), "profile", "The law per true area changes it by {} % of what the profile does"),
-    )
-    for causes, whole, text in changes:
+    changes = (("grip",), "all"), (("strain",), "all"), (("reference", "normal"), "all"), (("traction",), "profile")
+    for (causes, whole), name in zip(changes, ("grip", "strain", "uncertain", "traction"), strict=True):
         ratios = [_ratios(_pull_off(rows, c, poisson), _pull_off(rows, whole, poisson)) for c in causes]
         shares = 100 * np.concatenate(ratios)
         if shares.size:
-            shown = shares if causes == ("traction",) else np.abs(shares)
-            yield f"{text.format(span(shown))} ({counted(shares.size, 'point')})."
+            shown = span(shares if name == "traction" else np.abs(shares))
+            yield said("finite_sphere", "causes", name, span=shown, points=counted(shares.size, "point"))
 
 
 def _pull_off(rows: Sequence[DeviationRow], cause: str, poisson: float | None, **at: float) -> Samples:
@@ -168,12 +159,12 @@ LOOKS = tuple(zip((style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PINK,
 DASHES = ("-", style.DASHED, style.DOTTED)  # one after the other when colours and markers come again
 
 
-def _figure_poisson(results: Results) -> Figure:
+def _figure_poisson(study: Study) -> Figure:
     figure, panels = style.panels(2, height=6.4)
     quantities = {"pull_off_load": "pull-off force", "jump_on_approach": "approach at jump-on"}
     for axes, (quantity, title) in zip(panels, quantities.items(), strict=True):
-        for number, (tabor, ratio) in enumerate(points_by_poisson(results.rows)):
-            data = samples(results.rows, "all", quantity, tabor=tabor, radius_ratio=ratio)
+        for number, (tabor, ratio) in enumerate(points_by_poisson(study.rows)):
+            data = samples(study.rows, "all", quantity, tabor=tabor, radius_ratio=ratio)
             if data.poisson.size:
                 order = np.argsort(data.poisson)
                 nu, y = data.poisson[order], data.deviation[order]
@@ -189,9 +180,9 @@ def _figure_poisson(results: Results) -> Figure:
     return figure
 
 
-def _figure_bulk(results: Results) -> Figure:
+def _figure_bulk(study: Study) -> Figure:
     """Deviations of approaches at up to four Tabor parameters joined by lines, with markers where they are certain."""
-    rows, poisson = results.rows, reference_poisson(results.rows)
+    rows, poisson = study.rows, study.poisson
     figure, panels = style.panels(2, height=6.4)
     for axes, way in zip(panels, ("on", "off"), strict=True):
         for (colour, marker), tabor in zip(LOOKS, jumping_tabors(rows)[:4], strict=False):
@@ -207,15 +198,10 @@ def _figure_bulk(results: Results) -> Figure:
     return figure
 
 
-def _see_bulk(results: Results) -> Iterator[str]:
+def _see_bulk(study: Study) -> Iterator[str]:
     """What the figure shows, and how much of the deviation, at most, is left without the yield."""
-    rows, poisson = results.rows, reference_poisson(results.rows)
-    yield (
-        "The yield of the body as a whole is kappa W/(E* R), which can be taken out by hand. Filled markers: from "
-        "farther away than on the half-space; hollow: from nearer. Where a line has no marker, the deviation is within "
-        "its error. Deviations of approaches, which have no natural zero, are parts of the spacing and the range of "
-        "the approaches at all events on the half-space."
-    )
+    rows, poisson = study.rows, study.poisson
+    yield said("finite_sphere", "bulk_figure")
     left = []
     for quantity in ("jump_on_approach", "jump_off_approach"):
         whole, rest = (samples(rows, "all", quantity + suffix, poisson=poisson) for suffix in ("", "_less_bulk"))
@@ -223,26 +209,24 @@ def _see_bulk(results: Results) -> Iterator[str]:
     shares = np.concatenate(left)
     if jumping_tabors(rows) and shares.size:
         most = int(np.sum(shares < 0.5))
-        yield (
-            f"Without it {span(100 * shares)} % of the deviation is left ({counted(shares.size, 'point')}): the yield "
-            f"is most of it at {most if most < shares.size else 'all'} of them."
-        )
+        numbers = {"span": span(100 * shares), "points": counted(shares.size, "point")}
+        yield said("finite_sphere", "bulk_figure", "left", **numbers, most=most if most < shares.size else "all")
 
 
 FIGURES = (
-    Picture("causes", "What makes the pull-off force deviate", _draw, _caption, no_sphere),
+    Picture("causes", said("finite_sphere", "causes", "title"), _draw, _caption, no_sphere),
     Picture(
         "poisson",
-        "How the deviations depend on Poisson's ratio",
+        said("finite_sphere", "poisson", "title"),
         _figure_poisson,
-        lambda _: ("Hollow markers: the force is strengthened, or the jump is from nearer.",),
-        lambda results: "" if points_by_poisson(results.rows) else "no point was solved at two Poisson's ratios",
+        lambda _: [said("finite_sphere", "poisson")],
+        lambda study: "" if points_by_poisson(study.rows) else "no point was solved at two Poisson's ratios",
     ),
     Picture(
         "bulk",
-        "The approach at the jumps, raw and without the body's linear yield",
+        said("finite_sphere", "bulk_figure", "title"),
         _figure_bulk,
         _see_bulk,
-        lambda results: "" if jumping_tabors(results.rows) else "no Tabor parameter jumps on spheres of two sizes",
+        lambda study: "" if jumping_tabors(study.rows) else "no Tabor parameter jumps on spheres of two sizes",
     ),
 )

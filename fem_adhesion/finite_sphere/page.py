@@ -10,16 +10,16 @@ from markupsafe import Markup
 
 from fem_adhesion.bodies.body import GripName
 from fem_adhesion.common.numbers import plus_minus
-from fem_adhesion.common.page import Columns, Section, Table, bullets, write_csv, write_page
+from fem_adhesion.common.page import Columns, Section, Table, bullets, said, titled, write_csv, write_page
 from fem_adhesion.common.style import captions, draw, shown
 from fem_adhesion.finite_sphere.bulk import Bulk, coefficients
-from fem_adhesion.finite_sphere.cases import CAUSES, Record
+from fem_adhesion.finite_sphere.cases import CAUSES, CRITICAL, Record
 from fem_adhesion.finite_sphere.chart import CHART, LINES
 from fem_adhesion.finite_sphere.figures import FIGURES
 from fem_adhesion.finite_sphere.fit import DEVIATIONS, TOLERANCE, Finding, compare, findings
 from fem_adhesion.finite_sphere.plane import Field, field_of, safe_from
 from fem_adhesion.finite_sphere.study import Study
-from fem_adhesion.finite_sphere.table import Border, DeviationRow, Results, reference_poisson, results, write_tables
+from fem_adhesion.finite_sphere.table import borders, write_tables
 from halfspace.errors import InputError
 
 SHOWN = {
@@ -34,15 +34,14 @@ SHOWN = {
 """Quantities on the page; the files have the others besides."""
 
 
-def all_tables(results: Results) -> list[Table]:
+def all_tables(study: Study) -> list[Table]:
     """All tables in the order of the page."""
-    rows, records = results.rows, results.study.records
-    return [_safe(rows), _borders(results.borders), _fits(rows), _theories(rows), _bulk(records), _failures(records)]
+    return [make(study) for make in (_safe, _borders, _fits, _theories, _bulk, _failures)]
 
 
-def _safe(rows: Sequence[DeviationRow]) -> Table:
+def _safe(study: Study) -> Table:
     """Least R/eps of the points solved from which on a deviation is below a level, at each Tabor parameter."""
-    fields = {name: field_of(rows, name, reference_poisson(rows)) for name in SHOWN}
+    fields = {name: field_of(study.rows, name, study.poisson) for name in SHOWN}
     tabors = sorted({tabor for field in fields.values() for tabor in field.tabor})
 
     def cell(field: Field, level: float) -> str:
@@ -54,20 +53,11 @@ def _safe(rows: Sequence[DeviationRow]) -> Table:
         for name, field in fields.items()
         for level in LINES
     ]
-    see = (
-        "Least R/eps of the points solved from which on the deviation, with its error, is below the level at all "
-        "larger ones; 'none' where it is not so at the largest one solved, empty where nothing is known."
-    )
     columns = ("quantity", "half-space errs less than", *(f"R/eps at mu = {tabor:g}" for tabor in tabors))
-    return Table("safe", "From which R/eps on the half-space will do", see, columns, lines)
+    return Table(*titled("finite_sphere", "safe"), columns, lines)
 
 
-def _fits(rows: Sequence[DeviationRow]) -> Table:
-    see = (
-        f"Errors are {DEVIATIONS:g} standard deviations and the change when the points farther than half-way are left "
-        f"out; up to the beta/R stated, every point is within {100 * TOLERANCE:g} % of the terms beside its own error."
-    )
-
+def _fits(study: Study) -> Table:
     def cells(one: Finding) -> tuple[str, ...]:
         if not (fit := one.fit):
             return ("", "", "", "")
@@ -81,72 +71,59 @@ def _fits(rows: Sequence[DeviationRow]) -> Table:
         ("leading terms", "up to beta/R", "points", "largest residual"): cells,
         "why no fit": lambda one: one.reason,
     }
-    wanted = [row for row in rows if row.quantity in SHOWN and (row.cause == "all" or row.quantity == "pull_off_load")]
-    found = findings(wanted, reference_poisson(rows) or 0.0)
-    return Table.of("fits", "Leading terms of the relative deviations", see, found, columns)
+    wanted = [r for r in study.rows if r.quantity in SHOWN and (r.cause == "all" or r.quantity == "pull_off_load")]
+    texts = titled("finite_sphere", "fits", deviations=DEVIATIONS, tolerance=100 * TOLERANCE)
+    return Table.of(*texts, findings(wanted, study.poisson or 0.0), columns)
 
 
-def _theories(rows: Sequence[DeviationRow]) -> Table:
+def _theories(study: Study) -> Table:
     columns = ("theory and term", "expected", "fitted", "error", "at mu", "why not")
-    see = (
-        "The profile's part of the pull-off alone, on a half-space. The theories are of the limits mu = 0 and "
-        "infinity, the fits of the mu stated."
-    )
     try:
-        lines = tuple(
+        lines = [
             (theory, f"{expected:.4f}", f"{fitted.value:.4f}", f"{fitted.error:.1e}", f"{tabor:g}", "")
-            for theory, expected, tabor, fitted in compare(rows)
-        )
+            for theory, expected, tabor, fitted in compare(study.rows)
+        ]
     except InputError as error:
-        lines = (("", "", "", "", "", str(error)),)
-    return Table("theories", "Leading coefficients beside theories", see, columns, lines)
+        lines = [("", "", "", "", "", str(error))]
+    return Table(*titled("finite_sphere", "theories"), columns, lines)
 
 
-def _bulk(records: Sequence[Record]) -> Table:
-    see = (
-        "The body approaches by W/(E* R) (kappa_0 + kappa_1 ln(beta/R)) more than the half-space, in eps by mu beta/R "
-        "times as much. kappa_1 = -(1 - 2 nu)^2/(2 pi (1 - nu)) is exact, kappa_0 is measured under Hertz's pressure "
-        "on r < beta; the term in beta/R is not taken out, but counted as error."
-    )
+def _bulk(study: Study) -> Table:
     grips: tuple[GripName, ...] = ("sliding", "bonded")
-    poissons = sorted({r.case.poisson for r in records if r.case.poisson is not None})
+    poissons = sorted({r.case.poisson for r in study.records if r.case.poisson is not None})
     columns: Columns[tuple[GripName, float, Bulk]] = {
         "grip": lambda row: row[0],
         "Poisson's ratio": lambda row: f"{row[1]:g}",
-        "kappa_0": lambda row: f"{row[2].constant.value:.4f}",
-        "error": lambda row: f"{row[2].constant.error:.1e}",
+        ("kappa_0", "error"): lambda row: (f"{row[2].constant.value:.4f}", f"{row[2].constant.error:.1e}"),
         "kappa_1": lambda row: f"{row[2].logarithm:.5f}",
         "size of the term in beta/R": lambda row: f"{row[2].linear:.2g}",
     }
     rows = [(grip, poisson, coefficients(grip, poisson)) for grip in grips for poisson in poissons]
-    return Table.of("bulk", "The body's linear yield, in 1/(E* R)", see, rows, columns)
+    return Table.of(*titled("finite_sphere", "bulk"), rows, columns)
 
 
-def _failures(records: Sequence[Record]) -> Table:
-    failed = [record for record in records if record.status != "solved"]
+def _failures(study: Study) -> Table:
+    failed = [record for record in study.records if record.status != "solved"]
     columns: Columns[Record] = {
         "case": lambda record: record.case.name,
-        "status": lambda record: record.status,
-        "kind": lambda record: record.kind,
-        "reason": lambda record: record.reason,
+        ("status", "kind", "reason"): lambda record: (record.status, record.kind, record.reason),
     }
-    see = f"{len(failed)} of {len(records)} cases."
-    return Table.of("failures", "What was not solved, and why", see, failed, columns)
+    texts = titled("finite_sphere", "failures", failed=len(failed), tried=len(study.records))
+    return Table.of(*texts, failed, columns)
 
 
-def _borders(borders: Sequence[Border]) -> Table:
-    see = (
-        "From this mu on the approach turns back along the curve; the spheres are held on a sliding mid-plane. Errors "
-        "are the changes from elements one degree lower, or from a coarser grid."
-    )
-    columns: Columns[Border] = {
-        "R/eps": lambda one: "half-space" if one.radius_ratio is None else f"{one.radius_ratio:g}",
-        "Poisson's ratio": lambda one: "" if one.poisson is None else f"{one.poisson:g}",
-        "mu": lambda one: f"{one.tabor.value:.9g}" if one.tabor else "",
-        "error": lambda one: f"{one.tabor.error:.1e}" if one.tabor else "",
-        "why none": lambda one: one.reason,
+def _borders(study: Study) -> Table:
+    def cells(one: Record) -> tuple[str, str, str]:
+        if tabor := one.values.get(CRITICAL):
+            return (f"{tabor.value:.9g}", f"{tabor.error:.1e}", "")
+        return ("", "", one.reason or said("finite_sphere", "first_jumps", "none"))
+
+    columns: Columns[Record] = {
+        "R/eps": lambda one: "half-space" if one.case.radius_ratio is None else f"{one.case.radius_ratio:g}",
+        "Poisson's ratio": lambda one: "" if one.case.poisson is None else f"{one.case.poisson:g}",
+        ("mu", "error", "why none"): cells,
     }
-    return Table.of("first_jumps", "Where jumps under fixed grips begin", see, borders, columns)
+    return Table.of(*titled("finite_sphere", "first_jumps"), borders(study.records), columns)
 
 
 PICTURES = (CHART, *FIGURES)
@@ -161,23 +138,22 @@ def write(study: Study, directory: Path, begin: Callable[[str], None] = lambda _
     is called with each of `PARTS` in turn. Returns how to get the Parquet file if there is none, else nothing.
     """
     begin("table")
-    found, records = results(study), study.records
-    note = write_tables(found.rows, directory)
-    draw(PICTURES, found, directory, begin)
+    note = write_tables(study.rows, directory)
+    draw(PICTURES, study, directory, begin)
     begin("page")
-    safe, *others = tables = all_tables(found)
-    write_csv([*tables, captions(PICTURES, found)], directory)
+    safe, *others = tables = all_tables(study)
+    write_csv([*tables, captions(PICTURES, study)], directory)
     switched = [Markup("<strong>{}</strong>: {};").format(name, cause.meaning) for name, cause in CAUSES.items()]
     assumptions = Markup("Between the two lie several assumptions, switched one at a time:") + bullets(switched)
     parts = (("where", CHART.title, PICTURES[:1], (), [safe]), ("why", "Causes", PICTURES[1:], (assumptions,), ()))
     sections = []
     for name, title, pictures, paragraphs, shown_tables in parts:
-        lacking = [f"{one.title}. Not drawn: {lack}." for one in pictures if (lack := one.lacks(found))]
-        figures = shown(pictures, found, directory)
+        lacking = [f"{one.title}. Not drawn: {lack}." for one in pictures if (lack := one.lacks(study))]
+        figures = shown(pictures, study, directory)
         sections.append(Section(name, title, "", "", (*paragraphs, *lacking), figures, shown_tables))
-    sections += [Section("tables", "Tables", tables=others), _settings(records)]
-    lead = [Markup("<strong>{}.</strong>").format(study.headline), *_answer(found.rows)]
-    spent = f"{sum(r.seconds for r in records):.0f} s of work on {len(records)} cases"
+    sections += [Section("tables", "Tables", tables=others), _settings(study.records)]
+    lead = [Markup("<strong>{}.</strong>").format(study.headline), *_answer(study)]
+    spent = f"{sum(r.seconds for r in study.records):.0f} s of work on {len(study.records)} cases"
     write_page(directory, "Is the half-space good enough for my sphere?", lead, sections, spent)
     return note
 
@@ -189,15 +165,14 @@ def remove_outdated(directory: Path, written: Path) -> None:
             (directory / name).unlink(missing_ok=True)
 
 
-def _answer(table: Sequence[DeviationRow], level: float = 0.01) -> Iterator[str]:
+def _answer(study: Study, level: float = 0.01) -> Iterator[str]:
     """From which R/eps on the half-space errs by less than a level at all points solved, in words."""
-    poisson = reference_poisson(table)
-    if poisson is None:
+    if study.poisson is None:
         yield "No elastic sphere was solved."
         return
     answers = []
     for quantity, name in SHOWN.items():
-        field = field_of(table, quantity, poisson)
+        field = field_of(study.rows, quantity, study.poisson)
         known, least = field.tabor[np.isfinite(field.deviation).any(axis=1)], safe_from(field, level)
         if not known.size:
             where = "nowhere that is known: the study has no point of it"
@@ -206,13 +181,9 @@ def _answer(table: Sequence[DeviationRow], level: float = 0.01) -> Iterator[str]
         else:
             where = f"if R/eps is {least:g} or more (points solved, mu from {known[0]:g} to {known[-1]:g})"
         answers.append(Markup("the <strong>{}</strong> {};").format(name, where))
-    said = Markup("By the points solved at Poisson's ratio {:g} it errs by less than {:g} % in")
-    yield said.format(poisson, 100 * level) + bullets(answers)
-    yield (
-        "Here mu is the Tabor parameter, mu^3 = R dgamma^2/(E*^2 eps^3), R the radius of the sphere, eps the spacing "
-        "of the surface law; the half-space's profile is a paraboloid. The sphere is elastic, its mid-plane slides in "
-        "its grip, the wall is rigid and the strains are small. Nothing is said of points beyond the range given."
-    )
+    words = Markup("By the points solved at Poisson's ratio {:g} it errs by less than {:g} % in")
+    yield words.format(study.poisson, 100 * level) + bullets(answers)
+    yield said("finite_sphere", "answer", "all")
 
 
 def _settings(records: Sequence[Record]) -> Section:
@@ -220,8 +191,5 @@ def _settings(records: Sequence[Record]) -> Section:
     names = ("tabor", "radius_ratio", "poisson", "rtol")
     inputs = {name: sorted({v for r in records if (v := getattr(r.case, name)) is not None}) for name in names}
     asked = bullets([f"{name}: {', '.join(f'{v:g}' for v in values)}" for name, values in inputs.items()])
-    again = Markup(
-        'All numbers with their errors are in <a href="finite_sphere.csv">finite_sphere.csv</a>. With '
-        "<code>--resume</code>, what the directory holds is not computed again."
-    )
+    again = Markup(said("finite_sphere", "settings", "again"))
     return Section("settings", "Settings", paragraphs=(asked, again))

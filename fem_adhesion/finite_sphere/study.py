@@ -7,8 +7,9 @@ the results of a body stored as they come; `fem_adhesion.finite_sphere.table` se
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from itertools import product
 from typing import Any
 
@@ -17,6 +18,7 @@ from fem_adhesion.common.files import Store
 from fem_adhesion.common.jobs import Kept, solve_all
 from fem_adhesion.common.numbers import counted
 from fem_adhesion.finite_sphere.cases import MODELS, Record, SphereCase, case_of, compute, from_plain, to_plain
+from fem_adhesion.finite_sphere.table import DeviationRow, reference_poisson, rows
 from halfspace.errors import InputError
 from halfspace.limits import require_poisson, require_radius_ratio, require_tabor
 
@@ -27,6 +29,16 @@ class Study:
 
     records: Sequence[Record]
     quick: bool = False
+
+    @cached_property
+    def rows(self) -> tuple[DeviationRow, ...]:
+        """All quantities of all cases beside those without one cause."""
+        return rows(self.records)
+
+    @property
+    def poisson(self) -> float | None:
+        """Poisson's ratio of the figures that show one."""
+        return reference_poisson(self.rows)
 
     @property
     def failed(self) -> tuple[Record, ...]:
@@ -53,28 +65,22 @@ class Study:
         return "; ".join(filter(None, parts))
 
 
-@dataclass(frozen=True)
-class Combinations:
-    """All combinations of these inputs, under these models."""
-
-    tabors: Sequence[float] = (0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0)
-    radius_ratios: Sequence[float] = (5.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5)
-    poissons: Sequence[float] = (0.3,)
-    models: Sequence[str] = tuple(MODELS)
-
-
+TABORS = (0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0)
+RADIUS_RATIOS = (5.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5)
 FAVOURED = (0.3, 1.0, 3.0)  # Tabor parameters of what takes long
 FINITE_STRAIN = ("finite_strain", "finite_strain_normal", "finite_strain_reference")
 DENSE = tuple(name for name in MODELS if name not in ("surface_traction", *FINITE_STRAIN))
-USUAL = (  # some four minutes on two cores
-    Combinations(models=DENSE),
-    Combinations(FAVOURED, models=("surface_traction",)),
-    Combinations(FAVOURED, (30.0, 100.0, 1e3, 1e4), models=FINITE_STRAIN),
-    Combinations(FAVOURED, (30.0, 1e3), (0.0, 0.17, 0.45, 0.499), DENSE),
+Combinations = tuple[Sequence[float], Sequence[float], Sequence[float], Sequence[str]]
+"""Tabor parameters, R/eps, Poisson's ratios and models, of which all are combined."""
+USUAL: Sequence[Combinations] = (  # some four minutes on two cores
+    (TABORS, RADIUS_RATIOS, (0.3,), DENSE),
+    (FAVOURED, RADIUS_RATIOS, (0.3,), ("surface_traction",)),
+    (FAVOURED, (30.0, 100.0, 1e3, 1e4), (0.3,), FINITE_STRAIN),
+    (FAVOURED, (30.0, 1e3), (0.0, 0.17, 0.45, 0.499), DENSE),
 )
-QUICK = (  # 20 s
-    Combinations((0.3, 1.0, 2.0), (30.0, 300.0, 3e3), models=[n for n in DENSE if n not in ("finite_body", "bonded")]),
-    Combinations((1.0,), (30.0, 3e3), models=("finite_body", "bonded")),
+QUICK: Sequence[Combinations] = (  # 20 s
+    ((0.3, 1.0, 2.0), (30.0, 300.0, 3e3), (0.3,), [n for n in DENSE if n not in ("finite_body", "bonded")]),
+    ((1.0,), (30.0, 3e3), (0.3,), ("finite_body", "bonded")),
 )
 
 
@@ -99,25 +105,21 @@ def plan(
     quick study has three by three points unless given, and a lower accuracy. InputError if an input is out of range, or
     a sphere is too small for every Tabor parameter.
     """
-    grids: Sequence[Combinations] = QUICK if quick else USUAL
+    grids = QUICK if quick else USUAL
     if tabors or radius_ratios or poissons:
-        main = grids[0]
-        asked = tabors or main.tabors, radius_ratios or main.radius_ratios, poissons or main.poissons
-        grids = [Combinations(*asked)]
+        asked = tabors or grids[0][0], radius_ratios or grids[0][1], poissons or grids[0][2]
+        grids = [(*asked, tuple(MODELS))]
         for tabor in asked[0]:
             require_tabor(tabor)
         for poisson in asked[2]:
             require_poisson(poisson)
         for ratio in asked[1]:
             require_radius_ratio(ratio, min(asked[0]))
-    cases = tuple(dict.fromkeys(case for grid in grids for case in _cases(grid, 1e-4 if quick else 1e-5)))
+    rtol = 1e-4 if quick else 1e-5
+    points = (point for mu, rho, nu, models in grids for point in product(mu, rho, nu, models))
+    cases = tuple(dict.fromkeys(case_of(model, mu, rho, nu, rtol) for mu, rho, nu, model in points))
     left_out = {case: record for case in cases if (record := _left_out(case))}
     return Plan(tuple(case for case in cases if case not in left_out), tuple(left_out.values()))
-
-
-def _cases(grid: Combinations, rtol: float) -> Iterator[SphereCase]:
-    points = product(grid.tabors, grid.radius_ratios, grid.poissons)
-    return (case_of(model, *point, rtol) for point in points for model in grid.models)
 
 
 def _left_out(case: SphereCase) -> Record | None:

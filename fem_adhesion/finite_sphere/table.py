@@ -20,14 +20,12 @@ from fem_adhesion.finite_sphere.bulk import bulk_compliance
 from fem_adhesion.finite_sphere.cases import (
     APPROACH_SCALE,
     CAUSES,
-    CRITICAL,
     MODELS,
     QUANTITIES,
     Record,
     SphereCase,
     case_of,
 )
-from fem_adhesion.finite_sphere.study import Study
 from halfspace.values import Array, Estimate, Valued
 
 BulkCompliance = Callable[[GripName, float, float], Estimate]
@@ -71,33 +69,23 @@ class DeviationRow:
 
 def rows(records: Sequence[Record], bulk: BulkCompliance = bulk_compliance) -> tuple[DeviationRow, ...]:
     """Lines of the table, of records in any order; approaches of jumps also less the body's yield."""
-    found = {record.case: record for record in records}
-    return tuple(
-        row
-        for record in records
-        for cause in CAUSES
-        if CAUSES[cause].model == record.case.model
-        for row in _rows_of(record, cause, found, bulk)
-    )
+    return tuple(_rows({record.case: record for record in records}, bulk))
 
 
-def _rows_of(
-    record: Record,
-    cause: str,
-    found: Mapping[SphereCase, Record],
-    bulk: BulkCompliance,
-) -> Iterator[DeviationRow]:
-    case = record.case
-    point = case.tabor, case.radius_ratio, case.poisson, case.rtol
-    others = [found.get(case_of(model, *point)) for model in (CAUSES[cause].baseline, "half_space")]
-    tables = [{**one.values, **less_bulk(one, bulk)} if one else {} for one in (record, *others)]
-    for name, unit in UNITS.items():
-        value, baseline, half_space = three = [table.get(name) for table in tables]
-        scale = half_space and tables[-1].get(APPROACH_SCALE) if unit == "eps" else half_space
-        deviation = (value - baseline) / scale if value and baseline and scale else None
-        head = (case.given("tabor"), case.radius_ratio, case.poisson, cause, name, unit)
-        ending = (*_ending(record, others, three), record.seconds, record.kind)
-        yield DeviationRow(*head, value, baseline, half_space, deviation, *ending)
+def _rows(found: Mapping[SphereCase, Record], bulk: BulkCompliance) -> Iterator[DeviationRow]:
+    causes = [(record, name) for record in found.values() for name in CAUSES if CAUSES[name].model == record.case.model]
+    for record, cause in causes:
+        case = record.case
+        point = case.tabor, case.radius_ratio, case.poisson, case.rtol
+        others = [found.get(case_of(model, *point)) for model in (CAUSES[cause].baseline, "half_space")]
+        tables = [{**one.values, **less_bulk(one, bulk)} if one else {} for one in (record, *others)]
+        for name, unit in UNITS.items():
+            value, baseline, half_space = three = [table.get(name) for table in tables]
+            scale = half_space and tables[-1].get(APPROACH_SCALE) if unit == "eps" else half_space
+            deviation = (value - baseline) / scale if value and baseline and scale else None
+            head = (case.given("tabor"), case.radius_ratio, case.poisson, cause, name, unit)
+            ending = (*_ending(record, others, three), record.seconds, record.kind)
+            yield DeviationRow(*head, value, baseline, half_space, deviation, *ending)
 
 
 def less_bulk(record: Record, bulk: BulkCompliance) -> dict[str, Estimate]:
@@ -126,45 +114,10 @@ def _ending(record: Record, others: Sequence[Record | None], three: Sequence[Est
     return "solved", ""
 
 
-@dataclass(frozen=True)
-class Border:
-    """Tabor parameter from which on a contact jumps under fixed grips; of the half-space without R/eps and poisson.
-
-    It is None, and the reason says why, if the contact does not jump as far as it is large enough, or was not solved.
-    """
-
-    radius_ratio: float | None
-    poisson: float | None
-    tabor: Estimate | None
-    reason: str
-
-
-def borders(records: Sequence[Record]) -> tuple[Border, ...]:
+def borders(records: Sequence[Record]) -> list[Record]:
     """Where the jumps begin: on the half-space, then on spheres of growing size."""
-    found = [
-        Border(record.case.radius_ratio, record.case.poisson, tabor, record.reason or ("" if tabor else NEVER))
-        for record in records
-        if record.case.model in ("first_jump_half_space", "first_jump")
-        for tabor in (record.values.get(CRITICAL),)
-    ]
-    return tuple(sorted(found, key=lambda border: (border.poisson or 0.0, border.radius_ratio or 0.0)))
-
-
-NEVER = "it does not jump at any Tabor parameter for which it is large enough"
-
-
-@dataclass(frozen=True)
-class Results:
-    """All that figures and page are made of: what was computed, its table, and where the jumps begin."""
-
-    study: Study
-    rows: Sequence[DeviationRow]
-    borders: Sequence[Border]
-
-
-def results(study: Study) -> Results:
-    """Set the records of a study beside each other."""
-    return Results(study, rows(study.records), borders(study.records))
+    found = [record for record in records if record.case.model in ("first_jump_half_space", "first_jump")]
+    return sorted(found, key=lambda record: (record.case.poisson or 0.0, record.case.radius_ratio or 0.0))
 
 
 # Files: CSV for all, Parquet for those who have the library
@@ -253,9 +206,7 @@ def reference_poisson(rows: Sequence[DeviationRow]) -> float | None:
 def panel_tabors(rows: Sequence[DeviationRow]) -> list[float]:
     """Tabor parameters that have a panel: those nearest to 0.3, 1 and 3 in the table."""
     known = {row.tabor for row in rows if row.cause == "all" and row.deviation}
-    return sorted(
-        {min(known, key=lambda mu: abs(np.log(mu / wanted))) for wanted in (0.3, 1.0, 3.0)} if known else set()
-    )
+    return sorted({min(known, key=lambda mu: abs(np.log(mu / wanted))) for wanted in (0.3, 1.0, 3.0) if known})
 
 
 def points_by_poisson(rows: Sequence[DeviationRow]) -> list[tuple[float, float]]:

@@ -20,7 +20,7 @@ from fem_adhesion.finite_sphere.fit import FIXED_GRIPS, leading_terms
 from fem_adhesion.finite_sphere.page import SHOWN
 from fem_adhesion.finite_sphere.plane import Field, contour, field_of, safe_from
 from fem_adhesion.finite_sphere.study import Study, plan
-from fem_adhesion.finite_sphere.table import borders, results, rows, write_tables
+from fem_adhesion.finite_sphere.table import borders, rows, write_tables
 from halfspace.elastic import grid
 from halfspace.values import Estimate
 
@@ -193,8 +193,8 @@ def test_a_point_is_hatched_by_how_it_ended_and_no_other_is(records):
 def test_the_border_of_the_jumps_is_drawn_where_it_is(records):
     axes = chart_module.chart(rows(records), 0.3, borders(records)).axes[1]
     half_space, *spheres = borders(records)
-    assert (half_space.radius_ratio, half_space.tabor.value) == (None, pytest.approx(0.6))
-    assert [border.radius_ratio for border in spheres] == [*RATIOS] * 3
+    assert (half_space.case.radius_ratio, half_space.values[CRITICAL].value) == (None, pytest.approx(0.6))
+    assert [border.case.radius_ratio for border in spheres] == [*RATIOS] * 3
     tabor, ratio = line_of(axes, "jumps begin, fixed grips")
     np.testing.assert_allclose(ratio, RATIOS)
     np.testing.assert_allclose(tabor, 0.6 + 1 / np.array(RATIOS))
@@ -223,7 +223,7 @@ def values_of(case):
 def distinct():
     """Results whose values are all distinct."""
     cases = [case for case in plan(TABORS, RATIOS, [0.0, 0.3]).cases if not case.model.startswith("first_jump")]
-    return results(Study([Record(case, "solved", values_of(case), "", 1.0) for case in cases]))
+    return Study([Record(case, "solved", values_of(case), "", 1.0) for case in cases])
 
 
 def expected_deviation(cause, quantity, tabor, ratio, poisson):
@@ -358,7 +358,7 @@ def study_of(law, tabors=TABORS, ratios=RATIOS, poissons=(0.0, 0.3)):
         return Record(case, "solved", values | {APPROACH_SCALE: Estimate(4.0, 0.0)}, "", 1.0)
 
     cases = plan(tabors, ratios, poissons).cases
-    return results(Study([solved(case) for case in cases]))
+    return Study([solved(case) for case in cases])
 
 
 def share(case, **of_models):
@@ -386,7 +386,7 @@ def test_nothing_is_concluded_from_numbers_that_are_none(tmp_path):
     assert [caption(stem, found) for stem in FIGURES]
     for picture in finite_sphere_page.PICTURES:
         assert picture.lacks(found)
-    finite_sphere_page.write(found.study, tmp_path)
+    finite_sphere_page.write(found, tmp_path)
     page = (tmp_path / "index.html").read_text()
     assert page.count("nowhere that is known") == len(SHOWN)
     assert "nan" not in page.partition("<footer>")[0].replace("nancy", "")
@@ -402,7 +402,7 @@ def _empty_files(monkeypatch):
 
 @pytest.mark.usefixtures("_empty_files")
 def test_a_half_space_never_good_enough_is_not_said_to_be(tmp_path):
-    finite_sphere_page.write(study_of(lambda _: 5.0).study, tmp_path)
+    finite_sphere_page.write(study_of(lambda _: 5.0), tmp_path)
     page = (tmp_path / "index.html").read_text()
     assert page.count("at no R/ε up to 10000 for all μ from 0.3 to 3") >= 3
     assert "</strong> if R/ε" not in page
