@@ -196,7 +196,8 @@ def compression_exponent(f: Facts, tabor: float) -> Estimate:
 
     As alpha* = alpha0 + (W/k)^(1/n), successive differences grow by 2^(1/n).
     """
-    first, second = steps([f.state(tabor, "approach", load=W, branch="contact") for W in (5.0, 10.0, 20.0)])
+    states = f.paths[tabor].at(load=np.array([5.0, 10.0, 20.0]), branch="contact")
+    first, second = steps([*map(Estimate, states.approach, states.approach_error)])
     return spread(lambda ratio: np.log(2) / np.log(abs(ratio)), second / first)
 
 
