@@ -160,7 +160,7 @@ def _caption(study: Study) -> Iterator[str]:
     begun = {ratio: plus_minus(tabor) for ratio, tabor in _begun(borders(study.records), study.poisson)}
     spheres = [ratio for ratio in begun if np.isfinite(ratio)]
     shown = [f"{begun[ratio]} at R/eps = {ratio:g}" for ratio in dict.fromkeys(spheres[:1] + spheres[-1:])]
-    shown += [f"{begun[np.inf]} on the half-space"] * (np.inf in begun)
+    shown += [f"{tabor} on the half-space" for ratio, tabor in begun.items() if np.isinf(ratio)]
     if shown:
         yield f"Jumps under fixed grips begin at mu = {', '.join(shown)}."
     if any(set(field.ending.flat) - ENDED for field in fields):

@@ -6,13 +6,14 @@ And true spheres: one before a wall, or two, each up to the equator of the small
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from halfspace.limits import require_between, require_counter_radius, require_radius_ratio
 from halfspace.profiles.profile import Dimensionless, Endless, Surface
-from halfspace.values import Array, Valued, keep
+from halfspace.values import Array, keep
 
 
 @dataclass(frozen=True)
@@ -153,48 +154,32 @@ class Sphere:
 
 @dataclass(frozen=True)
 class SphereSurface(Dimensionless):
-    """R - sqrt(R^2 - r^2), up to its equator, the radius `end` = R/beta."""
+    """Gap between a sphere and a wall or a larger sphere: the heights R1 - sqrt(R1^2 - r^2) of both add.
 
-    end: float
-
-    def height(self, radii: Array) -> Array:
-        """Return u^2/(1 + cos theta), sin theta = r/R, without cancellation."""
-        return np.asarray(radii**2 / (1 + self._cosine(radii)))
-
-    def slope(self, radii: Array) -> Array:
-        """Return u/cos theta: infinite at the equator."""
-        return np.asarray(radii / self._cosine(radii))
-
-    def _cosine(self, radii: Array) -> Array:
-        """Return cos theta, nan beyond the equator: a trial of Newton's method may end there, and is refused for it."""
-        sine = radii / self.end
-        with np.errstate(invalid="ignore"):
-            return np.asarray(np.sqrt((1 - sine) * (1 + sine)))
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class PairSurface(Valued, Dimensionless):
-    """Gap between two surfaces of radii R1 and R2, 1/R = 1/R1 + 1/R2: their heights add.
-
-    The first and second are in their own units, beta^2/R1 and beta^2/R2; the parts are R/R1 and R/R2.
+    It goes up to the equator of the smaller, the radius `end` = R1/beta; `counter` is R2/beta, infinite for a wall.
     """
 
-    first: Surface
-    second: Surface
-    parts: tuple[float, float]
-
-    @property
-    def end(self) -> float:
-        """Radius in beta at which the smaller surface ends."""
-        return min(self.first.end, self.second.end)
+    end: float
+    counter: float = np.inf
 
     def height(self, radii: Array) -> Array:
-        """Sum of the heights."""
-        return self.parts[0] * self.first.height(radii) + self.parts[1] * self.second.height(radii)
+        """Sum of (R/R1) u^2/(1 + cos theta), sin theta = r/R1, without cancellation."""
+        return np.asarray(sum(part * radii**2 / (1 + cosine) for part, cosine in self._parts(radii)))
 
     def slope(self, radii: Array) -> Array:
-        """Sum of the slopes."""
-        return self.parts[0] * self.first.slope(radii) + self.parts[1] * self.second.slope(radii)
+        """Sum of (R/R1) u/cos theta: infinite at the equator."""
+        return np.asarray(sum(part * radii / cosine for part, cosine in self._parts(radii)))
+
+    def _parts(self, radii: Array) -> Iterator[tuple[float, Array]]:
+        """R/R1 and cos theta of both spheres, 1/R = 1/R1 + 1/R2.
+
+        The cosine is nan beyond the equator: a trial of Newton's method may end there, and is refused for it.
+        """
+        for own, other in ((self.end, self.counter), (self.counter, self.end)):
+            if np.isfinite(own):
+                sine = radii / own
+                with np.errstate(invalid="ignore"):
+                    yield 1 / (1 + own / other), np.sqrt((1 - sine) * (1 + sine))
 
 
 def between_spheres(R: float, counter_radius: float = np.inf) -> Surface:
@@ -202,7 +187,4 @@ def between_spheres(R: float, counter_radius: float = np.inf) -> Surface:
 
     The radius R of the pair is in beta, 1/R = 1/R1 + 1/R2.
     """
-    if np.isinf(counter_radius):
-        return SphereSurface(R)
-    first, second = R * (1 + 1 / counter_radius), R * (1 + counter_radius)
-    return PairSurface(SphereSurface(first), SphereSurface(second), (R / first, R / second))
+    return SphereSurface(R * (1 + 1 / counter_radius), R * (1 + counter_radius))
