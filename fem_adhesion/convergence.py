@@ -21,10 +21,10 @@ from fem_adhesion.discretise import (
 )
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
-from fem_adhesion.stages import AROUND, CLIMBED, COARSEST, TIGHT, WINDOW, AroundEvents, surroundings
-from halfspace.accuracy.grids import TWIN, rings
+from halfspace.accuracy.grids import TWIN, operators_of_curve, rings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung
+from halfspace.accuracy.standing import Standing
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import to_infinity
 from halfspace.elastic.operators import Homogeneous
@@ -43,7 +43,6 @@ LARGER_ENDLESS, LARGER_HELD = 10**0.25, 3.2
 FOURTH = 1.5e-5  # estimated error of the events from degree 4 to 5
 PER_DEGREE = 15.0  # what each degree divides it by
 REMAINING = 0.5  # of the change by one degree: a degree leaves a tenth of it, or a fifth at worst
-WINDOW_OF_FIVE = 4e-2  # half the width where the derivative by five operators errs by 1e-8 to 4e-8 of the deflection
 BY_STEP = 2.0  # times as much by a law whose tension ends by a step: a degree may leave half of it
 
 
@@ -161,39 +160,23 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
     degree = degree_for(rtol) + level
     how, below, curve = (with_rings(d) for d in (degree, degree - 1, CURVE_DEGREE + level))
     twin = replace(below, finest=TWIN[0] * below.finest, growth=TWIN[1] * below.growth)
-    other = _around_events(scene, twin, rtol, level - 1, to_load)
     doubt, step = scene.body.doubt, BY_STEP if scene.scales.step_gap else 1.0
     return Rung(
         sized_body(scene, curve, to_load).curve,
-        (_around_events(scene, how, rtol, level, to_load),),
+        (_standing(scene, how, to_load),),
         asdict(how) | {"curve_degree": curve.degree},
-        other if level and (doubt.other_cells or scene.scales.step_gap) else None,
+        _standing(scene, twin, to_load) if level and (doubt.other_cells or scene.scales.step_gap) else None,
         ErrorRule(doubt.times * step * REMAINING, along=True, steps=scene.scales.steps),
     )
 
 
-def _around_events(scene: Scene, how: Discretisation, rtol: float, level: int, to_load: float) -> AroundEvents:
-    """Stage of a level; events on a layer, whose kernel has its images near by, have operators each its own.
+def _standing(scene: Scene, how: Discretisation, to_load: float) -> Standing:
+    """Stage on which each event has cells of its own; points of the curve share operators interpolated between radii.
 
-    They differ by rounding, which counts in their derivative by the inverse of the window, see `windows`.
+    One operator an event: a chart that follows the contact takes three to seven for the derivative by the radius.
     """
-    _, count = surroundings(rtol, level)
-    across = min(rtol, COARSEST) if scene.body.curved else None
     body = sized_body(scene, how, to_load)
-    return AroundEvents(body, how.degree + 2, windows(rtol, level, count), count, across, level)
-
-
-def windows(rtol: float, level: int, count: int) -> float:
-    """Half the logarithmic width of the radii around an event with three or five operators, as wide as `rtol` allows.
-
-    Rubber's operators differ by up to 1e-8 of themselves by rounding: on a stiff film of poisson 0.4999 the load at
-    jump-off erred by 3e-4, and more on each rung, where five were within 5e-4 either side. The derivative by three
-    errs by a seventh of the tolerance at most, in parts of the deflection, that by five by less than `TIGHT` / 30.
-    """
-    if count == AROUND:
-        return WINDOW * math.sqrt(max(min(rtol, COARSEST) / (4 * TIGHT), 1.0)) * 0.5**level
-    begin = CLIMBED if rtol >= TIGHT else 0
-    return WINDOW_OF_FIVE * math.sqrt(math.sqrt(min(rtol / TIGHT, 1.0))) * 0.5 ** (level - begin)
+    return Standing(body, lambda: Charted(body.curve(operators_of_curve(body, how.degree + 2))))
 
 
 def degree_for(rtol: float) -> int:

@@ -188,29 +188,13 @@ def _along(s: Array, *, coordinate: Callable[[Array], Array], last: float) -> Ar
 
 
 # The whole sphere, held over a cap around the point opposite the pole. The half that faces the wall is the hemisphere.
-# The other is its mirror image with lines of its own: as many, since they meet at the mid-plane, but spread over the
-# cap and the free surface beside it. At the rim of the cap the stress is singular, u ~ d^(1/2) with d the distance from
+# The other is its mirror image with evenly spaced lines, as many, since they meet at the mid-plane. The line that ends
+# nearest to the rim of the cap is moved there. At the rim the stress is singular, u ~ d^(1/2) with d the distance from
 # it; there the cells are cut into rings.
-
 
 RINGS = 0.2 ** np.arange(1.0, 8.0)  # sizes of the rings around the rim, in parts of the cells there; they err by 1e-9
 COARSE = RINGS[:5]  # rings at the equator, which err by 1e-7: in smaller cells the slope of the contact is rounded off
-
-
-@dataclass(frozen=True)
-class CapSettings:
-    """Where the lines of the half with the cap are, in R on the flat plane unless said otherwise."""
-
-    in_core: float = 1.4  # largest rim that lies in the core; a larger one lies between its layers
-    narrow: float = 1.2  # radius of the core where the rim is outside
-    shallow: float = 0.25  # least depth of the cells under the surface where the rim is outside the core
-    reach: float = 0.5  # distance from the rim where lines are evenly spaced, in parts of that to the nearer end
-    steepest: float = 2.5  # largest growth of lines on their way to the rim of a small cap; otherwise rings lead there
-    nearest: float = 0.7  # largest distance in cells of the rim from the axis, or the equator, to which rings lead
-    nested: float = 0.4  # ratio of the sizes of these rings
-
-
-CAP = CapSettings()
+NESTED = 0.4  # ratio of the sizes of rings that lead to a rim close to the axis or the equator
 
 
 def held_sphere(R: float, x_lines: Array, depths: Array, cap_angle: float) -> CurvedQuads:
@@ -226,16 +210,14 @@ def held_sphere(R: float, x_lines: Array, depths: Array, cap_angle: float) -> Cu
     angle = np.radians(require_cap_angle(cap_angle))
     if len(x_lines) < 3:
         raise InputError(f"x_lines = {x_lines} are {len(x_lines)}, limit 3: the cap ends at one of them; give more")
-    rim = _rim(R, cap_angle)
     m, n = len(x_lines), len(depths)
-    near, far = Lines(x_lines, depths), _far_lines(R, m - 1, n - 1, rim)
-    met = Lines(np.linspace(0, CORE * R, m), far.depths)
-    own = m * n + (m + n - 1) * (LAYERS - 1)
-    patches = [*half_patches(R, near, met, stereographic), *half_patches(R, far, met, _mirrored)]
+    met, rim = even(R, m - 1, n - 1), _rim(R, cap_angle)
+    far, own = _moved_to(rim, R, met), m * n + (m + n - 1) * (LAYERS - 1)
+    patches = [*half_patches(R, Lines(x_lines, depths), met, stereographic), *half_patches(R, far, met, _mirrored)]
     mesh = joined(patches, [*half_vertices(m, n, 0, 2 * own), *half_vertices(m, n, own, 2 * own)])
     if len(past := _past(R, rim)):
         mesh = refined_towards(mesh, vertex_at(mesh, R, -R), past)
-    elif rim < CAP.nearest * far.x[1]:
+    elif rim < far.x[1] / 2:
         mesh = refined_towards(mesh, vertex_at(mesh, 0, -2 * R), _leading(rim / far.x[1]))
     rim_vertex = vertex_at(mesh, R * float(np.sin(angle)), -R * (1 + float(np.cos(angle))))
     return named(
@@ -256,59 +238,36 @@ def _mirrored(Z: Array, R: float) -> Array:
     return np.array([r, -2 * R - z])
 
 
-def _far_lines(R: float, m: int, n: int, rim: float) -> Lines:
-    """Lines of the half with the cap, m and n cells, of which one ends at its rim: in the core, or beside it.
-
-    If the lines are too few for a small cap, they are evenly spaced.
-    """
-    plain = even(R, m, n)
-    if rim < CAP.nearest * plain.x[1] and _steps(rim, CORE * R).sum() > m * np.log(CAP.steepest):
-        return plain
-    if rim <= CAP.in_core * R:
-        return replace(plain, x=_about(rim, CORE * R, m), depths=_spread(DEPTH * R, n, _reach(rim, CORE * R)))
-    depths = np.append(0, np.linspace(max(DEPTH / n, CAP.shallow), DEPTH, n)) * R
-    if rim == 2 * R or len(_past(R, rim)):
-        return replace(plain, depths=depths)
-    layers = np.append(np.linspace(0, (rim / R - CAP.narrow) / (2 - CAP.narrow), LAYERS), 1.0)
-    return Lines(np.linspace(0, CAP.narrow * R, m + 1), depths, layers)
-
-
 def _rim(R: float, cap_angle: float) -> float:
     """Rim of the cap on the flat plane."""
     return 2 * R * float(np.tan(np.radians(cap_angle / 2))) if cap_angle < 90 else 2 * R
 
 
+def _moved_to(rim: float, R: float, lines: Lines) -> Lines:
+    """Evenly spaced lines, of which the nearest to the rim ends there, unless that is the axis or the equator.
+
+    Lines end in the core, at its side, or between its layers; in the core all others are evenly spaced on either side.
+    """
+    ends = np.append(lines.x, R * (CORE + (2 - CORE) * lines.layers[1:]))
+    nearest, m = int(np.abs(ends - rim).argmin()), len(lines.x) - 1
+    if not 0 < nearest < ends.size - 1:
+        return lines
+    if nearest <= m:
+        return replace(
+            lines, x=np.interp(np.arange(m + 1), [0, nearest, m], [0.0, rim, rim if nearest == m else ends[m]])
+        )
+    layers = lines.layers.copy()
+    layers[nearest - m] = (rim / R - CORE) / (2 - CORE)
+    return replace(lines, layers=layers)
+
+
 def _past(R: float, rim: float) -> Array:
     """Sizes of rings around the equator, the last of which ends at a rim close to it; none if it is not."""
     part = (2 - rim / R) * LAYERS / (2 - CORE)
-    return _leading(part) if 0 < part < CAP.nearest else np.empty(0)
+    return _leading(part) if 0 < part < 0.5 else np.empty(0)
 
 
 def _leading(part: float) -> Array:
     """Sizes of rings in parts of a cell, the last of the size given."""
-    count = int(np.ceil(np.log(part) / np.log(CAP.nested)))
+    count = int(np.ceil(np.log(part) / np.log(NESTED)))
     return np.asarray(part ** (np.arange(1.0, count + 1) / count))
-
-
-def _about(rim: float, end: float, count: int) -> Array:
-    """Lines of `count` cells from 0 to `end`, one of them at the rim."""
-    reach, (inside, outside) = _reach(rim, end), _steps(rim, end)
-    cells = int(np.clip(np.rint(count * inside / (inside + outside)), 1, count - 1))
-    inner = rim - _spread(rim, cells, reach)[::-1]
-    inner[0] = 0.0  # not what rounding leaves of it
-    return np.concatenate([inner[:-1], rim + _spread(end - rim, count - cells, reach)])
-
-
-def _steps(rim: float, end: float) -> Array:
-    """How many lines fit between the axis and the rim, and between that and the end, by the logarithm of growth."""
-    return np.log1p(np.array([rim, end - rim]) / _reach(rim, end))
-
-
-def _reach(rim: float, end: float) -> float:
-    """Distance from the rim within which lines are evenly spaced."""
-    return CAP.reach * min(rim, end - rim)
-
-
-def _spread(length: float, count: int, reach: float) -> Array:
-    """Lines from 0 to `length`, evenly spaced as far as `reach` and geometrically from there on."""
-    return np.asarray(reach * np.expm1(np.linspace(0, np.log1p(length / reach), count + 1)))

@@ -155,10 +155,6 @@ class SizedBody(Valued):
         operator = Interpolated(scales, made[0][0].cell_nodes, moving, partial(_operators, self, lines))
         return Chart(contact_of(self.scales, operator.knowing([one for one, _ in made])), made[0][1])
 
-    def span(self, radius: float, window: float) -> tuple[float, float]:
-        """Least and widest contact radius in a window about one, inside the cells that move."""
-        return radius * np.exp(-window), min(radius * np.exp(window), WIDEST * self.scales.profile.end)
-
     def _moving(self, inner: Array, outside: Array) -> MovingGrid:
         """Grid from the ends of cells inside the edge, as parts of x_a, and outside, as parts of the rest."""
         inner[0], inner[-1], end = 0.0, 1.0, float(self.outer[0])

@@ -71,7 +71,6 @@ class FoldsLost(NotConverged):
 
 def on_all(state: State, stage: Stage) -> State:
     """Solve for all events again on a stage."""
-    stage.prepare(state.values())
     return {name: _found_again(name, event, stage) for name, event in state.items()}
 
 

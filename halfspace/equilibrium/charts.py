@@ -71,9 +71,6 @@ class Stage(Valued, ABC):
         """The same for every point of a path: itself, unless its charts are for events."""
         return self
 
-    def prepare(self, events: Iterable[Located]) -> None:
-        """Make one chart for all these events, where that is less work than one for each; here they are made."""
-
     def moved(self, event: Located, problem: Traceable) -> Located:
         """Solve for an event again on a chart made for where it was found."""
         return moved(event, problem)
