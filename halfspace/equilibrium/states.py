@@ -20,9 +20,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from halfspace.equilibrium import newton
-from halfspace.equilibrium.charts import Stage, placed, settled
-from halfspace.equilibrium.conditions import FOLD, Condition, Located, between, hermite, rounding
-from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
+from halfspace.equilibrium.charts import Stage, placed, settled, transfer
+from halfspace.equilibrium.conditions import (
+    FOLD,
+    NEARBY,
+    Condition,
+    Located,
+    between,
+    hermite,
+    rounding,
+    same_place,
+    seen_from,
+)
+from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, CONTACT_RADIUS, LOAD
 from halfspace.equilibrium.events import ErrorRule, errors_of
 from halfspace.equilibrium.newton import Traceable
 from halfspace.equilibrium.path import Metric, Point, Segment, correct, make_point
@@ -244,20 +254,45 @@ class FinestCurve(Valued):
         for part in parts:
             for a, b in pairwise(part.points):
                 if condition.of(a) * condition.of(b) <= 0 and b.arclength > a.arclength:
-                    bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
-                    return part.problem, between(part.problem, a, b, condition, self.metric).point, bend
-        # Between the last point on one discretisation and the first on the next, either of which may not have it.
-        nearest = [(part, min(part.points, key=lambda p: abs(condition.of(p)))) for part in parts]
-        nearest.sort(key=lambda one: (self._is_left_behind(one[0].problem), abs(condition.of(one[1]))))
-        for tries_left, (part, near) in zip(reversed(range(len(parts))), nearest, strict=True):
-            try:
-                solution = newton.solve(part.problem, near.x, newton.Control(np.eye(4)[k], value))
-                break
-            except NotConverged:
-                if not tries_left:
-                    raise
+                    return part.problem, *self._met(part.problem, a, b, condition)
+        known = [part for part in parts if not self._is_left_behind(part.problem)]
+        for problem, a, b in (bridge for before, after in pairwise(known) for bridge in self._bridges(before, after)):
+            if condition.of(a) * condition.of(b) <= 0:
+                return problem, *self._met(problem, a, b, condition)
+        part, near = min(
+            ((part, point) for part in known or parts for point in part.points),
+            key=lambda one: abs(condition.of(one[1])),
+        )
+        solution = newton.solve(part.problem, near.x, newton.Control(np.eye(4)[k], value))
         weights, s = self.metric.weights * near.rates, near.arclength + abs(condition.of(near))
-        return part.problem, make_point(part.problem, solution, self.metric, weights, s), 0.0
+        point = make_point(part.problem, solution, self.metric, weights, s)
+        if self.metric.distance(point, near) > NEARBY:
+            raise NotConverged(f"no state at {value:.6g} is found between two grids; take a smaller rtol")
+        return part.problem, point, 0.0
+
+    def _met(self, problem: Traceable, a: Point, b: Point, condition: Condition) -> tuple[Point, float]:
+        """State between two points that meets a condition, and the observable's second derivative there."""
+        k = condition.observable
+        bend = abs(b.rates[k] - a.rates[k]) / (b.arclength - a.arclength)
+        return between(problem, a, b, condition, self.metric).point, bend
+
+    def _bridges(self, before: Segment, after: Segment) -> Iterator[tuple[Traceable, Point, Point]]:
+        """Last point on one discretisation and first on the next, both on either of these that has them."""
+        last, first = before.points[-1], after.points[0]
+        for problem, other, point in (
+            (before.problem, after.problem, first),
+            (after.problem, before.problem, last),
+        ):
+            if problem.interface.follows_contact and np.isnan(point.observables[CONTACT_RADIUS]):
+                continue
+            start = transfer(other, point.x, problem)
+            try:
+                there = same_place(point, problem, start, self.metric)
+            except NotConverged:
+                continue
+            a, b = (last, there) if point is first else (there, first)
+            if (b := seen_from(a, b, self.metric)).arclength > a.arclength:
+                yield problem, a, b
 
     def _is_left_behind(self, problem: Traceable) -> bool:
         return any(problem is one for one in self.left_behind)

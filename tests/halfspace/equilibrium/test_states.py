@@ -455,3 +455,10 @@ def test_a_state_between_two_grids_is_solved_for_on_the_one_that_has_an_error():
     assert curve.at("load", -0.535859, "unstable 1").approach_error < 1e-3
     lost = replace(curve, left_behind=tuple(segment.problem for segment in curve.segments))
     assert np.isinf(lost.at("load", -0.535859, "unstable 1").approach_error)
+
+
+def test_a_state_between_two_grids_is_on_the_branch_that_was_asked_for():
+    """Two of forty were on the contact branch, two spacings away, where Newton's method had led from the nearest."""
+    path = halfspace.trace(0.7833, body=halfspace.Layer(20.0, 0.3, "sliding"), rtol=1e-4)
+    state = path.at(load=np.linspace(-3.34, -3.09, 40), branch="separated")
+    assert np.all(np.abs(state.approach + 1.3245) < 0.003)
