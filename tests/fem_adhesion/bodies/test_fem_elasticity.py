@@ -1,45 +1,31 @@
-"""Meshes, stiffness and convergence of the finite elements, without any contact."""
+"""Meshes, stiffness and boundary points of the finite elements, without any contact."""
 
 import numpy as np
 import pytest
 from facets import boundary_basis
-from scipy.sparse.linalg import spsolve
 from scipy.spatial.distance import cdist
-from scipy.special import j0, j1
 from skfem import (
     Basis,
     BilinearForm,
-    CellBasis,
     ElementQuad1,
-    ElementQuad2,
     ElementQuadP,
     ElementTriP1,
     ElementTriP2,
     ElementTriP3,
     ElementVector,
-    MeshTri,
 )
 from skfem.helpers import ddot, div, sym_grad
 
 from fem_adhesion.elasticity.cells import cell_quadrature, cell_stiffness, elastic_matrix
 from fem_adhesion.elasticity.exterior import boussinesq_displacement, boussinesq_stress
-from fem_adhesion.elasticity.space import Space, lame_parameters, ring_measure, scatter
+from fem_adhesion.elasticity.space import Space, lame_parameters, scatter
 from fem_adhesion.elasticity.surface import boundary_points
-from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid, with_named_boundaries
+from fem_adhesion.mesh.block import block_grid, graded_size, quarter_disc, tensor_grid
 from fem_adhesion.mesh.file import refined
 from fem_adhesion.mesh.spheres import held_sphere
 from halfspace.elastic import grid
 
 NU = 0.3
-
-
-def unit_quads(n):
-    return tensor_grid(np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, n + 1))
-
-
-def unit_triangles(n):
-    line = np.linspace(0.0, 1.0, n + 1)
-    return with_named_boundaries(MeshTri.init_tensor(line, -line[::-1]))
 
 
 # --- meshes ---
@@ -116,106 +102,6 @@ def test_stiffness_equals_scikit_fems_assembly(mesh, element):
     basis = Basis(mesh, ElementVector(element), quadrature=cell_quadrature(space))
     theirs = axisymmetric_elasticity.assemble(basis)
     assert abs(ours - theirs).max() < 1e-13 * abs(theirs).max()
-
-
-# --- a manufactured solution: u_r = J1(kr) g(z), u_z = J0(kr) h(z), with u_r/r = k g/2 on the axis ---
-
-WAVE = 2.0
-
-
-def profiles(z):
-    """g, g', g'' and h, h', h''."""
-    return (np.exp(z),) * 3, (np.sin(2.0 * z), 2.0 * np.cos(2.0 * z), -4.0 * np.sin(2.0 * z))
-
-
-def exact_displacement(r, z):
-    (g, _, _), (h, _, _) = profiles(z)
-    return np.array([j1(WAVE * r) * g, j0(WAVE * r) * h])
-
-
-def exact_strain(r, z):
-    (g, dg, _), (h, dh, _) = profiles(z)
-    hoop = j1(WAVE * r) / r * g
-    return np.array(
-        [WAVE * j0(WAVE * r) * g - hoop, j0(WAVE * r) * dh, hoop, j1(WAVE * r) * dg - WAVE * j1(WAVE * r) * h]
-    )
-
-
-def body_force(r, z):
-    """-(lambda + G) grad div u - G laplace u (Navier): each J is an eigenfunction of its radial operator."""
-    lam, G = lame_parameters(NU)
-    (g, dg, ddg), (h, dh, ddh) = profiles(z)
-    b_r = (lam + G) * -WAVE * (WAVE * g + dh) + G * (ddg - WAVE**2 * g)
-    b_z = (lam + G) * (WAVE * dg + ddh) + G * (ddh - WAVE**2 * h)
-    return np.array([-b_r * j1(WAVE * r), -b_z * j0(WAVE * r)])
-
-
-def loads(space, basis, density):
-    """Nodal forces of a force density, (2, elements, q), by the basis' quadrature."""
-    values = np.array([b[0] for b in basis.basis])
-    r = basis.global_coordinates()[0]
-    parts = np.einsum("icq,dcq,cq->dic", values, density, ring_measure(r) * basis.dx)
-    forces = np.zeros(space.unknowns)
-    np.add.at(forces, space.components[:, basis.element_dofs], parts)
-    return forces
-
-
-def solve_manufactured(space):
-    """Exact displacement on the far sides, exact traction on the surface, body force inside."""
-    K = scatter(cell_stiffness(space, NU), space.cell_dofs, space.unknowns)
-    cells = CellBasis(space.mesh, space.element, intorder=2 * space.degree + 8)
-    surface = boundary_basis(space, "contact", space.degree + 6)
-    _, zz, _, rz = np.tensordot(elastic_matrix(NU), exact_strain(*surface.global_coordinates()), axes=1)
-    f = loads(space, cells, body_force(*cells.global_coordinates())) + loads(space, surface, np.array([rz, zz]))
-    u = np.zeros(space.unknowns)
-    far = space.components[:, space.boundary_functions("far")]
-    u[far] = boundary_points(space, "far", space.degree + 6).projection(exact_displacement)
-    axis = space.components[0, space.boundary_functions("axis")]
-    u[axis] = 0.0
-    free = np.setdiff1d(np.arange(space.unknowns), np.union1d(far, axis))
-    u[free] = spsolve(K[free][:, free], f[free] - (K @ u)[free])
-    return cells, u
-
-
-def manufactured_errors(space):
-    """Relative errors of displacement in L2 and of strain in the energy norm, over the body of revolution."""
-    basis, u = solve_manufactured(space)
-    value, grad = np.array([b[0] for b in basis.basis]), np.array([b[0].grad for b in basis.basis])
-    r, z = basis.global_coordinates()
-    dV = ring_measure(r) * basis.dx
-    found = np.einsum("icq,dic->dcq", value, u[space.components[:, basis.element_dofs]])
-    (rr, rz), (zr, zz) = np.einsum("iecq,dic->decq", grad, u[space.components[:, basis.element_dofs]])
-    strain = np.array([rr, zz, found[0] / r, rz + zr])
-
-    def energy(e):
-        return np.einsum("ecq,ef,fcq,cq->", e, elastic_matrix(NU), e, dV)
-
-    difference = np.sum((found - exact_displacement(r, z)) ** 2 * dV)
-    return np.sqrt(
-        [
-            difference / np.sum(exact_displacement(r, z) ** 2 * dV),
-            energy(strain - exact_strain(r, z)) / energy(exact_strain(r, z)),
-        ]
-    )
-
-
-@pytest.mark.parametrize(
-    ("make_mesh", "element", "ladder"),
-    [
-        (unit_triangles, ElementTriP1(), (8, 16, 32)),
-        (unit_triangles, ElementTriP2(), (4, 8, 16)),
-        (unit_triangles, ElementTriP3(), (3, 6, 12)),
-        (unit_quads, ElementQuad2(), (4, 8, 16)),
-        (unit_quads, ElementQuadP(4), (2, 4, 8)),
-    ],
-    ids=["P1", "P2", "P3", "Q2", "Q4"],
-)
-def test_observed_orders_on_a_manufactured_solution(make_mesh, element, ladder):
-    spaces = [Space(make_mesh(n), element) for n in ladder]
-    errors = np.array([manufactured_errors(space) for space in spaces])
-    displacement, energy = np.log2(errors[:-1] / errors[1:])[-1]
-    assert displacement > spaces[0].degree + 1 - 0.2
-    assert energy > spaces[0].degree - 0.2
 
 
 # --- Boussinesq's closed forms and traces ---

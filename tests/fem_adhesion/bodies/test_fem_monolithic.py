@@ -1,4 +1,4 @@
-"""The problem of a whole linear body against its own derivatives, the condensed one, and the laws of mechanics."""
+"""The problem of a whole linear body against the condensed one."""
 
 import numpy as np
 import pytest
@@ -45,12 +45,6 @@ def transferred(x, problem):
     return start
 
 
-def central_difference(function, x, direction, step=1e-5):
-    """Fourth-order difference quotient of a function along a direction."""
-    near, far = (function(x + k * step * direction) - function(x - k * step * direction) for k in (1, 2))
-    return (8 * near - far) / (12 * step)
-
-
 # --- against the condensed problem ---
 
 
@@ -83,35 +77,6 @@ def test_every_far_field_and_quadrature_condenses_exactly(far_field, points):
         a = solved(condensed, control)
         b = newton.solve(whole, transferred(a.x, whole), control)
         np.testing.assert_allclose(b.observables, a.observables, rtol=1e-11, atol=1e-11)
-
-
-# --- the laws of mechanics ---
-
-
-def far_reaction(problem, x):
-    """Upward force on the far boundary, in R dgamma, of what holds the body there."""
-    space, displacement = problem.body.space, problem.held.unknowns(x[:-1])[: problem.body.space.unknowns]
-    far, vertical = space.boundary_functions("far"), space.components[1]
-    return space.constant[far] @ problem.body.forces(displacement)[vertical[far]]
-
-
-@pytest.mark.parametrize(
-    ("approach", "gaps"), [(-1.68, (1.0, 0.3)), (-0.5, (0.5, 0.0))], ids=["unstable", "in contact"]
-)
-def test_three_routes_to_the_load(approach, gaps):
-    """The derivative of the energy is a difference of energies, each right to 1e-13, over 0.01: hence 1e-9 at best."""
-    problem = assemble(SPACES["Q3"], NU, 1.0)
-    condensed = ContactProblem(condense(SPACES["Q3"], NU).operator, 1.0)
-    start = transferred(solved(condensed, newton.approach(approach), gaps).x, problem)
-    solution = newton.solve(problem, start, newton.approach(approach))
-
-    def energy(value):
-        return problem.energy(newton.solve(problem, solution.x, newton.approach(value)).x)
-
-    load = problem.load(solution.x)
-    assert solution.observables[[APPROACH, LOAD]] == pytest.approx([approach, load], abs=1e-12)
-    assert far_reaction(problem, solution.x) == pytest.approx(load, rel=1e-9)  # forces summed over a distant boundary
-    assert central_difference(energy, approach, 1.0, step=0.003) == pytest.approx(load, rel=1e-7)
 
 
 # --- failures ---

@@ -285,20 +285,6 @@ def test_a_gap_is_known_no_better_than_to_its_last_coefficients(last):
     assert np.isnan(ripples[1]) == (gaps.min() > LENNARD_JONES.edge_gap)
 
 
-@pytest.mark.parametrize(("edge", "cells"), [(1.0, (0, 1)), (0.7, (0,))])
-def test_a_radius_is_known_as_the_gaps_last_coefficients(edge, cells):
-    operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 6)
-    problem, last = ContactProblem(operator, 0.5), (2e-6, 5e-6)
-    places = 2 * (operator.radii % 1.0) - 1
-    wave = np.polynomial.legendre.legval(places, [-1, 0, 0, 0, 1, 0])  # none where cells meet
-    deflection = 0.3 * (operator.radii - edge) + wave * np.where(operator.radii < 1.0, *last)
-    height = problem.profile.height(operator.radii)
-    gaps = LENNARD_JONES.edge_gap + deflection + 0.5 * (height - edge**2 / 2)
-    ripple = problem.ripples(np.append(gaps, [0.0, 1.0]))[1]
-    beside = np.prod([last[k] for k in cells]) ** (1 / len(cells))
-    assert ripple == pytest.approx(beside / (0.3 + 0.5 * edge), rel=1e-3, abs=0)
-
-
 @pytest.mark.parametrize("nodes", [2, 5, 8])
 def test_values_on_the_axis_are_by_even_polynomials(nodes):
     operator = compliance.panels(np.array([0.0, 1.3, 2.0]), nodes)
@@ -323,16 +309,6 @@ def test_a_central_gap_under_a_small_sphere_is_within_its_error(tabor, ratio, rt
     event = path.event("pull_off")
     assert abs(event.central_gap - best.observables[CENTRAL_GAP]) < event.central_gap_error + known
     assert known < 1e-11
-
-
-@pytest.mark.parametrize("nodes", [1, 2, 3, 4])
-def test_a_displacement_and_a_slope_are_no_ripple(nodes):
-    lines = np.array([0.0, 1.0, 2.0])
-    operator = compliance.panels(lines, nodes) if nodes > 1 else compliance.bands(lines)
-    tilted = np.append(3.0 + 0.5 * operator.radii, [0.0, 1.0])
-    flat = ContactProblem(operator, 1.0)
-    tilted[:-2] += flat.profile.height(operator.radii)
-    assert (flat.ripples(tilted)[0] < 1e-12) == (nodes > 2)
 
 
 def test_a_problem_that_is_left_frees_its_matrices_at_once():
