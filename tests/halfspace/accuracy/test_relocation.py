@@ -93,6 +93,19 @@ def test_a_sign_that_changes_where_states_leap_is_no_event(monkeypatch, leap, fo
             conditions.bracketed(None, a, b, Condition(0), None)
 
 
+def test_a_fold_under_a_step_is_known_as_its_place_is():
+    """By the radius' shift: a load that three grids had alike by accident was 3.4 times outside at jump_off."""
+    values = np.array([[0.0, 5.0, 0.0, 1.0], [0.0, 5.0, 0.0, 1.0 + 1e-5]])
+    chain = _chain(conditions.FOLD, np.array([0.0, -6.0, 0.03, 1.5]), values)
+    still, shifted = (
+        events.estimate_event("any", [chain], events.ErrorRule(2.0, steps=steps)) for steps in (False, True)
+    )
+    assert still.load_error < 1e-10
+    assert shifted.load_error == pytest.approx(2.0 * 2 * 1e-5 / 1.5 * 6.0, rel=1e-6)
+    assert shifted.contact_radius_error == pytest.approx(still.contact_radius_error)
+    assert shifted.approach_error == still.approach_error
+
+
 def test_a_gap_is_known_no_better_than_those_beside_it():
     values = np.array([[0.0, 5.0, 1.0, np.nan], [0.0, 5.0, 1.0, np.nan]])
     chain = _chain(conditions.ZERO_LOAD, np.ones(4), values, near_axis=((1.0, 2.0), (1.0, 2.0 + 1e-6)))
@@ -119,6 +132,17 @@ def test_a_radius_is_known_no_better_than_the_place_on_the_path(own, still, rate
     assert event.contact_radius_error == pytest.approx(0.5 * 4e-6 / 2.0 * 0.5, rel=1e-4)
     assert event.central_gap_error == pytest.approx(0.5 * 4e-6 / 2.0 * 1.0, rel=1e-4)
     assert (event.approach_error, event.load_error)[still] < 1e-10
+
+
+def test_shift_and_rest_do_not_cancel_in_an_error():
+    """A load at a fold that stands still by accident, as under Dugdale's law on a coating: told to half of it."""
+    rates = np.array([0.0, -5.0, -1e-3, 1.0])
+    values = np.array([[2e-4, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0 - 1e-5]])
+    for steps, times in ((True, 2), (False, 1)):
+        rule = events.ErrorRule(along=True, steps=steps)
+        event = events.estimate_event("any", [_chain(conditions.FOLD, rates, values)], rule)
+        assert event.load_error == pytest.approx(0.5 * times * 5.0 * 1e-5, rel=1e-4)
+        assert event.approach_error == pytest.approx(0.5 * 2e-4, rel=1e-4)
 
 
 def _chain(condition, rates, values, near_axis=((0.0,), (0.0,))):

@@ -285,6 +285,20 @@ def test_a_gap_is_known_no_better_than_to_its_last_coefficients(last):
     assert np.isnan(ripples[1]) == (gaps.min() > LENNARD_JONES.edge_gap)
 
 
+@pytest.mark.parametrize(("edge", "cells"), [(1.0, (0, 1)), (0.7, (0,))])
+def test_a_radius_is_known_as_the_gaps_last_coefficients(edge, cells):
+    operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 6)
+    problem, last = ContactProblem(operator, 0.5), (2e-6, 5e-6)
+    places = 2 * (operator.radii % 1.0) - 1
+    wave = np.polynomial.legendre.legval(places, [-1, 0, 0, 0, 1, 0])  # none where cells meet
+    deflection = 0.3 * (operator.radii - edge) + wave * np.where(operator.radii < 1.0, *last)
+    height = problem.profile.height(operator.radii)
+    gaps = LENNARD_JONES.edge_gap + deflection + 0.5 * (height - edge**2 / 2)
+    ripple = problem.ripples(np.append(gaps, [0.0, 1.0]))[1]
+    beside = np.prod([last[k] for k in cells]) ** (1 / len(cells))
+    assert ripple == pytest.approx(beside / (0.3 + 0.5 * edge), rel=1e-3, abs=0)
+
+
 @pytest.mark.parametrize("nodes", [2, 5, 8])
 def test_values_on_the_axis_are_by_even_polynomials(nodes):
     operator = compliance.panels(np.array([0.0, 1.3, 2.0]), nodes)
@@ -298,6 +312,17 @@ def test_the_central_gap_is_known_under_any_profile(profile):
     state = problem.undeformed(-3.0)
     state[:-2] += 1 - problem.operator.radii**2 / 2
     assert problem.observables(state)[CENTRAL_GAP] == pytest.approx(4.0, abs=1e-12)
+
+
+def test_a_coefficient_small_by_accident_tells_no_radius():
+    """The cells of a fold where a dimple begins: even coefficients fall slowly, odd ones are nearly none."""
+    operator = compliance.panels(np.array([0.0, 1.0, 2.0]), 7)
+    problem, even = ContactProblem(operator, 0.5), [0, 0, 4e-3, 0, 2e-4, 1e-9, 0]
+    deflection = 0.3 * (operator.radii - 0.7) + np.polynomial.legendre.legval(2 * (operator.radii % 1.0) - 1, even)
+    gaps = LENNARD_JONES.edge_gap + deflection + 0.5 * (problem.profile.height(operator.radii) - 0.7**2 / 2)
+    state = np.append(gaps, [0.0, 1.0])
+    slope = operator.continuous(problem.contact_radius(state))[1] @ gaps
+    assert problem.ripples(state)[1] == pytest.approx(1e-5 / slope, rel=1e-3, abs=0)
 
 
 @pytest.mark.parametrize(("tabor", "ratio", "rtol"), [(0.05, 10, 1e-4), (0.3, 10, 1e-3), (0.3, 10, 1e-1)])

@@ -1,5 +1,6 @@
 """Apparatus of any stiffness: where it jumps, where it lands, what it loses."""
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -12,6 +13,7 @@ import halfspace
 from fem_adhesion.common.fold_birth import critical_stiffness
 from halfspace import Layer
 from halfspace.equilibrium import newton
+from halfspace.equilibrium.charts import moved
 from halfspace.equilibrium.contact import LOAD
 from halfspace.equilibrium.devices import cycle, energy_lost, jumps, reaching
 from halfspace.equilibrium.search import find_events
@@ -145,6 +147,23 @@ def test_the_error_of_an_energy_is_by_its_change_over_grids(tabor, stiffness, rt
     assert found.energy_lost.value == found.jump_on.energy.value + found.jump_off.energy.value
     assert found.energy_lost.error == found.jump_on.energy.error + found.jump_off.energy.error
     assert abs(found.energy_lost.value - truth.energy_lost.value) <= found.energy_lost.error
+
+
+def test_the_errors_of_a_take_off_count_a_twin():
+    """A number that the curve's grid and the finest share by accident is not taken for exact."""
+    counted = 0
+    for tabor, stiffness in itertools.product((0.3, 0.8, 2.0), (0.3, 1.0)):
+        path = halfspace.trace(tabor, rtol=1e-6)
+        for rough, jump in zip(jumps(path.segments, 1 / stiffness), ("jump_on", "jump_off"), strict=True):
+            before, found = rough.take_off, getattr(cycle(path, stiffness), jump).take_off
+            best, twin = (
+                moved(before, stage(before).problem).point.observables for stage in (path.finest, path.ladder.twin)
+            )
+            for k, quantity in enumerate(("approach", "load", "central_gap")):
+                change = abs(twin[k] - best[k])
+                assert getattr(found, f"{quantity}_error") >= 0.99 * path.ladder.rule.remaining * change
+                counted += change > 1.5 * abs(before.point.observables[k] - best[k])
+    assert counted > 0
 
 
 @pytest.mark.parametrize("stiffness", [0.0, -1.0, float("nan")])
