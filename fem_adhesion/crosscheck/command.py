@@ -4,19 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, DISAGREE, Command, Parser, add_workers, console_beside, written
 from fem_adhesion.common.scene_options import POISSON, add_body, scene_of
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-    from fem_adhesion.crosscheck.comparison import Case, Failure
-    from fem_adhesion.scene import Scene
 
 
 def add_options(command: Parser) -> None:
@@ -37,53 +29,33 @@ def add_options(command: Parser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Compare all scenes asked for, print a table each, and write the record."""
     from fem_adhesion.common.record import record as run_record
-    from fem_adhesion.crosscheck.comparison import require_comparable
+    from fem_adhesion.crosscheck import scenes as comparisons
+    from fem_adhesion.crosscheck.comparison import crosscheck_record, crosscheck_tables, require_comparable
     from halfspace.limits import require_rtol
 
     require_rtol(options.rtol)
     scenes = [scene_of(options, mu) for mu in options.tabor]
     for scene in scenes:
         require_comparable(scene, options.rtol)
-    console = console_beside(options.json)
+    console, cases = console_beside(options.json), []
     with written(options.json) as file:
-        cases = _compare_with_progress(scenes, options, console)
-        from fem_adhesion.crosscheck.comparison import crosscheck_record
-
+        solved = comparisons.run(scenes, rtol=options.rtol, jobs=options.jobs, dask=options.dask)
+        for done, scene in enumerate(scenes):
+            with progress_bar() as step:  # it is gone when a table is printed, which would break it
+                step(f"tabor {scene.tabor:g}", done, len(scenes))
+                cases.append(case := next(solved))
+            if case.reason:
+                failed = f"{', '.join(scene.words)}: failed: {case.told}"
+                lines = [failed, *(f"  {row.quantity}: {row.verdict}" for row in case.rows)]
+                console.print("\n".join(lines), highlight=False, markup=False)
+            else:
+                console.print(*crosscheck_tables(case))
+            console.print()
         record = run_record(rtol=options.rtol) | crosscheck_record(cases)
         if file:
             json.dump(record, file, indent=1, allow_nan=False)
     console.print(f"verdict: {record['verdict']}", highlight=False)
     return AGREE if record["verdict"] == "agree" else DISAGREE
-
-
-def _compare_with_progress(
-    scenes: Sequence[Scene], options: argparse.Namespace, console: Console
-) -> list[Case | Failure]:
-    """Run the cases with a bar on standard error and tables on the console."""
-    from fem_adhesion.crosscheck import scenes as comparisons
-
-    cases: list[Case | Failure] = []
-    solved = comparisons.run(scenes, rtol=options.rtol, jobs=options.jobs, dask=options.dask)
-    for done, scene in enumerate(scenes):
-        with progress_bar() as step:  # it is gone when a table is printed, which would break it
-            step(f"tabor {scene.tabor:g}", done, len(scenes))
-            cases.append(next(solved))
-        _show(cases[-1], console)
-    return cases
-
-
-def _show(case: Case | Failure, console: Console) -> None:
-    from fem_adhesion.crosscheck.comparison import Case, crosscheck_tables, told
-
-    if isinstance(case, Case):
-        for table in crosscheck_tables(case):
-            console.print(table)
-    else:
-        name = ", ".join(case.scene.words)
-        console.print(f"{name}: failed: {told(case)}", highlight=False, markup=False)
-        for row in case.rows:
-            console.print(f"  {row.quantity}: {row.verdict}", highlight=False, markup=False)
-    console.print()
 
 
 COMMAND = Command(

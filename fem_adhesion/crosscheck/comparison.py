@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_adhesion.common.facts import plain, versions
@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from fem_adhesion.common.terminal import Fitted
     from halfspace.equilibrium.curve import EquilibriumPath
 
-Verdict = Literal["agree", "disagree", "inconclusive"]
+Verdict = Literal["failed", "disagree", "inconclusive", "agree"]
+VERDICTS: tuple[Verdict, ...] = ("failed", "disagree", "inconclusive", "agree")  # worst first
 Pair = tuple[str, str]
 
 SOLVERS: Pair = ("half-space", "finite elements")
@@ -46,9 +47,7 @@ class Row:
     @property
     def error(self) -> float:
         """Sum of both error estimates."""
-        if self.first is None or self.second is None:
-            return float("nan")
-        return self.first.error + self.second.error
+        return self.first.error + self.second.error if self.first and self.second else math.nan
 
     @property
     def verdict(self) -> Verdict:
@@ -58,88 +57,56 @@ class Row:
         return "agree" if self.error <= self.budget else "inconclusive"
 
 
-def difference(first: Estimate | None, second: Estimate | None) -> float:
-    """Magnitude of the difference of two values, nan unless there are two."""
-    return abs(first.value - second.value) if first and second else float("nan")
-
-
-def worst(verdicts: Sequence[Verdict]) -> Verdict:
-    """Return ``disagree`` if there is one, else ``inconclusive`` if there is one, else ``agree``."""
-    for bad in ("disagree", "inconclusive"):
-        if bad in verdicts:
-            return bad
-    return "agree"
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A scene that a solver could not solve, with the reason and the rows that need no solution.
-
-    It does not stop the others. A row that disagrees says what is wrong with the solver.
-    """
-
-    scene: Scene
-    reason: str
-    rows: tuple[Row, ...] = ()
-
-    @property
-    def shown_by(self) -> tuple[str, ...]:
-        """Rows that disagree."""
-        return tuple(row.quantity for row in self.rows if row.verdict == "disagree")
-
-
-@dataclass(frozen=True)
-class Solution:
-    """What is told of a solver's curve, in plain data: who reads it needs no solver.
-
-    Events are those told, by their names; `tolerance` says whether that was met, in words.
-    """
-
-    events: Mapping[str, Any]
-    jumps: bool | None
-    rtol: float
-    missed: Mapping[str, Sequence[str]]
-    unknowns: int
-    seconds: float
-    settings: Mapping[str, Any]
-    tolerance: str
-
-
-def solution_of(path: EquilibriumPath) -> Solution:
-    """What is told of a curve."""
-    from halfspace.equilibrium.events import is_fold, tolerance_told
-
-    return Solution(
-        {name: plain(event) for name, event in path.events.items() if name in EVENT_NAMES or is_fold(name)},
-        path.jumps,
-        path.rtol,
-        path.missed,
-        path.unknowns,
-        path.seconds,
-        path.settings,
-        tolerance_told(path.rtol, path.missed),
-    )
+def of_values(
+    quantity: str, unit: str, first: Estimate | None, second: Estimate | None, budget: float, between: Pair = SOLVERS
+) -> Row:
+    """Row of two values, whose difference is nan unless there are two."""
+    off = abs(first.value - second.value) if first and second else math.nan
+    return Row(quantity, unit, first, second, off, budget, between)
 
 
 @dataclass(frozen=True)
 class Case:
-    """What is told of the solutions of one scene, by the names of their solvers, and their comparison."""
+    """Comparison of one scene: plain data of each solver's curve, by the solver's name, and the rows.
+
+    `reason` says why a solver could not solve the scene, or is empty; then the rows are those that need no solution.
+    """
 
     scene: Scene
-    solutions: Mapping[str, Solution]
-    rows: tuple[Row, ...]
+    solutions: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    rows: tuple[Row, ...] = ()
+    reason: str = ""
 
     @property
     def verdict(self) -> Verdict:
-        """The worst of the rows' verdicts."""
-        return worst([row.verdict for row in self.rows])
+        """The worst of the rows' verdicts, ``failed`` if the scene was not solved."""
+        verdicts: list[Verdict] = ["failed"] if self.reason else [row.verdict for row in self.rows]
+        return min(verdicts, key=VERDICTS.index, default="agree")
+
+    @property
+    def told(self) -> str:
+        """Why the scene was not solved, and the rows that disagree: they show what is wrong with the solver."""
+        wrong = [f"{row.quantity} disagrees" for row in self.rows if row.verdict == "disagree"]
+        return "; ".join([self.reason, *wrong])
+
+
+def solution_of(path: EquilibriumPath) -> dict[str, Any]:
+    """Plain data of a curve, which may be read without a solver; the tolerance is in words."""
+    from halfspace.equilibrium.events import is_fold, tolerance_told
+
+    events = {name: plain(event) for name, event in path.events.items() if name in EVENT_NAMES or is_fold(name)}
+    kept = {name: getattr(path, name) for name in ("jumps", "rtol", "missed", "unknowns", "seconds", "settings")}
+    return {"events": events, **kept, "tolerance": tolerance_told(path.rtol, path.missed)}
+
+
+EVENT_NAMES = ("pull_off", "jump_on", "jump_off")
 
 
 # What can be compared
 
 
 def tighter(rtol: float) -> float:
-    """What is asked of the other solver in a comparison to a tolerance."""
+    """Tolerance of the other solver in a comparison to a tolerance."""
     return max(rtol / 10, 1e-9)
 
 
@@ -157,62 +124,35 @@ def require_comparable(scene: Scene, rtol: float) -> None:
         harmonics.require_few(scene, tighter(rtol))
 
 
-# What is told of it: a record for machines, tables for the terminal
-
-VERDICTS = ("failed", "disagree", "inconclusive", "agree")  # worst first
-EVENT_NAMES = ("pull_off", "jump_on", "jump_off")
+# A record for machines, tables for the terminal
 
 
-def verdict_of(case: Case | Failure) -> str:
-    """Verdict of a case, ``failed`` if it was not solved."""
-    return "failed" if isinstance(case, Failure) else case.verdict
-
-
-def told(failure: Failure) -> str:
-    """Why a case has no solution, and which rows show what is wrong."""
-    return "; ".join([failure.reason, *(f"{quantity} disagrees" for quantity in failure.shown_by)])
-
-
-def overall_verdict(cases: Sequence[Case | Failure]) -> str:
+def overall_verdict(cases: Sequence[Case]) -> Verdict:
     """The worst verdict of all."""
-    return min(map(verdict_of, cases), key=VERDICTS.index)
+    return min((case.verdict for case in cases), key=VERDICTS.index)
 
 
-def crosscheck_record(cases: Sequence[Case | Failure]) -> dict[str, Any]:
+def crosscheck_record(cases: Sequence[Case]) -> dict[str, Any]:
     """All cases with verdict and versions, ready for JSON: no NaN, an event that does not exist is absent."""
-    told_of = [plain(_case(case)) for case in cases]
-    return {"verdict": overall_verdict(cases), "versions": versions(), "cases": told_of}
-
-
-def _case(case: Case | Failure) -> dict[str, Any]:
-    scene = {"tabor": case.scene.tabor, "poisson": case.scene.poisson, "verdict": verdict_of(case)}
-    if isinstance(case, Failure):
-        return {**scene, "reason": told(case), "comparison": [_row(row) for row in case.rows]}
-    solutions = {KEYS[name]: _solution(solution) for name, solution in case.solutions.items()}
-    return {**scene, **solutions, "comparison": [_row(row) for row in case.rows]}
+    return {"verdict": overall_verdict(cases), "versions": versions(), "cases": plain([_case(case) for case in cases])}
 
 
 KEYS = {"half-space": "halfspace", "harmonics": "harmonics", "finite elements": "finite_element"}
 
 
-def _solution(solution: Solution) -> dict[str, Any]:
-    return {name: value for name, value in vars(solution).items() if name != "tolerance"}
+def _case(case: Case) -> dict[str, Any]:
+    found: dict[str, Any] = {"tabor": case.scene.tabor, "poisson": case.scene.poisson, "verdict": case.verdict}
+    for name, solution in case.solutions.items():
+        found[KEYS[name]] = {key: value for key, value in solution.items() if key != "tolerance"}
+    return found | ({"reason": case.told} if case.reason else {}) | {"comparison": [_row(row) for row in case.rows]}
 
 
 def _row(row: Row) -> dict[str, Any]:
-    return {
-        "quantity": row.quantity,
-        "unit": row.unit,
-        "between": row.between,
-        "first": row.first and row.first.value,
-        "second": row.second and row.second.value,
-        "difference": row.difference,
-        "first_error": row.first and row.first.error,
-        "second_error": row.second and row.second.error,
-        "error": row.error,
-        "budget": row.budget,
-        "verdict": row.verdict,
-    }
+    names = ("quantity", "unit", "between", "difference", "error", "budget", "verdict")
+    found = {name: getattr(row, name) for name in names}
+    for side, estimate in (("first", row.first), ("second", row.second)):
+        found |= {side: estimate and estimate.value, f"{side}_error": estimate and estimate.error}
+    return found
 
 
 SHORT = {
@@ -224,6 +164,7 @@ SHORT = {
     "closed form": "cf",
 }
 WORDS = ("quantity", "unit", "verdict")  # columns without numbers
+RANKS = (0, 1, 1, 1, 2, 3, 3, 4, 0)  # of the columns
 STYLES = {"agree": "green", "disagree": "bold red", "inconclusive": "yellow"}
 
 
@@ -233,53 +174,34 @@ def columns(between: Pair = SOLVERS) -> tuple[str, ...]:
     return ("quantity", "unit", *between, "difference", *errors, "budget", "verdict")
 
 
-RANKS = (0, 1, 1, 1, 2, 3, 3, 4, 0)  # of the columns
-
-
 def crosscheck_tables(case: Case) -> list[Fitted]:
-    """Tables of a case, one for each pair of sources; the first says what was compared and what it cost."""
-    style = STYLES[case.verdict]
-    *parts, last = scene_parts(case.scene)
-    title = [*parts, f"{last}: [{style}]{case.verdict}[/]"]
-    cost = [f"{name} {cost_told(solution)}" for name, solution in case.solutions.items()]
-    made = [crosscheck_table(case.rows, between) for between in dict.fromkeys(row.between for row in case.rows)]
-    return [replace(made[0], title=title, caption=cost), *made[1:]]
-
-
-def scene_parts(scene: Scene) -> list[str]:
-    """What is compared, in rich's markup."""
+    """Tables of a case, one for each pair of sources; the first says what was compared, its verdict and its cost."""
     from rich.markup import escape
 
-    return list(map(escape, scene.words))
-
-
-def crosscheck_table(rows: Sequence[Row], between: Pair = SOLVERS) -> Fitted:
-    """One line for each quantity: both values, the difference, both error estimates, the budget and the verdict."""
     from fem_adhesion.common.terminal import Column, Fitted
 
-    own = [row for row in rows if row.between == between]
-    named = zip(columns(between), zip(*map(cells, own), strict=True), RANKS, strict=True)
-    return Fitted(
-        [Column(name, texts, rank, name in WORDS, wraps=name == "quantity") for name, texts, rank in named],
-        [" and ".join(between)],
-        styles=["" if row.verdict == "agree" else STYLES[row.verdict] for row in own],
-    )
+    *parts, last = map(escape, case.scene.words)
+    title = [*parts, f"{last}: [{STYLES[case.verdict]}]{case.verdict}[/]"]
+    cost = [
+        f"{name} {told['unknowns']} unknowns, {told['seconds']:.2f} s, {told['tolerance']}"
+        for name, told in case.solutions.items()
+    ]
+    tables: list[Fitted] = []
+    for between in dict.fromkeys(row.between for row in case.rows):
+        own = [row for row in case.rows if row.between == between]
+        named = zip(columns(between), zip(*map(cells, own), strict=True), RANKS, strict=True)
+        made = [Column(name, texts, rank, name in WORDS, wraps=name == "quantity") for name, texts, rank in named]
+        styles = ["" if row.verdict == "agree" else STYLES[row.verdict] for row in own]
+        tables.append(Fitted(made, [" and ".join(between)] if tables else title, [] if tables else cost, styles))
+    return tables
 
 
 def cells(row: Row) -> tuple[str, ...]:
-    """What stands in `columns`: values with digits down to the first uncertain one, errors with two."""
-    first, second = row.first, row.second
-    return (
-        row.quantity,
-        row.unit,
-        _value(first),
-        _value(second),
-        _small(row.difference),
-        _small(first.error if first else math.nan),
-        _small(second.error if second else math.nan),
-        _small(row.budget),
-        row.verdict,
-    )
+    """Texts under `columns`: values with digits down to the first uncertain one, errors with two."""
+    both = (row.first, row.second)
+    errors = (_small(one.error if one else math.nan) for one in both)
+    numbers = (*map(_value, both), _small(row.difference), *errors, _small(row.budget))
+    return (row.quantity, row.unit, *numbers, row.verdict)
 
 
 def _value(estimate: Estimate | None) -> str:
@@ -294,8 +216,3 @@ def _value(estimate: Estimate | None) -> str:
 
 def _small(value: float) -> str:
     return f"{value:.1e}" if math.isfinite(value) else "-"
-
-
-def cost_told(solution: Solution) -> str:
-    """Cost of a curve, and whether it has the accuracy that was asked of it."""
-    return f"{solution.unknowns} unknowns, {solution.seconds:.2f} s, {solution.tolerance}"

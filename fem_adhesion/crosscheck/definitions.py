@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from fem_adhesion.crosscheck.comparison import CLOSED_FORM, Row, difference
+from fem_adhesion.crosscheck.comparison import CLOSED_FORM, Row, of_values
+from fem_adhesion.crosscheck.settings import USUAL
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.contact import Heights, paraboloid, sphere
 from halfspace.laws import Dlvo, Dugdale, Exponential, Law, Morse, PowerLaw
@@ -60,8 +61,7 @@ def _until(width: float, h: Any) -> Any:
     return (1 - np.tanh((h - 2) / (2 * width))) / 2
 
 
-STEP = 2e-3  # of ln H, as of the trapezoidal rule: it leaves 1e-12 of smooth laws, 1e-7 of a kink
-LOGARITHMS = np.arange(-25.0, 40.0, STEP)  # a tension that falls as h^-2.1 leaves 1e-19 beyond
+LOGARITHMS = np.arange(-25.0, 40.0, USUAL.step)  # of gaps H; a tension that falls as h^-2.1 leaves 1e-19 beyond
 
 
 @dataclass(frozen=True)
@@ -82,16 +82,16 @@ class Numbers:
 
 def numbers(tension: Tension) -> Numbers:
     """Numbers of a law from its tension at gaps h, which need not be of work 1."""
-    H = np.exp(LOGARITHMS)
+    H, step = np.exp(LOGARITHMS), USUAL.step
     s = tension(1 + H)
-    parts = STEP * H * s
+    parts = step * H * s
     work = float(parts.sum())
     doubt = abs(2 * float(parts[::2].sum()) - work)
     left = np.cumsum(parts[::-1])[::-1] - parts / 2
     half, tenth = (math.exp(np.interp(-part * work, -left, LOGARITHMS)) for part in (0.5, 0.1))
     top = int(np.argmax(s))
     a, b, c = np.polyfit(np.arange(-1, 2), s[top - 1 : top + 2], 2)
-    edge, strength = math.exp(LOGARITHMS[top] - STEP * b / (2 * a)), float(c - b**2 / (4 * a))
+    edge, strength = math.exp(LOGARITHMS[top] - step * b / (2 * a)), float(c - b**2 / (4 * a))
     d = np.array([-1e-5, 1e-5])
     stiffness = float(np.diff(tension(1 + d))[0] / np.diff(d)[0])
     return Numbers(Estimate(work, doubt), edge, strength / work, stiffness / work, half, tenth)
@@ -125,20 +125,16 @@ def heights(scene: Scene) -> Heights:
     return (lambda r: known(shape, r)) if known else scene.surface.height
 
 
-SMALL = 1e-4  # of a radius, for differences
-
 # What they must make
-
-BUDGET, EXACT = 1e-3, 1e-5  # of each number; what the rule and differences leave of it
 
 
 def rows(scene: Scene) -> list[Row]:
     """Numbers of law, profile and lengths, by definition and as the solvers take them."""
-    return [
-        Row(name, unit, first, second, difference(first, second), BUDGET * abs(known), CLOSED_FORM)
-        for name, unit, known, value in (*_of_law(scene.law), *_of_profile(scene), *_of_lengths(scene))
-        for first, second in [(Estimate(known, EXACT * abs(known)), Estimate(value, EXACT * abs(known)))]
-    ]
+    found = []
+    for name, unit, known, value in (*_of_law(scene.law), *_of_profile(scene), *_of_lengths(scene)):
+        both = Estimate(known, USUAL.exact * abs(known)), Estimate(value, USUAL.exact * abs(known))
+        found.append(of_values(name, unit, *both, USUAL.defined * abs(known), CLOSED_FORM))
+    return found
 
 
 Pairs = Iterator[tuple[str, str, float, float]]
@@ -158,9 +154,9 @@ def _of_profile(scene: Scene) -> Pairs:
         return
     z, surface = heights(scene), scene.shape.surface(scene.tabor)
     r = surface.end / 2 if math.isfinite(surface.end) else 1.0
-    d = SMALL * r
-    low, mid, high = z(r + d * np.array([-1.0, 0.0, 1.0]))
-    slopes = surface.slope(r + d * np.array([-1.0, 0.0, 1.0]))
+    d = USUAL.small * r
+    places = r + d * np.array([-1.0, 0.0, 1.0])
+    (low, mid, high), slopes = z(places), surface.slope(places)
     yield "profile: height", "beta^2/R", float(mid), float(surface.height(np.array(r)))
     yield "profile: slope", "beta/R", float(high - low) / (2 * d), float(slopes[1])
     yield "profile: curvature", "1/R", float(high - 2 * mid + low) / d**2, float(slopes[2] - slopes[0]) / (2 * d)

@@ -6,12 +6,12 @@ Cells, elements, quadrature and clamp are the same, all else is not: what both f
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from skfem import ElementQuadP
 
-from fem_adhesion.crosscheck.comparison import WEAK_FORM, Row
+from fem_adhesion.crosscheck.comparison import WEAK_FORM, Row, of_values
+from fem_adhesion.crosscheck.settings import USUAL
 from fem_adhesion.elasticity.condensation import condense
 from fem_adhesion.elasticity.exterior import clamped
 from fem_adhesion.elasticity.space import Space
@@ -28,33 +28,6 @@ from halfspace.profiles import Paraboloid
 from halfspace.values import Estimate
 
 
-@dataclass(frozen=True)
-class Settings:
-    """The block that is solved both ways.
-
-    Attributes
-    ----------
-    degree : int
-        Of the elements.
-    cell, fine, size : float
-        Its finest cells, as far as these go, and its edge, in beta.
-    rounding : float
-        Relative difference that rounding may make; tabor 0.02 to 20 differ by 2e-12 at most.
-    before : float
-        How far before the jump on, or the first touch, in eps: the state is found from undeformed surfaces there.
-    """
-
-    degree: int = 3
-    cell: float = 0.4
-    fine: float = 3.0
-    size: float = 20.0
-    rounding: float = 1e-9
-    before: float = 1.0
-
-
-USUAL = Settings()
-
-
 def rows(scene: Scene, path: EquilibriumPath) -> Iterator[Row]:
     """Load and gap beside the axis before the surfaces jump into contact, by both, of a scene that full Newton serves.
 
@@ -63,21 +36,19 @@ def rows(scene: Scene, path: EquilibriumPath) -> Iterator[Row]:
     if not (scene.body.name == "half-space" and scene.law == LENNARD_JONES and scene.shape == Paraboloid()):
         return
     approach = (path.events["jump_on"].approach if "jump_on" in path.events else 0.0) - USUAL.before
-    mesh = block_grid(USUAL.cell, USUAL.fine, USUAL.size)
-    contact = Contact(discretise(mesh, USUAL.degree, [(scene.poisson, 1.0)]), scene.tabor, endless=False)
+    mesh, degree = block_grid(*USUAL.block), USUAL.block_degree
+    contact = Contact(discretise(mesh, degree, [(scene.poisson, 1.0)]), scene.tabor, endless=False)
     start = contact.undeformed(approach)
     whole = newton(contact, start, at_approach(start))
     whole = newton(contact, whole.y, at_approach(start))  # its Newton ends at the square of its last step
-    body = condense(
-        Space(mesh, ElementQuadP(USUAL.degree)), scene.poisson, far_field=clamped, points=2 * USUAL.degree + 2
-    )
+    body = condense(Space(mesh, ElementQuadP(degree)), scene.poisson, far_field=clamped, points=2 * degree + 2)
     condensed = ContactProblem(body.operator, scene.tabor)
     part = condensed_newton.solve(condensed, condensed.undeformed(approach), condensed_newton.approach(approach))
-    numbers = {
-        ("load", "R dgamma"): (float(part.observables[LOAD]), whole.load),
-        ("gap beside the axis", "eps"): (float(part.x[0]), float(whole.y[np.argmin(contact.body.radii)]) - 1),
-    }
-    for (name, unit), (first, second) in numbers.items():
-        budget = USUAL.rounding * abs(second)
-        both = Estimate(second, budget / 2), Estimate(first, budget / 2)
-        yield Row(f"elimination: {name}", unit, *both, abs(first - second), budget, WEAK_FORM)
+    beside = float(whole.y[np.argmin(contact.body.radii)]) - 1
+    for name, unit, first, second in (
+        ("load", "R dgamma", whole.load, float(part.observables[LOAD])),
+        ("gap beside the axis", "eps", beside, float(part.x[0])),
+    ):
+        budget = USUAL.rounding * abs(first)
+        both = Estimate(first, budget / 2), Estimate(second, budget / 2)
+        yield of_values(f"elimination: {name}", unit, *both, budget, WEAK_FORM)

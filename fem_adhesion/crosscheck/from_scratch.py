@@ -11,18 +11,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from operator import attrgetter
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 import halfspace
-from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, difference
+from fem_adhesion.crosscheck.comparison import CLOSED_FORM, WEAK_FORM, Row, of_values
 from fem_adhesion.crosscheck.definitions import numbers
-from fem_adhesion.crosscheck.weak_bodies import FineAt, contacts, is_sharp
+from fem_adhesion.crosscheck.settings import USUAL
+from fem_adhesion.crosscheck.weak_bodies import FineAt, contacts, sharpness
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from fem_adhesion.weak_form.contact import Contact
@@ -35,54 +35,7 @@ from halfspace.errors import NotConverged
 from halfspace.laws import LENNARD_JONES, Law
 from halfspace.values import Array, Estimate, Valued
 
-
-@dataclass(frozen=True)
-class Settings:
-    """Budgets of the fourth level, and how it looks for what turns.
-
-    Attributes
-    ----------
-    budget : float
-        Of each quantity.
-    pointwise : float
-        Times that for numbers at a point, as of level 3.
-    least : float
-        Error of each number that the weak form knows none better than: both its bodies may err alike.
-    round_off : float
-        Relative.
-    approach, change : float
-        In eps, of the state made up and of its change.
-    aside : tuple of float
-        Steps beside a fold in 1 + the load: more than both sources differ by there, or as far as states are found.
-    near, away : float
-        Where the way from afar ends before a fold, in 1 + the approach; how far off that is, in 1 + the load.
-    small : float
-        Radius of a contact about whose edge cells are finest, in the radius of the attraction.
-    opening : float
-        Part of a gap that opens in the radius of the attraction by the 3-9 law.
-    closest : float
-        Least gap in eps that counts there.
-    finer : float
-        How much shorter steps past a turning point are where a body has a length.
-    """
-
-    budget: float = 1e-3
-    pointwise: float = 10.0
-    least: float = 5e-5
-    round_off: float = 1e-10
-    approach: float = -0.5
-    change: float = 0.3
-    aside: tuple[float, ...] = tuple(1e-2 / 2.0**n for n in range(8))
-    near: float = 3e-3
-    away: float = 0.2
-    small: float = 0.1
-    opening: float = 0.49
-    closest: float = 0.1
-    finer: float = 3.0
-
-
-USUAL = Settings()
-
+Answer = TypeVar("Answer")
 
 # Closed forms
 
@@ -91,7 +44,7 @@ def closed_forms(law: Law = LENNARD_JONES) -> list[Row]:
     """Law and limits of the default: what the shared code makes of them, beside what is known."""
     adhesion = Estimate(1.0, 0.0), numbers(lambda h: -law.pressure(h - 1, 1.0)).work + Estimate(0.0, USUAL.round_off)
     return [
-        Row("limit: integral of tension", "dgamma", *adhesion, difference(*adhesion), 1e-6, CLOSED_FORM),
+        of_values("limit: integral of tension", "dgamma", *adhesion, 1e-6, CLOSED_FORM),
         _limit("limit: Bradley pull_off load", -2 * np.pi, (1e-9,)),
         _limit("limit: JKR pull_off load", -1.5 * np.pi, (50.0, 100.0)),
     ]
@@ -99,14 +52,21 @@ def closed_forms(law: Law = LENNARD_JONES) -> list[Row]:
 
 def _limit(quantity: str, value: float, tabors: Sequence[float]) -> Row:
     """Pull-off load towards a limit: what is left is less than the last step towards it."""
-    known, loads = Estimate(value, 0.0), []
+    loads = [_found(lambda tabor: halfspace.trace(tabor, rtol=1e-3).events["pull_off"], tabor) for tabor in tabors]
+    events = [event for event in loads if event]
+    found = None
+    if len(events) == len(tabors):
+        step = float(np.abs(np.diff([event.load for event in events])).sum())
+        found = events[-1].estimate("load") + Estimate(0.0, step)
+    return of_values(quantity, "R dgamma", Estimate(value, 0.0), found, USUAL.budget * abs(value), CLOSED_FORM)
+
+
+def _found(solve: Callable[..., Answer], *given: Any, **how: Any) -> Answer | None:
+    """Answer of a solver, None where it does not converge: such a row disagrees."""
     try:
-        loads = [halfspace.trace(tabor, rtol=1e-3).events["pull_off"] for tabor in tabors]
+        return solve(*given, **how)
     except NotConverged:
-        return Row(quantity, "R dgamma", known, None, float("nan"), USUAL.budget * abs(value), CLOSED_FORM)
-    step = float(np.abs(np.diff([event.load for event in loads])).sum())
-    found = Estimate(loads[-1].load, loads[-1].load_error + step)
-    return Row(quantity, "R dgamma", known, found, difference(known, found), USUAL.budget * abs(value), CLOSED_FORM)
+        return None
 
 
 # Equations
@@ -125,10 +85,11 @@ def equations(scene: Scene, problems: Sequence[ContactProblem], radius: float) -
     # Of each the largest, lest both bodies agree by chance on one.
     doubt = max(USUAL.least, float(np.max(np.abs(np.diff(apart[:, :4], axis=0)) / sizes)))
     for n, (name, unit) in enumerate(EQUATIONS.items()):
-        first, second = Estimate(float(apart[1, n]), doubt * sizes[n]), _estimate(shared[:, n].tolist())
-        yield Row(
-            f"equations: {name}", unit, first, second, difference(first, second), USUAL.budget * sizes[n], WEAK_FORM
-        )
+        change = float(np.abs(np.diff(shared[:, n])).sum())
+        value = float(shared[-1, n])
+        second = Estimate(value, change + USUAL.round_off * (1 + abs(value)))
+        first = Estimate(float(apart[1, n]), doubt * sizes[n])
+        yield of_values(f"equations: {name}", unit, first, second, USUAL.budget * sizes[n], WEAK_FORM)
 
 
 EQUATIONS = {"residual": "eps", "tangent": "eps", "load": "R dgamma", "load's slope": "R dgamma"}
@@ -170,12 +131,6 @@ def _apart(contact: Contact, radius: float) -> list[float]:
     return [residual, tangent, load, slope, *sizes]
 
 
-def _estimate(values: Sequence[float]) -> Estimate:
-    """The last of some values, each of which errs by less than the one before differs from it."""
-    change = float(np.abs(np.diff(values)).sum())
-    return Estimate(float(values[-1]), change + USUAL.round_off * (1 + abs(float(values[-1]))))
-
-
 # Events
 
 
@@ -203,8 +158,7 @@ class Compared:
         """Row, if what the weak form errs by, but for rounding, is so much of the size."""
         coarse, fine = self.both
         first = None if coarse is None or fine is None else Estimate(fine, doubt * self.size + self.rounding[1])
-        off, budget = difference(first, self.second), USUAL.budget * self.size
-        return Row(f"apart: {self.quantity}", self.unit, first, self.second, off, budget, WEAK_FORM)
+        return of_values(f"apart: {self.quantity}", self.unit, first, self.second, USUAL.budget * self.size, WEAK_FORM)
 
 
 def events(scene: Scene, path: EquilibriumPath) -> list[Row]:
@@ -253,7 +207,7 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
             size = USUAL.pointwise * (1 + abs(known.value))
             yield Compared(f"{name} {quantity}", unit, both, known, size, (ripples[0] or 0.0, ripples[1] or 0.0))
     # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
-    smooth, sharp = name == "jump_on", is_sharp(scene, radius)
+    smooth, sharp = name == "jump_on", sharpness(scene, radius) > USUAL.sharp
     if name in FOLDS and (smooth or not sharp):
         side, _ = _numbers(b, None, _stable_side)
         yield Compared(f"{name} stable side", "", (side, side), Estimate(FOLDS[name], 0.0), 1.0)
@@ -277,29 +231,26 @@ def _stable_side(state: Equilibrium) -> float:
     else is no jump.
     """
     for step in np.array(USUAL.aside) * (1 + abs(state.load)):
-        with suppress(NotConverged):
-            below, above = (state.past(d, under_load=False).tangent.unstable for d in (-step, step))
-            return float(below - above) if min(below, above) == 0 else math.nan
+        below, above = (_found(state.past, d, under_load=False) for d in (-step, step))
+        if below and above:
+            ways = below.tangent.unstable, above.tangent.unstable
+            return float(ways[0] - ways[1]) if min(ways) == 0 else math.nan
     return math.nan
 
 
 def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
     """Equilibrium at the load of a fold that is reached from undeformed surfaces; None if no fold is there."""
     near = state.approach - USUAL.near * (1 + abs(state.approach))
-    with suppress(NotConverged):
-        found = from_afar(state.contact, scene.scales.separated_approach, near)
-        if abs(found.load - state.load) < USUAL.away * (1 + abs(state.load)):
-            return newton(state.contact, found.y, at_load(state.contact, state.load), found.nearby)
-    return None
+    found = _found(from_afar, state.contact, scene.scales.separated_approach, near)
+    if found is None or abs(found.load - state.load) >= USUAL.away * (1 + abs(state.load)):
+        return None
+    return _found(newton, state.contact, found.y, at_load(state.contact, state.load), found.nearby)
 
 
 def _numbers(a: object, b: object, of: Callable[[Any], float]) -> tuple[float | None, float | None]:
     """Numbers of two states, None where there is none or it has none."""
-    found: list[float | None] = [None, None]
-    for n, state in enumerate((a, b)):
-        with suppress(NotConverged):
-            found[n] = None if state is None else of(state)
-    return found[0], found[1]
+    first, second = (None if state is None else _found(of, state) for state in (a, b))
+    return first, second
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -343,17 +294,15 @@ class StateInWeakForm(Valued):
 
 
 def _places(event: Located) -> tuple[float, float]:
-    """Radii in beta: where cells are finest, at the edge of the contact unless it is small, and how far it attracts."""
+    """Radii in beta: where cells are finest, at the edge of the contact unless it is small, and how far it attracts.
+
+    That far the gap has opened by as much as takes the attraction away, in the same part as by the 3-9 law.
+    """
     _, _, central_gap, radius = (float(value) for value in event.point.observables)
     scales = event.problem.interface.scales
-    attraction = scales.radius_at(_opening(scales.law, central_gap))
-    return (radius, max(radius, attraction)) if radius > USUAL.small * attraction else (attraction, attraction)
-
-
-def _opening(law: Law, central_gap: float) -> float:
-    """What the gap opens by, in eps, where the attraction has fallen as much as by the 3-9 law."""
-    grain = float(np.sqrt(LENNARD_JONES.stiffness / law.stiffness))
-    return USUAL.opening * grain * max(1 + central_gap, USUAL.closest)
+    grain = float(np.sqrt(LENNARD_JONES.stiffness / scales.law.stiffness))
+    attraction = scales.radius_at(USUAL.opening * grain * max(1 + central_gap, USUAL.closest))
+    return (radius, max(radius, attraction)) if radius > USUAL.tiny * attraction else (attraction, attraction)
 
 
 def _state(contact: Contact, event: Located) -> StateInWeakForm:
@@ -379,17 +328,13 @@ def _turn(name: str, state: Equilibrium | None) -> Turn | None:
     if state is None:
         return None
     finer = 1.0 if state.contact.endless else USUAL.finer
-    with suppress(NotConverged):
-        return turning_point(state, under_load=name == "pull_off", finer=finer)
-    return None
+    return _found(turning_point, state, under_load=name == "pull_off", finer=finer)
 
 
 def _beside(name: str, state: StateInWeakForm) -> Equilibrium | None:
     """Equilibrium at the approach of pull-off, or at the load of another event: what turns there is stationary."""
     to = at_approach(state.y) if name == "pull_off" else at_load(state.contact, state.load * (name != "zero_load"))
-    with suppress(NotConverged):
-        return newton(state.contact, state.y, to)
-    return None
+    return _found(newton, state.contact, state.y, to)
 
 
 def _energy_released(scene: Scene, on: FineAt, path: EquilibriumPath) -> float | None:
@@ -397,7 +342,5 @@ def _energy_released(scene: Scene, on: FineAt, path: EquilibriumPath) -> float |
     apart, touching = (path.stages[-1][name] for name in ("separated", "zero_approach"))
     first, second = (on(*_places(end)) for end in (apart, touching))
     starts = first.undeformed(scene.scales.separated_approach), np.append(1 + _gaps(touching, second), 0.0)
-    with suppress(NotConverged):
-        before, after = (newton(each, y, at_approach(y)) for each, y in zip((first, second), starts, strict=True))
-        return before.energy - after.energy
-    return None
+    before, after = (_found(newton, each, y, at_approach(y)) for each, y in zip((first, second), starts, strict=True))
+    return before.energy - after.energy if before and after else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -11,9 +11,10 @@ import numpy as np
 
 import halfspace
 from fem_adhesion import convergence, discretise, harmonics
-from fem_adhesion.bodies.body import Discretisation, SolverName
+from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.convergence import on_given_mesh
 from fem_adhesion.crosscheck.comparison import HARMONICS, SOLVERS, Pair
+from fem_adhesion.crosscheck.settings import USUAL
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.finite_bodies import SizedBody, at_equator
 from halfspace.elastic import grid
@@ -41,17 +42,11 @@ class Reference:
 
 def reference_for(scene: Scene) -> Reference | None:
     """The half-space or the whole sphere by harmonics; None for a body that neither knows."""
-    return REFERENCES[scene.checked_by](scene) if scene.checked_by else None
-
-
-def _by_integral_equation(scene: Scene) -> Reference:
-    return Reference(SOLVERS, partial(halfspace.trace, **scene.for_half_space), partial(_half_spaces, scene))
-
-
-REFERENCES: Mapping[SolverName, Callable[[Scene], Reference]] = {
-    "half-space": _by_integral_equation,
-    "harmonics": lambda scene: Reference(HARMONICS, partial(harmonics.trace, scene), partial(_spheres, scene)),
-}
+    if scene.checked_by == "half-space":
+        return Reference(SOLVERS, partial(halfspace.trace, **scene.for_half_space), partial(_half_spaces, scene))
+    if scene.checked_by == "harmonics":
+        return Reference(HARMONICS, partial(harmonics.trace, scene), partial(_spheres, scene))
+    return None
 
 
 # Pressures that all operators are compared under, of the radius in units of `radius_of`
@@ -62,13 +57,7 @@ PRESSURES: dict[str, Callable[[Array], Array]] = {
     "spike": lambda r: -1 / (1 + ((r - 1) / 0.05) ** 2) ** 3,
     "ring": lambda r: r**2 / (1 + r**2) ** 4,
 }
-SMOOTH = ("spike", "ring")  # without an edge, where harmonics converge slowly
-FINEST, FINE = 1e-4, 0.02  # cells at an edge, where the deflection under a disc has a vertical tangent, or without one
-
-
-def pressures_for(scene: Scene) -> dict[str, Callable[[Array], Array]]:
-    """Those under which the operators of a scene are compared."""
-    return {name: PRESSURES[name] for name in SMOOTH} if scene.sized else PRESSURES
+SMOOTH = ("spike", "ring")  # without an edge, where harmonics converge slowly; for bodies with a length
 
 
 def radius_of(scene: Scene) -> float:
@@ -76,37 +65,31 @@ def radius_of(scene: Scene) -> float:
     return scene.surface.end / 6 if math.isfinite(scene.sphere_radius) else 1.0
 
 
-# Half-spaces
-
-
-def _lines(scene: Scene) -> Array:
-    """Ends of the cells of a block's surface."""
-    if scene.sized:
-        last = at_equator(scene.tabor, scene.surface, 8)
-        return _about(radius_of(scene), np.array([scene.surface.end]), last)
-    return grid.graded(1.0, FINEST, scene.body.cut_off or 40.0)
-
-
 def _about(edge: float, outer: Array, last: float) -> Array:
     """Ends of cells about an edge, up to the first of the outer ones."""
-    return np.append(grid.graded(edge, FINE * edge, float(outer[0]), last=last), outer[1:])
+    return np.append(grid.graded(edge, USUAL.fine * edge, float(outer[0]), last=last), outer[1:])
+
+
+def _of_blocks(scene: Scene) -> tuple[Array, Array]:
+    """Ends of the cells of a block's surface, and of one twice as large."""
+    lines = grid.graded(1.0, USUAL.finest, scene.body.cut_off or 40.0)
+    return lines, grid.graded(1.0, USUAL.finest, 2 * lines[-1])
 
 
 def _half_spaces(scene: Scene, rtol: float) -> Operators:
     degree = convergence.resolution_for(scene, rtol, 0).how.degree
-    lines = _lines(scene)
-    wider = lines if scene.sized else grid.graded(1.0, FINEST, 2 * lines[-1])
-    return [panels_of(scene.body.layered, wider, k) for k in (degree + 3, degree + 5)]
-
-
-# Spheres by harmonics
-
-HARMONIC = ((9, 2000), (11, 2600))  # nodes of the cells and harmonics, which resolve the spike at that radius
+    if scene.sized:
+        last = at_equator(scene.tabor, scene.surface, 8)
+        lines = _about(radius_of(scene), np.array([scene.surface.end]), last)
+    else:
+        _, lines = _of_blocks(scene)
+    return [panels_of(scene.body.layered, lines, k) for k in (degree + 3, degree + 5)]
 
 
 def _spheres(scene: Scene, _: float) -> Operators:
+    """By harmonics."""
     R = 6 * radius_of(scene)
-    hows = [harmonics.Fineness(nodes, count * scene.scales.spike_width / R) for nodes, count in HARMONIC]
+    hows = [harmonics.Fineness(nodes, count * scene.scales.spike_width / R) for nodes, count in USUAL.harmonic]
     return [_made(harmonics.sized_body(scene, how), scene) for how in hows]
 
 
@@ -115,26 +98,16 @@ def _made(body: SizedBody, scene: Scene) -> ElasticOperator:
     return body.make(_about(body.coordinate.of(radius_of(scene)), body.outer, body.last))[0]
 
 
-# Finite elements
-
-
 def elements_of(scene: Scene, rtol: float) -> list[ContactProblem]:
     """Problems on finite elements, the finest last; of a block the size before that, of others the degree alone."""
     if scene.body.file:
         return [on_given_mesh(scene, level).problem for level in (0, 1)]
     if not scene.sized:
-        return _blocks(scene, rtol)
-    degree = convergence.degree_for(rtol)
-    finest = 2 * FINE * radius_of(scene) / scene.scales.spike_width
-    degree += scene.body.layered is not None  # thin films bend within their thickness
+        degree, (lines, wider) = convergence.resolution_for(scene, rtol, 0).how.degree, _of_blocks(scene)
+        cases = ((lines, degree), (wider, degree), (wider, degree + 1))
+        return [discretise.discretise(scene, ends, Discretisation(d, growth=2.0)).problem for ends, d in cases]
+    degree = convergence.degree_for(rtol) + (scene.body.layered is not None)  # thin films bend within their thickness
+    finest = 2 * USUAL.fine * radius_of(scene) / scene.scales.spike_width
     hows = [replace(convergence.with_rings(d), finest=finest) for d in (degree, degree + 1)]
     made = [discretise.sized_body(scene, how) for how in hows]
     return [contact_of(body.scales, _made(body, scene)) for body in made]
-
-
-def _blocks(scene: Scene, rtol: float) -> list[ContactProblem]:
-    degree = convergence.resolution_for(scene, rtol, 0).how.degree
-    lines = _lines(scene)
-    wider = grid.graded(1.0, FINEST, 2 * lines[-1])
-    cases = ((lines, degree), (wider, degree), (wider, degree + 1))
-    return [discretise.discretise(scene, breaks, Discretisation(d, growth=2.0)).problem for breaks, d in cases]

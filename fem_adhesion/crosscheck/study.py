@@ -13,7 +13,7 @@ never from a choice.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
@@ -29,12 +29,13 @@ from fem_adhesion.crosscheck.comparison import (
     Case,
     Pair,
     Row,
-    difference,
+    of_values,
     require_comparable,
     solution_of,
     tighter,
 )
-from fem_adhesion.crosscheck.references import elements_of, pressures_for, radius_of, reference_for
+from fem_adhesion.crosscheck.references import PRESSURES, SMOOTH, elements_of, radius_of, reference_for
+from fem_adhesion.crosscheck.settings import USUAL
 from fem_adhesion.fields import gaps_at
 from fem_adhesion.scene import Scene
 from halfspace.accuracy.kernels import KERNELS
@@ -49,13 +50,6 @@ from halfspace.limits import require_rtol
 from halfspace.values import Array, Estimate
 
 Solver = Callable[..., EquilibriumPath]
-
-# Budgets in those of loads, approaches and energies, which are averages over the whole contact:
-POINTWISE = 10  # of gaps, radii and deflections
-RESIDUAL = 50  # of residuals, which see every wiggle of the pressure
-
-TIGHTEST = 1e-9  # tolerance of a solver
-CLOSER = 10.0, 100.0  # times, as both solvers are asked for again where their estimates leave a comparison open
 
 
 def compare(
@@ -89,22 +83,16 @@ def compare(
     require_comparable(scene, rtol)
     known = unsolved(scene, rtol=rtol) if before is None else before
     fe, case = _solved(scene, rtol, rtol, solve)
-    for closer in CLOSER:
-        reach = np.inf if closer == CLOSER[-1] else closer
-        if rtol > closer * TIGHTEST and case.verdict == "inconclusive" and _left_open(case, reach):
+    for closer in USUAL.closer:
+        # A decade of tolerance leaves a tenth of an estimate at best: what is wider than that stays open.
+        reach = np.inf if closer == USUAL.closer[-1] else closer
+        left = [row for row in case.rows if row.between == SOLVERS and row.verdict != "agree"]
+        wins = bool(left) and not any(row.error > reach * row.budget for row in left)
+        if rtol > closer * USUAL.tightest and case.verdict == "inconclusive" and wins:
             with suppress(NotConverged):
                 fe, case = _solved(scene, rtol, rtol / closer, solve)
     apart = *_by_triangles(scene, fe, rtol), *elimination.rows(scene, fe), *from_scratch.events(scene, fe)
     return replace(case, rows=(*known, *case.rows, *apart))
-
-
-def _left_open(case: Case, reach: float) -> bool:
-    """Whether something between both solvers is, and nothing is wider than its budget by more than may be won.
-
-    A decade of tolerance leaves a tenth of an estimate at best.
-    """
-    left = [row for row in case.rows if row.between == SOLVERS and row.verdict != "agree"]
-    return bool(left) and not any(row.error > reach * row.budget for row in left)
 
 
 def _solved(scene: Scene, rtol: float, asked: float, solve: Solver) -> tuple[EquilibriumPath, Case]:
@@ -114,7 +102,7 @@ def _solved(scene: Scene, rtol: float, asked: float, solve: Solver) -> tuple[Equ
     """
     reference = reference_for(scene)
     other = reference.trace(rtol=tighter(asked)) if reference else None
-    fe = solve(scene, rtol=max(0.9 * asked, TIGHTEST))
+    fe = solve(scene, rtol=max(0.9 * asked, USUAL.tightest))
     rows: list[Row] = []
     solutions = {"finite elements": solution_of(fe)}
     if reference and other:
@@ -130,8 +118,8 @@ def unsolved(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
     rows: list[Row] = []
     if reference:
         both = reference.operators(rtol), [problem.operator.at(1.0) for problem in problems]
-        under = pressures_for(scene).items()
-        rows = [_compare_fields(name, pressure, *both, rtol, edge, reference.between) for name, pressure in under]
+        names = SMOOTH if scene.sized else PRESSURES
+        rows = [_compare_fields(name, *both, rtol, edge, reference.between) for name in names]
     rows += from_scratch.equations(scene, problems[-2:], edge)
     rows += definitions.rows(scene)
     rows += from_scratch.closed_forms(scene.law)
@@ -142,31 +130,22 @@ def unsolved(scene: Scene, *, rtol: float = 1e-5) -> list[Row]:
 
 
 def _compare_fields(
-    name: str,
-    pressure: Callable[[Array], Array],
-    other: Sequence[ElasticOperator],
-    fe: Sequence[ElasticOperator],
-    rtol: float,
-    edge: float,
-    between: Pair,
+    name: str, other: Sequence[ElasticOperator], fe: Sequence[ElasticOperator], rtol: float, edge: float, between: Pair
 ) -> Row:
     """Compare deflections at radii up to three times that of the pressure's edge, root mean square over the area."""
     radii = edge * np.linspace(0.02, 3.0, 150)
     area = radii / radii.sum()
 
-    def deflections(operators: Sequence[ElasticOperator]) -> list[Array]:
-        return [op.values_at(radii, op.compliance @ pressure(op.radii / edge)) for op in operators]
-
-    w_other, w_fe = deflections(other), deflections(fe)
-
     def rms(w: Array) -> float:
         return float(np.sqrt(area @ w**2))
 
-    def estimate(w: Sequence[Array]) -> Estimate:
-        return Estimate(rms(w[-1]), sum(rms(b - a) for a, b in pairwise(w)) + 1e-12 * rms(w[-1]))
+    def deflections(operators: Sequence[ElasticOperator]) -> tuple[Array, Estimate]:
+        w = [op.values_at(radii, op.compliance @ PRESSURES[name](op.radii / edge)) for op in operators]
+        return w[-1], Estimate(rms(w[-1]), sum(rms(b - a) for a, b in pairwise(w)) + 1e-12 * rms(w[-1]))
 
-    off, budget = rms(w_fe[-1] - w_other[-1]), POINTWISE * rtol * rms(w_other[-1])
-    return Row(f"operator: {name}", "beta", estimate(w_other), estimate(w_fe), off, budget, between)
+    (w_other, first), (w_fe, second) = deflections(other), deflections(fe)
+    budget = USUAL.pointwise * rtol * first.value
+    return Row(f"operator: {name}", "beta", first, second, rms(w_fe - w_other), budget, between)
 
 
 # Level 2: cross-residuals
@@ -179,7 +158,7 @@ def _cross_residuals(other: EquilibriumPath, fe: EquilibriumPath, rtol: float, b
             on_other, on_fe = ([stage[name] for stage in path.stages] for path in (other, fe))
             of_other, of_fe = _residual(on_other, on_fe), _residual(on_fe, on_other)
             largest = max(of_other.value, of_fe.value)
-            yield Row(f"cross-residual: {name}", "eps", of_other, of_fe, largest, RESIDUAL * rtol, between)
+            yield Row(f"cross-residual: {name}", "eps", of_other, of_fe, largest, USUAL.residual * rtol, between)
 
 
 def _residual(found: Sequence[Located], equations: Sequence[Located]) -> Estimate:
@@ -213,60 +192,53 @@ def _carried(event: Located, target: ContactProblem) -> Array:
 # Level 3: events
 
 
+OF_FOLDS = {"approach": "eps", "load": "R dgamma", "central_gap": "eps"}
+COMPARED: Mapping[str, Mapping[str, str]] = {
+    "pull_off": {"load": "R dgamma"},
+    "jump_on": OF_FOLDS,
+    "jump_off": OF_FOLDS,
+    "zero_load": {"approach": "eps", "contact_radius": "beta"},
+}
+"""Quantities compared at each event, and their units; those at every further fold are `OF_FOLDS`."""
+
+
 def _compare_events(other: EquilibriumPath, fe: EquilibriumPath, rtol: float, between: Pair = SOLVERS) -> Iterator[Row]:
-    for event, quantity, unit, pointwise in (*EVENT_QUANTITIES, *_of_further_folds(other, fe)):
-        a, b = (_number(path, event, quantity) for path in (other, fe))
-        if _known(a) or _known(b):
-            budget = (POINTWISE if pointwise else 1) * rtol * _size(quantity, a.value if a else 0.0, other)
-            yield Row(f"{event} {quantity}", unit, a, b, difference(a, b), budget, between)
-    off, budget = difference(other.energy, fe.energy), rtol * abs(other.energy.value)
-    yield Row("energy released", "R dgamma eps", other.energy, fe.energy, off, budget, between)
+    further = sorted({*other.events, *fe.events} - set(EVENTS), key=lambda name: (len(name), name))
+    yield from _at_events({**COMPARED, **dict.fromkeys(further, OF_FOLDS)}, other, fe, rtol, between, other)
+    budget = rtol * abs(other.energy.value)
+    yield of_values("energy released", "R dgamma eps", other.energy, fe.energy, budget, between)
 
 
-def _of_further_folds(other: EquilibriumPath, fe: EquilibriumPath) -> list[tuple[str, str, str, bool]]:
-    """What is compared of the folds between the jumps, which either solver finds: the same as of these."""
-    names = sorted({*other.events, *fe.events} - set(EVENTS), key=lambda name: (len(name), name))
-    asked = [quantity for quantity in EVENT_QUANTITIES if quantity[0] == "jump_on"]
-    return [(name, quantity, unit, pointwise) for name in names for _, quantity, unit, pointwise in asked]
+def _at_events(
+    asked: Mapping[str, Mapping[str, str]],
+    first: EquilibriumPath | None,
+    fe: EquilibriumPath,
+    rtol: float,
+    between: Pair,
+    sized_by: EquilibriumPath,
+    prefix: str = "",
+) -> Iterator[Row]:
+    """Rows of quantities at events; budgets are relative to the numbers of one of the curves.
 
-
-def _size(quantity: str, value: float, path: EquilibriumPath) -> float:
-    """What a budget is relative to; gaps count from the spacing and radii from the axis."""
-    return {"load": abs(value), "approach": path.approach_scale}.get(quantity, 1 + abs(value))
-
-
-EVENT_QUANTITIES = (
-    ("pull_off", "load", "R dgamma", False),
-    ("jump_on", "approach", "eps", False),
-    ("jump_on", "load", "R dgamma", False),
-    ("jump_on", "central_gap", "eps", True),
-    ("jump_off", "approach", "eps", False),
-    ("jump_off", "load", "R dgamma", False),
-    ("jump_off", "central_gap", "eps", True),
-    ("zero_load", "approach", "eps", False),
-    ("zero_load", "contact_radius", "beta", True),
-)
+    Gaps count from the spacing and radii from the axis.
+    """
+    for event, quantities in asked.items():
+        for quantity, unit in quantities.items():
+            a, b = (_number(path, event, quantity) if path else None for path in (first, fe))
+            known = _number(sized_by, event, quantity)
+            value = abs(known.value) if known else 0.0
+            sizes = {"load": value, "approach": sized_by.approach_scale}
+            budget = rtol * sizes.get(quantity, USUAL.pointwise * (1 + value))
+            if any(number and np.isfinite(number.value) for number in (a, b)):
+                yield of_values(f"{prefix}{event} {quantity}", unit, a, b, budget, between)
 
 
 def _number(path: EquilibriumPath, name: str, quantity: str) -> Estimate | None:
     """Number of an event, None if there is none, and one of infinite error where it cannot be told if there is."""
     event = path.event(name)
     if event is None:
-        return UNTOLD if name in FOLDS and path.jumps is None else None
+        return Estimate(np.nan, np.inf) if name in FOLDS and path.jumps is None else None
     return event.estimate(quantity)
-
-
-def _known(estimate: Estimate | None) -> bool:
-    return estimate is not None and bool(np.isfinite(estimate.value))
-
-
-UNTOLD = Estimate(float("nan"), float("inf"))
-
-
-# Level 3 once more, by the kernel of 1997
-
-BY_TRIANGLES = ("pull_off load", "jump_on approach", "jump_on load", "jump_off approach", "jump_off load")
-LEAST = KERNELS["triangles"].least
 
 
 def _by_triangles(scene: Scene, fe: EquilibriumPath, rtol: float) -> Iterator[Row]:
@@ -276,14 +248,9 @@ def _by_triangles(scene: Scene, fe: EquilibriumPath, rtol: float) -> Iterator[Ro
     """
     if scene.checked_by != "half-space" or scene.body.layered or scene.sized:
         return
-    path, rtol = None, max(rtol, SHARE * LEAST)
+    path, rtol = None, max(rtol, USUAL.share * KERNELS["triangles"].least)
     with suppress(NotConverged):
-        path = halfspace.trace(**scene.for_half_space, kernel="triangles", rtol=rtol / SHARE)
-    for event, quantity, unit, _ in EVENT_QUANTITIES:
-        a, b = (_number(path, event, quantity) if path else None), _number(fe, event, quantity)
-        if f"{event} {quantity}" in BY_TRIANGLES and (_known(a) or _known(b)):
-            budget = rtol * _size(quantity, b.value if b else 0.0, fe)
-            yield Row(f"triangles: {event} {quantity}", unit, a, b, difference(a, b), budget, TRIANGLES)
-
-
-SHARE = 4.0  # of the budget triangles are asked for this part: with 1 they and the elements might miss it together
+        path = halfspace.trace(**scene.for_half_space, kernel="triangles", rtol=rtol / USUAL.share)
+    folds = {name: OF_FOLDS[name] for name in ("approach", "load")}
+    asked = {"pull_off": COMPARED["pull_off"], **dict.fromkeys(FOLDS, folds)}
+    yield from _at_events(asked, path, fe, rtol, TRIANGLES, fe, "triangles: ")

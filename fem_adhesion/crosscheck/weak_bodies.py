@@ -7,7 +7,7 @@ quadrature, radii, profiles and areas are the weak form's own. A user's mesh is 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache, partial
 from typing import Any
 
@@ -18,6 +18,7 @@ from fem_adhesion.bodies.body import Body as ElasticBody
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.bodies.layers import FAR_OUT, Stratified
 from fem_adhesion.crosscheck.definitions import heights, lengths, numbers_of
+from fem_adhesion.crosscheck.settings import USUAL
 from fem_adhesion.discretise import finest_length
 from fem_adhesion.mesh.file import is_straight, refined
 from fem_adhesion.mesh.spheres import with_contact_to
@@ -33,66 +34,12 @@ FineAt = Callable[[float, float], Contact]
 """The contact on cells that are finest at one radius in beta, and fine up to another."""
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Cells and elements of the bodies of the weak form.
-
-    Attributes
-    ----------
-    fineness : tuple of (int, float)
-        Of half-spaces: degree of the elements, size of the box in contact radii.
-    wide : float
-        Contact radius in beta beyond which spikes of tension are narrower in contact radii than on paraboloids.
-    tip : float
-        What the cell under a sharp tip may leave.
-    farther : float
-        Times that a box is larger for an attraction that falls slowly.
-    degrees : tuple of int
-        Of a body with a length; one more of layers, of bodies that nothing else checks, or nearly incompressible ones.
-    nearly : float
-        Poisson's ratio beyond which a body with a length is nearly incompressible.
-    locking : float
-        Poisson's ratio beyond which elements of a half-space have a degree more, as by other laws.
-    sharp : float
-        Sharpness of an edge beyond which its spike is too narrow for the weak form to show where it turns.
-    growth : float
-        Ratio of neighbouring cells of a body with a length.
-    widest : float
-        Radius in R beyond which cells are finest nowhere.
-    clamped : float
-        Part of eps and a deflection that a clamp under a half-space that carries strata may leave out.
-    rings : int
-        Rings of cells around a corner where the stress is singular.
-    """
-
-    fineness: tuple[tuple[int, float], ...] = ((3, 10.0), (4, 30.0), (5, 90.0))
-    wide: float = 2.5
-    tip: float = 1e-4
-    farther: float = 10.0
-    degrees: tuple[int, ...] = (3, 4, 5)
-    nearly: float = 0.45
-    locking: float = 0.499
-    sharp: float = 6.0
-    growth: float = 2.5
-    widest: float = 0.95
-    clamped: float = 2e-6
-    rings: int = 4
-
-
-USUAL = Settings()
-
-
 def sharpness(scene: Scene, radius: float) -> float:
     """How narrow the spike of tension at an edge is: the Tabor parameter, of a soft contact by the 3-9 law.
 
     On a wide contact it is narrow in contact radii.
     """
     return float(np.sqrt(max(radius / USUAL.wide, 1.0) / scene.scales.spike_width))
-
-
-def is_sharp(scene: Scene, radius: float) -> bool:
-    """Whether an edge has a spike too narrow for the weak form to show where it turns."""
-    return sharpness(scene, radius) > USUAL.sharp
 
 
 def law_of(scene: Scene) -> Law:
@@ -124,26 +71,20 @@ def contacts(scene: Scene, load: float | None = None) -> list[FineAt]:
 
 
 def _on_half_space(scene: Scene, fineness: tuple[int, float], radius: float, reach: float) -> Contact:
-    """Contact on a box with cells at a radius that are finer than the spike of tension there."""
+    """Contact on a box with cells at a radius that are finer than the spike of tension there.
+
+    Lengths are in contact radii and go by powers of 2, so that few bodies serve all.
+    """
     degree, size = fineness
-    size *= _wider(scene, radius)
-    sharp = sharpness(scene, radius)
-    more = (
-        int(sharp > USUAL.sharp)
-        + int(sharp > 3 * USUAL.sharp)
-        + int(scene.law != LENNARD_JONES or scene.poisson > USUAL.locking)
-    )
+    sharp, attraction = sharpness(scene, radius), scene.scales.radius_at(scene.law.range(0.1))
+    size *= USUAL.farther if scene.scales.far_energy else float(2.0 ** np.round(np.log2(max(attraction / radius, 1.0))))
+    degree += sum(sharp > times * USUAL.sharp for times in (1, 3))
+    degree += scene.law != LENNARD_JONES or scene.poisson > USUAL.locking
+    first = scene.surface.first_cell(USUAL.tip) / radius  # under a tip that needs one
+    tip = float(2.0 ** np.floor(np.log2(first))) if np.isfinite(first) else np.inf
     reach = float(2.0 ** np.ceil(np.log2(reach / radius)))
-    body = _half_space(_finest(scene, radius), size, degree + more, scene.poisson, _tip(scene, radius), reach)
+    body = _half_space(_finest(scene, radius), size, int(degree), scene.poisson, tip, reach)
     return Contact(body.scaled(radius), scene.tabor, heights(scene), law=law_of(scene))
-
-
-def _wider(scene: Scene, radius: float) -> float:
-    """How much larger a box is than for a contact whose attraction reaches about as far, by powers of 2."""
-    if scene.scales.far_energy:
-        return USUAL.farther
-    reach = scene.scales.radius_at(scene.law.range(0.1))
-    return float(2.0 ** np.round(np.log2(max(reach / radius, 1.0))))
 
 
 def _finest(scene: Scene, radius: float) -> float:
@@ -151,15 +92,7 @@ def _finest(scene: Scene, radius: float) -> float:
     return float(0.04 * 3.0 ** -max(0.0, np.ceil(np.log(sharpness(scene, radius) ** 2 / 4) / np.log(3))))
 
 
-def _tip(scene: Scene, radius: float) -> float:
-    """Length of the cell under a tip that needs one in contact radii, by powers of 2 so that few bodies serve all."""
-    first = scene.surface.first_cell(USUAL.tip) / radius
-    return float(2.0 ** np.floor(np.log2(first))) if np.isfinite(first) else np.inf
-
-
-@lru_cache(maxsize=8)
-def _half_space(finest: float, size: float, degree: int, poisson: float, tip: float, reach: float) -> Body:
-    return half_space(finest, size, degree, poisson, tip, reach)
+_half_space = lru_cache(maxsize=8)(half_space)
 
 
 # Bodies with a length
@@ -185,7 +118,10 @@ def _given_mesh(scene: Scene) -> Any:
 
 def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) -> Contact:
     """Contact of one body or two, whose cells are finest at a radius."""
-    R, bodies = _radii(scene)
+    R, bodies = lengths(scene)
+    R = (
+        bodies[0] if np.isfinite(bodies[0]) else min(R, scene.surface.end)
+    )  # the first body's, or where what attracts ends
     radius, reach = (min(r, USUAL.widest * R) for r in (radius, reach))  # what attracts from afar may be wider
     how = Discretisation(
         degree, 2 * _finest(scene, radius) * radius / scene.scales.spike_width, USUAL.growth, USUAL.rings
@@ -213,13 +149,6 @@ def _sized(scene: Scene, degree: int, load: float, radius: float, reach: float) 
     return Contact(body, scene.tabor, heights(scene), False, _rim(first.rim, R), law_of(scene))
 
 
-def _radii(scene: Scene) -> tuple[float, tuple[float, ...]]:
-    """Radius in beta of the first body, or where what attracts of another ends, and those of all."""
-    R, bodies = lengths(scene)
-    first = bodies[0] if np.isfinite(bodies[0]) else min(R, scene.surface.end)
-    return first, bodies
-
-
 def _clamped(scene: Scene, strata: Stratified, W: float, R: float, radius: float) -> float:
     """Size of a half-space under strata, as of `Discretisation.beyond`: W/(pi E L) at its end L is what a clamp omits.
 
@@ -242,14 +171,12 @@ def _standing(elastic: ElasticBody, mesh: Any, degree: int) -> Body:
         plate=elastic.endless,
         on_surface=material.area == "surface",
     )
-    return _ground(body) if elastic.endless else body
-
-
-def _ground(block: Body) -> Body:
-    """Block as a half-space, on which (1 - r^2/e^2)^(3/2), of the load 2 pi e^2/5, does the work 4 pi^2 e^3/35."""
-    e = block.rim
-    pressure = np.maximum(1 - (block.radii / e) ** 2, 0) ** 1.5
-    return on_ground(block, pressure, 2 * np.pi * e**2 / 5, 4 * np.pi**2 * e**3 / 35)
+    if not elastic.endless:
+        return body
+    # On a half-space (1 - r^2/e^2)^(3/2), of the load 2 pi e^2/5, does the work 4 pi^2 e^3/35.
+    e = body.rim
+    pressure = np.maximum(1 - (body.radii / e) ** 2, 0) ** 1.5
+    return on_ground(body, pressure, 2 * np.pi * e**2 / 5, 4 * np.pi**2 * e**3 / 35)
 
 
 def _flat_rim(begin: float, end: float, points: int = 40) -> tuple[Array, Array]:

@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
     from fem_adhesion.crosscheck.comparison import overall_verdict
     from fem_adhesion.curve import solve
     from fem_adhesion.report import walk
-    from fem_adhesion.report.page import SOURCES, Contents, page, section_of
+    from fem_adhesion.report.page import Contents, page, section_of
     from fem_adhesion.scene import Scene
     from halfspace.errors import NotConverged
     from halfspace.limits import require_rtol
@@ -45,8 +45,8 @@ def run(options: argparse.Namespace) -> int:
     question = solve.Question(Scene(options.walk), "both", options.rtol)
     named = {name: getattr(options, name.replace("-", "_")) for name in STUDIES}
     directories = {name: directory for name, directory in named.items() if directory is not None}
-    for source in SOURCES:
-        section_of(source, directories.get(source.name))  # refuse a directory before any work
+    for name, directory in directories.items():
+        section_of(name, directory)  # refuse a directory before any work
     with written_aside(options.out) as file, progress_bar() as step:
         cases = []
         step("comparison", 0, len(scenes))
@@ -56,8 +56,7 @@ def run(options: argparse.Namespace) -> int:
         contents = Contents(cases, None, None, directories)
         try:
             curves = solve.solve(question, step)
-            walked = walk.walk(options.walk, rtol=options.rtol, progress=step)
-            contents = replace(contents, curves=curves, walk=walked)
+            contents = replace(contents, curves=curves, walk=walk.walk(curves, progress=step))
         except NotConverged as error:
             contents = replace(contents, lost=str(error))
         step("page", 0, 1)

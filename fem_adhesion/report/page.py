@@ -6,7 +6,7 @@ import csv
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -16,7 +16,7 @@ from matplotlib import rc_context
 
 from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.lines import UNSTABLE, smooth
-from fem_adhesion.common.page import Columns, Figure, Section, Table, data_rows, render, template_text
+from fem_adhesion.common.page import Figure, Section, Table, data_rows, render, template_text
 from fem_adhesion.common.style import laid_out
 from fem_adhesion.crosscheck.comparison import (
     CLOSED_FORM,
@@ -24,14 +24,10 @@ from fem_adhesion.crosscheck.comparison import (
     TRIANGLES,
     WEAK_FORM,
     Case,
-    Failure,
     Row,
-    Solution,
     cells,
     columns,
     overall_verdict,
-    told,
-    verdict_of,
 )
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve.solve import Curves
@@ -54,7 +50,7 @@ class Contents:
     Those are in directories by their commands' names; `lost` says why there is no curve, or is empty.
     """
 
-    cases: Sequence[Case | Failure]
+    cases: Sequence[Case]
     curves: Curves | None
     walk: Walk | None
     directories: Mapping[str, Path]
@@ -63,41 +59,35 @@ class Contents:
 
 def page(contents: Contents) -> str:
     """The page as HTML, or InputError if a directory does not hold what its command writes."""
-    cases = contents.cases
-    paths = contents.curves.paths.values() if contents.curves else ()
-    others = [section_of(source, contents.directories.get(source.name)) for source in SOURCES]
+    cases, curves, walked = contents.cases, contents.curves, contents.walk
+    verdicts = [row.verdict for case in cases for row in case.rows]
+    paths = curves.paths.values() if curves else ()
     return render(
         "report/report.html.j2",
         title="Adhesive contact of a sphere: do two solvers agree?",
         verdict="failed" if contents.lost else overall_verdict(cases),
         words=verdict_words(cases),
         cases=cases,
-        counts=_counts(cases),
+        counts={verdict: verdicts.count(verdict) for verdict in WORDS if verdict in verdicts},
         lost=contents.lost,
-        curves=_curves_section(contents.curves) if contents.curves else None,
-        walk=walk_data(contents.walk, contents.curves) if contents.walk and contents.curves else None,
-        walk_words=walk_words(contents.walk) if contents.walk else (),
+        curves=_curves_section(curves) if curves else None,
+        walk=walk_data(walked, curves) if walked and curves else None,
+        walk_words=walk_words(walked) if walked else (),
         has_unstable=any((smooth(path).kind == UNSTABLE).any() for path in paths),
         levels=crosscheck_section(cases),
-        others=others,
+        others=[section_of(name, contents.directories.get(name)) for name in SOURCES],
         settings=settings_section(cases, machine()),
         script=template_text("report", "walk.js"),
     )
 
 
-def verdict_words(cases: Sequence[Case | Failure]) -> str:
+def verdict_words(cases: Sequence[Case]) -> str:
     """The verdict on all cases; where they differ, worst first with the Tabor parameters of each."""
-    found = [verdict_of(case) for case in cases]
-    if len(set(found)) == 1:
-        return f"{WORDS[found[0]]}."
-    tabors = {word: [f"{case.scene.tabor:g}" for case in cases if verdict_of(case) == word] for word in WORDS}
-    return " ".join(f"{WORDS[one]} at Tabor parameter {', '.join(at)}." for one, at in tabors.items() if at)
-
-
-def _counts(cases: Sequence[Case | Failure]) -> dict[str, int]:
-    """How many quantities ended how, those of failed cases too."""
-    verdicts = [row.verdict for case in cases for row in case.rows]
-    return {verdict: verdicts.count(verdict) for verdict in WORDS if verdict in verdicts}
+    tabors = {word: [f"{case.scene.tabor:g}" for case in cases if case.verdict == word] for word in WORDS}
+    found = {word: at for word, at in tabors.items() if at}
+    if len(found) == 1:
+        return f"{WORDS[cases[0].verdict]}."
+    return " ".join(f"{WORDS[word]} at Tabor parameter {', '.join(at)}." for word, at in found.items())
 
 
 def _curves_section(curves: Curves) -> Section:
@@ -133,75 +123,65 @@ LEVELS = {
 }
 VERDICTS = ("agree", "inconclusive", "disagree")
 
-Cases = Sequence[Case | Failure]
 
-
-def crosscheck_section(cases: Cases) -> Section:
+def crosscheck_section(cases: Sequence[Case]) -> Section:
     """The comparison: a summary, and tables of its levels."""
-    failures = [(f"{case.scene.tabor:g}", told(case)) for case in cases if isinstance(case, Failure)]
+    failures = [(f"{case.scene.tabor:g}", case.told) for case in cases if case.reason]
     lost = (Table("", "Not solved", "", ("Tabor parameter", "reason"), failures, open=True),) if failures else ()
-    levels = [
-        Table(
-            "",
-            title,
-            "",
-            ("Tabor parameter", *columns(between)),
-            [(tabor, *cells(row)) for tabor, row in _rows(cases, level)],
-        )
-        for level, (title, between) in LEVELS.items()
-    ]
+    found: dict[str, list[tuple[str, Row]]] = {level: [] for level in LEVELS}
+    for case in cases:
+        for row in case.rows:
+            found[next(filter(row.quantity.startswith, LEVELS))].append((f"{case.scene.tabor:g}", row))
+    summary, levels = [], []
+    for level, (title, between) in LEVELS.items():
+        summary.append([title, *_summary([row for _, row in found[level]])])
+        lines = [(tabor, *cells(row)) for tabor, row in found[level]]
+        levels.append(Table("", title, "", ("Tabor parameter", *columns(between)), lines))
+    heads = ("level", "quantities", *VERDICTS, "largest difference / error", "largest error / budget")
+    poisson = ", ".join(sorted({f"{case.scene.poisson:g}" for case in cases}))
+    verdicts = "; ".join(f"Tabor parameter {case.scene.tabor:g}: {case.verdict}" for case in cases)
     return Section(
         "levels",
         "The levels",
         paragraphs=(
             "A quantity agrees only if the difference is within the sum of both error estimates and that sum within "
             "the budget. Loads in R dgamma, approaches in eps, energies in R dgamma eps.",
-            f"Poisson's ratio {', '.join(sorted({f'{case.scene.poisson:g}' for case in cases}))}. "
-            + "; ".join(f"Tabor parameter {case.scene.tabor:g}: {verdict_of(case)}" for case in cases)
-            + ".",
+            f"Poisson's ratio {poisson}. {verdicts}.",
         ),
-        tables=(_summary(cases), *lost, *levels),
+        tables=(Table("", "Summary", "", heads, summary, open=True), *lost, *levels),
     )
 
 
-def _rows(cases: Cases, level: str) -> list[tuple[str, Row]]:
-    """Tabor parameters and rows of a level."""
-    rows = [(f"{case.scene.tabor:g}", row) for case in cases for row in case.rows]
-    return [(at, row) for at, row in rows if level == next(filter(row.quantity.startswith, LEVELS))]
+def _summary(rows: Sequence[Row]) -> list[str]:
+    """Number of rows, of each verdict, and the largest ratios of difference, error and budget."""
+
+    def largest(parts: Sequence[tuple[float, float]]) -> str:
+        ratios = [part / whole if whole else (math.inf if part else 0.0) for part, whole in parts]
+        return f"{max(ratios):.2g}" if ratios else "none"
+
+    counts = [len(rows), *(sum(row.verdict == verdict for row in rows) for verdict in VERDICTS)]
+    known = [row for row in rows if row.first and row.second]
+    by_error = largest([(row.difference, row.error) for row in known])
+    return [*map(str, counts), by_error, largest([(row.error, row.budget) for row in known])]
 
 
-def _summary(cases: Cases) -> Table:
-    """Numbers of verdicts of each level, and its largest ratios of difference, error and budget."""
-
-    def ratio(part: float, whole: float) -> float:
-        return part / whole if whole else (math.inf if part else 0.0)
-
-    lines = []
-    for level, (title, _) in LEVELS.items():
-        rows = [row for _, row in _rows(cases, level)]
-        counts = [str(sum(row.verdict == verdict for row in rows)) for verdict in VERDICTS]
-        known = [row for row in rows if row.first and row.second]
-        ratios = [(ratio(row.difference, row.error), ratio(row.error, row.budget)) for row in known]
-        largest = [f"{max(column):.2g}" for column in zip(*ratios, strict=True)] or ["none", "none"]
-        lines.append([title, str(len(rows)), *counts, *largest])
-    columns = ("level", "quantities", *VERDICTS, "largest difference / error", "largest error / budget")
-    return Table("", "Summary", "", columns, lines, open=True)
-
-
-def settings_section(cases: Cases, machine: dict[str, str]) -> Section:
+def settings_section(cases: Sequence[Case], machine: dict[str, str]) -> Section:
     """Versions, machine and what the solvers chose."""
-    columns: Columns[tuple[Case, str, Solution]] = {
-        "Tabor parameter": lambda solved: f"{solved[0].scene.tabor:g}",
-        "solver": lambda solved: solved[1],
-        "settings": lambda solved: _settings(solved[2].settings),
-        "tolerance": lambda solved: solved[2].tolerance,
-        "unknowns": lambda solved: str(solved[2].unknowns),
-        "seconds": lambda solved: f"{solved[2].seconds:.2f}",
-    }
-    every = [(case, *named) for case in cases if isinstance(case, Case) for named in case.solutions.items()]
+    heads = ("Tabor parameter", "solver", "settings", "tolerance", "unknowns", "seconds")
+    lines = [
+        (
+            f"{case.scene.tabor:g}",
+            name,
+            _settings(told["settings"]),
+            told["tolerance"],
+            str(told["unknowns"]),
+            f"{told['seconds']:.2f}",
+        )
+        for case in cases
+        for name, told in case.solutions.items()
+    ]
     facts = Table("", "Versions", "", ("what", "which"), list((versions() | machine).items()), open=True)
-    settings = Table.of("", "Settings", "", every, columns)
-    return Section("settings", "Versions and settings", tables=(facts, settings))
+    return Section("settings", "Versions and settings", tables=(facts, Table("", "Settings", "", heads, lines)))
 
 
 def _settings(value: object) -> str:
@@ -215,63 +195,37 @@ def _settings(value: object) -> str:
 WELL = ("converged", "refused")  # how a hard case may end
 MOST_ROWS = 400  # of a table that is shown
 
-
-@dataclass(frozen=True)
-class Source:
-    """What a command line leaves in a directory that goes into the report.
-
-    The line is the command of the same name unless given. The name is that of the section and of the option that takes
-    the directory; the introduction is what to know before looking. Figures are SVG files by stem, whose captions, the
-    text alternatives too, stand in ``captions.csv``. Tables are CSV files by stem and title; of one, `counted` or "",
-    the column ``outcome`` is counted.
-    """
-
-    name: str
-    title: str
-    introduction: str
-    figures: Sequence[str]
-    tables: Sequence[tuple[str, str]]
-    counted: str = ""
-    line: str = ""
-
-    @property
-    def made_by(self) -> str:
-        """The command line."""
-        return self.line or f"fem-adhesion {self.name} --out {self.name}"
+SOURCES: Mapping[str, Mapping[str, str]] = {row["name"]: row for row in data_rows("report", "sources.csv")}
+"""What command lines leave in directories that goes into the report, see the head of ``sources.csv``."""
 
 
-def _read_sources() -> Iterator[Source]:
-    for row in data_rows("report", "sources.csv"):
-        tables = [(stem, title) for stem, _, title in (part.partition(": ") for part in row["tables"].split("; "))]
-        words = row["name"], row["title"], row["introduction"]
-        yield Source(*words, row["figures"].split(), tables, row["counted"], row["line"])
-
-
-SOURCES = tuple(_read_sources())
-
-
-def section_of(source: Source, directory: Path | None) -> Section:
+def section_of(name: str, directory: Path | None) -> Section:
     """Section from a command's directory, InputError if it lacks what that writes, or one that it was not computed."""
+    source = SOURCES[name]
+    line, title = source["line"] or f"fem-adhesion {name} --out {name}", source["title"]
     if directory is None:
-        return Section(source.name, source.title, missing=source.made_by)
-    captions = {}
-    if source.figures:
-        file = _require(directory / "captions.csv", source)
-        captions = dict(zip(_column(file, "figure"), _column(file, "caption"), strict=True))
-    figures = tuple(
-        Figure(_svg(_require(directory / f"{stem}.svg", source)), captions[stem])
-        for stem in source.figures
-        if captions.get(stem)  # those without were not drawn
-    )
-    tables = {stem: read_table(_require(directory / f"{stem}.csv", source), title) for stem, title in source.tables}
-    paragraphs, warning = [source.introduction], ""
-    if source.counted:
-        ended = Counter(_column(directory / f"{source.counted}.csv", "outcome"))
+        return Section(name, title, missing=line)
+
+    def file(called: str) -> Path:
+        if not (found := directory / called).is_file():
+            raise InputError(f"{found} is not there; give the directory that {line} wrote")
+        return found
+
+    captions, stems = {}, source["figures"].split()
+    if stems:
+        of_figures = file("captions.csv")
+        captions = dict(zip(_column(of_figures, "figure"), _column(of_figures, "caption"), strict=True))
+    # Those without a caption were not drawn.
+    figures = [Figure(_svg(file(f"{stem}.svg")), captions[stem]) for stem in stems if captions.get(stem)]
+    named = (part.partition(": ") for part in source["tables"].split("; "))
+    tables = [read_table(file(f"{stem}.csv"), words) for stem, _, words in named]
+    paragraphs, warning = [source["introduction"]], ""
+    if source["counted"]:
+        ended = Counter(_column(file(f"{source['counted']}.csv"), "outcome"))
         paragraphs.append(f"Of {ended.total()} cases: {', '.join(f'{n} {outcome}' for outcome, n in ended.items())}.")
-        wrong = {outcome: n for outcome, n in ended.items() if outcome not in WELL}
-        warning = f"{', '.join(f'{n} {outcome}' for outcome, n in wrong.items())}." if wrong else ""
-    shown = tuple(tables.values())
-    return Section(source.name, source.title, warning=warning, paragraphs=paragraphs, figures=figures, tables=shown)
+        wrong = [f"{n} {outcome}" for outcome, n in ended.items() if outcome not in WELL]
+        warning = f"{', '.join(wrong)}." if wrong else ""
+    return Section(name, title, warning=warning, paragraphs=paragraphs, figures=figures, tables=tables)
 
 
 def _svg(file: Path) -> bytes:
@@ -322,9 +276,3 @@ def cell(text: str) -> str:
     if re.fullmatch(r"[-+]?\d+\.?\d*(e[-+]?\d+)?", text) and len(re.sub(r"e.*|\D", "", text)) > 12:
         return f"{float(text):.4g}"
     return text
-
-
-def _require(file: Path, source: Source) -> Path:
-    if not file.is_file():
-        raise InputError(f"{file} is not there; give the directory that {source.made_by} wrote")
-    return file

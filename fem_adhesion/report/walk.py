@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 
-from fem_adhesion import convergence
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common.jobs import Progress, unheard
 from fem_adhesion.common.lines import UNSTABLE, smooth
@@ -66,14 +65,13 @@ class Walk(Valued):
     stations: tuple[Station, ...]
 
 
-def walk(tabor: float, *, rtol: float = 1e-4, states: int | None = None, progress: Progress = unheard) -> Walk:
-    """Trace the curve of a block by finite elements and stop at some of its states, and at the events.
+def walk(curves: Curves, *, states: int | None = None, progress: Progress = unheard) -> Walk:
+    """Stop at some states along the curve of a block by finite elements, the first of some, and at its events.
 
     The states are nearly equidistant in arclength, all points of the curve unless their number is given. `progress` is
     called with what is under way, how much is done and of how much.
     """
-    scene = Scene(tabor)
-    path = convergence.trace(scene, rtol=rtol)
+    scene, path = curves.question.scene, curves.path
     outer = 1.6 * float(np.nanmax(path.contact_radius))
     radii, places = np.linspace(0, outer, 151), np.linspace(0, outer, 81)
     total = (path.count if states is None else states) + len(usual(path.events))

@@ -29,12 +29,13 @@ END = 600_000
 def report(tmp_path_factory):
     """A page whose half-space is another by far, so that its lines are told from those of the elements."""
     cases = list(beside.run([Scene(1.0)], rtol=1e-2))
-    walked = walk(2.0, rtol=1e-3, states=10)
+    curves = solve(Question(Scene(2.0), "both", 1e-3))
+    walked = walk(curves, states=10)
     scaled = [
         replace(one, pressure=one.pressure * [[1.0], [0.5]], gap=one.gap * [[1.0], [0.7]]) for one in walked.stations
     ]
     walked = replace(walked, stations=tuple(scaled))
-    contents = Contents(cases, solve(Question(Scene(2.0), "both", 1e-3)), walked, {})
+    contents = Contents(cases, curves, walked, {})
     file = tmp_path_factory.mktemp("report") / "report.html"
     file.write_text(page(contents))
     return file

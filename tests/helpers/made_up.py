@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 from fem_adhesion import Scene
-from fem_adhesion.crosscheck.comparison import SOLVERS, Case, Failure, Row, solution_of
+from fem_adhesion.crosscheck.comparison import SOLVERS, Case, Row, solution_of
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import Event
 from halfspace.values import Estimate
@@ -36,7 +36,7 @@ def case(*rows, tabor=2.0):
     return Case(Scene(tabor), dict(zip(SOLVERS, map(solution_of, paths), strict=True)), rows)
 
 
-FAILED = Failure(Scene(3.0), "no convergence in 40 steps; try a nearer start", (WIDE,))
+FAILED = Case(Scene(3.0), rows=(WIDE,), reason="no convergence in 40 steps; try a nearer start")
 
 ENDINGS = {
     "agree": [case(AGREE)],

@@ -27,7 +27,7 @@ from halfspace.laws import LENNARD_JONES
 def contents():
     cases = list(beside.run([Scene(1.0)], rtol=1e-2))
     curves = solve(Question(Scene(2.0), "both", 1e-3))
-    return Contents(cases, curves, walk(2.0, rtol=1e-3), {})
+    return Contents(cases, curves, walk(curves), {})
 
 
 @pytest.fixture(scope="module")
@@ -172,7 +172,7 @@ def test_the_page_has_what_other_commands_left(contents, tmp_path, monkeypatch, 
     asked = solved_before(monkeypatch, contents, contents.cases)
     options = ["--tabor", "1", "3", "--rtol", "1e-2", "--walk", "2", "--hard", str(hard)]
     assert cli.main(["report", "--out", str(file), *options]) == 0
-    assert asked == [([Scene(1.0), Scene(3.0)], 1e-2), Question(Scene(2.0), "both", 1e-2), (2.0, 1e-2)]
+    assert asked == [([Scene(1.0), Scene(3.0)], 1e-2), Question(Scene(2.0), "both", 1e-2), contents.curves]
     assert "verdict: agree" in capsys.readouterr().out
     html = file.read_text()
     assert "<td>tabor &lt;50&gt;</td>" in html
@@ -192,7 +192,7 @@ def solved_before(monkeypatch, contents, cases):
 
     monkeypatch.setattr(beside, "run", lambda scenes, rtol: told((scenes, rtol), iter(cases)))
     monkeypatch.setattr("fem_adhesion.curve.solve.solve", lambda question, _: told(question, contents.curves))
-    monkeypatch.setattr("fem_adhesion.report.walk.walk", lambda tabor, rtol, **_: told((tabor, rtol), contents.walk))
+    monkeypatch.setattr("fem_adhesion.report.walk.walk", lambda curves, **_: told(curves, contents.walk))
     return asked
 
 
@@ -260,7 +260,8 @@ def test_what_is_said_of_the_states_is_counted(contents):
 
 
 def test_a_curve_without_jumps_is_not_said_to_have_any():
-    curves, walked = solve(Question(Scene(0.5), "both", 1e-2)), walk(0.5, rtol=1e-2, states=3)
+    curves = solve(Question(Scene(0.5), "both", 1e-2))
+    walked = walk(curves, states=3)
     html = page(Contents(ENDINGS["agree"], curves, walked, {}))
     said = words_of(html)
     assert f"All {len(walked.stations)} states are stable under fixed grips." in said
