@@ -55,7 +55,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _contact(options: argparse.Namespace) -> Contact:
     """The contact, with nothing given that would not be heeded."""
-    from fem_adhesion.assess.study import ASKED, require_known
+    from fem_adhesion.assess.settings import USUAL
+    from fem_adhesion.assess.study import require_known
 
     if options.thickness is None:
         refuse(options, ("foundation",), "with --thickness")
@@ -64,9 +65,9 @@ def _contact(options: argparse.Namespace) -> Contact:
     contact = material_of(options, grip=options.grip or "sliding", foundation=options.foundation or "bonded")
     require_known(contact)
     tabor = contact.units.tabor
-    if tabor > ASKED.finite:
+    if tabor > USUAL.finite:
         refuse(
-            options, ("grip",), f"tabor <= {ASKED.finite:g}, where a finite sphere is solved, and this is {tabor:.4g}"
+            options, ("grip",), f"tabor <= {USUAL.finite:g}, where a finite sphere is solved, and this is {tabor:.4g}"
         )
     return contact
 

@@ -8,16 +8,16 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from fem_adhesion.assess import theories
-from fem_adhesion.assess.theories import Curve, estimated, loop
+from fem_adhesion.assess.settings import USUAL
+from fem_adhesion.assess.theories import estimated, loop
 from halfspace.elastic.layers import Layers
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.devices import cycle
 from halfspace.equilibrium.events import approach_scale
 from halfspace.scaling import Units
 from halfspace.theories.exact_sphere import JKRSphere, RigidSphere
-from halfspace.values import Estimate
+from halfspace.values import Array, Estimate
 
-REFERENCE_TABOR, DECAY = 300.0, 1.5
 MEASURES: Mapping[str, tuple[str, float]] = {
     "pull_off_force": ("pull-off force", 3e-5),
     "pull_off_radius": ("contact radius at pull-off", 1e-4),
@@ -35,7 +35,6 @@ QUANTITIES = tuple(MEASURES)
 WORDS = {name: words for name, (words, _) in MEASURES.items()}
 IN_CONTACT = ("pull_off_force", "pull_off_radius", "zero_load_radius", "jump_off_separation", "jump_off_base")
 ON_LAYER = "thin sample"
-THIN = 0.12  # beta: on a layer so thick the distance at the Tabor parameter 300 is at most twice the half-space's
 RADII = ("pull_off_radius", "zero_load_radius")
 POSITIONS = (("jump_on_separation", "jump_off_separation"), ("jump_on_base", "jump_off_base"))  # along two axes
 
@@ -73,7 +72,7 @@ class Prediction:
 
     model: str
     values: Mapping[str, Quantity]
-    curve: EquilibriumPath | Curve | None = field(default=None, repr=False)
+    curve: EquilibriumPath | Array | None = field(default=None, repr=False, compare=False)
     missed: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
     @property
@@ -103,7 +102,7 @@ def computed(model: str, path: EquilibriumPath, stiffness: float, units: Units) 
 
 
 def closed(
-    model: str, make: Callable[[float, float], Curve], tabor: float, stiffness: float, units: Units
+    model: str, make: Callable[[float, float], Array], tabor: float, stiffness: float, units: Units
 ) -> Prediction:
     """Read a closed theory, made from the Tabor parameter and the stiffness in R dgamma/eps.
 
@@ -117,16 +116,11 @@ def closed(
         "zero_load_radius": estimated(curve, lambda c: theories.zero_load(c).contact_radius),
     }
     jumps = loop(curve, stiffness)
-    if jumps and loop(theories.half(curve), stiffness):  # not a ripple of the samples
+    if jumps and loop(curve[:, ::2], stiffness):  # not a ripple of the samples
         for name, (at, _) in (("jump_on", jumps.jump_on), ("jump_off", jumps.jump_off)):
             found |= _take_off(name, Estimate(at.approach, jumps.spacing), Estimate(at.load, 0.0), stiffness)
-        found["energy_lost"] = estimated(curve, lambda c: _lost(c, stiffness))
+        found["energy_lost"] = estimated(curve, lambda c: getattr(loop(c, stiffness), "energy_lost", math.nan))
     return Prediction(model, _in_si(found, units), curve)
-
-
-def _lost(curve: Curve, stiffness: float) -> float:
-    found = loop(curve, stiffness)
-    return found.energy_lost if found else math.nan
 
 
 def _take_off(name: str, approach: Estimate, load: Estimate, stiffness: float) -> dict[str, Estimate]:
@@ -145,22 +139,22 @@ MEASURED = {"force": "load", "radius": "radius", "separation": "approach", "base
 
 def large_tabor(tabor: float, stiffness: float, units: Units) -> Prediction:
     """JKR's theory with the reach of the attraction, its errors being the distance from the truth: tabor >= 300."""
-    read, part = closed("JKR with reach", theories.jkr_with_reach, tabor, stiffness, units), _part(tabor)
+    read, part = closed("JKR with reach", theories.jkr_with_reach, tabor, stiffness, units), _remaining(tabor)
     return _widened(read, {name: 1.0 if "jump_on" in name else part for name in QUANTITIES})
 
 
 def large_tabor_on(layer: Layers, tabor: float, stiffness: float, units: Units) -> Prediction:
     """JKR's theory on a thin sample, tabor >= 300: the contact's values and the jump off, as `large_tabor` else.
 
-    What is left of the attraction's reach grows where the spike at the edge is no longer narrow beside the thickness.
+    The distance grows where the spike at the edge is no longer narrow beside the thickness.
     """
     read = closed(ON_LAYER, partial(theories.jkr_on, layer), tabor, stiffness, units)
-    return _widened(read, dict.fromkeys(IN_CONTACT, _part(tabor) * (1 + (THIN / layer.thickness) ** 3)))
+    return _widened(read, dict.fromkeys(IN_CONTACT, _remaining(tabor) * (1 + (USUAL.thin / layer.thickness) ** 3)))
 
 
-def _part(tabor: float) -> float:
-    """What is left, at a Tabor parameter, of the distance at the last that is computed."""
-    return float((REFERENCE_TABOR / tabor) ** DECAY)
+def _remaining(tabor: float) -> float:
+    """Distance of the theory at a Tabor parameter, in that at the last that is computed."""
+    return float((USUAL.computed / tabor) ** USUAL.decay)
 
 
 def _widened(read: Prediction, parts: Mapping[str, float]) -> Prediction:
@@ -173,20 +167,18 @@ def _widened(read: Prediction, parts: Mapping[str, float]) -> Prediction:
     return Prediction(read.model, values, read.curve)
 
 
-def soft_sphere(units: Units) -> Prediction:
-    """Read JKR's theory on the exact profile of the sphere, the contact's values only; InputError where it spans R."""
-    theory = JKRSphere(units.tabor, units.radius_ratio)
-    tension, free = theory.pull_off(), theory.zero_load()
-    radii = {"pull_off_radius": tension.contact_radius, "zero_load_radius": free.contact_radius}
-    return _exact("JKR on the sphere", {"pull_off_force": -tension.load, **radii}, units)
+def exact_sphere(units: Units) -> Prediction:
+    """JKR's theory on the exact profile of a soft sphere, in contact only, or the pull-off force of a rigid one.
 
-
-def rigid_sphere(units: Units) -> Prediction:
-    """Read the rigid hemisphere's pull-off force; InputError if it is far smaller than the spacing."""
-    return _exact("rigid sphere", {"pull_off_force": -RigidSphere(units.radius_ratio).pull_off().load}, units)
-
-
-def _exact(model: str, numbers: Mapping[str, float], units: Units) -> Prediction:
+    InputError where a contact spans R, or R is far smaller than the spacing.
+    """
+    if units.tabor > USUAL.computed:
+        model, theory = "JKR on the sphere", JKRSphere(units.tabor, units.radius_ratio)
+        tension = theory.pull_off()
+        numbers = {"pull_off_force": -tension.load, "pull_off_radius": tension.contact_radius}
+        numbers["zero_load_radius"] = theory.zero_load().contact_radius
+    else:
+        model, numbers = "rigid sphere", {"pull_off_force": -RigidSphere(units.radius_ratio).pull_off().load}
     found = {name: Estimate(value, 1e-12 * abs(value)) for name, value in numbers.items()}
     return Prediction(model, _in_si(found, units))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeVar
@@ -13,15 +13,14 @@ import halfspace
 from fem_adhesion import convergence
 from fem_adhesion.assess.predictions import (
     ON_LAYER,
-    REFERENCE_TABOR,
     Prediction,
     closed,
     computed,
+    exact_sphere,
     large_tabor,
     large_tabor_on,
-    rigid_sphere,
-    soft_sphere,
 )
+from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.theories import bradley, dmt_maugis, jkr, maugis_dugdale
 from fem_adhesion.assess.thin_sample import ThinSample, enough, hertz_until, indentations
 from fem_adhesion.assess.verdict import (
@@ -61,22 +60,6 @@ PARAMETERS = {
     "Muller-Yushchenko-Derjaguin mu_T": MYD_AMPLIFICATION,
     "Attard-Parker sigma": ATTARD_PARKER,
 }
-
-
-@dataclass(frozen=True)
-class Asked:
-    """What is asked of the solvers."""
-
-    rigid: float = 1e-12  # Tabor parameter below which the rigid sphere is taken; above REFERENCE_TABOR it is JKR
-    finite: float = 10.0  # Tabor parameter up to which the finite sphere takes a few seconds
-    rtol: float = 1e-6  # of the half-space
-    finite_rtol: float = 1e-4  # of the finite sphere beside it
-    searched: float = 1e-3  # of the samples in the search for the thickness that is enough
-    to_load: float = 2.0  # R dgamma
-    maugis: tuple[float, float] = (1e-6, 1e6)  # of Maugis's lambda
-
-
-ASKED = Asked()
 
 
 @dataclass(frozen=True)
@@ -124,7 +107,13 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
     begin("half-space")
     half_space = _half_space(contact)
     begin("closed theories")
-    theories = tuple(_theories(contact))
+    tabor, stiffness, units = contact.units.tabor, contact.reduced_stiffness, contact.units
+    within = USUAL.maugis[0] <= MAUGIS.of(tabor) <= USUAL.maugis[1]
+    theories = tuple(
+        closed(name, make, tabor, stiffness, units)
+        for name, make in THEORIES.items()
+        if within or make is not maugis_dugdale
+    )
     begin("sphere's profile")
     profile, reason = _tried(PROFILE, _profile, contact)
     body = ON_LAYER if contact.layer else PAIR if contact.pair else FINITE
@@ -132,23 +121,25 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
     finite, why_not = _tried(body, _finite, contact)
     if contact.layer:
         begin("thickness that is enough")
-    doubts, left_out = tuple(cautions(contact, half_space)), tuple(yielding(contact))
+    doubts = tuple(cautions(contact, half_space))
     sample, unknown = _tried("thickness that is enough", partial(_thin_sample, half_space=half_space), contact)
+    by_profile = None if contact.layer and tabor > USUAL.computed else profile  # JKR's theory on layers has no profile
+    distances = ranked((half_space, profile, finite, *theories), contact.spacing)
+    missed = [
+        f"{model.model}: {tolerance_told(model.curve.rtol, model.missed)}"
+        for model in (half_space, profile, finite)
+        if model and model.missed and isinstance(model.curve, EquilibriumPath)
+    ]
     return Assessment(
         contact,
         half_space,
         profile,
         finite,
         theories,
-        tuple(deviations(half_space, None if contact.layer and _soft(contact) else profile, finite, contact.spacing)),
-        distances := ranked((half_space, profile, finite, *theories), contact.spacing),
-        regime(contact.units.tabor),
-        (
-            *doubts,
-            *left_out,
-            *filter(None, (reason, why_not, unknown)),
-            *_missed(half_space, profile, finite),
-        ),
+        tuple(deviations(half_space, by_profile, finite, contact.spacing)),
+        distances,
+        regime(tabor),
+        (*doubts, *yielding(contact), *filter(None, (reason, why_not, unknown)), *missed),
         tuple(verdict(finite or half_space, distances, computed=finite is not None, doubts=doubts)),
         time.perf_counter() - began,
         sample,
@@ -158,28 +149,20 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
 def require_known(contact: Contact) -> None:
     """Refuse a law at a Tabor parameter at which a closed theory, known for the 3-9 law, is as good; InputError."""
     tabor = contact.units.tabor
-    if contact.law != LENNARD_JONES and not ASKED.rigid <= tabor <= REFERENCE_TABOR:
-        limit = f"{ASKED.rigid:g} <= tabor <= {REFERENCE_TABOR:g} with --law"
+    if contact.law != LENNARD_JONES and not USUAL.rigid <= tabor <= USUAL.computed:
+        limit = f"{USUAL.rigid:g} <= tabor <= {USUAL.computed:g} with --law"
         raise InputError(f"tabor = {tabor:.4g}, limit: {limit}; leave it out, as all laws have the same limits there")
 
 
 def _half_space(contact: Contact) -> Prediction:
     """The computed half-space, or the closed theory that is as good."""
     units, stiffness = contact.units, contact.reduced_stiffness
-    if units.tabor > REFERENCE_TABOR:
+    if units.tabor > USUAL.computed:
         return large_tabor(units.tabor, stiffness, units)
-    if units.tabor < ASKED.rigid:
+    if units.tabor < USUAL.rigid:
         return closed("rigid half-space", bradley, units.tabor, stiffness, units)
-    path = halfspace.trace(units.tabor, law=contact.law, rtol=ASKED.rtol, to_load=ASKED.to_load)
+    path = halfspace.trace(units.tabor, law=contact.law, rtol=USUAL.rtol, to_load=USUAL.to_load)
     return computed(HALF_SPACE, path, stiffness, units)
-
-
-def _theories(contact: Contact) -> Iterator[Prediction]:
-    """Closed theories in their range."""
-    tabor = contact.units.tabor
-    for name, make in THEORIES.items():
-        if make is not maugis_dugdale or ASKED.maugis[0] <= MAUGIS.of(tabor) <= ASKED.maugis[1]:
-            yield closed(name, make, tabor, contact.reduced_stiffness, contact.units)
 
 
 def _tried(name: str, make: Callable[[Contact], Answer], contact: Contact) -> tuple[Answer | None, str | None]:
@@ -190,27 +173,19 @@ def _tried(name: str, make: Callable[[Contact], Answer], contact: Contact) -> tu
         return None, f"{name} not solved: {error}"
 
 
-def _missed(*models: Prediction | None) -> Iterator[str]:
-    """Sentences on computed models that are less accurate than was asked of them."""
-    for model in models:
-        if model and model.missed and isinstance(model.curve, EquilibriumPath):
-            yield f"{model.model}: {tolerance_told(model.curve.rtol, model.missed)}"
-
-
 def _profile(contact: Contact) -> Prediction:
     """The true profile of sphere or spheres on the half-space."""
     units, larger = contact.units, contact.larger_radius
-    if not ASKED.rigid <= units.tabor <= REFERENCE_TABOR and math.isfinite(larger):
+    known = USUAL.rigid <= units.tabor <= USUAL.computed
+    if not known and math.isfinite(larger):
         raise InputError(
-            f"tabor = {units.tabor:.4g} of two spheres is outside {ASKED.rigid:g} <= tabor <= {REFERENCE_TABOR:g}; "
+            f"tabor = {units.tabor:.4g} of two spheres is outside {USUAL.rigid:g} <= tabor <= {USUAL.computed:g}; "
             "the paraboloid serves"
         )
-    if units.tabor > REFERENCE_TABOR:
-        return soft_sphere(units)
-    if units.tabor < ASKED.rigid:
-        return rigid_sphere(units)
+    if not known:
+        return exact_sphere(units)
     profile = Sphere(units.radius_ratio, larger)
-    path = halfspace.trace(units.tabor, law=contact.law, profile=profile, rtol=ASKED.rtol, to_load=ASKED.to_load)
+    path = halfspace.trace(units.tabor, law=contact.law, profile=profile, rtol=USUAL.rtol, to_load=USUAL.to_load)
     return computed(PROFILE, path, contact.reduced_stiffness, units)
 
 
@@ -219,9 +194,9 @@ def _finite(contact: Contact) -> Prediction:
     units = contact.units
     if contact.layer:
         return _on_layer(contact, contact.layer, Sphere(units.radius_ratio))
-    if units.tabor > ASKED.finite:
+    if units.tabor > USUAL.finite:
         raise InputError(
-            f"tabor = {units.tabor:.4g} is outside tabor <= {ASKED.finite:g}, beyond which it takes long; "
+            f"tabor = {units.tabor:.4g} is outside tabor <= {USUAL.finite:g}, beyond which it takes long; "
             "take fem-adhesion curve --body hemisphere"
         )
     scene = Scene(
@@ -231,24 +206,19 @@ def _finite(contact: Contact) -> Prediction:
         counter=contact.counter,
         share=contact.share,
     )
-    path = convergence.trace(scene, rtol=ASKED.finite_rtol, to_load=ASKED.to_load)
+    path = convergence.trace(scene, rtol=USUAL.finite_rtol, to_load=USUAL.to_load)
     return computed(PAIR if contact.pair else FINITE, path, contact.reduced_stiffness, units)
 
 
-def _soft(contact: Contact) -> bool:
-    """Whether JKR's theory stands for what is computed."""
-    return contact.units.tabor > REFERENCE_TABOR
-
-
-def _on_layer(contact: Contact, layer: Layers, profile: Profile, rtol: float = ASKED.finite_rtol) -> Prediction:
+def _on_layer(contact: Contact, layer: Layers, profile: Profile, rtol: float = USUAL.finite_rtol) -> Prediction:
     """A profile on a thin sample; of a large Tabor parameter the paraboloid."""
     units, stiffness = contact.units, contact.reduced_stiffness
-    if _soft(contact):
+    if units.tabor > USUAL.computed:
         return large_tabor_on(layer, units.tabor, stiffness, units)
 
     def solved(rtol: float) -> Prediction:
         path = halfspace.trace(
-            units.tabor, law=contact.law, profile=profile, body=layer, rtol=rtol, to_load=ASKED.to_load
+            units.tabor, law=contact.law, profile=profile, body=layer, rtol=rtol, to_load=USUAL.to_load
         )
         return computed(ON_LAYER, path, stiffness, units)
 
@@ -262,7 +232,7 @@ def _thin_sample(contact: Contact, half_space: Prediction) -> ThinSample | None:
     """Where the half-space and the series serve in the place of the thin sample; None of a thick one."""
     if contact.thickness is None:
         return None
-    on_layer = partial(_on_layer, contact, profile=PARABOLOID, rtol=ASKED.searched)
+    on_layer = partial(_on_layer, contact, profile=PARABOLOID, rtol=USUAL.searched)
     return ThinSample(
         tuple(indentations(contact, contact.thickness)),
         hertz_until(contact),

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Prediction, Quantity
+from fem_adhesion.assess.predictions import POSITIONS, QUANTITIES, RADII, WORDS, Quantity
+from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.study import Assessment
-from fem_adhesion.assess.thin_sample import WRONG, ThinSample
+from fem_adhesion.assess.thin_sample import ThinSample
 from fem_adhesion.common import record as common
 from fem_adhesion.common.contact import Contact, edge_told
 from fem_adhesion.common.facts import plain
@@ -22,12 +23,6 @@ from halfspace.laws import LENNARD_JONES
 
 STANDS = {"bonded": "bonded to its base", "sliding": "sliding on its base"}
 DIGITS_OF_RATIO = 4  # significant, at most
-RANKS = {
-    "both": 0,
-    "true profile": 1,
-    "finite body": 1,
-    "thickness": 1,
-}  # by which columns of the differences are left out
 
 
 def report(assessment: Assessment) -> RenderableType:
@@ -90,43 +85,40 @@ def _legend(assessment: Assessment) -> Iterator[str]:
 def contact_radius(assessment: Assessment) -> str:
     """What each model means by it."""
     named = [model for model in assessment.models if set(model.values) & set(RADII)]
-    edge = edge_told(assessment.contact.law)
-    meanings = {edge: True, "the edge of the theory's own contact, without the ring of attraction around it": False}
-    said = {
-        meaning: [model.model for model in named if model.is_computed == computed]
-        for meaning, computed in meanings.items()
-    }
-    return (
-        "Contact radius: " + "; ".join(f"of {', '.join(names)}, {what}" for what, names in said.items() if names) + "."
-    )
+    theirs = "the edge of the theory's own contact, without the ring of attraction around it"
+    said = []
+    for computed, meaning in ((True, edge_told(assessment.contact.law)), (False, theirs)):
+        if names := [model.model for model in named if model.is_computed == computed]:
+            said.append(f"of {', '.join(names)}, {meaning}")
+    return f"Contact radius: {'; '.join(said)}."
 
 
 def models_table(assessment: Assessment) -> Fitted:
     """A line for each quantity, a column for each model; the last ones are left out first."""
-    rows = [name for name in QUANTITIES if any(name in model.values for model in assessment.models)]
-    scales = {name: _scale([model.values.get(name) for model in assessment.models]) for name in rows}
+    models, columns = assessment.models, []
+    rows = [name for name in QUANTITIES if any(name in model.values for model in models)]
+    largest = [max((m.values[name] for m in models if name in m.values), key=lambda q: abs(q.value)) for name in rows]
+    scales = [exponent_of(quantity.value) for quantity in largest]
     # What was computed first, the best of it last to be left out; theories by their distance from it.
     kept = [model.model for model in (assessment.half_space, assessment.finite, assessment.profile) if model]
     order = [*kept, *(d.model for d in assessment.distances if d.model not in kept)]
-    columns = [
-        Column(model.model, [_cell(model, name, scales[name][0]) for name in rows], order.index(model.model))
-        for model in assessment.models
-    ]
-    words = Column("quantity", [WORDS[name] for name in rows], text=True, wraps=True)
-    units = Column("unit", [scales[name][1] for name in rows], text=True)
-    return Fitted([words, units, *columns], ["what each model says"])
+    for model in models:
+        found = zip((model.values.get(name) for name in rows), scales, strict=True)
+        cells = [with_error(quantity, 10.0**-exponent) if quantity else "-" for quantity, exponent in found]
+        columns.append(Column(model.model, cells, order.index(model.model)))
+    units = [PREFIXES[exponent] + quantity.unit for quantity, exponent in zip(largest, scales, strict=True)]
+    return Fitted([_words(rows), Column("unit", units, text=True), *columns], ["what each model says"])
 
 
-def _scale(quantities: Sequence[Quantity | None]) -> tuple[int, str]:
-    """Exponent of ten and unit that suit the largest of them."""
-    largest = max((q for q in quantities if q), key=lambda q: abs(q.value))
-    exponent = exponent_of(largest.value)
-    return exponent, PREFIXES[exponent] + largest.unit
+def _words(quantities: Iterable[str], header: str = "quantity", rank: int = 0) -> Column:
+    """Column of quantities in words."""
+    return Column(header, [WORDS.get(name, name) for name in quantities], rank, text=True, wraps=True)
 
 
-def _cell(model: Prediction, name: str, exponent: int) -> str:
-    quantity = model.values.get(name)
-    return with_error(quantity, 10.0**-exponent) if quantity else "-"
+def _percents(header: str, parts: Iterable[Quantity | None], rank: int = 0) -> Column:
+    """Column of parts, in per cent."""
+    cells = [with_error(part, 100, DIGITS_OF_RATIO) if part else "-" for part in parts]
+    return Column(f"{header}\n%", cells, rank)
 
 
 def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
@@ -134,18 +126,15 @@ def _deviations(assessment: Assessment) -> Iterator[RenderableType]:
     known = [d for d in assessment.deviations if d.profile or d.total]
     if not known:
         return
-    causes = {
-        "true profile": [d.profile for d in known],
-        "thickness" if assessment.contact.layer else "finite body": [d.body for d in known],
-        "both": [d.total for d in known],
-    }
-    columns = [
-        Column(f"{name}\n%", [with_error(q, 100, DIGITS_OF_RATIO) if q else "-" for q in found], RANKS[name])
-        for name, found in causes.items()
-        if any(found)
-    ]
-    words = Column("quantity", [WORDS[d.quantity] for d in known], text=True, wraps=True)
-    yield Fitted([words, *columns], [f"difference from the {assessment.half_space.model}, in % of it, by cause"])
+    body = "thickness" if assessment.contact.layer else "finite body"
+    causes = (
+        ("true profile", [d.profile for d in known], 1),
+        (body, [d.body for d in known], 1),
+        ("both", [d.total for d in known], 0),
+    )
+    columns = [_percents(*cause) for cause in causes if any(cause[1])]
+    title = f"difference from the {assessment.half_space.model}, in % of it, by cause"
+    yield Fitted([_words(d.quantity for d in known), *columns], [title])
     yield Text()
 
 
@@ -157,7 +146,7 @@ def _thin_sample(contact: Contact, sample: ThinSample | None) -> Iterator[Render
         reach = (sample.hertz_until.value * contact.thickness) ** 2 / contact.units.radius
         yield prose(
             "Chi: sqrt(R delta)/h of the indentation delta. Series: Dimitriadis et al. (2002), for chi up to 1. "
-            f"Hertz's load is right to {100 * WRONG:g} % up to chi = {until}, here an indentation of "
+            f"Hertz's load is right to {100 * USUAL.wrong:g} % up to chi = {until}, here an indentation of "
             f"{engineering(reach, 'm')}."
         )
         yield Text()
@@ -173,23 +162,22 @@ def indentations_table(sample: ThinSample) -> Fitted:
         Column(f"indentation\n{PREFIXES[length]}m", [f"{row.indentation / 10.0**length:.4g}" for row in rows]),
         Column("chi", [f"{row.chi:.4g}" for row in rows], 1),
         Column(f"force\n{PREFIXES[force]}N", [with_error(row.force, 10.0**-force) for row in rows]),
-        Column("Hertz off\n%", [with_error(row.half_space, 100, DIGITS_OF_RATIO) for row in rows]),
-        Column("series off\n%", [with_error(row.series, 100, DIGITS_OF_RATIO) for row in rows]),
+        _percents("Hertz off", [row.half_space for row in rows]),
+        _percents("series off", [row.series for row in rows]),
     ]
     return Fitted(columns, ["without adhesion on the thin sample, and how far Hertz's theory and the series are off"])
 
 
 def enough_table(sample: ThinSample) -> Fitted:
     """Thicknesses from which on the half-space is right, a line each."""
-    found = [row.thickness.value for row in sample.enough if row.thickness]
-    size = exponent_of(max(found, default=1e-6))
+    size = exponent_of(max((row.thickness.value for row in sample.enough if row.thickness), default=1e-6))
     thicknesses = [with_error(row.thickness, 10.0**-size) if row.thickness else row.note for row in sample.enough]
     columns = [
-        Column("in", [WORDS.get(row.quantity, row.quantity) for row in sample.enough], text=True, wraps=True),
+        _words((row.quantity for row in sample.enough), "in"),
         Column(f"thickness\n{PREFIXES[size]}m", thicknesses),
-        Column("worst", [WORDS.get(row.worst, "-") for row in sample.enough], 1, text=True, wraps=True),
+        _words((row.worst or "-" for row in sample.enough), "worst", 1),
     ]
-    return Fitted(columns, [f"from which thickness on the half-space is right to {100 * WRONG:g} %"])
+    return Fitted(columns, [f"from which thickness on the half-space is right to {100 * USUAL.wrong:g} %"])
 
 
 UNITS = {name: unit for name, (unit, _) in KINDS.items()} | {

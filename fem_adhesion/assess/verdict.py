@@ -6,33 +6,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from fem_adhesion.assess.predictions import QUANTITIES, RADII, WORDS, Prediction, Quantity, relative
+from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.finite_strain.traction import yielded_adhesion
 from halfspace.laws import LENNARD_JONES
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Where models hold.
-
-    Between the Tabor parameters `rigid` and `soft` neither limit serves: they are those of lambda in Johnson &
-    Greenwood's map of 1997. [G97], section 5, has 0.2 and 3; the pull-off load is there 4 % off Bradley's and 3.4 % off
-    JKR's. The first order of the attracted layer's yield is told between `faint` and `first_order`: below, no measured
-    work of adhesion has that digit; beyond, the second order, its square, is more than a per cent.
-    """
-
-    rigid: float = 0.1
-    soft: float = 5.0
-    good: float = 0.01  # largest difference of a model that does in the place of the best one
-    contact: float = 0.3  # of its radius over R: beyond, neither the parabola nor linear elasticity hold
-    strain: float = 0.2  # beta/R, the strain of a contact beta wide
-    spacing: float = 0.1  # eps/R: a sphere of ten atoms is no continuum
-    jump: float = 0.3  # of the distance over R: the law between planes is meant for gaps small against R
-    faint: float = 1e-3  # of the work of adhesion
-    first_order: float = 0.1  # of the work of adhesion
-
-
-LIMITS = Limits()
 
 
 @dataclass(frozen=True)
@@ -70,11 +47,8 @@ def deviations(
         if name in half_space.values:
             by_profile = relative(profile, half_space, name, spacing) if profile else None
             total = relative(finite, half_space, name, spacing) if finite else None
-            yield Deviation(name, by_profile, _rest(total, by_profile), total)
-
-
-def _rest(total: Quantity | None, part: Quantity | None) -> Quantity | None:
-    return Quantity.ratio(total - part) if total and part else None
+            by_body = Quantity.ratio(total - by_profile) if total and by_profile else None
+            yield Deviation(name, by_profile, by_body, total)
 
 
 def ranked(models: Sequence[Prediction | None], spacing: float) -> tuple[Distance, ...]:
@@ -84,26 +58,26 @@ def ranked(models: Sequence[Prediction | None], spacing: float) -> tuple[Distanc
     or if they were not solved the half-space.
     """
     best = models[2] or models[0]
-    found = [_distance(model, best, spacing) for model in models if best and model and model is not best]
+    found = []
+    for model in models:
+        if best is None or model is None or model is best:
+            continue
+        # The contact radius of a closed theory is another than a computed one.
+        names = [name for name in best.values if name not in RADII or model.is_computed == best.is_computed]
+        known = {name: off for name in names if (off := relative(model, best, name, spacing))}
+        sizes = {name: abs(off.value) + off.error for name, off in known.items()}
+        worst = max(sizes, key=sizes.__getitem__, default=None)
+        missing = tuple(name for name in best.values if name not in model.values)
+        found.append(Distance(model.model, worst, sizes[worst] if worst else 0.0, missing))
     return tuple(sorted(found, key=lambda distance: (len(distance.missing), distance.size)))
-
-
-def _distance(model: Prediction, best: Prediction, spacing: float) -> Distance:
-    """Distance in all that both mean alike: the contact radius of a closed theory is another than a computed one."""
-    names = [n for n in best.values if n not in RADII or model.is_computed == best.is_computed]
-    known = {name: d for name in names if (d := relative(model, best, name, spacing))}
-    sizes = {name: abs(d.value) + d.error for name, d in known.items()}
-    worst = max(sizes, key=sizes.__getitem__, default=None)
-    missing = tuple(name for name in best.values if name not in model.values)
-    return Distance(model.model, worst, sizes[worst] if worst else 0.0, missing)
 
 
 def regime(tabor: float) -> str:
     """Regime of a Tabor parameter, with its limits."""
-    limits = f"rigid below tabor {LIMITS.rigid:g}, JKR above {LIMITS.soft:g}"
-    if tabor < LIMITS.rigid:
+    limits = f"rigid below tabor {USUAL.stiff:g}, JKR above {USUAL.soft:g}"
+    if tabor < USUAL.stiff:
         return f"rigid: Bradley's and DMT's theories ({limits})"
-    if tabor > LIMITS.soft:
+    if tabor > USUAL.soft:
         return f"soft: JKR's theory ({limits})"
     return f"transition between rigid and JKR ({limits})"
 
@@ -115,17 +89,17 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
     wide, far = (half_space.values.get(name) for name in ("zero_load_radius", "jump_on_separation"))
     deepened = f"it deepens that by more than its first order tells{_premise(contact)}"
     judged = [
-        ("contact radius over R", _over(wide, R), LIMITS.contact, "linear elasticity no longer holds"),
-        ("strain beta/R", units.length / R, LIMITS.strain, "finite strain matters"),
-        ("spacing over R", units.spacing / R, LIMITS.spacing, "a law between continuous planes is doubtful"),
-        ("jump-on distance over R", _over(far, R), LIMITS.jump, "the law between planes is doubtful"),
-        ("yield of the attracted layer over the work of adhesion", _yield(contact), LIMITS.first_order, deepened),
+        ("contact radius over R", _over(wide, R), USUAL.contact, "linear elasticity no longer holds"),
+        ("strain beta/R", units.length / R, USUAL.strain, "finite strain matters"),
+        ("spacing over R", units.spacing / R, USUAL.spacing, "a law between continuous planes is doubtful"),
+        ("jump-on distance over R", _over(far, R), USUAL.jump, "the law between planes is doubtful"),
+        ("yield of the attracted layer over the work of adhesion", _yield(contact), USUAL.first_order, deepened),
     ]
     if contact.thickness:
         pressed, h = _over(wide, R) ** 2 * R, contact.thickness
         judged += [
-            ("indentation over thickness", pressed / h, LIMITS.strain, "finite strain matters"),
-            ("spacing over thickness", units.spacing / h, LIMITS.spacing, "its base attracts through the sample"),
+            ("indentation over thickness", pressed / h, USUAL.strain, "finite strain matters"),
+            ("spacing over thickness", units.spacing / h, USUAL.spacing, "its base attracts through the sample"),
         ]
     for what, value, limit, meaning in judged:
         if value > limit:
@@ -135,7 +109,7 @@ def cautions(contact: Contact, half_space: Prediction) -> Iterator[str]:
 def yielding(contact: Contact) -> Iterator[str]:
     """What the yield of the attracted layer, which no surface law has, does to the adhesion, where that is known."""
     part = _yield(contact)
-    if LIMITS.faint <= part <= LIMITS.first_order:
+    if USUAL.faint <= part <= USUAL.first_order:
         adhesion = contact.units.work_of_adhesion * (1 + part)
         yield (
             "yield of the attracted layer is left out: to the first order it deepens the work of adhesion by "
@@ -166,31 +140,28 @@ def verdict(
 
     The distances, from `ranked`, are from the best one; `computed` says whether that is of the finite bodies.
     """
-    yield from (f"beside the {best.model}: {_judged(distance)}" for distance in distances)
+    for distance in distances:
+        judged = f"{distance.model} has none of its quantities"
+        if distance.worst:
+            judged = f"{distance.model} off by up to {_percent(distance.size)}, in {WORDS[distance.worst]}"
+            judged += f"; has no {', '.join(WORDS[name] for name in distance.missing)}" if distance.missing else ""
+        yield f"beside the {best.model}: {judged}"
     if not computed:
         yield f"the finite body is not known: judge the {best.model} by the cautions"
         return
     whole = [distance for distance in distances if distance.worst and not distance.missing]
-    good = [distance.model for distance in whole if distance.size <= LIMITS.good]
+    good = [distance.model for distance in whole if distance.size <= USUAL.good]
     trust = f"trust the {best.model}"
     if doubts:
         meanings = ", ".join(doubt.rpartition(": ")[2] for doubt in doubts)
         trust = f"trust no model as it is: {meanings}; of these the {best.model} leaves out least"
     if good:
-        yield f"{trust}; within {_percent(LIMITS.good)} in every quantity: {', '.join(good)}"
+        yield f"{trust}; within {_percent(USUAL.good)} in every quantity: {', '.join(good)}"
     elif whole:
         nearest = f"the {whole[0].model} is nearest, off by up to {_percent(whole[0].size)}"
-        yield f"{trust}; no other model is within {_percent(LIMITS.good)} in every quantity, {nearest}"
+        yield f"{trust}; no other model is within {_percent(USUAL.good)} in every quantity, {nearest}"
     else:
         yield f"{trust}; no other model has all its quantities"
-
-
-def _judged(distance: Distance) -> str:
-    """How far off a model is, in what, and what it lacks."""
-    lacks = f"; has no {', '.join(WORDS[name] for name in distance.missing)}" if distance.missing else ""
-    if distance.worst is None:
-        return f"{distance.model} has none of its quantities"
-    return f"{distance.model} off by up to {_percent(distance.size)}, in {WORDS[distance.worst]}{lacks}"
 
 
 def _percent(part: float) -> str:

@@ -451,7 +451,7 @@ def test_a_rubber_bead_is_left_to_the_closed_theories(bead):
 def test_a_sphere_that_is_all_but_rigid_has_bradleys_force():
     """2 pi R dgamma on the half-space, and 9/7 eps/R less by the sphere's profile."""
     rigid = Contact(radius=100e-9, modulus=7e28, poisson=0.17, work_of_adhesion=0.1, spacing=0.3e-9, stiffness=0.2)
-    assert rigid.units.tabor < study.ASKED.rigid
+    assert rigid.units.tabor < study.USUAL.rigid
     forces = [model(rigid).values["pull_off_force"].value for model in (study._half_space, study._profile)]
     bradley = 2 * np.pi * 100e-9 * 0.1
     assert forces == [pytest.approx(bradley, rel=1e-8), pytest.approx(bradley * (1 - 9 / 7 * 0.003), rel=3e-5)]

@@ -15,8 +15,9 @@ import halfspace
 from fem_adhesion import cli
 from fem_adhesion.assess import study
 from fem_adhesion.assess.predictions import QUANTITIES, WORDS, computed, large_tabor_on, relative
+from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.terminal import enough_table, indentations_table, report
-from fem_adhesion.assess.thin_sample import WRONG, hertz_until
+from fem_adhesion.assess.thin_sample import hertz_until
 from fem_adhesion.common.contact import Contact
 from halfspace.elastic import grid
 from halfspace.elastic.layers import Layer, Layers, Stratum, Substrate, surface_compliance
@@ -88,7 +89,7 @@ def test_hertz_is_off_by_a_hundredth_where_that_is_said(poisson, foundation):
     until = hertz_until(Contact(**SAMPLE | {"poisson": poisson}, thickness=1e-6, foundation=foundation))
     for chi, sign in ((until.value - until.error, 1), (until.value + until.error, -1)):
         off = 1 - 1 / hertz_ratio(Layer(1.0, poisson, foundation), chi**2).value
-        assert sign * (WRONG - off) > 0
+        assert sign * (USUAL.wrong - off) > 0
 
 
 @pytest.fixture(scope="module")
@@ -193,7 +194,7 @@ def test_the_half_space_is_right_from_the_thickness_told(said):
             thickness = (row.thickness.value + sign * 2 * row.thickness.error) / contact.units.length
             model = study._on_layer(contact, Layer(thickness, 0.3), halfspace.profiles.Paraboloid())
             off = max(abs(relative(model, half_space, name, contact.spacing).value) for name in names)
-            assert sign * (WRONG - off) > 0, (row.quantity, sign)
+            assert sign * (USUAL.wrong - off) > 0, (row.quantity, sign)
 
 
 def test_jkr_on_a_layer_is_within_its_errors():
