@@ -92,10 +92,13 @@ def smooth(path: EquilibriumPath) -> Line:
 def _smooth(segment: Segment, stable: NDArray[np.bool_]) -> tuple[Array, NDArray[np.int8]]:
     """Approach, load and central gap, (n, 3), along one segment, and the kind of each point."""
     values, rates = segment.between(DRAWING.between)
-    d_approach, d_load, *_ = rates.T
-    kind = np.where(d_load * d_approach > 0, STABLE, GRIPS_ONLY).astype(np.int8)
-    kind[~_stable_between(stable, d_approach)] = UNSTABLE
-    return values[:, [APPROACH, LOAD, CENTRAL_GAP]], kind
+    return values[:, [APPROACH, LOAD, CENTRAL_GAP]], kinds(rates, _stable_between(stable, rates[:, APPROACH]))
+
+
+def kinds(rates: Array, stable: NDArray[np.bool_]) -> NDArray[np.int8]:
+    """Kind of each point by the rates of approach and load along the curve, and stability under fixed grips."""
+    rising = rates[:, LOAD] * rates[:, APPROACH] > 0
+    return np.where(stable, np.where(rising, STABLE, GRIPS_ONLY), UNSTABLE).astype(np.int8)
 
 
 def _stable_between(stable: NDArray[np.bool_], rate: Array) -> NDArray[np.bool_]:

@@ -17,6 +17,7 @@ from fem_adhesion import registry
 from fem_adhesion.common import lines, style
 from fem_adhesion.common.facts import plain
 from fem_adhesion.common.jobs import Progress, unheard
+from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import PAPER, Curves, trace
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -37,8 +38,6 @@ COMPARED = {
     "pull-off": [("pull_off", "load")],
     "jumps": [(name, quantity) for name in ("jump_on", "jump_off") for quantity in ("approach", "load")],
 }
-GAPS = np.linspace(-0.4, 6.0, 1200)  # shown of the laws, in dgamma/(largest tension)
-CORE = -0.5  # eps: nearer by are no gaps of a law with a core
 
 
 @dataclass(frozen=True)
@@ -78,10 +77,10 @@ def _difference(first: EquilibriumPath, other: EquilibriumPath, name: str, quant
     if a is None or b is None:
         return None
     ours, theirs = a.estimate(quantity), b.estimate(quantity)
-    # Approaches in the unit that all curves share.
-    units = (first.tabor, other.tabor) if quantity == "approach" else (1.0, 1.0)
-    size = first.approach_scale / first.tabor if quantity == "approach" else abs(first.events["pull_off"].load)
-    return abs(theirs / units[1] - ours / units[0]) / size
+    if quantity == "load":
+        return abs(theirs - ours) / abs(first.events["pull_off"].load)
+    size = first.approach_scale / first.tabor
+    return abs(theirs / other.tabor - ours / first.tabor) / size  # approaches in the unit that all curves share
 
 
 def _told(part: Estimate | None) -> str:
@@ -149,6 +148,6 @@ def draw(beside: EquallyStrong) -> Figure:
 
 def _law(law: Law) -> tuple[Array, Array]:
     """Gap less that at equilibrium in dgamma/(largest tension), and the tension in that."""
-    gaps = GAPS / law.strength
-    gaps = gaps[gaps > CORE]
+    gaps = np.linspace(*USUAL.gaps) / law.strength
+    gaps = gaps[gaps > USUAL.core]
     return gaps * law.strength, -law.pressure(gaps, 1.0) / law.strength

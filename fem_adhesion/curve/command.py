@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from fem_adhesion.curve.beside import EquallyStrong
     from fem_adhesion.curve.solve import Curves, Question, SolverName
     from fem_adhesion.scene import Scene
-    from halfspace.profiles import Profile
 
 POINTS = 20  # of a curve for ParaView
 NOT_BY_WEAK_FORM = ("vtk", "render", "movie", "at", "beside", "points", "stiffness")
@@ -39,41 +38,33 @@ OWN = 0.01  # part by which the radius of a tip's apex, fitted to its table, may
 def add_options(command: Parser) -> None:
     """Add the options."""
     add_contact(command)
-    _add_body(command)
-    _add_results(command)
-
-
-def _add_body(curve: Parser) -> None:
-    body = curve.add_argument_group("body and solver")
-    solvers = ("half-space", "fem", "both", "weak-form")
+    body = command.add_argument_group("body and solver")
     which = "half-space unless the body is another, fem then; weak-form: full Newton in scikit-fem, a textbook's"
-    body.add_argument("--solver", choices=solvers, help=which)
-    kernels = ("panels", "triangles", "bands")
+    body.add_argument("--solver", choices=("half-space", "fem", "both", "weak-form"), help=which)
     pressure = "what the half-space's pressure is made of, triangles and bands as in 1997; panels unless given"
-    body.add_argument("--kernel", choices=kernels, help=pressure)
+    body.add_argument("--kernel", choices=("panels", "triangles", "bands"), help=pressure)
     add_body(body)
     beside = "draw curves by other laws, as strong, in the same units beside it: morse:3 power-law:4,10, say"
     body.add_argument("--beside", nargs="+", help=beside, metavar="LAW")
     accuracy = "relative accuracy, 1e-9 to 1e-1, 1e-5 unless given; of weak-form 1e-4 to 1e-1, 1e-3 unless given"
     body.add_argument("--rtol", type=float, help=accuracy)
     body.add_argument("--to-load", type=float, default=5.0, help="load in R dgamma at which it ends", metavar="W")
-
-
-def _add_results(curve: Parser) -> None:
-    results = curve.add_argument_group("results", "A FILE may be - for standard output where it is text.")
-    results.add_argument("--json", type=Path, help="write points, events, units and settings", metavar="FILE")
-    results.add_argument("--csv", type=Path, help="write points and events as a table", metavar="FILE")
-    results.add_argument("--plot", type=Path, help="draw curve, profiles and mesh: png, svg or pdf", metavar="FILE")
-    results.add_argument("--vtk", type=Path, help="write the fields inside the body for ParaView", metavar="DIR")
+    results = command.add_argument_group("results", "A FILE may be - for standard output where it is text.")
     points = f"in JSON, CSV and plot, as traced unless given; in DIR beside the events, {POINTS} unless given"
-    results.add_argument("--points", type=int, help=points, metavar="N")
-    results.add_argument("--revolve", type=float, help="write the solid of revolution too, degrees", metavar="ANGLE")
-    results.add_argument("--render", type=Path, help="draw the body cut open, with its stress: png", metavar="FILE")
+    for name, metavar, kind, text in (
+        ("json", "FILE", Path, "write points, events, units and settings"),
+        ("csv", "FILE", Path, "write points and events as a table"),
+        ("plot", "FILE", Path, "draw curve, profiles and mesh: png, svg or pdf"),
+        ("vtk", "DIR", Path, "write the fields inside the body for ParaView"),
+        ("points", "N", int, points),
+        ("revolve", "ANGLE", float, "write the solid of revolution too, degrees"),
+        ("render", "FILE", Path, "draw the body cut open, with its stress: png"),
+    ):
+        results.add_argument(f"--{name}", type=kind, help=text, metavar=metavar)
     events = ("pull_off", "jump_on", "jump_off", "zero_load")
     results.add_argument("--at", choices=events, help="event that is drawn; pull_off unless given")
-    results.add_argument(
-        "--movie", type=Path, help="draw it up to the wall, onto it and off again: gif", metavar="FILE"
-    )
+    movie = "draw it up to the wall, onto it and off again: gif"
+    results.add_argument("--movie", type=Path, help=movie, metavar="FILE")
     results.add_argument("--force", action="store_true", default=None, help="replace files in a DIR that is not empty")
 
 
@@ -130,7 +121,13 @@ def _write(
     if "metadata" in files:
         write_beside(files["metadata"], options.csv.name, record.head(curves))
     if "plot" in files:
-        _draw(collapsed or curves, files["plot"], options.plot.suffix[1:])
+        from fem_adhesion.common import style
+        from fem_adhesion.curve import beside, figure
+
+        form = options.plot.suffix[1:]
+        style.write(
+            lambda: beside.draw(collapsed) if collapsed else figure.draw(curves), files["plot"], form, figure.LOOK
+        )
     if "render" in files or "movie" in files:
         from fem_adhesion.curve import pictures
 
@@ -138,57 +135,6 @@ def _write(
             pictures.write_picture(curves, files["render"], options.at or "pull_off")
         if "movie" in files:
             pictures.write_movie(curves, files["movie"])
-
-
-def _draw(found: Curves | EquallyStrong, file: TextIO, form: str) -> None:
-    """The page about one curve, or in its place that of several laws."""
-    from fem_adhesion.common import style
-    from fem_adhesion.curve import beside, figure, weak_form
-    from fem_adhesion.curve.solve import WEAK_FORM
-
-    if isinstance(found, beside.EquallyStrong):
-        style.write(lambda: beside.draw(found), file, form)
-    elif found.solver == WEAK_FORM:
-        style.write(lambda: weak_form.draw(found), file, form)
-    else:
-        style.write(lambda: figure.draw(found), file, form, figure.LOOK)
-
-
-def _require_drawing(options: argparse.Namespace) -> None:
-    """Refuse what cannot be drawn of the body before any work."""
-    for path, suffix in ((options.render, ".png"), (options.movie, ".gif")):
-        if path and path.suffix != suffix:
-            raise InputError(f"{path} ends in {path.suffix!r}, limit: {suffix}; rename it")
-    if options.at and not options.render:
-        raise InputError(f"at = {options.at} without a picture, limit: with --render; give --render FILE.png too")
-    if options.render or options.movie:
-        from fem_adhesion.paraview.picture import require_drawing
-
-        require_drawing()
-
-
-def _require_vtk(options: argparse.Namespace) -> None:
-    """Refuse what cannot be written for ParaView before any work."""
-    from fem_adhesion.paraview.cells import require_angle
-    from fem_adhesion.paraview.write import require_pyvista
-
-    if _points(options) < 0:
-        raise InputError(f"points = {options.points} is outside 0 <= points; 0 writes the events only")
-    if options.revolve is not None:
-        require_angle(options.revolve)
-    require_pyvista()
-
-
-def _require_inside(options: argparse.Namespace, scene: Scene, solver: SolverName) -> None:
-    """Refuse to show what there is not inside the body."""
-    from fem_adhesion.fields import require_fields
-
-    if solver == "half-space":
-        raise InputError(
-            f"{'vtk' if options.vtk else 'picture'} with solver = half-space, which has no fields inside, limit: fem "
-            "or both; take --solver fem"
-        )
-    require_fields(scene)
 
 
 def _points(options: argparse.Namespace) -> int:
@@ -205,42 +151,69 @@ def _question(options: argparse.Namespace) -> Question:
     plain = scene.body.name == "half-space" and not inside
     solver: SolverName = options.solver or ("half-space" if plain else "fem")
     _require_heeded(options, scene, solver, contact)
-    if contact:
-        _require_own_radius(contact.units.radius, scene.shape)
     if inside:
         _require_inside(options, scene, solver)
-    if options.vtk:
-        _require_vtk(options)
-    _require_drawing(options)
-    units = contact.units if contact else None
+    for path, suffix in ((options.render, ".png"), (options.movie, ".gif")):
+        if path and path.suffix != suffix:
+            raise InputError(f"{path} ends in {path.suffix!r}, limit: {suffix}; rename it")
+    if options.at and not options.render:
+        raise InputError(f"at = {options.at} without a picture, limit: with --render; give --render FILE.png too")
+    if options.render or options.movie:
+        from fem_adhesion.paraview.picture import require_drawing
+
+        require_drawing()
     points = options.points if options.json or options.csv or options.plot else None
     if options.vtk and points in (0, 1):
         points = None  # of the states in DIR alone, where there may be none between the events
+    units = contact.units if contact else None
     kernel, stiffness = options.kernel or "panels", stiffness_of(options, contact)
     rtol = options.rtol or (1e-3 if solver == "weak-form" else 1e-5)
     return Question(scene, solver, rtol, options.to_load, units, stiffness, points, kernel)
 
 
+def _require_inside(options: argparse.Namespace, scene: Scene, solver: SolverName) -> None:
+    """Refuse what cannot be shown or written of the inside of the body before any work."""
+    from fem_adhesion.fields import require_fields
+
+    if solver == "half-space":
+        raise InputError(
+            f"{'vtk' if options.vtk else 'picture'} with solver = half-space, which has no fields inside, limit: fem "
+            "or both; take --solver fem"
+        )
+    require_fields(scene)
+    if options.vtk:
+        from fem_adhesion.paraview.cells import require_angle
+        from fem_adhesion.paraview.write import require_pyvista
+
+        if _points(options) < 0:
+            raise InputError(f"points = {options.points} is outside 0 <= points; 0 writes the events only")
+        if options.revolve is not None:
+            require_angle(options.revolve)
+        require_pyvista()
+
+
 def _require_heeded(options: argparse.Namespace, scene: Scene, solver: SolverName, contact: Contact | None) -> None:
-    """Refuse what the question would not depend on."""
-    if solver == "half-space" and not contact and not scene.body.layered:
-        refuse(options, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it")
-    if solver not in ("half-space", "both"):
-        refuse(options, ("kernel",), "with --solver half-space or both")
-    if solver == "weak-form":
-        refuse(options, NOT_BY_WEAK_FORM, "with another solver, as the weak form gives points and events alone")
-    if not options.vtk:
-        refuse(options, ("revolve", "force"), "with --vtk DIR")
-    if not (options.json or options.csv or options.plot or options.vtk):
-        refuse(options, ("points",), "with --json, --csv, --plot or --vtk")
+    """Refuse what the question would not depend on, and a radius that is not that of a profile known in SI."""
+    files = options.json or options.csv or options.plot or options.vtk
+    in_tabor = solver == "half-space" and not contact and not scene.body.layered
+    for unheeded, names, why in (
+        (in_tabor, ("poisson",), "with a material, fem or both, as a Tabor parameter has it in it"),
+        (solver not in ("half-space", "both"), ("kernel",), "with --solver half-space or both"),
+        (
+            solver == "weak-form",
+            NOT_BY_WEAK_FORM,
+            "with another solver, as the weak form gives points and events alone",
+        ),
+        (not options.vtk, ("revolve", "force"), "with --vtk DIR"),
+        (not files, ("points",), "with --json, --csv, --plot or --vtk"),
+    ):
+        if unheeded:
+            refuse(options, names, why)
+    radius = contact.units.radius if contact else math.nan
+    own = getattr(scene.shape, "radius", radius)
+    if contact and abs(own / radius - 1) > OWN:
+        from fem_adhesion.common.numbers import engineering
 
-
-def _require_own_radius(radius: float, profile: Profile) -> None:
-    """Refuse a material of another radius than a profile that is known in SI has itself."""
-    from fem_adhesion.common.numbers import engineering
-
-    own = getattr(profile, "radius", radius)
-    if abs(own / radius - 1) > OWN:
         decades = round(math.log10(own / radius))
         remedy = f"give --radius {engineering(own, 'm').replace(' ', '')}"
         if abs(own / radius * 10.0**-decades - 1) <= OWN:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,21 +12,28 @@ from skfem import CellBasis, ElementVector, MeshTri
 
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.common import style
-from fem_adhesion.curve.load import LEGEND, SHEET, STATES, draw_central_gap, draw_load
-from fem_adhesion.curve.solve import FINITE_ELEMENTS, Curves
+from fem_adhesion.curve import weak_form
+from fem_adhesion.curve.load import LEGEND, STATES, draw_central_gap, draw_load
+from fem_adhesion.curve.settings import USUAL
+from fem_adhesion.curve.solve import FINITE_ELEMENTS, WEAK_FORM, Curves
 from fem_adhesion.fields import State, gaps_at, require_fields, state_at
-from fem_adhesion.scene import Scene
 from halfspace.equilibrium.contact import APPROACH, CONTACT_RADIUS, ContactProblem
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
-from halfspace.values import Array, Valued
+from halfspace.values import Array
 
 LOOK = {**style.LOOK, "font.size": 9.5}
 
 
 def has_mesh(curves: Curves) -> bool:
-    """Whether the page shows the mesh, and not the central gap."""
-    return curves.solver == FINITE_ELEMENTS and is_drawn(curves.question.scene)
+    """Whether the page shows the mesh, of a body of which there is a picture, and not the central gap."""
+    if curves.solver != FINITE_ELEMENTS:
+        return False
+    try:
+        require_fields(curves.question.scene)
+    except InputError:
+        return False
+    return True
 
 
 def states(curves: Curves) -> list[str]:
@@ -41,8 +48,13 @@ def named(figure: Figure) -> list[str]:
 
 
 def draw(curves: Curves) -> Figure:
-    """Page with the curve on top, the profiles of its states, the edge spike, and the mesh or the central gap."""
-    figure = Figure(figsize=SHEET.size, layout="constrained")
+    """Page with the curve on top, the profiles of its states, the edge spike, and the mesh or the central gap.
+
+    The weak form has points and events alone: of it load and central gap are drawn.
+    """
+    if curves.solver == WEAK_FORM:
+        return weak_form.draw(curves)
+    figure = Figure(figsize=USUAL.page, layout="constrained")
     areas = figure.subplot_mosaic("aa;bc;de", height_ratios=[1.6, 1, 1])
     body = draw_mesh if has_mesh(curves) else draw_central_gap
     for letter, paint in zip("abcde", (draw_load, draw_pressure, draw_gap, draw_spike, body), strict=True):
@@ -54,15 +66,6 @@ EVENT = "pull_off"
 MESH = Discretisation(degree=4)
 
 
-def is_drawn(scene: Scene) -> bool:
-    """Whether there is a picture of a scene's body."""
-    try:
-        require_fields(scene)
-    except InputError:
-        return False
-    return True
-
-
 def outlines(state: State, reach: float) -> tuple[Array, Array]:
     """Points round the cells within a distance of the pole in beta, and their displacements, both (cells, points, 2).
 
@@ -70,7 +73,12 @@ def outlines(state: State, reach: float) -> tuple[Array, Array]:
     """
     mesh, space = state.space.mesh, state.space
     nearest = np.hypot(*mesh.p)[mesh.t].min(axis=0)
-    round_cell = _perimeter(triangle=isinstance(mesh, MeshTri))
+    corners = np.array(
+        [[0, 0], [1, 0], [0, 1]] if isinstance(mesh, MeshTri) else [[0, 0], [1, 0], [1, 1], [0, 1]], float
+    )
+    t = np.linspace(0, 1, USUAL.side)[:-1, None]
+    sides = zip(corners, np.roll(corners, -1, axis=0), strict=True)
+    round_cell = np.concatenate([a + t * (b - a) for a, b in sides]).T
     basis = CellBasis(
         mesh,
         ElementVector(space.element),
@@ -83,14 +91,6 @@ def outlines(state: State, reach: float) -> tuple[Array, Array]:
     return np.asarray(places).transpose(1, 2, 0), np.asarray(moved).transpose(1, 2, 0)
 
 
-def _perimeter(*, triangle: bool) -> Array:
-    """Points round the reference cell, (2, n)."""
-    corners = np.array([[0, 0], [1, 0], [0, 1]] if triangle else [[0, 0], [1, 0], [1, 1], [0, 1]], float)
-    t = np.linspace(0, 1, SHEET.side)[:-1, None]
-    sides = [a + t * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
-    return np.concatenate(sides).T
-
-
 def draw_mesh(axes: Any, curves: Curves) -> str:
     """Mesh and deformation where the load is least, magnified; over a half-space the rigid sphere, unless too far.
 
@@ -98,35 +98,35 @@ def draw_mesh(axes: Any, curves: Curves) -> str:
     """
     scene, found = curves.question.scene, curves.path.stages[-1][EVENT]
     state = state_at(scene, found.problem, found.point, name=EVENT, how=MESH)
-    a, unit = _size(state), curves.scales["radius"]
-    places, moved = outlines(state, 2 * SHEET.shown * a)
-    factor = SHEET.drawn_as * a / float(np.abs(moved).max())
+    a, unit = float(state.observables[CONTACT_RADIUS]), curves.scales["radius"]
+    a = a if np.isfinite(a) else scene.tabor**-0.5  # the width of a rigid sphere's attraction where there is no contact
+    places, moved = outlines(state, 2 * USUAL.shown * a)
+    factor = USUAL.drawn_as * a / float(np.abs(moved).max())
     look: dict[str, Any] = {"facecolors": "0.94", "edgecolors": style.BLUE, "linewidths": 0.35}
     drawn = unit.size * (places + factor * moved)
     axes.add_collection(PolyCollection(list(drawn), **look))
     for depth in scene.body.interfaces:
         line = drawn[np.isclose(places[..., 1], -depth, rtol=1e-9, atol=0)]
         axes.plot(*line[np.argsort(line[:, 0])].T, color=style.BLUE, linewidth=1.3)
-    r = np.linspace(0, SHEET.shown * a, 200)
+    r = np.linspace(0, USUAL.shown * a, 200)
     sphere = factor * _sphere(state, r)
-    if np.isinf(scene.body.size) and sphere[0] < SHEET.highest * a:
+    if np.isinf(scene.body.size) and sphere[0] < USUAL.highest * a:
         axes.plot(unit.size * r, unit.size * sphere, color="black", linewidth=1.3, label="rigid sphere")
         axes.legend(loc="lower right", **LEGEND)
     axes.set(
-        xlim=(0, unit.size * SHEET.shown * a),
-        ylim=(-unit.size * 1.6 * a, unit.size * SHEET.highest * a),
+        xlim=(0, unit.size * USUAL.shown * a),
+        ylim=(-unit.size * 1.6 * a, unit.size * USUAL.highest * a),
         aspect="equal",
     )
     axes.set_anchor("W")  # under the beginning of its title, which is wider
     axes.set_xlabel(unit.label)
     axes.set_ylabel(unit.label.replace("radius $r$", "height $z$").replace("radius $u = r/", "height $z/"))
-    return _title(curves, factor)
-
-
-def _size(state: State) -> float:
-    """Contact radius, or the width of a rigid sphere's attraction where there is no contact."""
-    a = float(state.observables[CONTACT_RADIUS])
-    return a if np.isfinite(a) else state.scene.tabor**-0.5
+    question, words = curves.question, STATES[EVENT].words
+    R = question.units.radius / question.units.length if question.units else scene.sphere_radius
+    if np.isfinite(R):
+        return f"mesh at {words}, displacement $\\times {factor * R:.3g}$"
+    # A half-space has no length of its own: the title says what the unit is drawn as.
+    return f"mesh at {words}, $\\beta^2/R$ drawn as {factor:.2g} $\\beta$"
 
 
 def _sphere(state: State, r: Array) -> Array:
@@ -134,22 +134,8 @@ def _sphere(state: State, r: Array) -> Array:
     return np.asarray(state.problem.profile.height(r) + (1 - state.observables[APPROACH]) / state.scene.tabor)
 
 
-def _title(curves: Curves, factor: float) -> str:
-    """Words for the magnification: of a half-space, which has no length of its own, what the unit is drawn as."""
-    question, words = curves.question, STATES[EVENT].words
-    R = question.units.radius / question.units.length if question.units else question.scene.sphere_radius
-    if np.isfinite(R):
-        return f"mesh at {words}, displacement $\\times {factor * R:.3g}$"
-    return f"mesh at {words}, $\\beta^2/R$ drawn as {factor:.2g} $\\beta$"
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class SurfaceState(Valued):
-    """A state along the surface: radii in beta, pressure in dgamma/(mu eps), gap H in eps, each (n,)."""
-
-    radii: Array
-    pressure: Array
-    gap: Array
+Along = Mapping[str, Array]
+"""A state along the surface: radius in beta, pressure in dgamma/(mu eps), gap H in eps, each (n,)."""
 
 
 def state_of(path: EquilibriumPath, name: str) -> tuple[ContactProblem, Array]:
@@ -158,18 +144,12 @@ def state_of(path: EquilibriumPath, name: str) -> tuple[ContactProblem, Array]:
     return found.problem.interface, found.problem.surface_state(found.point.x)
 
 
-def profile(path: EquilibriumPath, name: str, radii: Array) -> SurfaceState:
+def profile(path: EquilibriumPath, name: str, radii: Array) -> Along:
     """State of an event at radii (beta), by the polynomials of its discretisation; none beyond its end."""
     problem, x = state_of(path, name)
     inside = radii[radii <= problem.operator_at(x).extent]
     gap = gaps_at(path.stages[-1][name], inside)
-    return SurfaceState(inside, problem.law.pressure(gap, problem.tabor), gap)
-
-
-def nodes(path: EquilibriumPath, name: str) -> SurfaceState:
-    """State of an event at the nodes of its grid."""
-    problem, x = state_of(path, name)
-    return SurfaceState(problem.radii(x), problem.pressure(x), x[:-2])
+    return {"radius": inside, "pressure": problem.law.pressure(gap, problem.tabor), "gap": gap}
 
 
 def widest(path: EquilibriumPath) -> float:
@@ -182,7 +162,7 @@ def draw_pressure(axes: Any, curves: Curves) -> str:
     x, y = curves.scales["radius"], curves.scales["pressure"]
     _draw(axes, curves, "pressure")
     axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
-    style.dress(axes, x.label, y.label, legend=None, xlim=(0, x.size * SHEET.wider * widest(curves.path)))
+    style.dress(axes, x.label, y.label, legend=None, xlim=(0, x.size * USUAL.wider * widest(curves.path)))
     return "pressure, lines as in (c)"
 
 
@@ -192,8 +172,8 @@ def draw_gap(axes: Any, curves: Curves) -> str:
     _draw(axes, curves, "gap")
     edge = state_of(path, "zero_load")[0].law.edge_gap
     axes.axhline(y.size * edge, color="0.5", linewidth=0.8, linestyle=style.DOTTED, label="edge of contact")
-    right = SHEET.wider * widest(path)
-    top = max(2.0, SHEET.highest_gap * path.tabor * widest(path) ** 2 / 2)
+    right = USUAL.wider * widest(path)
+    top = max(2.0, USUAL.highest_gap * path.tabor * widest(path) ** 2 / 2)
     style.dress(axes, x.label, y.label, legend=None, xlim=(0, x.size * right), ylim=(-0.6 * y.size, top * y.size))
     axes.legend(loc="upper left", **LEGEND)
     return "gap"
@@ -201,26 +181,26 @@ def draw_gap(axes: Any, curves: Curves) -> str:
 
 def _draw(axes: Any, curves: Curves, quantity: str) -> None:
     """A quantity along the surface at each event."""
-    radii = np.linspace(0, SHEET.wider * widest(curves.path), SHEET.points)
+    radii = np.linspace(0, USUAL.wider * widest(curves.path), USUAL.points)
     for name, look in STATES.items():
         if curves.path.event(name):
             state = profile(curves.path, name, radii)
             line = {"color": look.color, "linestyle": look.linestyle, "linewidth": 1.6, "label": look.words}
-            axes.plot(*curves.shown(radius=state.radii, **{quantity: getattr(state, quantity)}), **line)
+            axes.plot(*curves.shown(**{name: state[name] for name in ("radius", quantity)}), **line)
 
 
 def draw_spike(axes: Any, curves: Curves) -> str:
     """Pressure around the edge of contact where it is lost, with the nodes of the grid on it; returns the title."""
     x, y, path = curves.scales["radius"], curves.scales["pressure"], curves.path
     name = "jump_off" if path.event("jump_off") else "pull_off"
-    edge, look = state_of(path, name)[0].contact_radius(state_of(path, name)[1]), STATES[name]
-    reach = SHEET.spikes * path.segments[0].problem.interface.scales.spike_width
+    (problem, found), look = state_of(path, name), STATES[name]
+    edge, radii = problem.contact_radius(found), problem.radii(found)
+    reach = USUAL.spikes * path.segments[0].problem.interface.scales.spike_width
     low, high = max(0.0, edge - reach), edge + reach
-    line, points = profile(path, name, np.linspace(low, high, SHEET.points)), nodes(path, name)
-    shown = (points.radii >= low) & (points.radii <= high)
-    axes.plot(*curves.shown(radius=line.radii, pressure=line.pressure), color=look.color, linewidth=1.3)
+    line, shown = profile(path, name, np.linspace(low, high, USUAL.points)), (radii >= low) & (radii <= high)
+    axes.plot(*curves.shown(radius=line["radius"], pressure=line["pressure"]), color=look.color, linewidth=1.3)
     dots = {"linestyle": "none", "marker": "o", "markersize": 3, "color": "black", "zorder": 3}
-    at = curves.shown(radius=points.radii[shown], pressure=points.pressure[shown])
+    at = curves.shown(radius=radii[shown], pressure=problem.pressure(found)[shown])
     axes.plot(*at, label="nodes of the grid", **dots)
     axes.axvline(x.size * edge, color="0.5", linewidth=0.8, linestyle=style.DOTTED, label="edge of contact")
     style.dress(axes, x.label, y.label, legend=None, xlim=(x.size * low, x.size * high))

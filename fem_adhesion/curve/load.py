@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from fem_adhesion.common import lines, style
-from fem_adhesion.common.lines import Frame
+from fem_adhesion.common.lines import Frame, Line
 from fem_adhesion.common.numbers import engineering
+from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.scene import Scene
 from halfspace.equilibrium.devices import reaching
@@ -49,29 +50,6 @@ class Look:
     marker: str
 
 
-@dataclass(frozen=True)
-class Sheet:
-    """Numbers of the page about a curve."""
-
-    size: tuple[float, float] = (7.3, 10.0)  # inches
-    samples: int = 600  # points of a theory's line
-    apart: float = 0.06  # least distance of points drawn on a line, as a part of the frame
-    theory: float = 1.3  # largest contact radius of a theory's line, in the curve's widest
-    close: float = 0.99  # the same in the radius where the body ends, at most
-    enlarged: float = 3.0  # highest load, in that of the frame around the events, from which on these are enlarged
-    shown: float = 3.0  # radius of the mesh shown, in contact radii
-    drawn_as: float = 0.45  # contact radii that the largest displacement is drawn as
-    highest: float = 0.9  # height of the mesh shown, in contact radii
-    side: int = 9  # points drawn on a side of a cell
-    points: int = 1500  # of a profile along the surface
-    wider: float = 1.6  # radius of profiles, in the widest contact's
-    highest_gap: float = 3.3  # gap shown, in that of an undeformed sphere at the rim of the contact
-    spikes: float = 5.0  # widths of the spike of tension shown on either side of the edge
-
-
-SHEET = Sheet()
-
-
 STATES: Mapping[str, Look] = {
     "jump_on": Look("jump on", style.GREEN, style.CHAIN, "^"),
     "jump_off": Look("jump off", style.RED, style.DASHED, "v"),
@@ -88,12 +66,14 @@ def draw_load(axes: Any, curves: Curves) -> str:
     below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 4, "columnspacing": 1.2}
     axes.legend(handles=_seen(axes), **below, **LEGEND | {"handlelength": 2.5})
     close = lines.around_events(curves.path)
-    if highest > SHEET.enlarged * close.load[1]:
+    if highest > USUAL.enlarged * close.load[1]:
         inset = axes.inset_axes((0.08, 0.4, 0.42, 0.5))
         _draw_frame(inset, curves, close)
         inset.tick_params(labelsize=7.5)
         inset.set_title("enlarged around the events", fontsize=8)
-    return _title(curves)
+    body, finite = curves.question.scene.body, curves.question.scene.material.finite
+    named = "" if body.endless else f", {body.file.name if body.file else body.name}"
+    return f"{contact_words(curves)}{named}{' at finite strain' if finite else ''}; {curves.solver}"
 
 
 def _seen(axes: Any) -> list[Any]:
@@ -107,10 +87,9 @@ def _draw_frame(axes: Any, curves: Curves, frame: Frame) -> None:
     for name, (approach, load) in _theories(curves.question.scene, frame):
         axes.plot(*curves.shown(approach=approach, load=load), label=name, **THEORIES[name])
     line = lines.smooth(reaching(curves.path, curves.question.stiffness))
-    for kind, load in line.parts(line.load):
-        axes.plot(*curves.shown(approach=line.approach, load=load), label=lines.KINDS[kind], **KINDS[kind])
+    draw_line(axes, curves, line)
     _draw_other(axes, curves, frame)
-    _draw_states(axes, curves)
+    draw_states(axes, curves)
     _draw_jumps(axes, curves, frame)
     axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
     xlim, ylim = curves.shown(approach=np.array(frame.approach), load=np.array(frame.load))
@@ -137,22 +116,31 @@ def _spread(approach: Array, load: Array, frame: Frame) -> tuple[Array, Array]:
     places = np.column_stack([approach / np.ptp(frame.approach), load / np.ptp(frame.load)])
     kept = [0]
     for i in range(1, len(places)):
-        if np.hypot(*(places[i] - places[kept[-1]])) > SHEET.apart:
+        if np.hypot(*(places[i] - places[kept[-1]])) > USUAL.apart:
             kept.append(i)
     return approach[kept], load[kept]
 
 
-def _draw_states(axes: Any, curves: Curves) -> None:
-    """Markers at the events whose profiles are shown below, and at the folds."""
+def draw_line(axes: Any, curves: Curves, line: Line, quantity: str = "load") -> None:
+    """A quantity against approach, by stability."""
+    for kind, values in line.parts(getattr(line, quantity)):
+        at = curves.shown(approach=line.approach, **{quantity: values})
+        axes.plot(*at, label=lines.KINDS[kind], **KINDS[kind])
+
+
+def draw_states(axes: Any, curves: Curves, quantity: str = "load") -> None:
+    """Markers at the events whose profiles are shown, and of the load at the folds."""
     approach, load = lines.folds(curves.path).T
-    if approach.size:
+    if approach.size and quantity == "load":
         square = {"linestyle": "none", "marker": "|", "markersize": 13, "color": "black", "zorder": 4.5}
         axes.plot(*curves.shown(approach=approach, load=load), label="fold", **square)
     for name, look in STATES.items():
         if event := curves.path.event(name):
             marker = {"linestyle": "none", "marker": look.marker, "markersize": 6.5, "color": look.color, "zorder": 5}
-            marker |= {"markeredgecolor": "black", "markeredgewidth": 0.7, "label": look.words}
-            axes.plot(*curves.shown(approach=event.approach, load=event.load), **marker)
+            marker |= {"markeredgecolor": "black", "markeredgewidth": 0.7}
+            marker |= {"label": look.words} if quantity == "load" else {}
+            at = curves.shown(approach=event.approach, **{quantity: getattr(event, quantity)})
+            axes.plot(*at, **marker)
 
 
 def _draw_jumps(axes: Any, curves: Curves, frame: Frame) -> None:
@@ -194,30 +182,19 @@ def _theories(scene: Scene, frame: Frame) -> Iterator[tuple[str, tuple[Array, Ar
     """
     scales, surface, tabor = scene.scales, scene.surface, scene.tabor
     a = np.linspace(
-        1e-3, min(SHEET.theory * scales.widest_radius(frame.load[1]), SHEET.close * surface.end), SHEET.samples
+        1e-3, min(USUAL.theory * scales.widest_radius(frame.load[1]), USUAL.close * surface.end), USUAL.samples
     )
     if scene.body.layered is None:
         yield "JKR", (tabor * jkr_approach(surface, a), jkr_load(surface, a))
-    apart = np.linspace(frame.approach[0], min(0.6, frame.approach[1]), SHEET.samples)
+    apart = np.linspace(frame.approach[0], min(0.6, frame.approach[1]), USUAL.samples)
     yield "Bradley", (apart, np.array([scales.rigid_load(value) for value in apart.tolist()]))
     matched = scene.law == LENNARD_JONES and isinstance(scene.shape, Paraboloid | Sphere)
     if scene.body.layered is None and matched and 1e-6 <= MAUGIS.of(tabor) <= 1e6:
-        yield "Maugis-Dugdale", _maugis(tabor, a)
-
-
-def _maugis(tabor: float, radius: Array) -> tuple[Array, Array]:
-    """From where its attraction reaches across, through the disc of tension, to contact."""
-    theory = MaugisDugdale.matched(tabor)
-    c = np.linspace(0, theory.touching_radius, SHEET.samples)
-    approach = np.concatenate([theory.separated_approach(c), theory.approach(radius)])
-    return approach, np.concatenate([theory.separated_load(c), theory.load(radius)])
-
-
-def _title(curves: Curves) -> str:
-    body = curves.question.scene.body
-    named = "" if body.endless else f", {body.file.name if body.file else body.name}"
-    strain = " at finite strain" if curves.question.scene.material.finite else ""
-    return f"{contact_words(curves)}{named}{strain}; {curves.solver}"
+        # From where its attraction reaches across, through the disc of tension, to contact.
+        theory = MaugisDugdale.matched(tabor)
+        c = np.linspace(0, theory.touching_radius, USUAL.samples)
+        approach = np.concatenate([theory.separated_approach(c), theory.approach(a)])
+        yield "Maugis-Dugdale", (approach, np.concatenate([theory.separated_load(c), theory.load(a)]))
 
 
 def contact_words(curves: Curves) -> str:
@@ -236,12 +213,8 @@ def _stiffness(curves: Curves) -> str:
 def draw_central_gap(axes: Any, curves: Curves) -> str:
     """Central gap against approach, along which the unstable branch is easiest to follow; returns the title."""
     line, x, y = lines.smooth(curves.path), curves.scales["approach"], curves.scales["central_gap"]
-    for kind, gap in line.parts(line.central_gap):
-        axes.plot(*curves.shown(approach=line.approach, central_gap=gap), label=lines.KINDS[kind], **KINDS[kind])
-    for name, look in STATES.items():
-        if event := curves.path.event(name):
-            at = curves.shown(approach=event.approach, central_gap=event.central_gap)
-            axes.plot(*at, linestyle="none", marker=look.marker, color=look.color, markeredgecolor="black", zorder=5)
+    draw_line(axes, curves, line, "central_gap")
+    draw_states(axes, curves, "central_gap")
     left, right = lines.around_events(curves.path).approach
     style.dress(axes, x.label, y.label, legend=None, xlim=(x.size * left, x.size * right))
     top = 1.1 * float(line.central_gap[line.approach > left].max())

@@ -23,12 +23,12 @@ from scipy.spatial import KDTree
 from fem_adhesion.common import lines
 from fem_adhesion.common.numbers import with_error
 from fem_adhesion.curve.figure import LOOK
-from fem_adhesion.curve.load import KINDS, STATES, contact_words
+from fem_adhesion.curve.load import STATES, contact_words, draw_line
+from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.fields import State, state_at
 from fem_adhesion.paraview.picture import COLOURS, Pixels, View, solid_image, view_of
 from fem_adhesion.registry import name_of
-from fem_adhesion.scene import Scene
 from halfspace.equilibrium.conditions import Condition, Located
 from halfspace.equilibrium.contact import APPROACH, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -39,32 +39,15 @@ from halfspace.values import Array, Index
 MINUS = "\N{MINUS SIGN}"  # for the hyphen of Python's numbers
 
 
-@dataclass(frozen=True)
-class Reel:
-    """Numbers of pictures and movies."""
-
-    size: tuple[int, int] = (1600, 1000)  # of a picture, in pixels
-    width: float = 8.0  # of a picture, in inches
-    digits: int = 6  # significant digits of a number, at most
-    frame: tuple[int, int] = (800, 500)  # of a movie, in pixels
-    frames: int = 48  # of a movie, about
-    faded: float = 0.04  # load at which the movie begins, in the pull-off load
-    pressed: float = -0.25  # load at which the wall turns back, in the pull-off load
-    moving: float = 0.1  # seconds for which a frame is shown while the wall moves
-    resting: float = 0.9  # the same at turns and jumps
-    sampled: int = 8  # frames for which the colours of the movie are chosen
-    near: float = 1e-6  # difference of approaches in eps that counts as none
-
-
-REEL = Reel()
-
-
-def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tuple[int, int] = REEL.size) -> None:
+def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tuple[int, int] = USUAL.picture) -> None:
     """Draw the body at an event and write it as png of a size in pixels to a file of `written_aside`.
 
     The curves' first path is of finite elements. InputError if it has no such event, or as `require_drawing`.
     """
-    require_event(curves, at)
+    if curves.path.event(at) is None:
+        raise InputError(
+            f"at = {at} is not on the curve at tabor = {curves.path.tabor:g}, which does not fold; take pull_off"
+        )
     states = event_states(curves)
     view = view_of(list(states.values()))
     solid = solid_image(states[at], view, size)
@@ -72,14 +55,6 @@ def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tupl
     png = BytesIO()
     picture.savefig(png, format="png")
     file.buffer.write(png.getbuffer())
-
-
-def require_event(curves: Curves, at: str) -> None:
-    """Raise InputError unless a curve has an event."""
-    if curves.path.event(at) is None:
-        raise InputError(
-            f"at = {at} is not on the curve at tabor = {curves.path.tabor:g}, which does not fold; take pull_off"
-        )
 
 
 def event_states(curves: Curves) -> dict[str, State]:
@@ -94,7 +69,7 @@ def composed(curves: Curves, solid: Pixels, state: State, view: View, words: tup
     """Solid with a title and a line below it, colour bar, and the load-approach curve with the state on it."""
     height, width = solid.shape[:2]
     with rc_context(LOOK):
-        figure = Figure(figsize=(REEL.width, REEL.width * height / width), dpi=width / REEL.width)
+        figure = Figure(figsize=(USUAL.width, USUAL.width * height / width), dpi=width / USUAL.width)
         FigureCanvasAgg(figure)
         axes = figure.add_axes((0, 0, 1, 1))
         axes.imshow(solid, aspect="auto")
@@ -114,7 +89,7 @@ def _caption(curves: Curves, at: str) -> tuple[str, str]:
         if (at, name) == ("zero_load", "load"):
             numbers[name] = "0"
         elif np.isfinite((found := event.estimate(name)).value):
-            numbers[name] = with_error(found, units[name].size, REEL.digits)
+            numbers[name] = with_error(found, units[name].size, USUAL.digits)
     return f"{contact_words(curves)}: {STATES[at].words}", _listed(curves, numbers)
 
 
@@ -144,27 +119,18 @@ SYMBOLS: Mapping[str, tuple[str, str]] = {
 
 
 def _key(curves: Curves, view: View) -> str:
-    """What is drawn, and how."""
+    """What is drawn, and how; the rigid side has the shape that the body lacks."""
     scene, units = curves.question.scene, curves.question.units
-    R = units.radius / units.length if units else scene.sphere_radius
-    factor = view.heights * R
+    factor = view.heights * (units.radius / units.length if units else scene.sphere_radius)
     if np.isinf(factor):
         how = f"heights magnified, $\\beta^2/R$ drawn as {view.heights:.2g} $\\beta$"
     else:
         how = "to scale" if abs(factor - 1) < 1e-9 else f"heights $\\times\\,${factor:.3g}"
-    lines = ", grey: interfaces" if len(scene.body.regions) > 1 else ""
-    return f"{_body(scene)}, a quarter cut away{lines}\n{how}; green: undeformed surface"
-
-
-def _body(scene: Scene) -> str:
-    """What is drawn: the rigid side has the shape that the body lacks."""
-    looks = scene.body.looks
-    if scene.counter is not None:
-        return f"{looks} under an elastic counter-body"
-    if np.isinf(scene.body.size):
-        return f"{looks} under a rigid sphere"
-    wall = "flat wall" if scene.shape == scene.body.shape else f"wall, gap of a {name_of(scene.shape)}"
-    return f"{looks} under a rigid {wall}"
+    above = "a rigid flat wall" if scene.shape == scene.body.shape else f"a rigid wall, gap of a {name_of(scene.shape)}"
+    if scene.counter is not None or np.isinf(scene.body.size):
+        above = "an elastic counter-body" if scene.counter is not None else "a rigid sphere"
+    interfaces = ", grey: interfaces" if len(scene.body.regions) > 1 else ""
+    return f"{scene.body.looks} under {above}, a quarter cut away{interfaces}\n{how}; green: undeformed surface"
 
 
 def _add_bar(figure: Figure, curves: Curves, view: View) -> None:
@@ -184,8 +150,7 @@ def _add_curve(figure: Figure, curves: Curves, state: State) -> None:
     """Load against approach around the events, and the state on it."""
     frame, line = lines.around_events(curves.path), lines.smooth(curves.path)
     axes = figure.add_axes((0.07, 0.11, 0.2, 0.25))
-    for kind, load in line.parts(line.load):
-        axes.plot(*curves.shown(approach=line.approach, load=load), **KINDS[kind])
+    draw_line(axes, curves, line)
     at = curves.shown(approach=state.observables[APPROACH], load=state.observables[LOAD])
     axes.plot(*at, marker="o", markersize=9, color="black", zorder=5)
     axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
@@ -206,10 +171,10 @@ class Shot:
 
     state: Located
     words: str
-    seconds: float = REEL.moving
+    seconds: float = USUAL.moving
 
 
-def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = REEL.frame) -> None:
+def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = USUAL.frame) -> None:
     """Draw the body along the curve through its jumps and write it as gif; raise as `write_picture` or NotConverged."""
     frames = experiment(curves.path)
     images = list(_images(curves, frames, size))
@@ -223,20 +188,19 @@ def write_movie(curves: Curves, file: TextIO, size: tuple[int, int] = REEL.frame
 def experiment(path: EquilibriumPath) -> list[Shot]:
     """States that a contact passes under fixed grips, up to the wall and back, the wall moving steadily.
 
-    They end at the loads `REEL.faded` and `REEL.pressed`, or where the path does.
+    They end at the loads `USUAL.faded` and `USUAL.pressed`, or where the path does.
     """
     found, loop = path.stages[-1], cycle(path)
     if loop and len(loop.jumps) > 2:
         raise InputError(f"movie of {len(loop.jumps)} jumps, limit: one on and one off; take --render")
-    frames = _jumping(path, found["jump_on"], found["jump_off"]) if "jump_on" in found else _smooth(path)
+    if "jump_on" in found:
+        frames = _jumping(path, found["jump_on"], found["jump_off"])
+    else:
+        contact = sorted([*_states(path, _grid(path, []), lambda _: True), found["pull_off"]], key=_approach)
+        frames = _run(contact, "approaching", last="turning back") + _run(contact[-2::-1], "withdrawing")
     back = max(number for number, frame in enumerate(frames) if frame.state is found["pull_off"])
-    frames[back] = replace(frames[back], words="pull-off", seconds=REEL.resting)
+    frames[back] = replace(frames[back], words="pull-off", seconds=USUAL.resting)
     return frames
-
-
-def _smooth(path: EquilibriumPath) -> list[Shot]:
-    contact = _contact(path, _states(path, _grid(path, []), lambda _: True))
-    return _run(contact, "approaching", last="turning back") + _run(contact[-2::-1], "withdrawing")
 
 
 def _jumping(path: EquilibriumPath, on: Located, off: Located) -> list[Shot]:
@@ -244,9 +208,9 @@ def _jumping(path: EquilibriumPath, on: Located, off: Located) -> list[Shot]:
     grid = _grid(path, sorted((_approach(on), _approach(off))))
     separated = _states(path, grid[grid < _approach(on)], lambda s: s < on.point.arclength)
     contact = _states(path, grid[grid > _approach(off)], lambda s: s > off.point.arclength)
-    contact = _contact(path, [off, *contact])
-    landed = [state for state in contact if _approach(state) > _approach(on) - REEL.near]
-    left = [state for state in separated if _approach(state) < _approach(off) + REEL.near]
+    contact = sorted([off, *contact, path.stages[-1]["pull_off"]], key=_approach)
+    landed = [state for state in contact if _approach(state) > _approach(on) - USUAL.near]
+    left = [state for state in separated if _approach(state) < _approach(off) + USUAL.near]
     return [
         *_run([*separated, on], "approaching", last="about to jump on"),
         *_run(landed, "loading", first="jumped on", last="turning back"),
@@ -260,22 +224,17 @@ def _run(states: Sequence[Located], words: str, *, first: str = "", last: str = 
     frames = [Shot(state, words) for state in states]
     for number, own in ((0, first), (-1, last)):
         if own and frames:
-            frames[number] = replace(frames[number], words=own, seconds=REEL.resting)
+            frames[number] = replace(frames[number], words=own, seconds=USUAL.resting)
     return frames
-
-
-def _contact(path: EquilibriumPath, states: Sequence[Located]) -> list[Located]:
-    """States in contact with that of the pull-off force, by ascending approach."""
-    return sorted([*states, path.stages[-1]["pull_off"]], key=_approach)
 
 
 def _grid(path: EquilibriumPath, folds: list[float]) -> Array:
     """Approaches in equal steps, nearly, with those of the folds, which ascend, among them."""
     pull_off = path.events["pull_off"].load
-    low = _approach(path.states(Condition(LOAD, value=REEL.faded * pull_off))[0])
-    pressed = path.states(Condition(LOAD, value=REEL.pressed * pull_off))
+    low = _approach(path.states(Condition(LOAD, value=USUAL.faded * pull_off))[0])
+    pressed = path.states(Condition(LOAD, value=USUAL.pressed * pull_off))
     ends = [low, *folds, _approach(pressed[-1]) if pressed else float(path.approach[-1])]
-    step = 2 * (ends[-1] - ends[0]) / REEL.frames
+    step = 2 * (ends[-1] - ends[0]) / USUAL.frames
     parts = [np.linspace(a, b, int(np.ceil((b - a) / step)), endpoint=False) for a, b in pairwise(ends)]
     return np.concatenate([*parts, ends[-1:]])
 
@@ -303,7 +262,7 @@ def _images(curves: Curves, frames: Sequence[Shot], size: tuple[int, int]) -> It
 
 def _with_one_palette(images: Sequence[Pixels]) -> Iterator[Image.Image]:
     """Images in the same few colours, so that none flickers; white stays white, which Pillow's own mapping changes."""
-    colours = _colours(np.concatenate(images[:: max(1, len(images) // REEL.sampled)]))[0]
+    colours = _colours(np.concatenate(images[:: max(1, len(images) // USUAL.sampled)]))[0]
     chosen = Image.fromarray(colours[None]).quantize(255, kmeans=3).getpalette()  # each colour counts once
     palette = np.append(np.array(chosen, np.uint8), np.full(3, 255, np.uint8)).reshape(-1, 3)
     nearest = KDTree(palette)

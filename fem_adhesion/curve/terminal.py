@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from plotille import Canvas
@@ -15,9 +14,10 @@ from fem_adhesion.common import lines
 from fem_adhesion.common.contact import edge_told
 from fem_adhesion.common.numbers import engineering, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
+from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import WEAK_FORM, Curves, Scale
 from halfspace.equilibrium.contact import OBSERVABLES
-from halfspace.equilibrium.devices import Cycle, reaching
+from halfspace.equilibrium.devices import reaching
 from halfspace.equilibrium.events import Event, tolerance_told
 from halfspace.laws import LENNARD_JONES
 from halfspace.values import Array, Estimate
@@ -34,27 +34,13 @@ COLOURS = {lines.STABLE: "bright_blue", lines.GRIPS_ONLY: "cyan", lines.UNSTABLE
 RANKS = {"approach": 0, "load": 0, "contact_radius": 1, "central_gap": 2}  # by which columns are left out
 
 
-@dataclass(frozen=True)
-class Characters:
-    """Numbers of the table and the plot in characters."""
-
-    digits: int = 8  # significant digits of a number, at most
-    width: int = 76  # of the plot
-    height: int = 18  # of the plot
-    margin: int = 10  # in front of the plot, for the values at its edges and the frame
-    thin: int = 3  # a thinned line has one dot of so many
-
-
-PLOT = Characters()
-
-
 def show(curves: Curves, console: Console) -> None:
     """Print everything; the plot only in a terminal."""
     console.print(table(curves))
     for line in notes(curves):
         console.print(prose(line), highlight=False)
     if console.is_terminal and curves.solver != WEAK_FORM:
-        console.print(plot(curves, min(PLOT.width, console.width - PLOT.margin)))
+        console.print(plot(curves, min(USUAL.columns, console.width - USUAL.margin)))
         console.print(Flow(_key(curves), ", "))
 
 
@@ -73,24 +59,21 @@ def table(curves: Curves) -> Fitted:
 
 
 def _rows(curves: Curves) -> Iterator[tuple[str, str, Event, Sequence[str]]]:
-    """What each row is, by which solver, its numbers, and which of them miss the tolerance."""
+    """What each row is, by which solver, its numbers, and which of them miss the tolerance.
+
+    Rows are events, and where jumps land; where they take off too, unless that is an event of the curve.
+    """
     for solver, path in curves.paths.items():
         for name, event in path.events.items():
             yield EVENTS.get(name, name.replace("_", " ")), solver, event, path.tolerance.missed_by(event)
     for device, cycle in (("fixed grips", curves.grips), ("apparatus", curves.apparatus)):
-        for words, state, missed in _landings(cycle, with_take_off=device == "apparatus"):
-            yield f"{words}, {device}", curves.solver, state, missed
-
-
-def _landings(cycle: Cycle | None, *, with_take_off: bool) -> Iterator[tuple[str, Event, Sequence[str]]]:
-    """Where jumps land; where they take off too, unless that is an event of the curve."""
-    if cycle is None:
-        return
-    for name, jump in cycle.jumps.items():
-        words = name.replace("_", " ")
-        if with_take_off:
-            yield words, jump.take_off, cycle.missed_by(name, "take_off")
-        yield f"{words} lands", jump.landing, cycle.missed_by(name, "landing")
+        if cycle is None:
+            continue
+        for name, jump in cycle.jumps.items():
+            words = name.replace("_", " ")
+            if device == "apparatus":
+                yield f"{words}, {device}", curves.solver, jump.take_off, cycle.missed_by(name, "take_off")
+            yield f"{words} lands, {device}", curves.solver, jump.landing, cycle.missed_by(name, "landing")
 
 
 def _cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> Iterator[str]:
@@ -102,7 +85,7 @@ def _cells(event: Event, units: Mapping[str, Scale], missed: Sequence[str]) -> I
         elif abs(found.value) <= found.error < np.inf:
             yield "0"
         else:
-            yield with_error(found, units[name].size, PLOT.digits) + (MISSED if name in missed else "")
+            yield with_error(found, units[name].size, USUAL.most_digits) + (MISSED if name in missed else "")
 
 
 def _title(curves: Curves) -> Iterator[str]:
@@ -142,10 +125,12 @@ def notes(curves: Curves) -> Iterator[str]:
 def _jumps(curves: Curves) -> Iterator[str]:
     """Energy lost by each device, and how far models lie apart between which the assumptions leave a choice."""
     units, energy, k = curves.scales, curves.scales["energy"], curves.question.stiffness
-    devices = {"fixed grips": curves.grips} | ({} if np.isinf(k) else {_apparatus(curves): curves.apparatus})
+    si = curves.question.units
+    apparatus = f"k = {engineering(k * si.stiffness, 'N/m')}" if si else f"k = {k:g} R dgamma/eps"
+    devices = {"fixed grips": curves.grips} | ({} if np.isinf(k) else {apparatus: curves.apparatus})
     for device, cycle in devices.items():
         if cycle:
-            lost = with_error(cycle.energy_lost, energy.size, PLOT.digits)
+            lost = with_error(cycle.energy_lost, energy.size, USUAL.most_digits)
             yield f"energy lost in a cycle, {device}: {lost} {energy.unit}"
         elif device == "fixed grips" and curves.path.jumps is None:
             yield "jumps, fixed grips: cannot be told from a contact that follows smoothly"
@@ -171,22 +156,17 @@ def _how_far(margin: Estimate) -> str:
     return f"close to folding: it jumps with an apparatus of a compliance above {known}"
 
 
-def _apparatus(curves: Curves) -> str:
-    k, units = curves.question.stiffness, curves.question.units
-    return f"k = {engineering(k * units.stiffness, 'N/m')}" if units else f"k = {k:g} R dgamma/eps"
-
-
-def plot(curves: Curves, width: int = PLOT.width) -> Text:
+def plot(curves: Curves, width: int = USUAL.columns) -> Text:
     """Load against approach around the events, unstable stretches thinned, events and landings as letters.
 
     The first path is drawn, in a width in characters without the figures beside it.
     """
     units, path = curves.scales, curves.path
     frame = lines.around_events(path)
-    canvas = Canvas(width, PLOT.height, frame.approach[0], frame.load[0], frame.approach[1], frame.load[1])
+    canvas = Canvas(width, USUAL.lines, frame.approach[0], frame.load[0], frame.approach[1], frame.load[1])
     line = lines.smooth(reaching(path, curves.question.stiffness))
     for kind, load in line.parts(line.load):
-        _draw(canvas, line.approach, load, COLOURS[kind], PLOT.thin if kind == lines.UNSTABLE else 1)
+        _draw(canvas, line.approach, load, COLOURS[kind], USUAL.thin if kind == lines.UNSTABLE else 1)
     for name, event in path.events.items():
         canvas.point(event.approach, event.load, marker=LETTERS.get(name, name[-1]))
     for name, jump in curves.grips.jumps.items() if curves.grips else ():
@@ -208,15 +188,16 @@ def _draw(canvas: Canvas, x: Array, y: Array, colour: str, every: int) -> None:
 
 def _framed(canvas: Canvas, x: Scale, y: Scale) -> Text:
     """What is drawn, with the values at its edges."""
-    low, high = _ticks((canvas.ymin, canvas.ymax), y)
+    low, high, left, right = (
+        f"{value * scale.size:.3g}"
+        for value, scale in ((canvas.ymin, y), (canvas.ymax, y), (canvas.xmin, x), (canvas.xmax, x))
+    )
     drawn = canvas.plot("\n").split("\n")
-    edges = [high, *[""] * (len(drawn) - 2), low]
     text = Text(f"load, {y.unit}\n")
-    for edge, row in zip(edges, drawn, strict=True):
-        text.append(f"{edge:>{PLOT.margin - 2}} │").append_text(Text.from_ansi(row)).append("\n")
-    low, high = _ticks((canvas.xmin, canvas.xmax), x)
-    text.append(" " * (PLOT.margin - 1) + "└" + "─" * canvas.width + "\n")
-    return text.append(f"{low:>{PLOT.margin}}{f'approach, {x.unit}':^{canvas.width - 10}}{high:>10}")
+    for edge, row in zip([high, *[""] * (len(drawn) - 2), low], drawn, strict=True):
+        text.append(f"{edge:>{USUAL.margin - 2}} │").append_text(Text.from_ansi(row)).append("\n")
+    text.append(" " * (USUAL.margin - 1) + "└" + "─" * canvas.width + "\n")
+    return text.append(f"{left:>{USUAL.margin}}{f'approach, {x.unit}':^{canvas.width - 10}}{right:>10}")
 
 
 def _key(curves: Curves) -> list[str]:
@@ -228,7 +209,3 @@ def _key(curves: Curves) -> list[str]:
     landings = [f"B, D where the jumps {'on and off' if more else 'from A and C'} land"] if curves.grips else []
     thinned = ["dots thinned: unstable"] if not curves.path.stable.all() else []
     return [*words, *landings, *thinned]
-
-
-def _ticks(span: Sequence[float], scale: Scale) -> tuple[str, str]:
-    return f"{span[0] * scale.size:.3g}", f"{span[1] * scale.size:.3g}"

@@ -292,7 +292,7 @@ def test_each_key_of_the_json_holds_what_it_says(both, real):
 def test_every_kind_of_file_is_written_whole(tmp_path, monkeypatch, capsys):
     """Through the command line, and read back by other people's programs."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(module, "REEL", replace(module.REEL, frames=2))
+    monkeypatch.setattr(module, "USUAL", replace(module.USUAL, frames=2))
     files = ["--json", "curve.json", "--csv", "curve.csv", "--plot", "curve.png", "--vtk", "curve", "--points", "2"]
     pictures = ["--revolve", "90", "--render", "body.png", "--movie", "jump.gif"]
     assert cli.main(["curve", "--tabor", "2", "--rtol", "1e-3", *files, *pictures]) == 0
@@ -339,8 +339,8 @@ def test_numbers_are_whole_and_the_plot_fits_at_any_width(both, real, width):
         assert set(numbers) <= set(re.findall(r"-?[\d.]+\(\d+\)", _shown(what, 150)))
         assert len(numbers) >= 2 * len(_rows(what)) - 2  # approach and load are never left out, 0 has no error
         drawn = [line for line in text.splitlines() if "│" in line and "┃" not in line and line.index("│") == 9]
-        assert len(drawn) == curve_terminal.PLOT.height
-        assert {len(line) for line in drawn} == {min(width, curve_terminal.PLOT.width + 10)}
+        assert len(drawn) == curve_terminal.USUAL.lines
+        assert {len(line) for line in drawn} == {min(width, curve_terminal.USUAL.columns + 10)}
 
 
 def test_axes_in_characters_are_load_up_and_approach_right(real):
@@ -349,7 +349,7 @@ def test_axes_in_characters_are_load_up_and_approach_right(real):
     frame = curve_lines.around_events(real.path)
     assert lines[0] == "load, nN"
     assert float(lines[1].split("│")[0]) == pytest.approx(frame.load[1] * 5, rel=6e-3)
-    assert float(lines[curve_terminal.PLOT.height].split("│")[0]) == pytest.approx(frame.load[0] * 5, rel=6e-3)
+    assert float(lines[curve_terminal.USUAL.lines].split("│")[0]) == pytest.approx(frame.load[0] * 5, rel=6e-3)
     low, name, unit, high = lines[-1].split()
     assert (name, unit) == ("approach,", "nm")
     assert float(low) == pytest.approx(frame.approach[0] * 0.3, rel=6e-3)
@@ -358,7 +358,7 @@ def test_axes_in_characters_are_load_up_and_approach_right(real):
 
 
 def test_the_plot_in_characters_has_the_events_where_they_are(both):
-    drawn = curve_terminal.plot(both).plain.split("\n")[1 : curve_terminal.PLOT.height + 1]
+    drawn = curve_terminal.plot(both).plain.split("\n")[1 : curve_terminal.USUAL.lines + 1]
     place = {letter: (drawn.index(line), line.index(letter)) for line in drawn for letter in "APCZBD" if letter in line}
     assert set(place) == set("APCZBD")
     assert place["A"][1] == place["B"][1]

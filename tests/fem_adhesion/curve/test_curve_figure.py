@@ -143,7 +143,7 @@ def test_profiles_meet_the_law_and_nodes_lie_on_them(curves):
     spike = _lines(_panel(figure, "spike"))["nodes of the grid"]
     r, p = spike.get_xdata(), spike.get_ydata()
     assert r.size > 30
-    np.testing.assert_allclose(curve_figure.profile(curves[5.0].path, "jump_off", r).pressure, p, atol=1e-9)
+    np.testing.assert_allclose(curve_figure.profile(curves[5.0].path, "jump_off", r)["pressure"], p, atol=1e-9)
     assert p.min() == pytest.approx(-16 / (9 * np.sqrt(3)) * 5, rel=1e-3)
 
 

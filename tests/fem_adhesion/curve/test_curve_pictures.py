@@ -129,10 +129,10 @@ def test_a_movie_has_stable_states_and_jumps_at_a_fixed_wall(block):
     top = words.index("turning back")
     assert np.all(np.diff(alpha[: top + 1]) > -1e-4)
     assert np.all(np.diff(alpha[top:]) < 1e-4)
-    at_rest = [frame.words for frame in frames if frame.seconds == module.REEL.resting]
+    at_rest = [frame.words for frame in frames if frame.seconds == module.USUAL.resting]
     turns = ["about to jump on", "jumped on", "turning back", "pull-off", "about to jump off", "jumped off"]
     assert at_rest == turns
-    assert {frame.seconds for frame in frames} == {module.REEL.moving, module.REEL.resting}
+    assert {frame.seconds for frame in frames} == {module.USUAL.moving, module.USUAL.resting}
     resting = [frame.state for frame in frames if frame.words not in ("about to jump on", "about to jump off")]
     assert all(state.problem.negative_directions(state.point.x) == 0 for state in resting)
 
@@ -146,7 +146,7 @@ def test_a_movie_without_jumps_comes_as_it_goes():
 
 
 def test_a_movie_has_every_frame_and_lingers_at_the_jumps(block, tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "REEL", replace(module.REEL, frames=10))
+    monkeypatch.setattr(module, "USUAL", replace(module.USUAL, frames=10))
     frames, path = module.experiment(block.path), tmp_path / "jump.gif"
     monkeypatch.setattr(module, "experiment", lambda _: frames)
     with written_aside(path) as file:
@@ -168,7 +168,7 @@ def test_the_command_draws_and_prints(tmp_path, capsys):
     path = tmp_path / "neck.png"
     assert _run("--tabor", 2, "--rtol", 1e-2, "--render", path, "--at", "jump_off") == 0
     with Image.open(path) as image:
-        assert image.size == module.REEL.size
+        assert image.size == module.USUAL.picture
     assert "finite elements" in capsys.readouterr().out
     assert [file.name for file in tmp_path.iterdir()] == ["neck.png"]
 
