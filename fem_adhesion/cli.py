@@ -5,20 +5,12 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Sequence
+from importlib.metadata import version
 
 from fem_adhesion.assess.command import COMMAND as ASSESS
 from fem_adhesion.common.files import NotWritten
 from fem_adhesion.common.jobs import keep_to_one_thread
-from fem_adhesion.common.options import (
-    BAD_INPUT,
-    COMMAND,
-    DISAGREE,
-    NOT_WRITTEN,
-    Parser,
-    Version,
-    ended,
-    ended_by_signal,
-)
+from fem_adhesion.common.options import BAD_INPUT, COMMAND, DISAGREE, NOT_WRITTEN, Parser, ended, ended_by_signal
 from fem_adhesion.crosscheck.command import COMMAND as COMPARE
 from fem_adhesion.curve.command import COMMAND as CURVE
 from fem_adhesion.finite_sphere.command import COMMAND as FINITE_SPHERE
@@ -75,7 +67,8 @@ def _told(why: object, code: int) -> int:
 def make_parser() -> Parser:
     """Parser of all commands."""
     parser = Parser(prog="fem-adhesion", description="Adhesive contact of elastic spheres by two solvers.")
-    parser.add_argument("--version", action=Version, nargs=0, help="show the version and exit")
+    shown = f"fem-adhesion {version('fem-adhesion')}"
+    parser.add_argument("--version", action="version", version=shown, help="show the version and exit")
     commands = parser.add_subparsers(required=True, metavar="command", parser_class=Parser)
     for command in COMMANDS:
         command.add_to(commands)

@@ -53,31 +53,31 @@ class NotWritten(RuntimeError):
 
 
 @contextmanager
-def writing(path: Path) -> Iterator[None]:
-    """Run a block that does nothing but write `path`: what the system refuses is NotWritten in place of its OSError."""
+def writing(path: Path, *, begun: bool = True) -> Iterator[None]:
+    """Run a block that does nothing but write `path`: what the system refuses is NotWritten in place of its OSError.
+
+    The message says in one line what cannot be written, the system's reason, and a remedy. Before work has begun, it is
+    InputError: a name can be mended at once, but not a disk that is full.
+    """
     try:
         yield
     except OSError as error:
-        raise NotWritten(refusal(path, error)) from error
-
-
-def refusal(path: Path, error: OSError) -> str:
-    """One line: what cannot be written, the system's reason, and a remedy."""
-    number = error.errno or 0
-    reason = os.strerror(number) if number else str(error)
-    return f"{path} cannot be written ({reason}); {REMEDIES.get(number, ELSEWHERE)}"
+        number = error.errno or 0
+        reason = os.strerror(number) if number else str(error)
+        kind = NotWritten if begun or number in FULL else InputError
+        raise kind(f"{path} cannot be written ({reason}); {REMEDIES.get(number, ELSEWHERE)}") from error
 
 
 @contextmanager
-def written_aside(path: Path) -> Iterator[TextIO]:
+def written_aside(path: Path, *, begun: bool = False) -> Iterator[TextIO]:
     """Open a file beside `path` that takes its place when the block ends well, and vanishes if it does not.
 
     The file is of text; its attribute ``buffer`` takes bytes. Where `path` is a symbolic link, what it leads to is
     written, and a file that is replaced leaves its mode. A device, a pipe and what is this process' standard output
-    have no place to take: they are written to when the block ends well. InputError at once, before any work, if `path`
-    cannot be written; NotWritten where what is written to the file does not go to the disk.
+    have no place to take: they are written to when the block ends well. InputError at once, before any work unless that
+    has begun, if `path` cannot be written; NotWritten where what is written to the file does not go to the disk.
     """
-    with _first(path):
+    with writing(path, begun=begun):
         if path.is_dir():
             raise InputError(f"{path} is a directory; give the name of a file")
         target, place = path.resolve(), _in_place(path)
@@ -143,44 +143,35 @@ def directory_written_aside(path: Path, *, force: bool = False) -> Iterator[Path
     work, if it is a file, cannot be written, or is not empty without force; NotWritten if the files cannot take their
     places.
     """
-    with _first(path):
-        if path.exists() and not path.is_dir():
-            raise InputError(f"{path} is a file; give the name of a directory")
-        exists, target = path.is_dir(), path.resolve()
-        aside = Path(tempfile.mkdtemp(dir=target if exists else target.parent, prefix=".unfinished."))
+    with writing(path, begun=False):
+        present, target = _present(path), path.resolve()
+        aside = Path(tempfile.mkdtemp(dir=target.parent if present is None else target, prefix=".unfinished."))
     try:
-        present = sum(1 for _ in path.iterdir()) - 1 if exists else 0
         if present and not force:
             raise InputError(f"{path} holds {present} files, limit 0; empty it, choose another or use --force")
         yield aside
         with writing(path):
-            _moved(aside, target, exists=exists)
+            if present is None:  # in one step
+                aside.chmod(0o777 & ~_umask())
+                aside.replace(target)
+            else:
+                for file in aside.iterdir():
+                    place = (target / file.name).resolve()
+                    if place.is_file():
+                        _put(file, place)
+                    else:
+                        file.replace(place)
     finally:
         shutil.rmtree(aside, ignore_errors=True)
 
 
-def _moved(aside: Path, path: Path, *, exists: bool) -> None:
-    """Put the files where they belong: in one step unless the directory was there before."""
-    if not exists:
-        aside.chmod(0o777 & ~_umask())
-        aside.replace(path)
-        return
-    for file in aside.iterdir():
-        target = (path / file.name).resolve()
-        if target.is_file():
-            _put(file, target)
-        else:
-            file.replace(target)
-
-
-@contextmanager
-def _first(path: Path) -> Iterator[None]:
-    """Tell a name that cannot be written, which can be mended at once, from a disk that is full."""
-    try:
-        yield
-    except OSError as error:
-        kind = NotWritten if error.errno in FULL else InputError
-        raise kind(refusal(path, error)) from error
+def _present(directory: Path) -> int | None:
+    """Number of files in a directory, None if there is none; InputError if it is a file."""
+    if directory.is_dir():
+        return len(list(directory.iterdir()))
+    if directory.exists():
+        raise InputError(f"{directory} is a file; give the name of a directory")
+    return None
 
 
 def _umask() -> int:
@@ -217,10 +208,8 @@ class Store:
         """What was found and not used, in lines."""
         from fem_adhesion.common.numbers import counted  # loads NumPy, which no help needs
 
-        outdated = (
-            f"{counted(count, 'case')} computed by {what}: computed again" for what, count in self.outdated.items()
-        )
-        return (*outdated, *(f"{file} is computed again: {why}" for file, why in self.damaged.items()))
+        outdated = [f"{counted(n, 'case')} computed by {what}: computed again" for what, n in self.outdated.items()]
+        return outdated + [f"{file} is computed again: {why}" for file, why in self.damaged.items()]
 
     def path(self, inputs: Plain) -> Path:
         """File of a case."""
@@ -259,7 +248,17 @@ class Store:
         text = json.dumps(content, indent=1, allow_nan=False)
         with writing(path):
             path.parent.mkdir(parents=True, exist_ok=True)
-            _write_through(path, text)
+        with written_aside(path, begun=True) as file:
+            file.write(text)
+            file.flush()
+            with writing(path):
+                os.fsync(file.fileno())
+        with writing(path):  # a replaced name lasts through a loss of power, too
+            folder = os.open(path.parent, os.O_RDONLY)
+            try:
+                os.fsync(folder)
+            finally:
+                os.close(folder)
 
     def distrust(self, inputs: Plain, why: str) -> None:
         """Note that the file of a case is not used, and why."""
@@ -278,38 +277,13 @@ def open_store(directory: Path, code: str, *, resume: bool = False, force: bool 
     is not empty, None where that cannot be asked for. InputError if the directory is a file, cannot be written, or is
     not empty and neither asked to be resumed nor forced.
     """
-    if directory.exists() and not directory.is_dir():
-        raise InputError(f"{directory} is a file; give the name of a directory")
-    place = directory if directory.is_dir() else directory.parent
+    with writing(directory, begun=False):
+        present = _present(directory)
+    place = directory.parent if present is None else directory
     if not (place.is_dir() and os.access(place, os.W_OK | os.X_OK)):
         raise InputError(f"{directory} cannot be written; choose a folder that exists and is yours")
-    present = len(list(directory.iterdir())) if directory.is_dir() else 0
     if present and not force and not (resume and (directory / FOLDER).is_dir()):
         remedy = "it is no study to resume, choose another" if resume else "choose another or use --resume"
         forced = "" if force is None else " or --force"
         raise InputError(f"{directory} holds {present} files, limit 0; {remedy}{forced}")
     return Store(directory, code)
-
-
-def _write_through(path: Path, text: str) -> None:
-    """Write a file aside, wait until it is on disk, and put it in its place, whoever else writes the same one."""
-    descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    aside = Path(name)
-    try:
-        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        _put(aside, path)
-    finally:
-        aside.unlink(missing_ok=True)
-    _sync_directory(path.parent)
-
-
-def _sync_directory(path: Path) -> None:
-    """Make a replaced name last through a loss of power."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

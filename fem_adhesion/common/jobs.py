@@ -339,7 +339,14 @@ def solve_all(
     `jobs` and `dask` are those of `stream`; `progress` is called with the last item's name, how many are done, and of
     how many. InputError before any work if jobs is not positive or the cluster does not answer.
     """
-    found = dict(_stored(items, store, kept)) if store and not fresh else {}
+    found: dict[Item, Result] = {}
+    for item in items if store and not fresh else ():
+        inputs = kept.inputs(item)
+        if store and (plain := store.get(inputs)) is not None:
+            try:
+                found[item] = kept.read(item, plain)
+            except InputError as error:
+                store.distrust(inputs, str(error))
     todo = [item for item in items if item not in found]
     with closing(stream(work, todo, jobs=jobs, dask=dask)) as results:
         progress("starting", len(found), len(items))
@@ -352,15 +359,3 @@ def solve_all(
                     store.put(kept.inputs(item), kept.write(result))
             progress(kept.name(item), len(found), len(items))
     return tuple(found[item] for item in items)
-
-
-def _stored(items: Sequence[Item], store: Store, kept: Kept[Item, Result]) -> Iterator[tuple[Item, Result]]:
-    """Items whose results the store holds."""
-    for item in items:
-        inputs = kept.inputs(item)
-        if (plain := store.get(inputs)) is None:
-            continue
-        try:
-            yield item, kept.read(item, plain)
-        except InputError as error:
-            store.distrust(inputs, str(error))

@@ -12,7 +12,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, Protocol, TextIO
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from halfspace.errors import InputError
 
@@ -59,52 +59,31 @@ class Help(argparse.HelpFormatter):
         return f"{text} (default: {shown})"
 
 
-class Version(argparse.Action):
-    """Prints the version, which is looked up only then."""
-
-    def __call__(
-        self,
-        parser: argparse.ArgumentParser,
-        namespace: argparse.Namespace,
-        values: object,
-        option_string: str | None = None,
-    ) -> None:
-        """Print and exit."""
-        from importlib.metadata import version
-
-        del namespace, values, option_string
-        print(f"fem-adhesion {version('fem-adhesion')}")
-        parser.exit(AGREE)
-
-
-class Terminated(KeyboardInterrupt):
-    """The process was asked to end by SIGTERM, as batch systems and ``timeout`` do."""
-
-
 @contextmanager
 def ended_by_signal() -> Iterator[None]:
     """Let SIGTERM end the block as Ctrl-C does, so that workers are stopped and nothing is left half-written.
 
-    A second one changes nothing: the first is being heeded. Signals reach the main thread alone.
+    The KeyboardInterrupt has the number of the signal, which Ctrl-C's has not. A second one changes nothing: the first
+    is being heeded. Signals reach the main thread alone.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGTERM, _terminate)
+
+    def terminate(number: int, _: object) -> NoReturn:
+        signal.signal(number, signal.SIG_IGN)
+        raise KeyboardInterrupt(number)
+
+    before = signal.signal(signal.SIGTERM, terminate)
     try:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
 
 
-def _terminate(number: int, _: object) -> NoReturn:
-    signal.signal(number, signal.SIG_IGN)
-    raise Terminated
-
-
 def ended(how: KeyboardInterrupt, what: str) -> int:
     """Say in one line that the command was ended from outside, and give its exit code."""
-    word, code = ("terminated", TERMINATED) if isinstance(how, Terminated) else ("interrupted", INTERRUPTED)
+    word, code = ("terminated", TERMINATED) if how.args else ("interrupted", INTERRUPTED)
     print(f"fem-adhesion: {word}; {what}", file=sys.stderr)
     return code
 
@@ -124,14 +103,6 @@ class Parser(argparse.ArgumentParser):
         self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
 
 
-class Commands(Protocol):
-    """What a command adds itself to; argparse's own type of it takes no parameters at run time, where pages read it."""
-
-    def add_parser(self, name: str, **settings: Any) -> Parser:
-        """Parser of a command of that name."""
-        ...
-
-
 @dataclass(frozen=True)
 class Command:
     """A command of the program: one line on what it does, more than that, and arguments to begin with.
@@ -146,8 +117,8 @@ class Command:
     add_options: Callable[[Parser], None]
     run: Callable[[argparse.Namespace], int]
 
-    def add_to(self, commands: Commands) -> None:
-        """Add it to the commands of a parser."""
+    def add_to(self, commands: Any) -> None:
+        """Add it to the commands of a parser, as argparse's ``add_subparsers`` gives them."""
         epilog = f"example: fem-adhesion {self.name} {self.example}"
         parser = commands.add_parser(self.name, help=self.help, description=self.description, epilog=epilog)
         self.add_options(parser)

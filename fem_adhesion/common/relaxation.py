@@ -39,17 +39,6 @@ class Relaxed(Valued):
     residual: float
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class _Gaps(Valued):
-    """Gaps H = given + influence @ P under a control, which has eliminated the approach from [G97] (2.8)."""
-
-    given: Array
-    influence: Array
-
-    def under(self, P: Array) -> Array:
-        return np.asarray(self.given + self.influence @ P)
-
-
 def simple(
     problem: ContactProblem,
     start: Array,
@@ -67,15 +56,15 @@ def simple(
     tolerance is the largest change H' - H accepted, relative to the gap h. InputError if the grid follows the contact,
     or the control is another one; NotConverged if the gaps run away or `most_sweeps` run out.
     """
-    gaps, tabor, law = _gaps_under(problem, control), problem.tabor, problem.law
+    (given, C), tabor, law = _gaps_under(problem, control), problem.tabor, problem.law
     H = start[:-2].copy()
 
     def sweep() -> None:
         nonlocal H
-        H = np.maximum(H + relaxation * (gaps.under(law.pressure(H, tabor)) - H), CLOSEST)
+        H = np.maximum(H + relaxation * (given + C @ law.pressure(H, tabor) - H), CLOSEST)
 
     def residual() -> float:
-        return float(np.max(np.abs(gaps.under(law.pressure(H, tabor)) - H) / (1 + H)))
+        return float(np.max(np.abs(given + C @ law.pressure(H, tabor) - H) / (1 + H)))
 
     sweeps, misfit = _iterate("simple relaxation", relaxation, sweep, residual, tolerance, most_sweeps)
     return _relaxed(problem, H, law.pressure(H, tabor), sweeps, misfit)
@@ -99,40 +88,39 @@ def greenwood(
     The relaxation is the part of each correction that is made, 0.5 to 1.5, the tolerance the largest misfit of the
     pressure accepted, relative to the largest pressure; the rest, and what is raised, as of `simple`.
     """
-    gaps, tabor, law = _gaps_under(problem, control), problem.tabor, problem.law
-    columns, P = _local_changes(gaps.influence).T.copy(), problem.pressure(start)
+    (given, C), tabor, law = _gaps_under(problem, control), problem.tabor, problem.law
+    P = problem.pressure(start)
+    # Columns: the gaps' change as P_i rises by 1 while P_(i-1) and P_(i+1) fall by 1/2.
+    changes = C.copy()
+    changes[:, :-1] -= C[:, 1:] / 2
+    changes[:, 1:] -= C[:, :-1] / 2
+    columns = changes.T.copy()
 
     def sweep() -> None:
-        _correct_each(P, gaps.under(P), columns, law, tabor, relaxation)
+        _correct_each(P, given + C @ P, columns, law, tabor, relaxation)
 
     def residual() -> float:
-        H = np.maximum(gaps.under(P), CLOSEST)
+        H = np.maximum(given + C @ P, CLOSEST)
         return float(np.max(np.abs(P - law.pressure(H, tabor))) / np.max(np.abs(P)))
 
     sweeps, misfit = _iterate("Greenwood's iteration", relaxation, sweep, residual, tolerance, most_sweeps)
-    return _relaxed(problem, gaps.under(P), P, sweeps, misfit)
+    return _relaxed(problem, given + C @ P, P, sweeps, misfit)
 
 
-def _gaps_under(problem: ContactProblem, control: Control) -> _Gaps:
-    """Eliminate the approach: it is given, or follows from the gap given on the axis."""
+def _gaps_under(problem: ContactProblem, control: Control) -> tuple[Array, Array]:
+    """Terms of H = given + C @ P, from which the control has eliminated the approach of [G97] (2.8).
+
+    It is given, or follows from the gap given on the axis.
+    """
     if problem.follows_contact:
         raise InputError("the grid follows the contact; the 1997 iterations need a fixed one")
     body, undeformed = problem.operator.at(1.0), problem.undeformed(0.0)[:-2]
     C = problem.tabor * body.compliance
     if np.array_equal(control.weights, np.eye(4)[APPROACH]):
-        return _Gaps(undeformed - control.target, C)
+        return undeformed - control.target, C
     if np.array_equal(control.weights, np.eye(4)[CENTRAL_GAP]):
-        axis = body.axis_row
-        return _Gaps(undeformed + control.target, C - axis @ C)  # on the axis the undeformed one is zero
+        return undeformed + control.target, C - body.axis_row @ C  # on the axis the undeformed one is zero
     raise InputError("the 1997 iterations work under newton.approach or newton.central_gap only; take newton.solve")
-
-
-def _local_changes(influence: Array) -> Array:
-    """Columns: the gaps' change as P_i rises by 1 while P_(i-1) and P_(i+1) fall by 1/2."""
-    changes = influence.copy()
-    changes[:, :-1] -= influence[:, 1:] / 2
-    changes[:, 1:] -= influence[:, :-1] / 2
-    return changes
 
 
 def _correct_each(P: Array, H: Array, columns: Array, law: Law, tabor: float, relaxation: float) -> None:

@@ -25,19 +25,11 @@ NUMBER = re.compile(r"[(=-]*\d[\d.e+()-]*")
 UNIT = re.compile(r"(%|[yzafpnµmkMGT]?(m|N|Pa|J|N/m|J/m\^2)|s|R|dgamma(/eps)?|eps|beta|unknowns|points)[.,;:)]*")
 
 
-@dataclass(frozen=True)
-class TableFrame:
-    """How rich frames a table, and how many columns of the terminal the frame takes for each of its own and in all."""
-
-    frame: Mapping[str, Any]
-    each: int
-    once: int
-
-
-FRAMES = (
-    TableFrame({"box": box.HEAVY_HEAD}, 3, 1),
-    TableFrame({"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "padding": (0, 0)}, 1, -1),
+FRAMES: Sequence[tuple[Mapping[str, Any], int, int]] = (
+    ({"box": box.HEAVY_HEAD}, 3, 1),
+    ({"box": box.SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "padding": (0, 0)}, 1, -1),
 )
+"""How rich frames a table, and how many columns of the terminal the frame takes for each of its own and in all."""
 
 
 def make_console(*, to_error: bool = False) -> Console:
@@ -132,10 +124,6 @@ class Column:
         """Width in which no line is broken."""
         return max(cell_len(line) for text in self._texts for line in text.split("\n"))
 
-    def laid(self, row: int, width: int) -> str | Text:
-        """Cell in a width."""
-        return _wrapped(self.cells[row], width) if self.wraps else self.cells[row]
-
     @property
     def _texts(self) -> list[str]:
         return [Text.from_markup(text).plain for text in (self.header, *self.cells)]
@@ -155,41 +143,31 @@ class Fitted:
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Title, table or list, what was left out, and caption."""
+        del console
         if self.title:
             yield Flow(self.title, style="italic")
-        del console
-        kept, made = self._fitting(options.max_width)
-        if made is None:
-            yield from self._items()
+        ranks = sorted({column.rank for column in self.columns} - {0}, reverse=True)
+        fewer = [([column for column in self.columns if column.rank < rank], FRAMES[-1]) for rank in ranks]
+        for kept, (frame, each, once) in [*((self.columns, frame) for frame in FRAMES), *fewer]:
+            spare = options.max_width - each * len(kept) - once - sum(column.least for column in kept)
+            if spare >= 0:
+                yield self._table(kept, frame, _widths(kept, spare))
+                if left_out := [_one_line(column.header) for column in self.columns if column not in kept]:
+                    yield Flow([f"left out at this width: {left_out[0]}", *left_out[1:]], ", ", "dim")
+                break
         else:
-            yield made
-            if left_out := [_one_line(column.header) for column in self.columns if column not in kept]:
-                yield Flow([f"left out at this width: {left_out[0]}", *left_out[1:]], ", ", "dim")
+            yield from self._items()
         if self.caption:
             yield Flow(self.caption, style="dim italic")
 
-    def _fitting(self, width: int) -> tuple[Sequence[Column], Table | None]:
-        """Columns that fit and their table, None if none does: all of them if it may be, in a lighter frame if not."""
-        for kept, layout in self._choices():
-            spare = width - layout.each * len(kept) - layout.once - sum(column.least for column in kept)
-            if spare >= 0:
-                return kept, self._table(kept, layout, _widths(kept, spare))
-        return (), None
-
-    def _choices(self) -> Iterator[tuple[Sequence[Column], TableFrame]]:
-        yield from ((self.columns, layout) for layout in FRAMES)
-        for rank in sorted({column.rank for column in self.columns} - {0}, reverse=True):
-            yield [column for column in self.columns if column.rank < rank], FRAMES[-1]
-
-    def _table(self, columns: Sequence[Column], layout: TableFrame, widths: Sequence[int]) -> Table:
-        made = Table(**layout.frame)
+    def _table(self, columns: Sequence[Column], frame: Mapping[str, Any], widths: Sequence[int]) -> Table:
+        made, laid = Table(**frame), []
         for column, width in zip(columns, widths, strict=True):
             justify: JustifyMethod = "left" if column.text else "right"
             made.add_column(column.header, justify=justify, no_wrap=not column.wraps, width=width)
-        styles = self.styles or [""] * len(self.columns[0].cells)
-        for row, style in enumerate(styles):
-            cells = (column.laid(row, width) for column, width in zip(columns, widths, strict=True))
-            made.add_row(*cells, style=style or None)
+            laid.append([_wrapped(cell, width) if column.wraps else cell for cell in column.cells])
+        for row, cells in enumerate(zip(*laid, strict=True)):
+            made.add_row(*cells, style=(self.styles[row] if self.styles else "") or None)
         return made
 
     def _items(self) -> Iterator[RenderableType]:
@@ -216,25 +194,17 @@ def _one_line(text: str) -> str:
 
 
 def page(parts: Sequence[str | page_of.Table]) -> Iterator[RenderableType]:
-    """Lines and tables of a page, the tables fitted: the last columns are left out first."""
+    """Lines and tables of a page, the tables fitted: the last columns are left out first.
+
+    Headers are broken after commas and colons, cells before what is in brackets and what they equal.
+    """
     for part in parts:
-        if isinstance(part, page_of.Table):
-            yield from (Text(), Text(f"## {part.title}"), Text(), _from_table(part))
-        else:
+        if not isinstance(part, page_of.Table):
             yield Text(part)
-
-
-def _broken(cell: str) -> str:
-    """Cell of a page with what is in brackets, and what it equals, on lines of their own."""
-    return re.sub(r" (?=\(|= )", "\n", cell.replace("[", r"\["))
-
-
-def _from_table(table: page_of.Table) -> Fitted:
-    """Table of a page, its headers broken after commas and colons."""
-    rows = [[_broken(cell) for cell in cells] for cells in (table.columns, *table.rows)]
-    return Fitted(
-        [
-            Column(re.sub(r"(?<=[:,]) ", "\n", header), cells, rank, text=True, wraps=True, wrapped=PAGE)
-            for rank, (header, *cells) in enumerate(zip(*rows, strict=True))
-        ]
-    )
+            continue
+        columns = []
+        for rank, texts in enumerate(zip(part.columns, *part.rows, strict=True)):
+            header, *cells = (re.sub(r" (?=\(|= )", "\n", text.replace("[", r"\[")) for text in texts)
+            header = re.sub(r"(?<=[:,]) ", "\n", header)
+            columns.append(Column(header, cells, rank, text=True, wraps=True, wrapped=PAGE))
+        yield from (Text(), Text(f"## {part.title}"), Text(), Fitted(columns))
