@@ -5,7 +5,6 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Sequence
-from importlib.metadata import version
 
 from fem_adhesion.assess.command import COMMAND as ASSESS
 from fem_adhesion.common.files import NotWritten
@@ -67,8 +66,7 @@ def _told(why: object, code: int) -> int:
 def make_parser() -> Parser:
     """Parser of all commands."""
     parser = Parser(prog="fem-adhesion", description="Adhesive contact of elastic spheres by two solvers.")
-    shown = f"fem-adhesion {version('fem-adhesion')}"
-    parser.add_argument("--version", action="version", version=shown, help="show the version and exit")
+    parser.add_argument("--version", action="version", help="show the version and exit")
     commands = parser.add_subparsers(required=True, metavar="command", parser_class=Parser)
     for command in COMMANDS:
         command.add_to(commands)

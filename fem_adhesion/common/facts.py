@@ -57,24 +57,19 @@ def with_peak_memory(work: Callable[[], Result]) -> tuple[Result, float]:
     What earlier work has given back to the allocator but not to the system is reused unseen: small needs may show as 0.
     It is nan where the system does not tell.
     """
+
+    def resident(key: str) -> float:
+        """Resident memory in KiB, now (VmRSS) or at its peak (VmHWM)."""
+        return float(_value(PROC / "self/status", key).split()[0] or "nan")
+
     gc.collect()
-    start = _restart_peak()
-    result = work()
-    return result, (_resident("VmHWM") - start) / 1024
-
-
-def _restart_peak() -> float:
-    """Set the process's peak to what it holds now, in KiB; nan where there is no such thing as /proc."""
     try:
-        (PROC / "self/clear_refs").write_text("5")
+        (PROC / "self/clear_refs").write_text("5")  # the peak is what it holds now
+        start = resident("VmRSS")
     except OSError:
-        return float("nan")
-    return _resident("VmRSS")
-
-
-def _resident(key: str) -> float:
-    """Resident memory in KiB, now (VmRSS) or at its peak (VmHWM)."""
-    return float(_value(PROC / "self/status", key).split()[0] or "nan")
+        start = float("nan")
+    result = work()
+    return result, (resident("VmHWM") - start) / 1024
 
 
 def _value(file: Path, key: str) -> str:

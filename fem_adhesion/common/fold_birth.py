@@ -58,21 +58,17 @@ def born(birth: Birth, problem_at: Callable[[float], Traceable]) -> float:
 
     problem_at gives the contact problem at a Tabor parameter, on a grid fine on the axis.
     """
+    sign = -1 if birth.falling else 1
 
     @cache
     def least_slope(tabor: float) -> float:
-        return _least_slope(birth, problem_at(tabor))
+        """Least slope of the approach over the gap, positive before the birth and negative after it."""
+        return _least(problem_at(tabor), birth.gaps, lambda rates: sign * rates[APPROACH] / rates[CENTRAL_GAP], 1e-5)
 
     lower, upper = birth.tabors
     if least_slope(lower) * least_slope(upper) > 0:
         raise NoBirth(f"no folds are born between tabor = {lower:g} and {upper:g}; look elsewhere")
     return root(least_slope, lower, upper, "the birth of folds; look elsewhere", xtol=1e-11)
-
-
-def _least_slope(birth: Birth, problem: Traceable) -> float:
-    """Least slope of the approach over the gap, positive before the birth and negative after it."""
-    sign = -1 if birth.falling else 1
-    return _least(problem, birth.gaps, lambda rates: sign * rates[APPROACH] / rates[CENTRAL_GAP], 1e-5)
 
 
 def _least(problem: Traceable, gaps: tuple[float, float], slope: Callable[[Array], float], xtol: float) -> float:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from halfspace.equilibrium.contact import APPROACH, CENTRAL_GAP, LOAD
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.equilibrium.events import is_fold
-from halfspace.equilibrium.path import Segment
 from halfspace.values import Array, Valued
 
 STABLE, GRIPS_ONLY, UNSTABLE = range(3)
@@ -80,19 +79,14 @@ def smooth(path: EquilibriumPath) -> Line:
     """Lines through the points of a path with their tangents."""
     segments = path.finest_curve.segments
     firsts = np.cumsum([0, *(len(segment.points) for segment in segments)])
-    parts = [
-        _smooth(segment, path.stable[first : first + len(segment.points)])
-        for segment, first in zip(segments, firsts, strict=False)
-    ]
-    values = np.concatenate([part[0] for part in parts])
-    approach, load, central_gap = values.T
-    return Line(approach, load, central_gap, np.concatenate([part[1] for part in parts]))
-
-
-def _smooth(segment: Segment, stable: NDArray[np.bool_]) -> tuple[Array, NDArray[np.int8]]:
-    """Approach, load and central gap, (n, 3), along one segment, and the kind of each point."""
-    values, rates = segment.between(DRAWING.between)
-    return values[:, [APPROACH, LOAD, CENTRAL_GAP]], kinds(rates, _stable_between(stable, rates[:, APPROACH]))
+    values, found = [], []
+    for segment, first in zip(segments, firsts, strict=False):
+        between, rates = segment.between(DRAWING.between)
+        stable = path.stable[first : first + len(segment.points)]
+        values.append(between[:, [APPROACH, LOAD, CENTRAL_GAP]])
+        found.append(kinds(rates, _stable_between(stable, rates[:, APPROACH])))
+    approach, load, central_gap = np.concatenate(values).T
+    return Line(approach, load, central_gap, np.concatenate(found))
 
 
 def kinds(rates: Array, stable: NDArray[np.bool_]) -> NDArray[np.int8]:

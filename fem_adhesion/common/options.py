@@ -94,6 +94,13 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **settings: Any) -> None:
         super().__init__(**{"formatter_class": Help, **settings})
 
+    @property
+    def version(self) -> str:
+        """Version, which argparse asks for where it is to be shown."""
+        from importlib.metadata import version  # here, as it takes as long to load as all that help needs
+
+        return f"fem-adhesion {version('fem-adhesion')}"
+
     def error(self, message: str) -> NoReturn:
         """Exit with code 2; an option of earlier versions is answered by the one in its place."""
         gone = [word for word in message.split() if word.partition("=")[0] in GONE]

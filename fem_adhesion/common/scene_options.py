@@ -86,7 +86,9 @@ def scene_of(options: argparse.Namespace, tabor: float, contact: Contact | None 
     """Scene of the parts given; with a material, of the sizes in SI."""
     from fem_adhesion.scene import Scene
 
-    pair = contact if contact and contact.pair and has_size(options) else None
+    named = PARTS["body"].get((options.body or "half-space").partition(":")[0])
+    has_size = named is not None and "radius_ratio" in named.parameters  # a length of its own
+    pair = contact if contact and contact.pair and has_size else None
     length: Length = in_beta
     poisson, size, of_profile = options.poisson, dict[str, Any](), dict[str, Any]()
     if contact:
@@ -144,12 +146,6 @@ def law_of(options: argparse.Namespace) -> Law:
     """Law given, or the 3-9 law."""
     law: Law = part_in("law", options.law or "power-law")
     return law
-
-
-def has_size(options: argparse.Namespace) -> bool:
-    """Whether the body given has a length of its own."""
-    name = (options.body or "half-space").partition(":")[0]
-    return name in PARTS["body"] and "radius_ratio" in PARTS["body"][name].parameters
 
 
 def given(options: argparse.Namespace, *names: str) -> list[str]:

@@ -155,8 +155,11 @@ class Fitted:
                 if left_out := [_one_line(column.header) for column in self.columns if column not in kept]:
                     yield Flow([f"left out at this width: {left_out[0]}", *left_out[1:]], ", ", "dim")
                 break
-        else:
-            yield from self._items()
+        else:  # every row as a heading and a line for each of its cells
+            for first, *row in zip(*(column.cells for column in self.columns), strict=True):
+                yield Text.from_markup(first, style="bold")
+                for column, cell in zip(self.columns[1:], row, strict=True):
+                    yield Flow([f"  {_one_line(column.header)}:", _one_line(cell)], " ")
         if self.caption:
             yield Flow(self.caption, style="dim italic")
 
@@ -169,13 +172,6 @@ class Fitted:
         for row, cells in enumerate(zip(*laid, strict=True)):
             made.add_row(*cells, style=(self.styles[row] if self.styles else "") or None)
         return made
-
-    def _items(self) -> Iterator[RenderableType]:
-        """Every row as a heading and a line for each of its cells."""
-        for row in zip(*(column.cells for column in self.columns), strict=True):
-            yield Text.from_markup(row[0], style="bold")
-            for column, cell in zip(self.columns[1:], row[1:], strict=True):
-                yield Flow([f"  {_one_line(column.header)}:", _one_line(cell)], " ")
 
 
 def _widths(columns: Sequence[Column], spare: int) -> list[int]:

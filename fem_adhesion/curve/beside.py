@@ -23,7 +23,7 @@ from fem_adhesion.scene import Scene
 from halfspace.equilibrium.curve import EquilibriumPath
 from halfspace.errors import InputError
 from halfspace.laws import Law
-from halfspace.values import Array, Estimate
+from halfspace.values import Estimate
 
 LOOKS = (
     (style.BLUE, "-"),
@@ -129,7 +129,9 @@ def draw(beside: EquallyStrong) -> Figure:
         for name, marker in MARKERS.items():
             if event := path.event(name):
                 left.plot(event.approach / path.tabor, event.load, marker, color=color, zorder=4)
-        right.plot(*_law(law), linestyle=dashes, **look)
+        gaps = np.linspace(*USUAL.gaps) / law.strength
+        gaps = gaps[gaps > USUAL.core]
+        right.plot(gaps * law.strength, -law.pressure(gaps, 1.0) / law.strength, linestyle=dashes, **look)
         frames.append((*(value / path.tabor for value in frame.approach), *frame.load))
     low, high = np.min(frames, axis=0), np.max(frames, axis=0)
     approaches, loads = (low[0], high[1]), (low[2], high[3])
@@ -144,10 +146,3 @@ def draw(beside: EquallyStrong) -> Figure:
     right.set_title("laws of equal work and largest tension", loc="left", fontsize=9.5)
     style.legend_below(figure, [left], 2)
     return figure
-
-
-def _law(law: Law) -> tuple[Array, Array]:
-    """Gap less that at equilibrium in dgamma/(largest tension), and the tension in that."""
-    gaps = np.linspace(*USUAL.gaps) / law.strength
-    gaps = gaps[gaps > USUAL.core]
-    return gaps * law.strength, -law.pressure(gaps, 1.0) / law.strength

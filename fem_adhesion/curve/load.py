@@ -88,7 +88,7 @@ def _draw_frame(axes: Any, curves: Curves, frame: Frame) -> None:
         axes.plot(*curves.shown(approach=approach, load=load), label=name, **THEORIES[name])
     line = lines.smooth(reaching(curves.path, curves.question.stiffness))
     draw_line(axes, curves, line)
-    _draw_other(axes, curves, frame)
+    _draw_other(axes, curves)
     draw_states(axes, curves)
     _draw_jumps(axes, curves, frame)
     axes.axhline(0, color="0.8", linewidth=0.7, zorder=0)
@@ -96,29 +96,19 @@ def _draw_frame(axes: Any, curves: Curves, frame: Frame) -> None:
     axes.set(xlim=xlim, ylim=ylim)
 
 
-def _draw_other(axes: Any, curves: Curves, frame: Frame) -> None:
+def _draw_other(axes: Any, curves: Curves) -> None:
     """The half-space beside the finite elements: points on the same contact, a line for another."""
     if curves.other is None:
         return
     if not curves.question.scene.left_out:
         look: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 4, "markerfacecolor": "white"}
-        look |= {"color": "black", "markeredgewidth": 0.8, "zorder": 4}
-        approach, load = _spread(curves.other.approach, curves.other.load, frame)
+        look |= {"color": "black", "markeredgewidth": 0.8, "zorder": 4, "markevery": USUAL.apart}
+        approach, load = curves.other.approach, curves.other.load
     else:
         line = lines.smooth(curves.other)
         approach, load = line.approach, line.load
         look = {"color": style.ORANGE, "linewidth": 1.5, "linestyle": style.CHAIN, "zorder": 1.8}
     axes.plot(*curves.shown(approach=approach, load=load), label="half-space", **look)
-
-
-def _spread(approach: Array, load: Array, frame: Frame) -> tuple[Array, Array]:
-    """Points of a curve that are far enough apart to leave sight of the line below."""
-    places = np.column_stack([approach / np.ptp(frame.approach), load / np.ptp(frame.load)])
-    kept = [0]
-    for i in range(1, len(places)):
-        if np.hypot(*(places[i] - places[kept[-1]])) > USUAL.apart:
-            kept.append(i)
-    return approach[kept], load[kept]
 
 
 def draw_line(axes: Any, curves: Curves, line: Line, quantity: str = "load") -> None:
@@ -153,7 +143,10 @@ def _draw_jumps(axes: Any, curves: Curves, frame: Frame) -> None:
             tail, head = ((*curves.shown(approach=approach, load=load),) for approach, load in both)
             style.arrow(axes, tail, head, linewidth=1.4, mutation_scale=11, **look)
         if cycle and seen:
-            words = "jumps under fixed grips" if math.isinf(cycle.stiffness) else f"jumps, {_stiffness(curves)}"
+            k, units = cycle.stiffness, curves.question.units
+            stiffness = f"$k = {k:g}\\,R\\Delta\\gamma/\\epsilon$"
+            stiffness = f"$k$ = {engineering(k * units.stiffness, 'N/m')}" if units else stiffness
+            words = "jumps under fixed grips" if math.isinf(k) else f"jumps, {stiffness}"
             axes.plot([], [], label=words, linewidth=1.4, **look)
     # Lines of slope -k, the loads that an apparatus exerts with its base held where it jumps.
     for jump in curves.apparatus.jumps.values() if curves.apparatus else ():
@@ -203,11 +196,6 @@ def contact_words(curves: Curves) -> str:
     size = f"$R$ = {engineering(units.radius, 'm')}, " if units else ""
     ratio = f", $R/\\epsilon$ = {scene.radius_ratio:.4g}" if scene.radius_ratio else ""
     return f"{size}$\\mu$ = {scene.tabor:.4g}{ratio}"
-
-
-def _stiffness(curves: Curves) -> str:
-    k, units = curves.question.stiffness, curves.question.units
-    return f"$k$ = {engineering(k * units.stiffness, 'N/m')}" if units else f"$k = {k:g}\\,R\\Delta\\gamma/\\epsilon$"
 
 
 def draw_central_gap(axes: Any, curves: Curves) -> str:

@@ -14,7 +14,7 @@ from fem_adhesion.curve.solve import Curves
 from halfspace.equilibrium.contact import OBSERVABLES
 from halfspace.equilibrium.devices import Cycle
 from halfspace.equilibrium.events import Event
-from halfspace.scaling import IN_SI, Units
+from halfspace.scaling import IN_SI
 
 ERRORS = tuple(f"{name}_error" for name in OBSERVABLES)
 COLUMNS = ("arclength", *OBSERVABLES, *ERRORS)
@@ -27,12 +27,14 @@ MORE = {"jumps": "jumps", "margin": "margin", "model_uncertainty": "spread", "en
 
 def head(curves: Curves) -> dict[str, Any]:
     """Record of the run; where the material is known ``si`` has each unit's factor into SI, and the SI unit."""
-    question = curves.question
+    question, units = curves.question, curves.question.units
+    named = {name: units.si(name) for name in UNITS if name in IN_SI} if units else {}
+    sizes = {name: {"factor": factor, "unit": unit} for name, (factor, unit) in named.items()}
     asked = {name: getattr(question, name) for name in ("solver", "rtol", "to_load", "stiffness", "points", "kernel")}
     return common.record(question.scene, **asked) | {
         "rtol": question.rtol,
         "to_load": question.to_load,
-        "si": plain(_si(question.units)) if question.units else None,
+        "si": units and plain({"material": units, "units": sizes}),
     }
 
 
@@ -41,11 +43,6 @@ def record(curves: Curves) -> dict[str, Any]:
     solutions = {name: _solution(path) | {"left_out": curves.left_out(name)} for name, path in curves.sampled.items()}
     cycles = {"fixed_grips": _cycle(curves.grips), "apparatus": _cycle(curves.apparatus)}
     return head(curves) | {"solutions": plain(solutions), "jumps": plain(cycles)}
-
-
-def _si(units: Units) -> dict[str, Any]:
-    sizes = {name: dict(zip(("factor", "unit"), units.si(name), strict=True)) for name in UNITS if name in IN_SI}
-    return {"material": units, "units": sizes}
 
 
 def _solution(path: Any) -> dict[str, Any]:

@@ -12,7 +12,7 @@ class Settings:
     # The page
     page: tuple[float, float] = (7.3, 10.0)  # inches
     samples: int = 600  # points of a theory's line
-    apart: float = 0.06  # least distance of points drawn on a line, as a part of the frame
+    apart: float = 0.04  # distance of points drawn on a line, in the diagonal of the frame
     theory: float = 1.3  # largest contact radius of a theory's line, in the curve's widest
     close: float = 0.99  # the same in the radius where the body ends, at most
     enlarged: float = 3.0  # highest load, in that of the frame around the events, from which on these are enlarged

@@ -134,8 +134,13 @@ class Curves:
         units = self.question.units
         if units is None:
             return PAPER
-        largest = _largest(self)
-        return {name: _si_scale(name, *units.si(name), largest.get(ALIKE.get(name, name), 1.0)) for name in PAPER}
+        largest, scales = _largest(self), {}
+        for name, paper in PAPER.items():
+            size, unit = units.si(name)
+            exponent = exponent_of(size * largest.get(ALIKE.get(name, name), 1.0))
+            shown = PREFIXES[exponent] + unit
+            scales[name] = Scale(f"{paper.in_si}, {shown}", shown, size=size * 10.0**-exponent)
+        return scales
 
     def shown(self, **values: Array | float) -> list[Any]:
         """Quantities by their names, in the units in which they are shown."""
@@ -209,9 +214,3 @@ def _largest(curves: Curves) -> Mapping[str, float]:
     sizes["energy"] = [abs(cycle.energy_lost.value) for cycle in cycles]
     known = {name: [size for size in found if math.isfinite(size) and size] for name, found in sizes.items()}
     return {name: max(found) for name, found in known.items() if found}
-
-
-def _si_scale(name: str, size: float, unit: str, largest: float) -> Scale:
-    exponent = exponent_of(size * largest)
-    shown = PREFIXES[exponent] + unit
-    return Scale(f"{PAPER[name].in_si}, {shown}", shown, size=size * 10.0**-exponent)

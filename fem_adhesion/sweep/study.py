@@ -41,16 +41,15 @@ def run(
     module, solves for one curve; `how` are further keywords of `fem_adhesion.common.jobs.solve_all`: jobs, dask,
     progress.
     """
-    kept = Kept(partial(_inputs, asked=asked), "tabor {:g}".format, _to_plain, _from_plain, Summary.failed)
+
+    def inputs(tabor: float) -> Plain:
+        return {"tabor": tabor, **{name: record_of(value) for name, value in asked.items()}}
+
+    def write(curve: Summary) -> Plain:
+        return {name: plain(value) if isinstance(value, dict) else value for name, value in asdict(curve).items()}
+
+    kept = Kept(inputs, "tabor {:g}".format, write, _from_plain, Summary.failed)
     return solve_all(tabors, store, work=partial(work, **asked), kept=kept, **how)
-
-
-def _inputs(tabor: float, asked: Mapping[str, Any]) -> Plain:
-    return {"tabor": tabor, **{name: record_of(value) for name, value in asked.items()}}
-
-
-def _to_plain(curve: Summary) -> Plain:
-    return {name: plain(value) if isinstance(value, dict) else value for name, value in asdict(curve).items()}
 
 
 def _from_plain(_: float, kept: Mapping[str, Any]) -> Summary:
