@@ -7,32 +7,15 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.assess.predictions import (
-    ON_LAYER,
-    Prediction,
-    closed,
-    computed,
-    exact_sphere,
-    large_tabor,
-    large_tabor_on,
-)
+from fem_adhesion.assess import predictions, verdict
+from fem_adhesion.assess.predictions import ON_LAYER, Prediction, closed, computed, exact_sphere
 from fem_adhesion.assess.settings import USUAL
 from fem_adhesion.assess.theories import bradley, dmt_maugis, jkr, maugis_dugdale
 from fem_adhesion.assess.thin_sample import ThinSample, enough, hertz_until, indentations
-from fem_adhesion.assess.verdict import (
-    Deviation,
-    Distance,
-    cautions,
-    deviations,
-    ranked,
-    regime,
-    verdict,
-    yielding,
-)
 from fem_adhesion.bodies.held import Hemisphere
 from fem_adhesion.common.contact import Contact
 from fem_adhesion.common.jobs import Progress, in_turn, unheard
@@ -47,12 +30,7 @@ from halfspace.scaling import ATTARD_PARKER, MAUGIS, MYD, MYD_AMPLIFICATION
 
 HALF_SPACE, PROFILE, FINITE, PAIR = "half-space", "true profile", "finite sphere", "finite pair"
 Answer = TypeVar("Answer")
-THEORIES = {
-    "JKR": jkr,
-    "Maugis-Dugdale": maugis_dugdale,
-    "DMT-M": dmt_maugis,
-    "rigid": bradley,
-}
+THEORIES = {"JKR": jkr, "Maugis-Dugdale": maugis_dugdale, "DMT-M": dmt_maugis, "rigid": bradley}
 PARAMETERS = {
     "Tabor mu": None,
     "Maugis lambda": MAUGIS,
@@ -79,8 +57,8 @@ class Assessment:
     profile: Prediction | None
     finite: Prediction | None
     theories: tuple[Prediction, ...]
-    deviations: tuple[Deviation, ...]
-    distances: tuple[Distance, ...]
+    deviations: tuple[verdict.Deviation, ...]
+    distances: tuple[verdict.Distance, ...]
     regime: str
     cautions: tuple[str, ...]
     verdict: tuple[str, ...]
@@ -121,10 +99,10 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
     finite, why_not = _tried(body, _finite, contact)
     if contact.layer:
         begin("thickness that is enough")
-    doubts = tuple(cautions(contact, half_space))
+    doubts = tuple(verdict.cautions(contact, half_space))
     sample, unknown = _tried("thickness that is enough", partial(_thin_sample, half_space=half_space), contact)
     by_profile = None if contact.layer and tabor > USUAL.computed else profile  # JKR's theory on layers has no profile
-    distances = ranked((half_space, profile, finite, *theories), contact.spacing)
+    distances = verdict.ranked((half_space, profile, finite, *theories), contact.spacing)
     missed = [
         f"{model.model}: {tolerance_told(model.curve.rtol, model.missed)}"
         for model in (half_space, profile, finite)
@@ -136,11 +114,11 @@ def assess(contact: Contact, progress: Progress = unheard) -> Assessment:
         profile,
         finite,
         theories,
-        tuple(deviations(half_space, by_profile, finite, contact.spacing)),
+        tuple(verdict.deviations(half_space, by_profile, finite, contact.spacing)),
         distances,
-        regime(tabor),
-        (*doubts, *yielding(contact), *filter(None, (reason, why_not, unknown)), *missed),
-        tuple(verdict(finite or half_space, distances, computed=finite is not None, doubts=doubts)),
+        verdict.regime(tabor),
+        (*doubts, *verdict.yielding(contact), *filter(None, (reason, why_not, unknown)), *missed),
+        tuple(verdict.verdict(finite or half_space, distances, computed=finite is not None, doubts=doubts)),
         time.perf_counter() - began,
         sample,
     )
@@ -158,11 +136,16 @@ def _half_space(contact: Contact) -> Prediction:
     """The computed half-space, or the closed theory that is as good."""
     units, stiffness = contact.units, contact.reduced_stiffness
     if units.tabor > USUAL.computed:
-        return large_tabor(units.tabor, stiffness, units)
+        return predictions.large_tabor(units.tabor, stiffness, units)
     if units.tabor < USUAL.rigid:
         return closed("rigid half-space", bradley, units.tabor, stiffness, units)
-    path = halfspace.trace(units.tabor, law=contact.law, rtol=USUAL.rtol, to_load=USUAL.to_load)
-    return computed(HALF_SPACE, path, stiffness, units)
+    return _traced(HALF_SPACE, contact)
+
+
+def _traced(model: str, contact: Contact, rtol: float = USUAL.rtol, **scene: Any) -> Prediction:
+    """Curve of the half-space or of layers, by the integral equation."""
+    path = halfspace.trace(contact.units.tabor, law=contact.law, rtol=rtol, to_load=USUAL.to_load, **scene)
+    return computed(model, path, contact.reduced_stiffness, contact.units)
 
 
 def _tried(name: str, make: Callable[[Contact], Answer], contact: Contact) -> tuple[Answer | None, str | None]:
@@ -182,11 +165,7 @@ def _profile(contact: Contact) -> Prediction:
             f"tabor = {units.tabor:.4g} of two spheres is outside {USUAL.rigid:g} <= tabor <= {USUAL.computed:g}; "
             "the paraboloid serves"
         )
-    if not known:
-        return exact_sphere(units)
-    profile = Sphere(units.radius_ratio, larger)
-    path = halfspace.trace(units.tabor, law=contact.law, profile=profile, rtol=USUAL.rtol, to_load=USUAL.to_load)
-    return computed(PROFILE, path, contact.reduced_stiffness, units)
+    return _traced(PROFILE, contact, profile=Sphere(units.radius_ratio, larger)) if known else exact_sphere(units)
 
 
 def _finite(contact: Contact) -> Prediction:
@@ -212,20 +191,13 @@ def _finite(contact: Contact) -> Prediction:
 
 def _on_layer(contact: Contact, layer: Layers, profile: Profile, rtol: float = USUAL.finite_rtol) -> Prediction:
     """A profile on a thin sample; of a large Tabor parameter the paraboloid."""
-    units, stiffness = contact.units, contact.reduced_stiffness
-    if units.tabor > USUAL.computed:
-        return large_tabor_on(layer, units.tabor, stiffness, units)
-
-    def solved(rtol: float) -> Prediction:
-        path = halfspace.trace(
-            units.tabor, law=contact.law, profile=profile, body=layer, rtol=rtol, to_load=USUAL.to_load
-        )
-        return computed(ON_LAYER, path, stiffness, units)
-
+    tabor = contact.units.tabor
+    if tabor > USUAL.computed:
+        return predictions.large_tabor_on(layer, tabor, contact.reduced_stiffness, contact.units)
     try:
-        return solved(rtol)
+        return _traced(ON_LAYER, contact, rtol, profile=profile, body=layer)
     except NotConverged:  # where a jump lands may be lost between two points of one path and not of a finer one
-        return solved(rtol / 10)
+        return _traced(ON_LAYER, contact, rtol / 10, profile=profile, body=layer)
 
 
 def _thin_sample(contact: Contact, half_space: Prediction) -> ThinSample | None:

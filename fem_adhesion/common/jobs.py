@@ -204,12 +204,13 @@ def _processes(number: int) -> Pool:
         "env": {**ONE_THREAD, "LOKY_MAX_MEMORY_LEAK_SIZE": str(PATIENCE.grown)},
     }
 
+    executor: Callable[[], Any] = partial(get_reusable_executor, number, **settings)
+
     def submit(*call: Any) -> Future[Any]:
-        future: Future[Any]
         try:
-            future = get_reusable_executor(number, **settings).submit(*call)
+            future: Future[Any] = executor().submit(*call)
         except TerminatedWorkerError:  # it has died just now
-            future = get_reusable_executor(number, **settings).submit(*call)
+            future = executor().submit(*call)
         return future
 
     def stop(at_work: bool) -> None:
@@ -218,7 +219,7 @@ def _processes(number: int) -> Pool:
         for worker in active_children():  # loky's own way fails on items that it has taken and not yet handed out
             if isinstance(worker, LokyProcess):
                 worker.terminate()
-        get_reusable_executor(number, **settings).shutdown()
+        executor().shutdown()
 
     tries = PATIENCE.attempts
     return Pool(submit, stop, 2 * number, TerminatedWorkerError, tries - 1, f"its worker died {tries} times")

@@ -92,9 +92,8 @@ def scene_of(options: argparse.Namespace, tabor: float, contact: Contact | None 
     length: Length = in_beta
     poisson, size, of_profile = options.poisson, dict[str, Any](), dict[str, Any]()
     if contact:
-        refuse(
-            options, ("counter", "share"), "with --tabor; with a material give --counter-modulus or --counter-radius"
-        )
+        remedy = "with a material give --counter-modulus or --counter-radius"
+        refuse(options, ("counter", "share"), f"with --tabor; {remedy}")
         poisson, length = pair.smaller_poisson if pair else contact.poisson, _in_si(contact)
         size = {"radius_ratio": pair.smaller_ratio if pair else contact.units.radius_ratio}
         of_profile = {"radius_ratio": contact.units.radius_ratio, "counter_radius": contact.larger_radius}
@@ -134,9 +133,8 @@ def _material(options: argparse.Namespace, poisson: float | None) -> dict[str, A
 def _counter(options: argparse.Namespace) -> Any:
     """Counter-body that is given in a word, or None for a rigid wall."""
     if options.counter is None:
-        refuse(
-            options, ("share", *(() if given(options, "counter_modulus") else ("counter_poisson",))), "with --counter"
-        )
+        unheeded = ("share",) if given(options, "counter_modulus") else ("share", "counter_poisson")
+        refuse(options, unheeded, "with --counter")
         return None
     poisson = POISSON if options.counter_poisson is None else options.counter_poisson
     return part_in("body", options.counter, material=class_of("material", "linear-elastic")(poisson))
@@ -155,12 +153,11 @@ def given(options: argparse.Namespace, *names: str) -> list[str]:
 
 def refuse(options: argparse.Namespace, names: tuple[str, ...], why: str) -> None:
     """Refuse options that would not be heeded."""
-    unheeded = given(options, *names)
-    if unheeded:
+    if unheeded := given(options, *names):
         raise InputError(f"{', '.join(unheeded)} would not be heeded, limit: {why}; leave it out")
 
 
-def material_unless_tabor(options: argparse.Namespace) -> Contact | None:
+def contact_of(options: argparse.Namespace) -> Contact | None:
     """The contact in SI, or None with a Tabor parameter."""
     present = given(options, *SI_ONLY)
     if options.tabor is not None:
@@ -201,8 +198,4 @@ def stiffness_of(options: argparse.Namespace, contact: Contact | None) -> float:
     """Stiffness of the apparatus in R dgamma/eps."""
     if contact or options.stiffness is None:
         return contact.reduced_stiffness if contact else math.inf
-    try:
-        return float(options.stiffness)
-    except ValueError as error:
-        what = f"stiffness = {options.stiffness} is not a plain number in R dgamma/eps; give one, or a material"
-        raise InputError(what) from error
+    return in_beta("stiffness", options.stiffness, "R dgamma/eps")

@@ -164,7 +164,7 @@ def require_suffix(path: Path) -> str:
 
 
 def write(
-    figure: Callable[[], Figure], file: TextIO, form: str, look: Mapping[Any, Any] = LOOK, dpi: int = 200
+    figure: Callable[[], Figure], file: TextIO, form: str, look: Mapping[Any, Any] = LOOK, dpi: float = 200
 ) -> None:
     """Draw and write, in a format of `require_suffix`, to a file from `fem_adhesion.common.files.written_aside`."""
     picture = BytesIO()

@@ -19,12 +19,12 @@ Length = Callable[[str, str], float]
 """Takes the name of a length and its text, and gives it in beta."""
 
 
-def in_beta(name: str, text: str) -> float:
-    """Length that is a plain number."""
+def in_beta(name: str, text: str, unit: str = "beta") -> float:
+    """Length, or what has another unit, that is a plain number."""
     try:
         return float(text)
     except ValueError as error:
-        raise InputError(f"{name} = {text} is not a plain number in beta; give one, or a material") from error
+        raise InputError(f"{name} = {text} is not a plain number in {unit}; give one, or a material") from error
 
 
 def part_in(

@@ -22,18 +22,8 @@ import numpy as np
 
 import halfspace
 from fem_adhesion import convergence
-from fem_adhesion.crosscheck import definitions, elimination, from_scratch
-from fem_adhesion.crosscheck.comparison import (
-    SOLVERS,
-    TRIANGLES,
-    Case,
-    Pair,
-    Row,
-    of_values,
-    require_comparable,
-    solution_of,
-    tighter,
-)
+from fem_adhesion.crosscheck import comparison, definitions, elimination, from_scratch
+from fem_adhesion.crosscheck.comparison import SOLVERS, TRIANGLES, Case, Pair, Row, of_values
 from fem_adhesion.crosscheck.references import PRESSURES, SMOOTH, elements_of, radius_of, reference_for
 from fem_adhesion.crosscheck.settings import USUAL
 from fem_adhesion.fields import gaps_at
@@ -80,7 +70,7 @@ def compare(
         If a solver fails.
     """
     require_rtol(rtol)
-    require_comparable(scene, rtol)
+    comparison.require_comparable(scene, rtol)
     known = unsolved(scene, rtol=rtol) if before is None else before
     fe, case = _solved(scene, rtol, rtol, solve)
     for closer in USUAL.closer:
@@ -101,12 +91,12 @@ def _solved(scene: Scene, rtol: float, asked: float, solve: Solver) -> tuple[Equ
     Theirs is of loads and approaches. Of gaps, which the residuals see, the estimates may be wider than the budget.
     """
     reference = reference_for(scene)
-    other = reference.trace(rtol=tighter(asked)) if reference else None
+    other = reference.trace(rtol=comparison.tighter(asked)) if reference else None
     fe = solve(scene, rtol=max(0.9 * asked, USUAL.tightest))
     rows: list[Row] = []
-    solutions = {"finite elements": solution_of(fe)}
+    solutions = {"finite elements": comparison.solution_of(fe)}
     if reference and other:
-        solutions = {reference.between[0]: solution_of(other), **solutions}
+        solutions = {reference.between[0]: comparison.solution_of(other), **solutions}
         rows += [*_cross_residuals(other, fe, rtol, reference.between)]
         rows += [*_compare_events(other, fe, rtol, reference.between)]
     return fe, Case(scene, solutions, tuple(rows))

@@ -11,14 +11,7 @@ from typing import TYPE_CHECKING, TextIO
 
 from fem_adhesion.common.jobs import progress_bar
 from fem_adhesion.common.options import AGREE, Command, Parser, all_written, console_beside, require_distinct
-from fem_adhesion.common.scene_options import (
-    add_body,
-    add_contact,
-    material_unless_tabor,
-    refuse,
-    scene_of,
-    stiffness_of,
-)
+from fem_adhesion.common.scene_options import add_body, add_contact, contact_of, refuse, scene_of, stiffness_of
 from fem_adhesion.common.words import part_in
 from halfspace.errors import InputError
 
@@ -145,7 +138,7 @@ def _question(options: argparse.Namespace) -> Question:
     """What is asked, with nothing given that would not be heeded."""
     from fem_adhesion.curve.solve import Question
 
-    contact = material_unless_tabor(options)
+    contact = contact_of(options)
     scene = scene_of(options, contact.units.tabor if contact else options.tabor, contact)
     inside = options.vtk or options.render or options.movie
     plain = scene.body.name == "half-space" and not inside

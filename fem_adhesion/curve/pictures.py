@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 from scipy.spatial import KDTree
 
-from fem_adhesion.common import lines
+from fem_adhesion.common import lines, style
 from fem_adhesion.common.numbers import with_error
 from fem_adhesion.curve.figure import LOOK
 from fem_adhesion.curve.load import STATES, contact_words, draw_line
@@ -52,9 +52,7 @@ def write_picture(curves: Curves, file: TextIO, at: str = "pull_off", size: tupl
     view = view_of(list(states.values()))
     solid = solid_image(states[at], view, size)
     picture = composed(curves, solid, states[at], view, _caption(curves, at))
-    png = BytesIO()
-    picture.savefig(png, format="png")
-    file.buffer.write(png.getbuffer())
+    style.write(lambda: picture, file, "png", dpi=picture.dpi)
 
 
 def event_states(curves: Curves) -> dict[str, State]:

@@ -18,17 +18,8 @@ from fem_adhesion.common.facts import machine, versions
 from fem_adhesion.common.lines import UNSTABLE, smooth
 from fem_adhesion.common.page import Figure, Section, Table, data_rows, render, template_text
 from fem_adhesion.common.style import laid_out
-from fem_adhesion.crosscheck.comparison import (
-    CLOSED_FORM,
-    SOLVERS,
-    TRIANGLES,
-    WEAK_FORM,
-    Case,
-    Row,
-    cells,
-    columns,
-    overall_verdict,
-)
+from fem_adhesion.crosscheck import comparison
+from fem_adhesion.crosscheck.comparison import CLOSED_FORM, SOLVERS, TRIANGLES, WEAK_FORM, Case, Row, columns
 from fem_adhesion.curve import figure as curve_figure
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.report.walk import Walk, walk_data, walk_words
@@ -65,7 +56,7 @@ def page(contents: Contents) -> str:
     return render(
         "report/report.html.j2",
         title="Adhesive contact of a sphere: do two solvers agree?",
-        verdict="failed" if contents.lost else overall_verdict(cases),
+        verdict="failed" if contents.lost else comparison.overall_verdict(cases),
         words=verdict_words(cases),
         cases=cases,
         counts={verdict: verdicts.count(verdict) for verdict in WORDS if verdict in verdicts},
@@ -135,7 +126,7 @@ def crosscheck_section(cases: Sequence[Case]) -> Section:
     summary, levels = [], []
     for level, (title, between) in LEVELS.items():
         summary.append([title, *_summary([row for _, row in found[level]])])
-        lines = [(tabor, *cells(row)) for tabor, row in found[level]]
+        lines = [(tabor, *comparison.cells(row)) for tabor, row in found[level]]
         levels.append(Table("", title, "", ("Tabor parameter", *columns(between)), lines))
     heads = ("level", "quantities", *VERDICTS, "largest difference / error", "largest error / budget")
     poisson = ", ".join(sorted({f"{case.scene.poisson:g}" for case in cases}))
