@@ -16,7 +16,7 @@ from fem_adhesion.assess.thin_sample import ThinSample
 from fem_adhesion.common import record as common
 from fem_adhesion.common.contact import Contact, edge_told
 from fem_adhesion.common.facts import plain
-from fem_adhesion.common.numbers import KINDS, PREFIXES, engineering, exponent_of, with_error
+from fem_adhesion.common.numbers import KINDS, PREFIXES, engineering, exponent_of, sizes_told, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.registry import record_of, words_of
 from halfspace.laws import LENNARD_JONES
@@ -43,9 +43,8 @@ def _head(assessment: Assessment) -> Iterator[RenderableType]:
     contact, units = assessment.contact, assessment.contact.units
     yield prose(f"regime: {assessment.regime}")
     yield Flow([f"{name} = {value:.4g}" for name, value in assessment.parameters.items()])
-    sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
     ratios = (f"R/eps = {units.radius_ratio:.4g}", f"beta/R = {units.length / units.radius:.2g}")
-    yield Flow([*(f"{name} = {engineering(value, unit)}" for name, value, unit in sizes), *ratios])
+    yield Flow([*sizes_told(units), *ratios])
     law = (("spacing eps", units.spacing, "m"), ("work of adhesion", units.work_of_adhesion, "J/m^2"))
     implied = f"with them the Hamaker constant 16 pi dgamma eps^2 = {engineering(units.hamaker, 'J')}"
     if contact.law != LENNARD_JONES:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from halfspace.errors import InputError
+from halfspace.scaling import Units
 from halfspace.values import Array, Estimate
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)(?![a-zA-Z])"
@@ -111,6 +112,12 @@ def engineering(value: float, unit: str) -> str:
     """Number with an engineering prefix: 57.1 GPa."""
     exponent = exponent_of(value)
     return f"{value / 10.0**exponent:.4g} {PREFIXES[exponent]}{unit}"
+
+
+def sizes_told(units: Units) -> list[str]:
+    """Radius, modulus and length of a contact in SI."""
+    sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
+    return [f"{name} = {engineering(value, unit)}" for name, value, unit in sizes]
 
 
 def exponent_of(value: float) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import IO, Any
 
 from fem_adhesion.common import record as common
@@ -82,46 +82,35 @@ def write_csv(curves: Curves, file: IO[str]) -> None:
     changes. ``missed_rtol`` names the quantities of an event whose errors are above the tolerance. At finite strain the
     ``model_uncertainty`` of an event's numbers has columns of its own. The weak form's events come after the points.
     """
-    spread = [f"{name}{SPREAD}" for name in OBSERVABLES if any(_spread(path) for path in curves.paths.values())]
-    named = {quantity: _columns(curves, quantity) for quantity in (*OBSERVABLES, *ERRORS, *spread)}
-    names = [name for columns in named.values() for name in columns]
-    header = ["solver", "event", "arclength", *names, *FLAGS, "missed_rtol"]
-    writer = csv.DictWriter(file, header, lineterminator="\n", restval="")
+    units, factors = curves.question.units, dict[str, tuple[str, float]]()  # quantity and its unit, by columns
+    spread = [
+        f"{name}{SPREAD}" for name in OBSERVABLES if any(getattr(path, "spread", {}) for path in curves.paths.values())
+    ]
+    for quantity in (*OBSERVABLES, *ERRORS, *spread):
+        name = quantity.removesuffix("_error").removesuffix(SPREAD)
+        size, unit = units.si(name) if units else (1.0, UNITS[name])
+        factors |= {column(quantity, UNITS[name]): (quantity, 1.0), column(quantity, unit): (quantity, size)}
+    header = ["solver", "event", "arclength", *factors, *FLAGS, "missed_rtol"]
+    writer = csv.DictWriter(file, header, lineterminator="\n", restval="", extrasaction="ignore")
     writer.writeheader()
     for solver, path in curves.sampled.items():
-        rows = sorted([*_points(path), *_events(path)], key=lambda row: row.get("arclength", math.inf))
-        for row in rows:
+        for row in sorted(_rows(path), key=lambda row: row.get("arclength", math.inf)):
             numbers = {
                 name: repr(float(row[quantity] * factor))
-                for quantity, columns in named.items()
+                for name, (quantity, factor) in factors.items()
                 if math.isfinite(row.get(quantity, math.nan))
-                for name, factor in columns.items()
             }
-            writer.writerow({"solver": solver, **{key: row[key] for key in row if key not in named}, **numbers})
+            writer.writerow({"solver": solver, **row, **numbers})
 
 
-def _columns(curves: Curves, quantity: str) -> dict[str, float]:
-    """Columns of a quantity, and what its values are multiplied by in each."""
-    name, units = quantity.removesuffix("_error").removesuffix(SPREAD), curves.question.units
-    size, unit = units.si(name) if units else (1.0, UNITS[name])
-    return {column(quantity, UNITS[name]): 1.0, column(quantity, unit): size}
-
-
-def _spread(path: Any) -> Mapping[str, Mapping[str, float]]:
-    found: Mapping[str, Mapping[str, float]] = getattr(path, "spread", {})
-    return found
-
-
-def _points(path: Any) -> Iterator[dict[str, Any]]:
+def _rows(path: Any) -> Iterator[dict[str, Any]]:
+    """Points, then events, with their quantities by name."""
     flags = [getattr(path, flag).astype(int).tolist() for flag in FLAGS.values()]
     for values in zip(*(getattr(path, name).tolist() for name in COLUMNS), *flags, strict=True):
         yield {"event": "", **dict(zip((*COLUMNS, *FLAGS), values, strict=True))}
-
-
-def _events(path: Any) -> Iterator[dict[str, Any]]:
-    places = path.stages[-1] if hasattr(path, "stages") else {}
+    places, spread = path.stages[-1] if hasattr(path, "stages") else {}, getattr(path, "spread", {})
     for name, event in path.events.items():
         row = {"event": name} | {key: getattr(event, key) for key in NUMBERS}
-        row |= {f"{of}{SPREAD}": apart for of, apart in _spread(path).get(name, {}).items()}
+        row |= {f"{of}{SPREAD}": apart for of, apart in spread.get(name, {}).items()}
         row |= {"arclength": places[name].point.arclength} if name in places else {}
         yield row | {"missed_rtol": " ".join(path.tolerance.missed_by(event))}

@@ -186,20 +186,16 @@ class Scale:
     size: float = 1.0
 
 
-LABELS = {
-    "approach": (r"approach $\alpha^* = \alpha/\epsilon$", r"approach $\alpha$"),
-    "load": (r"load $W/R\Delta\gamma$", "load $W$"),
-    "central_gap": (r"central gap $H(0)$", r"central gap $h(0) - \epsilon$"),
-    "gap": (r"gap $H = h/\epsilon - 1$", r"gap $h - \epsilon$"),
-    "contact_radius": (r"contact radius $a/\beta$", "contact radius $a$"),
-    "radius": (r"radius $u = r/\beta$", "radius $r$"),
-    "pressure": (r"pressure $P = \mu\epsilon p/\Delta\gamma$", "pressure $p$"),
-    "energy": (r"energy $E/R\Delta\gamma\epsilon$", "energy $E$"),
-    "stiffness": (r"stiffness $k\epsilon/R\Delta\gamma$", "stiffness $k$"),
-}
-ONLY_SHOWN = {"gap": "eps", "radius": "beta", "pressure": "dgamma/(mu eps)"}  # units of what no file has
 PAPER: Mapping[str, Scale] = {
-    name: Scale(label, {**UNITS, **ONLY_SHOWN}[name], in_si) for name, (label, in_si) in LABELS.items()
+    "approach": Scale(r"approach $\alpha^* = \alpha/\epsilon$", UNITS["approach"], r"approach $\alpha$"),
+    "load": Scale(r"load $W/R\Delta\gamma$", UNITS["load"], "load $W$"),
+    "central_gap": Scale(r"central gap $H(0)$", UNITS["central_gap"], r"central gap $h(0) - \epsilon$"),
+    "gap": Scale(r"gap $H = h/\epsilon - 1$", "eps", r"gap $h - \epsilon$"),
+    "contact_radius": Scale(r"contact radius $a/\beta$", UNITS["contact_radius"], "contact radius $a$"),
+    "radius": Scale(r"radius $u = r/\beta$", "beta", "radius $r$"),
+    "pressure": Scale(r"pressure $P = \mu\epsilon p/\Delta\gamma$", "dgamma/(mu eps)", "pressure $p$"),
+    "energy": Scale(r"energy $E/R\Delta\gamma\epsilon$", UNITS["energy"], "energy $E$"),
+    "stiffness": Scale(r"stiffness $k\epsilon/R\Delta\gamma$", UNITS["stiffness"], "stiffness $k$"),
 }
 
 ALIKE: Mapping[str, str] = {"gap": "central_gap", "radius": "contact_radius"}  # quantities with the prefix of another

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from fem_adhesion.common import lines
 from fem_adhesion.common.contact import edge_told
-from fem_adhesion.common.numbers import engineering, with_error
+from fem_adhesion.common.numbers import engineering, sizes_told, with_error
 from fem_adhesion.common.terminal import Column, Fitted, Flow, prose
 from fem_adhesion.curve.settings import USUAL
 from fem_adhesion.curve.solve import WEAK_FORM, Curves, Scale
@@ -93,8 +93,7 @@ def _title(curves: Curves) -> Iterator[str]:
     scene, units = curves.question.scene, curves.question.units
     yield from map(escape, scene.words)
     if units:
-        sizes = (("R", units.radius, "m"), ("E*", units.modulus, "Pa"), ("beta", units.length, "m"))
-        yield from (f"{name} = {engineering(value, unit)}" for name, value, unit in sizes)
+        yield from sizes_told(units)
     if units and scene.law == LENNARD_JONES:
         yield f"Hamaker constant {engineering(units.hamaker, 'J')}"
 
