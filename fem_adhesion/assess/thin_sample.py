@@ -67,7 +67,7 @@ def indentations(contact: Contact, thickness: float) -> Iterator[Indentation]:
     for part in USUAL.parts:
         delta = part * min(USUAL.deepest * thickness, USUAL.widest * R)
         chi = math.sqrt(R * delta) / thickness
-        ratio = hertz_ratio(_of_unit_thickness(contact), chi**2)
+        ratio = hertz_ratio(Layer(1.0, contact.poisson, contact.foundation), chi**2)
         series = thin_sample_series(chi, contact.poisson, contact.foundation)
         hertz = 4 / 3 * E * math.sqrt(R) * delta**1.5
         off = (Quantity.ratio(Estimate(value, 0.0) / ratio - 1) for value in (1.0, series))
@@ -76,7 +76,7 @@ def indentations(contact: Contact, thickness: float) -> Iterator[Indentation]:
 
 def hertz_until(contact: Contact) -> Quantity:
     """Largest (R delta)^(1/2)/h at which Hertz's load on a half-space is right to `USUAL.wrong`."""
-    theory = OnLayers(_of_unit_thickness(contact))
+    theory = OnLayers(Layer(1.0, contact.poisson, contact.foundation))
 
     def beyond(a: float) -> float:
         state = theory.hertz(a)
@@ -85,10 +85,6 @@ def hertz_until(contact: Contact) -> Quantity:
     a = root(beyond, 1e-4, 1.0, "where Hertz's load is off; take a thick sample", xtol=USUAL.narrow)
     chi = math.sqrt(theory.hertz(a).approach)
     return Quantity.ratio(Estimate(chi, 2 * USUAL.narrow))
-
-
-def _of_unit_thickness(contact: Contact) -> Layers:
-    return Layer(1.0, contact.poisson, contact.foundation)
 
 
 def enough(contact: Contact, half_space: Prediction, on_layer: Callable[[Layers], Prediction]) -> Iterator[Enough]:

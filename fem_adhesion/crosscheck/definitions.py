@@ -131,43 +131,36 @@ def heights(scene: Scene) -> Heights:
 def rows(scene: Scene) -> list[Row]:
     """Numbers of law, profile and lengths, by definition and as the solvers take them."""
     found = []
-    for name, unit, known, value in (*_of_law(scene.law), *_of_profile(scene), *_of_lengths(scene)):
+    for name, unit, known, value in _pairs(scene):
         both = Estimate(known, USUAL.exact * abs(known)), Estimate(value, USUAL.exact * abs(known))
         found.append(of_values(name, unit, *both, USUAL.defined * abs(known), CLOSED_FORM))
     return found
 
 
-Pairs = Iterator[tuple[str, str, float, float]]
-
-
-def _of_law(law: Any) -> Pairs:
+def _pairs(scene: Scene) -> Iterator[tuple[str, str, float, float]]:
+    """Name and unit of each number, the number by definition, and that of the solvers."""
+    law: Any = scene.law
     known, made = numbers_of(law), replace(law) if type(law) in TENSIONS else law
     yield "law: depth", "dgamma", 1.0, -float(made.energy(np.array(0.0), 1.0))
     yield "law: stiffness", "dgamma/eps^2", known.stiffness, made.stiffness
     yield "law: strength", "dgamma/eps", known.strength, made.strength
     yield "law: edge", "eps", known.edge, made.edge_gap
     yield "law: range", "eps", known.range, made.range(0.5)
-
-
-def _of_profile(scene: Scene) -> Pairs:
-    if scene.body.file:
-        return
-    z, surface = heights(scene), scene.shape.surface(scene.tabor)
-    r = surface.end / 2 if math.isfinite(surface.end) else 1.0
-    d = USUAL.small * r
-    places = r + d * np.array([-1.0, 0.0, 1.0])
-    (low, mid, high), slopes = z(places), surface.slope(places)
-    yield "profile: height", "beta^2/R", float(mid), float(surface.height(np.array(r)))
-    yield "profile: slope", "beta/R", float(high - low) / (2 * d), float(slopes[1])
-    yield "profile: curvature", "1/R", float(high - 2 * mid + low) / d**2, float(slopes[2] - slopes[0]) / (2 * d)
-
-
-def _of_lengths(scene: Scene) -> Pairs:
+    if not scene.body.file:
+        z, surface = heights(scene), scene.shape.surface(scene.tabor)
+        r = surface.end / 2 if math.isfinite(surface.end) else 1.0
+        d = USUAL.small * r
+        places = r + d * np.array([-1.0, 0.0, 1.0])
+        (low, mid, high), slopes = z(places), surface.slope(places)
+        yield "profile: height", "beta^2/R", float(mid), float(surface.height(np.array(r)))
+        yield "profile: slope", "beta/R", float(high - low) / (2 * d), float(slopes[1])
+        curvatures = float(high - 2 * mid + low) / d**2, float(slopes[2] - slopes[0]) / (2 * d)
+        yield "profile: curvature", "1/R", *curvatures
     R, bodies = lengths(scene)
     if math.isfinite(R):
         yield "length: R", "beta", R, scene.sphere_radius
-    for n, (known, value) in enumerate(zip(bodies, scene.radii, strict=False), 1):
-        if math.isfinite(known):
-            yield f"length: R{n}", "beta", known, value
+    for n, (length, value) in enumerate(zip(bodies, scene.radii, strict=False), 1):
+        if math.isfinite(length):
+            yield f"length: R{n}", "beta", length, value
     if scene.share is not None:
         yield "length: share of the second body", "1/E*", scene.share, scene.shares[1]

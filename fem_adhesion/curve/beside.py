@@ -93,18 +93,15 @@ def _name(law: Law, path: EquilibriumPath) -> str:
     return f"{registry.words_of(law)} at tabor {path.tabor:.4g}"
 
 
-def as_strong(scene: Scene, law: Law) -> Scene:
-    """Contact of the same bodies and work of adhesion by another law with the same largest tension."""
-    return replace(scene, law=law, tabor=scene.tabor * scene.law.strength / law.strength)
-
-
 def solve(curves: Curves, laws: Sequence[Law], progress: Progress = unheard) -> EquallyStrong:
     """Trace the curves by other laws with the solver of the first, or raise as `require` does, or NotConverged."""
     question, found = curves.question, [(curves.question.scene.law, curves.path)]
     require(question.scene, laws)
     for number, law in enumerate(laws):
         progress(registry.words_of(law), number, len(laws))
-        found.append((law, trace(replace(question, scene=as_strong(question.scene, law)), curves.solver)))
+        tabor = question.scene.tabor * question.scene.law.strength / law.strength  # the same largest tension
+        scene = replace(question.scene, law=law, tabor=tabor)
+        found.append((law, trace(replace(question, scene=scene), curves.solver)))
     return EquallyStrong(found)
 
 

@@ -36,17 +36,6 @@ def has_mesh(curves: Curves) -> bool:
     return True
 
 
-def states(curves: Curves) -> list[str]:
-    """Names of the events whose profiles the page shows."""
-    return [look.words for name, look in STATES.items() if curves.path.event(name)]
-
-
-def named(figure: Figure) -> list[str]:
-    """What the legend of the page's curve names."""
-    legend = figure.axes[0].get_legend()
-    return [text.get_text() for text in legend.get_texts()] if legend else []
-
-
 def draw(curves: Curves) -> Figure:
     """Page with the curve on top, the profiles of its states, the edge spike, and the mesh or the central gap.
 

@@ -21,6 +21,7 @@ from fem_adhesion.common.style import laid_out
 from fem_adhesion.crosscheck import comparison
 from fem_adhesion.crosscheck.comparison import CLOSED_FORM, SOLVERS, TRIANGLES, WEAK_FORM, Case, Row, columns
 from fem_adhesion.curve import figure as curve_figure
+from fem_adhesion.curve.load import STATES
 from fem_adhesion.curve.solve import Curves
 from fem_adhesion.report.walk import Walk, walk_data, walk_words
 from halfspace.errors import InputError
@@ -87,10 +88,13 @@ def _curves_section(curves: Curves) -> Section:
         drawn = laid_out(curve_figure.draw(curves))
         drawn.savefig(stream, format="svg", metadata={"Date": None})
     solvers = " and by ".join(curves.paths)
+    legend = drawn.axes[0].get_legend()
+    named = ", ".join(text.get_text() for text in legend.get_texts()) if legend else ""
+    states = ", ".join(look.words for name, look in STATES.items() if curves.path.event(name))
     last = "the deformed mesh" if curve_figure.has_mesh(curves) else "the central gap"
     text = (
         f"Load against approach at Tabor parameter {curves.question.scene.tabor:g} by {solvers}: "
-        f"{', '.join(curve_figure.named(drawn))}. Pressure and gap at {', '.join(curve_figure.states(curves))}; the "
+        f"{named}. Pressure and gap at {states}; the "
         f"spike of tension at the contact edge with the nodes of the grid; {last}."
     )
     return Section("curves", f"The curve by {solvers}", figures=(Figure(stream.getvalue(), text),))

@@ -16,7 +16,6 @@ from halfspace.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from halfspace.accuracy.sweep import Summary
 
 MOST = 10**5  # Tabor parameters of one FROM:TO:COUNT: over seven decades neighbours then differ by 2e-4
 
@@ -93,18 +92,14 @@ def run(options: argparse.Namespace) -> int:
         print(f"fem-adhesion: {line}", file=sys.stderr)
     failed = [curve for curve in curves if curve.reason]
     out = sys.stderr if options.csv == STANDARD else sys.stdout
-    print(f"{_told(curves, options.rtol)}; written: {options.csv}", file=out)
+    solved = [curve for curve in curves if not curve.reason]
+    folding = sum("jump_on" in curve.events for curve in solved)
+    met = f"{sum(not curve.missed for curve in solved)} as accurate as asked, rtol {options.rtol:g}"
+    told = f"{len(solved)} of {len(curves)} curves solved, {folding} fold, {met}"
+    print(f"{told}; written: {options.csv}", file=out)
     for curve in failed:
         print(f"fem-adhesion: tabor {curve.tabor:g}: {curve.reason}", file=sys.stderr)
     return DISAGREE if failed else AGREE
-
-
-def _told(curves: Sequence[Summary], rtol: float) -> str:
-    """How many curves there are, how many fold, and how accurate they are, in one line."""
-    solved = [curve for curve in curves if not curve.reason]
-    folding = sum("jump_on" in curve.events for curve in solved)
-    met = sum(not curve.missed for curve in solved)
-    return f"{len(solved)} of {len(curves)} curves solved, {folding} fold, {met} as accurate as asked, rtol {rtol:g}"
 
 
 COMMAND = Command(
