@@ -13,7 +13,6 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from operator import attrgetter
 from typing import Any, TypeVar
 
 import numpy as np
@@ -201,23 +200,24 @@ def _of_event(name: str, scene: Scene, path: EquilibriumPath, on_coarse: FineAt,
         yield Compared(f"{name} reaction", "R dgamma", reactions, load + doubt, force, rounding)
     a, b = _beside(name, coarse), _beside(name, fine)
     for quantity, unit in (("central_gap", "eps"), ("contact_radius", "beta")):
-        known, both = event.estimate(quantity), _numbers(a, b, attrgetter(quantity))
+        known, both = event.estimate(quantity), (getattr(a, quantity, None), getattr(b, quantity, None))
         if not all(value is not None and math.isnan(value) for value in (*both, known.value)):
-            ripples = _numbers(a, b, attrgetter("ripple")) if quantity == "central_gap" else (0.0, 0.0)
-            size = USUAL.pointwise * (1 + abs(known.value))
-            yield Compared(f"{name} {quantity}", unit, both, known, size, (ripples[0] or 0.0, ripples[1] or 0.0))
+            gap, size = quantity == "central_gap", USUAL.pointwise * (1 + abs(known.value))
+            ripples = (getattr(a, "ripple", 0.0), getattr(b, "ripple", 0.0)) if gap else (0.0, 0.0)
+            yield Compared(f"{name} {quantity}", unit, both, known, size, ripples)
     # What turns is stationary, and at the edge of a contact the coarse body turns elsewhere: it is solved beside.
     smooth, sharp = name == "jump_on", sharpness(scene, radius) > USUAL.sharp
     if name in FOLDS and (smooth or not sharp):
-        side, _ = _numbers(b, None, _stable_side)
+        side = None if b is None else _stable_side(b)
         yield Compared(f"{name} stable side", "", (side, side), Estimate(FOLDS[name], 0.0), 1.0)
     a, b = (_from_afar(scene, each) for each in (coarse, fine)) if smooth else (a, b)
     first = _turn(name, a) if smooth else a
     second = _turn(name, b) if smooth or (name != "zero_load" and not sharp) else b
+    approaches, loads = ((getattr(first, of, None), getattr(second, of, None)) for of in ("approach", "load"))
     if name != "pull_off":
-        yield Compared(f"{name} approach", "eps", _numbers(first, second, attrgetter("approach")), approach, width)
+        yield Compared(f"{name} approach", "eps", approaches, approach, width)
     if name in ("pull_off", "jump_on"):
-        yield Compared(f"{name} load", "R dgamma", _numbers(first, second, attrgetter("load")), load, force)
+        yield Compared(f"{name} load", "R dgamma", loads, load, force)
 
 
 FOLDS = {"jump_on": 1.0, "jump_off": -1.0}
@@ -245,12 +245,6 @@ def _from_afar(scene: Scene, state: StateInWeakForm) -> Equilibrium | None:
     if found is None or abs(found.load - state.load) >= USUAL.away * (1 + abs(state.load)):
         return None
     return _found(newton, state.contact, found.y, at_load(state.contact, state.load), found.nearby)
-
-
-def _numbers(a: object, b: object, of: Callable[[Any], float]) -> tuple[float | None, float | None]:
-    """Numbers of two states, None where there is none or it has none."""
-    first, second = (None if state is None else _found(of, state) for state in (a, b))
-    return first, second
 
 
 @dataclass(frozen=True, eq=False, repr=False)
