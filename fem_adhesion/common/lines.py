@@ -83,33 +83,28 @@ def smooth(path: EquilibriumPath) -> Line:
     for segment, first in zip(segments, firsts, strict=False):
         between, rates = segment.between(DRAWING.between)
         stable = path.stable[first : first + len(segment.points)]
+        before, after = (np.repeat(part, DRAWING.between) for part in (stable[:-1], stable[1:]))
         values.append(between[:, [APPROACH, LOAD, CENTRAL_GAP]])
-        found.append(kinds(rates, _stable_between(stable, rates[:, APPROACH])))
+        found.append(kinds(rates, *(np.append(part, stable[-1]) for part in (before, after))))
     approach, load, central_gap = np.concatenate(values).T
     return Line(approach, load, central_gap, np.concatenate(found))
 
 
-def kinds(rates: Array, stable: NDArray[np.bool_]) -> NDArray[np.int8]:
-    """Kind of each point by the rates of approach and load along the curve, and stability under fixed grips."""
-    rising = rates[:, LOAD] * rates[:, APPROACH] > 0
-    return np.where(stable, np.where(rising, STABLE, GRIPS_ONLY), UNSTABLE).astype(np.int8)
+def kinds(rates: Array, before: NDArray[np.bool_], after: NDArray[np.bool_]) -> NDArray[np.int8]:
+    """Kind of each point by the rates of approach and load along the curve, and what the computed points beside are.
 
-
-def _stable_between(stable: NDArray[np.bool_], rate: Array) -> NDArray[np.bool_]:
-    """Stability of the points in between: it changes where the approach turns, the rate d(alpha*)/ds its sign."""
-    fine = np.repeat(stable, DRAWING.between)[: rate.size]
-    for i in np.flatnonzero(stable[1:] != stable[:-1]):
-        inside = slice(DRAWING.between * i, DRAWING.between * (i + 1))
-        turned = np.sign(rate[inside]) != np.sign(rate[DRAWING.between * i])
-        fine[inside] = np.where(turned, stable[i + 1], stable[i])
-    return fine
+    Between one that is stable under fixed grips and one that is not, what is stable are the states before the approach
+    turns: along them it rises.
+    """
+    rising, loaded = rates[:, APPROACH] >= 0, rates[:, LOAD] * rates[:, APPROACH] > 0
+    stable = np.where(before == after, before, rising)
+    return np.where(stable, np.where(loaded, STABLE, GRIPS_ONLY), UNSTABLE).astype(np.int8)
 
 
 def folds(path: EquilibriumPath) -> Array:
     """Approach and load at every fold under fixed grips, in order, (n, 2)."""
-    return np.array([(event.approach, event.load) for name, event in path.events.items() if is_fold(name)]).reshape(
-        -1, 2
-    )
+    found = [(event.approach, event.load) for name, event in path.events.items() if is_fold(name)]
+    return np.array(found).reshape(-1, 2)
 
 
 def around_events(path: EquilibriumPath) -> Frame:

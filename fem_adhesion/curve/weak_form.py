@@ -16,12 +16,11 @@ def draw(curves: Curves) -> Figure:
     curve, (figure, axes) = curves.paths[WEAK_FORM], style.panels(2)
     s = np.unique(np.linspace(curve.arclength[:-1], curve.arclength[1:], lines.DRAWING.between + 1))
     spline = CubicHermiteSpline(curve.arclength, curve.observables[:, :3], curve.rates)
-    rates = spline(s, 1)
     before = np.clip(np.searchsorted(curve.arclength, s, side="right") - 1, 0, len(curve.stable) - 2)
-    sure = curve.stable[before] == curve.stable[before + 1]
-    stable = np.where(sure, curve.stable[before], rates[:, 0] >= 0)  # next to a fold where the approach rises
     approach, load, central_gap = spline(s).T
-    line = lines.Line(approach, load, central_gap, lines.kinds(rates, stable))
+    line = lines.Line(
+        approach, load, central_gap, lines.kinds(spline(s, 1), curve.stable[before], curve.stable[before + 1])
+    )
     for panel, name in zip(axes, ("load", "central_gap"), strict=True):
         draw_line(panel, curves, line, name)
         draw_states(panel, curves, name)
