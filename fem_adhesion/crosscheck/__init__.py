@@ -3,7 +3,7 @@
 In the order of reading: `comparison` (two numbers with errors, a budget, a verdict; what is told of them), `study`
 (operators, residuals, events; of spheres, `references`), `from_scratch` (what both share, against
 `fem_adhesion.weak_form`), `elimination` (condensed or not, the same), `definitions` (what law, profile and lengths must
-be), `scenes` (many of them beside each other), `command`.
+be), `settings` (budgets, and the bodies of all levels), `scenes` (many of them beside each other), `command`.
 
 How independent the two solvers are:
 
