@@ -152,14 +152,14 @@ class Fitted:
             spare = options.max_width - each * len(kept) - once - sum(column.least for column in kept)
             if spare >= 0:
                 yield self._table(kept, frame, _widths(kept, spare))
-                if left_out := [column.header.replace("\n", " ") for column in self.columns if column not in kept]:
+                if left_out := [" ".join(column.header.split()) for column in self.columns if column not in kept]:
                     yield Flow([f"left out at this width: {left_out[0]}", *left_out[1:]], ", ", "dim")
                 break
         else:  # every row as a heading and a line for each of its cells
             for first, *row in zip(*(column.cells for column in self.columns), strict=True):
                 yield Text.from_markup(first, style="bold")
                 for column, cell in zip(self.columns[1:], row, strict=True):
-                    yield Flow([f"  {column.header.replace('\n', ' ')}:", cell.replace("\n", " ")], " ")
+                    yield Flow([f"  {' '.join(column.header.split())}:", " ".join(cell.split())], " ")
         if self.caption:
             yield Flow(self.caption, style="dim italic")
 
