@@ -143,10 +143,10 @@ def _draw_jumps(axes: Any, curves: Curves, frame: Frame) -> None:
             tail, head = ((*curves.shown(approach=approach, load=load),) for approach, load in both)
             style.arrow(axes, tail, head, linewidth=1.4, mutation_scale=11, **look)
         if cycle and seen:
-            k, units = cycle.stiffness, curves.question.units
-            stiffness = f"$k = {k:g}\\,R\\Delta\\gamma/\\epsilon$"
-            stiffness = f"$k$ = {engineering(k * units.stiffness, 'N/m')}" if units else stiffness
-            words = "jumps under fixed grips" if math.isinf(k) else f"jumps, {stiffness}"
+            k, units, words = cycle.stiffness, curves.question.units, "jumps under fixed grips"
+            if math.isfinite(k):
+                words = f"jumps, $k = {k:g}\\,R\\Delta\\gamma/\\epsilon$"
+                words = f"jumps, $k$ = {engineering(k * units.stiffness, 'N/m')}" if units else words
             axes.plot([], [], label=words, linewidth=1.4, **look)
     # Lines of slope -k, the loads that an apparatus exerts with its base held where it jumps.
     for jump in curves.apparatus.jumps.values() if curves.apparatus else ():

@@ -125,8 +125,10 @@ def _jumps(curves: Curves) -> Iterator[str]:
     """Energy lost by each device, and how far models lie apart between which the assumptions leave a choice."""
     units, energy, k = curves.scales, curves.scales["energy"], curves.question.stiffness
     si = curves.question.units
-    apparatus = f"k = {engineering(k * si.stiffness, 'N/m')}" if si else f"k = {k:g} R dgamma/eps"
-    devices = {"fixed grips": curves.grips} | ({} if np.isinf(k) else {apparatus: curves.apparatus})
+    devices = {"fixed grips": curves.grips}
+    if np.isfinite(k):
+        apparatus = f"k = {engineering(k * si.stiffness, 'N/m')}" if si else f"k = {k:g} R dgamma/eps"
+        devices[apparatus] = curves.apparatus
     for device, cycle in devices.items():
         if cycle:
             lost = with_error(cycle.energy_lost, energy.size, USUAL.most_digits)
