@@ -48,6 +48,7 @@ def traced(scene, rtol):
         # has hidden its base.
         (Scene(0.5, Layer(0.5, "sliding"), law=PowerLaw(2.5, 9.5), profile=Power(4)), 1e-4),
         (Scene(1.0, Layer(0.5, "sliding", poisson=0.4999), profile=Power(10)), 1e-4),
+        (Scene(1.0, Layer(1.0, poisson=0.4999), profile=Power(10)), 1e-4),
         (Scene(5.0, Layer(1000.0, "sliding")), 1e-3),
         (Scene(1.0, Layer(2.0, poisson=0.3), profile=Sphere(30.0)), 1e-4),
         (Scene(1.0, STIFF), 1e-4),

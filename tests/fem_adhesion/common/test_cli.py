@@ -11,7 +11,7 @@ import pytest
 from whole_runs import COMPARE
 
 from fem_adhesion import cli
-from fem_adhesion.common.files import written_aside
+from fem_adhesion.common.files import directory_written_aside, written_aside
 from fem_adhesion.common.jobs import ONE_THREAD
 from fem_adhesion.common.options import GONE
 from fem_adhesion.common.words import part_in
@@ -135,9 +135,16 @@ def test_a_file_keeps_its_content_until_the_new_is_whole(tmp_path):
         aside.write("new")
     assert file.read_text() == "new"
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_files_and_directories_have_the_usual_modes(tmp_path):
+    with written_aside(tmp_path / "file") as aside, directory_written_aside(tmp_path / "directory") as folder:
+        aside.write("new")
+        (folder / "one").touch()
     mask = os.umask(0)
     os.umask(mask)
-    assert file.stat().st_mode & 0o777 == 0o666 & ~mask
+    for name, mode in (("file", 0o666), ("directory", 0o777)):
+        assert (tmp_path / name).stat().st_mode & 0o777 == mode & ~mask
 
 
 HELPS = [[], ["curve"], ["finite-sphere"], ["report"]]
