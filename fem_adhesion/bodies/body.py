@@ -24,6 +24,7 @@ GripName = Literal["sliding", "bonded"]
 SolverName = Literal["half-space", "harmonics"]
 
 MOST_RINGS = 6  # rings around a singular corner: as many as rounding allows
+BESIDE = 0.02  # of the radius where a surface ends: the cells beside it and below, where the traction ends at once
 USUAL = LinearElastic()
 
 Layout = tuple[Array, SurfaceCoordinate]

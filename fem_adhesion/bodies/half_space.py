@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
-from fem_adhesion.bodies.body import Body, Discretisation, FarFieldName, Layout, SolverName
+from fem_adhesion.bodies.body import BESIDE, Body, Discretisation, FarFieldName, Layout, SolverName
 from halfspace.elastic import grid
 from halfspace.elastic.grid import FLAT
 from halfspace.errors import InputError
@@ -43,8 +43,8 @@ class HalfSpace(Body):
 
         if np.isinf(R):
             return _as_deep_as_wide(lines, how)
-        past = grid.geometric((how.beyond - 1) * R, 0.02 * R, how.growth)[1:]
-        depths = grid.graded(0.0, length, how.beyond * R, growth=how.growth)
+        past = grid.geometric((how.beyond - 1) * R, BESIDE * R, how.growth)[1:]
+        depths = grid.graded(0.0, min(length, BESIDE * R), how.beyond * R, growth=how.growth)
         return with_contact_to(tensor_grid(np.concatenate([lines, R + past]), depths), R)
 
     def facing(

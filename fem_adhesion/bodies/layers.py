@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fem_adhesion.bodies.body import USUAL, Body, Discretisation, Doubt, FarFieldName, Layout, SolverName
+from fem_adhesion.bodies.body import BESIDE, USUAL, Body, Discretisation, Doubt, FarFieldName, Layout, SolverName
 from fem_adhesion.materials import Elastic
 from halfspace.elastic import grid, layers
 from halfspace.elastic.grid import FLAT
@@ -103,8 +103,9 @@ class Stratified(Body):
         size, interfaces = self._size(R, how), self.interfaces
         depths = [0.0, *interfaces, size] if self.held == "substrate" else [0.0, *interfaces]
         # Neither the depths nor what is beyond depends on the contact radius, by which operators are interpolated.
-        r = np.append(lines, R + grid.geometric(size - R, (1 - 1 / how.growth) * R, how.growth)[1:])
-        z = np.concatenate([[0.0], *(_slab(*ends, length, how.growth) for ends in pairwise(depths))])
+        r = np.append(lines, R + grid.geometric(size - R, BESIDE * R, how.growth)[1:])
+        finest = min(length, BESIDE * R)
+        z = np.concatenate([[0.0], *(_slab(*ends, finest, how.growth) for ends in pairwise(depths))])
         mesh = with_contact_to(tensor_grid(r, z, depths[1:-1]), R)
         if self.held == "substrate":
             return mesh
