@@ -21,7 +21,7 @@ from fem_adhesion.discretise import (
 )
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
-from halfspace.accuracy.grids import TWIN, operators_of_curve, rings
+from halfspace.accuracy.grids import TWIN, left_between, rings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung
 from halfspace.accuracy.standing import Standing
@@ -176,7 +176,7 @@ def _standing(scene: Scene, how: Discretisation, to_load: float) -> Standing:
     One operator an event: a chart that follows the contact takes three to seven for the derivative by the radius.
     """
     body = sized_body(scene, how, to_load)
-    return Standing(body, lambda: Charted(body.curve(operators_of_curve(body, how.degree + 2))))
+    return Standing(body, lambda: Charted(body.curve(left_between(how.degree + 2))))
 
 
 def degree_for(rtol: float) -> int:

@@ -12,7 +12,7 @@ dgamma/(mu eps). `halfspace.scaling.Units` has the SI values of beta (`length`),
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -267,16 +267,10 @@ def _same(observables: Array) -> newton.Control:
 def gaps_at(event: Located, radii: Array) -> Array:
     """Gaps H of a state at radii on its cells.
 
-    It is the deflection that is interpolated, whereas the profile is exact; under a surface that ends by the angle
-    sin(theta) = r/R, since at the equator it is no polynomial of the radius.
+    It is the deflection that is interpolated, whereas the profile is exact.
     """
     problem, x = event.problem.interface, event.problem.surface_state(event.point.x)
     operator, mu, profile = problem.operator_at(x), problem.tabor, problem.profile
     within = np.minimum(radii, operator.extent)
-
-    def angle(r: Array) -> Array:
-        return r if np.isinf(profile.end) else np.asarray(np.arcsin(np.minimum(r / profile.end, 1.0)))
-
-    by_angle = replace(operator, radii=angle(operator.radii), cells=angle(operator.cells))
-    deflection = by_angle.values_at(angle(within), x[:-2] - mu * profile.height(operator.radii))
+    deflection = operator.values_at(within, x[:-2] - mu * profile.height(operator.radii))
     return np.asarray(deflection + mu * profile.height(within))

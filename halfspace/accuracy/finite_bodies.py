@@ -7,16 +7,26 @@ those at a few radii serves all between, see `halfspace.elastic.operators.Interp
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.grid import SurfaceCoordinate
-from halfspace.elastic.operators import ROOM, Interpolated, MovingGrid, chebyshev_radii
+from halfspace.elastic.operators import (
+    ROOM,
+    Interpolated,
+    Kernels,
+    MovingGrid,
+    Part,
+    Piecewise,
+    chebyshev_lengths,
+    kernels_of,
+)
 from halfspace.equilibrium.charts import COMPRESSION, Chart
 from halfspace.equilibrium.contact import WIDEST, contact_of
 from halfspace.errors import ContactTooWide, GridTooLarge
@@ -31,13 +41,11 @@ class HandOver:
 
     equal: int = 3  # cells of equal length on the axis, which carry a contact wherever it ends in them
     leave: float = 0.8  # of these cells: the contact radius at which the curve leaves the chart on the axis
-    events: float = (
-        1.0  # cells: the radius at which an event does; with 3 the estimates of folds were 1000 times as large
-    )
-    least: float = 0.7  # of the radius at which the curve leaves: the least that the chart following the contact knows
+    events: float = 1.0  # cells: the radius at which an event does; with 3 estimates of folds were 1000 times as large
 
 
 HAND_OVER = HandOver()
+MOST = 16  # operators in a part of a chart: each state combines them all
 TOGETHER = 4  # grids integrated at once: with all of a curve's at once it took 0.18 GB more, and no less time
 ACROSS = 60.0  # R dgamma or eps, what a polynomial through no operator would err by; measured: 10 to 100
 ROUGHLY = 1e-3  # R dgamma or eps, what the operator of a curve may leave whose events are solved for again elsewhere
@@ -88,6 +96,11 @@ class SizedBody(Valued):
         return HAND_OVER.leave * self._reach
 
     @property
+    def leave(self) -> float:
+        """Contact radius in beta from which on the other chart serves an event."""
+        return HAND_OVER.events * self.length
+
+    @property
     def _reach(self) -> float:
         return min(HAND_OVER.equal * self.length, float(self.outer[0]) / 2)
 
@@ -109,12 +122,12 @@ class SizedBody(Valued):
 
     def centred(self) -> Chart:
         """Chart fine on the axis."""
-        return replace(self.standing(0.0), until=self.until, leave=HAND_OVER.events * self.length)
+        return replace(self.standing(0.0), until=self.until, leave=self.leave)
 
     def standing(self, radius: float) -> Chart:
         """Chart that stands still, finest at a contact radius in beta, or on the axis."""
         operator, unknowns = self.make(self.lines(self.coordinate.of(radius)))
-        return Chart(contact_of(self.scales, operator), unknowns)
+        return Chart(contact_of(self.scales, replace(operator, coordinate=self.coordinate)), unknowns)
 
     def made(self, lines: Array) -> list[Made]:
         """Operators on some grids, and their numbers of unknowns; lines (n, m + 1).
@@ -131,29 +144,41 @@ class SizedBody(Valued):
     def radii_of_curve(self) -> tuple[float, float]:
         """Least and widest contact radius of charts for the whole curve that follow the contact."""
         widest = min(step_above(self.scales.widest_radius(self.to_load)), WIDEST * self.scales.profile.end)
-        return least_along(self.until, widest), widest
+        return min(self.leave, widest / 2), widest
 
-    def curve(self, count: int | None = None) -> tuple[Chart, Chart]:
-        """Charts for the whole curve, that which follows the contact from so many operators, by default from few."""
-        count = count or self.operators_between(*self.radii_of_curve, ROUGHLY)
-        return self.centred(), self.over(*self.radii_of_curve, count, 2.0)
+    def curve(self, error: float = ROUGHLY) -> tuple[Chart, Chart]:
+        """Charts for the whole curve; that which follows the contact errs by so much in loads, R dgamma, or gaps, eps.
 
-    def over(self, least: float, most: float, count: int, longest: float = 1.0) -> Chart:
-        """Chart that follows the contact edge between two contact radii, from so many operators, fine enough for all.
-
-        The cells inside the edge are `longest` times as long as those outside where the contact is widest, and shorter
-        where it is narrower.
+        Narrow parts of few operators each serve wide ranges of contact radii: only those that are met are made.
         """
-        edge = self.coordinate.of(most)
-        rest = self._end_beyond(edge) - self.coordinate.of(least)
-        inner = 1 - grid.geometric(1.0, longest * self.length / edge, self._growth)[::-1]
-        inner = grid.towards_axis(inner, self.first / most, self._growth)
+        ends, counts = self._parts(*self.radii_of_curve, error)
+        return self.centred(), self.over(ends, counts, 2.0)
+
+    def _parts(self, least: float, most: float, error: float) -> tuple[list[float], list[int]]:
+        """Ends of the parts of a range of contact radii, halved until none takes more than `MOST`, and operators."""
+        count, middle = self.operators_between(least, most, error), math.sqrt(least * most)
+        if count <= MOST:
+            return [least, most], [count]
+        (below, few), (above, more) = (self._parts(*half, error) for half in ((least, middle), (middle, most)))
+        return below + above[1:], few + more
+
+    def over(self, ends: Sequence[float], counts: Sequence[int], longest: float = 1.0) -> Chart:
+        """Chart that follows the contact edge, in parts between contact radii (k + 1,), from so many operators (k,).
+
+        It is fine enough for all: the cells inside the edge are `longest` times as long as those outside where the
+        contact is widest, and shorter where it is narrower.
+        """
+        x = [self.coordinate.of(a) for a in ends]
+        rest = self._end_beyond(x[-1]) - x[0]
+        inner = 1 - grid.geometric(1.0, longest * self.length / x[-1], self._growth)[::-1]
+        inner = grid.towards_axis(inner, self.first / ends[-1], self._growth)
         moving = self._moving(inner, grid.geometric(rest, self.length, self._growth, self.last) / rest)
-        scales = chebyshev_radii(least, most, count)
-        lines = np.array([moving.lines(float(a)) for a in scales])
-        made = self.made(lines)
-        operator = Interpolated(scales, made[0][0].cell_nodes, moving, partial(_operators, self, lines))
-        return Chart(contact_of(self.scales, operator.knowing([one for one, _ in made])), made[0][1])
+        lengths = [chebyshev_lengths(*between, count) for between, count in zip(pairwise(x), counts, strict=True)]
+        parts = [Part(edges, partial(_kernels, self, moving, edges)) for edges in lengths]
+        made = self.made(moving.lines_at(lengths[-1]))
+        parts[-1].knowing(kernels_of([operator for operator, _ in made]))
+        operator = Interpolated(Piecewise(np.array(x), parts), made[0][0].cell_nodes, moving)
+        return Chart(contact_of(self.scales, operator), made[0][1])
 
     def _moving(self, inner: Array, outside: Array) -> MovingGrid:
         """Grid from the ends of cells inside the edge, as parts of x_a, and outside, as parts of the rest."""
@@ -175,7 +200,7 @@ class SizedBody(Valued):
         end = (np.log(float(self.outer[0])) - (high + low) / 2) / window
         side, end = self.strip / window, max(end, 1.1)  # where they end within the window, more than ever pay
         rho = min(side + np.sqrt(side**2 + 1), end + np.sqrt(end**2 - 1))
-        return int(np.ceil(np.log(ACROSS * self.scales.softest / error) / np.log(rho)))
+        return max(2, int(np.ceil(np.log(ACROSS * self.scales.softest / error) / np.log(rho))))
 
 
 def require_stored(count: int, nodes: int) -> None:
@@ -187,13 +212,9 @@ def require_stored(count: int, nodes: int) -> None:
         )
 
 
-def _operators(body: SizedBody, lines: Array) -> list[ElasticOperator]:
-    return [operator for operator, _ in body.made(lines)]
-
-
-def least_along(until: float, widest: float) -> float:
-    """Least contact radius of a chart for a curve, up to the widest, on which it comes from the one on the axis."""
-    return min(HAND_OVER.least * until, widest / 2)
+def _kernels(body: SizedBody, moving: MovingGrid, edges: Array) -> Kernels:
+    """Kernels on a grid at the places (n,) of a contact edge, in the surface's coordinate."""
+    return kernels_of([operator for operator, _ in body.made(moving.lines_at(edges))])
 
 
 def at_equator(tabor: float, profile: Surface, nodes: int) -> float:

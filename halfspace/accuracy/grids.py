@@ -179,7 +179,7 @@ def sphere_charts(
 ) -> tuple[Chart, ...]:
     """Charts of the half-space under a surface that ends, as a sphere's does at its equator."""
     body = under_sphere(scales, resolution, to_load)
-    return body.curve(operators_of_curve(body, resolution.nodes))
+    return body.curve(left_between(resolution.nodes))
 
 
 def under_sphere(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> SizedBody:
@@ -198,13 +198,13 @@ def under_sphere(scales: Scales, resolution: Resolution, to_load: float = COMPRE
     )
 
 
-def operators_of_curve(body: SizedBody, nodes: int) -> int:
-    """Operators between which that of a curve is interpolated, by the nodes in a cell.
+def left_between(nodes: int) -> float:
+    """What the operators between those of a curve may leave, R dgamma or eps, by the nodes in a cell.
 
-    So few that they leave 1e-2 of what the nodes leave at 1e-6, more for a node more, so that the change from rung to
-    rung tells their error too.
+    It is 1e-2 of what the nodes leave at 1e-6, less for a node more, so that the change from rung to rung tells their
+    error too.
     """
-    return body.operators_between(*body.radii_of_curve, 10.0 ** (-4 - nodes / 2))
+    return float(10.0 ** (-4 - nodes / 2))
 
 
 def _made(R: float, nodes: int, lines: Array) -> Made:

@@ -14,8 +14,8 @@ from functools import partial
 
 import numpy as np
 
-from halfspace.accuracy.finite_bodies import HAND_OVER, Made, SizedBody, at_equator, at_tip, least_along, step_above
-from halfspace.accuracy.grids import Discretise, Resolution, half_space_charts, operators_of_curve
+from halfspace.accuracy.finite_bodies import HAND_OVER, Made, SizedBody, at_equator, at_tip, step_above
+from halfspace.accuracy.grids import Discretise, Resolution, half_space_charts, left_between
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import Images, images_of, layered_panels, nearly_homogeneous
 from halfspace.elastic.layered import layered as with_images
@@ -45,7 +45,7 @@ def _charts(
 ) -> tuple[Chart, ...]:
     if math.isfinite(scales.profile.end):
         sized = layered_body(scales, images[which], resolution, to_load)
-        return sized.curve(operators_of_curve(sized, resolution.nodes))
+        return sized.curve(left_between(resolution.nodes))
     return layered_charts(scales, images[which], resolution, to_load)
 
 
@@ -66,9 +66,8 @@ def layered_charts(
     charts = [replace(first, problem=contact_of(scales, with_images(images, operator, outer)), leave=leave)]
     for chart in rest:
         unit, widest = chart.problem.interface.operator.at(1.0), step_above(scales.widest_radius(to_load))
-        least = min(least_along(first.until, widest), leave)
         left = BETWEEN * 10.0**-how.nodes
-        following = nearly_homogeneous(images, unit, (least, widest), outer + widest, left)
+        following = nearly_homogeneous(images, unit, (min(leave, widest / 2), widest), outer + widest, left)
         charts.append(Chart(contact_of(scales, following), chart.unknowns))
     return tuple(charts)
 

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from halfspace.elastic import grid
+from halfspace.elastic.grid import FLAT, SurfaceCoordinate
 from halfspace.elastic.kernel import band_deflection, before_equator, panel_integrals, require_room, stereographic_ring
 from halfspace.errors import InputError
 from halfspace.values import Array, Index, Valued
@@ -74,6 +75,9 @@ class ElasticOperator(Valued, Operator):
         Radii between which one interpolation polynomial holds, from 0 outwards.
     cell_nodes : (m, k) int array
         The k nodes whose values define the polynomial in each cell.
+    coordinate : SurfaceCoordinate
+        What of the radius values are polynomials of: under a sphere its own, since nodes crowd at the equator, where a
+        polynomial of the radius runs wild between the nodes of a long cell.
     """
 
     radii: Array
@@ -81,6 +85,7 @@ class ElasticOperator(Valued, Operator):
     compliance: Array
     cells: Array
     cell_nodes: Index
+    coordinate: SurfaceCoordinate = FLAT
 
     @property
     def nbytes(self) -> int:
@@ -186,14 +191,14 @@ class ElasticOperator(Valued, Operator):
     def _lagrange(self, cell: int, radius: float) -> tuple[Index, Array, Array]:
         """Nodes of a cell, and the values and slopes at a radius of the Lagrange polynomials through them."""
         nodes = self.cell_nodes[cell]
-        values, slopes = lagrange(self.radii[nodes], self._barycentric[cell], radius)
-        return nodes, np.array(values), np.array(slopes)
+        values, slopes = lagrange(self._places[nodes], self._barycentric[cell], self.coordinate.of(radius))
+        return nodes, np.array(values), np.array(slopes) * self.coordinate.rate(radius)
 
     def values_at(self, radii: Array, values: Array) -> Array:
         """Interpolate nodal values (q,) at many radii (n,) within the extent."""
         cells = np.clip(np.searchsorted(self.cells, radii, side="right") - 1, 0, self.cells.size - 2)
         nodes = self.cell_nodes[cells]
-        offset = np.asarray(radii)[:, None] - self.radii[nodes]
+        offset = self.coordinate.along(radii)[:, None] - self._places[nodes]
         hit = offset == 0
         weights = np.where(hit.any(axis=1, keepdims=True), hit, self._barycentric[cells] / np.where(hit, 1.0, offset))
         return np.asarray(np.einsum("nk,nk->n", weights, values[nodes]) / weights.sum(axis=1))
@@ -212,7 +217,7 @@ class ElasticOperator(Valued, Operator):
         value there by the same on grids that differ in all else.
         """
         nodes, row = self.cell_nodes[0], np.zeros(self.radii.size)
-        squares = self.radii[nodes] ** 2
+        squares = self._places[nodes] ** 2
         row[nodes] = lagrange(squares, barycentric(squares), 0.0)[0]
         return row
 
@@ -227,9 +232,14 @@ class ElasticOperator(Valued, Operator):
         return self.interpolation(1.0)[0]
 
     @cached_property
+    def _places(self) -> Array:
+        """Nodes (q,) in the surface's coordinate."""
+        return self.coordinate.along(self.radii)
+
+    @cached_property
     def _barycentric(self) -> Array:
-        """Weights 1/prod (u_j - u_m) of the nodes of each cell, (m, k)."""
-        return barycentric(self.radii[self.cell_nodes])
+        """Weights 1/prod (x_j - x_m) of the nodes of each cell, (m, k)."""
+        return barycentric(self._places[self.cell_nodes])
 
 
 def barycentric(nodes: Array) -> Array:

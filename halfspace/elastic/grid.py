@@ -125,8 +125,13 @@ class SurfaceCoordinate:
 
     def along(self, radii: Array) -> Array:
         """Coordinates at radii."""
-        s = radii / self.R
+        s = np.minimum(radii / self.R, 1.0)
         return np.asarray(2 * radii / (1 + np.sqrt((1 - s) * (1 + s))))
+
+    def rate(self, radius: float) -> float:
+        """Derivative dx/dr at a radius; nan on the equator, where it is infinite."""
+        slope = float(self.radius(np.array(self.of(radius)))[1])
+        return 1 / slope if slope else np.nan
 
     def radius(self, x: Array) -> tuple[Array, Array]:
         """Radius r at x and dr/dx."""

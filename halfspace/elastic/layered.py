@@ -30,7 +30,7 @@ from halfspace.elastic.compliance import ElasticOperator, panels, to_infinity
 from halfspace.elastic.grid import gauss_legendre, polynomial
 from halfspace.elastic.kernel import near_moments
 from halfspace.elastic.layers import LayeredBody, require_layered, surface_compliance, total_thickness
-from halfspace.elastic.operators import Kernels, NearlyHomogeneous, Remainder, chebyshev_radii, nodes_beside
+from halfspace.elastic.operators import Kernels, NearlyHomogeneous, Part, chebyshev_lengths, nodes_beside
 from halfspace.errors import NotConverged
 from halfspace.values import Array, Index, Mask, Valued
 
@@ -271,10 +271,10 @@ def _remainder(
     left: float,
     low: float,
     high: float,
-) -> Remainder:
+) -> Part:
     """Images between two contact radii, integrated up to a radius beyond the wider one, or beyond the widest."""
-    radii = chebyshev_radii(low, high, degree)
-    return Remainder(radii, partial(_in_units, images, unit, max(high, widest) + beyond, left, radii))
+    radii = chebyshev_lengths(low, high, degree)
+    return Part(radii, partial(_in_units, images, unit, max(high, widest) + beyond, left, radii))
 
 
 def _in_units(images: Images, unit: ElasticOperator, until: float, left: float, radii: Array) -> Kernels:

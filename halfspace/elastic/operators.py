@@ -82,19 +82,35 @@ def by_logarithm(lengths: Array, x: float) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Remainder(Valued):
-    """Compliance of a body less that of a homogeneous one, a polynomial in the logarithm of the contact radius.
+class Part(Valued):
+    """Kernels between some lengths (m,): the polynomial in their logarithm through those at these lengths.
 
-    `make` gives it at the radii `scales` (m,), over these and the nodes' weights. It is asked when it is first needed,
-    and again where the kernels had to make room for others.
+    `make` gives these. It is asked when they are first needed, and again where they had to make room for others.
     """
 
-    scales: Array
+    lengths: Array
     make: Callable[[], Kernels]
 
-    def at(self, scale: float, derivative: int) -> Array:
-        """Remainder at a contact radius, or its derivative by the logarithm of that, (q, q)."""
-        return STORE.get(self, "kernels", self.make).combined(by_logarithm(self.scales, scale)[derivative])
+    def at(self, length: float, derivative: int) -> Array:
+        """Kernel (q, q) at a length, or its derivative by the logarithm of that."""
+        return STORE.get(self, "kernels", self.make).combined(by_logarithm(self.lengths, length)[derivative])
+
+    def knowing(self, kernels: Kernels) -> Part:
+        """The same, which need not make its kernels at first: they are there."""
+        STORE.get(self, "kernels", lambda: kernels)
+        return self
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Piecewise(Valued):
+    """Kernels at all lengths, by parts (k,), each of which serves those from one of the ends (k + 1,) to the next."""
+
+    ends: Array
+    parts: Sequence[Part]
+
+    def at(self, length: float, derivative: int) -> Array:
+        """Kernel (q, q) at a length, or its derivative by the logarithm of that."""
+        return self.parts[int(np.searchsorted(self.ends[1:-1], length))].at(length, derivative)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -103,13 +119,13 @@ class NearlyHomogeneous(Homogeneous):
 
     The singular part of the kernel is that of the homogeneous body: only what is smooth is interpolated, between
     contact radii from the least, in beta, to `ratio` times that, from there to `ratio` times that, and so on. `make`
-    gives the remainder between the two radii of such a part, when a contact is first so wide: a polynomial tells
-    nothing beyond its ends.
+    gives the remainder, over the radius and the nodes' weights, between the two radii of such a part, when a contact
+    is first so wide: a polynomial tells nothing beyond its ends.
     """
 
     least: float
     ratio: float
-    make: Callable[[float, float], Remainder]
+    make: Callable[[float, float], Part]
 
     @property
     def least_radius(self) -> float:
@@ -142,7 +158,7 @@ class NearlyHomogeneous(Homogeneous):
         return self._parts[number].at(scale, derivative) * self.unit.weights
 
     @cached_property
-    def _parts(self) -> dict[int, Remainder]:
+    def _parts(self) -> dict[int, Part]:
         """Remainders made so far, by their number from the least radius on."""
         return {}
 
@@ -171,7 +187,11 @@ class MovingGrid(Valued):
 
     def lines(self, contact_radius: float) -> Array:
         """Cell ends (m + 1,) at a contact radius in beta."""
-        return self.fixed + self.edge(contact_radius) * self.moving
+        return self.lines_at(np.array(self.edge(contact_radius)))
+
+    def lines_at(self, edges: Array) -> Array:
+        """Cell ends (..., m + 1) at places of the edge (...), x_a."""
+        return self.fixed + np.multiply.outer(edges, self.moving)
 
     def edge(self, contact_radius: float) -> float:
         """x_a."""
@@ -179,8 +199,7 @@ class MovingGrid(Valued):
 
     def edge_rate(self, contact_radius: float) -> float:
         """Derivative of x_a by the contact radius."""
-        rate = float(self.coordinate.radius(np.array(self.edge(contact_radius)))[1])
-        return 1 / rate if rate else np.nan  # on the equator: a trial that ends there is refused for it
+        return self.coordinate.rate(contact_radius)  # nan on the equator: a trial that ends there is refused for it
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -188,23 +207,24 @@ class Interpolated(Valued, Operator):
     """A body with a length, or any other, between the contact radii at which its operator is known.
 
     With C = A w the compliance, the symmetric kernel max(r_i, r_j) A_ij, of order one at every radius and exact for a
-    homogeneous body, is what is interpolated.
-
-    The scales (m,) are the contact radii in beta, positive and distinct, see `chebyshev_radii`, at which operators are
-    known on the grid, with Gauss's points as nodes, k in each cell, whose numbers are `cell_nodes`. `make` gives these
-    operators; it is asked again where their kernels had to make room for others.
+    homogeneous body, is what is interpolated, by the coordinate x_a of the contact edge, on the grid with Gauss's
+    points as nodes, k in each cell, whose numbers are `cell_nodes`.
     """
 
-    scales: Array
+    kernel: Piecewise
     cell_nodes: Index
     grid: MovingGrid
-    make: Callable[[], Sequence[ElasticOperator]]
     follows_contact, alike = True, False
+
+    @cached_property
+    def scales(self) -> Array:
+        """Contact radii (k + 1,) in beta at which parts begin and end."""
+        return self.grid.coordinate.radius(self.kernel.ends)[0]
 
     @property
     def least_radius(self) -> float:
-        """Least contact radius that it serves, a little below those at which it is known; of wide ones any."""
-        return float(self.scales.min()) / OUTSIDE
+        """Least contact radius that it serves; of wide ones any."""
+        return float(self.scales[0])
 
     @cached_property
     def axis_row(self) -> Array:
@@ -224,7 +244,7 @@ class Interpolated(Valued, Operator):
     def _on_cells(self, scale: float, compliance: Array) -> ElasticOperator:
         """Operator with a compliance on the cells at a scale."""
         nodes, ends = self._nodes(scale), self.grid.coordinate.radius(self.grid.lines(scale))[0]
-        return ElasticOperator(nodes.radii, nodes.weights, compliance, ends, self.cell_nodes)
+        return ElasticOperator(nodes.radii, nodes.weights, compliance, ends, self.cell_nodes, self.grid.coordinate)
 
     def at(self, scale: float) -> ElasticOperator:
         """Operator at a contact radius in beta."""
@@ -258,19 +278,8 @@ class Interpolated(Valued, Operator):
 
     def _combined(self, scale: float, derivative: int) -> Array:
         """Kernel (q, q) at a scale, or its derivative by the scale but for that of the radii."""
-        x, edges = self.grid.edge(scale), np.array([self.grid.edge(float(known)) for known in self.scales])
-        rate = self.grid.edge_rate(scale) / x if derivative else 1.0
-        kernels = STORE.get(self, "kernels", lambda: self._kernels_of(self.make()))
-        return kernels.combined(by_logarithm(edges, x)[derivative] * rate)
-
-    def _kernels_of(self, operators: Sequence[ElasticOperator]) -> Kernels:
-        """Kernels max(r_i, r_j) C_ij/w_j of operators."""
-        return Kernels(np.array([np.maximum.outer(o.radii, o.radii) * o.compliance / o.weights for o in operators]))
-
-    def knowing(self, operators: Sequence[ElasticOperator]) -> Interpolated:
-        """The same, which need not make its operators at first: they are there."""
-        STORE.get(self, "kernels", partial(self._kernels_of, operators))
-        return self
+        x = self.grid.edge(scale)
+        return self.kernel.at(x, derivative) * (self.grid.edge_rate(scale) / x if derivative else 1.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -301,9 +310,6 @@ class _AtScale(Valued):
         return self.body._combined(self.scale, 1) / np.maximum.outer(self.nodes.radii, self.nodes.radii)
 
 
-OUTSIDE = 1.3  # ratio of the least radius known to the least served: as far apart as radii of a curve, and a step more
-
-
 def nodes_beside(step: float, left: float) -> int:
     """How many lengths of a geometric sequence a polynomial in their logarithm takes on either side of where it is.
 
@@ -314,8 +320,16 @@ def nodes_beside(step: float, left: float) -> int:
     return 1 + int(np.count_nonzero(np.cumprod(x2 / (x2 + np.pi**2 / 4))[:-1] > left))
 
 
-def chebyshev_radii(least: float, most: float, count: int) -> Array:
-    """Radii, descending, whose logarithms are the `count` Chebyshev points between those of two radii."""
-    t = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+def kernels_of(operators: Sequence[ElasticOperator]) -> Kernels:
+    """Kernels max(r_i, r_j) C_ij/w_j of operators."""
+    return Kernels(np.array([np.maximum.outer(o.radii, o.radii) * o.compliance / o.weights for o in operators]))
+
+
+def chebyshev_lengths(least: float, most: float, count: int) -> Array:
+    """Lengths, ascending, whose logarithms are the `count` Chebyshev points from one length to another.
+
+    Both ends are among them: polynomials on either side of one meet there.
+    """
+    t = -np.cos(np.pi * np.arange(count) / (count - 1))
     middle, half = (np.log(most) + np.log(least)) / 2, (np.log(most) - np.log(least)) / 2
     return np.asarray(np.exp(middle + half * t))
