@@ -152,7 +152,7 @@ class SizedBody(Valued):
         Narrow parts of few operators each serve wide ranges of contact radii: only those that are met are made.
         """
         ends, counts = self._parts(*self.radii_of_curve, error)
-        return self.centred(), self.over(ends, counts, 2.0)
+        return self.centred(), self.over(ends, counts)
 
     def _parts(self, least: float, most: float, error: float) -> tuple[list[float], list[int]]:
         """Ends of the parts of a range of contact radii, halved until none takes more than `MOST`, and operators."""
@@ -162,15 +162,15 @@ class SizedBody(Valued):
         (below, few), (above, more) = (self._parts(*half, error) for half in ((least, middle), (middle, most)))
         return below + above[1:], few + more
 
-    def over(self, ends: Sequence[float], counts: Sequence[int], longest: float = 1.0) -> Chart:
+    def over(self, ends: Sequence[float], counts: Sequence[int]) -> Chart:
         """Chart that follows the contact edge, in parts between contact radii (k + 1,), from so many operators (k,).
 
-        It is fine enough for all: the cells inside the edge are `longest` times as long as those outside where the
-        contact is widest, and shorter where it is narrower.
+        It is fine enough for all: the cells inside the edge are twice as long as those outside where the contact is
+        widest, and shorter where it is narrower.
         """
         x = [self.coordinate.of(a) for a in ends]
         rest = self._end_beyond(x[-1]) - x[0]
-        inner = 1 - grid.geometric(1.0, longest * self.length / x[-1], self._growth)[::-1]
+        inner = 1 - grid.geometric(1.0, 2 * self.length / x[-1], self._growth)[::-1]
         inner = grid.towards_axis(inner, self.first / ends[-1], self._growth)
         moving = self._moving(inner, grid.geometric(rest, self.length, self._growth, self.last) / rest)
         lengths = [chebyshev_lengths(*between, count) for between, count in zip(pairwise(x), counts, strict=True)]
