@@ -21,10 +21,10 @@ from fem_adhesion.discretise import (
 )
 from fem_adhesion.mesh.file import chords, read_scaled
 from fem_adhesion.scene import Scene, require_scene
-from halfspace.accuracy.grids import TWIN, left_between, rings
+from halfspace.accuracy.grids import TWIN, rings
 from halfspace.accuracy.refinement import MOST_RUNGS, climb
 from halfspace.accuracy.stages import Charted, Charts, Rung
-from halfspace.accuracy.standing import Standing
+from halfspace.accuracy.standing import Standing, left_between, standing
 from halfspace.elastic import grid
 from halfspace.elastic.compliance import to_infinity
 from halfspace.elastic.operators import Homogeneous
@@ -171,12 +171,7 @@ def sized_ladder(scene: Scene, rtol: float, to_load: float, level: int) -> Rung:
 
 
 def _standing(scene: Scene, how: Discretisation, to_load: float) -> Standing:
-    """Stage on which each event has cells of its own; points of the curve share operators interpolated between radii.
-
-    One operator an event: a chart that follows the contact takes three to seven for the derivative by the radius.
-    """
-    body = sized_body(scene, how, to_load)
-    return Standing(body, lambda: Charted(body.curve(left_between(how.degree + 2))))
+    return standing(sized_body(scene, how, to_load), left_between(how.degree + 2))
 
 
 def degree_for(rtol: float) -> int:

@@ -143,9 +143,6 @@ def _fine_throughout(scales: Scales, finest: float, growth: float, outer: float,
     return grid.graded(0.0, spacing, max(outer, reach + spacing), growth=growth, until=reach)
 
 
-Discretise = Callable[[Resolution, int], tuple[Chart, ...]]
-"""Makes the charts of a resolution for a rung, 0, or for its twin, 1, which may differ in more than cells."""
-
 MakeOperator = Callable[[int, float, Array], compliance.ElasticOperator]
 """Makes an operator from the nodes in a cell, `Scales.tail_reach` and the ends of the cells."""
 
@@ -158,7 +155,6 @@ def endless(nodes: int, reach: float, breaks: Array) -> compliance.ElasticOperat
 def half_space_charts(
     scales: Scales,
     resolution: Resolution,
-    _which: int = 0,
     *,
     to_load: float = COMPRESSION,
     make: MakeOperator = endless,
@@ -172,14 +168,6 @@ def half_space_charts(
         return (first,)
     edge = make(resolution.nodes, scales.tail_reach, lines.edge)
     return first, Chart(contact_of(scales, Homogeneous(edge)), edge.radii.size)
-
-
-def sphere_charts(
-    scales: Scales, resolution: Resolution, _which: int = 0, *, to_load: float = COMPRESSION
-) -> tuple[Chart, ...]:
-    """Charts of the half-space under a surface that ends, as a sphere's does at its equator."""
-    body = under_sphere(scales, resolution, to_load)
-    return body.curve(left_between(resolution.nodes))
 
 
 def under_sphere(scales: Scales, resolution: Resolution, to_load: float = COMPRESSION) -> SizedBody:
@@ -196,15 +184,6 @@ def under_sphere(scales: Scales, resolution: Resolution, to_load: float = COMPRE
         first=at_tip(scales.profile, nodes),
         together=partial(_all_made, R, nodes),
     )
-
-
-def left_between(nodes: int) -> float:
-    """What the operators between those of a curve may leave, R dgamma or eps, by the nodes in a cell.
-
-    It is 1e-2 of what the nodes leave at 1e-6, less for a node more, so that the change from rung to rung tells their
-    error too.
-    """
-    return float(10.0 ** (-4 - nodes / 2))
 
 
 def _made(R: float, nodes: int, lines: Array) -> Made:

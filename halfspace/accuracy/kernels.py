@@ -16,17 +16,18 @@ from functools import partial
 from halfspace.accuracy.grids import (
     EXTENT,
     ONE_NODE,
-    Discretise,
     MakeOperator,
     Resolution,
     endless,
     half_space_charts,
     resolutions_for,
     rule_for,
-    sphere_charts,
     twin_of,
+    under_sphere,
 )
 from halfspace.accuracy.refinement import MOST_RUNGS
+from halfspace.accuracy.stages import Discretised, charted
+from halfspace.accuracy.standing import sized
 from halfspace.elastic import compliance
 from halfspace.elastic.compliance import ElasticOperator
 from halfspace.elastic.extrapolated import divided, extrapolated
@@ -58,11 +59,11 @@ class Kernel:
     least: float
     most_rungs: int
 
-    def charts(self, scales: Scales, to_load: float) -> Discretise:
-        """Makes the half-space's charts of a resolution: an operator for all radii, unless the surface ends."""
+    def discretise(self, scales: Scales, to_load: float, resolution: Resolution, _which: int) -> Discretised:
+        """Half-space at a resolution: an operator for all radii, unless the surface ends."""
         if math.isfinite(scales.profile.end):
-            return partial(sphere_charts, scales, to_load=to_load)
-        return partial(half_space_charts, scales, to_load=to_load, make=self.make)
+            return sized(under_sphere(scales, resolution, to_load), resolution.nodes)
+        return charted(half_space_charts(scales, resolution, to_load=to_load, make=self.make))
 
 
 def _straight(kind: str, parts: int, intervals: int, reach: float, cells: Array) -> ElasticOperator:

@@ -8,14 +8,16 @@ is discretised as any body with a length.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from halfspace.accuracy.finite_bodies import HAND_OVER, Made, SizedBody, at_equator, at_tip, step_above
-from halfspace.accuracy.grids import Discretise, Resolution, half_space_charts, left_between
+from halfspace.accuracy.grids import Resolution, half_space_charts
+from halfspace.accuracy.stages import Discretised, charted
+from halfspace.accuracy.standing import sized
 from halfspace.elastic.grid import FLAT
 from halfspace.elastic.layered import Images, images_of, layered_panels, nearly_homogeneous
 from halfspace.elastic.layered import layered as with_images
@@ -35,18 +37,18 @@ IMAGES = (1.14, 1.17)  # ratios of the depths of a layered body's images, and of
 WIDER = 2  # times the half-space's extent, to where all images are integrated
 
 
-def layered(scales: Scales, body: LayeredBody, to_load: float) -> Discretise:
-    """Makes the charts of a resolution of a layered body under any surface, by its images or by those of its twin."""
-    return partial(_charts, scales, [images_of(body, spacing) for spacing in IMAGES], to_load)
-
-
-def _charts(
-    scales: Scales, images: Sequence[Images], to_load: float, resolution: Resolution, which: int
-) -> tuple[Chart, ...]:
+def discretise(
+    images: Sequence[Images], scales: Scales, to_load: float, resolution: Resolution, which: int
+) -> Discretised:
+    """Layered body at a resolution, under any surface, by its images or by those of its twin."""
     if math.isfinite(scales.profile.end):
-        sized = layered_body(scales, images[which], resolution, to_load)
-        return sized.curve(left_between(resolution.nodes))
-    return layered_charts(scales, images[which], resolution, to_load)
+        return sized(layered_body(scales, images[which], resolution, to_load), resolution.nodes)
+    return charted(layered_charts(scales, images[which], resolution, to_load))
+
+
+def layered(body: LayeredBody) -> Callable[[Scales, float, Resolution, int], Discretised]:
+    """Discretises a layered body."""
+    return partial(discretise, [images_of(body, spacing) for spacing in IMAGES])
 
 
 def layered_charts(

@@ -35,6 +35,15 @@ class Charted(Stage):
         return max(chart.unknowns for chart in self.charts)
 
 
+Discretised = tuple[Callable[[], Charts], Stage]
+"""Makes the charts for tracing a curve at one resolution, and the stage for its events and points."""
+
+
+def charted(charts: Charts) -> Discretised:
+    """The same charts for the curve, its events and its points."""
+    return (lambda: charts), Charted(charts)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Rung(Valued):
     """One step of a ladder of discretisations.

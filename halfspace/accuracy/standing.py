@@ -1,4 +1,4 @@
-"""Events each on a grid of its own that stands still: a reference for charts that follow the contact."""
+"""Events of a body with a length, each on a grid of its own that stands still."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Protocol
 
-from halfspace.accuracy.finite_bodies import SizedBody
-from halfspace.accuracy.stages import Charted
+from halfspace.accuracy.finite_bodies import ROUGHLY, SizedBody
+from halfspace.accuracy.stages import Charted, Discretised
 from halfspace.equilibrium.charts import Chart, Stage, undeformed_radius
 from halfspace.equilibrium.conditions import Located
 
@@ -74,10 +74,28 @@ class Standing(WhereAsked):
         return self.along()
 
 
-def standing(body: SizedBody) -> Standing:
-    """Stage on which every event has cells of its own."""
-    return Standing(body, partial(_along, body))
+def standing(body: SizedBody, left: float = ROUGHLY) -> Standing:
+    """Stage on which every event has cells of its own: one operator, where a chart that follows the contact takes ten.
+
+    Points of the curve share operators interpolated between radii, which leave so much of loads in R dgamma and gaps in
+    eps.
+    """
+    return Standing(body, partial(_along, body, left))
 
 
-def _along(body: SizedBody) -> Stage:
-    return Charted(body.curve())
+def _along(body: SizedBody, left: float) -> Stage:
+    return Charted(body.curve(left))
+
+
+def sized(body: SizedBody, nodes: int) -> Discretised:
+    """A body on cells of so many nodes each."""
+    return body.curve, standing(body, left_between(nodes))
+
+
+def left_between(nodes: int) -> float:
+    """What the operators between those of a curve may leave, R dgamma or eps, by the nodes in a cell.
+
+    It is 1e-2 of what the nodes leave at 1e-6, less for a node more, so that the change from rung to rung tells their
+    error too.
+    """
+    return float(10.0 ** (-4 - nodes / 2))

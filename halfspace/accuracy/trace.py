@@ -5,14 +5,15 @@ See `halfspace.accuracy.refinement` for how the error is estimated.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 
-from halfspace.accuracy.grids import Discretise
+from halfspace.accuracy.grids import Resolution
 from halfspace.accuracy.kernels import Kernel, require_kernel
 from halfspace.accuracy.layered import DOUBT, layered
 from halfspace.accuracy.refinement import climb
-from halfspace.accuracy.stages import Charted, Rung
+from halfspace.accuracy.stages import Discretised, Rung
 from halfspace.elastic.layers import LayeredBody
 from halfspace.equilibrium.charts import COMPRESSION
 from halfspace.equilibrium.curve import EquilibriumPath
@@ -70,19 +71,23 @@ def trace(
     tabor, rtol, to_load = require_tabor(tabor), require_rtol(rtol), require_load(to_load)
     scales = Scales(tabor, require_law(law), require_profile(profile).surface(tabor), body)
     how = require_kernel(kernel, scales, rtol)
-    charts = layered(scales, body, to_load) if body else how.charts(scales, to_load)
+    discretise = partial(layered(body) if body else how.discretise, scales, to_load)
     doubt = DOUBT if body else 1
-    return climb(rtol, partial(_rung, scales, rtol, how, charts, doubt), to_load=to_load, most_rungs=how.most_rungs)
+    return climb(rtol, partial(_rung, scales, rtol, how, discretise, doubt), to_load=to_load, most_rungs=how.most_rungs)
 
 
-def _rung(scales: Scales, rtol: float, how: Kernel, charts: Discretise, doubt: int, level: int) -> Rung:
+Discretise = Callable[[Resolution, int], Discretised]
+"""Discretises a body at a resolution for a rung, 0, or for its twin, 1, which may differ in more than cells."""
+
+
+def _rung(scales: Scales, rtol: float, how: Kernel, discretise: Discretise, doubt: int, level: int) -> Rung:
     """Rung of a level: the curve on the lowest, events on each above it and on a twin as fine as the rung below.
 
     An error may be `doubt` times as large as by the change alone.
     """
     resolution, below = how.resolutions(scales, rtol, level)
-    curve, settings = partial(charts, resolution, 0), {"kernel": how.name, **asdict(resolution)}
+    (curve, stage), settings = discretise(resolution, 0), {"kernel": how.name, **asdict(resolution)}
     if not level:
         return Rung(curve, (), settings)
     rule = how.rule(scales, (resolution, below), level, doubt)
-    return Rung(curve, (Charted(curve()),), settings, Charted(charts(below, 1)), rule)
+    return Rung(curve, (stage,), settings, discretise(below, 1)[1], rule)

@@ -15,9 +15,9 @@ import halfspace
 from fem_adhesion import Block, HalfSpace, HeldSphere, Hemisphere, LinearElastic, Meshed, NeoHookean, Scene
 from fem_adhesion.bodies.body import Discretisation
 from fem_adhesion.discretise import sized_body
-from halfspace.accuracy.grids import left_between, resolution_for, under_sphere
+from halfspace.accuracy.grids import resolution_for, under_sphere
 from halfspace.accuracy.stages import on_all
-from halfspace.accuracy.standing import standing
+from halfspace.accuracy.standing import left_between, standing
 from halfspace.equilibrium.charts import moved
 from halfspace.equilibrium.contact import CONTACT_RADIUS
 from halfspace.equilibrium.devices import cycle
